@@ -1,0 +1,120 @@
+//! Several windows side by side as tensors.
+
+use crate::StarError;
+use ddl_data::{Rotation, Window};
+use tch::{Device, Kind, Tensor};
+
+/// The walkers of several windows, one after the other, with who sees whom.
+///
+/// # Shapes
+/// T frames, P walkers in all: positions `[T, P, 2]` in metres; neighbour mask `[M, 1, P, P]` for
+/// the first M frames, 0 where a walker sees another (or itself), -inf elsewhere; scene mean
+/// `[P, P]`, the matrix that averages over the walkers of a scene.
+#[derive(Debug)]
+pub struct SceneBatch {
+    pub(crate) positions: Tensor,
+    pub(crate) neighbour_mask: Tensor,
+    pub(crate) scene_mean: Tensor,
+}
+
+impl SceneBatch {
+    /// Lays out windows: `frames` of each, with the neighbours of the first `mask_frames`.
+    ///
+    /// # Errors
+    /// [`StarError::Shape`] when there is no window, or one is shorter than `frames`.
+    pub fn new(
+        windows: &[&Window],
+        frames: usize,
+        mask_frames: usize,
+        neighbour_box: f64,
+        device: Device,
+        kind: Kind,
+    ) -> Result<Self, StarError> {
+        let walkers: usize = windows.iter().map(|window| window.len()).sum();
+        if walkers == 0 {
+            return Err(StarError::Shape {
+                operation: "scene batch",
+                expected: "at least one window with a pedestrian".into(),
+                got: format!("{} windows", windows.len()),
+            });
+        }
+        let mut positions = vec![0.0; frames * walkers * 2];
+        let mut mask = vec![f32::NEG_INFINITY; mask_frames * walkers * walkers];
+        let mut mean = vec![0.0; walkers * walkers];
+        let mut first = 0;
+        for window in windows {
+            check_length(window, frames)?;
+            for i in 0..window.len() {
+                for (t, [x, y]) in window.track(i).iter().take(frames).enumerate() {
+                    let at = 2 * (t * walkers + first + i);
+                    positions[at] = *x;
+                    positions[at + 1] = *y;
+                }
+                let share = 1.0 / window.len() as f64;
+                let row = (first + i) * walkers + first;
+                mean[row..row + window.len()].fill(share);
+            }
+            for t in 0..mask_frames {
+                let neighbours = window.neighbours(t, neighbour_box);
+                for i in 0..window.len() {
+                    let row = (t * walkers + first + i) * walkers + first;
+                    for j in 0..window.len() {
+                        if i == j || neighbours.is_neighbour(i, j) {
+                            mask[row + j] = 0.0;
+                        }
+                    }
+                }
+            }
+            first += window.len();
+        }
+        let (t, m, p) = (frames as i64, mask_frames as i64, walkers as i64);
+        let tensor = |values: &[f64], shape: &[i64]| -> Result<Tensor, tch::TchError> {
+            Tensor::from_slice(values).f_to_kind(kind)?.f_reshape(shape)?.f_to_device(device)
+        };
+        Ok(Self {
+            positions: tensor(&positions, &[t, p, 2])?,
+            neighbour_mask: Tensor::from_slice(&mask)
+                .f_to_kind(kind)?
+                .f_reshape([m, 1, p, p])?
+                .f_to_device(device)?,
+            scene_mean: tensor(&mean, &[p, p])?,
+        })
+    }
+
+    /// All positions turned about the world's origin. Neighbours stay as they were found.
+    #[must_use]
+    pub fn rotated(&self, rotation: Rotation) -> Self {
+        let ([xx, xy], [yx, yy]) = (rotation.apply([1.0, 0.0]), rotation.apply([0.0, 1.0]));
+        let images = Tensor::from_slice(&[xx, xy, yx, yy])
+            .reshape([2, 2])
+            .to_kind(self.positions.kind())
+            .to_device(self.positions.device());
+        Self {
+            positions: self.positions.matmul(&images),
+            neighbour_mask: self.neighbour_mask.shallow_clone(),
+            scene_mean: self.scene_mean.shallow_clone(),
+        }
+    }
+
+    /// Walkers in all windows together.
+    pub fn walkers(&self) -> usize {
+        self.positions.size()[1] as usize
+    }
+
+    /// Positions, `[T, P, 2]`, metres.
+    pub fn positions(&self) -> &Tensor {
+        &self.positions
+    }
+}
+
+fn check_length(window: &Window, frames: usize) -> Result<(), StarError> {
+    let got = window.track(0).len();
+    if got >= frames {
+        return Ok(());
+    }
+    Err(StarError::Shape {
+        operation: "scene batch",
+        expected: format!("{frames} frames in every window"),
+        got: format!("{got} in {}@{}", window.recording(), window.start_frame()),
+    })
+}

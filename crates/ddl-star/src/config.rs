@@ -1,0 +1,248 @@
+//! Size of the network, the four variants of the paper's ablation, and how to train.
+
+use crate::StarError;
+use serde::{Deserialize, Serialize};
+
+/// The four rows of the paper's Table II: goal shift (A) and dynamics (B), each on or off.
+///
+/// One network serves all four; a variant only chooses what it reads and what its output means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Variant {
+    /// Goal shift and dynamics: the method of the paper.
+    Full,
+    /// Dynamics without goal shift.
+    NoGoalShift,
+    /// Goal shift without dynamics.
+    NoDynamics,
+    /// Neither: plain STAR.
+    Star,
+}
+
+impl Variant {
+    /// All variants, in the order of the paper's Table II.
+    pub const ALL: [Self; 4] = [Self::Star, Self::NoGoalShift, Self::NoDynamics, Self::Full];
+
+    /// Whether the temporal encoders read positions relative to the goal (eq. 10) rather than
+    /// to the last observed position.
+    #[must_use]
+    pub fn goal_shift(self) -> bool {
+        matches!(self, Self::Full | Self::NoDynamics)
+    }
+
+    /// Whether the output is the Cholesky factor of the metric (eq. 12) rather than the next
+    /// position itself.
+    #[must_use]
+    pub fn dynamics(self) -> bool {
+        matches!(self, Self::Full | Self::NoGoalShift)
+    }
+
+    /// Whether a forecast depends on a goal at all.
+    #[must_use]
+    pub fn uses_goal(self) -> bool {
+        self != Self::Star
+    }
+
+    /// The name used on the command line and in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Full => "full",
+            Self::NoGoalShift => "no-goal-shift",
+            Self::NoDynamics => "no-dynamics",
+            Self::Star => "star",
+        }
+    }
+}
+
+impl std::fmt::Display for Variant {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl std::str::FromStr for Variant {
+    type Err = StarError;
+
+    fn from_str(text: &str) -> Result<Self, StarError> {
+        Self::ALL.into_iter().find(|variant| variant.name() == text).ok_or_else(|| {
+            StarError::Config {
+                field: "variant",
+                value: text.to_owned(),
+                rule: "one of full, no-goal-shift, no-dynamics, star",
+            }
+        })
+    }
+}
+
+/// Size and constants of the network. [`StarConfig::published`] gives the paper's.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StarConfig {
+    /// What the network reads and what its output means.
+    pub variant: Variant,
+    /// Width of a token.
+    pub model_width: i64,
+    /// Attention heads; must divide the width.
+    pub heads: i64,
+    /// Width of the hidden layer of each feed-forward block.
+    pub feed_forward_width: i64,
+    /// Layers of each of the two spatial encoders.
+    pub spatial_layers: usize,
+    /// Length of the Gaussian noise vector given to the output layer.
+    pub noise_width: i64,
+    /// Dropout of the spatial encoders (the temporal ones have none).
+    pub spatial_dropout: f64,
+    /// Half side of the square within which walkers are neighbours, in metres.
+    pub neighbour_box: f64,
+    /// sigma of P = L L^T + sigma I (eq. 11).
+    pub sigma: f64,
+    /// Seconds between two frames.
+    pub time_step: f64,
+}
+
+impl StarConfig {
+    /// The published network: 32-wide tokens, 8 heads, 2048-wide feed-forward blocks, two spatial
+    /// layers, 16 noise numbers, sigma = 1e-8, 0.4 s.
+    #[must_use]
+    pub fn published(variant: Variant) -> Self {
+        Self {
+            variant,
+            model_width: 32,
+            heads: 8,
+            feed_forward_width: 2048,
+            spatial_layers: 2,
+            noise_width: 16,
+            spatial_dropout: 0.1,
+            neighbour_box: 10.0,
+            sigma: 1e-8,
+            time_step: ddl_data::TIME_STEP,
+        }
+    }
+
+    /// Numbers the network emits a walker and step: (a, b, c) of the Cholesky factor, or (x, y).
+    #[must_use]
+    pub fn output_width(&self) -> i64 {
+        if self.variant.dynamics() { 3 } else { 2 }
+    }
+
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`StarError::Config`] naming the first field that is out of range.
+    pub fn check(&self) -> Result<(), StarError> {
+        let positive = [
+            ("model_width", self.model_width),
+            ("heads", self.heads),
+            ("feed_forward_width", self.feed_forward_width),
+            ("spatial_layers", self.spatial_layers as i64),
+            ("noise_width", self.noise_width),
+        ];
+        for (field, value) in positive {
+            require(value > 0 && value <= 65_536, field, &value, "a whole number in 1..=65536")?;
+        }
+        require(
+            self.model_width % self.heads == 0,
+            "heads",
+            &self.heads,
+            "must divide model_width",
+        )?;
+        let dropout = self.spatial_dropout;
+        require((0.0..1.0).contains(&dropout), "spatial_dropout", &dropout, "in [0, 1)")?;
+        for (field, value) in [
+            ("neighbour_box", self.neighbour_box),
+            ("sigma", self.sigma),
+            ("time_step", self.time_step),
+        ] {
+            require(value.is_finite() && value > 0.0, field, &value, "finite and positive")?;
+        }
+        Ok(())
+    }
+}
+
+/// How to train. The defaults are the paper's.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainingConfig {
+    /// Passes over the training set (or over `walkers_per_epoch` of it).
+    pub epochs: usize,
+    /// Step size of Adam.
+    pub learning_rate: f64,
+    /// Largest allowed norm of the gradient.
+    pub gradient_clip: f64,
+    /// Windows are gathered into a batch until it holds more than this many walkers.
+    pub batch_walkers: usize,
+    /// Rotate each batch by a fresh random angle at every visit; angles add up, as published.
+    pub rotate: bool,
+    /// Train on at most about this many walkers an epoch, going round the whole set.
+    pub walkers_per_epoch: Option<usize>,
+    /// Seed of initial weights, batch order, rotation, noise and dropout.
+    pub seed: u64,
+}
+
+impl Default for TrainingConfig {
+    fn default() -> Self {
+        Self {
+            epochs: 200,
+            learning_rate: 1.5e-3,
+            gradient_clip: 1.0,
+            batch_walkers: 256,
+            rotate: true,
+            walkers_per_epoch: None,
+            seed: 1,
+        }
+    }
+}
+
+impl TrainingConfig {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`StarError::Config`] naming the first field that is out of range.
+    pub fn check(&self) -> Result<(), StarError> {
+        require(self.epochs > 0, "epochs", &self.epochs, "at least 1")?;
+        let rate = self.learning_rate;
+        require(rate.is_finite() && rate > 0.0, "learning_rate", &rate, "finite and positive")?;
+        let clip = self.gradient_clip;
+        require(clip.is_finite() && clip > 0.0, "gradient_clip", &clip, "finite and positive")?;
+        require(self.batch_walkers > 0, "batch_walkers", &self.batch_walkers, "at least 1")?;
+        if let Some(walkers) = self.walkers_per_epoch {
+            require(walkers > 0, "walkers_per_epoch", &walkers, "at least 1")?;
+        }
+        Ok(())
+    }
+}
+
+fn require(
+    holds: bool,
+    field: &'static str,
+    value: &dyn std::fmt::Display,
+    rule: &'static str,
+) -> Result<(), StarError> {
+    if holds { Ok(()) } else { Err(StarError::Config { field, value: value.to_string(), rule }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn published_sizes_are_accepted_and_broken_ones_named() {
+        let good = StarConfig::published(Variant::Full);
+        good.check().unwrap();
+        let bad = StarConfig { heads: 5, ..good.clone() };
+        assert!(bad.check().unwrap_err().to_string().contains("heads = 5"));
+        let bad = StarConfig { sigma: 0.0, ..good };
+        assert!(bad.check().unwrap_err().to_string().contains("sigma"));
+        let bad = TrainingConfig { learning_rate: f64::NAN, ..TrainingConfig::default() };
+        assert!(bad.check().unwrap_err().to_string().contains("learning_rate"));
+    }
+
+    #[test]
+    fn variants_round_trip_through_their_names() {
+        for variant in Variant::ALL {
+            assert_eq!(variant.name().parse::<Variant>().unwrap(), variant);
+        }
+        assert!("half".parse::<Variant>().is_err());
+    }
+}

@@ -1,0 +1,112 @@
+//! Where the network computes, and opening CUDA on a machine that has it.
+
+use crate::StarError;
+use serde::{Deserialize, Serialize};
+use std::sync::OnceLock;
+
+/// The device asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DeviceChoice {
+    /// CUDA when it can be had, else the CPU.
+    Auto,
+    /// The CPU.
+    Cpu,
+    /// The first CUDA device; its absence is an error.
+    Cuda,
+}
+
+impl std::str::FromStr for DeviceChoice {
+    type Err = StarError;
+
+    fn from_str(text: &str) -> Result<Self, StarError> {
+        match text {
+            "auto" => Ok(Self::Auto),
+            "cpu" => Ok(Self::Cpu),
+            "cuda" => Ok(Self::Cuda),
+            _ => Err(StarError::Config {
+                field: "device",
+                value: text.to_owned(),
+                rule: "one of auto, cpu, cuda",
+            }),
+        }
+    }
+}
+
+/// A device that was opened and is there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ComputeDevice(tch::Device);
+
+impl ComputeDevice {
+    /// Opens the device. Call it before anything else touches libtorch: CUDA registers itself only
+    /// when its library is loaded before the first tensor is made.
+    ///
+    /// # Errors
+    /// [`StarError::Device`] when CUDA is asked for and cannot be had.
+    pub fn open(choice: DeviceChoice) -> Result<Self, StarError> {
+        match choice {
+            DeviceChoice::Cpu => Ok(Self(tch::Device::Cpu)),
+            DeviceChoice::Cuda => open_cuda().map(|()| Self(tch::Device::Cuda(0))),
+            DeviceChoice::Auto => Ok(Self(match open_cuda() {
+                Ok(()) => tch::Device::Cuda(0),
+                Err(_) => tch::Device::Cpu,
+            })),
+        }
+    }
+
+    /// "cpu" or "cuda", as reports print it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self.0 {
+            tch::Device::Cpu => "cpu",
+            _ => "cuda",
+        }
+    }
+
+    /// The device as libtorch names it.
+    #[must_use]
+    pub fn torch(self) -> tch::Device {
+        self.0
+    }
+}
+
+/// Uses `threads` threads for tensor operations in this process. Call it once, at the start.
+pub fn set_threads(threads: usize) {
+    let threads = i32::try_from(threads.max(1)).unwrap_or(i32::MAX);
+    tch::set_num_interop_threads(1);
+    tch::set_num_threads(threads);
+}
+
+fn open_cuda() -> Result<(), StarError> {
+    static OPENED: OnceLock<Result<(), String>> = OnceLock::new();
+    OPENED.get_or_init(load_cuda).clone().map_err(|problem| StarError::Device {
+        device: "cuda".into(),
+        problem,
+    })
+}
+
+fn load_cuda() -> Result<(), String> {
+    #[cfg(target_os = "linux")]
+    {
+        use libloading::os::unix::{Library, RTLD_GLOBAL, RTLD_NOW};
+        // SAFETY: loading the library runs its initialisers, which register the CUDA backend with
+        // the libtorch already in this process; it is the matching build (same release), is opened
+        // once, before any tensor exists, and is never unloaded.
+        #[allow(unsafe_code)]
+        let library = unsafe { Library::open(Some("libtorch_cuda.so"), RTLD_NOW | RTLD_GLOBAL) };
+        match library {
+            Ok(library) => std::mem::forget(library),
+            Err(error) => {
+                return Err(format!(
+                    "libtorch_cuda.so cannot be loaded ({error}); put the lib folder of a CUDA \
+                     build of torch 2.11.0 on LD_LIBRARY_PATH, or use --device cpu"
+                ));
+            }
+        }
+    }
+    if tch::Cuda::is_available() {
+        Ok(())
+    } else {
+        Err("libtorch finds no CUDA device; check the driver, or use --device cpu".into())
+    }
+}

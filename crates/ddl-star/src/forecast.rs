@@ -1,0 +1,168 @@
+//! Forecasts of whole windows, free of tensors: what the facade calls.
+
+use crate::StarError;
+use crate::batch::SceneBatch;
+use crate::flow::Integrator;
+use crate::seed::{Stage, stream};
+use crate::star::StarNetwork;
+use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use rand::RngExt as _;
+use rand_distr::StandardNormal;
+use tch::Tensor;
+
+/// Windows are rolled out together until they hold this many walkers: enough to fill the matrix
+/// products, few enough for attention over the whole batch to stay cheap.
+const WALKERS_AT_ONCE: usize = 64;
+
+/// What the output layer is told besides the walkers' tokens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Noise {
+    /// The mean of the noise, zero: one forecast a goal.
+    Mean,
+    /// That many vectors from N(0, 1), seeded: as many hypotheses on one goal.
+    Draws {
+        /// Number of vectors.
+        count: usize,
+        /// Seed of their stream.
+        seed: u64,
+    },
+}
+
+/// Forecast positions of one window.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WindowRollout {
+    /// N, in the order of the window.
+    pub pedestrians: usize,
+    /// H hypotheses a pedestrian.
+    pub hypotheses: usize,
+    /// `[N][H][12]`, metres.
+    pub positions: Vec<Position>,
+}
+
+impl StarNetwork {
+    /// Forecasts 12 frames for every pedestrian of every window, without touching the future.
+    ///
+    /// # Shapes
+    /// `goals[w][i]` holds the goals of pedestrian i of window w, as many for every pedestrian; one
+    /// hypothesis a goal, or, with a single goal, one a noise vector.
+    ///
+    /// # Errors
+    /// [`StarError::Shape`] when the goals do not fit the windows, or several goals meet several
+    /// noise vectors; [`StarError::Torch`] when libtorch fails.
+    pub fn forecast_windows(
+        &self,
+        windows: &[Window],
+        goals: &[Vec<Vec<Position>>],
+        noise: Noise,
+        integrator: Integrator,
+    ) -> Result<Vec<WindowRollout>, StarError> {
+        let goal_count = check_goals(windows, goals, noise)?;
+        let _guard = tch::no_grad_guard();
+        let noise = self.noise(noise);
+        let mut rollouts = Vec::with_capacity(windows.len());
+        let mut first = 0;
+        while first < windows.len() {
+            let mut last = first;
+            let mut walkers = 0;
+            while last < windows.len() && (walkers == 0 || walkers + windows[last].len() <= WALKERS_AT_ONCE) {
+                walkers += windows[last].len();
+                last += 1;
+            }
+            let range = first..last;
+            rollouts.extend(self.forecast_batch(
+                &windows[range.clone()],
+                &goals[range],
+                goal_count,
+                &noise,
+                integrator,
+            )?);
+            first = last;
+        }
+        Ok(rollouts)
+    }
+
+    fn forecast_batch(
+        &self,
+        windows: &[Window],
+        goals: &[Vec<Vec<Position>>],
+        goal_count: usize,
+        noise: &Tensor,
+        integrator: Integrator,
+    ) -> Result<Vec<WindowRollout>, StarError> {
+        let views: Vec<&Window> = windows.iter().collect();
+        let half_box = self.config().neighbour_box;
+        let batch =
+            SceneBatch::new(&views, OBSERVED, OBSERVED, half_box, self.device(), self.kind())?;
+        let walkers = batch.walkers();
+        let mut flat = Vec::with_capacity(goal_count * walkers * 2);
+        for k in 0..goal_count {
+            flat.extend(goals.iter().flatten().flat_map(|goals| goals[k]));
+        }
+        let shape = [goal_count as i64, walkers as i64, 2];
+        let goals = Tensor::from_slice(&flat)
+            .f_reshape(shape)?
+            .f_to_kind(self.kind())?
+            .f_to_device(self.device())?;
+        let forecast = self.roll_out(&batch, &goals, noise, HORIZON, integrator);
+        let hypotheses = forecast.size()[1] as usize;
+        // [T, H, P, 2] -> [P, H, T, 2]
+        let ordered = forecast.permute([2, 1, 0, 3]).to_kind(tch::Kind::Double).contiguous();
+        let numbers: Vec<f64> = Vec::try_from(ordered.reshape([-1]))?;
+        let mut positions = numbers.chunks_exact(2).map(|xy| [xy[0], xy[1]]);
+        Ok(windows
+            .iter()
+            .map(|window| WindowRollout {
+                pedestrians: window.len(),
+                hypotheses,
+                positions: positions.by_ref().take(window.len() * hypotheses * HORIZON).collect(),
+            })
+            .collect())
+    }
+
+    fn noise(&self, noise: Noise) -> Tensor {
+        let width = self.config().noise_width as usize;
+        let (count, values) = match noise {
+            Noise::Mean => (1, vec![0.0; width]),
+            Noise::Draws { count, seed } => {
+                let mut rng = stream(seed, Stage::Forecast, 0);
+                (count, (0..count * width).map(|_| rng.sample(StandardNormal)).collect())
+            }
+        };
+        Tensor::from_slice(&values)
+            .reshape([count as i64, width as i64])
+            .to_kind(self.kind())
+            .to_device(self.device())
+    }
+}
+
+fn check_goals(
+    windows: &[Window],
+    goals: &[Vec<Vec<Position>>],
+    noise: Noise,
+) -> Result<usize, StarError> {
+    let fault = |expected: String, got: String| {
+        Err(StarError::Shape { operation: "forecast", expected, got })
+    };
+    if goals.len() != windows.len() {
+        return fault(format!("goals of {} windows", windows.len()), goals.len().to_string());
+    }
+    let count = goals.iter().flatten().map(Vec::len).next().unwrap_or(1);
+    for (window, goals) in windows.iter().zip(goals) {
+        if goals.len() != window.len() {
+            return fault(
+                format!("goals of {} pedestrians in {}", window.len(), window.recording()),
+                goals.len().to_string(),
+            );
+        }
+        if let Some(other) = goals.iter().find(|goals| goals.len() != count || goals.is_empty()) {
+            return fault(format!("{count} goals for every pedestrian"), other.len().to_string());
+        }
+    }
+    match noise {
+        Noise::Draws { count: draws, .. } if draws == 0 || (count > 1 && draws > 1) => fault(
+            "one goal with several noise vectors, or several goals with one".into(),
+            format!("{count} goals, {draws} noise vectors"),
+        ),
+        _ => Ok(count),
+    }
+}

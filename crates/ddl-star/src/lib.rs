@@ -1,0 +1,36 @@
+#![doc = include_str!("../README.md")]
+
+mod attention;
+mod batch;
+mod checkpoint;
+mod config;
+mod device;
+mod encoder_layer;
+mod error;
+mod flow;
+mod forecast;
+mod layers;
+mod loss;
+mod optimizer;
+mod parameters;
+mod rollout;
+mod schedule;
+mod seed;
+mod spatial;
+mod star;
+mod temporal;
+mod train;
+
+pub use batch::SceneBatch;
+pub use checkpoint::{load_parameters, save_parameters};
+pub use config::{StarConfig, TrainingConfig, Variant};
+pub use device::{ComputeDevice, DeviceChoice, set_threads};
+pub use error::StarError;
+pub use flow::{FlowConstants, Integrator, natural_gradient_step};
+pub use forecast::{Noise, WindowRollout};
+pub use layers::Mode;
+pub use loss::mean_squared_distance;
+pub use optimizer::Adam;
+pub use parameters::Parameters;
+pub use star::StarNetwork;
+pub use train::{EpochReport, StepReport, Trainer};

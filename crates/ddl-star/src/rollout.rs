@@ -1,0 +1,138 @@
+//! From windows and goals to positions: teacher-forced for training, recurrent for forecasts.
+
+use crate::batch::SceneBatch;
+use crate::flow::{FlowConstants, Integrator, natural_gradient_step};
+use crate::layers::Mode;
+use crate::star::{GraphMemory, StarNetwork};
+use ddl_data::OBSERVED;
+use tch::{Kind, Tensor};
+
+impl StarNetwork {
+    /// One-step-ahead positions: from the true positions up to each frame, the next one.
+    ///
+    /// # Shapes
+    /// `batch` of T frames with neighbours of at least T - 1; `goals` `[P, 2]`; `noise`
+    /// `[1, noise]` -> `[T - 1, P, 2]`, the forecasts of frames 1..T.
+    pub fn teacher_forced(
+        &self,
+        batch: &SceneBatch,
+        goals: &Tensor,
+        noise: &Tensor,
+        mode: Mode,
+    ) -> Tensor {
+        let steps = batch.positions.size()[0] - 1;
+        let positions = batch.positions.narrow(0, 0, steps);
+        let mask = batch.neighbour_mask.narrow(0, 0, steps);
+        // The frames are known, so all of them pass the first spatial encoder at once.
+        let spatial = self.spatial_tokens(&centre(batch, &positions), &mask, mode);
+        let reference = self.reference(batch, goals);
+        let relative = &positions - &reference;
+        let mut memory = GraphMemory::default();
+        let tokens: Vec<Tensor> = (0..steps)
+            .map(|t| {
+                let frame = |tensor: &Tensor| tensor.narrow(0, t, 1);
+                self.step(&mut memory, &frame(&relative), &frame(&spatial), &frame(&mask), mode)
+            })
+            .collect();
+        let emitted = self.emit(&Tensor::cat(&tokens, 0), noise);
+        self.next_positions(&positions, goals, &reference, &emitted, Integrator::Euler)
+    }
+
+    /// Forecast positions: 8 frames observed, then every forecast is the input of the next step.
+    ///
+    /// Neighbours are those of the last observed frame throughout. H = G hypotheses with one goal
+    /// each, or H = number of noise vectors when all share one goal (G = 1).
+    ///
+    /// # Shapes
+    /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` `[1 or H, noise]`
+    /// -> `[horizon, H, P, 2]`.
+    pub fn roll_out(
+        &self,
+        batch: &SceneBatch,
+        goals: &Tensor,
+        noise: &Tensor,
+        horizon: usize,
+        integrator: Integrator,
+    ) -> Tensor {
+        let mode = Mode::Evaluate;
+        let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
+        let last = OBSERVED as i64 - 1;
+        let hypotheses = goals.size()[0].max(noise.size()[0]);
+        let reference = self.reference(batch, goals);
+        let spatial =
+            self.spatial_tokens(&centre(batch, &observed), &batch.neighbour_mask.narrow(0, 0, last + 1), mode);
+        // The observed frames differ between hypotheses only through the goal they are shifted by:
+        // `relative` has one batch entry a distinct reference.
+        let mut memory = GraphMemory::default();
+        let mut token = None;
+        for t in 0..=last {
+            let relative = observed.get(t) - &reference;
+            let mask = batch.neighbour_mask.narrow(0, t, 1);
+            token = Some(self.step(&mut memory, &relative, &spatial.narrow(0, t, 1), &mask, mode));
+        }
+        let Some(mut token) = token else { unreachable!("OBSERVED is at least one frame") };
+        if token.size()[0] < hypotheses {
+            token = token.expand([hypotheses, -1, -1], false);
+            memory = memory.expand_batch(hypotheses);
+        }
+        let mask = batch.neighbour_mask.narrow(0, last, 1);
+        let mut position = observed.narrow(0, last, 1).expand([hypotheses, -1, -1], false);
+        let mut sum = observed
+            .sum_dim_intlist([0i64].as_slice(), true, None::<Kind>)
+            .expand([hypotheses, -1, -1], false);
+        let mut forecast = Vec::with_capacity(horizon);
+        for t in OBSERVED..OBSERVED + horizon {
+            let emitted = self.emit(&token, noise);
+            position = self.next_positions(&position, goals, &reference, &emitted, integrator);
+            forecast.push(position.shallow_clone());
+            if t + 1 < OBSERVED + horizon {
+                sum = sum + &position;
+                let centred = &position - batch.scene_mean.matmul(&sum) / (t + 1) as f64;
+                let spatial = self.spatial_tokens(&centred, &mask, mode);
+                let relative = &position - &reference;
+                token = self.step(&mut memory, &relative, &spatial, &mask, mode);
+            }
+        }
+        Tensor::stack(&forecast, 0)
+    }
+
+    /// What temporal positions are relative to: the goal, or the last observed position.
+    ///
+    /// # Shapes
+    /// `goals` `[.., P, 2]` -> `[G or 1, P, 2]`.
+    fn reference(&self, batch: &SceneBatch, goals: &Tensor) -> Tensor {
+        if self.config().variant.goal_shift() {
+            if goals.dim() == 2 { goals.unsqueeze(0) } else { goals.shallow_clone() }
+        } else {
+            batch.positions.narrow(0, OBSERVED as i64 - 1, 1)
+        }
+    }
+
+    fn next_positions(
+        &self,
+        positions: &Tensor,
+        goals: &Tensor,
+        reference: &Tensor,
+        emitted: &Tensor,
+        integrator: Integrator,
+    ) -> Tensor {
+        if !self.config().variant.dynamics() {
+            return reference + emitted;
+        }
+        let config = self.config();
+        let constants =
+            FlowConstants { sigma: config.sigma, time_step: config.time_step, integrator };
+        natural_gradient_step(positions, goals, emitted, constants)
+    }
+}
+
+/// Positions relative to the mean over all walkers of the scene and all frames so far.
+///
+/// # Shapes
+/// `positions` `[T, P, 2]` -> the same.
+fn centre(batch: &SceneBatch, positions: &Tensor) -> Tensor {
+    let frames = positions.size()[0];
+    let count = Tensor::arange_start(1, frames + 1, (positions.kind(), positions.device()))
+        .view([frames, 1, 1]);
+    positions - batch.scene_mean.matmul(&(positions.cumsum(0, positions.kind()) / count))
+}

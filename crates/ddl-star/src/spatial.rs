@@ -1,0 +1,30 @@
+//! Spatial encoder: a few layers in which the walkers of one frame look at each other.
+
+use crate::config::StarConfig;
+use crate::encoder_layer::EncoderLayer;
+use crate::layers::Mode;
+use crate::parameters::Initializer;
+use tch::Tensor;
+
+#[derive(Debug)]
+pub(crate) struct SpatialEncoder {
+    layers: Vec<EncoderLayer>,
+}
+
+impl SpatialEncoder {
+    pub(crate) fn new(init: &mut Initializer, name: &str, config: &StarConfig) -> Self {
+        let layer = |index: usize| format!("{name}.transformer_encoder.layers.{index}");
+        let layers = (0..config.spatial_layers)
+            .map(|index| EncoderLayer::new(init, &layer(index), config, config.spatial_dropout))
+            .collect();
+        Self { layers }
+    }
+
+    /// # Shapes
+    /// `x` `[B, P, width]`; `mask` `[1 or B, 1, P, P]` -> `[B, P, width]`.
+    pub(crate) fn forward(&self, x: &Tensor, mask: &Tensor, mode: Mode) -> Tensor {
+        self.layers
+            .iter()
+            .fold(x.shallow_clone(), |x, layer| layer.among_walkers(&x, mask, mode))
+    }
+}

@@ -1,0 +1,155 @@
+//! The network: STAR (Yu et al., ECCV 2020) with the output layer of DDL.
+//!
+//! One frame a step. A walker's position relative to its goal becomes a temporal token, its position
+//! relative to the scene becomes a spatial one; the two are fused, look at the neighbours, and look
+//! back at the walker's earlier tokens. The result is the walker's token of that frame: it is kept
+//! for later frames (the "graph memory") and gives, with the noise, the factor of the metric P.
+
+use crate::StarError;
+use crate::config::StarConfig;
+use crate::layers::{Linear, Mode};
+use crate::parameters::{Initializer, Parameters};
+use crate::seed::{Stage, stream};
+use crate::spatial::SpatialEncoder;
+use crate::temporal::{TemporalEncoder, TemporalMemory};
+use tch::{Device, Kind, Tensor};
+
+/// STAR with the three outputs (a, b, c) of the Cholesky factor (paper eq. 12), or two for the
+/// variants without dynamics.
+#[derive(Debug)]
+pub struct StarNetwork {
+    config: StarConfig,
+    parameters: Parameters,
+    device: Device,
+    kind: Kind,
+    temporal_embedding: Linear,
+    spatial_embedding: Linear,
+    spatial_encoder_1: SpatialEncoder,
+    spatial_encoder_2: SpatialEncoder,
+    temporal_encoder_1: TemporalEncoder,
+    temporal_encoder_2: TemporalEncoder,
+    fusion: Linear,
+    output: Linear,
+}
+
+/// What both temporal encoders remember of the frames so far.
+#[derive(Debug, Default)]
+pub(crate) struct GraphMemory {
+    first: TemporalMemory,
+    second: TemporalMemory,
+}
+
+impl GraphMemory {
+    /// Repeats a single batch entry `batch` times, without copying.
+    pub(crate) fn expand_batch(&self, batch: i64) -> Self {
+        Self { first: self.first.expand_batch(batch), second: self.second.expand_batch(batch) }
+    }
+}
+
+impl StarNetwork {
+    /// A network with seeded initial values, on a device, in f32 (`Kind::Float`) or f64
+    /// (`Kind::Double`).
+    ///
+    /// # Errors
+    /// [`StarError::Config`] when the configuration is out of range.
+    pub fn new(
+        config: StarConfig,
+        seed: u64,
+        device: Device,
+        kind: Kind,
+    ) -> Result<Self, StarError> {
+        config.check()?;
+        let mut initializer = Initializer::new(stream(seed, Stage::Weights, 0), device, kind);
+        let init = &mut initializer;
+        let width = config.model_width;
+        let spatial_encoder_1 = SpatialEncoder::new(init, "spatial_encoder_1", &config);
+        let spatial_encoder_2 = SpatialEncoder::new(init, "spatial_encoder_2", &config);
+        let temporal_encoder_1 = TemporalEncoder::new(init, "temporal_encoder_1", &config);
+        let temporal_encoder_2 = TemporalEncoder::new(init, "temporal_encoder_2", &config);
+        let temporal_embedding = Linear::new(init, "input_embedding_layer_temporal", 2, width);
+        let spatial_embedding = Linear::new(init, "input_embedding_layer_spatial", 2, width);
+        let output_inputs = width + config.noise_width;
+        let output = Linear::new(init, "output_layer", output_inputs, config.output_width());
+        let fusion = Linear::new(init, "fusion_layer", 2 * width, width);
+        let parameters = initializer.finish();
+        Ok(Self {
+            config,
+            parameters,
+            device,
+            kind,
+            temporal_embedding,
+            spatial_embedding,
+            spatial_encoder_1,
+            spatial_encoder_2,
+            temporal_encoder_1,
+            temporal_encoder_2,
+            fusion,
+            output,
+        })
+    }
+
+    /// Size and constants.
+    pub fn config(&self) -> &StarConfig {
+        &self.config
+    }
+
+    /// The learned tensors.
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// Where the network computes.
+    pub fn device(&self) -> Device {
+        self.device
+    }
+
+    /// Precision of the network.
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Spatial tokens of whole frames: embedding and first spatial encoder.
+    ///
+    /// # Shapes
+    /// `centred` `[F, P, 2]`, positions relative to the scene's mean so far; `mask`
+    /// `[1 or F, 1, P, P]` -> `[F, P, width]`.
+    pub(crate) fn spatial_tokens(&self, centred: &Tensor, mask: &Tensor, mode: Mode) -> Tensor {
+        let embedded = self.spatial_embedding.forward(centred).relu();
+        self.spatial_encoder_1.forward(&embedded, mask, mode)
+    }
+
+    /// One frame: the walkers' new tokens, which are also remembered.
+    ///
+    /// # Shapes
+    /// `relative` `[B, P, 2]`, positions relative to the goal (or to the last observed position);
+    /// `spatial` `[1 or B, P, width]`; `mask` `[1, 1, P, P]` -> `[B, P, width]`.
+    pub(crate) fn step(
+        &self,
+        memory: &mut GraphMemory,
+        relative: &Tensor,
+        spatial: &Tensor,
+        mask: &Tensor,
+        mode: Mode,
+    ) -> Tensor {
+        let newest = self.temporal_embedding.forward(relative).relu();
+        let temporal = self.temporal_encoder_1.forward(&newest, &memory.first, mode);
+        let spatial = spatial.expand_as(&temporal);
+        let fused = self.fusion.forward(&Tensor::cat(&[&temporal, &spatial], -1));
+        let among = self.spatial_encoder_2.forward(&fused, mask, mode);
+        let token = self.temporal_encoder_2.forward(&among, &memory.second, mode);
+        memory.first.push(self.temporal_encoder_1.remember(&token));
+        memory.second.push(self.temporal_encoder_2.remember(&token));
+        token
+    }
+
+    /// What the tokens mean: (a, b, c), or (x, y), a walker.
+    ///
+    /// # Shapes
+    /// `tokens` `[B, P, width]`; `noise` `[1 or B, noise]`, shared by all walkers
+    /// -> `[B, P, outputs]`.
+    pub(crate) fn emit(&self, tokens: &Tensor, noise: &Tensor) -> Tensor {
+        let (batch, walkers) = (tokens.size()[0], tokens.size()[1]);
+        let noise = noise.unsqueeze(1).expand([batch, walkers, -1], false);
+        self.output.forward(&Tensor::cat(&[tokens, &noise], -1))
+    }
+}

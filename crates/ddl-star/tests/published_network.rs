@@ -1,0 +1,141 @@
+//! Agreement with the published network: weights by formula, outputs computed by the published code
+//! in f64 on a CPU (`reference/star_ddl_forward.json`).
+
+use ddl_data::{PedestrianId, Window};
+use ddl_star::{
+    Integrator, Mode, SceneBatch, StarConfig, StarNetwork, Variant, mean_squared_distance,
+};
+use serde_json::Value;
+use tch::{Device, Kind, Tensor};
+
+struct Reference(Value);
+
+impl Reference {
+    fn load() -> Self {
+        Self(serde_json::from_str(include_str!("reference/star_ddl_forward.json")).unwrap())
+    }
+
+    fn numbers(&self, pointer: &str) -> Vec<f64> {
+        fn collect(value: &Value, into: &mut Vec<f64>) {
+            match value {
+                Value::Array(items) => items.iter().for_each(|item| collect(item, into)),
+                other => into.push(other.as_f64().unwrap()),
+            }
+        }
+        let mut numbers = Vec::new();
+        collect(self.0.pointer(pointer).unwrap(), &mut numbers);
+        numbers
+    }
+
+    fn tensor(&self, pointer: &str, shape: &[i64], kind: Kind) -> Tensor {
+        Tensor::from_slice(&self.numbers(pointer)).reshape(shape).to_kind(kind)
+    }
+
+    /// The three scenes as windows.
+    fn windows(&self) -> Vec<Window> {
+        let positions = self.numbers("/positions");
+        let walkers = positions.len() / 40;
+        let mut first = 0;
+        self.numbers("/scene_sizes")
+            .into_iter()
+            .map(|size| {
+                let members = first..first + size as usize;
+                first = members.end;
+                let track = |i: usize| -> Vec<[f64; 2]> {
+                    (0..20)
+                        .map(|t| {
+                            let at = 2 * (t * walkers + i);
+                            [positions[at], positions[at + 1]]
+                        })
+                        .collect()
+                };
+                let ids = members.clone().map(|i| PedestrianId(i as i64)).collect();
+                Window::new("reference", 0, 10, ids, members.map(track).collect()).unwrap()
+            })
+            .collect()
+    }
+
+    fn network(&self, kind: Kind) -> StarNetwork {
+        let config = StarConfig::published(Variant::Full);
+        let network = StarNetwork::new(config, 1, Device::Cpu, kind).unwrap();
+        let mut set = 0;
+        for entry in self.0["weights"]["tensors"].as_array().unwrap() {
+            let name = entry["name"].as_str().unwrap();
+            if name.starts_with("temporal_encoder_layer.") {
+                continue; // the published template layer never runs
+            }
+            let index = entry["index"].as_f64().unwrap();
+            let shape: Vec<i64> =
+                entry["shape"].as_array().unwrap().iter().map(|n| n.as_i64().unwrap()).collect();
+            let scale = if shape.len() == 2 { 0.3 / (shape[1] as f64).sqrt() } else { 0.05 };
+            let shift = if name.contains("norm") && name.ends_with("weight") { 1.0 } else { 0.0 };
+            let values: Vec<f64> = (0..shape.iter().product())
+                .map(|k: i64| {
+                    let phase = 0.37 * k as f64 + 1.3 * index + 0.11 * (k % 7) as f64;
+                    shift + scale * phase.sin()
+                })
+                .collect();
+            let _guard = tch::no_grad_guard();
+            let target = network.parameters().get(name).unwrap_or_else(|| panic!("no {name}"));
+            assert_eq!(target.size(), shape, "{name}");
+            target.shallow_clone().copy_(&Tensor::from_slice(&values).reshape(&shape));
+            set += 1;
+        }
+        assert_eq!(set, network.parameters().len());
+        assert_eq!(network.parameters().count(), 827_443);
+        network
+    }
+
+    fn batch(&self, kind: Kind) -> SceneBatch {
+        let windows = self.windows();
+        let views: Vec<&Window> = windows.iter().collect();
+        SceneBatch::new(&views, 20, 19, 10.0, Device::Cpu, kind).unwrap()
+    }
+}
+
+fn largest_difference(a: &Tensor, b: &Tensor) -> f64 {
+    assert_eq!(a.size(), b.size());
+    (a - b).abs().max().double_value(&[])
+}
+
+fn agrees(kind: Kind, tolerance: f64) {
+    let reference = Reference::load();
+    let network = reference.network(kind);
+    let batch = reference.batch(kind);
+    let walkers = batch.walkers() as i64;
+    let noise = reference.tensor("/noise", &[1, 16], kind);
+
+    let goal = reference.tensor("/true_goal", &[walkers, 2], kind);
+    let forecast = network.teacher_forced(&batch, &goal, &noise, Mode::Evaluate);
+    let expected = reference.tensor("/train_forward/positions", &[19, walkers, 2], kind);
+    let difference = largest_difference(&forecast, &expected);
+    assert!(difference < tolerance, "teacher-forced positions differ by {difference}");
+
+    let loss = mean_squared_distance(&forecast, &batch.positions().narrow(0, 1, 19));
+    let expected = reference.numbers("/train_forward/loss")[0];
+    let relative = (loss.double_value(&[]) / expected - 1.0).abs();
+    assert!(relative < 1e-3, "loss differs by {relative}");
+    loss.backward();
+    for (name, tensor) in network.parameters().iter() {
+        let expected = reference.0["train_forward"]["grad_norms"][name].as_f64().unwrap();
+        let norm = tensor.grad().norm().double_value(&[]);
+        assert!((norm / expected - 1.0).abs() < 1e-3, "gradient of {name}: {norm}, not {expected}");
+    }
+
+    let goal = reference.tensor("/estimated_goal", &[1, walkers, 2], kind);
+    let _guard = tch::no_grad_guard();
+    let rolled = network.roll_out(&batch, &goal, &noise, 12, Integrator::Euler).squeeze_dim(1);
+    let expected = reference.tensor("/test_forward/positions", &[19, walkers, 2], kind);
+    let difference = largest_difference(&rolled, &expected.narrow(0, 7, 12));
+    assert!(difference < tolerance, "rolled-out positions differ by {difference}");
+}
+
+#[test]
+fn agrees_with_the_published_network_in_double_precision() {
+    agrees(Kind::Double, 1e-9);
+}
+
+#[test]
+fn agrees_with_the_published_network_in_single_precision() {
+    agrees(Kind::Float, 2e-4);
+}
