@@ -1,0 +1,67 @@
+//! Rotation of the ground plane, the augmentation that STAR and DDL train with.
+
+use std::f64::consts::PI;
+
+use rand::{Rng, RngExt};
+
+use crate::Position;
+
+/// A rotation about the world's origin.
+///
+/// Turning a scene changes no distance, so that a model trained on turned scenes cannot learn the
+/// directions of one street by heart. Training draws one angle in [0, pi) for each batch.
+///
+/// ```
+/// use ddl_data::Rotation;
+/// let [x, y] = Rotation::new(std::f64::consts::FRAC_PI_2).apply([1.0, 0.0]);
+/// assert!(x.abs() < 1e-12 && (y - 1.0).abs() < 1e-12);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rotation {
+    angle: f64,
+    sine: f64,
+    cosine: f64,
+}
+
+impl Rotation {
+    /// Counter-clockwise by an angle (rad).
+    #[must_use]
+    pub fn new(angle_rad: f64) -> Self {
+        let (sine, cosine) = angle_rad.sin_cos();
+        Self {
+            angle: angle_rad,
+            sine,
+            cosine,
+        }
+    }
+
+    /// By an angle drawn uniformly from [0, pi).
+    #[must_use]
+    pub fn random(rng: &mut impl Rng) -> Self {
+        Self::new(rng.random_range(0.0..PI))
+    }
+
+    /// The angle (rad), counter-clockwise.
+    pub fn angle(&self) -> f64 {
+        self.angle
+    }
+
+    /// The rotation that undoes this one.
+    #[must_use]
+    pub fn inverse(&self) -> Self {
+        Self {
+            angle: -self.angle,
+            sine: -self.sine,
+            cosine: self.cosine,
+        }
+    }
+
+    /// Where a position (m) comes to lie.
+    #[must_use]
+    pub fn apply(&self, [x, y]: Position) -> Position {
+        [
+            self.cosine * x - self.sine * y,
+            self.sine * x + self.cosine * y,
+        ]
+    }
+}

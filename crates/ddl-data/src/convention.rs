@@ -1,0 +1,168 @@
+//! The data conventions, which published tables mix and this crate keeps apart.
+
+use std::fmt;
+use std::str::FromStr;
+use std::sync::LazyLock;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::UnknownName;
+use crate::format::Format;
+
+/// Where recordings come from and how they were sampled: numbers of two conventions are never
+/// comparable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Convention {
+    /// ETH/UCY as SR-LSTM, STAR and DDL use it: eth has a step of 6 raw frames, the others of 10.
+    Star,
+    /// ETH/UCY as Social-GAN and most other papers use it: eth has a step of 10 raw frames, so that
+    /// its "0.4 s" are 0.667 s.
+    SocialGan,
+    /// Simulated crowds ([`simulate`](crate::simulate)), for machines without the recordings.
+    Simulated,
+}
+
+impl Convention {
+    /// Every convention, in order of preference.
+    pub const ALL: [Self; 3] = [Self::Star, Self::SocialGan, Self::Simulated];
+
+    /// The name, which is also that of the folder which holds the files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Star => "star",
+            Self::SocialGan => "social-gan",
+            Self::Simulated => "simulated",
+        }
+    }
+
+    /// How the convention's files are written; `None` for the simulated one, which has none.
+    pub fn format(self) -> Option<Format> {
+        match self {
+            Self::Star => Some(Format::StarCsv),
+            Self::SocialGan => Some(Format::SocialGan),
+            Self::Simulated => None,
+        }
+    }
+
+    /// The files that a folder of this convention holds; none for the simulated one.
+    pub fn file_names(self) -> impl Iterator<Item = &'static str> {
+        self.plan()
+            .recordings
+            .iter()
+            .filter_map(|r| r.file.as_deref())
+    }
+
+    /// Names of the recordings, in order.
+    pub fn recording_names(self) -> impl Iterator<Item = &'static str> {
+        self.plan().recordings.iter().map(|r| r.name.as_str())
+    }
+
+    /// Names of the leave-one-out folds, in order.
+    pub fn fold_names(self) -> impl Iterator<Item = &'static str> {
+        self.plan().folds.iter().map(|f| f.name.as_str())
+    }
+
+    pub(crate) fn plan(self) -> &'static Plan {
+        match self {
+            Self::Star => &PLANS.star,
+            Self::SocialGan => &PLANS.social_gan,
+            Self::Simulated => &PLANS.simulated,
+        }
+    }
+}
+
+impl fmt::Display for Convention {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Convention {
+    type Err = UnknownName;
+
+    fn from_str(word: &str) -> Result<Self, UnknownName> {
+        Self::ALL
+            .into_iter()
+            .find(|c| c.name() == word)
+            .ok_or_else(|| UnknownName {
+                kind: "data convention",
+                found: word.to_owned(),
+                expected: "star, social-gan, simulated",
+            })
+    }
+}
+
+/// One convention of `folds.toml`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Plan {
+    pub(crate) recordings: Vec<RecordingPlan>,
+    pub(crate) folds: Vec<FoldPlan>,
+}
+
+/// One recording of `folds.toml`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RecordingPlan {
+    pub(crate) name: String,
+    pub(crate) file: Option<String>,
+    pub(crate) frame_step: i64,
+}
+
+/// One fold of `folds.toml`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FoldPlan {
+    pub(crate) name: String,
+    pub(crate) test: Vec<String>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Plans {
+    star: Plan,
+    social_gan: Plan,
+    simulated: Plan,
+}
+
+static PLANS: LazyLock<Plans> = LazyLock::new(|| {
+    // Compiled in, so wrong only if this crate itself is; the tests below read it.
+    toml::from_str(include_str!("../folds.toml")).expect("the compiled-in folds.toml is valid")
+});
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_test_recording_of_every_fold_exists() {
+        for convention in Convention::ALL {
+            let plan = convention.plan();
+            assert_eq!(plan.folds.len(), 5, "{convention}");
+            for name in plan.folds.iter().flat_map(|f| &f.test) {
+                assert!(
+                    plan.recordings.iter().any(|r| r.name == *name),
+                    "{convention}: {name}"
+                );
+            }
+            for recording in &plan.recordings {
+                assert_eq!(recording.file.is_some(), convention.format().is_some());
+            }
+        }
+    }
+
+    #[test]
+    fn names_are_read_back() {
+        for convention in Convention::ALL {
+            assert_eq!(convention.to_string().parse(), Ok(convention));
+            let json = serde_json::to_string(&convention).unwrap();
+            assert_eq!(json, format!("\"{convention}\""));
+        }
+        let error = "Star".parse::<Convention>().unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "\"Star\" is no data convention; choose one of star, social-gan, simulated"
+        );
+    }
+}

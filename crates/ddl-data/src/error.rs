@@ -1,0 +1,273 @@
+//! What can go wrong with recordings, said with the place and the remedy.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::{Convention, PedestrianId};
+
+/// Why a file of tracks cannot be read: the file, the line, the field and the problem.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{origin}, line {line}{}: {problem}", .field.map(|f| format!(", field {f}")).unwrap_or_default())]
+pub struct FormatError {
+    /// The file, or whatever name was given to the bytes.
+    pub origin: String,
+    /// Line, counted from 1.
+    pub line: usize,
+    /// Field within the line, counted from 1; `None` when the whole line is meant.
+    pub field: Option<usize>,
+    /// What is wrong there.
+    pub problem: FormatProblem,
+}
+
+/// What can be wrong at one place of a file of tracks.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum FormatProblem {
+    /// The file holds no observation.
+    #[error("the file holds no observation; is it empty or cut off?")]
+    Empty,
+    /// The bytes are not UTF-8 text.
+    #[error("the text is not UTF-8; export the file as plain UTF-8 or ASCII text")]
+    NotUtf8,
+    /// A line is absent.
+    #[error("line missing: the format has exactly {expected} lines ({names}), the file ends here")]
+    MissingLine {
+        /// Lines that the format has.
+        expected: usize,
+        /// What they hold.
+        names: &'static str,
+    },
+    /// A line too many.
+    #[error("unexpected line: the format has exactly {expected} lines")]
+    ExtraLine {
+        /// Lines that the format has.
+        expected: usize,
+    },
+    /// Two lines that run in parallel differ in length.
+    #[error("{found} fields, but line 1 has {expected}; all lines must be of one length")]
+    UnequalLines {
+        /// Fields of line 1.
+        expected: usize,
+        /// Fields of this line.
+        found: usize,
+    },
+    /// A row has too few or too many fields.
+    #[error("{found} fields where {expected} are expected ({names})")]
+    FieldCount {
+        /// Fields that a row has.
+        expected: usize,
+        /// Fields of this row.
+        found: usize,
+        /// What they hold.
+        names: &'static str,
+    },
+    /// The header of a table lacks a column, or has one that is unknown or double.
+    #[error("the header must name the columns frame, pedestrian, x and y, each once: {detail}")]
+    Header {
+        /// Which column is the trouble.
+        detail: String,
+    },
+    /// A field that must be a whole number is none.
+    #[error("{name} must be a whole number below 2^53 in size, found {found:?}")]
+    NotInteger {
+        /// What the field holds: `frame` or `pedestrian`.
+        name: &'static str,
+        /// The field's text, shortened.
+        found: String,
+    },
+    /// A field that must be a number is none, or is infinite or NaN.
+    #[error("{name} must be a finite number in metres, found {found:?}")]
+    NotFinite {
+        /// What the field holds: `x` or `y`.
+        name: &'static str,
+        /// The field's text, shortened.
+        found: String,
+    },
+    /// One pedestrian twice in one frame.
+    #[error("pedestrian {pedestrian} is in frame {frame} already (line {first_line}); keep one")]
+    Duplicate {
+        /// The pedestrian.
+        pedestrian: PedestrianId,
+        /// The raw frame number.
+        frame: i64,
+        /// Line of the first occurrence.
+        first_line: usize,
+    },
+    /// The text is no well-formed comma-separated table.
+    #[error("not a well-formed table: {detail}")]
+    Table {
+        /// The reader's own words.
+        detail: String,
+    },
+}
+
+/// Why observations do not make a [`Recording`](crate::Recording).
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum RecordingError {
+    /// No observation.
+    #[error("a recording needs at least one observation")]
+    Empty,
+    /// The frame step is not positive, or absurdly large.
+    #[error("the frame step must lie in 1..=2^31 raw frames, found {found}")]
+    FrameStep {
+        /// The step given.
+        found: i64,
+    },
+    /// A frame number too large to count on from.
+    #[error("pedestrian {pedestrian}: frame {frame} is not below 2^53 in size")]
+    FrameOutOfRange {
+        /// The pedestrian.
+        pedestrian: PedestrianId,
+        /// The raw frame number.
+        frame: i64,
+    },
+    /// A coordinate is infinite or NaN.
+    #[error("pedestrian {pedestrian}, frame {frame}: position {position:?} is not finite")]
+    NotFinite {
+        /// The pedestrian.
+        pedestrian: PedestrianId,
+        /// The raw frame number.
+        frame: i64,
+        /// The position (m).
+        position: crate::Position,
+    },
+    /// One pedestrian twice in one frame.
+    #[error("pedestrian {pedestrian} is in frame {frame} twice")]
+    Duplicate {
+        /// The pedestrian.
+        pedestrian: PedestrianId,
+        /// The raw frame number.
+        frame: i64,
+    },
+}
+
+/// Why tracks do not make a [`Window`](crate::Window).
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum WindowError {
+    /// No pedestrian.
+    #[error("a window needs at least one pedestrian")]
+    Empty,
+    /// Ids and tracks differ in number.
+    #[error("{pedestrians} pedestrian ids but {tracks} tracks; give one track for each id")]
+    Count {
+        /// Number of ids.
+        pedestrians: usize,
+        /// Number of tracks.
+        tracks: usize,
+    },
+    /// A track is of a wrong length.
+    #[error(
+        "pedestrian {pedestrian}: a track of {found} positions; every track of a window must have \
+         {observed} (observation only) or every one {whole} (with the future)",
+        observed = crate::OBSERVED,
+        whole = crate::WINDOW
+    )]
+    Length {
+        /// The pedestrian.
+        pedestrian: PedestrianId,
+        /// Positions of the track.
+        found: usize,
+    },
+    /// A coordinate is infinite or NaN.
+    #[error("pedestrian {pedestrian}, position {index} of the track: {position:?} is not finite")]
+    NotFinite {
+        /// The pedestrian.
+        pedestrian: PedestrianId,
+        /// Index within the track, from 0.
+        index: usize,
+        /// The position (m).
+        position: crate::Position,
+    },
+    /// One id twice.
+    #[error("pedestrian {pedestrian} is in the window twice")]
+    Duplicate {
+        /// The pedestrian.
+        pedestrian: PedestrianId,
+    },
+    /// The frame step or the frame numbers are out of range.
+    #[error(
+        "start frame {start_frame} with a step of {frame_step}: the step must lie in 1..=2^31 and frames below 2^53"
+    )]
+    Frames {
+        /// First raw frame.
+        start_frame: i64,
+        /// Raw frames a step.
+        frame_step: i64,
+    },
+}
+
+/// Why a data set, or one file of it, cannot be had.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum DataError {
+    /// A file cannot be read from the disk.
+    #[error("cannot read {}: {source}", .path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+    /// A file's content is wrong.
+    #[error(transparent)]
+    Format(#[from] FormatError),
+    /// Observations that do not make a recording.
+    #[error("recording {name}: {source}")]
+    Recording {
+        /// The recording.
+        name: String,
+        /// What is wrong with it.
+        source: RecordingError,
+    },
+    /// The convention's files were not found.
+    #[error(
+        "the {convention} recordings are not there; looked in {}. Put the files there, or name \
+         their folder in the environment variable {variable}",
+        .searched.join(", "),
+        variable = crate::DATASETS_VARIABLE
+    )]
+    NotFound {
+        /// The convention whose files were looked for.
+        convention: Convention,
+        /// Each folder that was tried, with the first file it lacks.
+        searched: Vec<String>,
+    },
+    /// The simulated convention was asked for files.
+    #[error("the simulated convention has no files; use `Dataset::simulated(seed)`")]
+    NoFiles,
+    /// No recording of this name.
+    #[error("no recording {name:?} in the {convention} convention; it has {}", .known.join(", "))]
+    UnknownRecording {
+        /// The convention.
+        convention: Convention,
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: Vec<String>,
+    },
+    /// No fold of this name.
+    #[error("no fold {name:?} in the {convention} convention; it has {}", .known.join(", "))]
+    UnknownFold {
+        /// The convention.
+        convention: Convention,
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: Vec<String>,
+    },
+}
+
+/// A word that names no member of a fixed set, with the words that do.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{found:?} is no {kind}; choose one of {expected}")]
+pub struct UnknownName {
+    /// What was to be named, such as `data convention`.
+    pub kind: &'static str,
+    /// The word found.
+    pub found: String,
+    /// The words allowed.
+    pub expected: &'static str,
+}

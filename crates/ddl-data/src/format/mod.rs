@@ -1,0 +1,142 @@
+//! File formats of recordings: text in, a checked [`Recording`] out.
+//!
+//! Every reader refuses what it does not understand and says where: file, line, field. Nothing is
+//! skipped, repaired or guessed; the order of the rows does not matter.
+
+mod field;
+mod rows;
+mod social_gan;
+mod star_csv;
+mod table;
+
+use std::fmt;
+use std::path::Path;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{DataError, FormatError, FormatProblem, UnknownName};
+use crate::recording::Recording;
+
+/// How a file of tracks is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Format {
+    /// Four lines of comma-separated numbers, one field an observation: frame, pedestrian, **y**, **x**
+    /// (m). The files of the `star` convention.
+    StarCsv,
+    /// One observation a line, four fields separated by tabs or blanks: frame, pedestrian, x, y (m).
+    /// The files of the `social-gan` convention.
+    SocialGan,
+    /// A comma-separated table with a header that names the columns `frame`, `pedestrian`, `x` and `y`
+    /// (m) in any order: the format for one's own tracks.
+    Table,
+}
+
+impl Format {
+    /// Every format.
+    pub const ALL: [Self; 3] = [Self::StarCsv, Self::SocialGan, Self::Table];
+
+    /// The format's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::StarCsv => "star-csv",
+            Self::SocialGan => "social-gan",
+            Self::Table => "table",
+        }
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Format {
+    type Err = UnknownName;
+
+    fn from_str(word: &str) -> Result<Self, UnknownName> {
+        Self::ALL
+            .into_iter()
+            .find(|f| f.name() == word)
+            .ok_or_else(|| UnknownName {
+                kind: "format",
+                found: word.to_owned(),
+                expected: "star-csv, social-gan, table",
+            })
+    }
+}
+
+/// Reads one file of tracks; the recording is named after the file, without its extension.
+///
+/// The files do not say how many raw frames a step of 0.4 s has: taken is the most common difference
+/// of two successive frames (the smaller one of two equally common). Where that is wrong, set it with
+/// [`Recording::with_frame_step`].
+///
+/// # Errors
+/// If the file cannot be read, or its content is wrong: see [`FormatProblem`].
+pub fn read_recording(path: &Path, format: Format) -> Result<Recording, DataError> {
+    let bytes = std::fs::read(path).map_err(|source| DataError::Read {
+        path: path.to_owned(),
+        source,
+    })?;
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    Ok(parse_recording(&bytes, &path.display().to_string(), format)?.with_name(&*name))
+}
+
+/// Reads tracks from bytes; `origin` is the recording's name, and the file's in error messages.
+///
+/// The frame step is inferred as by [`read_recording`].
+///
+/// # Errors
+/// If the content is wrong: see [`FormatProblem`].
+///
+/// # Examples
+/// ```
+/// use ddl_data::{Format, parse_recording};
+///
+/// let text = b"frame,pedestrian,x,y\n0,1,2.0,3.0\n10,1,2.5,oops\n";
+/// let error = parse_recording(text, "tracks.csv", Format::Table).unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "tracks.csv, line 3, field 4: y must be a finite number in metres, found \"oops\"",
+/// );
+/// ```
+pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Recording, DataError> {
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let line = bytes[..error.valid_up_to()]
+            .split(|&byte| byte == b'\n')
+            .count();
+        Place { line, field: None }.wrong(origin, FormatProblem::NotUtf8)
+    })?;
+    // Spreadsheets mark UTF-8 text with a byte-order mark, which is no content.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let rows = match format {
+        Format::StarCsv => star_csv::parse(text, origin),
+        Format::SocialGan => social_gan::parse(text, origin),
+        Format::Table => table::parse(text, origin),
+    }?;
+    rows::into_recording(rows, origin)
+}
+
+/// A place within a file, both counted from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Place {
+    line: usize,
+    field: Option<usize>,
+}
+
+impl Place {
+    /// The error that something is wrong at this place.
+    fn wrong(self, origin: &str, problem: FormatProblem) -> FormatError {
+        let Self { line, field } = self;
+        FormatError {
+            origin: origin.to_owned(),
+            line,
+            field,
+            problem,
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! From rows, each with its place in the file, to a recording.
+
+use std::collections::BTreeMap;
+
+use super::Place;
+use crate::error::{DataError, FormatError, FormatProblem};
+use crate::recording::{FRAME_STEP_LIMIT, Recording};
+use crate::{Observation, PedestrianId};
+
+/// What the four fields of a row hold, for messages.
+pub(super) const FIELDS: &str = "frame, pedestrian, x, y";
+
+/// One observation and where in the file it is.
+#[derive(Debug)]
+pub(super) struct Row {
+    pub(super) observation: Observation,
+    pub(super) place: Place,
+}
+
+impl Row {
+    pub(super) fn new(frame: i64, pedestrian: i64, [x, y]: [f64; 2], place: Place) -> Self {
+        let observation = Observation::new(frame, PedestrianId(pedestrian), [x, y]);
+        Self { observation, place }
+    }
+}
+
+/// The recording of all rows; its frame step is inferred.
+pub(super) fn into_recording(mut rows: Vec<Row>, origin: &str) -> Result<Recording, DataError> {
+    if rows.is_empty() {
+        let nowhere = Place {
+            line: 1,
+            field: None,
+        };
+        return Err(nowhere.wrong(origin, FormatProblem::Empty).into());
+    }
+    refuse_duplicates(&mut rows, origin)?;
+    let frame_step = infer_frame_step(&rows);
+    let observations = rows.into_iter().map(|row| row.observation).collect();
+    Recording::new(origin, frame_step, observations).map_err(|source| DataError::Recording {
+        name: origin.to_owned(),
+        source,
+    })
+}
+
+/// Sorts the rows by frame and pedestrian; of several duplicates, the first of the file is reported.
+fn refuse_duplicates(rows: &mut [Row], origin: &str) -> Result<(), FormatError> {
+    let key = |row: &Row| (row.observation.frame, row.observation.pedestrian);
+    rows.sort_unstable_by_key(|row| (key(row), row.place));
+    let pairs = rows
+        .windows(2)
+        .filter(|pair| key(&pair[0]) == key(&pair[1]));
+    match pairs.min_by_key(|pair| pair[1].place) {
+        None => Ok(()),
+        Some(pair) => {
+            let (frame, pedestrian) = key(&pair[1]);
+            let first_line = pair[0].place.line;
+            let problem = FormatProblem::Duplicate {
+                pedestrian,
+                frame,
+                first_line,
+            };
+            Err(pair[1].place.wrong(origin, problem))
+        }
+    }
+}
+
+/// The most common difference of two successive frames; 1 if there is only one frame.
+fn infer_frame_step(sorted: &[Row]) -> i64 {
+    let mut counts = BTreeMap::<i64, usize>::new();
+    for pair in sorted.windows(2) {
+        let difference = pair[1].observation.frame - pair[0].observation.frame;
+        if (1..=FRAME_STEP_LIMIT).contains(&difference) {
+            *counts.entry(difference).or_default() += 1;
+        }
+    }
+    // Ascending by difference, and `max_by_key` keeps the last of equals: hence reversed.
+    counts
+        .into_iter()
+        .rev()
+        .max_by_key(|&(_, count)| count)
+        .map_or(1, |(difference, _)| difference)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step_of(frames: &[i64]) -> i64 {
+        let place = Place {
+            line: 1,
+            field: None,
+        };
+        let rows = frames
+            .iter()
+            .map(|&f| Row::new(f, 1, [0.0, 0.0], place))
+            .collect();
+        into_recording(rows, "t").unwrap().frame_step()
+    }
+
+    #[test]
+    fn the_most_common_difference_is_the_step() {
+        assert_eq!(step_of(&[0, 6, 12, 150, 156]), 6);
+        assert_eq!(step_of(&[0, 10, 30]), 10);
+        assert_eq!(step_of(&[7]), 1);
+        assert_eq!(step_of(&[-(1 << 52), 1 << 52]), 1);
+    }
+}

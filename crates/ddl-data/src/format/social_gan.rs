@@ -1,0 +1,41 @@
+//! The `social-gan` text: one observation a line, separated by tabs or blanks.
+
+use super::rows::{FIELDS, Row};
+use super::{Place, field};
+use crate::error::{FormatError, FormatProblem};
+
+pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
+    // Blank lines are an error between observations, and harmless after the last one.
+    text.trim_end()
+        .lines()
+        .enumerate()
+        .map(|(index, line)| row(line, index + 1, origin))
+        .collect()
+}
+
+fn row(text: &str, line: usize, origin: &str) -> Result<Row, FormatError> {
+    let here = Place { line, field: None };
+    let fields: Vec<&str> = text.split_ascii_whitespace().collect();
+    let &[frame, pedestrian, x, y] = fields.as_slice() else {
+        let problem = FormatProblem::FieldCount {
+            expected: 4,
+            found: fields.len(),
+            names: FIELDS,
+        };
+        return Err(here.wrong(origin, problem));
+    };
+    let at = |field: usize| {
+        move |p| {
+            Place {
+                line,
+                field: Some(field),
+            }
+            .wrong(origin, p)
+        }
+    };
+    let frame = field::integer(frame, "frame").map_err(at(1))?;
+    let pedestrian = field::integer(pedestrian, "pedestrian").map_err(at(2))?;
+    let x = field::coordinate(x, "x").map_err(at(3))?;
+    let y = field::coordinate(y, "y").map_err(at(4))?;
+    Ok(Row::new(frame, pedestrian, [x, y], here))
+}

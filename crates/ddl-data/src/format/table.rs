@@ -1,0 +1,101 @@
+//! The table: comma-separated, with a header, for one's own tracks.
+
+use csv::{ErrorKind, StringRecord};
+
+use super::rows::{FIELDS, Row};
+use super::{Place, field};
+use crate::error::{FormatError, FormatProblem};
+
+const COLUMNS: [&str; 4] = ["frame", "pedestrian", "x", "y"];
+
+pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
+    if text.trim().is_empty() {
+        return Err(Place {
+            line: 1,
+            field: None,
+        }
+        .wrong(origin, FormatProblem::Empty));
+    }
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|e| table_error(&e, origin))?;
+    let columns = Columns::of(header, origin)?;
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|e| table_error(&e, origin))?;
+        let line = record.position().map_or(1, |p| p.line() as usize);
+        rows.push(columns.row(&record, line, origin)?);
+    }
+    Ok(rows)
+}
+
+/// Which column holds what.
+struct Columns([usize; 4]);
+
+impl Columns {
+    fn of(header: &StringRecord, origin: &str) -> Result<Self, FormatError> {
+        let wrong = |field: Option<usize>, detail: String| {
+            Place { line: 1, field }.wrong(origin, FormatProblem::Header { detail })
+        };
+        let mut places = [None; 4];
+        for (index, name) in header.iter().enumerate() {
+            let column = COLUMNS.iter().position(|&c| c == name);
+            let Some(column) = column else {
+                return Err(wrong(Some(index + 1), format!("unknown column {name:?}")));
+            };
+            if places[column].replace(index).is_some() {
+                return Err(wrong(
+                    Some(index + 1),
+                    format!("column {name} is there twice"),
+                ));
+            }
+        }
+        let mut columns = [0; 4];
+        for ((column, place), name) in columns.iter_mut().zip(places).zip(COLUMNS) {
+            *column = place.ok_or_else(|| wrong(None, format!("column {name} is missing")))?;
+        }
+        Ok(Self(columns))
+    }
+
+    fn row(&self, record: &StringRecord, line: usize, origin: &str) -> Result<Row, FormatError> {
+        let [frame, pedestrian, x, y] = self.0;
+        let text = |column: usize| record.get(column).unwrap_or_default();
+        let at = |column: usize| {
+            move |p| {
+                Place {
+                    line,
+                    field: Some(column + 1),
+                }
+                .wrong(origin, p)
+            }
+        };
+        let place = Place { line, field: None };
+        Ok(Row::new(
+            field::integer(text(frame), "frame").map_err(at(frame))?,
+            field::integer(text(pedestrian), "pedestrian").map_err(at(pedestrian))?,
+            [
+                field::coordinate(text(x), "x").map_err(at(x))?,
+                field::coordinate(text(y), "y").map_err(at(y))?,
+            ],
+            place,
+        ))
+    }
+}
+
+fn table_error(error: &csv::Error, origin: &str) -> FormatError {
+    let line = error.position().map_or(1, |p| p.line() as usize);
+    let problem = match error.kind() {
+        ErrorKind::UnequalLengths {
+            expected_len, len, ..
+        } => FormatProblem::FieldCount {
+            expected: *expected_len as usize,
+            found: *len as usize,
+            names: FIELDS,
+        },
+        _ => FormatProblem::Table {
+            detail: error.to_string(),
+        },
+    };
+    Place { line, field: None }.wrong(origin, problem)
+}

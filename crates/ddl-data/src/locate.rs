@@ -1,0 +1,147 @@
+//! Where the recordings lie on this machine.
+
+use std::path::{Path, PathBuf};
+
+use crate::Convention;
+use crate::error::DataError;
+
+/// Environment variable that names the folder of the recordings.
+pub const DATASETS_VARIABLE: &str = "DDL_DATASETS";
+
+/// Where the recordings lie below the root of the workspace when nothing else is said.
+const DEFAULT_FOLDER: &str = "datasets/eth_ucy";
+
+/// Finds the folder that holds a convention's files.
+///
+/// Looked at is `explicit` if given, else the folder that `$DDL_DATASETS` names if set, else
+/// `datasets/eth_ucy`. The last two, where relative, are tried from the current directory and from
+/// each one above it, up to the root of the workspace (the first directory with a `Cargo.lock`):
+/// cargo runs the tests of a member in the member's own folder. Within what is looked at, the files may lie in the folder
+/// itself, in its sub-folder named after the convention, or in such a folder beside it (so that
+/// `.../star` also leads to `.../social-gan`).
+///
+/// # Errors
+/// [`DataError::NotFound`] names every folder tried and the first file it lacks;
+/// [`DataError::NoFiles`] for the simulated convention.
+pub fn locate(convention: Convention, explicit: Option<&Path>) -> Result<PathBuf, DataError> {
+    let variable = std::env::var_os(DATASETS_VARIABLE)
+        .filter(|v| !v.is_empty())
+        .map(PathBuf::from);
+    let here = std::env::current_dir().unwrap_or_default();
+    locate_among(convention, roots(explicit, variable.as_deref(), &here))
+}
+
+/// The folders to look in or beside.
+fn roots(explicit: Option<&Path>, variable: Option<&Path>, here: &Path) -> Vec<PathBuf> {
+    if let Some(only) = explicit {
+        return vec![only.to_owned()];
+    }
+    let wanted = variable.unwrap_or(Path::new(DEFAULT_FOLDER));
+    if wanted.is_absolute() {
+        return vec![wanted.to_owned()];
+    }
+    let mut roots = Vec::new();
+    for directory in here.ancestors() {
+        roots.push(directory.join(wanted));
+        if directory.join("Cargo.lock").is_file() {
+            break;
+        }
+    }
+    roots
+}
+
+fn locate_among(convention: Convention, roots: Vec<PathBuf>) -> Result<PathBuf, DataError> {
+    if convention.format().is_none() {
+        return Err(DataError::NoFiles);
+    }
+    let mut searched = Vec::new();
+    for root in roots {
+        let mut candidates = vec![root.join(convention.name())];
+        if Convention::ALL.iter().any(|c| root.ends_with(c.name())) {
+            candidates.extend(root.parent().map(|parent| parent.join(convention.name())));
+        }
+        candidates.insert(0, root);
+        for folder in candidates {
+            match convention
+                .file_names()
+                .find(|file| !folder.join(file).is_file())
+            {
+                None => return Ok(folder),
+                Some(lacking) => searched.push(format!("{} (no {lacking})", folder.display())),
+            }
+        }
+    }
+    Err(DataError::NotFound {
+        convention,
+        searched,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fill(folder: &Path, convention: Convention) {
+        std::fs::create_dir_all(folder).unwrap();
+        for file in convention.file_names() {
+            std::fs::write(folder.join(file), "").unwrap();
+        }
+    }
+
+    #[test]
+    fn files_are_found_in_the_folder_below_it_and_beside_it() {
+        let root = tempfile::tempdir().unwrap();
+        let [star, social_gan] = [Convention::Star, Convention::SocialGan].map(|convention| {
+            let folder = root.path().join(convention.name());
+            fill(&folder, convention);
+            folder
+        });
+        for start in [root.path(), &star, &social_gan] {
+            assert_eq!(locate(Convention::Star, Some(start)).unwrap(), star);
+            assert_eq!(
+                locate(Convention::SocialGan, Some(start)).unwrap(),
+                social_gan
+            );
+        }
+    }
+
+    #[test]
+    fn a_lacking_file_is_named() {
+        let root = tempfile::tempdir().unwrap();
+        fill(root.path(), Convention::Star);
+        std::fs::remove_file(root.path().join("zara02.csv")).unwrap();
+        let error = locate(Convention::Star, Some(root.path()))
+            .unwrap_err()
+            .to_string();
+        assert!(
+            error.contains("(no zara02.csv)") && error.contains(DATASETS_VARIABLE),
+            "{error}"
+        );
+        assert!(matches!(
+            locate(Convention::Simulated, None),
+            Err(DataError::NoFiles)
+        ));
+    }
+
+    #[test]
+    fn relative_folders_are_looked_for_up_to_the_root_of_the_workspace() {
+        let outer = tempfile::tempdir().unwrap();
+        let workspace = outer.path().join("workspace");
+        let member = workspace.join("crates/member");
+        std::fs::create_dir_all(&member).unwrap();
+        std::fs::write(workspace.join("Cargo.lock"), "").unwrap();
+        let found = roots(None, None, &member);
+        assert_eq!(
+            found.len(),
+            3,
+            "the folders above the workspace are not searched"
+        );
+        assert_eq!(found[2], workspace.join(DEFAULT_FOLDER));
+        let relative = roots(None, Some(Path::new("../data")), &member);
+        assert_eq!(relative[2], workspace.join("../data"));
+        let variable = roots(None, Some(Path::new("/data")), &member);
+        assert_eq!(variable, [PathBuf::from("/data")]);
+        let explicit = roots(Some(Path::new("mine")), Some(Path::new("/data")), &member);
+        assert_eq!(explicit, [PathBuf::from("mine")]);
+    }
+}

@@ -1,0 +1,202 @@
+//! A recording: everybody's positions in one place, over time.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::error::RecordingError;
+use crate::rule;
+use crate::{Observation, PedestrianId, Window, WindowRule};
+
+/// Frames are below this in size: exact in an `f64`, and far from overflow when counting on.
+pub(crate) const FRAME_LIMIT: i64 = 1 << 53;
+/// Largest frame step allowed.
+pub(crate) const FRAME_STEP_LIMIT: i64 = 1 << 31;
+
+/// All observations of one scene, sorted by frame and then by pedestrian.
+///
+/// Invariants, held from construction on: at least one observation, every position finite, no
+/// pedestrian twice in a frame, a positive frame step.
+///
+/// ```
+/// use ddl_data::{Observation, PedestrianId, Recording};
+///
+/// let at = |frame, id, x| Observation::new(frame, PedestrianId(id), [x, 0.0]);
+/// let recording = Recording::new("yard", 10, vec![at(10, 1, 0.5), at(0, 2, 3.0), at(0, 1, 0.0)])?;
+/// assert_eq!(recording.frames(), [0, 10]);
+/// assert_eq!(recording.at(0)[1].pedestrian, PedestrianId(2));
+/// assert!(recording.at(5).is_empty());
+/// # Ok::<(), ddl_data::RecordingError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    name: Arc<str>,
+    frame_step: i64,
+    observations: Vec<Observation>,
+    frames: Vec<i64>,
+    /// `starts[k]..starts[k + 1]` are the observations of `frames[k]`.
+    starts: Vec<usize>,
+}
+
+impl Recording {
+    /// A recording of the observations given, in any order.
+    ///
+    /// `frame_step` is the number of raw frames in one step of [`TIME_STEP`](crate::TIME_STEP)
+    /// seconds.
+    ///
+    /// # Errors
+    /// Without observations, with a frame step outside 1..=2^31, a frame of 2^53 or more in size, a
+    /// position that is not finite, or a pedestrian twice in a frame.
+    pub fn new(
+        name: impl Into<Arc<str>>,
+        frame_step: i64,
+        mut observations: Vec<Observation>,
+    ) -> Result<Self, RecordingError> {
+        if !(1..=FRAME_STEP_LIMIT).contains(&frame_step) {
+            return Err(RecordingError::FrameStep { found: frame_step });
+        }
+        if observations.is_empty() {
+            return Err(RecordingError::Empty);
+        }
+        for &Observation {
+            frame,
+            pedestrian,
+            position,
+        } in &observations
+        {
+            if frame.unsigned_abs() >= FRAME_LIMIT.unsigned_abs() {
+                return Err(RecordingError::FrameOutOfRange { pedestrian, frame });
+            }
+            if !position.iter().all(|c| c.is_finite()) {
+                return Err(RecordingError::NotFinite {
+                    pedestrian,
+                    frame,
+                    position,
+                });
+            }
+        }
+        observations.sort_unstable_by_key(|o| (o.frame, o.pedestrian));
+        if let Some(pair) = observations
+            .windows(2)
+            .find(|w| (w[0].frame, w[0].pedestrian) == (w[1].frame, w[1].pedestrian))
+        {
+            let Observation {
+                frame, pedestrian, ..
+            } = pair[0];
+            return Err(RecordingError::Duplicate { pedestrian, frame });
+        }
+        let mut frames = Vec::new();
+        let mut starts = Vec::new();
+        for (index, observation) in observations.iter().enumerate() {
+            if frames.last() != Some(&observation.frame) {
+                frames.push(observation.frame);
+                starts.push(index);
+            }
+        }
+        starts.push(observations.len());
+        Ok(Self {
+            name: name.into(),
+            frame_step,
+            observations,
+            frames,
+            starts,
+        })
+    }
+
+    /// The same recording under another name.
+    #[must_use]
+    pub fn with_name(mut self, name: impl Into<Arc<str>>) -> Self {
+        self.name = name.into();
+        self
+    }
+
+    /// The same recording with another number of raw frames a step.
+    ///
+    /// # Errors
+    /// If the step does not lie in 1..=2^31.
+    pub fn with_frame_step(mut self, frame_step: i64) -> Result<Self, RecordingError> {
+        if !(1..=FRAME_STEP_LIMIT).contains(&frame_step) {
+            return Err(RecordingError::FrameStep { found: frame_step });
+        }
+        self.frame_step = frame_step;
+        Ok(self)
+    }
+
+    /// The recording's name, such as `zara01`.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The name, shared with the windows of this recording.
+    pub(crate) fn shared_name(&self) -> Arc<str> {
+        Arc::clone(&self.name)
+    }
+
+    /// Raw frames in one step of 0.4 s.
+    pub fn frame_step(&self) -> i64 {
+        self.frame_step
+    }
+
+    /// Every observation, sorted by frame, then by pedestrian.
+    pub fn observations(&self) -> &[Observation] {
+        &self.observations
+    }
+
+    /// The annotated frames: raw frame numbers with at least one observation, ascending.
+    pub fn frames(&self) -> &[i64] {
+        &self.frames
+    }
+
+    /// Who is where at a raw frame, sorted by pedestrian; empty if the frame is not annotated.
+    pub fn at(&self, frame: i64) -> &[Observation] {
+        &self.observations[self.range_at(frame)]
+    }
+
+    /// Where in [`observations`](Self::observations) a raw frame lies.
+    pub(crate) fn range_at(&self, frame: i64) -> Range<usize> {
+        match self.frames.binary_search(&frame) {
+            Ok(index) => self.range_of(index),
+            Err(_) => 0..0,
+        }
+    }
+
+    /// Where in [`observations`](Self::observations) the `index`-th annotated frame lies.
+    pub(crate) fn range_of(&self, index: usize) -> Range<usize> {
+        self.starts[index]..self.starts[index + 1]
+    }
+
+    /// Everybody in the recording, ascending, each once.
+    pub fn pedestrians(&self) -> Vec<PedestrianId> {
+        let mut ids: Vec<_> = self.observations.iter().map(|o| o.pedestrian).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        ids
+    }
+
+    /// One pedestrian's observations in order of time; empty if nobody has this id.
+    pub fn track(&self, pedestrian: PedestrianId) -> Vec<Observation> {
+        self.observations
+            .iter()
+            .filter(|o| o.pedestrian == pedestrian)
+            .copied()
+            .collect()
+    }
+
+    /// All windows of the recording under a rule, in order of their start frame.
+    ///
+    /// [`WindowRule`] defines the rules. The window that the published test loader loses (that of the
+    /// first frame of a *fold*) is still here; [`Fold::test_windows`](crate::Fold::test_windows) drops it.
+    #[must_use]
+    pub fn windows(&self, rule: WindowRule) -> Vec<Window> {
+        rule::windows(self, rule)
+    }
+
+    /// What can be forecast from: windows of [`OBSERVED`](crate::OBSERVED) frames without a future,
+    /// one for every frame up to which somebody was seen that many steps in a row.
+    ///
+    /// Unlike [`Recording::windows`] this asks nothing of the frames that follow, so that it also
+    /// works on live tracks.
+    #[must_use]
+    pub fn observed_windows(&self) -> Vec<Window> {
+        rule::observed_windows(self)
+    }
+}

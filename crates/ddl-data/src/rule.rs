@@ -1,0 +1,195 @@
+//! Which stretches of a recording count as windows.
+
+use std::fmt;
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+use crate::recording::Recording;
+use crate::{OBSERVED, PedestrianId, Position, WINDOW, Window};
+
+/// Raw frames by which the published loader stays away from the end of a recording. It mixes up
+/// raw frames and steps: 20 steps are 120 or 200 raw frames.
+const PUBLISHED_END_MARGIN: i64 = 20;
+/// Steps after which the published loader wants to see somebody again: one beyond the window.
+const STEPS_AHEAD: i64 = 20;
+
+/// Which stretches of 20 steps count as windows, and who belongs to them.
+///
+/// Under every rule a pedestrian belongs to a window if present at each of its 20 steps; who
+/// arrives or leaves meanwhile is left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum WindowRule {
+    /// The windows of the published STAR and DDL code, quirks included.
+    ///
+    /// With the frame step s, an annotated frame f starts a window if f is at least 20 *raw* frames
+    /// before the recording's last frame, frame f + 20 s (one step beyond the window) is annotated,
+    /// and somebody is in both f and f + 20 s. Whoever stands at exactly (0, 0) counts as absent at
+    /// that step. A fold's tests also lack the window of its very first frame
+    /// ([`Fold::test_windows`](crate::Fold::test_windows)).
+    Published,
+    /// Every annotated frame starts a window if anybody is present at all of its 20 steps.
+    Complete,
+    /// The windows of the Social-GAN convention: 20 *annotated* frames in a row, whatever the gaps
+    /// between them, with at least `min_pedestrians` present at all of them (0 counts as 1).
+    SocialGan {
+        /// Fewest pedestrians of a window: 2 in the original code, 1 in much later work.
+        min_pedestrians: usize,
+    },
+}
+
+impl fmt::Display for WindowRule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Published => f.write_str("published"),
+            Self::Complete => f.write_str("complete"),
+            Self::SocialGan { min_pedestrians } => {
+                write!(f, "social-gan (at least {min_pedestrians} pedestrians)")
+            }
+        }
+    }
+}
+
+/// All windows of a recording, in order of their start frame.
+pub(crate) fn windows(recording: &Recording, rule: WindowRule) -> Vec<Window> {
+    cut(recording, rule, WINDOW)
+}
+
+/// All windows of observed frames alone, in order of their start frame.
+pub(crate) fn observed_windows(recording: &Recording) -> Vec<Window> {
+    cut(recording, WindowRule::Complete, OBSERVED)
+}
+
+fn cut(recording: &Recording, rule: WindowRule, steps: usize) -> Vec<Window> {
+    let links = Links::new(recording, rule);
+    let starts = 0..recording.frames().len();
+    starts
+        .filter_map(|index| links.window(index, steps))
+        .collect()
+}
+
+/// For each observation, where the same pedestrian is one step later.
+struct Links<'a> {
+    recording: &'a Recording,
+    rule: WindowRule,
+    /// Index of the same pedestrian's observation at the next step.
+    next: Vec<Option<usize>>,
+    /// Steps, this one included, for which the pedestrian stays without a gap.
+    run: Vec<usize>,
+}
+
+impl<'a> Links<'a> {
+    fn new(recording: &'a Recording, rule: WindowRule) -> Self {
+        let count = recording.observations().len();
+        let mut links = Self {
+            recording,
+            rule,
+            next: vec![None; count],
+            run: vec![0; count],
+        };
+        for frame_index in (0..recording.frames().len()).rev() {
+            let here = recording.range_of(frame_index);
+            for (from, to) in links.pairs(here.clone(), links.frame_after(frame_index)) {
+                links.next[from] = Some(to);
+            }
+            for from in here {
+                if !links.counts(from) {
+                    continue;
+                }
+                links.run[from] = 1 + links.next[from].map_or(0, |to| links.run[to]);
+            }
+        }
+        links
+    }
+
+    /// The observations one step after the `index`-th annotated frame.
+    fn frame_after(&self, index: usize) -> Range<usize> {
+        match self.rule {
+            WindowRule::Published | WindowRule::Complete => self
+                .recording
+                .range_at(self.recording.frames()[index] + self.recording.frame_step()),
+            WindowRule::SocialGan { .. } if index + 1 < self.recording.frames().len() => {
+                self.recording.range_of(index + 1)
+            }
+            WindowRule::SocialGan { .. } => 0..0,
+        }
+    }
+
+    /// Whether an observation counts as presence.
+    fn counts(&self, observation: usize) -> bool {
+        self.rule != WindowRule::Published
+            || self.recording.observations()[observation].position != [0.0, 0.0]
+    }
+
+    /// The observations of two frames that show the same pedestrian; both are sorted by pedestrian.
+    fn pairs(&self, from: Range<usize>, to: Range<usize>) -> Vec<(usize, usize)> {
+        let who = |i: usize| self.recording.observations()[i].pedestrian;
+        let mut pairs = Vec::with_capacity(from.len().min(to.len()));
+        let mut later = to.start;
+        for earlier in from.filter(|&i| self.counts(i)) {
+            while later < to.end && who(later) < who(earlier) {
+                later += 1;
+            }
+            if later < to.end && who(later) == who(earlier) && self.counts(later) {
+                pairs.push((earlier, later));
+            }
+        }
+        pairs
+    }
+
+    /// Whether the rule lets the `index`-th annotated frame start a window at all.
+    fn may_start(&self, index: usize) -> bool {
+        if self.rule != WindowRule::Published {
+            return true;
+        }
+        let frames = self.recording.frames();
+        let beyond = frames[index] + STEPS_AHEAD * self.recording.frame_step();
+        frames[index] <= frames[frames.len() - 1] - PUBLISHED_END_MARGIN
+            && !self
+                .pairs(
+                    self.recording.range_of(index),
+                    self.recording.range_at(beyond),
+                )
+                .is_empty()
+    }
+
+    /// The window of `steps` frames that the `index`-th annotated frame starts, if it does.
+    fn window(&self, index: usize, steps: usize) -> Option<Window> {
+        let first: Vec<usize> = self
+            .recording
+            .range_of(index)
+            .filter(|&i| self.run[i] >= steps)
+            .collect();
+        let fewest = match self.rule {
+            WindowRule::SocialGan { min_pedestrians } => min_pedestrians.max(1),
+            WindowRule::Published | WindowRule::Complete => 1,
+        };
+        if first.len() < fewest || !self.may_start(index) {
+            return None;
+        }
+        let observations = self.recording.observations();
+        let follow = |start: usize| {
+            std::iter::successors(Some(start), |&i| self.next[i])
+                .take(steps)
+                .map(|i| &observations[i])
+        };
+        let frames = follow(first[0]).map(|o| o.frame).collect();
+        let pedestrians: Vec<PedestrianId> =
+            first.iter().map(|&i| observations[i].pedestrian).collect();
+        let positions: Vec<Position> = first
+            .iter()
+            .flat_map(|&i| follow(i))
+            .map(|o| o.position)
+            .collect();
+        let name = self.recording.shared_name();
+        Some(Window::cut(
+            name,
+            self.recording.frame_step(),
+            frames,
+            pedestrians,
+            positions,
+        ))
+    }
+}

@@ -1,0 +1,235 @@
+//! The simulation itself: people enter, walk, stand and leave, in small steps of time.
+
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::force::{self, BODY, Motion};
+use super::layout::{Layout, Leg};
+use super::population::{self, Party};
+use super::vector::{add, norm, scale, sub, unit};
+use super::walker::{ARRIVED, Walker};
+use super::{DT, FRAME_STEP, SUBSTEPS};
+use crate::{Observation, PedestrianId, Position, TIME_STEP};
+
+/// Time before recording starts, so that the scene is peopled (s).
+const WARM_UP: f64 = 20.0;
+/// Nobody gets faster than this multiple of the desired speed.
+const TOP_SPEED: f64 = 1.3;
+/// Random restlessness of a walker (m/s per square root of a second).
+const RESTLESSNESS: f64 = 0.12;
+/// An entry is free when nobody is within this distance (m).
+const ENTRY_CLEARANCE: f64 = 0.7;
+
+/// What a simulation leaves behind.
+#[derive(Debug)]
+pub(super) struct Trace {
+    pub(super) observations: Vec<Observation>,
+    /// The members of every party of two and more that entered.
+    pub(super) groups: Vec<Vec<PedestrianId>>,
+}
+
+/// Runs a scene for `steps` recorded steps of 0.4 s.
+pub(super) fn run(layout: &Layout, steps: i64, rng: &mut ChaCha8Rng) -> Trace {
+    let end = WARM_UP + steps as f64 * TIME_STEP;
+    let parties = population::draw(layout, end, rng);
+    let mut engine = Engine {
+        layout,
+        parties,
+        waiting: Vec::new(),
+        walkers: Vec::new(),
+        next: 0,
+        last_id: 0,
+    };
+    let mut trace = Trace {
+        observations: Vec::new(),
+        groups: Vec::new(),
+    };
+    let warm_up = (WARM_UP / DT).round() as i64;
+    for tick in 0..warm_up + steps * SUBSTEPS {
+        engine.admit(tick as f64 * DT, &mut trace.groups);
+        engine.step(rng);
+        let recorded = tick - warm_up;
+        if recorded >= 0 && recorded % SUBSTEPS == 0 {
+            let frame = recorded / SUBSTEPS * FRAME_STEP;
+            let seen = engine.walkers.iter();
+            trace
+                .observations
+                .extend(seen.map(|w| Observation::new(frame, w.id, w.motion.position)));
+        }
+    }
+    trace
+}
+
+struct Engine<'a> {
+    layout: &'a Layout,
+    parties: Vec<Party>,
+    /// Parties whose time has come, by index, that found their entry taken.
+    waiting: Vec<usize>,
+    walkers: Vec<Walker>,
+    /// The first party whose time has not come.
+    next: usize,
+    last_id: i64,
+}
+
+impl Engine<'_> {
+    /// Lets in whose time has come and whose entry is free.
+    fn admit(&mut self, time: f64, groups: &mut Vec<Vec<PedestrianId>>) {
+        while self
+            .parties
+            .get(self.next)
+            .is_some_and(|party| party.time <= time)
+        {
+            self.waiting.push(self.next);
+            self.next += 1;
+        }
+        for index in std::mem::take(&mut self.waiting) {
+            let taken: Vec<_> = self.walkers.iter().map(|w| w.motion.position).collect();
+            let members = &self.parties[index].members;
+            if members
+                .iter()
+                .all(|m| population::is_free(m.entry, &taken, ENTRY_CLEARANCE))
+            {
+                let ids = self.enter(index);
+                if ids.len() > 1 {
+                    groups.push(ids);
+                }
+            } else {
+                self.waiting.push(index);
+            }
+        }
+    }
+
+    fn enter(&mut self, index: usize) -> Vec<PedestrianId> {
+        let party = &self.parties[index];
+        let mut ids = Vec::new();
+        for member in &party.members {
+            self.last_id += 1;
+            let id = PedestrianId(self.last_id);
+            let heading = unit(sub(member.targets[0], member.entry));
+            self.walkers.push(Walker {
+                id,
+                party: index,
+                motion: Motion {
+                    position: member.entry,
+                    velocity: scale(heading, party.speed),
+                },
+                targets: member.targets.clone(),
+                leg: 0,
+                rest_left: member.rest,
+                leg_start: member.entry,
+            });
+            ids.push(id);
+        }
+        ids
+    }
+
+    /// One integration step: forces, motion, bodies and walls, then the next leg or the way out.
+    fn step(&mut self, rng: &mut ChaCha8Rng) {
+        let before: Vec<Motion> = self.walkers.iter().map(|w| w.motion).collect();
+        for index in 0..self.walkers.len() {
+            let speed = self.parties[self.walkers[index].party].speed;
+            let acceleration = self.acceleration(index, &before);
+            let velocity = add(before[index].velocity, scale(acceleration, DT));
+            let liveliness = (0.2 + norm(velocity) / speed).min(1.0) * RESTLESSNESS * DT.sqrt();
+            let [x, y]: [f64; 2] = [StandardNormal.sample(rng), StandardNormal.sample(rng)];
+            let velocity = add(velocity, scale([x, y], liveliness));
+            let excess = norm(velocity) / (TOP_SPEED * speed);
+            let velocity = if excess > 1.0 {
+                scale(velocity, 1.0 / excess)
+            } else {
+                velocity
+            };
+            self.walkers[index].motion.velocity = velocity;
+            self.walkers[index].motion.position = add(before[index].position, scale(velocity, DT));
+        }
+        self.separate_bodies();
+        for (walker, before) in self.walkers.iter_mut().zip(&before) {
+            walker.motion.position = outside_obstacles(self.layout, walker.motion.position);
+            // What bodies and walls took away from a step is not in the velocity either.
+            let moved = scale(sub(walker.motion.position, before.position), 1.0 / DT);
+            if norm(moved) < norm(walker.motion.velocity) {
+                walker.motion.velocity = moved;
+            }
+        }
+        let Self {
+            layout,
+            parties,
+            walkers,
+            ..
+        } = self;
+        walkers.retain_mut(|walker| {
+            let legs = &layout.routes[parties[walker.party].route].legs;
+            walker.advance(legs);
+            walker.leg < legs.len()
+        });
+    }
+
+    fn acceleration(&self, index: usize, before: &[Motion]) -> Position {
+        let (walker, me) = (&self.walkers[index], before[index]);
+        let mut companions = 0;
+        let mut centre = me.position;
+        let mut total = [0.0, 0.0];
+        for (other, &motion) in self.walkers.iter().zip(before) {
+            if other.id == walker.id {
+                continue;
+            }
+            if other.party == walker.party {
+                companions += 1;
+                centre = add(centre, motion.position);
+                total = add(total, force::companion(me, motion));
+            } else {
+                total = add(total, force::stranger(me, motion, BODY));
+            }
+        }
+        let size = companions + 1;
+        centre = scale(centre, 1.0 / f64::from(size));
+        let party = &self.parties[walker.party];
+        let legs = &self.layout.routes[party.route].legs;
+        let standing = matches!(legs[walker.leg], Leg::Stand(_)) && walker.is_within(ARRIVED);
+        if size > 1 && !standing {
+            total = add(total, force::cohesion(me, centre, party.members.len()));
+        }
+        total = add(
+            total,
+            force::driving(me, walker.desired(legs, party.speed, centre)),
+        );
+        for wall in &self.layout.walls {
+            total = add(total, force::wall(me, wall));
+        }
+        for pillar in &self.layout.pillars {
+            total = add(total, force::pillar(me, pillar));
+        }
+        total
+    }
+
+    /// Moves bodies apart that overlap, each half of the way.
+    fn separate_bodies(&mut self) {
+        for i in 1..self.walkers.len() {
+            let (earlier, later) = self.walkers.split_at_mut(i);
+            let a = &mut later[0].motion.position;
+            for other in earlier {
+                let b = &mut other.motion.position;
+                let apart = sub(*a, *b);
+                let overlap = 2.0 * BODY - norm(apart);
+                if overlap > 0.0 {
+                    let shift = scale(unit(apart), 0.5 * overlap);
+                    *a = add(*a, shift);
+                    *b = sub(*b, shift);
+                }
+            }
+        }
+    }
+}
+
+/// The position, moved out of every wall and pillar. Twice, for corners.
+fn outside_obstacles(layout: &Layout, position: Position) -> Position {
+    (0..2).fold(position, |mut place, _| {
+        for wall in &layout.walls {
+            place = wall.push_out(place, BODY);
+        }
+        for pillar in &layout.pillars {
+            place = pillar.push_out(place, BODY);
+        }
+        place
+    })
+}

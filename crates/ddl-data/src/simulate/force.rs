@@ -1,0 +1,116 @@
+//! The forces on a walker, as accelerations (m/s²).
+
+use super::obstacle::{Pillar, Wall};
+use super::vector::{add, cross, dot, left, norm, scale, sub, unit};
+use crate::Position;
+
+/// Radius of a body (m).
+pub(super) const BODY: f64 = 0.2;
+/// Time in which a walker adapts its velocity (s).
+const RELAXATION: f64 = 0.5;
+
+// The interaction of two walkers, Moussaïd et al. 2009.
+/// How strongly they brake or turn at most (m/s²).
+const STRENGTH: f64 = 4.5;
+/// Reach of the interaction for each unit of the relative motion (m): gamma.
+const REACH: f64 = 0.35;
+/// How narrow in angle the braking is: n'.
+const BRAKING: f64 = 3.0;
+/// How narrow in angle the turning aside is: n.
+const TURNING: f64 = 2.0;
+/// Weight of the relative velocity against the direction to the other (s/m): lambda.
+const FORESIGHT: f64 = 2.0;
+/// Preference for one side, which settles who goes where when two meet head on: epsilon.
+const SIDE: f64 = 0.05;
+/// Beyond this distance two walkers ignore each other (m).
+const SIGHT: f64 = 6.0;
+
+/// Walls push away with this strength (m/s²) ...
+const WALL_STRENGTH: f64 = 3.0;
+/// ... falling off over this distance (m), counted from the body.
+const WALL_REACH: f64 = 0.15;
+
+// Groups, after Moussaïd et al. 2010.
+/// Pull towards the centre of the group, for each metre too far from it (1/s²).
+const COHESION: f64 = 1.5;
+/// Comfortable distance from the centre for each other member (m).
+const COMFORT: f64 = 0.5;
+/// Push between members who touch (m/s²) ...
+const ELBOW: f64 = 4.0;
+/// ... falling to nothing at this distance (m).
+const ELBOW_REACH: f64 = 0.65;
+
+/// What a walker's surroundings see of it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Motion {
+    pub(super) position: Position,
+    pub(super) velocity: Position,
+}
+
+/// Towards the velocity that the walker likes.
+pub(super) fn driving(walker: Motion, desired: Position) -> Position {
+    scale(sub(desired, walker.velocity), 1.0 / RELAXATION)
+}
+
+/// Away from a stranger: brake, and turn aside early when the two will meet.
+///
+/// With `e` the unit vector to the other and `D = lambda (v_i - v_j) + e`, the force decays with
+/// `exp(-d / B)`, `B = gamma |D|`, along `D` (braking) and across it (turning), the latter away from
+/// the side on which the other is; `d` is counted between the bodies: Moussaïd et al., Proc. R. Soc. B 276 (2009), equations 4 and 5.
+pub(super) fn stranger(walker: Motion, other: Motion, other_radius: f64) -> Position {
+    let apart = sub(other.position, walker.position);
+    let distance = norm(apart);
+    let gap = (distance - BODY - other_radius).max(0.0);
+    if gap > SIGHT || distance == 0.0 {
+        return [0.0, 0.0];
+    }
+    let towards = unit(apart);
+    let meeting = add(
+        scale(sub(walker.velocity, other.velocity), FORESIGHT),
+        towards,
+    );
+    let reach = REACH * norm(meeting);
+    if reach == 0.0 {
+        return scale(towards, -STRENGTH * (-gap / REACH).exp());
+    }
+    let ahead = unit(meeting);
+    let angle = cross(ahead, towards).atan2(dot(ahead, towards)) + reach * SIDE;
+    let falloff = STRENGTH * (-gap / reach).exp();
+    let narrowed = |width: f64| falloff * (-(width * reach * angle).powi(2)).exp();
+    let brake = scale(ahead, -narrowed(BRAKING));
+    let turn = scale(left(ahead), -angle.signum() * narrowed(TURNING));
+    add(brake, turn)
+}
+
+/// Around a pillar, which is a stranger that stands still.
+pub(super) fn pillar(walker: Motion, pillar: &Pillar) -> Position {
+    let still = Motion {
+        position: pillar.centre,
+        velocity: [0.0, 0.0],
+    };
+    stranger(walker, still, pillar.radius)
+}
+
+/// Away from a wall.
+pub(super) fn wall(walker: Motion, wall: &Wall) -> Position {
+    let away = sub(walker.position, wall.nearest(walker.position));
+    let gap = norm(away) - BODY;
+    scale(
+        unit(away),
+        WALL_STRENGTH * (-gap.max(0.0) / WALL_REACH).exp(),
+    )
+}
+
+/// Towards the centre of the own group of `size`, when too far from it.
+pub(super) fn cohesion(walker: Motion, centre: Position, size: usize) -> Position {
+    let apart = sub(centre, walker.position);
+    let excess = norm(apart) - COMFORT * (size - 1) as f64;
+    scale(unit(apart), COHESION * excess.clamp(0.0, 2.0))
+}
+
+/// Away from a member of the own group who is too close.
+pub(super) fn companion(walker: Motion, other: Motion) -> Position {
+    let away = sub(walker.position, other.position);
+    let closeness = (1.0 - norm(away) / ELBOW_REACH).max(0.0);
+    scale(unit(away), ELBOW * closeness)
+}

@@ -1,0 +1,294 @@
+//! The five scenes: walls, pillars, where people come from and where they go.
+
+use super::Scene;
+use super::obstacle::{Pillar, Wall};
+use super::vector::{dot, left, lerp, norm, scale, sub, unit};
+use crate::Position;
+
+/// A line that people come from, pass or leave through.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gate {
+    pub(super) a: Position,
+    pub(super) b: Position,
+}
+
+impl Gate {
+    pub(super) const fn new(a: Position, b: Position) -> Self {
+        Self { a, b }
+    }
+
+    /// The point at a share of the way from `a` to `b`.
+    pub(super) fn at(&self, share: f64) -> Position {
+        lerp(self.a, self.b, share)
+    }
+
+    pub(super) fn width(&self) -> f64 {
+        norm(sub(self.b, self.a))
+    }
+
+    /// The direction across the gate that leads away from `from`.
+    pub(super) fn beyond(&self, from: Position) -> Position {
+        let normal = left(unit(sub(self.b, self.a)));
+        let ahead = dot(sub(self.at(0.5), from), normal);
+        if ahead < 0.0 {
+            scale(normal, -1.0)
+        } else {
+            normal
+        }
+    }
+}
+
+/// One stage of a route.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Leg {
+    /// Walk through a gate.
+    Pass(Gate),
+    /// Walk to a place on a line and stand there for a while.
+    Stand(Gate),
+}
+
+/// From where, past what, in proportion to which weight.
+#[derive(Debug, Clone)]
+pub(super) struct Route {
+    pub(super) origin: Gate,
+    /// The last leg is a gate: the way out.
+    pub(super) legs: Vec<Leg>,
+    pub(super) weight: f64,
+}
+
+impl Route {
+    fn new(weight: f64, origin: Gate, gates: &[Gate]) -> Self {
+        Self {
+            origin,
+            legs: gates.iter().copied().map(Leg::Pass).collect(),
+            weight,
+        }
+    }
+
+    /// The same route with a rest somewhere between two points before leg `index`.
+    fn standing(mut self, weight: f64, index: usize, [a, b]: [Position; 2]) -> Self {
+        self.legs.insert(index, Leg::Stand(Gate::new(a, b)));
+        self.weight = weight;
+        self
+    }
+}
+
+/// Everything fixed about a scene.
+#[derive(Debug, Clone)]
+pub(super) struct Layout {
+    pub(super) walls: Vec<Wall>,
+    pub(super) pillars: Vec<Pillar>,
+    pub(super) routes: Vec<Route>,
+    /// Mean time between two arrivals of a person or group (s).
+    pub(super) arrival_interval: f64,
+}
+
+impl Layout {
+    pub(super) fn of(scene: Scene) -> Self {
+        match scene {
+            Scene::Corridor => corridor(),
+            Scene::Crossing => crossing(),
+            Scene::Plaza => plaza(),
+            Scene::Bottleneck => bottleneck(),
+            Scene::Doorway => doorway(),
+        }
+    }
+}
+
+/// A walled way of 26 m x 6 m with two pillars, walked in both directions; some stop at the wall.
+fn corridor() -> Layout {
+    let west = Gate::new([0.0, 0.0], [0.0, 6.0]);
+    let east = Gate::new([26.0, 0.0], [26.0, 6.0]);
+    let eastward = Route::new(1.0, west, &[east]);
+    let westward = Route::new(1.0, east, &[west]);
+    Layout {
+        walls: vec![
+            Wall::new([-1.0, 0.0], [27.0, 0.0]),
+            Wall::new([-1.0, 6.0], [27.0, 6.0]),
+        ],
+        pillars: vec![Pillar::new([9.0, 3.0], 0.3), Pillar::new([17.0, 3.0], 0.3)],
+        routes: vec![
+            eastward.clone(),
+            westward.clone(),
+            eastward.standing(0.12, 0, [[5.0, 5.4], [21.0, 5.4]]),
+            westward.standing(0.12, 0, [[5.0, 0.6], [21.0, 0.6]]),
+        ],
+        arrival_interval: 3.0,
+    }
+}
+
+/// Two ways of 6 m width that cross at right angles; people go straight on or turn.
+fn crossing() -> Layout {
+    const HALF: f64 = 3.0;
+    const END: f64 = 12.0;
+    // Arms in order east, north, west, south: each the one before, turned by a quarter.
+    let turn = |point: Position, quarters: usize| (0..quarters).fold(point, |p, _| left(p));
+    let gate = |distance: f64, quarters: usize| {
+        Gate::new(
+            turn([distance, -HALF], quarters),
+            turn([distance, HALF], quarters),
+        )
+    };
+    let mut walls = Vec::new();
+    let mut routes = Vec::new();
+    for from in 0..4 {
+        let corner = turn([HALF, HALF], from);
+        walls.push(Wall::new(corner, turn([END + 1.0, HALF], from)));
+        walls.push(Wall::new(corner, turn([HALF, END + 1.0], from)));
+        for (quarters, weight) in [(1, 0.2), (2, 1.0), (3, 0.2)] {
+            let to = (from + quarters) % 4;
+            let legs = [gate(HALF, from), gate(HALF, to), gate(END, to)];
+            routes.push(Route::new(weight, gate(END, from), &legs));
+        }
+        let place = [
+            turn([HALF - 0.7, HALF + 2.0], from),
+            turn([HALF - 0.7, END - 2.0], from),
+        ];
+        let to = (from + 1) % 4;
+        let legs = [gate(HALF, from), gate(HALF, to), gate(END, to)];
+        routes.push(Route::new(0.0, gate(END, from), &legs).standing(0.08, 2, place));
+    }
+    Layout {
+        walls,
+        pillars: Vec::new(),
+        routes,
+        arrival_interval: 3.0,
+    }
+}
+
+/// An open square of 22 m x 18 m with a fountain and trees; people cross it or meet and talk.
+fn plaza() -> Layout {
+    let gates = [
+        Gate::new([0.0, 3.0], [0.0, 8.0]),
+        Gate::new([0.0, 11.0], [0.0, 16.0]),
+        Gate::new([5.0, 18.0], [12.0, 18.0]),
+        Gate::new([22.0, 10.0], [22.0, 16.0]),
+        Gate::new([22.0, 2.0], [22.0, 7.0]),
+        Gate::new([8.0, 0.0], [15.0, 0.0]),
+    ];
+    let places = [
+        [[4.0, 5.0], [8.0, 5.0]],
+        [[17.0, 11.5], [17.0, 15.0]],
+        [[15.0, 4.0], [18.0, 5.5]],
+        [[5.0, 13.5], [9.0, 13.5]],
+    ];
+    let mut routes = Vec::new();
+    for (from, &origin) in gates.iter().enumerate() {
+        for (to, &goal) in gates.iter().enumerate() {
+            if from == to {
+                continue;
+            }
+            let route = Route::new(1.0, origin, &[goal]);
+            let place = places[(from + 2 * to) % places.len()];
+            routes.push(route.clone().standing(0.15, 0, place));
+            routes.push(route);
+        }
+    }
+    Layout {
+        walls: vec![
+            Wall::new([0.0, 8.5], [0.0, 10.5]),
+            Wall::new([16.0, 18.0], [21.0, 18.0]),
+        ],
+        pillars: vec![
+            Pillar::new([11.0, 9.0], 1.6),
+            Pillar::new([5.0, 9.5], 0.35),
+            Pillar::new([16.0, 9.0], 0.35),
+            Pillar::new([13.0, 14.5], 0.35),
+        ],
+        routes,
+        arrival_interval: 2.2,
+    }
+}
+
+/// A room of 10 m width that narrows to a passage of 2.4 m; most walk into the passage.
+fn bottleneck() -> Layout {
+    let room = Gate::new([0.0, -5.0], [0.0, 5.0]);
+    let mouth = Gate::new([11.0, -1.2], [11.0, 1.2]);
+    let end = Gate::new([14.0, -1.2], [14.0, 1.2]);
+    let street = Gate::new([23.0, -4.0], [23.0, 4.0]);
+    let inward = Route::new(0.75, room, &[mouth, end, street]);
+    let outward = Route::new(0.2, street, &[end, mouth, room]);
+    let mut walls = Vec::new();
+    for side in [-1.0, 1.0] {
+        let corners = [
+            [-1.0, 5.0],
+            [7.5, 5.0],
+            [11.0, 1.2],
+            [14.0, 1.2],
+            [15.0, 4.5],
+            [24.0, 4.5],
+        ];
+        let mirrored = corners.map(|[x, y]| [x, side * y]);
+        walls.extend(mirrored.windows(2).map(|pair| Wall::new(pair[0], pair[1])));
+    }
+    Layout {
+        walls,
+        pillars: vec![Pillar::new([5.0, 1.5], 0.3)],
+        routes: vec![
+            inward.clone().standing(0.05, 0, [[2.0, -3.9], [6.5, -3.9]]),
+            inward,
+            outward
+                .clone()
+                .standing(0.03, 0, [[17.0, 3.4], [21.5, 3.4]]),
+            outward,
+        ],
+        arrival_interval: 2.8,
+    }
+}
+
+/// Two halls of 18 m width behind each other, joined by two doors of 1.8 m; people wait at the side.
+fn doorway() -> Layout {
+    let south = Gate::new([1.0, 0.0], [17.0, 0.0]);
+    let north = Gate::new([1.0, 20.0], [17.0, 20.0]);
+    let doors = [4.5, 13.0].map(|x: f64| Gate::new([x - 0.9, 10.0], [x + 0.9, 10.0]));
+    let mut routes = Vec::new();
+    for door in doors {
+        let northward = Route::new(1.0, south, &[door, north]);
+        let southward = Route::new(1.0, north, &[door, south]);
+        let wall = |y: f64| [[6.5, y], [11.0, y]];
+        routes.push(northward.clone().standing(0.08, 0, wall(9.0)));
+        routes.push(southward.clone().standing(0.08, 0, wall(11.0)));
+        routes.push(northward);
+        routes.push(southward);
+    }
+    Layout {
+        walls: vec![
+            Wall::new([0.0, -1.0], [0.0, 21.0]),
+            Wall::new([18.0, -1.0], [18.0, 21.0]),
+            Wall::new([0.0, 10.0], doors[0].a),
+            Wall::new(doors[0].b, doors[1].a),
+            Wall::new(doors[1].b, [18.0, 10.0]),
+        ],
+        pillars: vec![
+            Pillar::new([9.0, 5.0], 0.35),
+            Pillar::new([9.0, 15.0], 0.35),
+        ],
+        routes,
+        arrival_interval: 2.6,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_gate_and_no_place_to_stand_reaches_through_a_wall() {
+        for scene in Scene::ALL {
+            let layout = Layout::of(scene);
+            for route in &layout.routes {
+                let lines = route.legs.iter().map(|leg| match *leg {
+                    Leg::Pass(line) | Leg::Stand(line) => line,
+                });
+                for line in lines.chain([route.origin]) {
+                    let blocked = layout.walls.iter().any(|wall| wall.blocks(line.a, line.b));
+                    assert!(!blocked, "{scene}: {line:?}");
+                }
+                assert!(
+                    matches!(route.legs.last(), Some(Leg::Pass(_))),
+                    "{scene}: no way out"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! What nobody walks through: walls and pillars.
+
+use super::vector::{add, cross, dot, norm, scale, sub, unit};
+use crate::Position;
+
+/// A straight wall between two points, without thickness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wall {
+    /// One end (m).
+    pub from: Position,
+    /// The other end (m).
+    pub to: Position,
+}
+
+/// A round obstacle: a pillar, a tree, a fountain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pillar {
+    /// Its centre (m).
+    pub centre: Position,
+    /// Its radius (m).
+    pub radius: f64,
+}
+
+impl Wall {
+    /// A wall from one point to another (m).
+    #[must_use]
+    pub const fn new(from: Position, to: Position) -> Self {
+        Self { from, to }
+    }
+
+    /// The point of the wall nearest to `p` (m).
+    #[must_use]
+    pub fn nearest(&self, p: Position) -> Position {
+        let along = sub(self.to, self.from);
+        let length_squared = dot(along, along);
+        if length_squared == 0.0 {
+            return self.from;
+        }
+        let share = (dot(sub(p, self.from), along) / length_squared).clamp(0.0, 1.0);
+        add(self.from, scale(along, share))
+    }
+
+    /// Whether the straight way from `a` to `b` (m) goes through the wall.
+    #[must_use]
+    pub fn blocks(&self, a: Position, b: Position) -> bool {
+        let (way, wall) = (sub(b, a), sub(self.to, self.from));
+        let side = |p| cross(wall, sub(p, self.from));
+        let other = |p| cross(way, sub(p, a));
+        side(a) * side(b) < 0.0 && other(self.from) * other(self.to) < 0.0
+    }
+
+    /// `p`, moved out of the wall far enough for a body of this radius.
+    pub(super) fn push_out(&self, p: Position, body: f64) -> Position {
+        push_away(p, self.nearest(p), body)
+    }
+}
+
+impl Pillar {
+    /// A pillar around a point, of a radius (m).
+    #[must_use]
+    pub const fn new(centre: Position, radius: f64) -> Self {
+        Self { centre, radius }
+    }
+
+    /// `p`, moved out of the pillar far enough for a body of this radius.
+    pub(super) fn push_out(&self, p: Position, body: f64) -> Position {
+        push_away(p, self.centre, self.radius + body)
+    }
+}
+
+/// `p`, moved straight away from `point` until it is at the distance; unmoved if it is that far.
+fn push_away(p: Position, point: Position, distance: f64) -> Position {
+    let away = sub(p, point);
+    if norm(away) >= distance {
+        p
+    } else {
+        add(point, scale(unit(away), distance))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wall_blocks_what_crosses_it_and_nothing_else() {
+        let wall = Wall::new([0.0, 0.0], [2.0, 0.0]);
+        assert!(wall.blocks([1.0, -1.0], [1.0, 1.0]));
+        assert!(!wall.blocks([3.0, -1.0], [3.0, 1.0]));
+        assert!(!wall.blocks([1.0, 0.1], [1.0, 1.0]));
+    }
+
+    #[test]
+    fn a_body_is_pushed_out_of_a_wall_to_the_side_it_is_on() {
+        let wall = Wall::new([0.0, 0.0], [2.0, 0.0]);
+        let near = |a: Position, b: Position| norm(sub(a, b)) < 1e-12;
+        assert!(near(wall.nearest([3.0, 4.0]), [2.0, 0.0]));
+        assert!(near(wall.push_out([1.0, -0.1], 0.25), [1.0, -0.25]));
+        assert!(near(wall.push_out([1.0, 0.5], 0.25), [1.0, 0.5]));
+        let pillar = Pillar::new([0.0, 0.0], 1.0);
+        assert!(near(pillar.push_out([0.5, 0.0], 0.2), [1.2, 0.0]));
+    }
+}

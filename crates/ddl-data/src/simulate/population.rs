@@ -1,0 +1,149 @@
+//! Who comes when: arrivals, groups, desired speeds and routes, all drawn in advance.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, Exp, Normal};
+
+use super::layout::{Gate, Layout, Leg};
+use super::vector::{norm, sub};
+use crate::Position;
+
+/// Mean and standard deviation of the speed that a lone walker likes (m/s): Helbing and Molnár 1995.
+const DESIRED_SPEED: (f64, f64) = (1.34, 0.26);
+/// Slowest and fastest speed drawn (m/s).
+const SPEED_RANGE: (f64, f64) = (0.7, 2.0);
+/// Groups walk slower than their members would alone, on average.
+const GROUP_PACE: f64 = 0.93;
+/// Distance at which group members come in side by side (m).
+pub(super) const GROUP_SPACING: f64 = 0.75;
+/// Distance that arrivals keep from the ends of a gate (m).
+const GATE_MARGIN: f64 = 0.5;
+/// Shortest and longest rest of who stands (s).
+const REST: (f64, f64) = (8.0, 28.0);
+
+/// A person or a group that arrives together.
+#[derive(Debug, Clone)]
+pub(super) struct Party {
+    /// When it wants to enter (s).
+    pub(super) time: f64,
+    /// Route, as an index into the layout.
+    pub(super) route: usize,
+    /// Speed that all of it like (m/s).
+    pub(super) speed: f64,
+    pub(super) members: Vec<Member>,
+}
+
+/// One of a party.
+#[derive(Debug, Clone)]
+pub(super) struct Member {
+    /// Where it enters (m).
+    pub(super) entry: Position,
+    /// Where it passes each leg's gate (m), or stands.
+    pub(super) targets: Vec<Position>,
+    /// How long it rests where it stands (s).
+    pub(super) rest: f64,
+}
+
+/// Everybody who arrives before `end` (s), in order of time.
+pub(super) fn draw(layout: &Layout, end: f64, rng: &mut ChaCha8Rng) -> Vec<Party> {
+    let interval = Exp::new(1.0 / layout.arrival_interval)
+        .expect("arrival intervals of the five layouts are positive");
+    let mut parties = Vec::new();
+    let mut time = interval.sample(rng);
+    while time < end {
+        parties.push(party(layout, time, rng));
+        time += interval.sample(rng);
+    }
+    parties
+}
+
+fn party(layout: &Layout, time: f64, rng: &mut ChaCha8Rng) -> Party {
+    let size = match rng.random_range(0.0..1.0) {
+        draw if draw < 0.6 => 1,
+        draw if draw < 0.9 => 2,
+        _ => 3,
+    };
+    let speeds = Normal::new(DESIRED_SPEED.0, DESIRED_SPEED.1)
+        .expect("the standard deviation of the desired speed is positive");
+    let mean = (0..size)
+        .map(|_| speeds.sample(rng).clamp(SPEED_RANGE.0, SPEED_RANGE.1))
+        .sum::<f64>()
+        / size as f64;
+    let speed = if size > 1 { GROUP_PACE * mean } else { mean };
+    let route = choose_route(layout, rng);
+    let chosen = &layout.routes[route];
+    let rest = rng.random_range(REST.0..REST.1);
+    let entries = side_by_side(chosen.origin, size, rng.random_range(0.0..1.0));
+    // Somebody who comes in on the left tends to stay on the left: one place across for all gates.
+    let across: f64 = rng.random_range(0.0..1.0);
+    let mut targets = vec![Vec::new(); size];
+    for leg in &chosen.legs {
+        let places = match *leg {
+            Leg::Pass(gate) => side_by_side(gate, size, across),
+            Leg::Stand(line) => in_a_ring(line.at(rng.random_range(0.0..1.0)), size, rng),
+        };
+        for (target, place) in targets.iter_mut().zip(places) {
+            target.push(place);
+        }
+    }
+    let members = entries
+        .into_iter()
+        .zip(targets)
+        .map(|(entry, targets)| Member {
+            entry,
+            targets,
+            rest,
+        })
+        .collect();
+    Party {
+        time,
+        route,
+        speed,
+        members,
+    }
+}
+
+fn choose_route(layout: &Layout, rng: &mut ChaCha8Rng) -> usize {
+    let total: f64 = layout.routes.iter().map(|r| r.weight).sum();
+    let mut draw = rng.random_range(0.0..total);
+    for (index, route) in layout.routes.iter().enumerate() {
+        draw -= route.weight;
+        if draw < 0.0 {
+            return index;
+        }
+    }
+    layout.routes.len() - 1
+}
+
+/// Places across a gate for a group of this size, clear of the gate's ends where it is wide enough.
+fn side_by_side(gate: Gate, size: usize, across: f64) -> Vec<Position> {
+    let room = (gate.width() - 2.0 * GATE_MARGIN).max(0.0);
+    let spacing = GROUP_SPACING.min(room / size as f64);
+    let span = spacing * (size - 1) as f64;
+    let first = GATE_MARGIN + across * (room - span);
+    (0..size)
+        .map(|i| gate.at((first + spacing * i as f64) / gate.width()))
+        .collect()
+}
+
+/// Places around a point, facing each other.
+fn in_a_ring(centre: Position, size: usize, rng: &mut ChaCha8Rng) -> Vec<Position> {
+    let radius = if size > 1 { 0.5 } else { 0.3 };
+    let turn = rng.random_range(0.0..std::f64::consts::TAU);
+    (0..size)
+        .map(|i| {
+            let angle = turn + std::f64::consts::TAU * i as f64 / size as f64;
+            [
+                centre[0] + radius * angle.cos(),
+                centre[1] + radius * angle.sin(),
+            ]
+        })
+        .collect()
+}
+
+/// Whether a place is free of everybody else by the distance (m).
+pub(super) fn is_free(place: Position, others: &[Position], distance: f64) -> bool {
+    others
+        .iter()
+        .all(|&other| norm(sub(place, other)) >= distance)
+}

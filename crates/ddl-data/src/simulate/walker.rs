@@ -1,0 +1,81 @@
+//! One walker: where it wants to go, how fast, and when it has got there.
+
+use super::DT;
+use super::force::Motion;
+use super::layout::Leg;
+use super::vector::{add, dot, norm, scale, sub, unit};
+use crate::{PedestrianId, Position};
+
+/// Who comes this close to a place to stand at has arrived (m) ...
+pub(super) const ARRIVED: f64 = 0.3;
+/// ... and who comes this close settles for it: others may stand there already (m).
+const CLOSE_BY: f64 = 1.5;
+/// How strongly who is ahead of the group slows down, and who is behind hurries (1/m).
+const WAITING: f64 = 0.4;
+
+/// Somebody in the scene.
+#[derive(Debug)]
+pub(super) struct Walker {
+    pub(super) id: PedestrianId,
+    /// The party it came with, as an index.
+    pub(super) party: usize,
+    pub(super) motion: Motion,
+    /// Where it passes each leg's gate, or stands (m).
+    pub(super) targets: Vec<Position>,
+    /// The present leg of the route.
+    pub(super) leg: usize,
+    /// How long it still stands where it stands (s).
+    pub(super) rest_left: f64,
+    /// Where the present leg began (m).
+    pub(super) leg_start: Position,
+}
+
+impl Walker {
+    /// Whether the target of the present leg is nearer than the distance (m).
+    pub(super) fn is_within(&self, distance: f64) -> bool {
+        norm(sub(self.targets[self.leg], self.motion.position)) < distance
+    }
+
+    /// The velocity that the walker likes now (m/s).
+    pub(super) fn desired(&self, legs: &[Leg], speed: f64, centre: Position) -> Position {
+        let target = self.targets[self.leg];
+        let way = sub(self.aim(legs, target), self.motion.position);
+        if matches!(legs[self.leg], Leg::Stand(_)) && norm(way) < 2.0 * ARRIVED {
+            // Slow down smoothly, then stay.
+            return scale(way, speed.min(0.8));
+        }
+        let heading = unit(way);
+        let ahead = dot(sub(self.motion.position, centre), heading);
+        scale(heading, speed * (1.0 - WAITING * ahead).clamp(0.3, 1.25))
+    }
+
+    /// The point to walk to: a gate is walked through, not up to.
+    fn aim(&self, legs: &[Leg], target: Position) -> Position {
+        match legs[self.leg] {
+            Leg::Stand(_) => target,
+            Leg::Pass(gate) => add(target, scale(gate.beyond(self.leg_start), 0.8)),
+        }
+    }
+
+    /// Goes on to the next leg if this one is done.
+    pub(super) fn advance(&mut self, legs: &[Leg]) {
+        let done = match legs[self.leg] {
+            Leg::Pass(gate) => {
+                dot(
+                    sub(self.motion.position, gate.a),
+                    gate.beyond(self.leg_start),
+                ) > 0.0
+            }
+            Leg::Stand(_) => {
+                if self.is_within(CLOSE_BY) {
+                    self.rest_left -= DT;
+                }
+                self.rest_left <= 0.0
+            }
+        };
+        if done {
+            self.leg += 1;
+            self.leg_start = self.motion.position;
+        }
+    }
+}

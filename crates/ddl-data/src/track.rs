@@ -1,0 +1,56 @@
+//! One observation of one pedestrian: the grain that recordings are made of.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// A place on the ground plane, `[x, y]` in metres.
+pub type Position = [f64; 2];
+
+/// Seconds between two steps of a recording (s).
+pub const TIME_STEP: f64 = 0.4;
+/// Observed steps of a window (3.2 s).
+pub const OBSERVED: usize = 8;
+/// Steps to forecast (4.8 s).
+pub const HORIZON: usize = 12;
+/// Steps of a whole window: observed and to forecast.
+pub const WINDOW: usize = OBSERVED + HORIZON;
+
+/// The number by which a recording knows a pedestrian; unique within one recording only.
+///
+/// ```
+/// use ddl_data::PedestrianId;
+/// assert_eq!(PedestrianId(7).to_string(), "7");
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct PedestrianId(pub i64);
+
+impl fmt::Display for PedestrianId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// Where one pedestrian was at one frame.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Observation {
+    /// Raw frame number of the recording; steps of 0.4 s are a fixed number of raw frames apart.
+    pub frame: i64,
+    /// Who.
+    pub pedestrian: PedestrianId,
+    /// Where, `[x, y]` (m).
+    pub position: Position,
+}
+
+impl Observation {
+    /// Who is where, when.
+    #[must_use]
+    pub fn new(frame: i64, pedestrian: PedestrianId, position: Position) -> Self {
+        Self {
+            frame,
+            pedestrian,
+            position,
+        }
+    }
+}

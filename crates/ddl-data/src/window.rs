@@ -1,0 +1,256 @@
+//! A window: a few pedestrians over 8 observed and 12 following steps.
+
+use std::sync::Arc;
+
+use crate::augment::Rotation;
+use crate::error::WindowError;
+use crate::neighbours::NeighbourMask;
+use crate::recording::{FRAME_LIMIT, FRAME_STEP_LIMIT};
+use crate::{OBSERVED, PedestrianId, Position, WINDOW};
+
+/// The pedestrians of one scene over 8 observed steps and, where known, the 12 that follow.
+///
+/// # Shapes
+/// N pedestrians, each with a track of T = 20 positions ([`WINDOW`]), or of T = 8 ([`OBSERVED`]) when
+/// the future is unknown. Positions are `[x, y]` in metres, one step is 0.4 s.
+///
+/// ```
+/// use ddl_data::{PedestrianId, Window};
+///
+/// let straight: Vec<_> = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect();
+/// let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![straight])?;
+/// assert_eq!(window.observed(0).len(), 8);
+/// assert_eq!(window.end(0), Some([9.5, 0.0]));
+/// assert!(window.without_future().end(0).is_none());
+/// # Ok::<(), ddl_data::WindowError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Window {
+    recording: Arc<str>,
+    frame_step: i64,
+    /// Raw frame of each step; `steps()` many.
+    frames: Vec<i64>,
+    pedestrians: Vec<PedestrianId>,
+    /// Pedestrian-major: pedestrian i holds `positions[i * T..(i + 1) * T]`.
+    positions: Vec<Position>,
+}
+
+impl Window {
+    /// A window of the tracks given, one for each pedestrian.
+    ///
+    /// `start_frame` is the raw frame of the first position, `frame_step` the raw frames a step.
+    ///
+    /// # Errors
+    /// Without pedestrians, with ids and tracks of different number, an id twice, tracks that are
+    /// not all of 8 or all of 20 positions, a position that is not finite, or frames out of range.
+    pub fn new(
+        recording: impl Into<Arc<str>>,
+        start_frame: i64,
+        frame_step: i64,
+        pedestrians: Vec<PedestrianId>,
+        tracks: Vec<Vec<Position>>,
+    ) -> Result<Self, WindowError> {
+        if pedestrians.len() != tracks.len() {
+            let (pedestrians, tracks) = (pedestrians.len(), tracks.len());
+            return Err(WindowError::Count {
+                pedestrians,
+                tracks,
+            });
+        }
+        if !(1..=FRAME_STEP_LIMIT).contains(&frame_step)
+            || start_frame.unsigned_abs() >= FRAME_LIMIT.unsigned_abs()
+        {
+            return Err(WindowError::Frames {
+                start_frame,
+                frame_step,
+            });
+        }
+        let steps = tracks.first().ok_or(WindowError::Empty)?.len();
+        let mut sorted = pedestrians.clone();
+        sorted.sort_unstable();
+        if let Some(pair) = sorted.windows(2).find(|w| w[0] == w[1]) {
+            return Err(WindowError::Duplicate {
+                pedestrian: pair[0],
+            });
+        }
+        for (&pedestrian, track) in pedestrians.iter().zip(&tracks) {
+            let found = track.len();
+            if found != steps || (steps != OBSERVED && steps != WINDOW) {
+                return Err(WindowError::Length { pedestrian, found });
+            }
+            if let Some(index) = track.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
+                let position = track[index];
+                return Err(WindowError::NotFinite {
+                    pedestrian,
+                    index,
+                    position,
+                });
+            }
+        }
+        let frames = (0..)
+            .map(|t| start_frame + t * frame_step)
+            .take(steps)
+            .collect();
+        let positions = tracks.into_iter().flatten().collect();
+        Ok(Self {
+            recording: recording.into(),
+            frame_step,
+            frames,
+            pedestrians,
+            positions,
+        })
+    }
+
+    /// A whole window cut from a recording, whose invariants make every check of
+    /// [`new`](Self::new) superfluous.
+    pub(crate) fn cut(
+        recording: Arc<str>,
+        frame_step: i64,
+        frames: Vec<i64>,
+        pedestrians: Vec<PedestrianId>,
+        positions: Vec<Position>,
+    ) -> Self {
+        debug_assert!(frames.len() == WINDOW && positions.len() == pedestrians.len() * WINDOW);
+        Self {
+            recording,
+            frame_step,
+            frames,
+            pedestrians,
+            positions,
+        }
+    }
+
+    /// Name of the recording it is from.
+    pub fn recording(&self) -> &str {
+        &self.recording
+    }
+
+    /// Raw frame of the first position.
+    pub fn start_frame(&self) -> i64 {
+        self.frames[0]
+    }
+
+    /// Raw frame of each position, T of them, ascending.
+    ///
+    /// `frame_step` apart, except in windows of [`WindowRule::SocialGan`](crate::WindowRule), which
+    /// count annotated frames and may reach over a gap.
+    pub fn frames(&self) -> &[i64] {
+        &self.frames
+    }
+
+    /// Raw frames a step.
+    pub fn frame_step(&self) -> i64 {
+        self.frame_step
+    }
+
+    /// Who is in the window; index i everywhere else means the i-th of these.
+    pub fn pedestrians(&self) -> &[PedestrianId] {
+        &self.pedestrians
+    }
+
+    /// Number of pedestrians N (at least one).
+    pub fn len(&self) -> usize {
+        self.pedestrians.len()
+    }
+
+    /// Always false: a window holds at least one pedestrian.
+    pub fn is_empty(&self) -> bool {
+        self.pedestrians.is_empty()
+    }
+
+    /// Number of positions of each track, T: 20, or 8 without a future.
+    pub fn steps(&self) -> usize {
+        self.frames.len()
+    }
+
+    /// The i-th pedestrian's positions (m), 20, or 8 without a future.
+    ///
+    /// # Panics
+    /// If `i >= len()`.
+    pub fn track(&self, i: usize) -> &[Position] {
+        &self.positions[i * self.steps()..(i + 1) * self.steps()]
+    }
+
+    /// The i-th pedestrian's 8 observed positions (m).
+    ///
+    /// # Panics
+    /// If `i >= len()`.
+    pub fn observed(&self, i: usize) -> &[Position] {
+        &self.track(i)[..OBSERVED]
+    }
+
+    /// The i-th pedestrian's 12 positions to forecast (m); empty without a future.
+    ///
+    /// # Panics
+    /// If `i >= len()`.
+    pub fn future(&self, i: usize) -> &[Position] {
+        &self.track(i)[OBSERVED..]
+    }
+
+    /// Whether the 12 positions to forecast are known.
+    pub fn has_future(&self) -> bool {
+        self.steps() == WINDOW
+    }
+
+    /// Where the i-th pedestrian ends (m), if the future is known.
+    ///
+    /// # Panics
+    /// If `i >= len()`.
+    pub fn end(&self, i: usize) -> Option<Position> {
+        self.future(i).last().copied()
+    }
+
+    /// Where everybody is at one step, counted from 0 (m).
+    ///
+    /// # Panics
+    /// If `step >= steps()`.
+    #[must_use]
+    pub fn positions_at(&self, step: usize) -> Vec<Position> {
+        (0..self.len()).map(|i| self.track(i)[step]).collect()
+    }
+
+    /// Who is near whom at one step, counted from 0: see [`NeighbourMask::within_box`].
+    ///
+    /// # Panics
+    /// If `step >= steps()`.
+    #[must_use]
+    pub fn neighbours(&self, step: usize, half_width_m: f64) -> NeighbourMask {
+        NeighbourMask::within_box(&self.positions_at(step), half_width_m)
+    }
+
+    /// The observation alone, as it is known when a forecast is asked for.
+    #[must_use]
+    pub fn without_future(&self) -> Window {
+        let positions = (0..self.len())
+            .flat_map(|i| self.observed(i))
+            .copied()
+            .collect();
+        Window {
+            recording: Arc::clone(&self.recording),
+            frame_step: self.frame_step,
+            frames: self.frames[..OBSERVED].to_vec(),
+            pedestrians: self.pedestrians.clone(),
+            positions,
+        }
+    }
+
+    /// The window with every position replaced by `f(i, step, position)`: pedestrian index, step from
+    /// 0, position (m).
+    ///
+    /// What `f` returns is not checked; keep it finite.
+    #[must_use]
+    pub fn map_positions(&self, mut f: impl FnMut(usize, usize, Position) -> Position) -> Window {
+        let mut mapped = self.clone();
+        let steps = self.steps();
+        for (index, position) in mapped.positions.iter_mut().enumerate() {
+            *position = f(index / steps, index % steps, *position);
+        }
+        mapped
+    }
+
+    /// The window turned about the world's origin.
+    #[must_use]
+    pub fn rotated(&self, rotation: Rotation) -> Window {
+        self.map_positions(|_, _, position| rotation.apply(position))
+    }
+}

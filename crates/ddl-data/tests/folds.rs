@@ -1,0 +1,125 @@
+//! Folds and the chronological split, on simulated and on real recordings.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod recordings;
+
+use std::collections::BTreeSet;
+
+use ddl_data::{Convention, Dataset, Recording, Window, WindowRule};
+
+/// What tells a window from all others of a data set.
+fn key(window: &Window) -> (String, i64) {
+    (window.recording().to_owned(), window.start_frame())
+}
+
+/// No moment is both in training and in validation, and neither has a window of its own making.
+fn check_splits(dataset: &Dataset) {
+    for fold in dataset.folds() {
+        for rule in [
+            WindowRule::Complete,
+            WindowRule::SocialGan { min_pedestrians: 1 },
+        ] {
+            let all: BTreeSet<_> = fold.training_windows(rule).iter().map(key).collect();
+            for fraction in [0.2, 0.5] {
+                let split = fold.training_split(rule, fraction);
+                assert!(!split.training.is_empty() && !split.validation.is_empty());
+                for recording in fold.training_recordings() {
+                    let of = |w: &&Window| w.recording() == recording.name();
+                    let frames = split.training.iter().filter(of).flat_map(Window::frames);
+                    let last = frames.max();
+                    let frames = split.validation.iter().filter(of).flat_map(Window::frames);
+                    let first = frames.min();
+                    if let (Some(last), Some(first)) = (last, first) {
+                        assert!(last < first, "{}: {last} and {first}", recording.name());
+                    }
+                }
+                let parts = split.training.iter().chain(&split.validation);
+                assert!(parts.clone().all(|w| all.contains(&key(w))));
+                let count = split.training.len() + split.validation.len();
+                assert_eq!(parts.map(key).collect::<BTreeSet<_>>().len(), count);
+            }
+            assert!(fold.training_split(rule, 0.0).validation.is_empty());
+            assert_eq!(
+                fold.training_split(rule, f64::NAN).training,
+                fold.training_windows(rule)
+            );
+            assert!(fold.training_split(rule, 7.0).training.is_empty());
+        }
+    }
+}
+
+#[test]
+fn training_and_validation_share_no_moment_of_a_simulated_crowd() {
+    check_splits(&Dataset::simulated(2));
+}
+
+#[test]
+fn odd_fractions_leave_everything_on_one_side() {
+    let dataset = Dataset::simulated(2);
+    let fold = dataset.fold("plaza").unwrap();
+    let rule = WindowRule::Complete;
+    for nothing in [0.0, -1.0, f64::NAN] {
+        let split = fold.training_split(rule, nothing);
+        assert!(split.validation.is_empty());
+        assert_eq!(split.training, fold.training_windows(rule));
+    }
+    let split = fold.training_split(rule, 7.0);
+    assert!(split.training.is_empty());
+    assert_eq!(split.validation, fold.training_windows(rule));
+}
+
+/// The split of the Social-GAN convention, redone as its authors do it: on two recordings.
+#[test]
+fn a_fifth_is_the_social_gan_split() {
+    let Some(dataset) = recordings::load(Convention::SocialGan) else {
+        return;
+    };
+    let rule = WindowRule::SocialGan { min_pedestrians: 2 };
+    let fold = dataset.fold("zara1").unwrap();
+    let split = fold.training_split(rule, 0.2);
+    let (mut training, mut validation) = (Vec::new(), Vec::new());
+    for recording in fold.training_recordings() {
+        let cut = recording.frames()[recording.frames().len() * 4 / 5];
+        let rows = recording.observations().iter().copied();
+        let (before, after): (Vec<_>, Vec<_>) = rows.partition(|o| o.frame < cut);
+        for (rows, windows) in [(before, &mut training), (after, &mut validation)] {
+            let part = Recording::new(recording.name(), recording.frame_step(), rows).unwrap();
+            windows.extend(part.windows(rule));
+        }
+    }
+    assert_eq!(split.training, training);
+    assert_eq!(split.validation, validation);
+}
+
+#[test]
+fn training_and_validation_share_no_moment_of_a_real_recording() {
+    for convention in [Convention::Star, Convention::SocialGan] {
+        if let Some(dataset) = recordings::load(convention) {
+            check_splits(&dataset);
+        }
+    }
+}
+
+#[test]
+fn folds_never_train_on_what_they_test_on() {
+    let dataset = Dataset::simulated(2);
+    assert_eq!(
+        dataset.fold_names(),
+        ["corridor", "crossing", "plaza", "bottleneck", "doorway"]
+    );
+    for fold in dataset.folds() {
+        let names = |rs: &[&Recording]| rs.iter().map(|r| r.name().to_owned()).collect::<Vec<_>>();
+        let (test, training) = (
+            names(fold.test_recordings()),
+            names(fold.training_recordings()),
+        );
+        assert!(test.iter().all(|name| !training.contains(name)));
+        assert_eq!(test.len() + training.len(), dataset.recordings().len());
+    }
+    let error = dataset.fold("eth").unwrap_err().to_string();
+    assert!(
+        error.contains("\"eth\"") && error.contains("corridor, crossing"),
+        "{error}"
+    );
+}

@@ -1,0 +1,129 @@
+//! Readers: what is written is read back, and nothing makes them panic.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod recordings;
+
+use std::fmt::Write as _;
+
+use ddl_data::{Convention, Format, Observation, PedestrianId, parse_recording};
+use proptest::prelude::*;
+
+/// Some observations, each (frame, pedestrian) once, and a file of them in each format.
+fn observations() -> impl Strategy<Value = Vec<Observation>> {
+    let keys = prop::collection::btree_set((-50_i64..50, -9_i64..9), 1..40);
+    (keys, prop::collection::vec((-1e4..1e4, -1e4..1e4), 40)).prop_map(|(keys, places)| {
+        let observation = |((frame, id), (x, y))| Observation::new(frame, PedestrianId(id), [x, y]);
+        keys.into_iter().zip(places).map(observation).collect()
+    })
+}
+
+fn written(rows: &[Observation], format: Format) -> String {
+    let column = |value: &dyn Fn(&Observation) -> String| {
+        rows.iter().map(value).collect::<Vec<_>>().join(",")
+    };
+    let mut text = String::new();
+    match format {
+        Format::StarCsv => {
+            let lines = [
+                column(&|o| o.frame.to_string()),
+                column(&|o| o.pedestrian.to_string()),
+                column(&|o| o.position[1].to_string()),
+                column(&|o| o.position[0].to_string()),
+            ];
+            text = lines.join("\n");
+        }
+        Format::SocialGan => {
+            for o in rows {
+                let [x, y] = o.position;
+                writeln!(text, "{}\t{}.0\t{x}\t{y}", o.frame, o.pedestrian).unwrap();
+            }
+        }
+        _ => {
+            text.push_str("pedestrian,frame,y,x\n");
+            for o in rows {
+                let [x, y] = o.position;
+                writeln!(text, "{},{},{y},{x}", o.pedestrian, o.frame).unwrap();
+            }
+        }
+    }
+    text
+}
+
+proptest! {
+    #[test]
+    fn what_is_written_is_read_back_in_any_order_of_rows(
+        (sorted, shuffled) in observations()
+            .prop_flat_map(|rows| (Just(rows.clone()), Just(rows).prop_shuffle())),
+    ) {
+        for format in Format::ALL {
+            let text = written(&shuffled, format);
+            let recording = parse_recording(text.as_bytes(), "f", format).unwrap();
+            prop_assert_eq!(recording.observations(), &sorted[..]);
+        }
+    }
+
+    #[test]
+    fn no_bytes_make_a_reader_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        for format in Format::ALL {
+            let _ = parse_recording(&bytes, "f", format);
+        }
+    }
+
+    #[test]
+    fn no_number_like_text_makes_a_reader_panic(text in "[-+0-9.,eEinfaNx \t\r\n\"]{0,200}") {
+        for format in Format::ALL {
+            if let Ok(recording) = parse_recording(text.as_bytes(), "f", format) {
+                let _ = recording.windows(ddl_data::WindowRule::Published);
+            }
+        }
+    }
+
+    #[test]
+    fn no_change_of_a_valid_file_makes_a_reader_panic(
+        rows in observations(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..3), 1..5),
+    ) {
+        for format in Format::ALL {
+            let mut bytes = written(&rows, format).into_bytes();
+            for (place, byte, kind) in &changes {
+                let index = place.index(bytes.len());
+                match kind {
+                    0 => bytes[index] = *byte,
+                    1 => bytes.insert(index, *byte),
+                    _ => bytes.truncate(index.max(1)),
+                }
+            }
+            if let Ok(recording) = parse_recording(&bytes, "f", format) {
+                prop_assert!(recording.observations().len() <= rows.len() + 1 + changes.len());
+                prop_assert!(recording.observations().iter().flat_map(|o| o.position).all(f64::is_finite));
+            }
+        }
+    }
+}
+
+#[test]
+fn one_spoiled_field_of_a_real_file_is_found() {
+    let Some(dataset) = recordings::load(Convention::SocialGan) else {
+        return;
+    };
+    let rows = dataset.recording("zara01").unwrap().observations().to_vec();
+    let text = written(&rows, Format::SocialGan);
+    let complaint = |lines: &[String]| {
+        let text = lines.join("\n");
+        parse_recording(text.as_bytes(), "f", Format::SocialGan)
+            .unwrap_err()
+            .to_string()
+    };
+    let mut lines: Vec<_> = text.lines().map(str::to_owned).collect();
+    lines[3000] = lines[3000].replacen('\t', "\tNaN", 1);
+    let expected = "f, line 3001, field 2: pedestrian must be a whole number";
+    assert!(complaint(&lines).starts_with(expected));
+    lines[3000] = lines[17].clone();
+    let expected = "f, line 3001: pedestrian";
+    let complaint = complaint(&lines);
+    assert!(
+        complaint.starts_with(expected) && complaint.contains("(line 18)"),
+        "{complaint}"
+    );
+}

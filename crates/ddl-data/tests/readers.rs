@@ -1,0 +1,203 @@
+//! Readers: every mistake in a file is named with its place.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use ddl_data::{Convention, DataError, Format, Observation, PedestrianId, parse_recording};
+
+fn complaint(text: impl AsRef<[u8]>, format: Format) -> String {
+    parse_recording(text.as_ref(), "f", format)
+        .unwrap_err()
+        .to_string()
+}
+
+#[test]
+fn good_files_are_read() {
+    let expected = [
+        Observation::new(0, PedestrianId(1), [1.5, -2.0]),
+        Observation::new(10, PedestrianId(1), [1.75, -2.0]),
+        Observation::new(10, PedestrianId(3), [0.0, 4e-2]),
+    ];
+    for (format, text) in [
+        (
+            Format::StarCsv,
+            "10,0,10\n3,1,1\n4e-2,-2.0,-2\n0,1.5,1.75\n",
+        ),
+        (
+            Format::StarCsv,
+            "10,0,10\r\n3,1,1\r\n4e-2,-2.0,-2\r\n0,1.5,1.75",
+        ),
+        (
+            Format::SocialGan,
+            "10.0\t3.0\t0\t0.04\n0\t1.0\t1.5\t-2\n10\t1\t1.75\t-2\n\n",
+        ),
+        (
+            Format::SocialGan,
+            "10 3 0 0.04\n  0 1 1.5 -2\n10 1 1.75   -2",
+        ),
+        (
+            Format::Table,
+            "frame,pedestrian,x,y\n0,1,1.5,-2\n10,1,1.75,-2\n10,3,0,0.04\n",
+        ),
+        (
+            Format::Table,
+            "\u{feff}y, x, pedestrian, frame\n0.04,0,3,10\n-2,1.5,1,0\n-2,1.75,1,10\n",
+        ),
+    ] {
+        let recording = parse_recording(text.as_bytes(), "f", format).unwrap();
+        assert_eq!(recording.observations(), expected, "{format}: {text:?}");
+        assert_eq!((recording.name(), recording.frame_step()), ("f", 10));
+    }
+}
+
+fn check(format: Format, cases: &[(&str, &str)]) {
+    for (text, expected) in cases {
+        let complaint = complaint(text, format);
+        assert!(
+            complaint.starts_with(expected),
+            "{format} {text:?}: {complaint}"
+        );
+    }
+}
+
+#[test]
+fn every_mistake_of_a_star_csv_file_is_named_with_its_place() {
+    check(
+        Format::StarCsv,
+        &[
+            ("", "f, line 1: the file holds no observation"),
+            ("0,1\n1,1\n0,0", "f, line 4: line missing"),
+            ("0\n1\n0\n0\n0", "f, line 5: unexpected line"),
+            (
+                "0,1\n1,1\n0,0\n0,0,0",
+                "f, line 4: 3 fields, but line 1 has 2",
+            ),
+            (
+                "0,1\n1,1\n0,0\n0,",
+                "f, line 4, field 2: x must be a finite number",
+            ),
+            (
+                "0,1\n1,1\nNaN,0\n0,0",
+                "f, line 3, field 1: y must be a finite number",
+            ),
+            (
+                "0,1\n1,1\n0,inf\n0,0",
+                "f, line 3, field 2: y must be a finite number",
+            ),
+            (
+                "0,1.5\n1,1\n0,0\n0,0",
+                "f, line 1, field 2: frame must be a whole number",
+            ),
+            (
+                "0,1\n1,x\n0,0\n0,0",
+                "f, line 2, field 2: pedestrian must be a whole number",
+            ),
+            (
+                "0,1,0\n7,7,7\n0,0,0\n0,0,0",
+                "f, line 2, field 3: pedestrian 7 is in frame 0",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn every_mistake_of_a_social_gan_file_is_named_with_its_place() {
+    check(
+        Format::SocialGan,
+        &[
+            (" \n", "f, line 1: the file holds no observation"),
+            (
+                "0\t1\t0\t0\n0\t2\t0",
+                "f, line 2: 3 fields where 4 are expected",
+            ),
+            ("0\t1\t0\t0\t9", "f, line 1: 5 fields where 4 are expected"),
+            (
+                "0 1 0 0\n\n1 1 0 0",
+                "f, line 2: 0 fields where 4 are expected",
+            ),
+            (
+                "0 1 0 0\n1 1 nan 0",
+                "f, line 2, field 3: x must be a finite number",
+            ),
+            (
+                "0 1 0 1e999",
+                "f, line 1, field 4: y must be a finite number",
+            ),
+            (
+                "0.5 1 0 0",
+                "f, line 1, field 1: frame must be a whole number",
+            ),
+            (
+                "1e300 1 0 0",
+                "f, line 1, field 1: frame must be a whole number",
+            ),
+            (
+                "0 1 0 0\n0 2 0 0\n0 1 5 5",
+                "f, line 3: pedestrian 1 is in frame 0 already (line 1)",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn every_mistake_of_a_table_file_is_named_with_its_place() {
+    check(
+        Format::Table,
+        &[
+            ("", "f, line 1: the file holds no observation"),
+            (
+                "frame,pedestrian,x,y\n",
+                "f, line 1: the file holds no observation",
+            ),
+            (
+                "frame,pedestrian,x\n0,1,2",
+                "f, line 1: the header must name",
+            ),
+            (
+                "frame,pedestrian,x,z\n",
+                "f, line 1, field 4: the header must name",
+            ),
+            (
+                "frame,pedestrian,x,x\n",
+                "f, line 1, field 4: the header must name",
+            ),
+            ("0,1,2.0,3.0\n", "f, line 1, field 1: the header must name"),
+            (
+                "frame,pedestrian,x,y\n0,1,2\n",
+                "f, line 2: 3 fields where 4 are expected",
+            ),
+            (
+                "frame,pedestrian,x,y\n0,1,2,3,4\n",
+                "f, line 2: 5 fields where 4 are expected",
+            ),
+            (
+                "x,y,frame,pedestrian\n0,0,1,2\n0,-,2,2\n",
+                "f, line 3, field 2: y must be",
+            ),
+            (
+                "frame,pedestrian,x,y\n0,1,2,3\n1,1,2,3\n0,1,2,3\n",
+                "f, line 4: pedestrian 1 is",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn text_that_is_not_utf8_is_refused_at_its_line() {
+    for format in Format::ALL {
+        let complaint = complaint(b"0 1 0 0\n1 1 \xff 0\n", format);
+        assert!(
+            complaint.starts_with("f, line 2: the text is not UTF-8"),
+            "{complaint}"
+        );
+    }
+}
+
+#[test]
+fn a_file_that_cannot_be_read_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let error = ddl_data::Dataset::load(Convention::Star, folder.path()).unwrap_err();
+    assert!(
+        matches!(&error, DataError::Read { path, .. } if path.ends_with("eth.csv")),
+        "{error}"
+    );
+}

@@ -1,0 +1,131 @@
+//! The attractor: the distance to the goal, and the direction away from it.
+
+use nalgebra::SVector;
+
+use crate::{
+    error::{DynamicsError, ensure_finite},
+    polar::polar,
+    real::Real,
+};
+
+/// The distance to a goal, `Phi(p) = |p - p*|`: the Lyapunov function of every flow in this crate.
+///
+/// `Phi` is zero at the goal, positive elsewhere and grows without bound, so a flow along which it
+/// falls can only settle at the goal.
+///
+/// # Shapes
+/// `D` components, in metres.
+///
+/// # References
+/// Equation (7) of the paper (the attractor); its gradient appears in equations (8) and (9).
+///
+/// # Examples
+/// ```
+/// use ddl_dynamics::Attractor;
+/// use nalgebra::Vector2;
+///
+/// let attractor = Attractor::new(Vector2::new(1.0, 1.0))?;
+/// assert_eq!(attractor.potential(&Vector2::new(4.0, 5.0)), 5.0);
+/// assert_eq!(attractor.gradient(&Vector2::new(1.0, 3.0)), Vector2::new(0.0, 1.0));
+/// assert_eq!(attractor.gradient(&Vector2::new(1.0, 1.0)), Vector2::zeros());
+/// # Ok::<(), ddl_dynamics::DynamicsError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Attractor<T, const D: usize> {
+    goal: SVector<T, D>,
+}
+
+impl<T: Real, const D: usize> Attractor<T, D> {
+    /// The attractor of `goal` (metres).
+    ///
+    /// # Errors
+    /// [`DynamicsError::NonFinite`] when a component of the goal is NaN or infinite.
+    pub fn new(goal: SVector<T, D>) -> Result<Self, DynamicsError> {
+        ensure_finite("goal", &goal)?;
+        Ok(Self { goal })
+    }
+
+    /// The goal `p*` (metres).
+    pub fn goal(&self) -> &SVector<T, D> {
+        &self.goal
+    }
+
+    /// The offset from the goal, `e = p - p*` (metres).
+    pub fn offset(&self, position: &SVector<T, D>) -> SVector<T, D> {
+        position - self.goal
+    }
+
+    /// The distance to the goal, `Phi(p) = |p - p*|` (metres).
+    ///
+    /// # Numerics
+    /// Zero only when `position` equals the goal component by component: neither underflow nor
+    /// overflow of a square can fake it. A distance above the largest number of `T` is infinite.
+    pub fn potential(&self, position: &SVector<T, D>) -> T {
+        self.potential_and_gradient(position).0
+    }
+
+    /// The gradient of the potential: the unit vector `u = e / |e|` that points away from the goal,
+    /// and 0 at the goal (no unit).
+    ///
+    /// # Numerics
+    /// The norm of a gradient is not differentiable at the goal; 0 is the one choice among its
+    /// subgradients that keeps a walker there at rest. The published program divides by
+    /// `max(|e|, 1e-12)` instead, which shortens the gradient within 1e-12 m of the goal; here `u`
+    /// has length 1 for every offset but zero, subnormal and huge ones included.
+    pub fn gradient(&self, position: &SVector<T, D>) -> SVector<T, D> {
+        self.potential_and_gradient(position).1
+    }
+
+    /// [`potential`](Self::potential) (metres) and [`gradient`](Self::gradient) at the cost of one.
+    pub fn potential_and_gradient(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
+        let (distance, direction) = polar(&self.offset(position));
+        if distance.is_finite() {
+            return (distance, direction);
+        }
+        // The offset of two finite points can overflow; half of it cannot.
+        let half = T::rounded(0.5);
+        let (half_distance, direction) = polar(&(position * half - self.goal * half));
+        (half_distance + half_distance, direction)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Vector1, Vector2, Vector3};
+
+    use super::*;
+
+    #[test]
+    fn hand_computed_distance_and_direction() {
+        let attractor = Attractor::new(Vector3::new(1.0_f64, -2.0, 0.5)).unwrap();
+        // e = (2, 3, 6), |e| = 7
+        let (distance, direction) = attractor.potential_and_gradient(&Vector3::new(3.0, 1.0, 6.5));
+        assert!((distance - 7.0).abs() < 1e-15);
+        assert!((direction - Vector3::new(2.0, 3.0, 6.0) / 7.0).norm() < 1e-15);
+    }
+
+    #[test]
+    fn the_gradient_has_unit_length_however_near_or_far() {
+        let attractor = Attractor::new(Vector2::new(0.0_f32, 0.0)).unwrap();
+        for size in [1e-45_f32, 1e-40, 1e-30, 1e-12, 1.0, 1e30, f32::MAX] {
+            let (distance, direction) = attractor.potential_and_gradient(&Vector2::new(0.0, -size));
+            assert_eq!((distance, direction), (size, Vector2::new(0.0, -1.0)));
+        }
+    }
+
+    #[test]
+    fn an_offset_that_overflows_still_has_a_direction() {
+        let attractor = Attractor::new(Vector1::new(-f64::MAX)).unwrap();
+        let (distance, direction) = attractor.potential_and_gradient(&Vector1::new(f64::MAX));
+        assert_eq!((distance, direction), (f64::INFINITY, Vector1::new(1.0)));
+    }
+
+    #[test]
+    fn a_goal_that_is_not_finite_is_refused() {
+        let error = Attractor::new(Vector2::new(0.0, f64::NAN)).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "component 1 of the goal is NaN: it must be a finite number"
+        );
+    }
+}

@@ -1,0 +1,112 @@
+//! What can be wrong with the input of this crate.
+
+use thiserror::Error;
+
+use crate::real::Real;
+
+/// An input that has no meaning for a stable flow; nothing in this crate panics on it.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum DynamicsError {
+    /// A component of a vector is NaN or infinite.
+    #[error("component {component} of the {quantity} is {value}: it must be a finite number")]
+    NonFinite {
+        /// Which vector: goal, position, velocity ...
+        quantity: &'static str,
+        /// Index of the component, from 0.
+        component: usize,
+        /// The offending value.
+        value: f64,
+    },
+
+    /// An entry of a Cholesky factor is NaN or infinite.
+    #[error(
+        "entry ({row}, {column}) of the Cholesky factor is {value}: it must be a finite number"
+    )]
+    NonFiniteFactor {
+        /// Row, from 0.
+        row: usize,
+        /// Column, from 0.
+        column: usize,
+        /// The offending value.
+        value: f64,
+    },
+
+    /// A Cholesky factor has a non-zero entry above its diagonal.
+    #[error(
+        "entry ({row}, {column}) of the Cholesky factor is {value}: entries above the diagonal must be 0"
+    )]
+    NotLowerTriangular {
+        /// Row, from 0.
+        row: usize,
+        /// Column, from 0.
+        column: usize,
+        /// The offending value.
+        value: f64,
+    },
+
+    /// The squares of a Cholesky factor do not fit into the number type.
+    #[error("the Cholesky factor is too large: L L^T overflows; scale the factor down or use f64")]
+    FactorTooLarge,
+
+    /// `sigma` is not a positive, finite number.
+    #[error("sigma is {0}: it must be positive and finite, or P is not positive definite")]
+    InvalidSigma(f64),
+
+    /// The time step is not a positive, finite number of seconds.
+    #[error("the time step is {0} s: it must be positive and finite")]
+    InvalidTimeStep(f64),
+
+    /// The distance to the goal does not fit into the number type.
+    #[error("the distance from the position to the goal overflows; use smaller units or f64")]
+    DistanceTooLarge,
+
+    /// A schedule of metrics holds none.
+    #[error("the metric schedule is empty: it needs the metric of at least one step")]
+    EmptySchedule,
+
+    /// Positions and metrics of a certificate do not belong together.
+    #[error(
+        "{positions} positions and {metrics} metrics: a rollout of n steps has n + 1 positions and n metrics"
+    )]
+    LengthMismatch {
+        /// Number of positions given.
+        positions: usize,
+        /// Number of metrics given.
+        metrics: usize,
+    },
+
+    /// A step of a rollout failed.
+    #[error("step {step} of the rollout failed: {cause}")]
+    Step {
+        /// Index of the step, from 0: the one that leads from position `step` to `step + 1`.
+        step: usize,
+        /// What went wrong in it.
+        #[source]
+        cause: Box<DynamicsError>,
+    },
+}
+
+/// `vector` itself if every component is finite.
+pub(crate) fn ensure_finite<'a, T: Real, const D: usize>(
+    quantity: &'static str,
+    vector: &'a nalgebra::SVector<T, D>,
+) -> Result<&'a nalgebra::SVector<T, D>, DynamicsError> {
+    match vector.iter().position(|x| !x.is_finite()) {
+        None => Ok(vector),
+        Some(component) => Err(DynamicsError::NonFinite {
+            quantity,
+            component,
+            value: vector[component].as_f64(),
+        }),
+    }
+}
+
+/// `dt` itself if it is a time step: positive and finite.
+pub(crate) fn ensure_time_step<T: Real>(dt: T) -> Result<T, DynamicsError> {
+    if dt > T::zero() && dt.is_finite() {
+        Ok(dt)
+    } else {
+        Err(DynamicsError::InvalidTimeStep(dt.as_f64()))
+    }
+}

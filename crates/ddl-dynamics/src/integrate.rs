@@ -1,0 +1,26 @@
+//! Integrators: from a velocity field to a sequence of positions.
+
+mod euler;
+mod stable_euler;
+
+use nalgebra::SVector;
+
+use crate::{error::DynamicsError, flow::Flow, real::Real, state::State};
+
+pub use euler::Euler;
+pub use stable_euler::{StableEuler, StableStep, StepLimit};
+
+/// A rule that carries a walker over one time step.
+pub trait Integrator<T: Real, const D: usize> {
+    /// The position `dt` seconds after `state` (metres).
+    ///
+    /// # Errors
+    /// Those of the flow; [`DynamicsError::InvalidTimeStep`] unless `dt` is positive and finite;
+    /// [`DynamicsError::NonFinite`] when the position, the velocity or the result is not finite.
+    fn step<F: Flow<T, D> + ?Sized>(
+        &self,
+        flow: &F,
+        state: &State<'_, T, D>,
+        dt: T,
+    ) -> Result<SVector<T, D>, DynamicsError>;
+}

@@ -1,0 +1,48 @@
+//! The published scheme: plain Euler steps.
+
+use nalgebra::SVector;
+
+use super::Integrator;
+use crate::{
+    error::{DynamicsError, ensure_finite, ensure_time_step},
+    flow::Flow,
+    real::Real,
+    state::State,
+};
+
+/// The plain Euler step `p' = p + dt v`: the published scheme, kept for parity.
+///
+/// # What is guaranteed
+/// Not much: with `e = p - p*`, `u = e / |e|` and `v = -P u`,
+///
+/// ```text
+/// |e'|^2 = |e|^2 - 2 dt |e| u^T P u + dt^2 |P u|^2
+/// ```
+///
+/// so the distance to the goal falls in a step exactly when `dt < 2 |e| u^T P u / |P u|^2`. The
+/// speed does not fade near the goal, so this fails for every fixed `dt` once the walker is close:
+/// the walker jumps over the goal and goes on circling it. In any case
+/// `|e'|^2 <= |e|^2 + (dt |P u|)^2`. Use [`StableEuler`](super::StableEuler) to keep the guarantee;
+/// a [`LyapunovCertificate`](crate::LyapunovCertificate) names the step that breaks it.
+///
+/// # References
+/// Equation (2) of the paper, with a step of 0.4 s in the published program.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub struct Euler;
+
+impl<T: Real, const D: usize> Integrator<T, D> for Euler {
+    fn step<F: Flow<T, D> + ?Sized>(
+        &self,
+        flow: &F,
+        state: &State<'_, T, D>,
+        dt: T,
+    ) -> Result<SVector<T, D>, DynamicsError> {
+        ensure_time_step(dt)?;
+        ensure_finite("position", &state.position)?;
+        let velocity = flow.velocity(state)?;
+        ensure_finite("velocity", &velocity)?;
+        let next = state.position + velocity * dt;
+        ensure_finite("next position", &next)?;
+        Ok(next)
+    }
+}

@@ -1,0 +1,26 @@
+#![doc = include_str!("../README.md")]
+
+mod attractor;
+mod error;
+mod flow;
+mod integrate;
+mod lyapunov;
+mod metric;
+mod metric_source;
+mod polar;
+mod real;
+mod rollout;
+mod spectrum;
+mod state;
+
+pub use attractor::Attractor;
+pub use error::DynamicsError;
+pub use flow::{Flow, GradientFlow, NaturalGradientFlow};
+pub use integrate::{Euler, Integrator, StableEuler, StableStep, StepLimit};
+pub use lyapunov::{CertifiedStep, LyapunovCertificate, Violation};
+pub use metric::{CholeskyMetric, PUBLISHED_SIGMA};
+pub use metric_source::{MetricSchedule, MetricSource};
+pub use real::Real;
+pub use rollout::{rollout, rollout_into};
+pub use spectrum::EigenvalueRange;
+pub use state::State;

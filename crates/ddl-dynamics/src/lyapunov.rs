@@ -1,0 +1,266 @@
+//! Lyapunov certificates: the evidence that a rollout kept the guarantee.
+
+mod violation;
+
+use nalgebra::SVector;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    attractor::Attractor,
+    error::{DynamicsError, ensure_finite, ensure_time_step},
+    metric::CholeskyMetric,
+    polar::polar,
+    real::Real,
+};
+
+pub use violation::Violation;
+
+/// The evidence that a rollout went to its goal: for every step what the theory speaks about.
+///
+/// It is computed from the positions themselves, whatever integrator made them, so it also judges
+/// rollouts of other programs. [`holds`](Self::holds) gives the verdict. It does not check that the
+/// positions follow from the metrics; a limited step does not, by design.
+///
+/// # Examples
+/// ```
+/// use ddl_dynamics::{Attractor, CholeskyMetric, Euler, LyapunovCertificate, NaturalGradientFlow,
+///     Violation, rollout};
+/// use nalgebra::Vector2;
+///
+/// let attractor = Attractor::new(Vector2::new(1.0, 0.0))?;
+/// let metric = CholeskyMetric::planar(1.0, 0.0, 1.0, 0.25)?;
+/// let flow = NaturalGradientFlow::new(attractor, metric);
+/// // 1.25 m/s: the second step, from 0.5 m before the goal to 0.75 m behind it, breaks the guarantee.
+/// let path = rollout(&flow, &Euler, Vector2::new(-0.75, 0.0), 1.0, 2)?;
+/// let certificate = LyapunovCertificate::new(&path, &[metric; 2], &attractor, 1.0)?;
+/// assert_eq!(
+///     certificate.holds(),
+///     Err(Violation::NotDecreasing { step: 1, before: 0.5, after: 0.75 }),
+/// );
+/// # Ok::<(), ddl_dynamics::DynamicsError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LyapunovCertificate<T> {
+    goal: Vec<T>,
+    time_step: T,
+    steps: Vec<CertifiedStep<T>>,
+    final_potential: T,
+}
+
+/// The evidence of one step, from position `k` to position `k + 1`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct CertifiedStep<T> {
+    /// `Phi`: the distance to the goal at the start of the step (metres).
+    pub potential: T,
+    /// `d Phi / dt = -u^T P u` at the start of the step (m/s); 0 at the goal.
+    pub rate: T,
+    /// The smallest eigenvalue of the step's metric (m/s).
+    pub min_eigenvalue: T,
+    /// `1 - dt / dt_max`, with `dt_max = 2 Phi u^T P u / |P u|^2` the bound below which a plain
+    /// Euler step lowers `Phi` (no unit): positive when `dt` is below its bound, 1 when infinitely
+    /// far below. `None` at the goal, where every step is too long.
+    pub step_margin: Option<T>,
+    /// Angle between the move and the direction to the goal (radians, 0 to pi); 0 without a move.
+    pub angle: T,
+}
+
+impl<T: Real> LyapunovCertificate<T> {
+    /// The certificate of a rollout with steps of `dt` seconds.
+    ///
+    /// # Shapes
+    /// `n + 1` positions (metres) and `n` metrics: `metrics[k]` is the one at `positions[k]`.
+    ///
+    /// # Errors
+    /// [`DynamicsError::LengthMismatch`], [`DynamicsError::InvalidTimeStep`], and, inside
+    /// [`DynamicsError::Step`] with the index of the position, [`DynamicsError::NonFinite`] or
+    /// [`DynamicsError::DistanceTooLarge`]. A rollout that breaks the guarantee is no error.
+    pub fn new<const D: usize>(
+        positions: &[SVector<T, D>],
+        metrics: &[CholeskyMetric<T, D>],
+        attractor: &Attractor<T, D>,
+        dt: T,
+    ) -> Result<Self, DynamicsError> {
+        let mismatch = DynamicsError::LengthMismatch {
+            positions: positions.len(),
+            metrics: metrics.len(),
+        };
+        let Some(last) = positions
+            .last()
+            .filter(|_| positions.len() == metrics.len() + 1)
+        else {
+            return Err(mismatch);
+        };
+        ensure_time_step(dt)?;
+        for (step, position) in positions.iter().enumerate() {
+            ensure_measurable(attractor, position).map_err(|cause| DynamicsError::Step {
+                step,
+                cause: Box::new(cause),
+            })?;
+        }
+        let steps = positions
+            .windows(2)
+            .zip(metrics)
+            .map(|(pair, metric)| CertifiedStep::new(&pair[0], &pair[1], metric, attractor, dt))
+            .collect();
+        Ok(Self {
+            goal: attractor.goal().iter().copied().collect(),
+            time_step: dt,
+            steps,
+            final_potential: attractor.potential(last),
+        })
+    }
+
+    /// Whether the guarantee was kept: `P` positive definite and `d Phi / dt < 0` at every step
+    /// away from the goal, `Phi` strictly smaller after every such step, and rest at the goal.
+    ///
+    /// # Errors
+    /// The [`Violation`] of the first step that breaks it.
+    pub fn holds(&self) -> Result<(), Violation> {
+        let after = self.potentials().skip(1);
+        self.steps
+            .iter()
+            .zip(after)
+            .enumerate()
+            .try_for_each(|(step, (evidence, after))| evidence.check(step, after))
+    }
+
+    /// The goal (metres), `D` components.
+    pub fn goal(&self) -> &[T] {
+        &self.goal
+    }
+
+    /// The time step (seconds).
+    pub fn time_step(&self) -> T {
+        self.time_step
+    }
+
+    /// The evidence of each step, in order.
+    pub fn steps(&self) -> &[CertifiedStep<T>] {
+        &self.steps
+    }
+
+    /// The distances to the goal at all positions, one more than there are steps (metres).
+    pub fn potentials(&self) -> impl Iterator<Item = T> + '_ {
+        self.steps
+            .iter()
+            .map(|step| step.potential)
+            .chain([self.final_potential])
+    }
+
+    /// The distance to the goal at the end (metres).
+    pub fn final_potential(&self) -> T {
+        self.final_potential
+    }
+
+    /// The smallest eigenvalue of all metrics (m/s); `None` without a step.
+    pub fn min_eigenvalue(&self) -> Option<T> {
+        self.steps
+            .iter()
+            .map(|step| step.min_eigenvalue)
+            .reduce(T::min)
+    }
+
+    /// The smallest of the step margins (no unit); `None` when no step has one.
+    pub fn min_step_margin(&self) -> Option<T> {
+        self.steps
+            .iter()
+            .filter_map(|step| step.step_margin)
+            .reduce(T::min)
+    }
+
+    /// The largest angle between a move and the direction to the goal (radians); 0 without a step.
+    pub fn largest_angle(&self) -> T {
+        self.steps
+            .iter()
+            .map(|step| step.angle)
+            .fold(T::zero(), T::max)
+    }
+}
+
+fn ensure_measurable<T: Real, const D: usize>(
+    attractor: &Attractor<T, D>,
+    position: &SVector<T, D>,
+) -> Result<(), DynamicsError> {
+    ensure_finite("position", position)?;
+    if attractor.potential(position).is_finite() {
+        Ok(())
+    } else {
+        Err(DynamicsError::DistanceTooLarge)
+    }
+}
+
+impl<T: Real> CertifiedStep<T> {
+    fn new<const D: usize>(
+        from: &SVector<T, D>,
+        to: &SVector<T, D>,
+        metric: &CholeskyMetric<T, D>,
+        attractor: &Attractor<T, D>,
+        dt: T,
+    ) -> Self {
+        let (potential, away) = attractor.potential_and_gradient(from);
+        let descent = metric.quadratic_form(&away);
+        let (speed, _) = polar(&metric.apply(&away));
+        // Divided twice: the square of the speed could leave the range of the numbers.
+        let bound = potential * (descent / speed) / speed * T::rounded(2.0);
+        let step_margin = Some(T::one() - dt / bound).filter(T::is_finite);
+        let (_, heading) = polar(&(to - from));
+        Self {
+            potential,
+            rate: -descent,
+            min_eigenvalue: metric.eigenvalue_range().smallest,
+            step_margin,
+            angle: angle_between(&heading, &-away),
+        }
+    }
+
+    fn check(&self, step: usize, after: T) -> Result<(), Violation> {
+        // Written so that a NaN, which no certificate made here holds, breaks the guarantee too.
+        let positive_definite = self.min_eigenvalue > T::zero();
+        if !positive_definite {
+            let min_eigenvalue = self.min_eigenvalue.as_f64();
+            return Err(Violation::NotPositiveDefinite {
+                step,
+                min_eigenvalue,
+            });
+        }
+        if self.potential.is_zero() {
+            return if after.is_zero() {
+                Ok(())
+            } else {
+                Err(Violation::LeftGoal {
+                    step,
+                    after: after.as_f64(),
+                })
+            };
+        }
+        let descending = self.rate < T::zero();
+        if !descending {
+            return Err(Violation::NotDescending {
+                step,
+                rate: self.rate.as_f64(),
+            });
+        }
+        if after < self.potential {
+            Ok(())
+        } else {
+            let (before, after) = (self.potential.as_f64(), after.as_f64());
+            Err(Violation::NotDecreasing {
+                step,
+                before,
+                after,
+            })
+        }
+    }
+}
+
+/// Angle between two unit vectors (radians); 0 when one of them is the zero vector.
+///
+/// Kahan's form, accurate for small and for straight angles, where the arc cosine is not.
+fn angle_between<T: Real, const D: usize>(a: &SVector<T, D>, b: &SVector<T, D>) -> T {
+    let zero = SVector::<T, D>::zeros();
+    if *a == zero || *b == zero {
+        return T::zero();
+    }
+    (a - b).norm().atan2((a + b).norm()) * T::rounded(2.0)
+}

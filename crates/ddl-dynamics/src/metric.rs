@@ -1,0 +1,241 @@
+//! The metric `P = L L^T + sigma I`, kept as its Cholesky factor.
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::{
+    error::DynamicsError,
+    real::Real,
+    spectrum::{EigenvalueRange, factor_singular_values},
+};
+
+/// The `sigma` of the paper: 1e-8 m/s.
+pub const PUBLISHED_SIGMA: f64 = 1e-8;
+
+/// A positive-definite matrix `P = L L^T + sigma I`, given by its lower-triangular factor `L`.
+///
+/// `P` scales and turns the unit vector towards the goal into a velocity, so its entries, `sigma`
+/// and its eigenvalues are in m/s; those of `L` in (m/s)^(1/2). The smallest eigenvalue is at least
+/// `sigma`, whatever `L` is: this is what makes every flow shaped by such a matrix stable.
+///
+/// # Numerics
+/// `P` is never formed to be applied: `P u = L (L^T u) + sigma u` and
+/// `u^T P u = |L^T u|^2 + sigma |u|^2`. Formed in `f32`, a diagonal entry `a * a + 1e-8` rounds to
+/// `a * a` as soon as `|a| >= 0.5`, and a matrix meant to be positive definite is singular.
+///
+/// # References
+/// Equations (11) and (12) of the paper.
+///
+/// # Examples
+/// ```
+/// use ddl_dynamics::CholeskyMetric;
+/// use nalgebra::Vector2;
+///
+/// // L = [1 0; 2 3], sigma = 0.5, so P = [1.5 2; 2 13.5].
+/// let metric = CholeskyMetric::planar(1.0, 2.0, 3.0, 0.5)?;
+/// assert_eq!(metric.apply(&Vector2::new(1.0, -1.0)), Vector2::new(-0.5, -11.5));
+/// assert_eq!(metric.quadratic_form(&Vector2::new(1.0, -1.0)), 11.0);
+/// # Ok::<(), ddl_dynamics::DynamicsError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CholeskyMetric<T, const D: usize> {
+    factor: SMatrix<T, D, D>,
+    sigma: T,
+}
+
+impl<T: Real> CholeskyMetric<T, 2> {
+    /// The metric of the plane with `L = [a 0; b c]`: the three numbers the network emits.
+    ///
+    /// # Errors
+    /// Those of [`CholeskyMetric::new`].
+    ///
+    /// # References
+    /// Equation (12) of the paper.
+    pub fn planar(a: T, b: T, c: T, sigma: T) -> Result<Self, DynamicsError> {
+        Self::new(SMatrix::<T, 2, 2>::new(a, T::zero(), b, c), sigma)
+    }
+}
+
+impl<T: Real, const D: usize> CholeskyMetric<T, D> {
+    /// The metric with the lower-triangular factor `factor` ((m/s)^(1/2)) and `sigma` (m/s).
+    ///
+    /// The diagonal of the factor may be zero or negative: `L L^T` is positive semi-definite for
+    /// every `L`, and `sigma` does the rest.
+    ///
+    /// # Errors
+    /// - [`DynamicsError::InvalidSigma`]: `sigma` is zero, negative, NaN or infinite.
+    /// - [`DynamicsError::NonFiniteFactor`], [`DynamicsError::NotLowerTriangular`]: which entry.
+    /// - [`DynamicsError::FactorTooLarge`]: `|L|^2 + sigma` exceeds a quarter of the largest number
+    ///   of `T`. Below that, `P u` and `u^T P u` of a unit vector `u` are finite.
+    pub fn new(factor: SMatrix<T, D, D>, sigma: T) -> Result<Self, DynamicsError> {
+        if !(sigma.is_finite() && sigma > T::zero()) {
+            return Err(DynamicsError::InvalidSigma(sigma.as_f64()));
+        }
+        for row in 0..D {
+            for column in 0..D {
+                let entry = factor[(row, column)];
+                let value = entry.as_f64();
+                if !entry.is_finite() {
+                    return Err(DynamicsError::NonFiniteFactor { row, column, value });
+                }
+                if column > row && !entry.is_zero() {
+                    return Err(DynamicsError::NotLowerTriangular { row, column, value });
+                }
+            }
+        }
+        if factor.norm_squared() + sigma > T::MAX / T::rounded(4.0) {
+            return Err(DynamicsError::FactorTooLarge);
+        }
+        Ok(Self { factor, sigma })
+    }
+
+    /// The lower-triangular factor `L` ((m/s)^(1/2)).
+    pub fn factor(&self) -> &SMatrix<T, D, D> {
+        &self.factor
+    }
+
+    /// The `sigma` of `P = L L^T + sigma I` (m/s).
+    pub fn sigma(&self) -> T {
+        self.sigma
+    }
+
+    /// `P u = L (L^T u) + sigma u`.
+    ///
+    /// # Numerics
+    /// Exact to rounding of the products. Where `L^T u` almost cancels (a factor far from round,
+    /// seen along its weak direction) the rounding of `L^T u`, magnified by `L`, can exceed
+    /// `sigma u`: the computed `P u` then may fail to point away from the goal although
+    /// [`quadratic_form`](Self::quadratic_form) is positive.
+    /// [`StableEuler`](crate::StableEuler) does not rely on it.
+    pub fn apply(&self, u: &SVector<T, D>) -> SVector<T, D> {
+        let projected = self.transposed_times(u);
+        SVector::from_fn(|row, _| {
+            let mut sum = T::zero();
+            for column in 0..=row {
+                sum += self.factor[(row, column)] * projected[column];
+            }
+            sum + self.sigma * u[row]
+        })
+    }
+
+    /// `u^T P u = |L^T u|^2 + sigma |u|^2`, the rate at which the distance to the goal falls (m/s)
+    /// when `u` is the unit vector away from it.
+    ///
+    /// # Numerics
+    /// A sum of squares, so never negative as computed, and at least `sigma |u|^2` rounded: for a
+    /// unit vector it is positive in `f32` as in `f64`.
+    pub fn quadratic_form(&self, u: &SVector<T, D>) -> T {
+        self.transposed_times(u).norm_squared() + self.sigma * u.norm_squared()
+    }
+
+    /// `P` as a matrix (m/s), exactly symmetric; for display and tests, see the type's numerics.
+    pub fn to_matrix(&self) -> SMatrix<T, D, D> {
+        SMatrix::from_fn(|i, j| {
+            let mut sum = if i == j { self.sigma } else { T::zero() };
+            for k in 0..=i.min(j) {
+                sum += self.factor[(i, k)] * self.factor[(j, k)];
+            }
+            sum
+        })
+    }
+
+    /// The smallest and the largest eigenvalue of `P` (m/s).
+    ///
+    /// They are `sigma + s^2` with `s` the singular values of `L`. The flow's speed lies between
+    /// the two, and the distance to the goal falls at least at the smaller one.
+    ///
+    /// # Numerics
+    /// For `D = 1` and `D = 2` in closed form, accurate to a few units in the last place even when
+    /// `L` is nearly singular: with `h± = hypot(|a| ± |c|, b)` the larger singular value is
+    /// `(h+ + h-) / 2`, and the smaller one `|a c|` over it, so nothing cancels. For other `D` by a
+    /// singular value decomposition, with an error of a few `epsilon * |L|` in `s`. The smallest
+    /// eigenvalue is never reported below `sigma`.
+    pub fn eigenvalue_range(&self) -> EigenvalueRange<T> {
+        let (small, large) = factor_singular_values(&self.factor);
+        EigenvalueRange {
+            smallest: self.sigma + small * small,
+            largest: self.sigma + large * large,
+        }
+    }
+
+    /// `L^T u`, reading the lower triangle only.
+    fn transposed_times(&self, u: &SVector<T, D>) -> SVector<T, D> {
+        SVector::from_fn(|column, _| {
+            let mut sum = T::zero();
+            for row in column..D {
+                sum += self.factor[(row, column)] * u[row];
+            }
+            sum
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix2, Vector2};
+
+    use super::*;
+
+    #[test]
+    fn what_cannot_be_a_metric_is_refused() {
+        let sigma = |sigma| CholeskyMetric::planar(1.0, 0.0, 1.0, sigma).unwrap_err();
+        assert_eq!(sigma(0.0), DynamicsError::InvalidSigma(0.0));
+        assert_eq!(sigma(-1.0), DynamicsError::InvalidSigma(-1.0));
+        assert!(matches!(sigma(f64::NAN), DynamicsError::InvalidSigma(_)));
+        assert!(matches!(
+            CholeskyMetric::planar(1.0, f64::INFINITY, 1.0, 1.0).unwrap_err(),
+            DynamicsError::NonFiniteFactor {
+                row: 1,
+                column: 0,
+                ..
+            }
+        ));
+        assert_eq!(
+            CholeskyMetric::new(Matrix2::new(1.0, 0.5, 0.0, 1.0), 1.0).unwrap_err(),
+            DynamicsError::NotLowerTriangular {
+                row: 0,
+                column: 1,
+                value: 0.5
+            }
+        );
+        assert_eq!(
+            CholeskyMetric::planar(1e19_f32, 0.0, 0.0, 1.0).unwrap_err(),
+            DynamicsError::FactorTooLarge
+        );
+    }
+
+    #[test]
+    #[expect(clippy::float_cmp, reason = "exact to the last bit is what is claimed")]
+    fn sigma_is_not_lost_in_single_precision() {
+        assert_eq!(
+            0.5_f32 * 0.5 + PUBLISHED_SIGMA as f32,
+            0.25,
+            "what forming P would do"
+        );
+        // Along u the factor alone gives 0: only sigma is left.
+        let metric = CholeskyMetric::planar(1e3_f32, 0.0, 0.0, PUBLISHED_SIGMA as f32).unwrap();
+        let u = Vector2::new(0.0, 1.0);
+        assert_eq!(metric.quadratic_form(&u), 1e-8);
+        assert_eq!(metric.apply(&u), Vector2::new(0.0, 1e-8));
+        assert_eq!(metric.eigenvalue_range().smallest, 1e-8);
+    }
+
+    #[test]
+    fn eigenvalues_by_hand() {
+        // L = [2 0; 1 2]: L L^T = [4 2; 2 5], trace 9, determinant 16: (9 ± sqrt(17)) / 2.
+        let range = CholeskyMetric::planar(2.0, 1.0, 2.0, 0.25)
+            .unwrap()
+            .eigenvalue_range();
+        assert!((range.smallest - (4.75 - 17.0_f64.sqrt() / 2.0)).abs() < 1e-14);
+        assert!((range.largest - (4.75 + 17.0_f64.sqrt() / 2.0)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn nearly_singular_eigenvalue_keeps_its_digits() {
+        // a = 1, b = 1, c = 1e-6. Trace t = 2 + 1e-12, determinant d = 1e-12; the smaller eigenvalue
+        // is d/t + d^2/t^3 + ... = 5e-13 - 1.25e-25 + O(1e-37), which the textbook formula loses.
+        let range = CholeskyMetric::planar(1.0, 1.0, 1e-6, 1e-300)
+            .unwrap()
+            .eigenvalue_range();
+        assert!((range.smallest / (5e-13_f64 - 1.25e-25) - 1.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,64 @@
+//! Polar form of a vector: its length and its direction, without overflow or underflow.
+
+use nalgebra::SVector;
+
+use crate::real::Real;
+
+/// Length of `vector` and the unit vector along it; `(0, 0)` for the zero vector.
+///
+/// # Numerics
+/// Where the sum of squares can be trusted it is used as it is. A very short vector (whose squares
+/// fall below the normal numbers) or a very long one (whose squares overflow) is divided by its
+/// largest component first, so the direction is accurate down to subnormal components. The length
+/// itself may overflow to infinity when no finite number can hold it; the direction still is exact
+/// to rounding. A component that is not finite gives NaN.
+pub(crate) fn polar<T: Real, const D: usize>(vector: &SVector<T, D>) -> (T, SVector<T, D>) {
+    let square = vector.norm_squared();
+    if square >= T::MIN_POSITIVE / T::EPSILON && square.is_finite() {
+        let length = square.sqrt();
+        return (length, vector / length);
+    }
+    if *vector == SVector::<T, D>::zeros() {
+        return (T::zero(), SVector::zeros());
+    }
+    let largest = vector.amax();
+    // Divided, not multiplied by 1 / largest: the reciprocal of a subnormal number overflows.
+    let scaled = vector / largest;
+    let scaled_length = scaled.norm();
+    (largest * scaled_length, scaled / scaled_length)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector2;
+
+    use super::polar;
+
+    #[test]
+    fn three_four_five_at_every_scale() {
+        for scale in [4.9e-324_f64, 1e-310, 1e-160, 1e-12, 1.0, 1e12, 1e160, 3e307] {
+            let (length, unit) = polar(&Vector2::new(3.0 * scale, -4.0 * scale));
+            assert!(
+                (length / (5.0 * scale) - 1.0).abs() <= 4.0 * f64::EPSILON,
+                "{scale}"
+            );
+            assert!(
+                (unit - Vector2::new(0.6, -0.8)).norm() <= 4.0 * f64::EPSILON,
+                "{scale}"
+            );
+        }
+    }
+
+    #[test]
+    fn zero_has_no_direction_and_nan_stays_visible() {
+        assert_eq!(polar(&Vector2::new(0.0_f32, -0.0)), (0.0, Vector2::zeros()));
+        assert!(polar(&Vector2::new(0.0_f32, f32::NAN)).1.x.is_nan());
+    }
+
+    #[test]
+    fn direction_survives_an_overflowing_length() {
+        let (length, unit) = polar(&Vector2::new(f32::MAX, f32::MAX));
+        assert!(length.is_infinite());
+        assert!((unit.norm() - 1.0).abs() <= 2.0 * f32::EPSILON);
+    }
+}

@@ -1,0 +1,73 @@
+//! The eigenvalues that bound a metric.
+
+use nalgebra::{DMatrix, SMatrix, SVD};
+
+use crate::real::Real;
+
+/// Iterations of the singular value decomposition granted per dimension; a handful is usual.
+const ITERATIONS_PER_DIMENSION: usize = 1000;
+
+/// Smallest and largest eigenvalue of a metric (m/s).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EigenvalueRange<T> {
+    /// The smallest: the distance to the goal falls at least this fast (m/s).
+    pub smallest: T,
+    /// The largest: the flow is at most this fast (m/s).
+    pub largest: T,
+}
+
+impl<T: Real> EigenvalueRange<T> {
+    /// `largest / smallest`, at least 1 (no unit). The velocity deviates from the direction to the
+    /// goal by less than 90 degrees; the larger this number, the closer it can come to it.
+    pub fn condition_number(&self) -> T {
+        self.largest / self.smallest
+    }
+
+    /// Sine of the largest angle between the flow and the direction to the goal:
+    /// `(k - 1) / (k + 1)` with `k` the [condition number](Self::condition_number) (no unit).
+    ///
+    /// This is Wielandt's form of the Kantorovich inequality. It is also the factor by which a step
+    /// to the closest point on the line of motion shrinks the distance to the goal, at the least.
+    pub fn largest_deviation_sine(&self) -> T {
+        (self.largest - self.smallest) / (self.largest + self.smallest)
+    }
+}
+
+/// Smallest and largest singular value of a lower-triangular matrix.
+pub(crate) fn factor_singular_values<T: Real, const D: usize>(factor: &SMatrix<T, D, D>) -> (T, T) {
+    match D {
+        0 => (T::zero(), T::zero()),
+        1 => (factor[(0, 0)].abs(), factor[(0, 0)].abs()),
+        2 => planar(factor[(0, 0)], factor[(1, 0)], factor[(1, 1)]),
+        _ => iterative(factor),
+    }
+}
+
+/// Closed form for `[a 0; b c]`.
+fn planar<T: Real>(a: T, b: T, c: T) -> (T, T) {
+    let (a, c) = (a.abs(), c.abs());
+    let large = ((a + c).hypot(b) + (a - c).hypot(b)) / T::rounded(2.0);
+    if large.is_zero() {
+        return (T::zero(), T::zero());
+    }
+    // |det L| = small * large. Divided first: a * c may underflow where the quotient does not.
+    (a.max(c) / large * a.min(c), large)
+}
+
+fn iterative<T: Real, const D: usize>(factor: &SMatrix<T, D, D>) -> (T, T) {
+    // A matrix of dynamic size takes the general algorithm; the one that nalgebra keeps for 3 x 3
+    // decomposes L^T L and so loses half of the digits of a small singular value.
+    let general = DMatrix::from_fn(D, D, |row, column| factor[(row, column)]);
+    let decomposition = SVD::try_new_unordered(
+        general,
+        false,
+        false,
+        T::EPSILON,
+        ITERATIONS_PER_DIMENSION * D,
+    );
+    match decomposition {
+        Some(svd) => (svd.singular_values.min(), svd.singular_values.max()),
+        // Never seen. Both ends are still bounds, and so every use of them is on the safe side.
+        None => (T::zero(), factor.norm()),
+    }
+}

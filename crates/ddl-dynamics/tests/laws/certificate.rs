@@ -1,0 +1,180 @@
+//! Certificates: true for every stable rollout, and exact about the step that breaks one.
+
+use approx::assert_relative_eq;
+use ddl_dynamics::{
+    Attractor, CholeskyMetric, DynamicsError, LyapunovCertificate, MetricSchedule,
+    NaturalGradientFlow, Real, StableEuler, Violation, rollout,
+};
+use nalgebra::{SVector, Vector2};
+use proptest::{prelude::*, test_runner::TestCaseResult};
+
+use crate::{
+    draw::{METRICS, SceneDraw},
+    for_every_space,
+};
+
+fn stable_path<T: Real, const D: usize>(
+    scene: &SceneDraw,
+) -> (
+    Vec<SVector<T, D>>,
+    Vec<CholeskyMetric<T, D>>,
+    Attractor<T, D>,
+) {
+    let (attractor, metrics) = (scene.attractor(), scene.metrics());
+    let flow = NaturalGradientFlow::new(attractor, MetricSchedule::new(metrics.clone()).unwrap());
+    let path = rollout(&flow, &StableEuler, scene.start(), scene.dt(), METRICS).unwrap();
+    (path, metrics, attractor)
+}
+
+/// The certificate of every `StableEuler` rollout holds; its figures are within their bounds and
+/// its rate is that of the formed matrix.
+fn holds_for_every_stable_rollout<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let (path, metrics, attractor) = stable_path::<T, D>(scene);
+    let certificate = LyapunovCertificate::new(&path, &metrics, &attractor, scene.dt()).unwrap();
+    prop_assert_eq!(certificate.holds(), Ok(()));
+    prop_assert!(
+        certificate
+            .potentials()
+            .eq(path.iter().map(|p| attractor.potential(p)))
+    );
+    for ((step, metric), position) in certificate.steps().iter().zip(&metrics).zip(&path) {
+        let u = attractor.gradient(position).map(Real::as_f64);
+        let p = crate::draw::formed(metric);
+        let tolerance = 32.0 * T::EPSILON.as_f64() * p.norm();
+        prop_assert!((step.rate.as_f64() + u.dot(&(p * u))).abs() <= tolerance);
+        prop_assert!(step.min_eigenvalue >= metric.sigma());
+        prop_assert!(step.step_margin.is_none_or(|margin| margin <= T::one()));
+    }
+    Ok(())
+}
+for_every_space!(holds_for_every_stable_rollout, any_scene);
+
+/// A violation planted at a random step is found there.
+fn names_a_planted_violation<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let (mut path, metrics, attractor) = stable_path::<T, D>(scene);
+    // The time step, random itself, picks the place.
+    let planted = (scene.dt::<T>().as_f64() * 1e6) as usize % METRICS;
+    let before = attractor.potential(&path[planted]);
+    let mut away = attractor.gradient(&path[planted]);
+    if before.is_zero() {
+        away[0] = T::one();
+    }
+    path[planted + 1] = path[planted] + away * (T::one() + before * T::rounded(0.5));
+    let certificate = LyapunovCertificate::new(&path, &metrics, &attractor, scene.dt()).unwrap();
+    match certificate.holds() {
+        Err(Violation::NotDecreasing { step, .. }) => prop_assert_eq!(step, planted),
+        Err(Violation::LeftGoal { step, .. }) => {
+            prop_assert_eq!(step, planted);
+            prop_assert!(before.is_zero());
+        }
+        verdict => prop_assert!(false, "{verdict:?}"),
+    }
+    Ok(())
+}
+for_every_space!(names_a_planted_violation, any_scene);
+
+/// P = [1 1; 1 2] and e = (0.3, -0.4): the figures of a step, worked out by hand.
+fn by_hand() -> LyapunovCertificate<f64> {
+    let attractor = Attractor::new(Vector2::new(10.0, 20.0)).unwrap();
+    let metric = CholeskyMetric::planar(1.0, 1.0, 1.0, 1e-16).unwrap();
+    let path = [Vector2::new(10.3, 19.6), Vector2::new(10.38, 20.0)];
+    LyapunovCertificate::new(&path, &[metric], &attractor, 0.4).unwrap()
+}
+
+#[test]
+fn figures_by_hand() {
+    let certificate = by_hand();
+    let step = certificate.steps()[0];
+    assert_relative_eq!(step.potential, 0.5, epsilon = 1e-14);
+    assert_relative_eq!(step.rate, -0.68, epsilon = 1e-14);
+    // (3 - sqrt(5)) / 2
+    assert_relative_eq!(
+        step.min_eigenvalue,
+        0.381_966_011_250_105_1,
+        epsilon = 1e-15
+    );
+    // dt_max = 2 * 0.5 * 0.68 / 1.04 = 17/26; 1 - 0.4 * 26/17 = 33/85
+    assert_relative_eq!(step.step_margin.unwrap(), 33.0 / 85.0, epsilon = 1e-13);
+    // The move (0.08, 0.4) against the direction (-0.6, 0.8): cos = 0.272 / 0.4079...
+    let cosine = 0.272_f64 / (0.08_f64 * 0.08 + 0.16).sqrt();
+    assert_relative_eq!(step.angle, cosine.acos(), epsilon = 1e-12);
+    assert_relative_eq!(certificate.final_potential(), 0.38, epsilon = 1e-14);
+    assert_relative_eq!(certificate.largest_angle(), step.angle);
+    assert_eq!(certificate.min_eigenvalue(), Some(step.min_eigenvalue));
+    assert_eq!(certificate.min_step_margin(), step.step_margin);
+    assert_eq!(
+        (certificate.goal(), certificate.time_step()),
+        (&[10.0, 20.0][..], 0.4)
+    );
+    assert_eq!(certificate.holds(), Ok(()));
+}
+
+#[test]
+fn a_certificate_survives_json_bit_by_bit() {
+    let certificate = by_hand();
+    let text = serde_json::to_string(&certificate).unwrap();
+    assert_eq!(
+        serde_json::from_str::<LyapunovCertificate<f64>>(&text).unwrap(),
+        certificate
+    );
+}
+
+#[test]
+fn a_certificate_from_elsewhere_is_judged_by_its_figures() {
+    let honest = serde_json::to_value(by_hand()).unwrap();
+    let with = |field: &str, value: f64| {
+        let mut forged = honest.clone();
+        forged["steps"][0][field] = value.into();
+        serde_json::from_value::<LyapunovCertificate<f64>>(forged)
+            .unwrap()
+            .holds()
+    };
+    assert_eq!(
+        with("min_eigenvalue", 0.0),
+        Err(Violation::NotPositiveDefinite {
+            step: 0,
+            min_eigenvalue: 0.0
+        })
+    );
+    assert_eq!(
+        with("rate", 0.0),
+        Err(Violation::NotDescending { step: 0, rate: 0.0 })
+    );
+    let after = by_hand().final_potential();
+    assert_eq!(
+        with("potential", 0.0),
+        Err(Violation::LeftGoal { step: 0, after })
+    );
+}
+
+#[test]
+fn positions_and_metrics_must_belong_together() {
+    let attractor = Attractor::new(Vector2::new(0.0, 0.0)).unwrap();
+    let metric = CholeskyMetric::planar(1.0, 0.0, 1.0, 1e-8).unwrap();
+    let at = Vector2::new(1.0, 0.0);
+    let certify = |path: &[Vector2<f64>], metrics: &[CholeskyMetric<f64, 2>]| {
+        LyapunovCertificate::new(path, metrics, &attractor, 0.4)
+            .map(|_| ())
+            .unwrap_err()
+    };
+    assert_eq!(
+        certify(&[at, at], &[metric; 2]),
+        DynamicsError::LengthMismatch {
+            positions: 2,
+            metrics: 2
+        }
+    );
+    assert_eq!(
+        certify(&[], &[]),
+        DynamicsError::LengthMismatch {
+            positions: 0,
+            metrics: 0
+        }
+    );
+    let broken = [at, Vector2::new(f64::NAN, 0.0)];
+    assert!(
+        certify(&broken, &[metric])
+            .to_string()
+            .starts_with("step 1 of the rollout failed")
+    );
+}

@@ -1,0 +1,91 @@
+//! The goal is reached, in a number of steps known beforehand.
+
+use ddl_dynamics::{
+    Attractor, GradientFlow, NaturalGradientFlow, Real, StableEuler, StepLimit, rollout,
+};
+use nalgebra::SVector;
+use proptest::{prelude::*, test_runner::TestCaseResult};
+
+use crate::{draw::SceneDraw, for_every_space};
+
+/// A limited step shrinks the distance by `(k - 1) / (k + 1)` at least, `k` the condition number.
+fn limited_steps_contract<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let attractor = scene.attractor::<T, D>();
+    let start = scene.start::<T, D>();
+    let (before, away) = attractor.potential_and_gradient(&start);
+    let noise = T::rounded(32.0) * T::EPSILON * start.amax().max(attractor.goal().amax());
+    for metric in scene.metrics::<T, D>() {
+        // Long enough for every metric of these scenes to be limited.
+        let velocity = -metric.apply(&away);
+        let step = StableEuler::advance(&attractor, &start, &velocity, T::rounded(1e6)).unwrap();
+        prop_assert!(step.limit == StepLimit::ClosestApproach || before.is_zero());
+        let factor = metric.eigenvalue_range().largest_deviation_sine();
+        prop_assert!(attractor.potential(&step.position) <= factor * before + noise);
+    }
+    Ok(())
+}
+for_every_space!(limited_steps_contract, well_conditioned_scene);
+
+/// `Phi <= tolerance` after `2 Phi(0) / (dt m) + ln(Phi(0) / tolerance) / ln(1 / r)` steps.
+fn arrives_within_the_proved_number_of_steps<T: Real, const D: usize>(
+    scene: &SceneDraw,
+) -> TestCaseResult {
+    let attractor = scene.attractor::<T, D>();
+    let (start, metric) = (scene.start::<T, D>(), scene.metrics::<T, D>()[0]);
+    // A step time of a few seconds at least, so that a kilometre is not a million steps.
+    let dt = scene.dt::<T>().max(T::rounded(2.0));
+    let distance = attractor.potential(&start).as_f64();
+    let tolerance =
+        256.0 * T::EPSILON.as_f64() * start.amax().max(attractor.goal().amax()).as_f64();
+    if distance <= tolerance {
+        return Ok(());
+    }
+    let range = metric.eigenvalue_range();
+    let full = 2.0 * distance / (dt.as_f64() * range.smallest.as_f64());
+    let limited =
+        (distance / tolerance).ln() / -range.largest_deviation_sine().as_f64().max(1e-9).ln();
+    let steps = full.ceil() as usize + limited.ceil() as usize;
+    let flow = NaturalGradientFlow::new(attractor, metric);
+    let path = rollout(&flow, &StableEuler, start, dt, steps).unwrap();
+    let left = attractor.potential(&path[steps]).as_f64();
+    prop_assert!(
+        left <= tolerance,
+        "{left} m left of {distance} m after {steps} steps"
+    );
+    Ok(())
+}
+for_every_space!(
+    arrives_within_the_proved_number_of_steps,
+    well_conditioned_scene
+);
+
+/// Straight to the goal at 1 m/s: on the goal itself after `Phi(0) / dt` steps, rounded up, and one.
+fn the_gradient_flow_arrives_exactly<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let attractor = scene.attractor::<T, D>();
+    let start = scene.start::<T, D>();
+    let dt = scene.dt::<T>().max(T::one());
+    let steps = (attractor.potential(&start) / dt).as_f64().ceil() as usize + 1;
+    let path = rollout(
+        &GradientFlow::new(attractor),
+        &StableEuler,
+        start,
+        dt,
+        steps,
+    )
+    .unwrap();
+    prop_assert_eq!(path[steps], *attractor.goal());
+    Ok(())
+}
+for_every_space!(the_gradient_flow_arrives_exactly, any_scene);
+
+#[test]
+fn every_rollout_ends_on_the_goal_even_when_nearly_singular() {
+    // Eigenvalues 1e-8 and about 1: the flow alone would need years; rounding decides, and the
+    // strict decrease brings the walker home all the same.
+    let attractor = Attractor::new(SVector::<f32, 2>::new(0.25, -0.5)).unwrap();
+    let metric = ddl_dynamics::CholeskyMetric::planar(1.0, 0.0, 0.0, 1e-8).unwrap();
+    let flow = NaturalGradientFlow::new(attractor, metric);
+    let start = attractor.goal() + SVector::<f32, 2>::new(1e-4, 1e-4);
+    let path = rollout(&flow, &StableEuler, start, 0.4, 20_000).unwrap();
+    assert_eq!(path[20_000], *attractor.goal());
+}

@@ -1,0 +1,95 @@
+//! The published scheme: what it does, and what it does not keep.
+
+use ddl_dynamics::{
+    Attractor, CholeskyMetric, Euler, GradientFlow, Integrator, LyapunovCertificate,
+    NaturalGradientFlow, Real, State, Violation, rollout,
+};
+use nalgebra::{Vector1, Vector2};
+use proptest::{prelude::*, test_runner::TestCaseResult};
+
+use crate::{draw::SceneDraw, for_every_space};
+
+/// `|e'|^2 <= |e|^2 + (dt |P u|)^2`, the most that a step can overshoot.
+fn overshoot_is_bounded<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let attractor = scene.attractor::<T, D>();
+    let (start, dt) = (scene.start::<T, D>(), scene.dt::<T>());
+    let (before, away) = attractor.potential_and_gradient(&start);
+    for metric in scene.metrics::<T, D>() {
+        let flow = NaturalGradientFlow::new(attractor, metric);
+        let next = Euler.step(&flow, &State::at(start), dt).unwrap();
+        let length = dt * metric.apply(&away).norm();
+        let bound = before.hypot(length);
+        let noise =
+            T::rounded(32.0) * T::EPSILON * (bound + start.amax() + attractor.goal().amax());
+        prop_assert!(attractor.potential(&next) <= bound + noise);
+    }
+    Ok(())
+}
+for_every_space!(overshoot_is_bounded, any_scene);
+
+#[test]
+fn the_overshoot_bound_is_attained() {
+    // P = diag(1e6, 1e-8), u = (1e-7, 1): P u is almost at right angles to u. |e| = 1, dt |P u| = 0.1.
+    let attractor = Attractor::new(Vector2::zeros()).unwrap();
+    let metric = CholeskyMetric::planar(1e3, 0.0, 0.0, 1e-8).unwrap();
+    let flow = NaturalGradientFlow::new(attractor, metric);
+    let next = Euler
+        .step(&flow, &State::at(Vector2::new(1e-7, 1.0)), 1.0)
+        .unwrap();
+    approx::assert_relative_eq!(next.norm_squared(), 1.01, epsilon = 1e-7);
+}
+
+#[test]
+fn plain_euler_circles_the_goal_and_the_certificate_names_the_step() {
+    // At 1 m/s in steps of 0.5 s from 1.25 m: 0.75, 0.25, then to and fro over the goal for ever.
+    let attractor = Attractor::new(Vector1::new(0.0)).unwrap();
+    let path = rollout(
+        &GradientFlow::new(attractor),
+        &Euler,
+        Vector1::new(1.25),
+        0.5,
+        6,
+    )
+    .unwrap();
+    assert_eq!(
+        path,
+        [1.25, 0.75, 0.25, -0.25, 0.25, -0.25, 0.25].map(Vector1::new)
+    );
+    let metric = CholeskyMetric::new([[1.0]].into(), 1e-8).unwrap();
+    let certificate = LyapunovCertificate::new(&path, &[metric; 6], &attractor, 0.5).unwrap();
+    let violation = Violation::NotDecreasing {
+        step: 2,
+        before: 0.25,
+        after: 0.25,
+    };
+    assert_eq!(certificate.holds(), Err(violation.clone()));
+    assert_eq!(
+        violation.to_string(),
+        "step 2 does not approach the goal: 0.25 m away before it, 0.25 m after it"
+    );
+}
+
+#[test]
+fn the_published_step_of_four_tenths_circles_in_the_plane() {
+    // A walker at 1.4 m/s with a bent path: the distance settles around dt times the speed, not at 0.
+    let attractor = Attractor::new(Vector2::new(2.0, 1.0)).unwrap();
+    let metric = CholeskyMetric::planar(1.1, 0.4, 1.2, 1e-8).unwrap();
+    let flow = NaturalGradientFlow::new(attractor, metric);
+    let path = rollout(&flow, &Euler, Vector2::zeros(), 0.4, 2000).unwrap();
+    let nearest = path[1000..]
+        .iter()
+        .map(|p| attractor.potential(p))
+        .fold(f64::MAX, f64::min);
+    assert!(nearest > 0.05, "{nearest}");
+    let certificate =
+        LyapunovCertificate::new(&path, &vec![metric; 2000], &attractor, 0.4).unwrap();
+    // The certificate's own bound tells the same: the first negative margin is the first violation.
+    let negative = certificate
+        .steps()
+        .iter()
+        .position(|step| step.step_margin < Some(0.0));
+    let Err(Violation::NotDecreasing { step, .. }) = certificate.holds() else {
+        panic!("plain Euler cannot hold: {:?}", certificate.holds())
+    };
+    assert_eq!(Some(step), negative);
+}

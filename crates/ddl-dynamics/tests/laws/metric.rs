@@ -1,0 +1,100 @@
+//! `P` is symmetric and positive definite, applied as if it were formed.
+
+use ddl_dynamics::{CholeskyMetric, Real};
+use nalgebra::{DMatrix, SMatrix};
+use proptest::{prelude::*, test_runner::TestCaseResult};
+
+use crate::{
+    draw::{SceneDraw, formed},
+    for_every_space,
+};
+
+/// `metric` is applied as the formed matrix would be, up to the rounding of `T`.
+fn applied_as_formed<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let Some(u) = scene.unit::<T, D>() else {
+        return Ok(());
+    };
+    let u64 = u.map(Real::as_f64);
+    for metric in scene.metrics::<T, D>() {
+        let p = formed(&metric);
+        let tolerance = 8.0 * D as f64 * T::EPSILON.as_f64() * p.norm();
+        prop_assert!((metric.apply(&u).map(Real::as_f64) - p * u64).norm() <= tolerance);
+        prop_assert!((metric.to_matrix().map(Real::as_f64) - p).norm() <= tolerance);
+        let form = metric.quadratic_form(&u).as_f64();
+        prop_assert!((form - u64.dot(&(p * u64))).abs() <= tolerance);
+    }
+    Ok(())
+}
+for_every_space!(applied_as_formed, any_scene);
+
+/// As computed: `P = P^T` to the last bit, and `u^T P u >= sigma` up to one rounding of `|u|^2`.
+fn symmetric_positive_definite<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let Some(u) = scene.unit::<T, D>() else {
+        return Ok(());
+    };
+    for metric in scene.metrics::<T, D>() {
+        prop_assert_eq!(metric.to_matrix(), metric.to_matrix().transpose());
+        let form = metric.quadratic_form(&u);
+        prop_assert!(form > T::zero());
+        prop_assert!(form >= metric.sigma() * (T::one() - T::rounded(8.0) * T::EPSILON));
+    }
+    Ok(())
+}
+for_every_space!(symmetric_positive_definite, any_scene);
+
+/// The eigenvalues agree with nalgebra's symmetric eigendecomposition of the formed matrix, and
+/// enclose the quadratic form of every unit vector.
+fn eigenvalues_agree_and_enclose<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let unit = scene.unit::<T, D>();
+    for metric in scene.metrics::<T, D>() {
+        let range = metric.eigenvalue_range();
+        let p = formed(&metric);
+        let eigenvalues =
+            DMatrix::from_fn(D, D, |row, column| p[(row, column)]).symmetric_eigenvalues();
+        let tolerance = 32.0 * T::EPSILON.as_f64() * p.norm();
+        prop_assert!((range.smallest.as_f64() - eigenvalues.min()).abs() <= tolerance);
+        prop_assert!((range.largest.as_f64() - eigenvalues.max()).abs() <= tolerance);
+        prop_assert!(range.smallest >= metric.sigma());
+        prop_assert!(range.condition_number() >= T::one());
+        if let Some(u) = unit {
+            let form = metric.quadratic_form(&u).as_f64();
+            prop_assert!(form >= range.smallest.as_f64() - tolerance);
+            prop_assert!(form <= range.largest.as_f64() + tolerance);
+        }
+    }
+    Ok(())
+}
+for_every_space!(eigenvalues_agree_and_enclose, any_scene);
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// In the plane the closed form keeps all digits, however close to singular: the product of the
+    /// eigenvalues is `(a c)^2` and their sum `a^2 + b^2 + c^2` when sigma is nothing.
+    #[test]
+    fn planar_eigenvalues_keep_their_digits(
+        a in -8.0..=3.0_f64,
+        b in -8.0..=3.0_f64,
+        c in -8.0..=3.0_f64,
+    ) {
+        let (a, b, c) = (10_f64.powf(a), -(10_f64.powf(b)), 10_f64.powf(c));
+        let range = CholeskyMetric::planar(a, b, c, 1e-300).unwrap().eigenvalue_range();
+        let product = (a * c).powi(2);
+        prop_assert!((range.smallest * range.largest / product - 1.0).abs() < 1e-14);
+        let sum = a * a + b * b + c * c;
+        prop_assert!(((range.smallest + range.largest) / sum - 1.0).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn eigenvalues_in_space_by_hand() {
+    // L L^T = [1 1 0; 1 2 0; 0 0 9]: eigenvalues (3 ± sqrt(5)) / 2 and 9.
+    let factor = SMatrix::<f64, 3, 3>::new(1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, -3.0);
+    let range = CholeskyMetric::new(factor, 0.5).unwrap().eigenvalue_range();
+    approx::assert_relative_eq!(
+        range.smallest,
+        0.5 + (3.0 - 5_f64.sqrt()) / 2.0,
+        epsilon = 1e-14
+    );
+    approx::assert_relative_eq!(range.largest, 9.5, epsilon = 1e-13);
+}

@@ -1,0 +1,190 @@
+//! `StableEuler` lowers the distance to the goal at every step, whatever it is given.
+
+use approx::assert_relative_eq;
+use ddl_dynamics::{
+    Attractor, CholeskyMetric, Euler, Flow, Integrator, MetricSchedule, NaturalGradientFlow, Real,
+    StableEuler, State, StepLimit, rollout,
+};
+use nalgebra::{SVector, Vector2};
+use proptest::{prelude::*, test_runner::TestCaseResult};
+
+use crate::{
+    draw::{METRICS, SceneDraw},
+    for_every_space,
+};
+
+/// Strict decrease of the computed distance until it is 0, and rest from then on: for random
+/// factors up to 1e3 that change at every step, starts and goals up to 1e3 m, `dt` from 1 ms to
+/// 100 s.
+fn distance_falls_at_every_step<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let attractor = scene.attractor::<T, D>();
+    let flow = NaturalGradientFlow::new(attractor, MetricSchedule::new(scene.metrics()).unwrap());
+    let path = rollout(&flow, &StableEuler, scene.start(), scene.dt(), 3 * METRICS).unwrap();
+    for pair in path.windows(2) {
+        let (before, after) = (attractor.potential(&pair[0]), attractor.potential(&pair[1]));
+        prop_assert!(
+            after < before || (before.is_zero() && pair[0] == pair[1]),
+            "{before} -> {after}"
+        );
+    }
+    Ok(())
+}
+for_every_space!(distance_falls_at_every_step, any_scene);
+
+/// The same for every finite start, goal, time step and *velocity*, descending or not, subnormal or
+/// huge: a decrease or an error, never a panic or a NaN.
+fn no_finite_input_breaks_it<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let attractor = scene.attractor::<T, D>();
+    let start = scene.start::<T, D>();
+    let before = attractor.potential(&start);
+    match StableEuler::advance(&attractor, &start, &scene.direction(), scene.dt()) {
+        Ok(step) => {
+            prop_assert!(step.position.iter().all(nalgebra::ComplexField::is_finite));
+            prop_assert!(attractor.potential(&step.position) < before || before.is_zero());
+        }
+        Err(_) => prop_assert!(!before.is_finite()),
+    }
+    Ok(())
+}
+for_every_space!(no_finite_input_breaks_it, wild_scene);
+
+/// The step is the Euler step to the last bit where the time step decides; it is never longer than
+/// the Euler step (but for the smallest move); and `Phi' <= Phi - h u^T P u / 2`.
+fn step_is_as_long_as_proved<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let attractor = scene.attractor::<T, D>();
+    let (start, dt) = (scene.start::<T, D>(), scene.dt::<T>());
+    let (before, away) = attractor.potential_and_gradient(&start);
+    let noise = T::rounded(32.0) * T::EPSILON * start.amax().max(attractor.goal().amax());
+    for metric in scene.metrics::<T, D>() {
+        let flow = NaturalGradientFlow::new(attractor, metric);
+        let velocity = flow.velocity(&State::at(start)).unwrap();
+        let step = StableEuler::advance(&attractor, &start, &velocity, dt).unwrap();
+        let length = (step.position - start).norm();
+        prop_assert!(length <= dt * velocity.norm() + noise || step.limit == StepLimit::Resolution);
+        prop_assert!(length <= before + noise);
+        match step.limit {
+            StepLimit::TimeStep => {
+                let euler = Euler.step(&flow, &State::at(start), dt).unwrap();
+                prop_assert_eq!(step.position, euler);
+            }
+            StepLimit::ClosestApproach => {
+                // The foot of the perpendicular: what is left is at right angles to the velocity.
+                let left = attractor.offset(&step.position);
+                let along = left.dot(&velocity).abs();
+                prop_assert!(along <= (noise + noise) * velocity.norm());
+            }
+            StepLimit::AtGoal => prop_assert!(before.is_zero()),
+            _ => continue,
+        }
+        let rate = -away.dot(&velocity);
+        let half_descent = rate * length / velocity.norm() / T::rounded(2.0);
+        if before > T::zero() {
+            prop_assert!(attractor.potential(&step.position) <= before - half_descent + noise);
+        }
+    }
+    Ok(())
+}
+for_every_space!(step_is_as_long_as_proved, any_scene);
+
+/// A velocity that leads away from the goal is not followed.
+fn a_false_flow_is_not_followed<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let attractor = scene.attractor::<T, D>();
+    let start = scene.start::<T, D>();
+    let (before, away) = attractor.potential_and_gradient(&start);
+    let step = StableEuler::advance(&attractor, &start, &away, scene.dt()).unwrap();
+    let after = attractor.potential(&step.position);
+    let smallest = T::EPSILON * start.amax().max(attractor.goal().amax());
+    prop_assert!(after < before || before.is_zero());
+    prop_assert!(
+        after >= before - T::rounded(16.0) * smallest,
+        "a smallest move, not a leap"
+    );
+    Ok(())
+}
+for_every_space!(a_false_flow_is_not_followed, any_scene);
+
+#[test]
+fn a_limited_step_by_hand() {
+    // L = [1 0; 1 1]: P = [1 1; 1 2]. e = (0.3, -0.4): u = (0.6, -0.8), P u = (-0.2, -1),
+    // u^T P u = 0.68, |P u|^2 = 1.04, dt* = 0.5 * 0.68 / 1.04 = 17/52 s.
+    let attractor = Attractor::new(Vector2::zeros()).unwrap();
+    let metric = CholeskyMetric::planar(1.0, 1.0, 1.0, 1e-16).unwrap();
+    let flow = NaturalGradientFlow::new(attractor, metric);
+    let state = State::at(Vector2::new(0.3, -0.4));
+    let step = |dt| StableEuler.step(&flow, &state, dt).unwrap();
+    let foot = Vector2::new(0.3 + 0.2 * 17.0 / 52.0, -0.4 + 17.0 / 52.0);
+    for dt in [0.4, 1.0, 100.0, 1e300] {
+        assert_relative_eq!(step(dt), foot, epsilon = 1e-15);
+    }
+    assert_relative_eq!(step(0.25), Vector2::new(0.35, -0.15), epsilon = 1e-15);
+    assert_relative_eq!(
+        Euler.step(&flow, &state, 0.4).unwrap(),
+        Vector2::new(0.38, 0.0),
+        epsilon = 1e-15
+    );
+}
+
+#[test]
+fn a_step_below_the_spacing_of_f32_still_shows() {
+    // 1e-8 m/s for 0.4 s at 1 m: 4e-9 m, which 1.0_f32 does not notice. Plain Euler stands still.
+    let attractor = Attractor::new(Vector2::<f32>::zeros()).unwrap();
+    let metric = CholeskyMetric::planar(0.0, 0.0, 0.0, 1e-8).unwrap();
+    let flow = NaturalGradientFlow::new(attractor, metric);
+    let start = Vector2::new(1.0, 0.0);
+    assert_eq!(Euler.step(&flow, &State::at(start), 0.4).unwrap(), start);
+    let velocity = flow.velocity(&State::at(start)).unwrap();
+    let step = StableEuler::advance(&attractor, &start, &velocity, 0.4).unwrap();
+    assert_eq!(step.limit, StepLimit::Resolution);
+    assert_eq!(step.position, Vector2::new(1.0 - f32::EPSILON, 0.0));
+}
+
+#[test]
+fn what_is_not_finite_is_an_error() {
+    let attractor = Attractor::new(Vector2::new(0.0, 0.0)).unwrap();
+    let at = Vector2::new(1.0, 0.0);
+    let message = |position: Vector2<f64>, velocity: Vector2<f64>, dt| {
+        StableEuler::advance(&attractor, &position, &velocity, dt)
+            .unwrap_err()
+            .to_string()
+    };
+    assert!(message(at, at, 0.0).contains("time step is 0 s"));
+    assert!(message(at, at, f64::NAN).contains("time step is NaN s"));
+    assert!(message(Vector2::new(0.0, f64::NAN), at, 1.0).contains("component 1 of the position"));
+    assert!(message(at, Vector2::new(f64::INFINITY, 0.0), 1.0).contains("of the velocity is inf"));
+    let far = Vector2::repeat(f64::MAX);
+    assert!(message(far, at, 1.0).contains("distance from the position to the goal overflows"));
+}
+
+#[test]
+fn the_failing_step_of_a_rollout_is_named() {
+    let attractor = Attractor::new(Vector2::new(0.0, 0.0)).unwrap();
+    let source = |state: &State<'_, f64, 2>| {
+        let a = if state.step == 3 { f64::NAN } else { 1.0 };
+        CholeskyMetric::planar(a, 0.0, 1.0, 1e-8)
+    };
+    let flow = NaturalGradientFlow::new(attractor, source);
+    let error = rollout(&flow, &StableEuler, Vector2::new(9.0, 0.0), 0.4, 12).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "step 3 of the rollout failed: \
+         entry (0, 0) of the Cholesky factor is NaN: it must be a finite number"
+    );
+}
+
+#[test]
+fn a_flow_sees_step_time_and_history() {
+    let attractor = Attractor::new(SVector::<f64, 1>::new(0.0)).unwrap();
+    let source = |state: &State<'_, f64, 1>| {
+        assert_eq!(state.history.len(), state.step + 1);
+        assert_eq!(state.history.last(), Some(&state.position));
+        assert!((state.time - 0.5 * state.step as f64).abs() < 1e-15);
+        CholeskyMetric::new([[1.0]].into(), 1e-8)
+    };
+    let flow = NaturalGradientFlow::new(attractor, source);
+    assert_eq!(
+        rollout(&flow, &StableEuler, SVector::<f64, 1>::new(9.0), 0.5, 5)
+            .unwrap()
+            .len(),
+        6
+    );
+}
