@@ -30,7 +30,10 @@ impl KeyValue {
     /// Repeats a single batch entry `batch` times, without copying.
     pub(crate) fn expand_batch(&self, batch: i64) -> Self {
         let expand = |tensor: &Tensor| tensor.expand([batch, -1, -1, -1], false);
-        Self { key: expand(&self.key), value: expand(&self.value) }
+        Self {
+            key: expand(&self.key),
+            value: expand(&self.value),
+        }
     }
 }
 
@@ -49,10 +52,21 @@ impl MultiHeadAttention {
         let in_proj_bias = init.constant(format!("{name}.in_proj_bias"), &[3 * width], 0.0);
         let out_bound = 1.0 / (width as f64).sqrt();
         let out_proj = Linear {
-            weight: init.uniform(format!("{name}.out_proj.weight"), &[width, width], out_bound),
+            weight: init.uniform(
+                format!("{name}.out_proj.weight"),
+                &[width, width],
+                out_bound,
+            ),
             bias: init.constant(format!("{name}.out_proj.bias"), &[width], 0.0),
         };
-        Self { in_proj_weight, in_proj_bias, out_proj, heads, width, dropout }
+        Self {
+            in_proj_weight,
+            in_proj_bias,
+            out_proj,
+            heads,
+            width,
+            dropout,
+        }
     }
 
     /// Attention of every walker over the walkers that `mask` lets it see.
@@ -68,9 +82,13 @@ impl MultiHeadAttention {
             .permute([2, 0, 3, 1, 4]);
         let (query, key, value) = (qkv.get(0), qkv.get(1), qkv.get(2));
         let scores = (query * self.scale()).matmul(&key.transpose(-1, -2)) + mask;
-        let weights =
-            scores.softmax(-1, scores.kind()).dropout(self.dropout, mode.is_training());
-        let mixed = weights.matmul(&value).transpose(1, 2).reshape([batch, walkers, self.width]);
+        let weights = scores
+            .softmax(-1, scores.kind())
+            .dropout(self.dropout, mode.is_training());
+        let mixed = weights
+            .matmul(&value)
+            .transpose(1, 2)
+            .reshape([batch, walkers, self.width]);
         self.out_proj.forward(&mixed)
     }
 
@@ -89,8 +107,11 @@ impl MultiHeadAttention {
         keys.push(&key);
         values.push(&value);
         // One query a walker and head: products and sums beat a batch of 1 x t matrix products.
-        let scores = (Tensor::stack(&keys, 0) * (query * self.scale()))
-            .sum_dim_intlist([-1i64].as_slice(), true, None);
+        let scores = (Tensor::stack(&keys, 0) * (query * self.scale())).sum_dim_intlist(
+            [-1i64].as_slice(),
+            true,
+            None,
+        );
         let weights = scores.softmax(0, scores.kind());
         let mixed = (Tensor::stack(&values, 0) * weights)
             .sum_dim_intlist([0i64].as_slice(), false, None)
@@ -111,7 +132,10 @@ impl MultiHeadAttention {
                 Some(&self.in_proj_bias.narrow(0, self.width, rows)),
             )
             .view([batch, walkers, 2, self.heads, self.width / self.heads]);
-        KeyValue { key: key_value.select(2, 0), value: key_value.select(2, 1) }
+        KeyValue {
+            key: key_value.select(2, 0),
+            value: key_value.select(2, 1),
+        }
     }
 
     fn scale(&self) -> f64 {

@@ -69,7 +69,10 @@ impl SceneBatch {
         }
         let (t, m, p) = (frames as i64, mask_frames as i64, walkers as i64);
         let tensor = |values: &[f64], shape: &[i64]| -> Result<Tensor, tch::TchError> {
-            Tensor::from_slice(values).f_to_kind(kind)?.f_reshape(shape)?.f_to_device(device)
+            Tensor::from_slice(values)
+                .f_to_kind(kind)?
+                .f_reshape(shape)?
+                .f_to_device(device)
         };
         Ok(Self {
             positions: tensor(&positions, &[t, p, 2])?,

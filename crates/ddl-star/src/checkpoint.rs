@@ -99,14 +99,21 @@ pub(crate) fn load_training(
     let numbers: Vec<f64> = Vec::try_from(find(&tensors, PROGRESS, &[3], path)?)?;
     let steps = numbers[0];
     if steps < 0.0 || steps.fract() != 0.0 {
-        return Err(bad(path, format!("the step count is {steps}, not a whole number")));
+        return Err(bad(
+            path,
+            format!("the step count is {steps}, not a whole number"),
+        ));
     }
     let _guard = tch::no_grad_guard();
     parameters.flat().shallow_clone().f_copy_(weights)?;
     adam.first_moment.f_copy_(first)?;
     adam.second_moment.f_copy_(second)?;
     adam.set_steps(steps as u64);
-    Ok(Progress { steps: steps as u64, loss_sum: numbers[1], seconds: numbers[2] })
+    Ok(Progress {
+        steps: steps as u64,
+        loss_sum: numbers[1],
+        seconds: numbers[2],
+    })
 }
 
 /// The tensor on the CPU, contiguous and without gradient.
@@ -115,8 +122,13 @@ fn plain(tensor: &Tensor) -> Tensor {
 }
 
 fn write(tensors: &[(String, Tensor)], path: &Path) -> Result<(), StarError> {
-    let io = |source| StarError::Io { path: path.to_owned(), source };
-    let folder = path.parent().map_or_else(|| PathBuf::from("."), Path::to_path_buf);
+    let io = |source| StarError::Io {
+        path: path.to_owned(),
+        source,
+    };
+    let folder = path
+        .parent()
+        .map_or_else(|| PathBuf::from("."), Path::to_path_buf);
     let temporary = tempfile::Builder::new()
         .prefix(".writing-")
         .suffix(".safetensors")
@@ -130,7 +142,10 @@ fn write(tensors: &[(String, Tensor)], path: &Path) -> Result<(), StarError> {
 
 fn read(path: &Path, most_bytes: u64) -> Result<Vec<(String, Tensor)>, StarError> {
     let size = std::fs::metadata(path)
-        .map_err(|source| StarError::Io { path: path.to_owned(), source })?
+        .map_err(|source| StarError::Io {
+            path: path.to_owned(),
+            source,
+        })?
         .len();
     if size > most_bytes + HEADER_BYTES {
         return Err(bad(
@@ -157,7 +172,10 @@ fn find<'a>(
         return Err(bad(path, problem));
     }
     if !matches!(tensor.kind(), Kind::Float | Kind::Double) {
-        let problem = format!("{name} holds {:?}, expected 32- or 64-bit floats", tensor.kind());
+        let problem = format!(
+            "{name} holds {:?}, expected 32- or 64-bit floats",
+            tensor.kind()
+        );
         return Err(bad(path, problem));
     }
     if tensor.isfinite().all().int64_value(&[]) == 0 {
@@ -167,5 +185,8 @@ fn find<'a>(
 }
 
 fn bad(path: &Path, problem: String) -> StarError {
-    StarError::Checkpoint { path: path.to_owned(), problem }
+    StarError::Checkpoint {
+        path: path.to_owned(),
+        problem,
+    }
 }

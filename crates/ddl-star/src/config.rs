@@ -65,13 +65,14 @@ impl std::str::FromStr for Variant {
     type Err = StarError;
 
     fn from_str(text: &str) -> Result<Self, StarError> {
-        Self::ALL.into_iter().find(|variant| variant.name() == text).ok_or_else(|| {
-            StarError::Config {
+        Self::ALL
+            .into_iter()
+            .find(|variant| variant.name() == text)
+            .ok_or_else(|| StarError::Config {
                 field: "variant",
                 value: text.to_owned(),
                 rule: "one of full, no-goal-shift, no-dynamics, star",
-            }
-        })
+            })
     }
 }
 
@@ -139,7 +140,12 @@ impl StarConfig {
             ("noise_width", self.noise_width),
         ];
         for (field, value) in positive {
-            require(value > 0 && value <= 65_536, field, &value, "a whole number in 1..=65536")?;
+            require(
+                value > 0 && value <= 65_536,
+                field,
+                &value,
+                "a whole number in 1..=65536",
+            )?;
         }
         require(
             self.model_width % self.heads == 0,
@@ -148,13 +154,23 @@ impl StarConfig {
             "must divide model_width",
         )?;
         let dropout = self.spatial_dropout;
-        require((0.0..1.0).contains(&dropout), "spatial_dropout", &dropout, "in [0, 1)")?;
+        require(
+            (0.0..1.0).contains(&dropout),
+            "spatial_dropout",
+            &dropout,
+            "in [0, 1)",
+        )?;
         for (field, value) in [
             ("neighbour_box", self.neighbour_box),
             ("sigma", self.sigma),
             ("time_step", self.time_step),
         ] {
-            require(value.is_finite() && value > 0.0, field, &value, "finite and positive")?;
+            require(
+                value.is_finite() && value > 0.0,
+                field,
+                &value,
+                "finite and positive",
+            )?;
         }
         Ok(())
     }
@@ -202,10 +218,25 @@ impl TrainingConfig {
     pub fn check(&self) -> Result<(), StarError> {
         require(self.epochs > 0, "epochs", &self.epochs, "at least 1")?;
         let rate = self.learning_rate;
-        require(rate.is_finite() && rate > 0.0, "learning_rate", &rate, "finite and positive")?;
+        require(
+            rate.is_finite() && rate > 0.0,
+            "learning_rate",
+            &rate,
+            "finite and positive",
+        )?;
         let clip = self.gradient_clip;
-        require(clip.is_finite() && clip > 0.0, "gradient_clip", &clip, "finite and positive")?;
-        require(self.batch_walkers > 0, "batch_walkers", &self.batch_walkers, "at least 1")?;
+        require(
+            clip.is_finite() && clip > 0.0,
+            "gradient_clip",
+            &clip,
+            "finite and positive",
+        )?;
+        require(
+            self.batch_walkers > 0,
+            "batch_walkers",
+            &self.batch_walkers,
+            "at least 1",
+        )?;
         if let Some(walkers) = self.walkers_per_epoch {
             require(walkers > 0, "walkers_per_epoch", &walkers, "at least 1")?;
         }
@@ -219,7 +250,15 @@ fn require(
     value: &dyn std::fmt::Display,
     rule: &'static str,
 ) -> Result<(), StarError> {
-    if holds { Ok(()) } else { Err(StarError::Config { field, value: value.to_string(), rule }) }
+    if holds {
+        Ok(())
+    } else {
+        Err(StarError::Config {
+            field,
+            value: value.to_string(),
+            rule,
+        })
+    }
 }
 
 #[cfg(test)]
@@ -230,12 +269,23 @@ mod tests {
     fn published_sizes_are_accepted_and_broken_ones_named() {
         let good = StarConfig::published(Variant::Full);
         good.check().unwrap();
-        let bad = StarConfig { heads: 5, ..good.clone() };
+        let bad = StarConfig {
+            heads: 5,
+            ..good.clone()
+        };
         assert!(bad.check().unwrap_err().to_string().contains("heads = 5"));
         let bad = StarConfig { sigma: 0.0, ..good };
         assert!(bad.check().unwrap_err().to_string().contains("sigma"));
-        let bad = TrainingConfig { learning_rate: f64::NAN, ..TrainingConfig::default() };
-        assert!(bad.check().unwrap_err().to_string().contains("learning_rate"));
+        let bad = TrainingConfig {
+            learning_rate: f64::NAN,
+            ..TrainingConfig::default()
+        };
+        assert!(
+            bad.check()
+                .unwrap_err()
+                .to_string()
+                .contains("learning_rate")
+        );
     }
 
     #[test]

@@ -79,10 +79,13 @@ pub fn set_threads(threads: usize) {
 
 fn open_cuda() -> Result<(), StarError> {
     static OPENED: OnceLock<Result<(), String>> = OnceLock::new();
-    OPENED.get_or_init(load_cuda).clone().map_err(|problem| StarError::Device {
-        device: "cuda".into(),
-        problem,
-    })
+    OPENED
+        .get_or_init(load_cuda)
+        .clone()
+        .map_err(|problem| StarError::Device {
+            device: "cuda".into(),
+            problem,
+        })
 }
 
 fn load_cuda() -> Result<(), String> {

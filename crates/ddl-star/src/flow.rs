@@ -5,8 +5,11 @@
 use serde::{Deserialize, Serialize};
 use tch::Tensor;
 
-/// Norms below this count as this (the published normalisation): no division by zero at the goal.
-const SMALLEST_NORM: f64 = 1e-12;
+/// Distances below this count as this: no division by zero at the goal. Squares of smaller offsets
+/// underflow in f32, so that nothing below could be told from the goal anyway.
+const SMALLEST_NORM: f64 = 1e-18;
+/// |P u|^2 is at least sigma^2 away from the goal; this only guards the division at it.
+const SMALLEST_SPEED_SQUARED: f64 = 1e-36;
 
 /// How a velocity becomes the next position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -50,7 +53,11 @@ pub fn natural_gradient_step(
     let distance = offset.norm_scalaropt_dim(2, [-1i64].as_slice(), true);
     let u = &offset / distance.clamp_min(SMALLEST_NORM);
     let (u1, u2) = (u.narrow(-1, 0, 1), u.narrow(-1, 1, 1));
-    let (a, b, c) = (factors.narrow(-1, 0, 1), factors.narrow(-1, 1, 1), factors.narrow(-1, 2, 1));
+    let (a, b, c) = (
+        factors.narrow(-1, 0, 1),
+        factors.narrow(-1, 1, 1),
+        factors.narrow(-1, 2, 1),
+    );
     // w = L^T u
     let w1 = &a * &u1 + &b * &u2;
     let w2 = &c * &u2;
@@ -60,10 +67,10 @@ pub fn natural_gradient_step(
     let step = match constants.integrator {
         Integrator::Euler => pu * constants.time_step,
         Integrator::StableEuler => {
-            let decrease = w1.square() + w2.square() + (u1.square() + u2.square()) * constants.sigma;
+            let decrease =
+                w1.square() + w2.square() + (u1.square() + u2.square()) * constants.sigma;
             let speed_squared = pu1.square() + pu2.square();
-            let nearest = distance * decrease
-                / speed_squared.clamp_min(SMALLEST_NORM * SMALLEST_NORM * constants.sigma);
+            let nearest = distance * decrease / speed_squared.clamp_min(SMALLEST_SPEED_SQUARED);
             pu * nearest.clamp_max(constants.time_step)
         }
     };

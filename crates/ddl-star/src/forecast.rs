@@ -64,7 +64,9 @@ impl StarNetwork {
         while first < windows.len() {
             let mut last = first;
             let mut walkers = 0;
-            while last < windows.len() && (walkers == 0 || walkers + windows[last].len() <= WALKERS_AT_ONCE) {
+            while last < windows.len()
+                && (walkers == 0 || walkers + windows[last].len() <= WALKERS_AT_ONCE)
+            {
                 walkers += windows[last].len();
                 last += 1;
             }
@@ -91,8 +93,14 @@ impl StarNetwork {
     ) -> Result<Vec<WindowRollout>, StarError> {
         let views: Vec<&Window> = windows.iter().collect();
         let half_box = self.config().neighbour_box;
-        let batch =
-            SceneBatch::new(&views, OBSERVED, OBSERVED, half_box, self.device(), self.kind())?;
+        let batch = SceneBatch::new(
+            &views,
+            OBSERVED,
+            OBSERVED,
+            half_box,
+            self.device(),
+            self.kind(),
+        )?;
         let walkers = batch.walkers();
         let mut flat = Vec::with_capacity(goal_count * walkers * 2);
         for k in 0..goal_count {
@@ -106,7 +114,10 @@ impl StarNetwork {
         let forecast = self.roll_out(&batch, &goals, noise, HORIZON, integrator);
         let hypotheses = forecast.size()[1] as usize;
         // [T, H, P, 2] -> [P, H, T, 2]
-        let ordered = forecast.permute([2, 1, 0, 3]).to_kind(tch::Kind::Double).contiguous();
+        let ordered = forecast
+            .permute([2, 1, 0, 3])
+            .to_kind(tch::Kind::Double)
+            .contiguous();
         let numbers: Vec<f64> = Vec::try_from(ordered.reshape([-1]))?;
         let mut positions = numbers.chunks_exact(2).map(|xy| [xy[0], xy[1]]);
         Ok(windows
@@ -114,7 +125,10 @@ impl StarNetwork {
             .map(|window| WindowRollout {
                 pedestrians: window.len(),
                 hypotheses,
-                positions: positions.by_ref().take(window.len() * hypotheses * HORIZON).collect(),
+                positions: positions
+                    .by_ref()
+                    .take(window.len() * hypotheses * HORIZON)
+                    .collect(),
             })
             .collect())
     }
@@ -125,7 +139,12 @@ impl StarNetwork {
             Noise::Mean => (1, vec![0.0; width]),
             Noise::Draws { count, seed } => {
                 let mut rng = stream(seed, Stage::Forecast, 0);
-                (count, (0..count * width).map(|_| rng.sample(StandardNormal)).collect())
+                (
+                    count,
+                    (0..count * width)
+                        .map(|_| rng.sample(StandardNormal))
+                        .collect(),
+                )
             }
         };
         Tensor::from_slice(&values)
@@ -141,21 +160,38 @@ fn check_goals(
     noise: Noise,
 ) -> Result<usize, StarError> {
     let fault = |expected: String, got: String| {
-        Err(StarError::Shape { operation: "forecast", expected, got })
+        Err(StarError::Shape {
+            operation: "forecast",
+            expected,
+            got,
+        })
     };
     if goals.len() != windows.len() {
-        return fault(format!("goals of {} windows", windows.len()), goals.len().to_string());
+        return fault(
+            format!("goals of {} windows", windows.len()),
+            goals.len().to_string(),
+        );
     }
     let count = goals.iter().flatten().map(Vec::len).next().unwrap_or(1);
     for (window, goals) in windows.iter().zip(goals) {
         if goals.len() != window.len() {
             return fault(
-                format!("goals of {} pedestrians in {}", window.len(), window.recording()),
+                format!(
+                    "goals of {} pedestrians in {}",
+                    window.len(),
+                    window.recording()
+                ),
                 goals.len().to_string(),
             );
         }
-        if let Some(other) = goals.iter().find(|goals| goals.len() != count || goals.is_empty()) {
-            return fault(format!("{count} goals for every pedestrian"), other.len().to_string());
+        if let Some(other) = goals
+            .iter()
+            .find(|goals| goals.len() != count || goals.is_empty())
+        {
+            return fault(
+                format!("{count} goals for every pedestrian"),
+                other.len().to_string(),
+            );
         }
     }
     match noise {

@@ -17,12 +17,16 @@ pub struct Parameters {
 impl Parameters {
     /// Names and tensors, in order.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &Tensor)> {
-        self.entries.iter().map(|(name, tensor)| (name.as_str(), tensor))
+        self.entries
+            .iter()
+            .map(|(name, tensor)| (name.as_str(), tensor))
     }
 
     /// The tensor of that name.
     pub fn get(&self, name: &str) -> Option<&Tensor> {
-        self.iter().find(|(candidate, _)| *candidate == name).map(|(_, tensor)| tensor)
+        self.iter()
+            .find(|(candidate, _)| *candidate == name)
+            .map(|(_, tensor)| tensor)
     }
 
     /// How many tensors there are.
@@ -66,14 +70,22 @@ pub(crate) struct Initializer {
 
 impl Initializer {
     pub(crate) fn new(rng: ChaCha8Rng, device: Device, kind: Kind) -> Self {
-        Self { rng, device, kind, entries: Vec::new() }
+        Self {
+            rng,
+            device,
+            kind,
+            entries: Vec::new(),
+        }
     }
 
     /// Moves all tensors made so far into one flat vector.
     pub(crate) fn finish(self) -> Parameters {
         let _guard = tch::no_grad_guard();
-        let rows: Vec<Tensor> =
-            self.entries.iter().map(|(_, tensor)| tensor.detach().reshape([-1])).collect();
+        let rows: Vec<Tensor> = self
+            .entries
+            .iter()
+            .map(|(_, tensor)| tensor.detach().reshape([-1]))
+            .collect();
         let flat = Tensor::cat(&rows, 0);
         let mut offset = 0;
         let mut entries = self.entries;
@@ -89,18 +101,25 @@ impl Initializer {
     /// Uniform in [-bound, bound].
     pub(crate) fn uniform(&mut self, name: String, shape: &[i64], bound: f64) -> Tensor {
         let count = shape.iter().product::<i64>() as usize;
-        let values: Vec<f64> =
-            (0..count).map(|_| bound * (2.0 * self.rng.random::<f64>() - 1.0)).collect();
+        let values: Vec<f64> = (0..count)
+            .map(|_| bound * (2.0 * self.rng.random::<f64>() - 1.0))
+            .collect();
         self.register(name, &Tensor::from_slice(&values).reshape(shape))
     }
 
     /// Every entry equal to `value`.
     pub(crate) fn constant(&mut self, name: String, shape: &[i64], value: f64) -> Tensor {
-        self.register(name, &Tensor::full(shape, value, (Kind::Double, Device::Cpu)))
+        self.register(
+            name,
+            &Tensor::full(shape, value, (Kind::Double, Device::Cpu)),
+        )
     }
 
     fn register(&mut self, name: String, values: &Tensor) -> Tensor {
-        let tensor = values.to_kind(self.kind).to_device(self.device).set_requires_grad(true);
+        let tensor = values
+            .to_kind(self.kind)
+            .to_device(self.device)
+            .set_requires_grad(true);
         self.entries.push((name, tensor.shallow_clone()));
         tensor
     }

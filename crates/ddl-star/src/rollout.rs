@@ -31,7 +31,13 @@ impl StarNetwork {
         let tokens: Vec<Tensor> = (0..steps)
             .map(|t| {
                 let frame = |tensor: &Tensor| tensor.narrow(0, t, 1);
-                self.step(&mut memory, &frame(&relative), &frame(&spatial), &frame(&mask), mode)
+                self.step(
+                    &mut memory,
+                    &frame(&relative),
+                    &frame(&spatial),
+                    &frame(&mask),
+                    mode,
+                )
             })
             .collect();
         let emitted = self.emit(&Tensor::cat(&tokens, 0), noise);
@@ -59,8 +65,11 @@ impl StarNetwork {
         let last = OBSERVED as i64 - 1;
         let hypotheses = goals.size()[0].max(noise.size()[0]);
         let reference = self.reference(batch, goals);
-        let spatial =
-            self.spatial_tokens(&centre(batch, &observed), &batch.neighbour_mask.narrow(0, 0, last + 1), mode);
+        let spatial = self.spatial_tokens(
+            &centre(batch, &observed),
+            &batch.neighbour_mask.narrow(0, 0, last + 1),
+            mode,
+        );
         // The observed frames differ between hypotheses only through the goal they are shifted by:
         // `relative` has one batch entry a distinct reference.
         let mut memory = GraphMemory::default();
@@ -68,15 +77,25 @@ impl StarNetwork {
         for t in 0..=last {
             let relative = observed.get(t) - &reference;
             let mask = batch.neighbour_mask.narrow(0, t, 1);
-            token = Some(self.step(&mut memory, &relative, &spatial.narrow(0, t, 1), &mask, mode));
+            token = Some(self.step(
+                &mut memory,
+                &relative,
+                &spatial.narrow(0, t, 1),
+                &mask,
+                mode,
+            ));
         }
-        let Some(mut token) = token else { unreachable!("OBSERVED is at least one frame") };
+        let Some(mut token) = token else {
+            unreachable!("OBSERVED is at least one frame")
+        };
         if token.size()[0] < hypotheses {
             token = token.expand([hypotheses, -1, -1], false);
             memory = memory.expand_batch(hypotheses);
         }
         let mask = batch.neighbour_mask.narrow(0, last, 1);
-        let mut position = observed.narrow(0, last, 1).expand([hypotheses, -1, -1], false);
+        let mut position = observed
+            .narrow(0, last, 1)
+            .expand([hypotheses, -1, -1], false);
         let mut sum = observed
             .sum_dim_intlist([0i64].as_slice(), true, None::<Kind>)
             .expand([hypotheses, -1, -1], false);
@@ -102,7 +121,11 @@ impl StarNetwork {
     /// `goals` `[.., P, 2]` -> `[G or 1, P, 2]`.
     fn reference(&self, batch: &SceneBatch, goals: &Tensor) -> Tensor {
         if self.config().variant.goal_shift() {
-            if goals.dim() == 2 { goals.unsqueeze(0) } else { goals.shallow_clone() }
+            if goals.dim() == 2 {
+                goals.unsqueeze(0)
+            } else {
+                goals.shallow_clone()
+            }
         } else {
             batch.positions.narrow(0, OBSERVED as i64 - 1, 1)
         }
@@ -120,8 +143,11 @@ impl StarNetwork {
             return reference + emitted;
         }
         let config = self.config();
-        let constants =
-            FlowConstants { sigma: config.sigma, time_step: config.time_step, integrator };
+        let constants = FlowConstants {
+            sigma: config.sigma,
+            time_step: config.time_step,
+            integrator,
+        };
         natural_gradient_step(positions, goals, emitted, constants)
     }
 }
@@ -134,5 +160,8 @@ fn centre(batch: &SceneBatch, positions: &Tensor) -> Tensor {
     let frames = positions.size()[0];
     let count = Tensor::arange_start(1, frames + 1, (positions.kind(), positions.device()))
         .view([frames, 1, 1]);
-    positions - batch.scene_mean.matmul(&(positions.cumsum(0, positions.kind()) / count))
+    positions
+        - batch
+            .scene_mean
+            .matmul(&(positions.cumsum(0, positions.kind()) / count))
 }

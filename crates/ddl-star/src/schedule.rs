@@ -38,9 +38,15 @@ impl Schedule {
             batches.push(batch);
         }
         let steps_per_epoch = config.walkers_per_epoch.map_or(batches.len(), |walkers| {
-            walkers.div_ceil(config.batch_walkers).clamp(1, batches.len().max(1))
+            walkers
+                .div_ceil(config.batch_walkers)
+                .clamp(1, batches.len().max(1))
         });
-        Self { batches, steps_per_epoch, seed: config.seed }
+        Self {
+            batches,
+            steps_per_epoch,
+            seed: config.seed,
+        }
     }
 
     pub(crate) fn is_empty(&self) -> bool {

@@ -23,8 +23,8 @@ impl SpatialEncoder {
     /// # Shapes
     /// `x` `[B, P, width]`; `mask` `[1 or B, 1, P, P]` -> `[B, P, width]`.
     pub(crate) fn forward(&self, x: &Tensor, mask: &Tensor, mode: Mode) -> Tensor {
-        self.layers
-            .iter()
-            .fold(x.shallow_clone(), |x, layer| layer.among_walkers(&x, mask, mode))
+        self.layers.iter().fold(x.shallow_clone(), |x, layer| {
+            layer.among_walkers(&x, mask, mode)
+        })
     }
 }

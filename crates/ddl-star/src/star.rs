@@ -7,6 +7,7 @@
 
 use crate::StarError;
 use crate::config::StarConfig;
+use crate::device::ComputeDevice;
 use crate::layers::{Linear, Mode};
 use crate::parameters::{Initializer, Parameters};
 use crate::seed::{Stage, stream};
@@ -42,22 +43,33 @@ pub(crate) struct GraphMemory {
 impl GraphMemory {
     /// Repeats a single batch entry `batch` times, without copying.
     pub(crate) fn expand_batch(&self, batch: i64) -> Self {
-        Self { first: self.first.expand_batch(batch), second: self.second.expand_batch(batch) }
+        Self {
+            first: self.first.expand_batch(batch),
+            second: self.second.expand_batch(batch),
+        }
     }
 }
 
 impl StarNetwork {
-    /// A network with seeded initial values, on a device, in f32 (`Kind::Float`) or f64
-    /// (`Kind::Double`).
+    /// A network with seeded initial values, on a device, in f32.
     ///
     /// # Errors
     /// [`StarError::Config`] when the configuration is out of range.
-    pub fn new(
+    pub fn new(config: StarConfig, seed: u64, device: ComputeDevice) -> Result<Self, StarError> {
+        Self::with_precision(config, seed, device, Kind::Float)
+    }
+
+    /// A network in f32 (`Kind::Float`) or f64 (`Kind::Double`).
+    ///
+    /// # Errors
+    /// [`StarError::Config`] when the configuration is out of range.
+    pub fn with_precision(
         config: StarConfig,
         seed: u64,
-        device: Device,
+        device: ComputeDevice,
         kind: Kind,
     ) -> Result<Self, StarError> {
+        let device = device.torch();
         config.check()?;
         let mut initializer = Initializer::new(stream(seed, Stage::Weights, 0), device, kind);
         let init = &mut initializer;
@@ -132,11 +144,17 @@ impl StarNetwork {
         mode: Mode,
     ) -> Tensor {
         let newest = self.temporal_embedding.forward(relative).relu();
-        let temporal = self.temporal_encoder_1.forward(&newest, &memory.first, mode);
+        let temporal = self
+            .temporal_encoder_1
+            .forward(&newest, &memory.first, mode);
         let spatial = spatial.expand_as(&temporal);
-        let fused = self.fusion.forward(&Tensor::cat(&[&temporal, &spatial], -1));
+        let fused = self
+            .fusion
+            .forward(&Tensor::cat(&[&temporal, &spatial], -1));
         let among = self.spatial_encoder_2.forward(&fused, mask, mode);
-        let token = self.temporal_encoder_2.forward(&among, &memory.second, mode);
+        let token = self
+            .temporal_encoder_2
+            .forward(&among, &memory.second, mode);
         memory.first.push(self.temporal_encoder_1.remember(&token));
         memory.second.push(self.temporal_encoder_2.remember(&token));
         token

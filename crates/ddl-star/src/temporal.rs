@@ -28,13 +28,21 @@ impl TemporalMemory {
 
     /// Repeats a single batch entry `batch` times, without copying.
     pub(crate) fn expand_batch(&self, batch: i64) -> Self {
-        Self { tokens: self.tokens.iter().map(|token| token.expand_batch(batch)).collect() }
+        Self {
+            tokens: self
+                .tokens
+                .iter()
+                .map(|token| token.expand_batch(batch))
+                .collect(),
+        }
     }
 }
 
 impl TemporalEncoder {
     pub(crate) fn new(init: &mut Initializer, name: &str, config: &StarConfig) -> Self {
-        Self { layer: EncoderLayer::new(init, &format!("{name}.layers.0"), config, 0.0) }
+        Self {
+            layer: EncoderLayer::new(init, &format!("{name}.layers.0"), config, 0.0),
+        }
     }
 
     /// # Shapes

@@ -76,7 +76,14 @@ impl Trainer {
             return Err(StarError::NoTrainingWindows);
         }
         let adam = Adam::new(network.parameters(), config.learning_rate);
-        Ok(Self { network, adam, schedule, windows, config, progress: Progress::default() })
+        Ok(Self {
+            network,
+            adam,
+            schedule,
+            windows,
+            config,
+            progress: Progress::default(),
+        })
     }
 
     /// The network as trained so far.
@@ -119,8 +126,7 @@ impl Trainer {
     /// # Errors
     /// [`StarError::Checkpoint`] when the file is not a whole state of this network.
     pub fn resume(&mut self, path: &Path) -> Result<(), StarError> {
-        self.progress =
-            checkpoint::load_training(self.network.parameters(), &mut self.adam, path)?;
+        self.progress = checkpoint::load_training(self.network.parameters(), &mut self.adam, path)?;
         Ok(())
     }
 
@@ -138,12 +144,16 @@ impl Trainer {
         let value = loss.double_value(&[]);
         self.require_finite("loss", value)?;
         let gradients = self.network.parameters().gradients(&loss)?;
-        let rows: Vec<Tensor> = gradients.iter().map(|gradient| gradient.reshape([-1])).collect();
+        let rows: Vec<Tensor> = gradients
+            .iter()
+            .map(|gradient| gradient.reshape([-1]))
+            .collect();
         let gradient = Tensor::cat(&rows, 0);
         let norm = gradient.norm();
         self.require_finite("gradient norm", norm.double_value(&[]))?;
         let clip = self.config.gradient_clip;
-        self.adam.step(self.network.parameters(), &gradient, &norm, clip);
+        self.adam
+            .step(self.network.parameters(), &gradient, &norm, clip);
         self.progress.steps += 1;
         self.progress.loss_sum += value;
         self.progress.seconds += started.elapsed().as_secs_f64();
@@ -153,7 +163,9 @@ impl Trainer {
     /// Loss of a batch with the true ends as goals (the goal estimator is never used in training).
     fn loss(&self, batch: &SceneBatch, noise: &Tensor) -> Result<Tensor, StarError> {
         let goals = batch.positions().f_get(WINDOW as i64 - 1)?;
-        let forecast = self.network.teacher_forced(batch, &goals, noise, Mode::Train);
+        let forecast = self
+            .network
+            .teacher_forced(batch, &goals, noise, Mode::Train);
         let truth = batch.positions().f_narrow(0, 1, WINDOW as i64 - 1)?;
         Ok(mean_squared_distance(&forecast, &truth))
     }
@@ -170,7 +182,11 @@ impl Trainer {
             self.network.kind(),
         )?;
         let turn = self.config.rotate;
-        Ok(if turn { batch.rotated(self.schedule.rotation(step)) } else { batch })
+        Ok(if turn {
+            batch.rotated(self.schedule.rotation(step))
+        } else {
+            batch
+        })
     }
 
     /// The step's noise vector, shared by all walkers and frames; also seeds its dropout.
@@ -190,12 +206,26 @@ impl Trainer {
             return Ok(());
         }
         let batch = self.schedule.batch_index(self.progress.steps);
-        let windows = self.schedule.batch(batch).first().map_or_else(String::new, |&index| {
-            let window = &self.windows[index];
-            format!("{}@{} and following", window.recording(), window.start_frame())
-        });
+        let windows = self
+            .schedule
+            .batch(batch)
+            .first()
+            .map_or_else(String::new, |&index| {
+                let window = &self.windows[index];
+                format!(
+                    "{}@{} and following",
+                    window.recording(),
+                    window.start_frame()
+                )
+            });
         let epoch = self.completed_epochs() + 1;
-        Err(StarError::NonFinite { epoch, batch, quantity, value, windows })
+        Err(StarError::NonFinite {
+            epoch,
+            batch,
+            quantity,
+            value,
+            windows,
+        })
     }
 
     fn report(&mut self, step: u64, loss: f64) -> StepReport {
@@ -212,6 +242,12 @@ impl Trainer {
             (self.progress.loss_sum, self.progress.seconds) = (0.0, 0.0);
             report
         });
-        StepReport { epoch, done, steps_per_epoch, loss, finished_epoch }
+        StepReport {
+            epoch,
+            done,
+            steps_per_epoch,
+            loss,
+            finished_epoch,
+        }
     }
 }

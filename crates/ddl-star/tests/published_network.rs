@@ -3,7 +3,8 @@
 
 use ddl_data::{PedestrianId, Window};
 use ddl_star::{
-    Integrator, Mode, SceneBatch, StarConfig, StarNetwork, Variant, mean_squared_distance,
+    ComputeDevice, DeviceChoice, Integrator, Mode, SceneBatch, StarConfig, StarNetwork, Variant,
+    mean_squared_distance,
 };
 use serde_json::Value;
 use tch::{Device, Kind, Tensor};
@@ -28,7 +29,9 @@ impl Reference {
     }
 
     fn tensor(&self, pointer: &str, shape: &[i64], kind: Kind) -> Tensor {
-        Tensor::from_slice(&self.numbers(pointer)).reshape(shape).to_kind(kind)
+        Tensor::from_slice(&self.numbers(pointer))
+            .reshape(shape)
+            .to_kind(kind)
     }
 
     /// The three scenes as windows.
@@ -56,8 +59,9 @@ impl Reference {
     }
 
     fn network(&self, kind: Kind) -> StarNetwork {
+        let cpu = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
         let config = StarConfig::published(Variant::Full);
-        let network = StarNetwork::new(config, 1, Device::Cpu, kind).unwrap();
+        let network = StarNetwork::with_precision(config, 1, cpu, kind).unwrap();
         let mut set = 0;
         for entry in self.0["weights"]["tensors"].as_array().unwrap() {
             let name = entry["name"].as_str().unwrap();
@@ -65,10 +69,22 @@ impl Reference {
                 continue; // the published template layer never runs
             }
             let index = entry["index"].as_f64().unwrap();
-            let shape: Vec<i64> =
-                entry["shape"].as_array().unwrap().iter().map(|n| n.as_i64().unwrap()).collect();
-            let scale = if shape.len() == 2 { 0.3 / (shape[1] as f64).sqrt() } else { 0.05 };
-            let shift = if name.contains("norm") && name.ends_with("weight") { 1.0 } else { 0.0 };
+            let shape: Vec<i64> = entry["shape"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(|n| n.as_i64().unwrap())
+                .collect();
+            let scale = if shape.len() == 2 {
+                0.3 / (shape[1] as f64).sqrt()
+            } else {
+                0.05
+            };
+            let shift = if name.contains("norm") && name.ends_with("weight") {
+                1.0
+            } else {
+                0.0
+            };
             let values: Vec<f64> = (0..shape.iter().product())
                 .map(|k: i64| {
                     let phase = 0.37 * k as f64 + 1.3 * index + 0.11 * (k % 7) as f64;
@@ -76,9 +92,14 @@ impl Reference {
                 })
                 .collect();
             let _guard = tch::no_grad_guard();
-            let target = network.parameters().get(name).unwrap_or_else(|| panic!("no {name}"));
+            let target = network
+                .parameters()
+                .get(name)
+                .unwrap_or_else(|| panic!("no {name}"));
             assert_eq!(target.size(), shape, "{name}");
-            target.shallow_clone().copy_(&Tensor::from_slice(&values).reshape(&shape));
+            target
+                .shallow_clone()
+                .copy_(&Tensor::from_slice(&values).reshape(&shape));
             set += 1;
         }
         assert_eq!(set, network.parameters().len());
@@ -109,7 +130,10 @@ fn agrees(kind: Kind, tolerance: f64) {
     let forecast = network.teacher_forced(&batch, &goal, &noise, Mode::Evaluate);
     let expected = reference.tensor("/train_forward/positions", &[19, walkers, 2], kind);
     let difference = largest_difference(&forecast, &expected);
-    assert!(difference < tolerance, "teacher-forced positions differ by {difference}");
+    assert!(
+        difference < tolerance,
+        "teacher-forced positions differ by {difference}"
+    );
 
     let loss = mean_squared_distance(&forecast, &batch.positions().narrow(0, 1, 19));
     let expected = reference.numbers("/train_forward/loss")[0];
@@ -117,17 +141,27 @@ fn agrees(kind: Kind, tolerance: f64) {
     assert!(relative < 1e-3, "loss differs by {relative}");
     loss.backward();
     for (name, tensor) in network.parameters().iter() {
-        let expected = reference.0["train_forward"]["grad_norms"][name].as_f64().unwrap();
+        let expected = reference.0["train_forward"]["grad_norms"][name]
+            .as_f64()
+            .unwrap();
         let norm = tensor.grad().norm().double_value(&[]);
-        assert!((norm / expected - 1.0).abs() < 1e-3, "gradient of {name}: {norm}, not {expected}");
+        assert!(
+            (norm / expected - 1.0).abs() < 1e-3,
+            "gradient of {name}: {norm}, not {expected}"
+        );
     }
 
     let goal = reference.tensor("/estimated_goal", &[1, walkers, 2], kind);
     let _guard = tch::no_grad_guard();
-    let rolled = network.roll_out(&batch, &goal, &noise, 12, Integrator::Euler).squeeze_dim(1);
+    let rolled = network
+        .roll_out(&batch, &goal, &noise, 12, Integrator::Euler)
+        .squeeze_dim(1);
     let expected = reference.tensor("/test_forward/positions", &[19, walkers, 2], kind);
     let difference = largest_difference(&rolled, &expected.narrow(0, 7, 12));
-    assert!(difference < tolerance, "rolled-out positions differ by {difference}");
+    assert!(
+        difference < tolerance,
+        "rolled-out positions differ by {difference}"
+    );
 }
 
 #[test]

@@ -1,0 +1,58 @@
+//! The commands, one a file, and the options they share.
+
+pub(crate) mod evaluate;
+pub(crate) mod forecast;
+pub(crate) mod goals;
+pub(crate) mod info;
+pub(crate) mod report;
+pub(crate) mod train;
+
+use crate::progress::ProgressMode;
+use anyhow::Context as _;
+use clap::Args;
+use ddl::data::{Convention, Dataset, locate};
+use ddl::{DdlError, DeviceChoice};
+use std::path::PathBuf;
+
+/// Seed of the simulated crowds: one data set for everybody.
+const SIMULATION_SEED: u64 = 1;
+
+/// Where to compute and how to tell progress.
+#[derive(Debug, Args)]
+pub(crate) struct Machine {
+    /// Device: auto, cpu or cuda
+    #[arg(long, default_value = "cpu")]
+    pub(crate) device: DeviceChoice,
+    /// Threads for tensor operations and goal search [default: all cores]
+    #[arg(long)]
+    threads: Option<usize>,
+}
+
+impl Machine {
+    /// Opens the device and sets the threads, before anything else touches libtorch.
+    pub(crate) fn prepare(&self) -> Result<(), DdlError> {
+        ddl::prepare(self.device, self.threads)
+    }
+}
+
+/// How progress is told.
+#[derive(Debug, Args)]
+pub(crate) struct Telling {
+    /// Progress: a bar on a terminal (auto), a JSON object a line (json), or none
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) progress: ProgressMode,
+    /// Commit to be named in results
+    #[arg(long, env = "DDL_COMMIT", default_value = "unknown", hide = true)]
+    pub(crate) commit: String,
+}
+
+/// The recordings of a convention, from a folder or simulated.
+pub(crate) fn dataset(convention: Convention, data: Option<PathBuf>) -> anyhow::Result<Dataset> {
+    if convention == Convention::Simulated {
+        return Ok(Dataset::simulated(SIMULATION_SEED));
+    }
+    let folder = locate(convention, data.as_deref()).context(
+        "no recordings; `cargo xtask data fetch` gets them, or use --convention simulated",
+    )?;
+    Ok(Dataset::load(convention, &folder)?)
+}

@@ -1,0 +1,65 @@
+//! `ddl evaluate`.
+
+use super::{Machine, Telling, dataset};
+use crate::interrupt::Interrupt;
+use crate::progress::Progress;
+use clap::Args;
+use ddl::eval::Report;
+use ddl::{Ddl, EvaluationRequest, Protocol};
+use std::path::PathBuf;
+
+/// Measure a trained model on the scene left out of its training, beside the baselines
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example:\n  ddl evaluate --model runs/eth --protocol fair --protocol single"
+)]
+pub(crate) struct Evaluate {
+    /// Directory of the run
+    #[arg(long)]
+    model: PathBuf,
+    /// Folder of the recordings [default: $DDL_DATASETS, then datasets/eth_ucy]
+    #[arg(long)]
+    data: Option<PathBuf>,
+    /// published, fair or single; may be repeated
+    #[arg(long = "protocol", default_values = ["fair", "single"])]
+    protocols: Vec<Protocol>,
+    /// Measure a seeded part of the test windows with at least so many walkers [default: all]
+    #[arg(long)]
+    test_walkers: Option<usize>,
+    #[command(flatten)]
+    machine: Machine,
+    #[command(flatten)]
+    telling: Telling,
+}
+
+impl Evaluate {
+    pub(crate) fn run(self) -> anyhow::Result<()> {
+        self.machine.prepare()?;
+        let interrupt = Interrupt::catch()?;
+        let model = Ddl::load(&self.model, self.machine.device)?;
+        let request = EvaluationRequest {
+            protocols: self.protocols,
+            test_walkers: self.test_walkers,
+            commit: self.telling.commit,
+        };
+        if ddl::is_evaluated(&model, &request)? {
+            return Ok(());
+        }
+        let dataset = dataset(model.config().data.convention, self.data)?;
+        let progress = Progress::new("evaluate", self.telling.progress);
+        let rows = ddl::evaluate(&model, &dataset, &request, |now| {
+            let (done, total) = now.walkers;
+            progress.tell(done as u64, total as u64, now.protocol.name());
+            interrupt.flow()
+        })?;
+        drop(progress);
+        let title = format!(
+            "{} {}",
+            model.config().data.fold,
+            model.config().star.variant
+        );
+        let report = Report::new(title, rows)?;
+        ddl::save_evaluation(&model, &request, &report)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,75 @@
+//! `ddl train`.
+
+use super::{Machine, Telling, dataset};
+use crate::interrupt::Interrupt;
+use crate::progress::Progress;
+use clap::Args;
+use ddl::data::Convention;
+use ddl::goal::GoalEstimatorParams;
+use ddl::star::TrainingConfig;
+use ddl::{RunDirectory, TrainingRequest, Variant};
+use std::path::PathBuf;
+
+/// Train a model on all scenes but one; resumes where an earlier run of the same command stopped
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  ddl train --fold eth --epochs 10 --out runs/eth")]
+pub(crate) struct Train {
+    /// Data convention: star, social-gan or simulated
+    #[arg(long, default_value = "star")]
+    convention: Convention,
+    /// Folder of the recordings [default: $DDL_DATASETS, then datasets/eth_ucy]
+    #[arg(long)]
+    data: Option<PathBuf>,
+    /// Scene left out of training: eth, hotel, univ, zara1 or zara2
+    #[arg(long)]
+    fold: String,
+    /// full, no-goal-shift, no-dynamics or star (neither)
+    #[arg(long, default_value = "full")]
+    variant: Variant,
+    /// Seed of everything random
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Epochs
+    #[arg(long, default_value_t = 200)]
+    epochs: usize,
+    /// Walkers an epoch, going round the training set [default: all]
+    #[arg(long)]
+    train_walkers: Option<usize>,
+    /// Directory of the run
+    #[arg(long)]
+    out: PathBuf,
+    #[command(flatten)]
+    machine: Machine,
+    #[command(flatten)]
+    telling: Telling,
+}
+
+impl Train {
+    pub(crate) fn run(self) -> anyhow::Result<()> {
+        self.machine.prepare()?;
+        let interrupt = Interrupt::catch()?;
+        let dataset = dataset(self.convention, self.data)?;
+        let request = TrainingRequest {
+            fold: self.fold,
+            variant: self.variant,
+            training: TrainingConfig {
+                epochs: self.epochs,
+                walkers_per_epoch: self.train_walkers,
+                seed: self.seed,
+                ..TrainingConfig::default()
+            },
+            goals: GoalEstimatorParams::default().seed(self.seed),
+            out: RunDirectory::new(self.out),
+            device: self.machine.device,
+            commit: self.telling.commit,
+        };
+        let progress = Progress::new("train", self.telling.progress);
+        ddl::train(&request, &dataset, |now| {
+            let (done, total) = now.steps;
+            let (epoch, loss) = (now.step.epoch, now.step.loss);
+            progress.tell(done, total, &format!("epoch {epoch} loss {loss:.4}"));
+            interrupt.flow()
+        })?;
+        Ok(())
+    }
+}

@@ -1,0 +1,54 @@
+//! A user's own tracks, and where the forecasts of them go.
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use ddl::data::{Format, Recording, Window, read_recording};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Which tracks to read.
+#[derive(Debug, Args)]
+pub(crate) struct Tracks {
+    /// csv with the header frame,pedestrian,x,y: metres, one row each 0.4 s
+    tracks: PathBuf,
+    /// Raw frames between two rows of a pedestrian [default: the smallest difference found]
+    #[arg(long)]
+    frame_step: Option<i64>,
+    /// Only the last frame instead of every frame with 8 observed ones behind it
+    #[arg(long)]
+    last: bool,
+}
+
+impl Tracks {
+    /// Windows of 8 observed frames, one a frame that has anybody to forecast.
+    pub(crate) fn windows(&self) -> anyhow::Result<Vec<Window>> {
+        let mut recording: Recording = read_recording(&self.tracks, Format::Table)?;
+        if let Some(step) = self.frame_step {
+            recording = recording.with_frame_step(step)?;
+        }
+        let mut windows = recording.observed_windows();
+        if windows.is_empty() {
+            bail!(
+                "{}: nobody was observed for 8 frames in a row (frame step {}); a forecast needs \
+                 3.2 s of track; give --frame-step when the rows are further apart",
+                self.tracks.display(),
+                recording.frame_step()
+            );
+        }
+        if self.last {
+            windows.drain(..windows.len() - 1);
+        }
+        Ok(windows)
+    }
+}
+
+/// Writes a whole output: to standard output, or to a file under a temporary name that is renamed.
+pub(crate) fn write_output(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
+    match path {
+        Some(path) => Ok(ddl::write_atomically(path, text.as_bytes())?),
+        None => std::io::stdout()
+            .lock()
+            .write_all(text.as_bytes())
+            .context("cannot write to standard output"),
+    }
+}

@@ -1,0 +1,173 @@
+//! Training: what it learns, and that stopping changes nothing.
+
+use ddl_data::{Dataset, Window, WindowRule};
+use ddl_star::{
+    ComputeDevice, DeviceChoice, StarConfig, StarError, StarNetwork, Trainer, TrainingConfig,
+    Variant, load_parameters, save_parameters,
+};
+use tch::Tensor;
+
+fn cpu() -> ComputeDevice {
+    ddl_star::set_threads(1);
+    ComputeDevice::open(DeviceChoice::Cpu).unwrap()
+}
+
+fn windows() -> Vec<Window> {
+    let dataset = Dataset::simulated(1);
+    let windows = dataset.recordings()[0].windows(WindowRule::Complete);
+    windows.into_iter().take(24).collect()
+}
+
+fn config(variant: Variant) -> StarConfig {
+    StarConfig {
+        feed_forward_width: 64,
+        ..StarConfig::published(variant)
+    }
+}
+
+fn trainer(variant: Variant, epochs: usize) -> Trainer {
+    let network = StarNetwork::new(config(variant), 7, cpu()).unwrap();
+    let training = TrainingConfig {
+        epochs,
+        batch_walkers: 40,
+        seed: 7,
+        ..Default::default()
+    };
+    Trainer::new(network, windows(), training).unwrap()
+}
+
+fn weights(network: &StarNetwork) -> Vec<f32> {
+    let rows: Vec<Tensor> = network
+        .parameters()
+        .iter()
+        .map(|(_, tensor)| tensor.detach().reshape([-1]))
+        .collect();
+    Vec::try_from(Tensor::cat(&rows, 0)).unwrap()
+}
+
+#[test]
+fn every_variant_learns() {
+    for variant in Variant::ALL {
+        let mut trainer = trainer(variant, 15);
+        let mut losses = Vec::new();
+        while !trainer.is_finished() {
+            losses.extend(
+                trainer
+                    .step()
+                    .unwrap()
+                    .finished_epoch
+                    .map(|epoch| epoch.loss),
+            );
+        }
+        assert_eq!(losses.len(), 15);
+        assert!(losses[14] < 0.5 * losses[0], "{variant}: {losses:?}");
+    }
+}
+
+#[test]
+fn a_run_stopped_anywhere_and_resumed_gives_the_same_weights() {
+    let mut whole = trainer(Variant::Full, 2);
+    while !whole.is_finished() {
+        whole.step().unwrap();
+    }
+    let (_, total) = whole.steps();
+    assert!(total >= 4);
+    let folder = tempfile::tempdir().unwrap();
+    let state = folder.path().join("optimizer.safetensors");
+    for stop in [1, total / 2 + 1, total - 1] {
+        let mut first = trainer(Variant::Full, 2);
+        for _ in 0..stop {
+            first.step().unwrap();
+        }
+        first.save(&state).unwrap();
+        let mut second = trainer(Variant::Full, 2);
+        second.resume(&state).unwrap();
+        let mut last = None;
+        while !second.is_finished() {
+            last = second.step().unwrap().finished_epoch;
+        }
+        assert_eq!(last.unwrap().epoch, 2);
+        assert_eq!(
+            weights(second.network()),
+            weights(whole.network()),
+            "stopped at {stop}"
+        );
+    }
+}
+
+#[test]
+fn weights_survive_the_file_and_broken_files_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.safetensors");
+    let network = StarNetwork::new(config(Variant::Full), 1, cpu()).unwrap();
+    save_parameters(network.parameters(), &path).unwrap();
+    let other = StarNetwork::new(config(Variant::Full), 2, cpu()).unwrap();
+    let before = weights(&other);
+    assert_ne!(before, weights(&network));
+
+    let whole = std::fs::read(&path).unwrap();
+    let broken = folder.path().join("broken.safetensors");
+    let refuse = |what: &str, needle: &str| {
+        let error = load_parameters(other.parameters(), &broken).unwrap_err();
+        assert!(
+            matches!(error, StarError::Checkpoint { .. }),
+            "{what}: {error}"
+        );
+        assert!(error.to_string().contains(needle), "{what}: {error}");
+        assert_eq!(weights(&other), before, "{what} changed the weights");
+    };
+    for length in [0, 7, 100, whole.len() / 2, whole.len() - 1] {
+        std::fs::write(&broken, &whole[..length]).unwrap();
+        refuse("truncated", "not a whole safetensors file");
+    }
+    std::fs::write(&broken, vec![0; whole.len() * 3 + (2 << 20)]).unwrap();
+    refuse("oversized", "bytes long");
+    let star = StarNetwork::new(config(Variant::Star), 2, cpu()).unwrap();
+    save_parameters(star.parameters(), &broken).unwrap();
+    refuse("another shape", "output_layer.weight has shape");
+    let rename = |name: &str| format!("{name}x");
+    let renamed: Vec<(String, Tensor)> = network
+        .parameters()
+        .iter()
+        .map(|(n, t)| (rename(n), t.detach().contiguous()))
+        .collect();
+    Tensor::write_safetensors(&renamed, &broken).unwrap();
+    refuse("another name", "lacks the tensor");
+    let poisoned: Vec<(String, Tensor)> = network
+        .parameters()
+        .iter()
+        .map(|(name, tensor)| (name.to_owned(), tensor.detach() * f64::NAN))
+        .collect();
+    Tensor::write_safetensors(&poisoned, &broken).unwrap();
+    refuse("not a number", "NaN or infinite");
+
+    load_parameters(other.parameters(), &path).unwrap();
+    assert_eq!(weights(&other), weights(&network));
+}
+
+#[test]
+fn a_loss_that_is_no_number_stops_the_run_and_names_the_batch() {
+    let mut trainer = trainer(Variant::Full, 1);
+    let parameters = trainer.network().parameters();
+    {
+        let _guard = tch::no_grad_guard();
+        let _ = parameters
+            .get("output_layer.bias")
+            .unwrap()
+            .shallow_clone()
+            .fill_(f64::NAN);
+    }
+    let error = trainer.step().unwrap_err();
+    assert!(
+        matches!(
+            error,
+            StarError::NonFinite {
+                epoch: 1,
+                batch: 0,
+                ..
+            }
+        ),
+        "{error}"
+    );
+    assert!(error.to_string().contains('@'), "{error}");
+}

@@ -1,0 +1,71 @@
+//! What can go wrong in the facade.
+
+use std::path::PathBuf;
+
+/// Errors of `ddl`. Messages say what is wrong, where, and what to do.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DdlError {
+    /// Recordings could not be read.
+    #[error(transparent)]
+    Data(#[from] ddl_data::DataError),
+    /// Goals could not be estimated.
+    #[error(transparent)]
+    Goal(#[from] ddl_goal::GoalError),
+    /// The parameters of the goal estimator are out of range.
+    #[error(transparent)]
+    GoalParameters(#[from] ddl_goal::ParamsError),
+    /// The expert library could not be built.
+    #[error(transparent)]
+    Library(#[from] ddl_goal::LibraryError),
+    /// The network failed.
+    #[error(transparent)]
+    Star(#[from] ddl_star::StarError),
+    /// A forecast could not be made or does not fit its window.
+    #[error(transparent)]
+    Forecast(#[from] ddl_eval::ForecastError),
+    /// Forecasts could not be scored.
+    #[error(transparent)]
+    Evaluation(#[from] ddl_eval::EvaluationError),
+    /// A baseline could not be measured.
+    #[error(transparent)]
+    Measure(#[from] ddl_eval::MeasureError),
+    /// A report could not be put together or written.
+    #[error(transparent)]
+    Report(#[from] ddl_eval::ReportError),
+    /// A run directory that cannot be used.
+    #[error("run {}: {problem}", path.display())]
+    Run {
+        /// The directory or the file in it.
+        path: PathBuf,
+        /// What is wrong with it, and what to do.
+        problem: String,
+    },
+    /// Reading or writing a file failed.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The caller asked to stop; what was done so far is saved.
+    #[error("interrupted; what was done so far is saved, the same command goes on from there")]
+    Interrupted,
+}
+
+impl DdlError {
+    pub(crate) fn run(path: impl Into<PathBuf>, problem: impl Into<String>) -> Self {
+        Self::Run {
+            path: path.into(),
+            problem: problem.into(),
+        }
+    }
+
+    pub(crate) fn io(path: impl Into<PathBuf>, source: std::io::Error) -> Self {
+        Self::Io {
+            path: path.into(),
+            source,
+        }
+    }
+}

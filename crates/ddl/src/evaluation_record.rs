@@ -1,0 +1,41 @@
+//! Which evaluation a run's `report.json` holds, so that a repeated one can be skipped.
+
+use crate::run_directory::{read_json, write_json};
+use crate::{Ddl, DdlError, EvaluationRequest};
+use ddl_eval::Report;
+use std::path::PathBuf;
+
+/// Whether the run already holds the results of exactly this evaluation.
+///
+/// # Errors
+/// When the record exists and cannot be read.
+pub fn is_evaluated(model: &Ddl, request: &EvaluationRequest) -> Result<bool, DdlError> {
+    let record = record_file(model);
+    if !record.is_file() || !model.run().report().is_file() {
+        return Ok(false);
+    }
+    Ok(read_json::<EvaluationRequest>(&record)? == *request)
+}
+
+/// Writes `report.json`, then the record of what was asked for.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn save_evaluation(
+    model: &Ddl,
+    request: &EvaluationRequest,
+    report: &Report,
+) -> Result<(), DdlError> {
+    let record = record_file(model);
+    if record.is_file() {
+        // while the report is replaced, no record may vouch for it
+        std::fs::remove_file(&record).map_err(|error| DdlError::io(&record, error))?;
+    }
+    let json = report.to_json()?;
+    crate::write_atomically(&model.run().report(), json.as_bytes())?;
+    write_json(&record, request)
+}
+
+fn record_file(model: &Ddl) -> PathBuf {
+    model.run().path().join("evaluation.json")
+}

@@ -1,0 +1,78 @@
+//! The expert library as a file of a run.
+
+use crate::DdlError;
+use crate::run_directory::write_atomically;
+use ddl_data::{Position, TIME_STEP, WINDOW, Window};
+use ddl_goal::ExpertLibrary;
+use safetensors::SafeTensors;
+use safetensors::tensor::{Dtype, TensorView};
+use std::path::Path;
+
+const TRACKS: &str = "tracks";
+/// Bytes of a track: 20 positions of two f64.
+const TRACK_BYTES: usize = WINDOW * 2 * 8;
+
+/// The library of all walkers of the training windows.
+///
+/// # Errors
+/// When there is no walker.
+pub(crate) fn library(windows: &[Window]) -> Result<ExpertLibrary, DdlError> {
+    let tracks: Vec<Vec<Position>> = windows
+        .iter()
+        .flat_map(|window| (0..window.len()).map(|i| window.track(i).to_vec()))
+        .collect();
+    Ok(ExpertLibrary::new(tracks, TIME_STEP)?)
+}
+
+pub(crate) fn save(library: &ExpertLibrary, path: &Path) -> Result<(), DdlError> {
+    let bytes: Vec<u8> = library
+        .tracks()
+        .iter()
+        .flatten()
+        .flatten()
+        .flat_map(|coordinate| coordinate.to_le_bytes())
+        .collect();
+    let shape = vec![library.len(), WINDOW, 2];
+    let broken = |error: safetensors::SafeTensorError| DdlError::run(path, error.to_string());
+    let view = TensorView::new(Dtype::F64, shape, &bytes).map_err(broken)?;
+    let file = safetensors::serialize([(TRACKS, view)], None).map_err(broken)?;
+    write_atomically(path, &file)
+}
+
+pub(crate) fn load(path: &Path) -> Result<ExpertLibrary, DdlError> {
+    let bytes = std::fs::read(path).map_err(|error| DdlError::io(path, error))?;
+    let file = SafeTensors::deserialize(&bytes).map_err(|error| {
+        DdlError::run(
+            path,
+            format!("is not a whole safetensors file ({error}); train anew"),
+        )
+    })?;
+    let view = file
+        .tensor(TRACKS)
+        .map_err(|error| DdlError::run(path, error.to_string()))?;
+    if view.dtype() != Dtype::F64 || view.shape().len() != 3 || view.shape()[1..] != [WINDOW, 2] {
+        let problem = format!(
+            "`{TRACKS}` is {:?} {:?}, expected f64 tracks of {WINDOW} positions",
+            view.dtype(),
+            view.shape()
+        );
+        return Err(DdlError::run(path, problem));
+    }
+    let tracks = view
+        .data()
+        .chunks_exact(TRACK_BYTES)
+        .map(|track| {
+            track
+                .chunks_exact(16)
+                .map(|bytes| [number(bytes), number(&bytes[8..])])
+                .collect()
+        })
+        .collect();
+    Ok(ExpertLibrary::new(tracks, TIME_STEP)?)
+}
+
+fn number(bytes: &[u8]) -> f64 {
+    let mut eight = [0; 8];
+    eight.copy_from_slice(&bytes[..8]);
+    f64::from_le_bytes(eight)
+}

@@ -1,0 +1,30 @@
+#![doc = include_str!("../README.md")]
+
+mod error;
+mod evaluation;
+mod evaluation_record;
+mod experts;
+mod goals;
+mod machine;
+mod model;
+mod published;
+mod run_directory;
+mod test_set;
+mod training;
+
+pub use ddl_data as data;
+pub use ddl_dynamics as dynamics;
+pub use ddl_eval as eval;
+pub use ddl_goal as goal;
+pub use ddl_softdtw as softdtw;
+pub use ddl_star as star;
+
+pub use ddl_eval::{Forecast, Forecaster, Protocol};
+pub use ddl_star::{DeviceChoice, Variant};
+pub use error::DdlError;
+pub use evaluation::{EvaluationProgress, EvaluationRequest, evaluate};
+pub use evaluation_record::{is_evaluated, save_evaluation};
+pub use machine::{cuda_status, prepare};
+pub use model::Ddl;
+pub use run_directory::{FORMAT, RunConfig, RunDirectory, TrainingData, write_atomically};
+pub use training::{TrainingProgress, TrainingRequest, train};

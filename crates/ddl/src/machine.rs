@@ -1,0 +1,31 @@
+//! The machine a process computes on: device and threads.
+
+use crate::DdlError;
+use ddl_star::{ComputeDevice, DeviceChoice};
+
+/// Opens the device and sets the number of threads (all cores when `None`) of tensor operations and
+/// of goal search. Call it once, before anything else: CUDA can only be opened before the first
+/// tensor is made.
+///
+/// # Errors
+/// When the device cannot be had.
+pub fn prepare(device: DeviceChoice, threads: Option<usize>) -> Result<(), DdlError> {
+    ComputeDevice::open(device)?;
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let threads = threads.unwrap_or(cores).max(1);
+    ddl_star::set_threads(threads);
+    // A pool that was built earlier stays as it is: results do not depend on it.
+    let _ = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global();
+    Ok(())
+}
+
+/// "available", or why CUDA is not.
+#[must_use]
+pub fn cuda_status() -> String {
+    match ComputeDevice::open(DeviceChoice::Cuda) {
+        Ok(_) => "available".into(),
+        Err(error) => error.to_string(),
+    }
+}

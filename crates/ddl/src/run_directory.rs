@@ -1,0 +1,275 @@
+//! The directory of one run: which file is where, and how each is written.
+//!
+//! | file | content |
+//! |---|---|
+//! | `config.json` | everything that decides the result ([`RunConfig`]) |
+//! | `metrics.jsonl` | one line an epoch |
+//! | `optimizer.safetensors` | weights, Adam's state and progress of a run under way |
+//! | `epochs/NNN.safetensors` | weights after some of the epochs |
+//! | `experts.safetensors` | tracks of the expert library |
+//! | `model.safetensors` | the final weights; there only when training is finished |
+//! | `report.json` | results of the evaluation |
+//! | `evaluation.json` | which evaluation that was |
+//!
+//! Every file is written under a temporary name and renamed.
+
+use crate::DdlError;
+use ddl_data::{Convention, WindowRule};
+use ddl_goal::GoalEstimatorParams;
+use ddl_star::{EpochReport, StarConfig, TrainingConfig};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Version of the directory's layout.
+pub const FORMAT: u32 = 1;
+
+/// Everything that decides what a run computes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunConfig {
+    /// Version of the layout, [`FORMAT`].
+    pub format: u32,
+    /// The network.
+    pub star: StarConfig,
+    /// How it is trained.
+    pub training: TrainingConfig,
+    /// The goal estimator.
+    pub goals: GoalEstimatorParams,
+    /// What it is trained on.
+    pub data: TrainingData,
+    /// Weights are kept after every so many epochs.
+    pub keep_every: usize,
+    /// Commit of the program that trained it, as far as known.
+    pub commit: String,
+    /// Device it was trained on.
+    pub device: String,
+}
+
+impl RunConfig {
+    /// Whether a run under way can go on under `other`: only device and commit may differ.
+    fn agrees_with(&self, other: &Self) -> Result<(), &'static str> {
+        let parts = [
+            ("format", self.format == other.format),
+            ("star", self.star == other.star),
+            ("training", self.training == other.training),
+            ("goals", self.goals == other.goals),
+            ("data", self.data == other.data),
+            ("keep_every", self.keep_every == other.keep_every),
+        ];
+        parts
+            .iter()
+            .find(|(_, same)| !same)
+            .map_or(Ok(()), |(name, _)| Err(name))
+    }
+}
+
+/// What a run is trained on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainingData {
+    /// Data convention.
+    pub convention: Convention,
+    /// The fold whose test scene was left out.
+    pub fold: String,
+    /// Rule that cut the training windows.
+    pub window_rule: WindowRule,
+    /// Training windows.
+    pub windows: usize,
+    /// Walkers in them.
+    pub walkers: usize,
+    /// SHA-256 of their positions.
+    pub sha256: String,
+}
+
+/// Path of a run, and of the files in it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RunDirectory(PathBuf);
+
+impl RunDirectory {
+    /// The run at `path`, which need not exist.
+    pub fn new(path: impl Into<PathBuf>) -> Self {
+        Self(path.into())
+    }
+
+    /// The directory.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Final weights.
+    pub fn model(&self) -> PathBuf {
+        self.0.join("model.safetensors")
+    }
+
+    /// State of a run under way.
+    pub fn optimizer(&self) -> PathBuf {
+        self.0.join("optimizer.safetensors")
+    }
+
+    /// Tracks of the expert library.
+    pub fn experts(&self) -> PathBuf {
+        self.0.join("experts.safetensors")
+    }
+
+    /// Results.
+    pub fn report(&self) -> PathBuf {
+        self.0.join("report.json")
+    }
+
+    /// Weights after an epoch.
+    pub fn epoch(&self, epoch: usize) -> PathBuf {
+        self.0
+            .join("epochs")
+            .join(format!("{epoch:03}.safetensors"))
+    }
+
+    fn config_file(&self) -> PathBuf {
+        self.0.join("config.json")
+    }
+
+    fn metrics_file(&self) -> PathBuf {
+        self.0.join("metrics.jsonl")
+    }
+
+    /// Whether training is finished.
+    pub fn is_trained(&self) -> bool {
+        self.model().is_file()
+    }
+
+    /// Epochs whose weights are kept, ascending.
+    ///
+    /// # Errors
+    /// When the folder cannot be listed.
+    pub fn kept_epochs(&self) -> Result<Vec<usize>, DdlError> {
+        let folder = self.0.join("epochs");
+        if !folder.is_dir() {
+            return Ok(Vec::new());
+        }
+        let entries = std::fs::read_dir(&folder).map_err(|error| DdlError::io(&folder, error))?;
+        let mut epochs = Vec::new();
+        for entry in entries {
+            let entry = entry.map_err(|error| DdlError::io(&folder, error))?;
+            let name = entry.file_name();
+            let number = name
+                .to_str()
+                .and_then(|name| name.strip_suffix(".safetensors"));
+            epochs.extend(number.and_then(|number| number.parse::<usize>().ok()));
+        }
+        epochs.sort_unstable();
+        Ok(epochs)
+    }
+
+    /// Claims the directory for a run: makes it, or checks that what it holds is the same run.
+    ///
+    /// # Errors
+    /// [`DdlError::Run`] when another run lives there.
+    pub(crate) fn claim(&self, config: &RunConfig) -> Result<(), DdlError> {
+        let epochs = self.0.join("epochs");
+        std::fs::create_dir_all(&epochs).map_err(|error| DdlError::io(epochs, error))?;
+        if !self.config_file().exists() {
+            return write_json(&self.config_file(), config);
+        }
+        self.config()?.agrees_with(config).map_err(|part| {
+            DdlError::run(
+                &self.0,
+                format!(
+                    "holds another run: `{part}` of its config.json differs from what was asked \
+                     for; choose another directory, or remove this one"
+                ),
+            )
+        })
+    }
+
+    /// Reads `config.json`.
+    ///
+    /// # Errors
+    /// [`DdlError::Run`] when it is missing or not understood.
+    pub fn config(&self) -> Result<RunConfig, DdlError> {
+        let path = self.config_file();
+        if !path.is_file() {
+            return Err(DdlError::run(
+                &self.0,
+                "has no config.json; it is not the directory of a run (`ddl train --out` makes one)",
+            ));
+        }
+        let config: RunConfig = read_json(&path)?;
+        if config.format != FORMAT {
+            let problem = format!(
+                "has layout {}, this program reads {FORMAT}; train it anew",
+                config.format
+            );
+            return Err(DdlError::run(&self.0, problem));
+        }
+        Ok(config)
+    }
+
+    /// Reads `metrics.jsonl`; empty when no epoch is done.
+    ///
+    /// # Errors
+    /// [`DdlError::Run`] naming the line that is not understood.
+    pub fn metrics(&self) -> Result<Vec<EpochReport>, DdlError> {
+        let path = self.metrics_file();
+        if !path.is_file() {
+            return Ok(Vec::new());
+        }
+        let text = std::fs::read_to_string(&path).map_err(|error| DdlError::io(&path, error))?;
+        text.lines()
+            .enumerate()
+            .map(|(index, line)| {
+                serde_json::from_str(line)
+                    .map_err(|error| DdlError::run(&path, format!("line {}: {error}", index + 1)))
+            })
+            .collect()
+    }
+
+    pub(crate) fn write_metrics(&self, epochs: &[EpochReport]) -> Result<(), DdlError> {
+        let mut text = String::new();
+        for epoch in epochs {
+            text += &serialise(&self.metrics_file(), epoch, false)?;
+            text.push('\n');
+        }
+        write_atomically(&self.metrics_file(), text.as_bytes())
+    }
+}
+
+/// Reads a JSON file.
+pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, DdlError> {
+    let text = std::fs::read_to_string(path).map_err(|error| DdlError::io(path, error))?;
+    serde_json::from_str(&text).map_err(|error| DdlError::run(path, error.to_string()))
+}
+
+/// Writes a JSON file under a temporary name and renames it.
+pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), DdlError> {
+    let text = serialise(path, value, true)?;
+    write_atomically(path, text.as_bytes())
+}
+
+fn serialise(path: &Path, value: &impl Serialize, pretty: bool) -> Result<String, DdlError> {
+    let text = if pretty {
+        serde_json::to_string_pretty(value)
+    } else {
+        serde_json::to_string(value)
+    };
+    text.map_err(|error| DdlError::run(path, error.to_string()))
+}
+
+/// Writes a file under a temporary name in its folder and renames it.
+///
+/// # Errors
+/// When the file cannot be written; an earlier one is then left as it was.
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), DdlError> {
+    let io = |error| DdlError::io(path, error);
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let mut file = tempfile::Builder::new()
+        .prefix(".writing-")
+        .tempfile_in(folder)
+        .map_err(io)?;
+    file.write_all(bytes).map_err(io)?;
+    file.as_file().sync_all().map_err(io)?;
+    file.persist(path).map_err(|error| io(error.error))?;
+    Ok(())
+}

@@ -1,0 +1,129 @@
+//! The windows a fold is tested on: under the headline rule, and under the one printed beside it.
+
+use ddl_data::{Convention, Fold, PedestrianId, Window, WindowRule};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use std::collections::BTreeMap;
+
+/// Seed of the test subset: one for all runs, so that all are tested on the same windows.
+const SUBSET_SEED: u64 = 0;
+
+/// Test windows with the rules they belong to. A window that both rules have is forecast once.
+#[derive(Debug)]
+pub(crate) struct TestSet {
+    pub(crate) windows: Vec<Window>,
+    /// Each rule with the indices of its windows; the headline rule first.
+    pub(crate) rules: Vec<(WindowRule, Vec<usize>)>,
+    /// How the subset was chosen; `None` when these are all windows.
+    pub(crate) subset: Option<String>,
+}
+
+impl TestSet {
+    /// The fold's test windows, or a seeded part of them with about `walkers` walkers.
+    pub(crate) fn new(fold: &Fold<'_>, convention: Convention, walkers: Option<usize>) -> Self {
+        let by_rule: Vec<(WindowRule, Vec<Window>)> = rules(convention)
+            .into_iter()
+            .map(|rule| (rule, fold.test_windows(rule)))
+            .collect();
+        let mut index_of: BTreeMap<(String, i64, Vec<PedestrianId>), usize> = BTreeMap::new();
+        let mut windows: Vec<Window> = Vec::new();
+        let mut rules = Vec::new();
+        // the widest rule last in `rules`, first here: subsets are drawn from all its windows
+        for (rule, of_rule) in by_rule.into_iter().rev() {
+            let mut indices = Vec::with_capacity(of_rule.len());
+            for window in of_rule {
+                let key = (
+                    window.recording().to_owned(),
+                    window.start_frame(),
+                    window.pedestrians().to_vec(),
+                );
+                let index = *index_of.entry(key).or_insert_with(|| {
+                    windows.push(window);
+                    windows.len() - 1
+                });
+                indices.push(index);
+            }
+            rules.push((rule, indices));
+        }
+        rules.reverse();
+        let all = Self {
+            windows,
+            rules,
+            subset: None,
+        };
+        match walkers {
+            Some(walkers) if all.walkers() > walkers => all.part(walkers),
+            _ => all,
+        }
+    }
+
+    pub(crate) fn walkers(&self) -> usize {
+        self.windows.iter().map(Window::len).sum()
+    }
+
+    /// Windows of the headline rule.
+    pub(crate) fn headline(&self) -> impl Iterator<Item = &Window> {
+        self.rules
+            .iter()
+            .take(1)
+            .flat_map(|(_, indices)| indices)
+            .map(|&i| &self.windows[i])
+    }
+
+    /// A seeded part of the windows, in their order, with at least `walkers` walkers.
+    fn part(self, walkers: usize) -> Self {
+        let mut order: Vec<usize> = (0..self.windows.len()).collect();
+        let mut rng = ChaCha8Rng::seed_from_u64(SUBSET_SEED);
+        for last in (1..order.len()).rev() {
+            order.swap(last, rng.random_range(0..=last));
+        }
+        let mut taken = vec![false; self.windows.len()];
+        let mut count = 0;
+        for index in order {
+            if count >= walkers {
+                break;
+            }
+            taken[index] = true;
+            count += self.windows[index].len();
+        }
+        let mut new_index = vec![None; taken.len()];
+        let mut windows = Vec::new();
+        for (index, window) in self.windows.into_iter().enumerate() {
+            if taken[index] {
+                new_index[index] = Some(windows.len());
+                windows.push(window);
+            }
+        }
+        let rules = self
+            .rules
+            .into_iter()
+            .map(|(rule, indices)| {
+                (
+                    rule,
+                    indices
+                        .into_iter()
+                        .filter_map(|index| new_index[index])
+                        .collect(),
+                )
+            })
+            .collect();
+        let subset = format!("a seeded part of the windows, at least {walkers} walkers a fold");
+        Self {
+            windows,
+            rules,
+            subset: Some(subset),
+        }
+    }
+}
+
+/// The rule of the headline tables, then the one printed beside it.
+fn rules(convention: Convention) -> Vec<WindowRule> {
+    match convention {
+        Convention::Star => vec![WindowRule::Published, WindowRule::Complete],
+        Convention::SocialGan => vec![
+            WindowRule::SocialGan { min_pedestrians: 2 },
+            WindowRule::SocialGan { min_pedestrians: 1 },
+        ],
+        _ => vec![WindowRule::Complete],
+    }
+}

@@ -1,0 +1,154 @@
+//! Training of one fold into a run directory, stopped and resumed at will.
+
+use crate::DdlError;
+use crate::experts;
+use crate::run_directory::{FORMAT, RunConfig, RunDirectory, TrainingData};
+use ddl_data::{Convention, Dataset, Window, WindowRule};
+use ddl_goal::GoalEstimatorParams;
+use ddl_star::{
+    ComputeDevice, DeviceChoice, StarConfig, StarNetwork, StepReport, Trainer, TrainingConfig,
+    Variant, save_parameters,
+};
+use sha2::{Digest as _, Sha256};
+use std::fmt::Write as _;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+/// A run under way is saved at least this often.
+const SAVE_EVERY: Duration = Duration::from_secs(30);
+/// Weights of at most about this many epochs are kept.
+const KEPT_EPOCHS: usize = 20;
+
+/// What to train, and where to put it.
+#[derive(Debug, Clone)]
+pub struct TrainingRequest {
+    /// The fold whose test scene is left out.
+    pub fold: String,
+    /// Row of the paper's Table II.
+    pub variant: Variant,
+    /// How to train.
+    pub training: TrainingConfig,
+    /// The goal estimator that goes with the network.
+    pub goals: GoalEstimatorParams,
+    /// The run's directory.
+    pub out: RunDirectory,
+    /// Where to compute.
+    pub device: DeviceChoice,
+    /// Commit of the program, for the record.
+    pub commit: String,
+}
+
+/// What training tells its observer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrainingProgress {
+    /// Steps done and in all.
+    pub steps: (u64, u64),
+    /// The step just done.
+    pub step: StepReport,
+}
+
+/// Trains the fold, or goes on where an earlier call stopped, or returns at once when it is done.
+///
+/// `observe` is called after every step and may ask to stop: the state is then saved and the result
+/// is [`DdlError::Interrupted`].
+///
+/// # Errors
+/// Unreadable data, a directory that holds another run, a device that is not there, or a loss that
+/// is no longer a number (the last good state is kept).
+pub fn train(
+    request: &TrainingRequest,
+    dataset: &Dataset,
+    mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
+) -> Result<(), DdlError> {
+    let device = ComputeDevice::open(request.device)?;
+    let fold = dataset.fold(&request.fold)?;
+    let window_rule = training_rule(dataset.convention());
+    let windows = fold.training_windows(window_rule);
+    let run = &request.out;
+    let config = RunConfig {
+        format: FORMAT,
+        star: StarConfig::published(request.variant),
+        training: request.training.clone(),
+        goals: request.goals.clone(),
+        data: TrainingData {
+            convention: dataset.convention(),
+            fold: fold.name().to_owned(),
+            window_rule,
+            windows: windows.len(),
+            walkers: windows.iter().map(Window::len).sum(),
+            sha256: digest(&windows),
+        },
+        keep_every: request.training.epochs.div_ceil(KEPT_EPOCHS),
+        commit: request.commit.clone(),
+        device: device.name().to_owned(),
+    };
+    run.claim(&config)?;
+    if run.is_trained() {
+        return Ok(());
+    }
+    if !run.experts().is_file() {
+        experts::save(&experts::library(&windows)?, &run.experts())?;
+    }
+    let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
+    let mut trainer = Trainer::new(network, windows, config.training.clone())?;
+    if run.optimizer().is_file() {
+        trainer.resume(&run.optimizer())?;
+    }
+    let mut epochs = run.metrics()?;
+    epochs.truncate(trainer.completed_epochs());
+    let mut saved = Instant::now();
+    while !trainer.is_finished() {
+        let step = trainer.step()?;
+        if let Some(epoch) = &step.finished_epoch {
+            epochs.push(epoch.clone());
+            if epoch.epoch % config.keep_every == 0 || trainer.is_finished() {
+                save_parameters(trainer.network().parameters(), &run.epoch(epoch.epoch))?;
+            }
+            run.write_metrics(&epochs)?;
+        }
+        let due = step.finished_epoch.is_some() || saved.elapsed() > SAVE_EVERY;
+        let stop = observe(&TrainingProgress {
+            steps: trainer.steps(),
+            step,
+        })
+        .is_break();
+        if due || stop {
+            trainer.save(&run.optimizer())?;
+            saved = Instant::now();
+        }
+        if stop && !trainer.is_finished() {
+            return Err(DdlError::Interrupted);
+        }
+    }
+    save_parameters(trainer.network().parameters(), &run.model())?;
+    Ok(())
+}
+
+/// Training uses every complete window of the convention.
+fn training_rule(convention: Convention) -> WindowRule {
+    match convention {
+        Convention::SocialGan => WindowRule::SocialGan { min_pedestrians: 1 },
+        _ => WindowRule::Complete,
+    }
+}
+
+/// SHA-256 of the windows' positions.
+fn digest(windows: &[Window]) -> String {
+    let mut hasher = Sha256::new();
+    for window in windows {
+        hasher.update(window.recording().as_bytes());
+        hasher.update(window.start_frame().to_le_bytes());
+        for i in 0..window.len() {
+            for coordinate in window.track(i).iter().flatten() {
+                hasher.update(coordinate.to_le_bytes());
+            }
+        }
+    }
+    hasher
+        .finalize()
+        .iter()
+        .fold(String::new(), |mut text, byte| {
+            let _ = write!(text, "{byte:02x}"); // writing to a string cannot fail
+            text
+        })
+}
