@@ -4,7 +4,7 @@ use crate::StarError;
 use crate::batch::SceneBatch;
 use crate::flow::Integrator;
 use crate::seed::{Stage, stream};
-use crate::star::StarNetwork;
+use crate::star::{NoiseInput, StarNetwork};
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use rand::RngExt as _;
 use rand_distr::StandardNormal;
@@ -17,8 +17,9 @@ const WALKERS_AT_ONCE: usize = 64;
 /// What the output layer is told besides the walkers' tokens.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Noise {
-    /// The mean of the noise, zero: one forecast a goal.
-    Mean,
+    /// None: the expectation over the noise, of the metric P for the variants with dynamics, of the
+    /// position for the others. One forecast a goal.
+    Expected,
     /// That many vectors from N(0, 1), seeded: as many hypotheses on one goal.
     Draws {
         /// Number of vectors.
@@ -88,7 +89,7 @@ impl StarNetwork {
         windows: &[Window],
         goals: &[Vec<Vec<Position>>],
         goal_count: usize,
-        noise: &Tensor,
+        noise: &NoiseInput,
         integrator: Integrator,
     ) -> Result<Vec<WindowRollout>, StarError> {
         let views: Vec<&Window> = windows.iter().collect();
@@ -133,24 +134,20 @@ impl StarNetwork {
             .collect())
     }
 
-    fn noise(&self, noise: Noise) -> Tensor {
-        let width = self.config().noise_width as usize;
-        let (count, values) = match noise {
-            Noise::Mean => (1, vec![0.0; width]),
-            Noise::Draws { count, seed } => {
-                let mut rng = stream(seed, Stage::Forecast, 0);
-                (
-                    count,
-                    (0..count * width)
-                        .map(|_| rng.sample(StandardNormal))
-                        .collect(),
-                )
-            }
+    fn noise(&self, noise: Noise) -> NoiseInput {
+        let Noise::Draws { count, seed } = noise else {
+            return NoiseInput::Expected;
         };
-        Tensor::from_slice(&values)
+        let width = self.config().noise_width as usize;
+        let mut rng = stream(seed, Stage::Forecast, 0);
+        let values: Vec<f64> = (0..count * width)
+            .map(|_| rng.sample(StandardNormal))
+            .collect();
+        let draws = Tensor::from_slice(&values)
             .reshape([count as i64, width as i64])
             .to_kind(self.kind())
-            .to_device(self.device())
+            .to_device(self.device());
+        NoiseInput::Draws(draws)
     }
 }
 

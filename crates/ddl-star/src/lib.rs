@@ -32,5 +32,5 @@ pub use layers::Mode;
 pub use loss::mean_squared_distance;
 pub use optimizer::Adam;
 pub use parameters::Parameters;
-pub use star::StarNetwork;
+pub use star::{NoiseInput, StarNetwork};
 pub use train::{EpochReport, StepReport, Trainer};

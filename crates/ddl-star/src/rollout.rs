@@ -3,7 +3,7 @@
 use crate::batch::SceneBatch;
 use crate::flow::{FlowConstants, Integrator, natural_gradient_step};
 use crate::layers::Mode;
-use crate::star::{GraphMemory, StarNetwork};
+use crate::star::{GraphMemory, NoiseInput, StarNetwork};
 use ddl_data::OBSERVED;
 use tch::{Kind, Tensor};
 
@@ -12,12 +12,12 @@ impl StarNetwork {
     ///
     /// # Shapes
     /// `batch` of T frames with neighbours of at least T - 1; `goals` `[P, 2]`; `noise`
-    /// `[1, noise]` -> `[T - 1, P, 2]`, the forecasts of frames 1..T.
+    /// one vector, or none -> `[T - 1, P, 2]`, the forecasts of frames 1..T.
     pub fn teacher_forced(
         &self,
         batch: &SceneBatch,
         goals: &Tensor,
-        noise: &Tensor,
+        noise: &NoiseInput,
         mode: Mode,
     ) -> Tensor {
         let steps = batch.positions.size()[0] - 1;
@@ -50,20 +50,20 @@ impl StarNetwork {
     /// each, or H = number of noise vectors when all share one goal (G = 1).
     ///
     /// # Shapes
-    /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` `[1 or H, noise]`
+    /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` 1 or H vectors, or none
     /// -> `[horizon, H, P, 2]`.
     pub fn roll_out(
         &self,
         batch: &SceneBatch,
         goals: &Tensor,
-        noise: &Tensor,
+        noise: &NoiseInput,
         horizon: usize,
         integrator: Integrator,
     ) -> Tensor {
         let mode = Mode::Evaluate;
         let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
         let last = OBSERVED as i64 - 1;
-        let hypotheses = goals.size()[0].max(noise.size()[0]);
+        let hypotheses = goals.size()[0].max(noise.count());
         let reference = self.reference(batch, goals);
         let spatial = self.spatial_tokens(
             &centre(batch, &observed),

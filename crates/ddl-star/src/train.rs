@@ -9,7 +9,7 @@ use crate::loss::mean_squared_distance;
 use crate::optimizer::Adam;
 use crate::schedule::Schedule;
 use crate::seed::{Stage, stream};
-use crate::star::StarNetwork;
+use crate::star::{NoiseInput, StarNetwork};
 use ddl_data::{WINDOW, Window};
 use rand::{Rng as _, RngExt as _};
 use rand_distr::StandardNormal;
@@ -161,7 +161,7 @@ impl Trainer {
     }
 
     /// Loss of a batch with the true ends as goals (the goal estimator is never used in training).
-    fn loss(&self, batch: &SceneBatch, noise: &Tensor) -> Result<Tensor, StarError> {
+    fn loss(&self, batch: &SceneBatch, noise: &NoiseInput) -> Result<Tensor, StarError> {
         let goals = batch.positions().f_get(WINDOW as i64 - 1)?;
         let forecast = self
             .network
@@ -190,15 +190,16 @@ impl Trainer {
     }
 
     /// The step's noise vector, shared by all walkers and frames; also seeds its dropout.
-    fn draw(&self, step: u64) -> Tensor {
+    fn draw(&self, step: u64) -> NoiseInput {
         let mut rng = stream(self.config.seed, Stage::Step, step);
         tch::manual_seed((rng.next_u64() >> 1).cast_signed());
         let width = self.network.config().noise_width as usize;
         let noise: Vec<f64> = (0..width).map(|_| rng.sample(StandardNormal)).collect();
-        Tensor::from_slice(&noise)
+        let noise = Tensor::from_slice(&noise)
             .unsqueeze(0)
             .to_kind(self.network.kind())
-            .to_device(self.network.device())
+            .to_device(self.network.device());
+        NoiseInput::Draws(noise)
     }
 
     fn require_finite(&self, quantity: &'static str, value: f64) -> Result<(), StarError> {

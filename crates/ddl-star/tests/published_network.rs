@@ -3,8 +3,8 @@
 
 use ddl_data::{PedestrianId, Window};
 use ddl_star::{
-    ComputeDevice, DeviceChoice, Integrator, Mode, SceneBatch, StarConfig, StarNetwork, Variant,
-    mean_squared_distance,
+    ComputeDevice, DeviceChoice, Integrator, Mode, NoiseInput, SceneBatch, StarConfig, StarNetwork,
+    Variant, mean_squared_distance,
 };
 use serde_json::Value;
 use tch::{Device, Kind, Tensor};
@@ -124,7 +124,7 @@ fn agrees(kind: Kind, tolerance: f64) {
     let network = reference.network(kind);
     let batch = reference.batch(kind);
     let walkers = batch.walkers() as i64;
-    let noise = reference.tensor("/noise", &[1, 16], kind);
+    let noise = NoiseInput::Draws(reference.tensor("/noise", &[1, 16], kind));
 
     let goal = reference.tensor("/true_goal", &[walkers, 2], kind);
     let forecast = network.teacher_forced(&batch, &goal, &noise, Mode::Evaluate);

@@ -1,13 +1,14 @@
 //! A model on the test windows of its fold, beside the baselines, under each protocol asked for.
 
 use crate::DdlError;
-use crate::goals::{EstimatedGoals, OracleGoals};
+use crate::goals;
 use crate::model::Ddl;
 use crate::published::Published;
 use crate::test_set::TestSet;
 use ddl_data::{Dataset, Window};
-use ddl_eval::baseline::{self, GoalSource, StraightLine};
-use ddl_eval::{Conditions, Forecast, Forecaster, Protocol, ResultRow, Scores};
+use ddl_eval::baseline::{self, GoalSource, StraightLine, WeightedGoals};
+use ddl_eval::{Conditions, Forecast, ForecastError, Forecaster, Protocol, ResultRow, Scores};
+use ddl_star::TrainingConfig;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -15,12 +16,26 @@ use std::ops::ControlFlow;
 const WALKERS_A_REPORT: usize = 128;
 /// Walkers of the test set on which the published protocol chooses its epoch, at most.
 const SELECTION_WALKERS: usize = 250;
+/// Seed of constant velocity with angular noise: the same in every run, so that runs agree.
+const NOISE_SEED: u64 = 1;
+
+/// Which windows to measure on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EvaluationSplit {
+    /// The scene left out of training.
+    Test,
+    /// The last part of the training recordings, kept out of training for choices to be made on.
+    Validation,
+}
 
 /// What to measure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EvaluationRequest {
     /// Under which protocols.
     pub protocols: Vec<Protocol>,
+    /// On which windows.
+    pub on: EvaluationSplit,
     /// On at least so many test walkers, a seeded part; on all when `None`.
     pub test_walkers: Option<usize>,
     /// Commit of the program, for the record.
@@ -57,8 +72,27 @@ pub fn evaluate(
         return Err(DdlError::run(model.run().path(), problem));
     }
     let fold = dataset.fold(&data.fold)?;
-    let test = TestSet::new(&fold, data.convention, request.test_walkers);
-    let total = test.walkers() * request.protocols.len();
+    let test = match request.on {
+        EvaluationSplit::Test => TestSet::new(&fold, data.convention, request.test_walkers),
+        EvaluationSplit::Validation if data.validation > 0.0 => TestSet::validation(
+            &fold,
+            data.window_rule,
+            data.validation,
+            request.test_walkers,
+        ),
+        EvaluationSplit::Validation => {
+            let problem = "kept nothing for validation; train it with --validation 0.2";
+            return Err(DdlError::run(model.run().path(), problem));
+        }
+    };
+    let passes = usize::from(request.protocols.contains(&Protocol::Published))
+        + usize::from(
+            request
+                .protocols
+                .iter()
+                .any(|protocol| !protocol.shows_future()),
+        );
+    let total = test.walkers() * passes;
     let mut measuring = Measuring {
         model,
         test: &test,
@@ -68,10 +102,18 @@ pub fn evaluate(
         total,
     };
     let mut rows = Vec::new();
-    for &protocol in &request.protocols {
-        rows.extend(measuring.protocol(protocol)?);
+    if request.protocols.contains(&Protocol::Published) {
+        rows.extend(measuring.published()?);
     }
+    rows.extend(measuring.honest()?);
     Ok(rows)
+}
+
+/// Forecasts of the model and straight lines to the same goals, one each a window.
+#[derive(Default)]
+struct Forecasts {
+    model: Vec<Forecast>,
+    lines: Vec<Forecast>,
 }
 
 struct Measuring<'a, O> {
@@ -84,16 +126,40 @@ struct Measuring<'a, O> {
 }
 
 impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
-    fn protocol(&mut self, protocol: Protocol) -> Result<Vec<ResultRow>, DdlError> {
-        match protocol {
-            Protocol::Published => self.published(),
-            Protocol::Fair | Protocol::Single => {
-                let selection = Some("last epoch".to_owned());
-                let mut rows = self.model_rows(protocol, selection, self.model)?;
-                rows.extend(self.baselines(protocol, &EstimatedGoals(self.model.estimator()))?);
-                Ok(rows)
-            }
+    /// `fair` and `single`: one set of forecasts serves both.
+    fn honest(&mut self) -> Result<Vec<ResultRow>, DdlError> {
+        let protocols: Vec<Protocol> = Protocol::ALL
+            .into_iter()
+            .filter(|p| !p.shows_future() && self.asked(*p))
+            .collect();
+        let Some(&first) = protocols.first() else {
+            return Ok(Vec::new());
+        };
+        let model = self.model;
+        let forecasts = self.forecast(first, |windows| {
+            let goals = goals::of_windows(model.estimator(), windows)?;
+            let lines = straight_lines("the estimated goals", windows, &goals::weighted(&goals)?)?;
+            Ok(Forecasts {
+                model: model.forecast_towards(windows, goals)?,
+                lines,
+            })
+        })?;
+        let mut rows = Vec::new();
+        for protocol in protocols {
+            let kept = |forecasts: &[Forecast]| -> Vec<Forecast> {
+                let single = protocol == Protocol::Single;
+                forecasts
+                    .iter()
+                    .map(|f| if single { f.single() } else { f.clone() })
+                    .collect()
+            };
+            let of_protocol = Forecasts {
+                model: kept(&forecasts.model),
+                lines: kept(&forecasts.lines),
+            };
+            rows.extend(self.rows(protocol, "last epoch", "the estimated goals", &of_protocol)?);
         }
+        Ok(rows)
     }
 
     fn published(&mut self) -> Result<Vec<ResultRow>, DdlError> {
@@ -111,23 +177,38 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             .collect();
         let model = self.model;
         let tick = || self.report(0, protocol);
-        let forecaster = Published::best_on_test(model, &estimator, &windows, tick)?;
+        let best = Published::best_on_test(model, &estimator, &windows, tick)?;
+        let goal = "the estimated goal nearest the TRUE end";
+        let forecasts = self.forecast(protocol, |windows| {
+            let goals = goals::nearest_true_end(&estimator, windows)?;
+            let certain: Vec<Vec<WeightedGoals>> = goals
+                .iter()
+                .map(|goals| {
+                    goals
+                        .iter()
+                        .map(|&goal| WeightedGoals::certain(goal))
+                        .collect()
+                })
+                .collect();
+            let lines = straight_lines(goal, windows, &certain)?;
+            Ok(Forecasts {
+                model: best.forecast_towards(windows, &goals)?,
+                lines,
+            })
+        })?;
         let selection = format!("best kept epoch on up to {SELECTION_WALKERS} TEST walkers");
-        let mut rows = self.model_rows(protocol, Some(selection), &forecaster)?;
-        rows.extend(self.baselines(protocol, &OracleGoals(&estimator))?);
-        Ok(rows)
+        self.rows(protocol, &selection, goal, &forecasts)
     }
 
-    /// One row a window rule; every window is forecast once.
-    fn model_rows(
+    /// Forecasts all windows, some at a time, showing their futures only where the protocol does.
+    fn forecast(
         &mut self,
         protocol: Protocol,
-        selection: Option<String>,
-        forecaster: &impl Forecaster,
-    ) -> Result<Vec<ResultRow>, DdlError> {
-        let mut forecasts: Vec<Forecast> = Vec::with_capacity(self.test.windows.len());
-        while forecasts.len() < self.test.windows.len() {
-            let rest = &self.test.windows[forecasts.len()..];
+        of: impl Fn(&[Window]) -> Result<Forecasts, ForecastError>,
+    ) -> Result<Forecasts, DdlError> {
+        let mut all = Forecasts::default();
+        while all.model.len() < self.test.windows.len() {
+            let rest = &self.test.windows[all.model.len()..];
             let mut walkers = 0;
             let count = rest
                 .iter()
@@ -136,90 +217,68 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                     walkers >= WALKERS_A_REPORT
                 })
                 .map_or(rest.len(), |last| last + 1);
-            forecasts.extend(protocol.forecast(forecaster, &rest[..count])?);
+            let some = of(&protocol.visible(&rest[..count]))?;
+            all.model.extend(some.model);
+            all.lines.extend(some.lines);
             self.report(rest[..count].iter().map(Window::len).sum(), protocol)?;
         }
-        let config = self.model.config();
-        let training = &config.training;
-        let conditions = Conditions {
-            variant: Some(config.star.variant.name().to_owned()),
-            seed: Some(training.seed),
-            epochs: Some(training.epochs),
-            selection,
-            device: self.model.device().name().to_owned(),
-            training_subset: training.walkers_per_epoch.map(|walkers| {
-                format!("about {walkers} walkers an epoch, going round a seeded order of all")
-            }),
-            ..self.conditions(protocol, &forecaster.name())
-        };
-        self.score(&conditions, &forecasts)
+        Ok(all)
     }
 
-    fn baselines(
+    /// Rows of the model, the straight lines and the baselines, under each window rule.
+    fn rows(
         &self,
         protocol: Protocol,
-        goals: &impl GoalSource,
+        selection: &str,
+        goal_name: &str,
+        forecasts: &Forecasts,
     ) -> Result<Vec<ResultRow>, DdlError> {
-        let line = StraightLine::to(goals);
-        let forecasts = protocol.forecast(&line, &self.test.windows)?;
-        let mut rows = self.score(&self.conditions(protocol, &line.name()), &forecasts)?;
-        for (rule, indices) in &self.test.rules {
-            let windows: Vec<Window> = indices
-                .iter()
-                .map(|&index| self.test.windows[index].clone())
-                .collect();
-            let conditions = Conditions {
-                window_rule: *rule,
-                ..self.conditions(protocol, "baseline")
-            };
-            rows.extend(baseline::measure(&conditions, &windows, NOISE_SEED)?);
-        }
-        Ok(rows)
-    }
-
-    fn score(
-        &self,
-        conditions: &Conditions,
-        forecasts: &[Forecast],
-    ) -> Result<Vec<ResultRow>, DdlError> {
+        let config = self.model.config();
+        let training = &config.training;
         let mut rows = Vec::new();
         for (rule, indices) in &self.test.rules {
             let windows: Vec<Window> = indices
                 .iter()
                 .map(|&index| self.test.windows[index].clone())
                 .collect();
-            let of_rule: Vec<Forecast> = indices
-                .iter()
-                .map(|&index| forecasts[index].clone())
-                .collect();
-            let scores = Scores::evaluate(&windows, &of_rule)?;
-            rows.push(ResultRow {
-                conditions: Conditions {
-                    window_rule: *rule,
-                    ..conditions.clone()
-                },
-                scores,
-            });
+            let plain = Conditions {
+                device: "cpu".to_owned(),
+                commit: self.request.commit.clone(),
+                test_subset: self.test.subset.clone(),
+                ..Conditions::new(
+                    config.data.convention,
+                    *rule,
+                    protocol,
+                    &*config.data.fold,
+                    "",
+                )
+            };
+            let of_model = Conditions {
+                forecaster: self.model.name(),
+                variant: Some(config.star.variant.name().to_owned()),
+                seed: Some(training.seed),
+                epochs: Some(training.epochs),
+                selection: Some(selection.to_owned()),
+                device: self.model.device().name().to_owned(),
+                training_subset: subset(training),
+                ..plain.clone()
+            };
+            let of_lines = Conditions {
+                forecaster: format!("straight line to {goal_name}"),
+                ..plain.clone()
+            };
+            for (conditions, all) in [(of_model, &forecasts.model), (of_lines, &forecasts.lines)] {
+                let of_rule: Vec<Forecast> = indices.iter().map(|&i| all[i].clone()).collect();
+                let scores = Scores::evaluate(&windows, &of_rule)?;
+                rows.push(ResultRow { conditions, scores });
+            }
+            rows.extend(baseline::measure(&plain, &windows, NOISE_SEED)?);
         }
         Ok(rows)
     }
 
-    fn conditions(&self, protocol: Protocol, forecaster: &str) -> Conditions {
-        let data = &self.model.config().data;
-        // every row is renamed to its own rule when it is scored
-        let rule = self.test.rules[0].0;
-        Conditions {
-            device: "cpu".to_owned(),
-            commit: self.request.commit.clone(),
-            test_subset: self.test.subset.clone(),
-            ..Conditions::new(
-                data.convention,
-                rule,
-                protocol,
-                data.fold.clone(),
-                forecaster,
-            )
-        }
+    fn asked(&self, protocol: Protocol) -> bool {
+        self.request.protocols.contains(&protocol)
     }
 
     fn report(&mut self, walkers: usize, protocol: Protocol) -> Result<(), DdlError> {
@@ -235,5 +294,38 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
     }
 }
 
-/// Seed of constant velocity with angular noise: the same in every run, so that runs agree.
-const NOISE_SEED: u64 = 1;
+/// How much of the training set an epoch sees, in words; `None` for all of it.
+fn subset(training: &TrainingConfig) -> Option<String> {
+    training.walkers_per_epoch.map(|walkers| {
+        format!("about {walkers} walkers an epoch, going round a seeded order of all")
+    })
+}
+
+/// Constant-speed lines to goals that are known already.
+fn straight_lines(
+    name: &'static str,
+    windows: &[Window],
+    goals: &[Vec<WeightedGoals>],
+) -> Result<Vec<Forecast>, ForecastError> {
+    windows
+        .iter()
+        .zip(goals)
+        .map(|(window, goals)| StraightLine::to(KnownGoals { name, goals }).forecast(window))
+        .collect()
+}
+
+/// The goals of one window.
+struct KnownGoals<'a> {
+    name: &'static str,
+    goals: &'a [WeightedGoals],
+}
+
+impl GoalSource for KnownGoals<'_> {
+    fn name(&self) -> String {
+        self.name.to_owned()
+    }
+
+    fn goals(&self, _window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
+        Ok(self.goals.to_vec())
+    }
+}

@@ -1,8 +1,8 @@
-//! Goals of whole windows: the estimator as the network and the baselines need it.
+//! Goals of whole windows, as the network and the straight lines need them.
 
 use ddl_data::{Position, Window};
 use ddl_eval::ForecastError;
-use ddl_eval::baseline::{GoalSource, WeightedGoals};
+use ddl_eval::baseline::WeightedGoals;
 use ddl_goal::{GoalEstimator, GoalSet};
 
 /// The goal sets of every pedestrian of every window.
@@ -19,12 +19,8 @@ pub(crate) fn of_windows(
     let needed = estimator.params().query().positions();
     let mut tracks: Vec<&[Position]> = Vec::new();
     for window in windows {
-        if window.track(0).len() < needed {
-            return Err(ForecastError::FutureMissing {
-                forecaster: "goal estimator".into(),
-                recording: window.recording().to_owned(),
-                start_frame: window.start_frame(),
-            });
+        if window.steps() < needed {
+            return Err(future_missing(window));
         }
         tracks.extend((0..window.len()).map(|i| &window.track(i)[..needed]));
     }
@@ -38,72 +34,37 @@ pub(crate) fn of_windows(
         .collect())
 }
 
-/// All estimated goals with their weights: what `fair` and `single` may use.
-#[derive(Debug)]
-pub(crate) struct EstimatedGoals<'a>(pub(crate) &'a GoalEstimator);
-
-impl GoalSource for EstimatedGoals<'_> {
-    fn name(&self) -> String {
-        "the estimated goals".into()
-    }
-
-    fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
-        of_windows(self.0, std::slice::from_ref(window))?
-            .into_iter()
-            .flatten()
-            .map(|set| {
-                Ok(WeightedGoals::new(
-                    set.goals().to_vec(),
-                    set.weights().to_vec(),
-                )?)
-            })
-            .collect()
-    }
+/// Goal sets as the evaluation's baselines take them.
+pub(crate) fn weighted(sets: &[Vec<GoalSet>]) -> Result<Vec<Vec<WeightedGoals>>, ForecastError> {
+    let one = |set: &GoalSet| WeightedGoals::new(set.goals().to_vec(), set.weights().to_vec());
+    sets.iter()
+        .map(|sets| Ok(sets.iter().map(one).collect::<Result<_, _>>()?))
+        .collect()
 }
 
-/// The one estimated goal nearest the TRUE end: the published protocol's oracle.
-#[derive(Debug)]
-pub(crate) struct OracleGoals<'a>(pub(crate) &'a GoalEstimator);
-
-impl OracleGoals<'_> {
-    /// One goal a pedestrian.
-    pub(crate) fn of_windows(
-        &self,
-        windows: &[Window],
-    ) -> Result<Vec<Vec<Position>>, ForecastError> {
-        let sets = of_windows(self.0, windows)?;
-        windows
-            .iter()
-            .zip(sets)
-            .map(|(window, sets)| {
-                let nearest = |(i, set): (usize, &GoalSet)| {
-                    window.end(i).map(|end| set.goals()[set.nearest(end)])
-                };
-                sets.iter()
-                    .enumerate()
-                    .map(nearest)
-                    .collect::<Option<_>>()
-                    .ok_or_else(|| ForecastError::FutureMissing {
-                        forecaster: self.name(),
-                        recording: window.recording().to_owned(),
-                        start_frame: window.start_frame(),
-                    })
-            })
-            .collect()
-    }
+/// The one estimated goal nearest the TRUE end, a pedestrian: the published protocol's oracle.
+pub(crate) fn nearest_true_end(
+    estimator: &GoalEstimator,
+    windows: &[Window],
+) -> Result<Vec<Vec<Position>>, ForecastError> {
+    let of_window = |(window, sets): (&Window, Vec<GoalSet>)| {
+        let nearest = |(i, set): (usize, &GoalSet)| {
+            let end = window.end(i).ok_or_else(|| future_missing(window))?;
+            Ok(set.goals()[set.nearest(end)])
+        };
+        sets.iter().enumerate().map(nearest).collect()
+    };
+    windows
+        .iter()
+        .zip(of_windows(estimator, windows)?)
+        .map(of_window)
+        .collect()
 }
 
-impl GoalSource for OracleGoals<'_> {
-    fn name(&self) -> String {
-        "the estimated goal nearest the TRUE end".into()
-    }
-
-    fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
-        let goals = self.of_windows(std::slice::from_ref(window))?;
-        Ok(goals
-            .into_iter()
-            .flatten()
-            .map(WeightedGoals::certain)
-            .collect())
+fn future_missing(window: &Window) -> ForecastError {
+    ForecastError::FutureMissing {
+        forecaster: "goal estimator of the published protocol".into(),
+        recording: window.recording().to_owned(),
+        start_frame: window.start_frame(),
     }
 }

@@ -22,7 +22,7 @@ pub use ddl_star as star;
 pub use ddl_eval::{Forecast, Forecaster, Protocol};
 pub use ddl_star::{DeviceChoice, Variant};
 pub use error::DdlError;
-pub use evaluation::{EvaluationProgress, EvaluationRequest, evaluate};
+pub use evaluation::{EvaluationProgress, EvaluationRequest, EvaluationSplit, evaluate};
 pub use evaluation_record::{is_evaluated, save_evaluation};
 pub use machine::{cuda_status, prepare};
 pub use model::Ddl;

@@ -115,18 +115,23 @@ impl Ddl {
         load_network(&self.config, self.device, &self.run.epoch(epoch))
     }
 
-    fn forecast_windows(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
+    /// One hypothesis a goal for every pedestrian, with the goal's weight; for the variant without
+    /// goals, one a noise vector, all equally likely.
+    pub(crate) fn forecast_towards(
+        &self,
+        windows: &[Window],
+        sets: Vec<Vec<GoalSet>>,
+    ) -> Result<Vec<Forecast>, ForecastError> {
         if !self.config.star.variant.uses_goal() {
             return self.forecast_without_goals(windows);
         }
-        let sets = goals::of_windows(&self.estimator, windows)?;
         let goals: Vec<Vec<Vec<Position>>> = sets
             .iter()
             .map(|sets| sets.iter().map(|set| set.goals().to_vec()).collect())
             .collect();
         let rollouts = self
             .network
-            .forecast_windows(windows, &goals, Noise::Mean, Integrator::StableEuler)
+            .forecast_windows(windows, &goals, Noise::Expected, Integrator::StableEuler)
             .map_err(|error| ForecastError::model(self.name(), error))?;
         rollouts
             .into_iter()
@@ -165,13 +170,14 @@ impl Forecaster for Ddl {
     }
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
-        let mut forecasts = self.forecast_windows(std::slice::from_ref(window))?;
+        let mut forecasts = self.forecast_all(std::slice::from_ref(window))?;
         // one window in, one forecast out
         Ok(forecasts.remove(0))
     }
 
     fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
-        self.forecast_windows(windows)
+        let goals = goals::of_windows(&self.estimator, windows)?;
+        self.forecast_towards(windows, goals)
     }
 }
 

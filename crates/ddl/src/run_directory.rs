@@ -74,6 +74,8 @@ pub struct TrainingData {
     pub fold: String,
     /// Rule that cut the training windows.
     pub window_rule: WindowRule,
+    /// Share of the training recordings' time, at their ends, kept for validation; 0 for none.
+    pub validation: f64,
     /// Training windows.
     pub windows: usize,
     /// Walkers in them.

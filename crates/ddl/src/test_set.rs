@@ -1,4 +1,5 @@
-//! The windows a fold is tested on: under the headline rule, and under the one printed beside it.
+//! The windows a model is measured on: the test windows of its fold under the headline rule and the
+//! one printed beside it, or the validation part of its training recordings.
 
 use ddl_data::{Convention, Fold, PedestrianId, Window, WindowRule};
 use rand::{RngExt as _, SeedableRng as _};
@@ -46,14 +47,43 @@ impl TestSet {
             rules.push((rule, indices));
         }
         rules.reverse();
-        let all = Self {
+        Self {
             windows,
             rules,
             subset: None,
-        };
+        }
+        .at_most(walkers)
+    }
+
+    /// The last part of the fold's training recordings, on which choices may be made.
+    pub(crate) fn validation(
+        fold: &Fold<'_>,
+        rule: WindowRule,
+        fraction: f64,
+        walkers: Option<usize>,
+    ) -> Self {
+        let windows = fold.training_split(rule, fraction).validation;
+        let rules = vec![(rule, (0..windows.len()).collect())];
+        let part = Self {
+            windows,
+            rules,
+            subset: None,
+        }
+        .at_most(walkers);
+        let name = format!("validation: the last {fraction} of the TRAINING recordings");
+        let subset = part
+            .subset
+            .map_or(name.clone(), |subset| format!("{name}; {subset}"));
+        Self {
+            subset: Some(subset),
+            ..part
+        }
+    }
+
+    fn at_most(self, walkers: Option<usize>) -> Self {
         match walkers {
-            Some(walkers) if all.walkers() > walkers => all.part(walkers),
-            _ => all,
+            Some(walkers) if self.walkers() > walkers => self.part(walkers),
+            _ => self,
         }
     }
 

@@ -28,6 +28,8 @@ pub struct TrainingRequest {
     pub variant: Variant,
     /// How to train.
     pub training: TrainingConfig,
+    /// Share of the training recordings' time, at their ends, kept for validation; 0 for none.
+    pub validation: f64,
     /// The goal estimator that goes with the network.
     pub goals: GoalEstimatorParams,
     /// The run's directory.
@@ -63,7 +65,12 @@ pub fn train(
     let device = ComputeDevice::open(request.device)?;
     let fold = dataset.fold(&request.fold)?;
     let window_rule = training_rule(dataset.convention());
-    let windows = fold.training_windows(window_rule);
+    let windows = if request.validation > 0.0 {
+        fold.training_split(window_rule, request.validation)
+            .training
+    } else {
+        fold.training_windows(window_rule)
+    };
     let run = &request.out;
     let config = RunConfig {
         format: FORMAT,
@@ -74,6 +81,7 @@ pub fn train(
             convention: dataset.convention(),
             fold: fold.name().to_owned(),
             window_rule,
+            validation: request.validation,
             windows: windows.len(),
             walkers: windows.iter().map(Window::len).sum(),
             sha256: digest(&windows),
@@ -125,7 +133,7 @@ pub fn train(
 }
 
 /// Training uses every complete window of the convention.
-fn training_rule(convention: Convention) -> WindowRule {
+pub(crate) fn training_rule(convention: Convention) -> WindowRule {
     match convention {
         Convention::SocialGan => WindowRule::SocialGan { min_pedestrians: 1 },
         _ => WindowRule::Complete,

@@ -5,7 +5,7 @@ use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use clap::Args;
 use ddl::eval::Report;
-use ddl::{Ddl, EvaluationRequest, Protocol};
+use ddl::{Ddl, EvaluationRequest, EvaluationSplit, Protocol};
 use std::path::PathBuf;
 
 /// Measure a trained model on the scene left out of its training, beside the baselines
@@ -23,6 +23,9 @@ pub(crate) struct Evaluate {
     /// published, fair or single; may be repeated
     #[arg(long = "protocol", default_values = ["fair", "single"])]
     protocols: Vec<Protocol>,
+    /// Measure on the validation part of the training recordings instead of the test scene
+    #[arg(long)]
+    validation: bool,
     /// Measure a seeded part of the test windows with at least so many walkers [default: all]
     #[arg(long)]
     test_walkers: Option<usize>,
@@ -39,6 +42,11 @@ impl Evaluate {
         let model = Ddl::load(&self.model, self.machine.device)?;
         let request = EvaluationRequest {
             protocols: self.protocols,
+            on: if self.validation {
+                EvaluationSplit::Validation
+            } else {
+                EvaluationSplit::Test
+            },
             test_walkers: self.test_walkers,
             commit: self.telling.commit,
         };

@@ -35,6 +35,12 @@ pub(crate) struct Train {
     /// Walkers an epoch, going round the training set [default: all]
     #[arg(long)]
     train_walkers: Option<usize>,
+    /// Walkers a batch; the published 256 learns slowly on few epochs
+    #[arg(long, default_value_t = 256)]
+    batch_walkers: usize,
+    /// Share of the training recordings' time, at their ends, kept for validation
+    #[arg(long, default_value_t = 0.0)]
+    validation: f64,
     /// Directory of the run
     #[arg(long)]
     out: PathBuf,
@@ -55,9 +61,11 @@ impl Train {
             training: TrainingConfig {
                 epochs: self.epochs,
                 walkers_per_epoch: self.train_walkers,
+                batch_walkers: self.batch_walkers,
                 seed: self.seed,
                 ..TrainingConfig::default()
             },
+            validation: self.validation,
             goals: GoalEstimatorParams::default().seed(self.seed),
             out: RunDirectory::new(self.out),
             device: self.machine.device,

@@ -1,0 +1,199 @@
+//! Everybody goes on as before.
+
+use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use crate::{Forecast, Forecaster, error::ForecastError};
+
+/// Samples of the noisy variant.
+const SAMPLES: usize = 20;
+/// Standard deviation of the noisy variant's angle, degrees.
+const NOISE_DEG: f64 = 25.0;
+
+/// Constant velocity: `p(8 + t) = p(8) + t v`, with v in metres a frame.
+///
+/// With one hypothesis it is hard to beat, which a best-of-20 table hides; print it beside every model.
+///
+/// # References
+/// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion
+/// prediction", RA-L 2020.
+///
+/// # Examples
+/// ```
+/// use ddl_data::{PedestrianId, Window};
+/// use ddl_eval::{Forecaster, baseline::ConstantVelocity};
+/// let walks = (0..8).map(|t| [0.5 * f64::from(t), 1.0]).collect();
+/// let window = Window::new("corridor", 0, 10, vec![PedestrianId(7)], vec![walks])?;
+/// let forecast = ConstantVelocity::last_step().forecast(&window)?;
+/// assert_eq!(forecast.hypothesis(0, 0)[0], [4.0, 1.0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ConstantVelocity(Variant);
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Variant {
+    LastStep,
+    MeanObserved,
+    AngularNoise { seed: u64 },
+}
+
+impl ConstantVelocity {
+    /// v is the last observed step, `p(8) - p(7)`.
+    #[must_use]
+    pub fn last_step() -> Self {
+        Self(Variant::LastStep)
+    }
+
+    /// v is the mean of the 7 observed steps, `(p(8) - p(1)) / 7`.
+    #[must_use]
+    pub fn mean_observed() -> Self {
+        Self(Variant::MeanObserved)
+    }
+
+    /// Twenty hypotheses of equal weight: the last observed step turned by angles drawn from
+    /// N(0, (25 degrees)^2), independently for every pedestrian and sample.
+    ///
+    /// The noise of a window depends on the seed, its recording and its first frame alone, not on the
+    /// order in which windows are forecast.
+    #[must_use]
+    pub fn angular_noise(seed: u64) -> Self {
+        Self(Variant::AngularNoise { seed })
+    }
+
+    fn velocity(self, observed: &[Position]) -> Position {
+        let back = if self.0 == Variant::MeanObserved {
+            OBSERVED - 1
+        } else {
+            1
+        };
+        let (from, to) = (observed[OBSERVED - 1 - back], observed[OBSERVED - 1]);
+        [
+            (to[0] - from[0]) / back as f64,
+            (to[1] - from[1]) / back as f64,
+        ]
+    }
+}
+
+impl Forecaster for ConstantVelocity {
+    fn name(&self) -> String {
+        match self.0 {
+            Variant::LastStep => "constant velocity (last step)".to_owned(),
+            Variant::MeanObserved => "constant velocity (mean observed)".to_owned(),
+            Variant::AngularNoise { .. } => {
+                format!("constant velocity ({NOISE_DEG} degree angular noise)")
+            }
+        }
+    }
+
+    fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
+        let mut angles: Box<dyn FnMut() -> f64> = match self.0 {
+            Variant::AngularNoise { seed } => {
+                let mut random = stream(seed, window);
+                Box::new(move || {
+                    let normal: f64 = StandardNormal.sample(&mut random);
+                    (NOISE_DEG * normal).to_radians()
+                })
+            }
+            _ => Box::new(|| 0.0),
+        };
+        let samples = if matches!(self.0, Variant::AngularNoise { .. }) {
+            SAMPLES
+        } else {
+            1
+        };
+        let mut positions = Vec::with_capacity(window.len() * samples * HORIZON);
+        for i in 0..window.len() {
+            let observed = window.observed(i);
+            let (start, velocity) = (observed[OBSERVED - 1], self.velocity(observed));
+            for _ in 0..samples {
+                let (sin, cos) = angles().sin_cos();
+                let v = [
+                    cos * velocity[0] - sin * velocity[1],
+                    sin * velocity[0] + cos * velocity[1],
+                ];
+                positions.extend((1..=HORIZON).map(|t| {
+                    let t = t as f64;
+                    [start[0] + t * v[0], start[1] + t * v[1]]
+                }));
+            }
+        }
+        Ok(Forecast::equally_likely(window.len(), samples, positions)?)
+    }
+}
+
+/// One stream a window: the seed and the recording's name give the key, the first frame the stream.
+fn stream(seed: u64, window: &Window) -> ChaCha8Rng {
+    // FNV-1a, so that the key does not depend on the standard library's hasher.
+    let key = window
+        .recording()
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        });
+    let mut random = ChaCha8Rng::seed_from_u64(seed ^ key);
+    random.set_stream(window.start_frame().cast_unsigned());
+    random
+}
+
+#[cfg(test)]
+#[allow(
+    clippy::float_cmp,
+    reason = "sums and products of small integers are exact"
+)]
+mod tests {
+    use approx::assert_relative_eq;
+    use ddl_data::PedestrianId;
+
+    use super::*;
+
+    /// Steps of 1 m along x, but the last one is 2 m along y.
+    fn turning() -> Window {
+        let mut track: Vec<_> = (0..7).map(|t| [f64::from(t), 0.0]).collect();
+        track.push([6.0, 2.0]);
+        Window::new("corridor", 30, 10, vec![PedestrianId(1)], vec![track]).unwrap()
+    }
+
+    #[test]
+    fn the_last_step_goes_on() {
+        let forecast = ConstantVelocity::last_step().forecast(&turning()).unwrap();
+        assert_eq!(forecast.hypothesis(0, 0)[0], [6.0, 4.0]);
+        assert_eq!(forecast.hypothesis(0, 0)[11], [6.0, 26.0]);
+    }
+
+    #[test]
+    fn the_mean_step_goes_on() {
+        let forecast = ConstantVelocity::mean_observed()
+            .forecast(&turning())
+            .unwrap();
+        let last = forecast.hypothesis(0, 0)[6];
+        assert_relative_eq!(last[0], 12.0, epsilon = 1e-12);
+        assert_relative_eq!(last[1], 4.0, epsilon = 1e-12);
+    }
+
+    #[test]
+    fn noise_turns_but_keeps_the_speed_and_the_seed_decides() {
+        let noisy = ConstantVelocity::angular_noise(3);
+        let forecast = noisy.forecast(&turning()).unwrap();
+        assert_eq!(forecast.hypotheses(), 20);
+        let mut headings = Vec::new();
+        for k in 0..20 {
+            let end = forecast.hypothesis(0, k)[11];
+            let (dx, dy) = (end[0] - 6.0, end[1] - 2.0);
+            assert_relative_eq!(dx.hypot(dy), 24.0, epsilon = 1e-9);
+            headings.push(dy.atan2(dx).to_degrees() - 90.0);
+        }
+        let rms = (headings.iter().map(|h| h * h).sum::<f64>() / 20.0).sqrt();
+        // 20 draws: the root mean square of N(0, 25^2) lies in this range with 99.9 % probability.
+        assert!((12.0..40.0).contains(&rms), "{rms}");
+        assert_eq!(forecast, noisy.forecast(&turning()).unwrap());
+        assert_ne!(
+            forecast,
+            ConstantVelocity::angular_noise(4)
+                .forecast(&turning())
+                .unwrap()
+        );
+    }
+}

@@ -1,0 +1,53 @@
+//! Forecasters without a model: what every result must be read against.
+
+mod constant_velocity;
+mod straight_line;
+
+use ddl_data::Window;
+
+pub use constant_velocity::ConstantVelocity;
+pub use straight_line::{GoalSource, StraightLine, TrueEnd, WeightedGoals};
+
+use crate::{Conditions, Forecaster, MeasureError, Protocol, ResultRow};
+
+/// Measures the baselines that a protocol admits on the windows of one fold.
+///
+/// These are constant velocity (last step, mean observed), with angular noise where the protocol
+/// allows several hypotheses, and the straight line to the TRUE end where it shows the future. Of the
+/// `conditions` the fold, convention, window rule, protocol, test subset and commit are kept.
+///
+/// # Errors
+/// The windows cannot be scored.
+pub fn measure(
+    conditions: &Conditions,
+    windows: &[Window],
+    noise_seed: u64,
+) -> Result<Vec<ResultRow>, MeasureError> {
+    let row = |forecaster: &dyn Forecaster, seed| {
+        let conditions = Conditions {
+            forecaster: forecaster.name(),
+            variant: None,
+            seed,
+            epochs: None,
+            selection: None,
+            device: "cpu".to_owned(),
+            training_subset: None,
+            ..conditions.clone()
+        };
+        ResultRow::measure(conditions, forecaster, windows)
+    };
+    let mut rows = vec![
+        row(&ConstantVelocity::last_step(), None)?,
+        row(&ConstantVelocity::mean_observed(), None)?,
+    ];
+    if conditions.protocol != Protocol::Single {
+        rows.push(row(
+            &ConstantVelocity::angular_noise(noise_seed),
+            Some(noise_seed),
+        )?);
+    }
+    if conditions.protocol.shows_future() {
+        rows.push(row(&StraightLine::to(TrueEnd), None)?);
+    }
+    Ok(rows)
+}

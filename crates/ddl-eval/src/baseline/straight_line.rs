@@ -1,0 +1,260 @@
+//! Straight to the goal: what a goal estimator is worth without any model behind it.
+
+use ddl_data::{HORIZON, OBSERVED, Position, Window};
+
+use crate::{
+    Forecast, Forecaster,
+    error::{ForecastError, ForecastShapeError},
+};
+
+/// Where a pedestrian may be going, metres, and how likely each place is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeightedGoals {
+    goals: Vec<Position>,
+    weights: Vec<f64>,
+}
+
+impl WeightedGoals {
+    /// Goals with their weights; whether these sum to 1 is checked when a forecast is made of them.
+    ///
+    /// # Errors
+    /// There is no goal, or not one weight a goal.
+    pub fn new(goals: Vec<Position>, weights: Vec<f64>) -> Result<Self, ForecastShapeError> {
+        if goals.is_empty() {
+            return Err(ForecastShapeError::Empty {
+                pedestrians: 1,
+                hypotheses: 0,
+            });
+        }
+        if goals.len() != weights.len() {
+            return Err(ForecastShapeError::Length {
+                field: "weights",
+                layout: "one a goal",
+                expected: goals.len(),
+                found: weights.len(),
+            });
+        }
+        Ok(Self { goals, weights })
+    }
+
+    /// One certain goal.
+    #[must_use]
+    pub fn certain(goal: Position) -> Self {
+        Self {
+            goals: vec![goal],
+            weights: vec![1.0],
+        }
+    }
+
+    /// The goals, metres.
+    #[must_use]
+    pub fn goals(&self) -> &[Position] {
+        &self.goals
+    }
+
+    /// The weights, in the order of the goals.
+    #[must_use]
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+}
+
+/// Something that says where the people of a window may be going.
+pub trait GoalSource {
+    /// The name printed in tables, as in "straight line to NAME".
+    fn name(&self) -> String;
+
+    /// The goals of every pedestrian, in the order of the window; all sets of one size.
+    ///
+    /// # Errors
+    /// The goals cannot be estimated, or need a future that is not there.
+    fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError>;
+}
+
+impl<G: GoalSource + ?Sized> GoalSource for &G {
+    fn name(&self) -> String {
+        (**self).name()
+    }
+    fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
+        (**self).goals(window)
+    }
+}
+
+/// The last true position: an oracle, which only the protocol `published` lets see.
+///
+/// The straight line to it is the floor of any straight goal-directed model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TrueEnd;
+
+impl GoalSource for TrueEnd {
+    fn name(&self) -> String {
+        "the TRUE end".to_owned()
+    }
+
+    fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
+        let end = |i| window.end(i).map(WeightedGoals::certain);
+        (0..window.len())
+            .map(end)
+            .collect::<Option<_>>()
+            .ok_or_else(|| ForecastError::FutureMissing {
+                forecaster: self.name(),
+                recording: window.recording().to_owned(),
+                start_frame: window.start_frame(),
+            })
+    }
+}
+
+/// Constant speed straight to each goal, which is reached at the 12th frame:
+/// `p(8 + t) = p(8) + t/12 (g - p(8))`, one hypothesis a goal, with the goal's weight.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StraightLine<G>(G);
+
+impl<G: GoalSource> StraightLine<G> {
+    /// Straight lines to the goals of `source`.
+    #[must_use]
+    pub fn to(source: G) -> Self {
+        Self(source)
+    }
+}
+
+impl<G: GoalSource> Forecaster for StraightLine<G> {
+    fn name(&self) -> String {
+        format!("straight line to {}", self.0.name())
+    }
+
+    fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
+        let sets = self.0.goals(window)?;
+        let refuse = |problem| {
+            Err(ForecastError::Goals {
+                goal_source: self.0.name(),
+                problem,
+            })
+        };
+        if sets.len() != window.len() {
+            return refuse(format!(
+                "{} goal sets for {} pedestrians",
+                sets.len(),
+                window.len()
+            ));
+        }
+        let hypotheses = sets.first().map_or(0, |set| set.goals.len());
+        if let Some(odd) = sets.iter().find(|set| set.goals.len() != hypotheses) {
+            let found = odd.goals.len();
+            return refuse(format!(
+                "sets of {hypotheses} and of {found} goals in one window"
+            ));
+        }
+        let mut positions = Vec::with_capacity(window.len() * hypotheses * HORIZON);
+        for (i, set) in sets.iter().enumerate() {
+            let start = window.observed(i)[OBSERVED - 1];
+            for goal in &set.goals {
+                positions.extend((1..=HORIZON).map(|t| between(start, *goal, t)));
+            }
+        }
+        let weights = sets
+            .iter()
+            .flat_map(|set| set.weights.iter().copied())
+            .collect();
+        let goals = sets
+            .iter()
+            .flat_map(|set| set.goals.iter().copied())
+            .collect();
+        Ok(Forecast::new(
+            window.len(),
+            hypotheses,
+            positions,
+            weights,
+            Some(goals),
+        )?)
+    }
+}
+
+/// The position after `t` of 12 equal steps; the last one is the goal, bit by bit.
+fn between(start: Position, goal: Position, t: usize) -> Position {
+    if t == HORIZON {
+        return goal;
+    }
+    let share = t as f64 / HORIZON as f64;
+    [
+        start[0] + share * (goal[0] - start[0]),
+        start[1] + share * (goal[1] - start[1]),
+    ]
+}
+
+#[cfg(test)]
+#[allow(
+    clippy::float_cmp,
+    reason = "sums and products of small integers are exact"
+)]
+mod tests {
+    use super::*;
+    use crate::{Protocol, Scores, metric::fixture::window};
+
+    struct Corners;
+    impl GoalSource for Corners {
+        fn name(&self) -> String {
+            "two corners".to_owned()
+        }
+        fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
+            let corners = vec![[12.0, 0.0], [0.0, -24.0]];
+            Ok(vec![
+                WeightedGoals::new(corners, vec![0.25, 0.75])?;
+                window.len()
+            ])
+        }
+    }
+
+    #[test]
+    fn one_line_a_goal_with_its_weight() {
+        let window = window(&[[0.0, 0.0]], &[[1.0, 0.0]]);
+        let forecast = StraightLine::to(Corners).forecast(&window).unwrap();
+        assert_eq!(forecast.hypothesis(0, 0)[2], [3.0, 0.0]);
+        assert_eq!(forecast.hypothesis(0, 1)[11], [0.0, -24.0]);
+        assert_eq!(forecast.goal(0, 1), Some([0.0, -24.0]));
+        assert_eq!(forecast.most_likely(0), 1);
+    }
+
+    #[test]
+    fn straight_lines_are_stable() {
+        let windows = [window(&[[0.0, 0.0]], &[[1.0, 0.0]])];
+        let forecasts = Protocol::Fair
+            .forecast(&StraightLine::to(Corners), &windows)
+            .unwrap();
+        let scores = Scores::evaluate(&windows, &forecasts).unwrap();
+        let stability = scores.stability.unwrap();
+        assert!(stability.decreasing >= 1.0 && stability.end_distance <= 0.0);
+        assert!(stability.largest_turn < 1e-6);
+        // The walker ends at (12, 0), where the first corner is.
+        assert_eq!(scores.goal_fde, Some(0.0));
+    }
+
+    #[test]
+    fn the_oracle_works_only_where_the_future_is_shown() {
+        let windows = [window(&[[0.0, 0.0]], &[[1.0, 0.0]])];
+        let oracle = StraightLine::to(TrueEnd);
+        assert!(Protocol::Published.forecast(&oracle, &windows).is_ok());
+        for protocol in [Protocol::Fair, Protocol::Single] {
+            let error = protocol.forecast(&oracle, &windows).unwrap_err();
+            assert!(matches!(error, ForecastError::FutureMissing { .. }));
+        }
+    }
+
+    #[test]
+    fn goals_must_fit_the_window() {
+        struct TooFew;
+        impl GoalSource for TooFew {
+            fn name(&self) -> String {
+                "nothing".to_owned()
+            }
+            fn goals(&self, _: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
+                Ok(Vec::new())
+            }
+        }
+        let window = window(&[[0.0, 0.0]], &[[1.0, 0.0]]);
+        let error = StraightLine::to(TooFew).forecast(&window).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "goal source `nothing`: 0 goal sets for 1 pedestrians"
+        );
+    }
+}

@@ -1,0 +1,125 @@
+//! Everything a printed number must name, and the number with it.
+
+use ddl_data::{Convention, Window, WindowRule};
+use serde::{Deserialize, Serialize};
+
+use crate::{Forecaster, MeasureError, Protocol, Scores};
+
+/// How a result came about. Two results are comparable when their convention, window rule, protocol
+/// and test subset are the same; [`Report`](crate::Report) never puts others into one table.
+///
+/// # Examples
+/// ```
+/// use ddl_data::{Convention, Window, WindowRule};
+/// use ddl_eval::{Conditions, Protocol};
+/// let conditions = Conditions {
+///     seed: Some(1),
+///     epochs: Some(30),
+///     device: "cpu".to_owned(),
+///     ..Conditions::new(Convention::Star, WindowRule::Published, Protocol::Fair, "eth", "DDL")
+/// };
+/// assert_eq!(conditions.label(), "DDL");
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Conditions {
+    /// Data convention of the recordings.
+    pub convention: Convention,
+    /// Rule that cut the test windows.
+    pub window_rule: WindowRule,
+    /// Evaluation protocol.
+    pub protocol: Protocol,
+    /// Fold: the scene tested on.
+    pub fold: String,
+    /// Name of the forecaster.
+    pub forecaster: String,
+    /// Ablation variant: `full`, `no-goal-shift`, `no-dynamics` or `star`; `None` when it has none.
+    #[serde(default)]
+    pub variant: Option<String>,
+    /// Seed of the training and of the samples; `None` when nothing is random.
+    #[serde(default)]
+    pub seed: Option<u64>,
+    /// Training epochs; `None` when nothing is trained.
+    #[serde(default)]
+    pub epochs: Option<usize>,
+    /// How the epoch scored was chosen, such as `last epoch`.
+    #[serde(default)]
+    pub selection: Option<String>,
+    /// Device the forecasts were computed on, such as `cpu`; empty when unknown.
+    #[serde(default)]
+    pub device: String,
+    /// Commit of the project; empty when unknown.
+    #[serde(default)]
+    pub commit: String,
+    /// Rule by which a part of the training windows was used; `None` for all of them. The same text
+    /// for every fold, or the folds will not share a row.
+    #[serde(default)]
+    pub training_subset: Option<String>,
+    /// Rule by which a part of the test windows was scored; `None` for all of them. The same text for
+    /// every fold, or the folds will not share a table.
+    #[serde(default)]
+    pub test_subset: Option<String>,
+}
+
+impl Conditions {
+    /// Conditions of something that is neither trained nor random, on all test windows.
+    pub fn new(
+        convention: Convention,
+        window_rule: WindowRule,
+        protocol: Protocol,
+        fold: impl Into<String>,
+        forecaster: impl Into<String>,
+    ) -> Self {
+        Self {
+            convention,
+            window_rule,
+            protocol,
+            fold: fold.into(),
+            forecaster: forecaster.into(),
+            variant: None,
+            seed: None,
+            epochs: None,
+            selection: None,
+            device: String::new(),
+            commit: String::new(),
+            training_subset: None,
+            test_subset: None,
+        }
+    }
+
+    /// Forecaster and variant as printed in the first column; the variant `full` goes without saying.
+    #[must_use]
+    pub fn label(&self) -> String {
+        match self.variant.as_deref() {
+            None | Some("full") => self.forecaster.clone(),
+            Some(variant) => format!("{} ({variant})", self.forecaster),
+        }
+    }
+}
+
+/// One result: the scores of one forecaster on one fold under one protocol.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ResultRow {
+    /// How it came about.
+    pub conditions: Conditions,
+    /// The numbers.
+    pub scores: Scores,
+}
+
+impl ResultRow {
+    /// Forecasts the windows under the protocol of the conditions and scores the forecasts.
+    ///
+    /// The conditions are taken at their word: that the windows are the fold's, and were cut by the
+    /// rule named, is the caller's to see to.
+    ///
+    /// # Errors
+    /// The forecaster failed, broke the protocol, or its forecasts cannot be scored.
+    pub fn measure(
+        conditions: Conditions,
+        forecaster: &(impl Forecaster + ?Sized),
+        windows: &[Window],
+    ) -> Result<Self, MeasureError> {
+        let forecasts = conditions.protocol.forecast(forecaster, windows)?;
+        let scores = Scores::evaluate(windows, &forecasts)?;
+        Ok(Self { conditions, scores })
+    }
+}

@@ -1,0 +1,269 @@
+//! What can go wrong between a forecast and a printed table.
+
+use std::path::PathBuf;
+
+use crate::Protocol;
+
+/// The numbers given for a [`Forecast`](crate::Forecast) do not make one.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ForecastShapeError {
+    /// A forecast needs at least one pedestrian and one hypothesis.
+    #[error(
+        "a forecast needs at least one pedestrian and one hypothesis, found {pedestrians} x {hypotheses}"
+    )]
+    Empty {
+        /// Number of pedestrians given.
+        pedestrians: usize,
+        /// Number of hypotheses given.
+        hypotheses: usize,
+    },
+    /// A flat array has the wrong length.
+    #[error("`{field}` must hold {expected} entries ({layout}), found {found}")]
+    Length {
+        /// The array: `positions`, `weights` or `goals`.
+        field: &'static str,
+        /// What the entries are, in order.
+        layout: &'static str,
+        /// Entries needed.
+        expected: usize,
+        /// Entries given.
+        found: usize,
+    },
+    /// A coordinate or a weight is NaN or infinite.
+    #[error(
+        "`{field}` of pedestrian {pedestrian}, hypothesis {hypothesis} is not finite; \
+         a model that diverged must be reported as such, not scored"
+    )]
+    NotFinite {
+        /// The array: `positions`, `weights` or `goals`.
+        field: &'static str,
+        /// Row of the pedestrian in the window.
+        pedestrian: usize,
+        /// Index of the hypothesis.
+        hypothesis: usize,
+    },
+    /// A weight is below zero.
+    #[error("the weight of pedestrian {pedestrian}, hypothesis {hypothesis} is {weight}, below 0")]
+    NegativeWeight {
+        /// Row of the pedestrian in the window.
+        pedestrian: usize,
+        /// Index of the hypothesis.
+        hypothesis: usize,
+        /// The weight.
+        weight: f64,
+    },
+    /// The weights of a pedestrian do not sum to 1.
+    #[error(
+        "the weights of pedestrian {pedestrian} sum to {sum}, not to 1; divide them by their sum"
+    )]
+    NotNormalised {
+        /// Row of the pedestrian in the window.
+        pedestrian: usize,
+        /// Sum of the weights given.
+        sum: f64,
+    },
+}
+
+/// A forecaster could not make its forecast.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ForecastError {
+    /// The numbers produced do not make a forecast.
+    #[error(transparent)]
+    Shape(#[from] ForecastShapeError),
+    /// The forecaster reads the true future and the window has none.
+    #[error(
+        "`{forecaster}` reads the true future, which the window of `{recording}` starting at frame \
+         {start_frame} does not show (protocols `fair` and `single` never show it)"
+    )]
+    FutureMissing {
+        /// Name of the forecaster or goal source.
+        forecaster: String,
+        /// Name of the recording.
+        recording: String,
+        /// First frame of the window.
+        start_frame: i64,
+    },
+    /// A goal source gave goals for the wrong number of pedestrians, or sets of different sizes.
+    #[error("goal source `{goal_source}`: {problem}")]
+    Goals {
+        /// Name of the goal source.
+        goal_source: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// More hypotheses than the protocol allows.
+    #[error(
+        "protocol `{protocol}` allows {allowed} hypotheses a pedestrian, `{forecaster}` made {found}"
+    )]
+    TooManyHypotheses {
+        /// The protocol.
+        protocol: Protocol,
+        /// Name of the forecaster.
+        forecaster: String,
+        /// Hypotheses allowed.
+        allowed: usize,
+        /// Hypotheses made.
+        found: usize,
+    },
+    /// The model itself failed.
+    #[error("`{forecaster}` failed")]
+    Model {
+        /// Name of the forecaster.
+        forecaster: String,
+        /// The model's own error.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+}
+
+impl ForecastError {
+    /// Wraps the error of a model.
+    pub fn model(
+        forecaster: impl Into<String>,
+        source: impl Into<Box<dyn std::error::Error + Send + Sync>>,
+    ) -> Self {
+        Self::Model {
+            forecaster: forecaster.into(),
+            source: source.into(),
+        }
+    }
+}
+
+/// Forecasts cannot be scored.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EvaluationError {
+    /// Nothing to score.
+    #[error("there is no window to score; is the test set empty?")]
+    NoWindows,
+    /// Not one forecast a window.
+    #[error("{windows} windows but {forecasts} forecasts; there must be one forecast a window")]
+    Count {
+        /// Number of windows.
+        windows: usize,
+        /// Number of forecasts.
+        forecasts: usize,
+    },
+    /// A forecast is of other people than the window holds.
+    #[error(
+        "window of `{recording}` starting at frame {start_frame} holds {expected} pedestrians, its \
+         forecast {found}"
+    )]
+    Pedestrians {
+        /// Name of the recording.
+        recording: String,
+        /// First frame of the window.
+        start_frame: i64,
+        /// Pedestrians in the window.
+        expected: usize,
+        /// Pedestrians in the forecast.
+        found: usize,
+    },
+    /// The window has no future to compare with.
+    #[error(
+        "window of `{recording}` starting at frame {start_frame} has no true future: it can be \
+         forecast but not scored"
+    )]
+    NoFuture {
+        /// Name of the recording.
+        recording: String,
+        /// First frame of the window.
+        start_frame: i64,
+    },
+    /// Windows were forecast with different numbers of hypotheses.
+    #[error(
+        "window of `{recording}` starting at frame {start_frame} was forecast with {found} \
+         hypotheses, the windows before it with {expected}; the best of K needs one K"
+    )]
+    Hypotheses {
+        /// Name of the recording.
+        recording: String,
+        /// First frame of the window.
+        start_frame: i64,
+        /// Hypotheses of the first window.
+        expected: usize,
+        /// Hypotheses of this window.
+        found: usize,
+    },
+    /// Only some of the forecasts have goals.
+    #[error(
+        "window of `{recording}` starting at frame {start_frame}: either every forecast of a test \
+         set has goals or none has"
+    )]
+    GoalsOfSome {
+        /// Name of the recording.
+        recording: String,
+        /// First frame of the window.
+        start_frame: i64,
+    },
+}
+
+/// A forecaster could not be measured.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeasureError {
+    /// It could not forecast.
+    #[error(transparent)]
+    Forecast(#[from] ForecastError),
+    /// Its forecasts could not be scored.
+    #[error(transparent)]
+    Evaluation(#[from] EvaluationError),
+}
+
+/// A report cannot be put together, read or written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// Two rows name the same conditions and hold different numbers.
+    #[error(
+        "two results of `{row}` on fold `{fold}` name the same conditions but differ \
+         (minADE {first} and {second}); remove one of the runs, or give them different seeds"
+    )]
+    Conflict {
+        /// Forecaster and variant.
+        row: String,
+        /// Name of the fold.
+        fold: String,
+        /// minADE of the row that came first, metres.
+        first: f64,
+        /// minADE of the other row, metres.
+        second: f64,
+    },
+    /// The file format is newer than this crate.
+    #[error("the report has format {found}; this version reads format {supported}")]
+    Format {
+        /// Format read.
+        found: u32,
+        /// Format known.
+        supported: u32,
+    },
+    /// The text is not a report.
+    #[error("not a report: {0}")]
+    Json(#[from] serde_json::Error),
+    /// A file cannot be read or written.
+    #[error("{path}: {source}", path = path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        source: std::io::Error,
+    },
+}
+
+/// A figure cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FigureError {
+    /// The forecast is of other people than the window holds.
+    #[error("the window holds {expected} pedestrians, the forecast {found}")]
+    Pedestrians {
+        /// Pedestrians in the window.
+        expected: usize,
+        /// Pedestrians in the forecast.
+        found: usize,
+    },
+    /// The drawing library failed.
+    #[error("the drawing failed: {0}")]
+    Drawing(String),
+}

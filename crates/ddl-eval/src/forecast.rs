@@ -1,0 +1,246 @@
+//! A forecast of one window: several weighted futures for every pedestrian.
+
+use ddl_data::{HORIZON, Position};
+
+use crate::error::ForecastShapeError;
+
+/// How far the weights of a pedestrian may sum from 1.
+const WEIGHT_TOLERANCE: f64 = 1e-6;
+
+/// K weighted hypotheses of 12 positions for each of N pedestrians, in the order of the window.
+///
+/// Frames are 0.4 s apart; the first is the one after the last observed frame. Hypothesis `k` of
+/// every pedestrian together is one joint future of the scene, which is what the joint metrics score.
+///
+/// # Shapes
+/// positions `[N][K][12]` in metres, weights `[N][K]` (sum 1 a pedestrian), goals `[N][K]` in metres:
+/// the point hypothesis `k` is meant to end at, when the model has such a notion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Forecast {
+    pedestrians: usize,
+    hypotheses: usize,
+    positions: Vec<Position>,
+    weights: Vec<f64>,
+    goals: Option<Vec<Position>>,
+}
+
+impl Forecast {
+    /// A forecast from flat arrays; the layout is pedestrian, hypothesis, frame.
+    ///
+    /// # Errors
+    /// An array has the wrong length, a number is not finite, a weight is negative, or the weights
+    /// of a pedestrian do not sum to 1 within 1e-6.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_eval::Forecast;
+    /// let walks_along_x: Vec<_> = (1..=12).map(|t| [0.5 * f64::from(t), 0.0]).collect();
+    /// let forecast = Forecast::new(1, 1, walks_along_x, vec![1.0], None)?;
+    /// assert_eq!(forecast.hypothesis(0, 0)[11], [6.0, 0.0]);
+    /// # Ok::<(), ddl_eval::ForecastShapeError>(())
+    /// ```
+    pub fn new(
+        pedestrians: usize,
+        hypotheses: usize,
+        positions: Vec<Position>,
+        weights: Vec<f64>,
+        goals: Option<Vec<Position>>,
+    ) -> Result<Self, ForecastShapeError> {
+        if pedestrians == 0 || hypotheses == 0 {
+            return Err(ForecastShapeError::Empty {
+                pedestrians,
+                hypotheses,
+            });
+        }
+        let pairs = pedestrians * hypotheses;
+        check_length(
+            "positions",
+            "pedestrian, hypothesis, frame",
+            pairs * HORIZON,
+            positions.len(),
+        )?;
+        check_length("weights", "pedestrian, hypothesis", pairs, weights.len())?;
+        check_finite("positions", &positions, HORIZON, hypotheses)?;
+        check_weights(&weights, hypotheses)?;
+        if let Some(goals) = &goals {
+            check_length("goals", "pedestrian, hypothesis", pairs, goals.len())?;
+            check_finite("goals", goals, 1, hypotheses)?;
+        }
+        Ok(Self {
+            pedestrians,
+            hypotheses,
+            positions,
+            weights,
+            goals,
+        })
+    }
+
+    /// A forecast whose hypotheses all have the weight 1/K.
+    ///
+    /// # Errors
+    /// As [`Forecast::new`].
+    pub fn equally_likely(
+        pedestrians: usize,
+        hypotheses: usize,
+        positions: Vec<Position>,
+    ) -> Result<Self, ForecastShapeError> {
+        let weights = vec![1.0 / hypotheses.max(1) as f64; pedestrians * hypotheses];
+        Self::new(pedestrians, hypotheses, positions, weights, None)
+    }
+
+    /// Number of pedestrians, N.
+    #[must_use]
+    pub fn pedestrians(&self) -> usize {
+        self.pedestrians
+    }
+
+    /// Number of hypotheses of each pedestrian, K.
+    #[must_use]
+    pub fn hypotheses(&self) -> usize {
+        self.hypotheses
+    }
+
+    /// The 12 positions of hypothesis `k` of pedestrian `i`, metres.
+    ///
+    /// # Panics
+    /// When `i` or `k` is out of range.
+    #[must_use]
+    pub fn hypothesis(&self, i: usize, k: usize) -> &[Position] {
+        let start = self.pair(i, k) * HORIZON;
+        &self.positions[start..start + HORIZON]
+    }
+
+    /// The weight of hypothesis `k` of pedestrian `i`, in [0, 1].
+    ///
+    /// # Panics
+    /// When `i` or `k` is out of range.
+    #[must_use]
+    pub fn weight(&self, i: usize, k: usize) -> f64 {
+        self.weights[self.pair(i, k)]
+    }
+
+    /// The goal of hypothesis `k` of pedestrian `i`, metres; `None` for forecasts without goals.
+    ///
+    /// # Panics
+    /// When `i` or `k` is out of range.
+    #[must_use]
+    pub fn goal(&self, i: usize, k: usize) -> Option<Position> {
+        let pair = self.pair(i, k);
+        self.goals.as_ref().map(|goals| goals[pair])
+    }
+
+    /// Whether every hypothesis names its goal.
+    #[must_use]
+    pub fn has_goals(&self) -> bool {
+        self.goals.is_some()
+    }
+
+    /// The hypothesis of greatest weight of pedestrian `i`; of equals, the first.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn most_likely(&self, i: usize) -> usize {
+        (1..self.hypotheses).fold(0, |best, k| {
+            if self.weight(i, k) > self.weight(i, best) {
+                k
+            } else {
+                best
+            }
+        })
+    }
+
+    /// The most likely hypothesis of each pedestrian alone, with the weight 1.
+    #[must_use]
+    pub fn single(&self) -> Self {
+        let best: Vec<usize> = (0..self.pedestrians).map(|i| self.most_likely(i)).collect();
+        let rows = || best.iter().enumerate();
+        Self {
+            pedestrians: self.pedestrians,
+            hypotheses: 1,
+            positions: rows()
+                .flat_map(|(i, &k)| self.hypothesis(i, k))
+                .copied()
+                .collect(),
+            weights: vec![1.0; self.pedestrians],
+            goals: rows().map(|(i, &k)| self.goal(i, k)).collect(),
+        }
+    }
+
+    fn pair(&self, i: usize, k: usize) -> usize {
+        assert!(
+            i < self.pedestrians && k < self.hypotheses,
+            "pedestrian {i}, hypothesis {k} asked of a forecast of {} x {}",
+            self.pedestrians,
+            self.hypotheses
+        );
+        i * self.hypotheses + k
+    }
+}
+
+fn check_length(
+    field: &'static str,
+    layout: &'static str,
+    expected: usize,
+    found: usize,
+) -> Result<(), ForecastShapeError> {
+    if expected == found {
+        return Ok(());
+    }
+    Err(ForecastShapeError::Length {
+        field,
+        layout,
+        expected,
+        found,
+    })
+}
+
+fn check_finite(
+    field: &'static str,
+    positions: &[Position],
+    per_pair: usize,
+    hypotheses: usize,
+) -> Result<(), ForecastShapeError> {
+    match positions
+        .iter()
+        .position(|p| !p.iter().all(|c| c.is_finite()))
+    {
+        None => Ok(()),
+        Some(at) => {
+            let pair = at / per_pair;
+            let (pedestrian, hypothesis) = (pair / hypotheses, pair % hypotheses);
+            Err(ForecastShapeError::NotFinite {
+                field,
+                pedestrian,
+                hypothesis,
+            })
+        }
+    }
+}
+
+fn check_weights(weights: &[f64], hypotheses: usize) -> Result<(), ForecastShapeError> {
+    for (pedestrian, row) in weights.chunks_exact(hypotheses).enumerate() {
+        for (hypothesis, &weight) in row.iter().enumerate() {
+            if !weight.is_finite() {
+                let field = "weights";
+                return Err(ForecastShapeError::NotFinite {
+                    field,
+                    pedestrian,
+                    hypothesis,
+                });
+            }
+            if weight < 0.0 {
+                return Err(ForecastShapeError::NegativeWeight {
+                    pedestrian,
+                    hypothesis,
+                    weight,
+                });
+            }
+        }
+        let sum: f64 = row.iter().sum();
+        if (sum - 1.0).abs() > WEIGHT_TOLERANCE {
+            return Err(ForecastShapeError::NotNormalised { pedestrian, sum });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,147 @@
+//! The leak test: does a forecast change when the future does?
+//!
+//! Under the protocols `fair` and `single` every forecast must stay bit-identical when any position
+//! after the last observed frame, of any pedestrian, is changed. [`Protocol::forecast`] guarantees it
+//! by cutting the future off; [`find`] checks the forecaster itself, which a user may call directly.
+//!
+//! [`Protocol::forecast`]: crate::Protocol::forecast
+
+use ddl_data::{OBSERVED, Position, WINDOW, Window};
+
+use crate::{Forecast, Forecaster, error::ForecastError};
+
+/// A change of the future that changed a forecast.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Leak {
+    /// What was changed in the window.
+    pub change: String,
+}
+
+/// Looks for a leak: forecasts the window as it is, without its future, and with futures changed one
+/// frame of one pedestrian at a time and all together. `None` when every forecast is bit-identical.
+///
+/// # Errors
+/// The forecaster failed, for instance because it needs the future: that is a leak by its own word.
+pub fn find(
+    forecaster: &(impl Forecaster + ?Sized),
+    window: &Window,
+) -> Result<Option<Leak>, ForecastError> {
+    let reference = bits(&forecaster.forecast(&window.without_future())?);
+    let leaks = |changed: &Window| -> Result<bool, ForecastError> {
+        Ok(bits(&forecaster.forecast(changed)?) != reference)
+    };
+    let found = |change: String| Ok(Some(Leak { change }));
+    if !window.has_future() {
+        return Ok(None);
+    }
+    if leaks(window)? {
+        return found("the future was shown at all".to_owned());
+    }
+    let everything =
+        window.map_positions(|_, frame, p| if frame < OBSERVED { p } else { moved(p) });
+    if leaks(&everything)? {
+        return found("every future position was moved".to_owned());
+    }
+    for pedestrian in 0..window.len() {
+        for frame in OBSERVED..WINDOW {
+            let one = window.map_positions(|i, t, p| {
+                if (i, t) == (pedestrian, frame) {
+                    moved(p)
+                } else {
+                    p
+                }
+            });
+            if leaks(&one)? {
+                return found(format!(
+                    "pedestrian {pedestrian} was moved at frame {}",
+                    frame + 1
+                ));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// Far enough for nothing to stay the same that depends on it.
+fn moved(p: Position) -> Position {
+    [17.0 - 3.0 * p[1], 5.0 + 2.0 * p[0]]
+}
+
+/// Every number of a forecast, bit by bit.
+fn bits(forecast: &Forecast) -> Vec<u64> {
+    let mut bits = vec![forecast.pedestrians() as u64, forecast.hypotheses() as u64];
+    for i in 0..forecast.pedestrians() {
+        for k in 0..forecast.hypotheses() {
+            bits.push(forecast.weight(i, k).to_bits());
+            let goal = forecast.goal(i, k);
+            for p in forecast.hypothesis(i, k).iter().chain(&goal) {
+                bits.extend(p.map(f64::to_bits));
+            }
+        }
+    }
+    bits
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        baseline::ConstantVelocity,
+        metric::fixture::{forecast, walk, window},
+    };
+
+    /// Reads one coordinate of one future frame of the last pedestrian, when it is there.
+    struct Peeks {
+        frame: usize,
+    }
+
+    impl Forecaster for Peeks {
+        fn name(&self) -> String {
+            "peeks".to_owned()
+        }
+
+        fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
+            let last = window.track(window.len() - 1);
+            // The future as it is looks like no future at all: only moving it shows the leak.
+            let seen = last.get(self.frame).map_or(0.0, |p| p[1]);
+            let step = [0.0, if seen > 0.0 { 1e-9 } else { 0.0 }];
+            Ok(forecast(
+                window.len(),
+                &vec![walk([0.0, 0.0], step); window.len()],
+            ))
+        }
+    }
+
+    #[test]
+    fn a_glimpse_of_one_frame_is_found() {
+        let still = [0.0, 0.0];
+        let window = window(&[still; 3], &[still; 3]);
+        for frame in OBSERVED..WINDOW {
+            assert!(
+                find(&Peeks { frame }, &window).unwrap().is_some(),
+                "frame {frame}"
+            );
+        }
+        assert_eq!(
+            find(
+                &Peeks {
+                    frame: OBSERVED - 1
+                },
+                &window
+            )
+            .unwrap(),
+            None
+        );
+    }
+
+    #[test]
+    fn baselines_do_not_leak() {
+        let window = window(&[[0.0, 0.0], [3.0, 1.0]], &[[0.5, 0.0], [0.0, 0.1]]);
+        for baseline in [
+            ConstantVelocity::last_step(),
+            ConstantVelocity::angular_noise(2),
+        ] {
+            assert_eq!(find(&baseline, &window).unwrap(), None);
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Table I of the DDL paper.
+
+use ddl_data::Convention::{SocialGan, Star};
+
+use super::{LiteratureRow, folds, pair};
+
+/// Table I of the DDL paper, as printed: ADE/FDE, best of 20. It mixes data conventions.
+pub const TABLE_ONE: [LiteratureRow; 11] = [
+    LiteratureRow {
+        method: "Social-STGCNN",
+        source: "Mohamed et al., CVPR 2020",
+        convention: Some(SocialGan),
+        remark: "",
+        folds: folds([
+            (0.64, 1.11),
+            (0.49, 0.85),
+            (0.44, 0.79),
+            (0.34, 0.53),
+            (0.30, 0.48),
+        ]),
+        mean: pair((0.44, 0.75)),
+    },
+    LiteratureRow {
+        method: "PECNet",
+        source: "Mangalam et al., ECCV 2020",
+        convention: Some(SocialGan),
+        remark: "",
+        folds: folds([
+            (0.54, 0.87),
+            (0.18, 0.24),
+            (0.35, 0.60),
+            (0.22, 0.39),
+            (0.17, 0.30),
+        ]),
+        mean: pair((0.29, 0.48)),
+    },
+    LiteratureRow {
+        method: "Constant velocity with noise",
+        source: "Schoeller et al., RA-L 2020",
+        convention: None,
+        remark: "windows of its own: also scores people who are not there for all 20 frames",
+        folds: folds([
+            (0.43, 0.80),
+            (0.19, 0.35),
+            (0.34, 0.71),
+            (0.24, 0.48),
+            (0.21, 0.45),
+        ]),
+        mean: pair((0.28, 0.56)),
+    },
+    LiteratureRow {
+        method: "STAR",
+        source: "Yu et al., ECCV 2020",
+        convention: Some(Star),
+        remark: "epoch chosen on the test set",
+        folds: folds([
+            (0.36, 0.65),
+            (0.17, 0.36),
+            (0.31, 0.62),
+            (0.26, 0.55),
+            (0.22, 0.46),
+        ]),
+        mean: pair((0.26, 0.53)),
+    },
+    LiteratureRow {
+        method: "Goal-GAN",
+        source: "Dendorfer et al., ACCV 2020",
+        convention: None,
+        remark: "convention not verified, presumably social-gan",
+        folds: folds([
+            (0.59, 1.18),
+            (0.19, 0.35),
+            (0.60, 1.19),
+            (0.43, 0.87),
+            (0.32, 0.65),
+        ]),
+        mean: pair((0.43, 0.85)),
+    },
+    LiteratureRow {
+        method: "AVGCN",
+        source: "Liu et al., ICRA 2021",
+        convention: None,
+        remark: "convention not verified, presumably social-gan",
+        folds: folds([
+            (0.62, 1.06),
+            (0.31, 0.58),
+            (0.55, 1.20),
+            (0.33, 0.70),
+            (0.27, 0.58),
+        ]),
+        mean: pair((0.42, 0.82)),
+    },
+    LiteratureRow {
+        method: "Social-Implicit",
+        source: "Mohamed et al., ECCV 2022",
+        convention: Some(SocialGan),
+        remark: "",
+        folds: folds([
+            (0.66, 1.44),
+            (0.20, 0.36),
+            (0.31, 0.60),
+            (0.25, 0.50),
+            (0.22, 0.43),
+        ]),
+        mean: pair((0.33, 0.67)),
+    },
+    LiteratureRow {
+        method: "GA-STT",
+        source: "Zhou et al., RA-L 2022",
+        convention: None,
+        remark: "convention not verified, presumably social-gan",
+        folds: folds([
+            (0.51, 0.89),
+            (0.22, 0.46),
+            (0.29, 0.63),
+            (0.25, 0.55),
+            (0.20, 0.44),
+        ]),
+        mean: pair((0.29, 0.59)),
+    },
+    LiteratureRow {
+        method: "SKGACN",
+        source: "Lv and Yuan, 2023",
+        convention: None,
+        remark: "convention not verified, presumably social-gan",
+        folds: folds([
+            (0.55, 0.83),
+            (0.30, 0.50),
+            (0.39, 0.75),
+            (0.30, 0.51),
+            (0.26, 0.45),
+        ]),
+        mean: pair((0.36, 0.61)),
+    },
+    LiteratureRow {
+        method: "FlowChain",
+        source: "Maeda and Ukita, ICCV 2023",
+        convention: None,
+        remark: "convention not verified, presumably social-gan",
+        folds: folds([
+            (0.55, 0.99),
+            (0.20, 0.35),
+            (0.29, 0.54),
+            (0.22, 0.40),
+            (0.20, 0.34),
+        ]),
+        mean: pair((0.29, 0.52)),
+    },
+    LiteratureRow {
+        method: "DDL",
+        source: "Wang, Zhi, Batista, Chandra, ICRA 2024",
+        convention: Some(Star),
+        remark: "protocol `published`: goal chosen with the true end, epoch chosen on the test set",
+        folds: folds([
+            (0.26, 0.50),
+            (0.15, 0.35),
+            (0.29, 0.58),
+            (0.16, 0.29),
+            (0.13, 0.22),
+        ]),
+        mean: pair((0.20, 0.39)),
+    },
+];

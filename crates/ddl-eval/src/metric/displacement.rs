@@ -1,0 +1,193 @@
+//! Average and final displacement errors, and their minima over the hypotheses.
+//!
+//! For one pedestrian with the true positions p(t), t = 1..T, and hypothesis k:
+//!
+//! ```text
+//! ADE_k = 1/T sum_t |p_k(t) - p(t)|        FDE_k = |p_k(T) - p(T)|        metres
+//! minADE_K = min_k ADE_k    minFDE_K = min_k FDE_k    FDE@minADE_K = FDE_k* with k* = argmin_k ADE_k
+//! ```
+//!
+//! The two minima are independent, which is how most of the literature reads "best of 20"; STAR's and
+//! DDL's code prints `FDE@minADE`, which is never smaller than `minFDE`.
+//!
+//! # References
+//! Pellegrini et al., "You'll never walk alone", ICCV 2009 (displacement errors); Gupta et al.,
+//! "Social GAN", CVPR 2018 (best of K); DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section IV.
+
+use ddl_data::Position;
+
+use crate::Scene;
+
+/// Euclidean distance of two positions, metres.
+#[must_use]
+pub fn distance(a: Position, b: Position) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// ADE: the mean distance of a forecast from the truth, metres.
+///
+/// # Panics
+/// When the two differ in length or are empty.
+///
+/// # Examples
+/// ```
+/// use ddl_eval::metric::displacement::average_displacement;
+/// let error = average_displacement(&[[0.0, 0.0], [3.0, 4.0]], &[[0.0, 0.0], [0.0, 0.0]]);
+/// assert_eq!(error, 2.5);
+/// ```
+#[must_use]
+pub fn average_displacement(forecast: &[Position], truth: &[Position]) -> f64 {
+    check(forecast, truth);
+    let sum: f64 = forecast
+        .iter()
+        .zip(truth)
+        .map(|(f, t)| distance(*f, *t))
+        .sum();
+    sum / truth.len() as f64
+}
+
+/// FDE: the distance of the last forecast position from the last true one, metres.
+///
+/// # Panics
+/// When the two differ in length or are empty.
+#[must_use]
+pub fn final_displacement(forecast: &[Position], truth: &[Position]) -> f64 {
+    check(forecast, truth);
+    distance(forecast[forecast.len() - 1], truth[truth.len() - 1])
+}
+
+fn check(forecast: &[Position], truth: &[Position]) {
+    assert!(
+        forecast.len() == truth.len() && !truth.is_empty(),
+        "a forecast of {} positions cannot be compared with {} true ones",
+        forecast.len(),
+        truth.len()
+    );
+}
+
+/// ADE and FDE of every hypothesis of every pedestrian of a scene.
+///
+/// # Shapes
+/// two tables `[N][K]`, metres.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DisplacementErrors {
+    hypotheses: usize,
+    ade: Vec<f64>,
+    fde: Vec<f64>,
+}
+
+impl DisplacementErrors {
+    /// Measures a scene.
+    #[must_use]
+    pub fn of(scene: &Scene<'_>) -> Self {
+        let hypotheses = scene.hypotheses();
+        let table = |error: fn(&[Position], &[Position]) -> f64| {
+            (0..scene.pedestrians())
+                .flat_map(|i| (0..hypotheses).map(move |k| (i, k)))
+                .map(|(i, k)| error(scene.forecast().hypothesis(i, k), scene.truth(i)))
+                .collect()
+        };
+        Self {
+            hypotheses,
+            ade: table(average_displacement),
+            fde: table(final_displacement),
+        }
+    }
+
+    /// Number of pedestrians, N.
+    #[must_use]
+    pub fn pedestrians(&self) -> usize {
+        self.ade.len() / self.hypotheses
+    }
+
+    /// Number of hypotheses, K.
+    #[must_use]
+    pub fn hypotheses(&self) -> usize {
+        self.hypotheses
+    }
+
+    /// ADE of each hypothesis of pedestrian `i`, metres.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn ade(&self, i: usize) -> &[f64] {
+        &self.ade[i * self.hypotheses..(i + 1) * self.hypotheses]
+    }
+
+    /// FDE of each hypothesis of pedestrian `i`, metres.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn fde(&self, i: usize) -> &[f64] {
+        &self.fde[i * self.hypotheses..(i + 1) * self.hypotheses]
+    }
+
+    /// minADE of pedestrian `i`, metres.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn min_ade(&self, i: usize) -> f64 {
+        self.ade(i).iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// minFDE of pedestrian `i`, metres: independent of [`min_ade`](Self::min_ade).
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn min_fde(&self, i: usize) -> f64 {
+        self.fde(i).iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// FDE of the hypothesis of least ADE of pedestrian `i` (of equals, the first), metres.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn fde_at_min_ade(&self, i: usize) -> f64 {
+        let ade = self.ade(i);
+        let best = (1..ade.len()).fold(0, |best, k| if ade[k] < ade[best] { k } else { best });
+        self.fde(i)[best]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::metric::fixture::{forecast, walk, window};
+
+    /// The truth walks 0.5 m a frame along x. Hypothesis 0 is 0.3 m aside all along (ADE 0.3, FDE
+    /// 0.3). Hypothesis 1 drifts by 0.1 m a frame (ADE 0.1 * 6.5 = 0.65, FDE 1.2). Hypothesis 2 is 1 m
+    /// aside and jumps to the true end (ADE 11/12, FDE 0).
+    #[test]
+    fn the_two_minima_are_independent() {
+        let window = window(&[[0.0, 0.0]], &[[0.5, 0.0]]);
+        let mut jumps = walk([0.0, 1.0], [0.5, 0.0]);
+        jumps[11] = [6.0, 0.0];
+        let hypotheses = [
+            walk([0.0, 0.3], [0.5, 0.0]),
+            walk([0.0, 0.0], [0.5, 0.1]),
+            jumps,
+        ];
+        let forecast = forecast(1, &hypotheses);
+        let errors = DisplacementErrors::of(&Scene::new(&window, &forecast).unwrap());
+        assert_relative_eq!(errors.ade(0)[0], 0.3, epsilon = 1e-12);
+        assert_relative_eq!(errors.ade(0)[1], 0.65, epsilon = 1e-12);
+        assert_relative_eq!(errors.fde(0)[1], 1.2, epsilon = 1e-12);
+        assert_relative_eq!(errors.ade(0)[2], 11.0 / 12.0, epsilon = 1e-12);
+        assert_relative_eq!(errors.min_ade(0), 0.3, epsilon = 1e-12);
+        assert_relative_eq!(errors.min_fde(0), 0.0, epsilon = 1e-12);
+        assert_relative_eq!(errors.fde_at_min_ade(0), 0.3, epsilon = 1e-12);
+    }
+
+    #[test]
+    #[should_panic(expected = "a forecast of 1 positions cannot be compared with 2 true ones")]
+    fn lengths_must_agree() {
+        let _ = average_displacement(&[[0.0, 0.0]], &[[0.0, 0.0], [1.0, 0.0]]);
+    }
+}

@@ -1,0 +1,64 @@
+//! Joint (scene-level) errors: one hypothesis index for everybody.
+//!
+//! ```text
+//! JADE = min_k 1/N sum_i ADE_{i,k}        JFDE = min_k 1/N sum_i FDE_{i,k}        metres
+//! ```
+//!
+//! Never smaller than the mean of the pedestrians' own minima: choosing one future for the whole
+//! scene is harder than choosing one for each person. It is a fair question only to models whose
+//! hypothesis `k` is one future of the scene; where the hypotheses of two people are unrelated (one
+//! goal each, say) JADE measures the order they happen to be listed in.
+//!
+//! # References
+//! Weng et al., "Joint Metrics Matter", ICCV 2023. Their averages are over scenes; here a scene counts
+//! with its number of pedestrians, so that JADE and minADE are means over the same people.
+
+use super::displacement::DisplacementErrors;
+
+/// JADE of a scene, metres.
+#[must_use]
+pub fn joint_ade(errors: &DisplacementErrors) -> f64 {
+    least_scene_mean(errors, DisplacementErrors::ade)
+}
+
+/// JFDE of a scene, metres; its hypothesis may differ from that of [`joint_ade`].
+#[must_use]
+pub fn joint_fde(errors: &DisplacementErrors) -> f64 {
+    least_scene_mean(errors, DisplacementErrors::fde)
+}
+
+fn least_scene_mean(
+    errors: &DisplacementErrors,
+    of: fn(&DisplacementErrors, usize) -> &[f64],
+) -> f64 {
+    let n = errors.pedestrians();
+    (0..errors.hypotheses())
+        .map(|k| (0..n).map(|i| of(errors, i)[k]).sum::<f64>() / n as f64)
+        .fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::{
+        Scene,
+        metric::fixture::{forecast, walk, window},
+    };
+
+    /// Hypothesis 0 is right about the first walker and 2 m off about the second, hypothesis 1 is 1 m
+    /// off about the first and right about the second: each walker's own minimum is 0, the scene's
+    /// best is hypothesis 1 with (1 + 0) / 2.
+    #[test]
+    fn one_index_serves_the_whole_scene() {
+        let step = [0.5, 0.0];
+        let window = window(&[[0.0, 0.0], [0.0, 9.0]], &[step, step]);
+        let walks = [[0.0, 0.0], [0.0, 1.0], [0.0, 11.0], [0.0, 9.0]].map(|at| walk(at, step));
+        let forecast = forecast(2, &walks);
+        let errors = DisplacementErrors::of(&Scene::new(&window, &forecast).unwrap());
+        assert_relative_eq!(errors.min_ade(0) + errors.min_ade(1), 0.0);
+        assert_relative_eq!(joint_ade(&errors), 0.5);
+        assert_relative_eq!(joint_fde(&errors), 0.5);
+    }
+}

@@ -1,0 +1,42 @@
+//! Misses: pedestrians whose end no hypothesis comes near.
+//!
+//! ```text
+//! miss_i = [ min_k FDE_{i,k} > 0.5 m ]        miss rate = mean of miss_i, in [0, 1]
+//! ```
+//!
+//! Benchmarks of cars use 2 m; at walking speed that would forgive almost everything.
+
+use super::displacement::DisplacementErrors;
+
+/// The distance beyond which an end counts as missed, metres.
+pub const MISS_DISTANCE: f64 = 0.5;
+
+/// Whether every hypothesis of pedestrian `i` ends farther than `threshold` metres from the truth.
+///
+/// # Panics
+/// When `i` is out of range.
+#[must_use]
+pub fn is_miss(errors: &DisplacementErrors, i: usize, threshold: f64) -> bool {
+    errors.min_fde(i) > threshold
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        Scene,
+        metric::fixture::{forecast, walk, window},
+    };
+
+    #[test]
+    fn one_hypothesis_within_the_distance_is_enough() {
+        let still = [0.0, 0.0];
+        let window = window(&[still, still], &[still, still]);
+        let walks = [[0.6, 0.0], [0.0, 0.5], [0.51, 0.0], [0.0, -0.7]].map(|at| walk(at, still));
+        let forecast = forecast(2, &walks);
+        let errors = DisplacementErrors::of(&Scene::new(&window, &forecast).unwrap());
+        assert!(!is_miss(&errors, 0, MISS_DISTANCE));
+        assert!(is_miss(&errors, 1, MISS_DISTANCE));
+        assert!(!is_miss(&errors, 1, 0.51));
+    }
+}

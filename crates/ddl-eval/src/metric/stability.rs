@@ -1,0 +1,183 @@
+//! Whether rollouts go to their goals: the promise of a stable system, checked on its output.
+//!
+//! Phi(t) = |p(t) - g| is the distance to the goal, the Lyapunov function of DDL (its potential),
+//! from the last observed position (t = 0) to the 12th forecast frame. For each rollout, that is each
+//! hypothesis of each pedestrian:
+//!
+//! ```text
+//! decreasing     Phi(t+1) < Phi(t) at every step t = 0..11, or both are at the goal (within 1 mm)
+//! end distance   Phi(12)                                                            metres
+//! largest turn   max_t angle between p(t+1) - p(t) and g - p(t)                     degrees, [0, 180]
+//! ```
+//!
+//! Steps shorter than 1 mm, and steps that start within 1 mm of the goal, have no direction and count
+//! as no turn. A turn of more than 90 degrees is a step away from the goal, as an Euler step that
+//! overshoots the goal causes one frame later.
+//!
+//! # References
+//! DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section III: v = -P grad Phi.
+
+use ddl_data::Position;
+use serde::{Deserialize, Serialize};
+
+use super::displacement::distance;
+use crate::Scene;
+
+/// Within this distance a walker is at the goal, and a shorter step has no direction; metres.
+pub const AT_GOAL: f64 = 1e-3;
+
+/// What one rollout does about its goal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RolloutStability {
+    /// Whether the distance to the goal decreases at every step.
+    pub decreasing: bool,
+    /// Distance to the goal at the last frame, metres.
+    pub end_distance: f64,
+    /// Largest angle between a step and the direction to the goal, degrees.
+    pub largest_turn: f64,
+}
+
+impl RolloutStability {
+    /// Judges the rollout `path`, which starts from `start`, against `goal`; all in metres.
+    #[must_use]
+    pub fn of(start: Position, path: &[Position], goal: Position) -> Self {
+        let mut result = Self {
+            decreasing: true,
+            end_distance: distance(start, goal),
+            largest_turn: 0.0,
+        };
+        let mut here = start;
+        for &next in path {
+            let (before, after) = (distance(here, goal), distance(next, goal));
+            result.decreasing &= after < before || before.max(after) <= AT_GOAL;
+            if before > AT_GOAL && distance(here, next) > AT_GOAL {
+                result.largest_turn = result.largest_turn.max(angle(here, next, goal));
+            }
+            result.end_distance = after;
+            here = next;
+        }
+        result
+    }
+}
+
+/// Angle between `next - here` and `goal - here`, degrees.
+fn angle(here: Position, next: Position, goal: Position) -> f64 {
+    let step = [next[0] - here[0], next[1] - here[1]];
+    let aim = [goal[0] - here[0], goal[1] - here[1]];
+    let cross = step[0] * aim[1] - step[1] * aim[0];
+    let dot = step[0] * aim[0] + step[1] * aim[1];
+    cross.abs().atan2(dot).to_degrees()
+}
+
+/// The rollouts of a test set, together.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StabilityScores {
+    /// Rollouts judged: hypotheses of all pedestrians.
+    pub rollouts: usize,
+    /// Share of rollouts whose distance to the goal decreases at every step, in [0, 1].
+    pub decreasing: f64,
+    /// Mean distance to the goal at the last frame, metres.
+    pub end_distance: f64,
+    /// Mean over the rollouts of the largest turn away from the goal direction, degrees.
+    pub largest_turn: f64,
+    /// Share of rollouts with a turn of more than 90 degrees, a step away from the goal, in [0, 1].
+    pub reversing: f64,
+}
+
+impl StabilityScores {
+    /// The mean of rollouts; `None` when there are none.
+    #[must_use]
+    pub fn mean(rollouts: &[RolloutStability]) -> Option<Self> {
+        if rollouts.is_empty() {
+            return None;
+        }
+        let n = rollouts.len() as f64;
+        let mean = |of: fn(&RolloutStability) -> f64| rollouts.iter().map(of).sum::<f64>() / n;
+        Some(Self {
+            rollouts: rollouts.len(),
+            decreasing: mean(|r| f64::from(u8::from(r.decreasing))),
+            end_distance: mean(|r| r.end_distance),
+            largest_turn: mean(|r| r.largest_turn),
+            reversing: mean(|r| f64::from(u8::from(r.largest_turn > 90.0))),
+        })
+    }
+}
+
+/// Judges every hypothesis of every pedestrian; empty when the forecast has no goals.
+#[must_use]
+pub fn rollouts(scene: &Scene<'_>) -> Vec<RolloutStability> {
+    let forecast = scene.forecast();
+    (0..scene.pedestrians())
+        .flat_map(|i| (0..scene.hypotheses()).map(move |k| (i, k)))
+        .filter_map(|(i, k)| {
+            let goal = forecast.goal(i, k)?;
+            Some(RolloutStability::of(
+                scene.last_observed(i),
+                forecast.hypothesis(i, k),
+                goal,
+            ))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+
+    #[test]
+    fn a_walk_straight_to_the_goal_is_stable() {
+        let path: Vec<_> = (1..=12).map(|t| [f64::from(t) / 4.0, 0.0]).collect();
+        let judged = RolloutStability::of([0.0, 0.0], &path, [3.0, 0.0]);
+        assert!(judged.decreasing);
+        assert_relative_eq!(judged.end_distance, 0.0);
+        assert_relative_eq!(judged.largest_turn, 0.0);
+    }
+
+    /// From the origin 1 m towards a goal at (0.6, 0), past it by 0.4 m (nearer: 0.6 -> 0.4), then 0.5
+    /// m on in the same direction: 0.4 -> 0.9 from the goal, at 180 degrees to it.
+    #[test]
+    fn overshooting_is_seen_one_step_later() {
+        let path = [[1.0, 0.0], [1.5, 0.0]];
+        let judged = RolloutStability::of([0.0, 0.0], &path, [0.6, 0.0]);
+        assert!(!judged.decreasing);
+        assert_relative_eq!(judged.end_distance, 0.9, epsilon = 1e-12);
+        assert_relative_eq!(judged.largest_turn, 180.0);
+    }
+
+    /// A 3-4-5 triangle: the step (0.3, 0.4) towards a goal on the x axis turns by acos(0.6).
+    #[test]
+    fn turns_are_measured_against_the_goal_direction() {
+        let judged = RolloutStability::of([0.0, 0.0], &[[0.3, 0.4]], [9.0, 0.0]);
+        assert_relative_eq!(
+            judged.largest_turn,
+            0.6_f64.acos().to_degrees(),
+            epsilon = 1e-9
+        );
+    }
+
+    #[test]
+    fn standing_counts_as_stable_at_the_goal_only() {
+        let stands = [[1.0, 1.0]; 12];
+        assert!(RolloutStability::of([1.0, 1.0], &stands, [1.0, 1.0]).decreasing);
+        let elsewhere = RolloutStability::of([1.0, 1.0], &stands, [2.0, 1.0]);
+        assert!(!elsewhere.decreasing);
+        assert_relative_eq!(elsewhere.largest_turn, 0.0);
+    }
+
+    #[test]
+    fn shares_and_means_are_over_rollouts() {
+        let rollout = |decreasing, largest_turn| RolloutStability {
+            decreasing,
+            end_distance: largest_turn / 100.0,
+            largest_turn,
+        };
+        let mean = StabilityScores::mean(&[rollout(true, 0.0), rollout(false, 120.0)]).unwrap();
+        assert_relative_eq!(mean.decreasing, 0.5);
+        assert_relative_eq!(mean.end_distance, 0.6);
+        assert_relative_eq!(mean.largest_turn, 60.0);
+        assert_relative_eq!(mean.reversing, 0.5);
+        assert_eq!(StabilityScores::mean(&[]), None);
+    }
+}

@@ -1,0 +1,159 @@
+//! The three rules of the game: what a forecaster may see, and how many guesses it has.
+
+use std::{borrow::Cow, fmt, str::FromStr};
+
+use ddl_data::Window;
+use serde::{Deserialize, Serialize};
+
+use crate::{Forecast, Forecaster, error::ForecastError};
+
+/// How a number was measured. Numbers of different protocols are not comparable.
+///
+/// # Examples
+/// ```
+/// use ddl_eval::Protocol;
+/// let protocol: Protocol = "fair".parse()?;
+/// assert_eq!(protocol, Protocol::Fair);
+/// assert_eq!(protocol.warning(), None);
+/// assert!(Protocol::Published.warning().is_some());
+/// # Ok::<(), ddl_eval::UnknownProtocol>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Protocol {
+    /// As the published DDL code measures: the goal is chosen with the true end.
+    Published,
+    /// All goals, 20 hypotheses, nothing chosen with the truth but the usual best of 20.
+    Fair,
+    /// One forecast: the most likely hypothesis.
+    Single,
+}
+
+impl Protocol {
+    /// Every protocol, in the order of printing.
+    pub const ALL: [Self; 3] = [Self::Published, Self::Fair, Self::Single];
+
+    /// `published`, `fair` or `single`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Published => "published",
+            Self::Fair => "fair",
+            Self::Single => "single",
+        }
+    }
+
+    /// What is measured, in one sentence.
+    #[must_use]
+    pub const fn description(self) -> &'static str {
+        match self {
+            Self::Published => {
+                "one goal a pedestrian (of 20 cluster centres, the one nearest the true end), then 20 \
+                 noise samples on that goal; the best of 20 is scored; the goal query reads the first \
+                 future frame"
+            }
+            Self::Fair => {
+                "at most 20 weighted hypotheses a pedestrian from the 8 observed frames alone; the \
+                 best of them is scored; the model is the last epoch's, or chosen on a validation \
+                 split of the training scenes"
+            }
+            Self::Single => {
+                "the one most likely hypothesis a pedestrian from the 8 observed frames alone; nothing \
+                 is chosen with the truth"
+            }
+        }
+    }
+
+    /// What a reader must be told beside a number of this protocol.
+    #[must_use]
+    pub const fn warning(self) -> Option<&'static str> {
+        match self {
+            Self::Published => Some(
+                "The goal of each pedestrian is chosen with the TRUE end (the nearest of 20 centres), \
+                 and 20 noise samples are then drawn on it and the best is kept: up to 400 candidates \
+                 stand behind a \"best of 20\". The goal query also reads one future frame (frame 9), \
+                 and the published code keeps the epoch that is best on the TEST set. No system can \
+                 reach these numbers in use; they serve to reproduce the published tables.",
+            ),
+            Self::Fair | Self::Single => None,
+        }
+    }
+
+    /// The number of hypotheses a pedestrian may have: 20, or 1.
+    #[must_use]
+    pub const fn hypotheses(self) -> usize {
+        match self {
+            Self::Published | Self::Fair => 20,
+            Self::Single => 1,
+        }
+    }
+
+    /// Whether forecasters are shown the true future of the windows.
+    #[must_use]
+    pub const fn shows_future(self) -> bool {
+        matches!(self, Self::Published)
+    }
+
+    /// The windows as a forecaster sees them: under `fair` and `single`, without their futures.
+    #[must_use]
+    pub fn visible(self, windows: &[Window]) -> Cow<'_, [Window]> {
+        if self.shows_future() {
+            Cow::Borrowed(windows)
+        } else {
+            Cow::Owned(windows.iter().map(Window::without_future).collect())
+        }
+    }
+
+    /// Forecasts the windows as this protocol demands.
+    ///
+    /// Under `fair` and `single` the futures are cut off before the forecaster is called, so that it
+    /// cannot read them; under `single` the most likely hypothesis is kept.
+    ///
+    /// # Errors
+    /// The forecaster failed, or made more hypotheses than the protocol allows.
+    pub fn forecast(
+        self,
+        forecaster: &(impl Forecaster + ?Sized),
+        windows: &[Window],
+    ) -> Result<Vec<Forecast>, ForecastError> {
+        let forecasts = forecaster.forecast_all(&self.visible(windows))?;
+        if self == Self::Single {
+            return Ok(forecasts.iter().map(Forecast::single).collect());
+        }
+        match forecasts
+            .iter()
+            .map(Forecast::hypotheses)
+            .find(|&k| k > self.hypotheses())
+        {
+            None => Ok(forecasts),
+            Some(found) => Err(ForecastError::TooManyHypotheses {
+                protocol: self,
+                forecaster: forecaster.name(),
+                allowed: self.hypotheses(),
+                found,
+            }),
+        }
+    }
+}
+
+impl fmt::Display for Protocol {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The text names no protocol.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is no protocol; choose published, fair or single")]
+pub struct UnknownProtocol(String);
+
+impl FromStr for Protocol {
+    type Err = UnknownProtocol;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Self::ALL
+            .into_iter()
+            .find(|protocol| protocol.name() == text)
+            .ok_or_else(|| UnknownProtocol(text.to_owned()))
+    }
+}

@@ -1,0 +1,176 @@
+//! Which rows may stand in one table, and which make one line of it.
+
+use ddl_data::{Convention, WindowRule};
+
+use super::spread::Spread;
+use crate::{Protocol, ResultRow, Scores, conditions::Conditions};
+
+/// Rows whose numbers are comparable: one table.
+pub(super) struct Group<'a> {
+    pub(super) convention: Convention,
+    pub(super) window_rule: WindowRule,
+    pub(super) protocol: Protocol,
+    pub(super) test_subset: Option<&'a str>,
+    pub(super) lines: Vec<Line<'a>>,
+}
+
+/// Results that differ in fold and seed alone: one line of a table.
+pub(super) struct Line<'a> {
+    pub(super) rows: Vec<&'a ResultRow>,
+}
+
+/// Sorts rows into tables: by convention, then the published window rule before others, then the
+/// headline protocol first. Lines stand in the order in which their first row was given.
+pub(super) fn groups(rows: &[ResultRow]) -> Vec<Group<'_>> {
+    let mut groups: Vec<Group<'_>> = Vec::new();
+    for row in rows {
+        let c = &row.conditions;
+        let at = groups
+            .iter()
+            .position(|group| group.admits(c))
+            .unwrap_or_else(|| {
+                groups.push(Group {
+                    convention: c.convention,
+                    window_rule: c.window_rule,
+                    protocol: c.protocol,
+                    test_subset: c.test_subset.as_deref(),
+                    lines: Vec::new(),
+                });
+                groups.len() - 1
+            });
+        let group = &mut groups[at];
+        match group.lines.iter_mut().find(|line| line.admits(c)) {
+            Some(line) => line.rows.push(row),
+            None => group.lines.push(Line { rows: vec![row] }),
+        }
+    }
+    groups.sort_by_key(|group| {
+        let convention = Convention::ALL.iter().position(|c| *c == group.convention);
+        let protocol = match group.protocol {
+            Protocol::Fair => 0,
+            Protocol::Single => 1,
+            Protocol::Published => 2,
+        };
+        let rule = (
+            group.window_rule != WindowRule::Published,
+            group.window_rule.to_string(),
+        );
+        (convention, rule, protocol, group.test_subset)
+    });
+    groups
+}
+
+impl Group<'_> {
+    fn admits(&self, c: &Conditions) -> bool {
+        (
+            self.convention,
+            self.window_rule,
+            self.protocol,
+            self.test_subset,
+        ) == (
+            c.convention,
+            c.window_rule,
+            c.protocol,
+            c.test_subset.as_deref(),
+        )
+    }
+
+    /// The columns: the folds of the convention, and any other fold that a row names.
+    pub(super) fn folds(&self) -> Vec<&str> {
+        let mut folds: Vec<&str> = self.convention.fold_names().collect();
+        for row in self.lines.iter().flat_map(|line| &line.rows) {
+            if !folds.contains(&row.conditions.fold.as_str()) {
+                folds.push(&row.conditions.fold);
+            }
+        }
+        folds
+    }
+
+    /// The name of each line; equal names of different settings are numbered.
+    pub(super) fn labels(&self) -> Vec<String> {
+        let labels: Vec<String> = self.lines.iter().map(|l| l.conditions().label()).collect();
+        let numbered = |(at, label): (usize, &String)| {
+            let same = labels.iter().filter(|other| *other == label).count();
+            let before = labels[..at].iter().filter(|other| *other == label).count();
+            if same > 1 {
+                format!("{label} #{}", before + 1)
+            } else {
+                label.clone()
+            }
+        };
+        labels.iter().enumerate().map(numbered).collect()
+    }
+
+    /// The numbers of walkers scored on a fold; more than one when the lines disagree.
+    pub(super) fn walkers(&self, fold: &str) -> Vec<usize> {
+        let mut counts: Vec<usize> = self
+            .lines
+            .iter()
+            .flat_map(|line| line.on(fold))
+            .map(|row| row.scores.pedestrians)
+            .collect();
+        counts.sort_unstable();
+        counts.dedup();
+        counts
+    }
+}
+
+impl<'a> Line<'a> {
+    fn admits(&self, c: &Conditions) -> bool {
+        let mine = self.conditions();
+        let same = Conditions {
+            fold: mine.fold.clone(),
+            seed: mine.seed,
+            ..c.clone()
+        };
+        *mine == same
+    }
+
+    /// The conditions of the line; fold and seed are those of its first row only.
+    pub(super) fn conditions(&self) -> &'a Conditions {
+        &self.rows[0].conditions
+    }
+
+    fn on<'b>(&'b self, fold: &'b str) -> impl Iterator<Item = &'a ResultRow> + 'b {
+        self.rows
+            .iter()
+            .copied()
+            .filter(move |row| row.conditions.fold == fold)
+    }
+
+    /// The seeds, sorted; `None` stands for results that have no seed.
+    pub(super) fn seeds(&self) -> Vec<Option<u64>> {
+        let mut seeds: Vec<_> = self.rows.iter().map(|row| row.conditions.seed).collect();
+        seeds.sort_unstable();
+        seeds.dedup();
+        seeds
+    }
+
+    /// A number on one fold, over the seeds.
+    pub(super) fn on_fold(&self, fold: &str, of: impl Fn(&Scores) -> f64) -> Option<Spread> {
+        Spread::of(&self.on(fold).map(|row| of(&row.scores)).collect::<Vec<_>>())
+    }
+
+    /// The plain mean over the folds, over the seeds; `None` unless every seed has every fold.
+    pub(super) fn over_folds(&self, folds: &[&str], of: impl Fn(&Scores) -> f64) -> Option<Spread> {
+        let mean_of_seed = |seed: Option<u64>| {
+            let on_fold = |fold: &&str| {
+                let row = self.on(fold).find(|row| row.conditions.seed == seed)?;
+                Some(of(&row.scores))
+            };
+            let values: Option<Vec<f64>> = folds.iter().map(on_fold).collect();
+            values.map(|values| values.iter().sum::<f64>() / folds.len() as f64)
+        };
+        let means: Option<Vec<f64>> = self.seeds().into_iter().map(mean_of_seed).collect();
+        Spread::of(&means?)
+    }
+
+    /// The folds that the line has, in the order of `folds`.
+    pub(super) fn present<'f>(&self, folds: &[&'f str]) -> Vec<&'f str> {
+        folds
+            .iter()
+            .copied()
+            .filter(|fold| self.on(fold).next().is_some())
+            .collect()
+    }
+}

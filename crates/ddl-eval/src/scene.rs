@@ -1,0 +1,80 @@
+//! A window and its forecast, checked to belong together: what every metric is computed on.
+
+use ddl_data::{OBSERVED, Position, Window};
+
+use crate::{Forecast, error::EvaluationError};
+
+/// A window with a true future and the forecast of the same pedestrians.
+#[derive(Debug, Clone, Copy)]
+pub struct Scene<'a> {
+    window: &'a Window,
+    forecast: &'a Forecast,
+}
+
+impl<'a> Scene<'a> {
+    /// Pairs a window with its forecast.
+    ///
+    /// # Errors
+    /// The window has no future, or the forecast is of another number of pedestrians.
+    pub fn new(window: &'a Window, forecast: &'a Forecast) -> Result<Self, EvaluationError> {
+        let recording = || window.recording().to_owned();
+        let start_frame = window.start_frame();
+        if !window.has_future() {
+            return Err(EvaluationError::NoFuture {
+                recording: recording(),
+                start_frame,
+            });
+        }
+        if window.len() != forecast.pedestrians() {
+            return Err(EvaluationError::Pedestrians {
+                recording: recording(),
+                start_frame,
+                expected: window.len(),
+                found: forecast.pedestrians(),
+            });
+        }
+        Ok(Self { window, forecast })
+    }
+
+    /// The window.
+    #[must_use]
+    pub fn window(&self) -> &'a Window {
+        self.window
+    }
+
+    /// The forecast.
+    #[must_use]
+    pub fn forecast(&self) -> &'a Forecast {
+        self.forecast
+    }
+
+    /// Number of pedestrians, N.
+    #[must_use]
+    pub fn pedestrians(&self) -> usize {
+        self.forecast.pedestrians()
+    }
+
+    /// Number of hypotheses, K.
+    #[must_use]
+    pub fn hypotheses(&self) -> usize {
+        self.forecast.hypotheses()
+    }
+
+    /// The 12 true positions of pedestrian `i`, metres.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn truth(&self, i: usize) -> &'a [Position] {
+        self.window.future(i)
+    }
+
+    /// The last observed position of pedestrian `i`, metres.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn last_observed(&self, i: usize) -> Position {
+        self.window.observed(i)[OBSERVED - 1]
+    }
+}

@@ -1,0 +1,87 @@
+//! What makes a forecast, and what is refused.
+
+use ddl_data::{HORIZON, Position};
+use ddl_eval::{Forecast, ForecastShapeError};
+
+fn constant(at: &[Position]) -> Vec<Position> {
+    at.iter().flat_map(|&p| [p; HORIZON]).collect()
+}
+
+#[test]
+fn layout_is_pedestrian_hypothesis_frame() {
+    let ends = [[0.0, 1.0], [0.0, 2.0], [0.0, 3.0], [0.0, 4.0]];
+    let forecast = Forecast::new(
+        2,
+        2,
+        constant(&ends),
+        vec![0.25, 0.75, 0.5, 0.5],
+        Some(ends.to_vec()),
+    )
+    .unwrap();
+    assert_eq!(forecast.hypothesis(1, 0), &[[0.0, 3.0]; HORIZON]);
+    assert_eq!(forecast.goal(0, 1), Some([0.0, 2.0]));
+    assert_eq!((forecast.most_likely(0), forecast.most_likely(1)), (1, 0));
+    let single = forecast.single();
+    assert_eq!((single.pedestrians(), single.hypotheses()), (2, 1));
+    assert_eq!(single.hypothesis(0, 0), &[[0.0, 2.0]; HORIZON]);
+    assert_eq!(single.goal(1, 0), Some([0.0, 3.0]));
+    assert_eq!(single.single(), single);
+}
+
+#[test]
+fn a_single_forecast_without_goals_has_none() {
+    let forecast = Forecast::equally_likely(1, 2, constant(&[[0.0, 1.0], [1.0, 1.0]])).unwrap();
+    assert!(!forecast.single().has_goals());
+}
+
+#[test]
+fn wrong_shapes_and_weights_are_named() {
+    let ok = constant(&[[0.0, 0.0]]);
+    let error = |n, k, positions: &[Position], weights: &[f64]| {
+        Forecast::new(n, k, positions.to_vec(), weights.to_vec(), None).unwrap_err()
+    };
+    assert!(matches!(
+        error(0, 1, &[], &[]),
+        ForecastShapeError::Empty { .. }
+    ));
+    assert!(matches!(
+        error(1, 1, &ok[1..], &[1.0]),
+        ForecastShapeError::Length {
+            field: "positions",
+            expected: 12,
+            found: 11,
+            ..
+        }
+    ));
+    assert!(matches!(
+        error(1, 1, &ok, &[]),
+        ForecastShapeError::Length {
+            field: "weights",
+            ..
+        }
+    ));
+    assert!(matches!(
+        error(1, 1, &ok, &[0.9]),
+        ForecastShapeError::NotNormalised { pedestrian: 0, .. }
+    ));
+    let twice = constant(&[[0.0, 0.0], [0.0, 0.0]]);
+    assert!(matches!(
+        error(1, 2, &twice, &[1.5, -0.5]),
+        ForecastShapeError::NegativeWeight { hypothesis: 1, .. }
+    ));
+    let mut nan = twice.clone();
+    nan[13] = [f64::NAN, 0.0];
+    assert!(matches!(
+        error(2, 1, &nan, &[1.0, 1.0]),
+        ForecastShapeError::NotFinite {
+            field: "positions",
+            pedestrian: 1,
+            hypothesis: 0
+        }
+    ));
+    let goals = Some(vec![[f64::INFINITY, 0.0]]);
+    assert!(matches!(
+        Forecast::new(1, 1, ok, vec![1.0], goals).unwrap_err(),
+        ForecastShapeError::NotFinite { field: "goals", .. }
+    ));
+}

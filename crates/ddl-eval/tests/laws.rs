@@ -1,0 +1,227 @@
+//! What must hold of the metrics whatever the forecast.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a helper that fails is a test that fails"
+)]
+
+use ddl_data::{HORIZON, PedestrianId, Position, Rotation, WINDOW, Window};
+use ddl_eval::{Forecast, ForecastShapeError, Protocol, Scene, Scores};
+use proptest::{collection::vec, prelude::*};
+
+use ddl_eval::metric::{
+    collision::closest_approach,
+    displacement::{DisplacementErrors, distance},
+};
+
+/// Whether two lengths or shares agree but for rounding.
+fn agree(a: f64, b: f64) -> bool {
+    (a - b).abs() < 1e-9
+}
+
+fn position() -> impl Strategy<Value = Position> {
+    (-20.0..20.0, -20.0..20.0).prop_map(|(x, y)| [x, y])
+}
+
+/// A window of `n` pedestrians and a forecast of `k` hypotheses with weights and goals.
+fn scene(n: usize, k: usize) -> impl Strategy<Value = (Window, Forecast)> {
+    let tracks = vec(vec(position(), WINDOW), n);
+    let positions = vec(position(), n * k * HORIZON);
+    let weights = vec(0.01..1.0_f64, n * k);
+    let goals = vec(position(), n * k);
+    (tracks, positions, weights, goals).prop_map(move |(tracks, positions, mut weights, goals)| {
+        for row in weights.chunks_mut(k) {
+            let sum: f64 = row.iter().sum();
+            for weight in row {
+                *weight /= sum;
+            }
+        }
+        let ids = (0..).take(n).map(PedestrianId).collect();
+        let window = Window::new("made up", 0, 10, ids, tracks).unwrap();
+        (
+            window,
+            Forecast::new(n, k, positions, weights, Some(goals)).unwrap(),
+        )
+    })
+}
+
+fn any_scene() -> impl Strategy<Value = (Window, Forecast)> {
+    (1..5_usize, 1..6_usize).prop_flat_map(|(n, k)| scene(n, k))
+}
+
+fn scores(window: &Window, forecast: &Forecast) -> Scores {
+    Scores::evaluate(std::slice::from_ref(window), std::slice::from_ref(forecast)).unwrap()
+}
+
+/// The forecast with every position and goal moved.
+fn moved(forecast: &Forecast, by: impl Fn(Position) -> Position) -> Forecast {
+    let (n, k) = (forecast.pedestrians(), forecast.hypotheses());
+    let pairs = || (0..n).flat_map(move |i| (0..k).map(move |h| (i, h)));
+    let positions = pairs()
+        .flat_map(|(i, h)| forecast.hypothesis(i, h))
+        .map(|p| by(*p))
+        .collect();
+    let weights = pairs().map(|(i, h)| forecast.weight(i, h)).collect();
+    let goals = pairs().map(|(i, h)| forecast.goal(i, h).map(&by)).collect();
+    Forecast::new(n, k, positions, weights, goals).unwrap()
+}
+
+/// The first `k` hypotheses, equally likely.
+fn first(forecast: &Forecast, k: usize) -> Forecast {
+    let n = forecast.pedestrians();
+    let pairs = (0..n).flat_map(|i| (0..k).map(move |h| (i, h)));
+    let positions = pairs
+        .flat_map(|(i, h)| forecast.hypothesis(i, h))
+        .copied()
+        .collect();
+    Forecast::equally_likely(n, k, positions).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn minima_are_below_every_hypothesis((window, forecast) in any_scene()) {
+        let errors = DisplacementErrors::of(&Scene::new(&window, &forecast).unwrap());
+        for i in 0..errors.pedestrians() {
+            prop_assert!(errors.ade(i).iter().all(|ade| errors.min_ade(i) <= *ade));
+            prop_assert!(errors.fde(i).iter().all(|fde| errors.min_fde(i) <= *fde));
+            prop_assert!(errors.min_fde(i) <= errors.fde_at_min_ade(i));
+        }
+    }
+
+    #[test]
+    fn more_hypotheses_never_hurt((window, forecast) in any_scene()) {
+        let all = scores(&window, &forecast);
+        for k in 1..=forecast.hypotheses() {
+            let fewer = scores(&window, &first(&forecast, k));
+            prop_assert!(all.min_ade <= fewer.min_ade && all.min_fde <= fewer.min_fde);
+            prop_assert!(all.joint_ade <= fewer.joint_ade && all.joint_fde <= fewer.joint_fde);
+            prop_assert!(all.miss_rate <= fewer.miss_rate);
+        }
+    }
+
+    #[test]
+    fn joint_choice_is_never_better((window, forecast) in any_scene()) {
+        let scores = scores(&window, &forecast);
+        prop_assert!(scores.joint_ade >= scores.min_ade - 1e-12);
+        prop_assert!(scores.joint_fde >= scores.min_fde - 1e-12);
+        if forecast.pedestrians() == 1 || forecast.hypotheses() == 1 {
+            prop_assert!(agree(scores.joint_ade, scores.min_ade));
+        }
+    }
+
+    #[test]
+    fn no_metric_depends_on_where_the_world_begins(
+        (window, forecast) in any_scene(),
+        angle in 0.0..std::f64::consts::TAU,
+        [dx, dy] in position(),
+    ) {
+        let rotation = Rotation::new(angle);
+        let motion = |p: Position| {
+            let [x, y] = rotation.apply(p);
+            [x + dx, y + dy]
+        };
+        let before = scores(&window, &forecast);
+        let after = scores(&window.map_positions(|_, _, p| motion(p)), &moved(&forecast, motion));
+        let lengths = |s: &Scores| {
+            let stability = s.stability.unwrap();
+            [
+                s.min_ade, s.min_fde, s.fde_at_min_ade, s.joint_ade, s.joint_fde, s.miss_rate,
+                s.collision_rate, s.true_collision_rate, s.goal_fde.unwrap(), stability.decreasing,
+                stability.end_distance, stability.reversing,
+            ]
+        };
+        for (a, b) in lengths(&before).into_iter().zip(lengths(&after)) {
+            prop_assert!(agree(a, b), "{a} became {b}");
+        }
+        let turn = |s: &Scores| s.stability.unwrap().largest_turn;
+        prop_assert!((turn(&before) - turn(&after)).abs() < 1e-5);
+    }
+
+    #[test]
+    fn perfect_forecasts_score_zero((window, _) in any_scene()) {
+        let n = window.len();
+        let truth = (0..n).flat_map(|i| window.future(i)).copied().collect();
+        let ends = (0..n).map(|i| window.end(i)).collect();
+        let perfect = Forecast::new(n, 1, truth, vec![1.0; n], ends).unwrap();
+        let scores = scores(&window, &perfect);
+        let zero = [
+            scores.min_ade, scores.min_fde, scores.fde_at_min_ade, scores.joint_ade,
+            scores.joint_fde, scores.miss_rate, scores.goal_fde.unwrap(),
+            scores.stability.unwrap().end_distance,
+        ];
+        prop_assert!(zero.into_iter().all(|metric| agree(metric, 0.0)), "{zero:?}");
+        prop_assert!(agree(scores.collision_rate, scores.true_collision_rate));
+    }
+
+    #[test]
+    fn rates_are_shares((window, forecast) in any_scene()) {
+        let scores = scores(&window, &forecast);
+        let stability = scores.stability.unwrap();
+        for rate in [
+            scores.miss_rate, scores.collision_rate, scores.true_collision_rate,
+            stability.decreasing, stability.reversing,
+        ] {
+            prop_assert!((0.0..=1.0).contains(&rate));
+        }
+        prop_assert!((0.0..=180.0).contains(&stability.largest_turn));
+    }
+
+    /// The closed form is never above, and hardly below, the least of many instants.
+    #[test]
+    fn closest_approach_is_the_minimum_over_time(
+        a in vec(position(), 4),
+        b in vec(position(), 4),
+    ) {
+        let exact = closest_approach(&a, &b);
+        let mut sampled = f64::INFINITY;
+        for t in 0..3 {
+            for s in 0..=400 {
+                let s = f64::from(s) / 400.0;
+                let on = |p: &[Position]| {
+                    let along = |c: usize| p[t][c] + s * (p[t + 1][c] - p[t][c]);
+                    [along(0), along(1)]
+                };
+                sampled = sampled.min(distance(on(&a), on(&b)));
+            }
+        }
+        // A relative step is shorter than 160 m: 1/800 of it on either side of a sample.
+        prop_assert!(exact <= sampled + 1e-12 && sampled <= exact + 0.2, "{exact} {sampled}");
+        prop_assert!(agree(exact, closest_approach(&b, &a)));
+    }
+
+    #[test]
+    fn weights_must_sum_to_one(weights in vec(0.0..1.0_f64, 3)) {
+        let sum: f64 = weights.iter().sum();
+        prop_assume!((sum - 1.0).abs() > 1e-5);
+        let positions = vec![[0.0, 0.0]; 3 * HORIZON];
+        let refused = Forecast::new(1, 3, positions.clone(), weights.clone(), None);
+        let is_refused = matches!(refused, Err(ForecastShapeError::NotNormalised { .. }));
+        prop_assert!(is_refused);
+        prop_assume!(sum > 1e-3);
+        let normalised = weights.iter().map(|weight| weight / sum).collect();
+        prop_assert!(Forecast::new(1, 3, positions, normalised, None).is_ok());
+    }
+
+    /// The single protocol keeps the most likely hypothesis and nothing else.
+    #[test]
+    fn single_is_the_most_likely((window, forecast) in any_scene()) {
+        struct Fixed(Forecast);
+        impl ddl_eval::Forecaster for Fixed {
+            fn name(&self) -> String {
+                "fixed".to_owned()
+            }
+            fn forecast(&self, window: &Window) -> Result<Forecast, ddl_eval::ForecastError> {
+                assert!(!window.has_future(), "the future was shown");
+                Ok(self.0.clone())
+            }
+        }
+        let single = Protocol::Single.forecast(&Fixed(forecast.clone()), &[window]).unwrap();
+        for i in 0..forecast.pedestrians() {
+            let best = forecast.most_likely(i);
+            prop_assert_eq!(single[0].hypothesis(i, 0), forecast.hypothesis(i, best));
+            prop_assert_eq!(single[0].goal(i, 0), forecast.goal(i, best));
+        }
+    }
+}

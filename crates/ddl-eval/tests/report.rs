@@ -1,0 +1,250 @@
+//! What a report shows, and what it never mixes.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a helper that fails is a test that fails"
+)]
+
+use ddl_data::{Convention, WindowRule};
+use ddl_eval::{Conditions, Protocol, Report, ReportError, ResultRow, Scores, StabilityScores};
+
+fn scores(min_ade: f64) -> Scores {
+    Scores {
+        pedestrians: 100,
+        windows: 10,
+        hypotheses: 20,
+        min_ade,
+        min_fde: 2.0 * min_ade,
+        fde_at_min_ade: 2.0 * min_ade,
+        joint_ade: min_ade,
+        joint_fde: min_ade,
+        miss_rate: 0.25,
+        collision_rate: 0.1,
+        true_collision_rate: 0.0,
+        goal_fde: Some(1.0 / 3.0),
+        stability: Some(StabilityScores {
+            rollouts: 2000,
+            decreasing: 1.0,
+            end_distance: 0.1,
+            largest_turn: 30.0,
+            reversing: 0.0,
+        }),
+    }
+}
+
+fn row(protocol: Protocol, fold: &str, seed: u64, min_ade: f64) -> ResultRow {
+    let conditions = Conditions {
+        variant: Some("full".to_owned()),
+        seed: Some(seed),
+        epochs: Some(3),
+        selection: Some("last epoch".to_owned()),
+        device: "cpu".to_owned(),
+        commit: "0123abc".to_owned(),
+        training_subset: Some("2000 windows drawn with seed 1".to_owned()),
+        ..Conditions::new(
+            Convention::Star,
+            WindowRule::Published,
+            protocol,
+            fold,
+            "DDL",
+        )
+    };
+    ResultRow {
+        conditions,
+        scores: scores(min_ade),
+    }
+}
+
+const FOLDS: [&str; 5] = ["eth", "hotel", "univ", "zara1", "zara2"];
+
+fn five_folds(protocol: Protocol, seed: u64, min_ade: f64) -> Vec<ResultRow> {
+    FOLDS
+        .iter()
+        .map(|fold| row(protocol, fold, seed, min_ade))
+        .collect()
+}
+
+/// The line of the first table that begins with `start`.
+fn line<'a>(page: &'a str, start: &str) -> &'a str {
+    page.lines().find(|line| line.starts_with(start)).unwrap()
+}
+
+fn cells(line: &str) -> Vec<&str> {
+    line.trim_matches('|').split('|').map(str::trim).collect()
+}
+
+#[test]
+fn a_table_names_everything_it_must() {
+    let page = Report::new("Quick", five_folds(Protocol::Fair, 1, 0.25))
+        .unwrap()
+        .to_markdown();
+    assert!(
+        page.lines()
+            .next()
+            .unwrap()
+            .starts_with("Data convention: `star`"),
+        "{page}"
+    );
+    for named in [
+        "## Protocol `fair`, window rule `published`, convention `star`",
+        "seed 1",
+        "3 epochs (last epoch)",
+        "trained on 2000 windows drawn with seed 1",
+        "device cpu",
+        "commit 0123abc",
+        "Scored: all test windows",
+        "| walkers scored |",
+        "### Table I of the DDL paper",
+        "mixes data conventions",
+    ] {
+        assert!(page.contains(named), "no `{named}` in\n{page}");
+    }
+    assert_eq!(
+        cells(line(&page, "| DDL ")),
+        ["DDL"]
+            .into_iter()
+            .chain(["0.250/0.500"; 6])
+            .collect::<Vec<_>>()
+    );
+    // The literature's DDL row stands in a table of its own, and the warning where it belongs.
+    assert!(!page.contains("**Warning.**"));
+    assert!(!page.contains("Table II"));
+}
+
+#[test]
+fn the_mean_needs_all_five_folds() {
+    let mut rows = five_folds(Protocol::Fair, 1, 0.25);
+    rows.pop();
+    let page = Report::new("Four", rows).unwrap().to_markdown();
+    let shown = cells(line(&page, "| DDL "));
+    assert_eq!(shown[5..], ["-", "-"]);
+}
+
+#[test]
+fn several_seeds_give_mean_and_deviation() {
+    let mut rows = five_folds(Protocol::Fair, 1, 0.2);
+    rows.extend(five_folds(Protocol::Fair, 2, 0.4));
+    let page = Report::new("Seeds", rows.clone()).unwrap().to_markdown();
+    // Sample deviation of 0.2 and 0.4: 0.1414; of their doubles: 0.2828.
+    assert_eq!(cells(line(&page, "| DDL "))[6], "0.300±0.141/0.600±0.283");
+    assert!(page.contains("seeds 1, 2"));
+    // A seed that lacks a fold: the fold's cell is still there, the mean is not.
+    rows.pop();
+    let page = Report::new("Seeds", rows).unwrap().to_markdown();
+    assert_eq!(cells(line(&page, "| DDL "))[5..], ["0.200/0.400", "-"]);
+}
+
+#[test]
+fn protocols_conventions_rules_and_subsets_never_share_a_table() {
+    let base = row(Protocol::Fair, "eth", 1, 0.25);
+    let with = |change: fn(&mut Conditions)| {
+        let mut row = base.clone();
+        change(&mut row.conditions);
+        row
+    };
+    let rows = [
+        base.clone(),
+        with(|c| c.protocol = Protocol::Published),
+        with(|c| c.convention = Convention::SocialGan),
+        with(|c| c.window_rule = WindowRule::Complete),
+        with(|c| c.test_subset = Some("300 walkers a fold".to_owned())),
+    ];
+    let page = Report::new("Mixed", rows).unwrap().to_markdown();
+    assert_eq!(page.matches("\n## Protocol").count(), 5, "{page}");
+    assert_eq!(page.matches("**Warning.**").count(), 1);
+    assert!(
+        page.lines()
+            .next()
+            .unwrap()
+            .starts_with("Data conventions: `star`")
+    );
+    assert!(page.contains("Scored: 300 walkers a fold."));
+}
+
+#[test]
+fn settings_that_differ_make_lines_of_their_own() {
+    let mut longer = five_folds(Protocol::Fair, 1, 0.2);
+    for row in &mut longer {
+        row.conditions.epochs = Some(30);
+    }
+    let rows = five_folds(Protocol::Fair, 1, 0.25)
+        .into_iter()
+        .chain(longer);
+    let page = Report::new("Epochs", rows).unwrap().to_markdown();
+    assert!(page.contains("| DDL #1 ") && page.contains("| DDL #2 "));
+    assert!(page.contains("- DDL #2: seed 1; 30 epochs"));
+}
+
+#[test]
+fn ablation_variants_bring_the_published_ablation() {
+    let mut rows = five_folds(Protocol::Published, 1, 0.25);
+    rows[0].conditions.variant = Some("no-dynamics".to_owned());
+    let page = Report::new("Ablation", rows).unwrap().to_markdown();
+    assert!(
+        page.contains("| DDL (no-dynamics) ") && page.contains("### Table II of the DDL paper")
+    );
+}
+
+#[test]
+fn simulated_crowds_are_not_taken_for_recordings() {
+    let mut rows = five_folds(Protocol::Fair, 1, 0.25);
+    let names: Vec<_> = Convention::Simulated.fold_names().collect();
+    for (row, name) in rows.iter_mut().zip(&names) {
+        row.conditions.convention = Convention::Simulated;
+        row.conditions.fold = (*name).to_owned();
+    }
+    let page = Report::new("Simulated", rows).unwrap().to_markdown();
+    assert!(page.lines().next().unwrap().contains("NOT real recordings"));
+    assert_eq!(cells(line(&page, "| forecaster"))[1..6], names);
+    assert_eq!(cells(line(&page, "| DDL "))[6], "0.250/0.500");
+}
+
+#[test]
+fn json_round_trips_and_is_checked() {
+    let mut rows = five_folds(Protocol::Fair, u64::MAX, 0.1 + 0.2);
+    rows[0].scores.stability = None;
+    rows[1].conditions.window_rule = WindowRule::SocialGan { min_pedestrians: 2 };
+    let report = Report::new("Quick", rows).unwrap();
+    let json = report.to_json().unwrap();
+    assert_eq!(Report::from_json(&json).unwrap(), report);
+    let newer = json.replacen("\"format\": 1", "\"format\": 2", 1);
+    assert!(matches!(
+        Report::from_json(&newer),
+        Err(ReportError::Format { found: 2, .. })
+    ));
+    assert!(matches!(Report::from_json("{}"), Err(ReportError::Json(_))));
+}
+
+#[test]
+fn files_are_written_whole_and_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let inside = folder.path().join("new").join("folder");
+    let report = Report::new("Quick", five_folds(Protocol::Fair, 1, 0.25)).unwrap();
+    report.save(&inside).unwrap();
+    assert_eq!(Report::load(&inside.join("report.json")).unwrap(), report);
+    let mut names: Vec<_> = std::fs::read_dir(&inside)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["report.json", "report.md"]);
+    let missing = Report::load(&folder.path().join("absent.json")).unwrap_err();
+    assert!(missing.to_string().contains("absent.json"));
+}
+
+#[test]
+fn the_same_row_twice_is_one_and_a_contradiction_is_refused() {
+    let one = row(Protocol::Fair, "eth", 1, 0.25);
+    let report = Report::new("Twice", [one.clone(), one.clone()]).unwrap();
+    assert_eq!(report.rows().len(), 1);
+    let other = row(Protocol::Fair, "eth", 1, 0.5);
+    let error = Report::new("Contradiction", [one, other]).unwrap_err();
+    assert!(matches!(error, ReportError::Conflict { .. }));
+    assert!(error.to_string().contains("`DDL` on fold `eth`"));
+}
+
+#[test]
+fn an_empty_report_says_so() {
+    let page = Report::new("Nothing", []).unwrap().to_markdown();
+    assert!(page.starts_with("Data convention: none"));
+}

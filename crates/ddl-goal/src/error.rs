@@ -1,0 +1,160 @@
+//! What can be wrong with parameters, tracks and libraries, said so that the reader knows where to look.
+
+use ddl_softdtw::{SearchError, SoftDtwError};
+use thiserror::Error;
+
+/// A parameter of the goal estimator that makes no sense.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum ParamsError {
+    /// No experts are asked for.
+    #[error("experts is 0: at least one similar walker must be retrieved (the paper uses 100)")]
+    NoExperts,
+    /// No goals are asked for.
+    #[error("clusters is 0: at least one goal must be estimated (the paper uses 20)")]
+    NoClusters,
+    /// k-means is never run.
+    #[error(
+        "restarts is 0: k-means must be run at least once (the published code runs it 10 times)"
+    )]
+    NoRestarts,
+    /// The smoothing of soft-DTW is out of range.
+    #[error("gamma is {gamma}: it must be finite and not negative (the paper uses 1)")]
+    InvalidGamma {
+        /// The value that was given.
+        gamma: f64,
+    },
+}
+
+/// A track that cannot be used.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum TrackError {
+    /// The track has too few positions.
+    #[error("it has {found} positions, {needed} are needed")]
+    TooShort {
+        /// Number of positions in the track.
+        found: usize,
+        /// Number of positions that are read.
+        needed: usize,
+    },
+    /// A track of the library has the wrong number of positions.
+    #[error("it has {found} positions, a track of the library has exactly {needed}")]
+    WrongLength {
+        /// Number of positions in the track.
+        found: usize,
+        /// Number of positions it should have.
+        needed: usize,
+    },
+    /// A position that is read is NaN or infinite.
+    #[error("position {index} is ({x}, {y}): must be finite")]
+    NonFinite {
+        /// Index of the position in the track, from 0.
+        index: usize,
+        /// First coordinate (m).
+        x: f64,
+        /// Second coordinate (m).
+        y: f64,
+    },
+    /// Two positions are so far apart that their difference is not finite.
+    #[error("the step from position {index} is too long for a velocity in the range of f64")]
+    VelocityOverflow {
+        /// Index of the first of the two positions, from 0.
+        index: usize,
+    },
+}
+
+/// Why a library of experts could not be made.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum LibraryError {
+    /// No tracks were given.
+    #[error(
+        "the library has no tracks: give it complete tracks of walkers from the training scenes"
+    )]
+    Empty,
+    /// The time between two positions is not a positive number of seconds.
+    #[error("the time step is {time_step} s: it must be finite and positive")]
+    InvalidTimeStep {
+        /// The value that was given (s).
+        time_step: f64,
+    },
+    /// One of the tracks cannot be used.
+    #[error("track {index} of the library: {source}")]
+    Track {
+        /// Position of the track in the list, from 0.
+        index: usize,
+        /// What is wrong with it.
+        source: TrackError,
+    },
+}
+
+/// Why points could not be clustered.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum KMeansError {
+    /// No clusters are asked for.
+    #[error("k-means with 0 clusters: at least one is needed")]
+    NoClusters,
+    /// k-means is never run.
+    #[error("k-means with 0 restarts: at least one is needed")]
+    NoRestarts,
+    /// The tolerance is negative or not a number.
+    #[error("the tolerance of k-means is {tolerance}: it must be finite and not negative")]
+    InvalidTolerance {
+        /// The value that was given.
+        tolerance: f64,
+    },
+    /// There is nothing to cluster.
+    #[error("k-means of no points: at least one is needed")]
+    NoPoints,
+    /// A point is NaN, infinite, or too large to square.
+    #[error("point {index} is ({x}, {y}): coordinates must be finite and below 1e150")]
+    OutOfRange {
+        /// Position of the point in the list, from 0.
+        index: usize,
+        /// First coordinate (m).
+        x: f64,
+        /// Second coordinate (m).
+        y: f64,
+    },
+}
+
+/// Why goals could not be estimated.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum GoalError {
+    /// The library holds fewer tracks than experts are to be retrieved.
+    #[error(
+        "the library holds {tracks} tracks but {experts} experts are to be retrieved: give it more tracks or lower `experts`"
+    )]
+    TooFewTracks {
+        /// Number of tracks in the library.
+        tracks: usize,
+        /// Number of experts asked for.
+        experts: usize,
+    },
+    /// The library cannot be used.
+    #[error(transparent)]
+    Library(#[from] LibraryError),
+    /// The observed track cannot be used.
+    #[error("the observed track: {0}")]
+    Track(#[from] TrackError),
+    /// One of a batch of observed tracks cannot be used.
+    #[error("track {index} of the batch: {source}")]
+    BatchTrack {
+        /// Position of the track in the batch, from 0.
+        index: usize,
+        /// What is wrong with it.
+        source: Box<GoalError>,
+    },
+    /// Soft-DTW refused its parameters.
+    #[error(transparent)]
+    SoftDtw(#[from] SoftDtwError),
+    /// The search for similar walkers failed.
+    #[error("the search for similar walkers: {0}")]
+    Search(#[from] SearchError),
+    /// The endpoints of the experts could not be clustered.
+    #[error("the clustering of the experts' endpoints: {0}")]
+    KMeans(#[from] KMeansError),
+}

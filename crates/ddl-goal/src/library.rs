@@ -1,0 +1,145 @@
+//! The walkers whose whole track is known.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{LibraryError, TrackError};
+use crate::frame::check_finite;
+
+/// Positions of a complete track: 8 observed and 12 to forecast.
+pub const TRACK_LENGTH: usize = 20;
+
+/// Complete tracks of walkers from the training scenes, the experts of which the most similar ones are retrieved.
+///
+/// # Examples
+/// ```
+/// use ddl_goal::ExpertLibrary;
+/// let track: Vec<[f64; 2]> = (0..20).map(|i| [0.5 * f64::from(i), 0.0]).collect();
+/// let library = ExpertLibrary::new(vec![track], 0.4)?;
+/// assert_eq!(library.len(), 1);
+/// assert_eq!(library.end(0), [9.5, 0.0]);
+/// # Ok::<(), ddl_goal::LibraryError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Unchecked")]
+pub struct ExpertLibrary {
+    time_step: f64,
+    tracks: Vec<Vec<[f64; 2]>>,
+}
+
+/// A library as it was read, before it is checked.
+#[derive(Deserialize)]
+#[serde(rename = "ExpertLibrary", deny_unknown_fields)]
+struct Unchecked {
+    time_step: f64,
+    tracks: Vec<Vec<[f64; 2]>>,
+}
+
+impl TryFrom<Unchecked> for ExpertLibrary {
+    type Error = LibraryError;
+
+    fn try_from(unchecked: Unchecked) -> Result<Self, LibraryError> {
+        Self::new(unchecked.tracks, unchecked.time_step)
+    }
+}
+
+impl ExpertLibrary {
+    /// A library of tracks sampled every `time_step` seconds.
+    ///
+    /// # Shapes
+    /// `tracks`: at least one, each of [`TRACK_LENGTH`] positions (m).
+    ///
+    /// # Errors
+    /// An empty list, a track of another length or with a position that is not finite, a time step that is not positive.
+    pub fn new(tracks: Vec<Vec<[f64; 2]>>, time_step: f64) -> Result<Self, LibraryError> {
+        if !(time_step.is_finite() && time_step > 0.0) {
+            return Err(LibraryError::InvalidTimeStep { time_step });
+        }
+        if tracks.is_empty() {
+            return Err(LibraryError::Empty);
+        }
+        for (index, track) in tracks.iter().enumerate() {
+            if track.len() != TRACK_LENGTH {
+                let source = TrackError::WrongLength {
+                    found: track.len(),
+                    needed: TRACK_LENGTH,
+                };
+                return Err(LibraryError::Track { index, source });
+            }
+            check_finite(track).map_err(|source| LibraryError::Track { index, source })?;
+        }
+        Ok(Self { time_step, tracks })
+    }
+
+    /// Number of tracks.
+    pub fn len(&self) -> usize {
+        self.tracks.len()
+    }
+
+    /// Never true: a library without tracks cannot be made.
+    pub fn is_empty(&self) -> bool {
+        self.tracks.is_empty()
+    }
+
+    /// The tracks, positions in metres.
+    pub fn tracks(&self) -> &[Vec<[f64; 2]>] {
+        &self.tracks
+    }
+
+    /// Seconds between two positions of a track.
+    pub fn time_step(&self) -> f64 {
+        self.time_step
+    }
+
+    /// Where walker `index` ended, relative to where it was first seen (m): equation 6 of the paper.
+    ///
+    /// # Panics
+    /// When `index` is not below [`ExpertLibrary::len`].
+    pub fn end(&self, index: usize) -> [f64; 2] {
+        let track = &self.tracks[index];
+        [0, 1].map(|d| track[TRACK_LENGTH - 1][d] - track[0][d])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ExpertLibrary;
+    use crate::error::{LibraryError, TrackError};
+
+    #[test]
+    fn what_cannot_be_used_is_named() {
+        let track = vec![[0.0, 1.0]; 20];
+        assert_eq!(ExpertLibrary::new(vec![], 0.4), Err(LibraryError::Empty));
+        assert!(matches!(
+            ExpertLibrary::new(vec![track.clone()], f64::NAN),
+            Err(LibraryError::InvalidTimeStep { .. })
+        ));
+        let source = TrackError::WrongLength {
+            found: 8,
+            needed: 20,
+        };
+        assert_eq!(
+            ExpertLibrary::new(vec![track.clone(), track[..8].to_vec()], 0.4),
+            Err(LibraryError::Track { index: 1, source })
+        );
+        let mut broken = track;
+        broken[19][1] = f64::INFINITY;
+        let error = ExpertLibrary::new(vec![broken], 0.4).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "track 0 of the library: position 19 is (0, inf): must be finite"
+        );
+    }
+
+    #[test]
+    fn a_library_survives_json_and_a_broken_one_is_refused() {
+        let track: Vec<[f64; 2]> = (0..20).map(|i| [0.1 * f64::from(i), 1.0 / 3.0]).collect();
+        let library = ExpertLibrary::new(vec![track], 0.4).unwrap();
+        let json = serde_json::to_string(&library).unwrap();
+        assert_eq!(
+            serde_json::from_str::<ExpertLibrary>(&json).unwrap(),
+            library
+        );
+        let broken = json.replace("0.4", "-0.4");
+        assert!(serde_json::from_str::<ExpertLibrary>(&broken).is_err());
+    }
+}

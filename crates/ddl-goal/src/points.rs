@@ -1,0 +1,71 @@
+//! Points in the plane, equal ones counted together.
+
+/// Distinct points with their multiplicities, sorted.
+#[derive(Debug)]
+pub(crate) struct Points {
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    pub(crate) weight: Vec<f64>,
+}
+
+impl Points {
+    /// The distinct points, and for each point given its place among them.
+    pub(crate) fn distinct(points: &[[f64; 2]]) -> (Self, Vec<usize>) {
+        // Adding 0 turns −0 into +0: they are one point.
+        let clean = |index: usize| points[index].map(|value| value + 0.0);
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        order.sort_unstable_by(|&a, &b| {
+            let (a, b) = (clean(a), clean(b));
+            a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+        });
+        let mut distinct = Self {
+            x: Vec::new(),
+            y: Vec::new(),
+            weight: Vec::new(),
+        };
+        let mut place = vec![0; points.len()];
+        for same in
+            order.chunk_by(|&a, &b| clean(a).map(f64::to_bits) == clean(b).map(f64::to_bits))
+        {
+            let [x, y] = clean(same[0]);
+            for &index in same {
+                place[index] = distinct.len();
+            }
+            distinct.x.push(x);
+            distinct.y.push(y);
+            distinct.weight.push(same.len() as f64);
+        }
+        (distinct, place)
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    pub(crate) fn get(&self, index: usize) -> [f64; 2] {
+        [self.x[index], self.y[index]]
+    }
+
+    /// Mean of the variances of the two coordinates.
+    pub(crate) fn mean_variance(&self) -> f64 {
+        let total: f64 = self.weight.iter().sum();
+        let weighted_sum = |values: &mut dyn Iterator<Item = f64>| -> f64 {
+            values
+                .zip(&self.weight)
+                .map(|(value, weight)| value * weight)
+                .sum()
+        };
+        let variances = [&self.x, &self.y].map(|values| {
+            let mean = weighted_sum(&mut values.iter().copied()) / total;
+            weighted_sum(&mut values.iter().map(|value| (value - mean).powi(2))) / total
+        });
+        f64::midpoint(variances[0], variances[1])
+    }
+}
+
+/// Squared distance of two points (m²).
+#[inline]
+pub(crate) fn squared_distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
+    dx * dx + dy * dy
+}

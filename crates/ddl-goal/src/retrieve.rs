@@ -1,0 +1,68 @@
+//! Retrieval of the walkers who moved most alike.
+
+use ddl_softdtw::{Cost, Neighbour, SearchError, SearchIndex, SoftDtw};
+
+use crate::error::{GoalError, LibraryError};
+use crate::frame::{QuerySpan, velocities};
+use crate::library::ExpertLibrary;
+
+/// Finds the tracks of a library whose velocities are nearest in the normalised soft-DTW distance.
+///
+/// # References
+/// DDL paper, equations 4 and 5. The cost is the squared Euclidean distance, as in the published code (the text of the
+/// paper says Euclidean).
+#[derive(Clone, Debug)]
+pub struct Retriever {
+    index: SearchIndex<2>,
+    time_step: f64,
+    span: QuerySpan,
+}
+
+impl Retriever {
+    /// Prepares a library for retrieval with smoothing `gamma` (m²/s²), comparing what `span` reads.
+    ///
+    /// # Errors
+    /// A `gamma` that is negative or not finite, or a track whose velocities leave the range of `f64`.
+    pub fn new(library: &ExpertLibrary, gamma: f64, span: QuerySpan) -> Result<Self, GoalError> {
+        let dtw = SoftDtw::new(gamma, Cost::SquaredEuclidean)?;
+        let time_step = library.time_step();
+        let sequences = library
+            .tracks()
+            .iter()
+            .enumerate()
+            .map(|(index, track)| {
+                velocities(track, time_step, span)
+                    .map_err(|source| LibraryError::Track { index, source })
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        Ok(Self {
+            index: SearchIndex::build(&dtw, &sequences)?,
+            time_step,
+            span,
+        })
+    }
+
+    /// The `experts` tracks of the library nearest to `track`, nearest first, ties by their place in the library.
+    ///
+    /// # Shapes
+    /// `track`: at least 8 positions (m), 9 for [`QuerySpan::PublishedFuture`]; later ones are not read.
+    ///
+    /// # Errors
+    /// A track that is too short or not finite.
+    pub fn nearest(&self, track: &[[f64; 2]], experts: usize) -> Result<Vec<Neighbour>, GoalError> {
+        Ok(self.nearest_to_velocities(&self.velocities(track)?, experts)?)
+    }
+
+    /// What is compared: the velocities (m/s) of the part of `track` that may be read.
+    pub(crate) fn velocities(&self, track: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, GoalError> {
+        Ok(velocities(track, self.time_step, self.span)?)
+    }
+
+    pub(crate) fn nearest_to_velocities(
+        &self,
+        velocities: &[[f64; 2]],
+        experts: usize,
+    ) -> Result<Vec<Neighbour>, SearchError> {
+        self.index.nearest(velocities, experts)
+    }
+}

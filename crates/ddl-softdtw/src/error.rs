@@ -1,0 +1,84 @@
+//! What can be wrong with the inputs, said so that the reader knows where to look.
+
+use std::fmt;
+
+use thiserror::Error;
+
+/// Which of the two sequences of a comparison an error speaks of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SequenceRole {
+    /// The first argument, `x` (the query of a search).
+    X,
+    /// The second argument, `y` (the candidate of a search).
+    Y,
+}
+
+impl fmt::Display for SequenceRole {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::X => "x",
+            Self::Y => "y",
+        })
+    }
+}
+
+/// Why a soft-DTW value or gradient could not be computed.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum SoftDtwError {
+    /// The smoothing parameter is negative, infinite or not a number.
+    #[error("gamma is {gamma}: it must be finite and not negative (0 is hard DTW)")]
+    InvalidGamma {
+        /// The value that was given.
+        gamma: f64,
+    },
+    /// A sequence has no step.
+    #[error("sequence {sequence} is empty: soft-DTW needs at least one step")]
+    EmptySequence {
+        /// The sequence in question.
+        sequence: SequenceRole,
+    },
+    /// A sequence holds NaN or an infinity.
+    #[error("sequence {sequence}, step {step}, component {component} is {value}: must be finite")]
+    NonFinite {
+        /// The sequence in question.
+        sequence: SequenceRole,
+        /// Index of the step, from 0.
+        step: usize,
+        /// Index of the component within the step, from 0.
+        component: usize,
+        /// The value found there.
+        value: f64,
+    },
+    /// The inputs are finite but their distance is larger than the largest `f64`.
+    #[error("the soft-DTW value leaves the range of f64: scale the sequences (or gamma) down")]
+    Overflow,
+}
+
+/// Why a search could not be prepared or answered.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum SearchError {
+    /// An index needs something to search in.
+    #[error("no candidates were given: a search index needs at least one sequence")]
+    NoCandidates,
+    /// One of the candidates is not a valid sequence.
+    #[error("candidate {index}: {source}")]
+    Candidate {
+        /// Position of the candidate in the list that was given, from 0.
+        index: usize,
+        /// What is wrong with it (sequence y).
+        source: SoftDtwError,
+    },
+    /// The query is not a valid sequence, or no distance to it can be represented.
+    #[error("query: {0}")]
+    Query(#[from] SoftDtwError),
+    /// One of a batch of queries is not a valid sequence.
+    #[error("query {index} of the batch: {source}")]
+    BatchQuery {
+        /// Position of the query in the batch, from 0.
+        index: usize,
+        /// What is wrong with it (sequence x).
+        source: SoftDtwError,
+    },
+}

@@ -1,0 +1,17 @@
+#![doc = include_str!("../README.md")]
+
+mod cost;
+mod error;
+mod gradient;
+mod lanes;
+mod range;
+mod search;
+mod select;
+mod sieve;
+mod softmin;
+mod value;
+
+pub use cost::Cost;
+pub use error::{SearchError, SequenceRole, SoftDtwError};
+pub use search::{Neighbour, SearchIndex};
+pub use value::SoftDtw;

@@ -1,0 +1,131 @@
+//! How far the `f32` recursion of [`crate::lanes`] can be trusted: its range and its rounding error.
+//!
+//! Everything here is in log2 units: a score Z stands for the soft-DTW value −γ ln 2 · log2(Z / start).
+
+use crate::lanes::{COST_LIMIT, EXP2_ERROR, FLOOR};
+
+/// Unit roundoff of `f32`.
+const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
+/// Longest sequence of the `f32` recursion.
+const LONGEST: usize = 32;
+/// A score must exceed the error of clamping and flooring by this factor (2^24) to count as accurate.
+const HEADROOM_LOG2: f64 = 24.0;
+/// A margin beyond this (log2 units) would let nearly everything through the sieve.
+const WIDEST_MARGIN: f64 = 0.25;
+
+/// The range of the recursion for a query of n steps against candidates of up to m steps.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Range {
+    /// log2 of the number of warping paths (a Delannoy number), which bounds Z / start.
+    paths_log2: f64,
+    /// log2 of the number of paths from any cell to the last one, all cells together.
+    tails_log2: f64,
+    /// log2 of the start value of the recursion: as large as the number of paths allows.
+    start_log2: i16,
+    /// Longest warping path, in cells.
+    longest_path: f64,
+}
+
+impl Range {
+    /// The range for lengths `n` and `m`, or `None` when the sequences are too long for `f32`.
+    pub(crate) fn of(n: usize, m: usize) -> Option<Self> {
+        if n.max(m) > LONGEST {
+            return None;
+        }
+        let (paths, tails) = delannoy(n, m);
+        let paths_log2 = paths.log2();
+        // Two bits are kept free for rounding and for the sums of three terms.
+        let start_log2 = (125.0 - paths_log2.ceil()) as i16;
+        let longest_path = (n + m - 1) as f64;
+        Some(Self {
+            paths_log2,
+            tails_log2: tails.log2(),
+            start_log2,
+            longest_path,
+        })
+    }
+
+    /// log2 of the value the recursion starts from.
+    pub(crate) fn start_log2(&self) -> i16 {
+        self.start_log2
+    }
+
+    /// The smallest score (log2, start included) that the clamp on costs and the floor on sums leave accurate.
+    ///
+    /// Each of the at most `paths` paths gains at most 2^−`COST_LIMIT` by the clamp, and each cell passes on at most
+    /// `FLOOR` times the number of paths from it to the last cell.
+    pub(crate) fn smallest_accurate_log2(&self) -> f64 {
+        let start = f64::from(self.start_log2);
+        let clamp = start + self.paths_log2 - f64::from(COST_LIMIT);
+        let floor = f64::from(FLOOR).log2() + self.tails_log2;
+        clamp.max(floor) + 1.0 + HEADROOM_LOG2
+    }
+
+    /// Bound on the error of log2(score) for scores of at least `score_log2` (start included), for inputs of absolute
+    /// value up to `largest` and dimension `dimension`.
+    ///
+    /// Paths whose cost C exceeds `paths + (start − score) + 30` hold less than 2^−30 of the score. For the others, with
+    /// input errors e = largest · u, the squared differences of a path of P cells err by at most
+    /// 4 e √(P·dim·C) + 4 e² P dim (inputs) + (dim + 3) u C (rounding), by the Cauchy-Schwarz inequality; each cell adds
+    /// the error of exp2 and four roundings.
+    pub(crate) fn error_log2(&self, score_log2: f64, largest: f64, dimension: usize) -> f64 {
+        let (path, dimension) = (self.longest_path, dimension as f64);
+        let cost = self.paths_log2 + (f64::from(self.start_log2) - score_log2).max(0.0) + 30.0;
+        let input = largest * UNIT;
+        let spread = path * dimension;
+        let costs = 4.0 * input * (spread * cost).sqrt()
+            + 4.0 * input * input * spread
+            + (dimension + 3.0) * UNIT * cost;
+        let cells = path * (EXP2_ERROR + 4.0 * UNIT) * std::f64::consts::LOG2_E;
+        let tails = 2.0_f64.powf(-HEADROOM_LOG2) * 3.0;
+        costs + cells + tails
+    }
+
+    /// Width of the band below the n-th score that may hold members of the true n best, or `None` when it would be so wide
+    /// that the sieve is of no use. Both the n-th score and a candidate's may err, hence twice the error.
+    pub(crate) fn margin_log2(&self, score_log2: f64, largest: f64, dim: usize) -> Option<f64> {
+        // A candidate just inside the band scores a little lower than the n-th: one unit covers it.
+        let margin = 2.0 * self.error_log2(score_log2 - 1.0, largest, dim);
+        (margin <= WIDEST_MARGIN).then_some(margin)
+    }
+}
+
+/// Number of warping paths through an n × m grid, and the sum of that number over all sub-grids that share its end.
+fn delannoy(n: usize, m: usize) -> (f64, f64) {
+    let mut row = vec![1.0_f64; m];
+    let mut total = m as f64;
+    for _ in 1..n {
+        let mut diagonal = row[0];
+        for j in 1..m {
+            let up = row[j];
+            row[j] = diagonal + up + row[j - 1];
+            diagonal = up;
+        }
+        total += row.iter().sum::<f64>();
+    }
+    (row.last().copied().unwrap_or(1.0), total)
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
+
+    use super::{LONGEST, Range, delannoy};
+
+    #[test]
+    fn paths_are_the_central_delannoy_numbers() {
+        assert_eq!(delannoy(1, 1), (1.0, 1.0));
+        assert_eq!(delannoy(2, 2), (3.0, 6.0));
+        assert_eq!(delannoy(7, 7).0, 8989.0);
+        assert_eq!(delannoy(8, 8).0, 48639.0);
+        assert_eq!(delannoy(1, 9), (1.0, 9.0));
+    }
+
+    #[test]
+    fn walkers_have_room_for_values_of_47_gamma() {
+        let range = Range::of(8, 8).expect("short");
+        let reach = f64::from(range.start_log2()) - range.smallest_accurate_log2();
+        assert!(reach * std::f64::consts::LN_2 > 47.0, "{reach}");
+        assert!(Range::of(LONGEST + 1, 8).is_none());
+    }
+}

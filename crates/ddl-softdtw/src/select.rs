@@ -1,0 +1,105 @@
+//! Running selection of the largest scores, with a band below the n-th for those that may belong to the best.
+
+/// A score of the `f32` recursion and the candidate it belongs to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scored {
+    pub(crate) score: f32,
+    pub(crate) candidate: usize,
+}
+
+/// Keeps every score that can still lie within `slack` of the `wanted`-th largest.
+#[derive(Debug)]
+pub(crate) struct Selection {
+    wanted: usize,
+    /// Factor below 1: a score of at least `slack` times the n-th is kept.
+    slack: f64,
+    /// What a score must reach: `slack` times the n-th largest seen so far, which only grows.
+    threshold: f32,
+    capacity: usize,
+    kept: Vec<Scored>,
+}
+
+impl Selection {
+    /// Selects the `wanted` (at least 1) largest scores and those down to 2^−`margin_log2` times the last of them.
+    pub(crate) fn new(wanted: usize, margin_log2: f64) -> Self {
+        let capacity = 4 * wanted.max(64);
+        Self {
+            wanted,
+            slack: (-margin_log2).exp2(),
+            threshold: 0.0,
+            capacity,
+            kept: Vec::with_capacity(capacity),
+        }
+    }
+
+    /// What a score must reach to be worth offering.
+    pub(crate) fn threshold(&self) -> f32 {
+        self.threshold
+    }
+
+    /// Takes a score in if it reaches the threshold.
+    pub(crate) fn offer(&mut self, score: f32, candidate: usize) {
+        if score < self.threshold {
+            return;
+        }
+        self.kept.push(Scored { score, candidate });
+        if self.kept.len() >= self.capacity {
+            self.compact(self.slack);
+            // Many ties may survive: more room, so that compacting stays rare.
+            self.capacity = self.capacity.max(2 * self.kept.len());
+        }
+    }
+
+    /// The `wanted`-th largest score, or `None` when fewer were offered.
+    pub(crate) fn nth(&mut self) -> Option<f32> {
+        let last = self.wanted.checked_sub(1)?;
+        if self.kept.len() <= last {
+            return None;
+        }
+        let (_, nth, _) = self
+            .kept
+            .select_nth_unstable_by(last, |a, b| b.score.total_cmp(&a.score));
+        Some(nth.score)
+    }
+
+    /// What is left after the last compaction, with a margin that may be narrower than that of the selection.
+    pub(crate) fn finish(mut self, margin_log2: f64) -> Vec<Scored> {
+        self.compact((-margin_log2).exp2().max(self.slack));
+        self.kept
+    }
+
+    fn compact(&mut self, slack: f64) {
+        if let Some(nth) = self.nth() {
+            let threshold = (f64::from(nth) * slack) as f32;
+            // Rounded down, so that the band is never narrower than asked.
+            self.threshold = self.threshold.max(threshold.next_down());
+            let threshold = self.threshold;
+            self.kept.retain(|scored| scored.score >= threshold);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Selection;
+
+    #[test]
+    fn keeps_the_best_and_the_band_below_them() {
+        let mut selection = Selection::new(3, 1.0);
+        for i in 0..5000_usize {
+            let score = ((i * 7919) % 5000) as f32;
+            selection.offer(score, i);
+        }
+        assert_eq!(selection.nth(), Some(4997.0));
+        let mut kept: Vec<f32> = selection.finish(0.001).iter().map(|s| s.score).collect();
+        kept.sort_by(f32::total_cmp);
+        assert_eq!(kept, [4994.0, 4995.0, 4996.0, 4997.0, 4998.0, 4999.0]);
+    }
+
+    #[test]
+    fn ties_are_all_kept() {
+        let mut selection = Selection::new(2, 0.1);
+        (0..3000).for_each(|i| selection.offer(1.0, i));
+        assert_eq!(selection.finish(0.1).len(), 3000);
+    }
+}

@@ -1,0 +1,100 @@
+//! The smoothed minimum of three numbers and its weights.
+
+/// Smoothed minimum −γ ln(e^(−a/γ) + e^(−b/γ) + e^(−c/γ)); the plain minimum for γ = 0.
+///
+/// Only differences to the smallest value are exponentiated, so nothing overflows; `+inf` entries count for nothing.
+/// The sum is formed in an order that does not depend on the order of the arguments, so that soft-DTW is symmetric to
+/// the last bit.
+pub(crate) fn softmin(a: f64, b: f64, c: f64, gamma: f64) -> f64 {
+    let (low, middle, high) = sorted(a, b, c);
+    if gamma == 0.0 || low == f64::INFINITY {
+        return low;
+    }
+    low - gamma * (decay(low, middle, gamma) + decay(low, high, gamma)).ln_1p()
+}
+
+/// The smoothed minimum with its derivatives with respect to `values`: weights that are not negative and sum to 1.
+///
+/// For γ = 0 the whole weight goes to the first smallest value (a subgradient).
+pub(crate) fn softmin_weights(values: [f64; 3], gamma: f64) -> (f64, [f64; 3]) {
+    let [a, b, c] = values;
+    let (low, ..) = sorted(a, b, c);
+    if gamma == 0.0 || low == f64::INFINITY {
+        let mut weights = [0.0; 3];
+        if let Some(first) = values.iter().position(|&value| value <= low) {
+            weights[first] = 1.0;
+        }
+        return (low, weights);
+    }
+    let weights = values.map(|value| decay(low, value, gamma));
+    let total: f64 = weights.iter().sum();
+    (
+        softmin(a, b, c, gamma),
+        weights.map(|weight| weight / total),
+    )
+}
+
+/// e^(−(value − low)/γ) for `value >= low`.
+fn decay(low: f64, value: f64, gamma: f64) -> f64 {
+    ((low - value) / gamma).exp()
+}
+
+fn sorted(a: f64, b: f64, c: f64) -> (f64, f64, f64) {
+    let (a, b) = if b < a { (b, a) } else { (a, b) };
+    let (b, c) = if c < b { (c, b) } else { (b, c) };
+    let (a, b) = if b < a { (b, a) } else { (a, b) };
+    (a, b, c)
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
+
+    use super::{softmin, softmin_weights};
+
+    #[test]
+    fn equal_values_lose_gamma_ln_3() {
+        let value = softmin(2.0, 2.0, 2.0, 0.5);
+        assert!((value - (2.0 - 0.5 * 3.0_f64.ln())).abs() < 1e-15);
+    }
+
+    #[test]
+    fn huge_values_and_tiny_gamma_stay_finite() {
+        assert_eq!(softmin(1e6, 2e6, 3e6, 1e-3), 1e6);
+        assert_eq!(softmin(1e6, f64::INFINITY, f64::INFINITY, 1e-3), 1e6);
+        assert_eq!(softmin(1.0, 2.0, 3.0, f64::MIN_POSITIVE / 4.0), 1.0);
+        assert_eq!(
+            softmin(f64::INFINITY, f64::INFINITY, f64::INFINITY, 1.0),
+            f64::INFINITY
+        );
+    }
+
+    #[test]
+    fn the_order_of_the_arguments_does_not_change_one_bit() {
+        let (a, b, c) = (0.3, 0.7, 0.1);
+        let value = softmin(a, b, c, 0.37).to_bits();
+        for (a, b, c) in [(a, c, b), (b, a, c), (b, c, a), (c, a, b), (c, b, a)] {
+            assert_eq!(softmin(a, b, c, 0.37).to_bits(), value);
+        }
+    }
+
+    #[test]
+    fn weights_are_the_derivatives() {
+        let (values, gamma, h) = ([0.4, 0.9, 0.2], 0.3, 1e-6);
+        let (_, weights) = softmin_weights(values, gamma);
+        for i in 0..3 {
+            let mut up = values;
+            let mut down = values;
+            up[i] += h;
+            down[i] -= h;
+            let slope = (softmin(up[0], up[1], up[2], gamma)
+                - softmin(down[0], down[1], down[2], gamma))
+                / (2.0 * h);
+            assert!((weights[i] - slope).abs() < 1e-9);
+        }
+        assert_eq!(
+            softmin_weights([2.0, 1.0, 1.0], 0.0),
+            (1.0, [0.0, 1.0, 0.0])
+        );
+    }
+}

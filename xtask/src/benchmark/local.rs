@@ -1,0 +1,213 @@
+//! Tasks as processes on this machine.
+
+use std::ffi::OsString;
+use std::fs::{self, File, OpenOptions};
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use serde::Deserialize;
+
+use super::child::{BEAT, Children};
+use super::executor::{End, Executor, Stop, Watch};
+use super::plan::{Plan, Task};
+use super::record;
+
+/// Lines of a log that are shown when a task fails.
+const LAST_LINES: usize = 8;
+
+/// Runs up to `jobs` tasks at a time, each in a process of the program `ddl`.
+#[derive(Debug)]
+pub(crate) struct Local {
+    program: PathBuf,
+    /// What stands before the arguments of a task.
+    leading: Vec<OsString>,
+    jobs: usize,
+    threads: usize,
+    children: Children,
+}
+
+impl Local {
+    /// A program to which each task's arguments are handed; `threads` is what each process computes with: `jobs` times `threads` should not be more
+    /// than the machine's cores.
+    pub(crate) fn new(program: PathBuf, jobs: usize, threads: usize) -> Self {
+        Self {
+            program,
+            leading: Vec::new(),
+            jobs,
+            threads,
+            children: Children::default(),
+        }
+    }
+
+    /// Puts arguments before those of every task, as in `nice ddl`.
+    #[cfg(test)]
+    fn leading(self, arguments: Vec<OsString>) -> Self {
+        Self {
+            leading: arguments,
+            ..self
+        }
+    }
+}
+
+impl Executor for Local {
+    fn run(&self, plan: &Plan, out: &Path, watch: &dyn Watch, stop: &Stop) -> Result<Vec<End>> {
+        let next = AtomicUsize::new(0);
+        let ends = Mutex::new(vec![End::Interrupted; plan.tasks.len()]);
+        let all_ended = AtomicBool::new(false);
+        thread::scope(|scope| {
+            let forwarder = scope.spawn(|| {
+                while !all_ended.load(Ordering::SeqCst) {
+                    self.children.forward(stop);
+                    thread::sleep(BEAT);
+                }
+            });
+            let workers: Vec<_> = (0..self.jobs.min(plan.tasks.len()))
+                .map(|_| {
+                    scope.spawn(|| {
+                        // Tasks lie longest first, so taking them in order fills the cores best.
+                        while !stop.is_requested() {
+                            let index = next.fetch_add(1, Ordering::SeqCst);
+                            let Some(task) = plan.tasks.get(index) else {
+                                break;
+                            };
+                            let end = self.run_task(plan, task, out, watch, stop);
+                            watch.ended(task, &end);
+                            ends.lock().unwrap_or_else(PoisonError::into_inner)[index] = end;
+                        }
+                    })
+                })
+                .collect();
+            let panicked = workers
+                .into_iter()
+                .filter_map(|worker| worker.join().err())
+                .count();
+            all_ended.store(true, Ordering::SeqCst);
+            let _ = forwarder.join();
+            anyhow::ensure!(
+                panicked == 0,
+                "{panicked} workers panicked: this is a bug of xtask"
+            );
+            Ok(())
+        })?;
+        Ok(ends.into_inner().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+/// One line of a child's standard output.
+#[derive(Debug, Deserialize)]
+struct ProgressLine {
+    stage: String,
+    done: f64,
+    total: f64,
+    #[serde(default)]
+    message: String,
+}
+
+impl Local {
+    fn run_task(
+        &self,
+        plan: &Plan,
+        task: &Task,
+        out: &Path,
+        watch: &dyn Watch,
+        stop: &Stop,
+    ) -> End {
+        if record::is_finished(task, out) {
+            return End::Kept;
+        }
+        watch.started(task);
+        let start = Instant::now();
+        let train = task.train_cost / task.cost();
+        let steps = [
+            (plan.train_arguments(task, out, self.threads), 0.0, train),
+            (plan.evaluate_arguments(task, out, self.threads), train, 1.0),
+        ];
+        for (arguments, from, to) in steps {
+            let tell = |fraction: f64, message: &str| {
+                watch.advanced(task, from + (to - from) * fraction, message);
+            };
+            match self.run_step(&task.folder(out), &arguments, &tell) {
+                Ok(status) if status.success() => {}
+                // A child that was asked to stop has saved and left.
+                _ if stop.is_requested() => return End::Interrupted,
+                Ok(status) => {
+                    let step = arguments.first().map_or("", String::as_str);
+                    return failure(task, out, &format!("`ddl {step}` ended with {status}"));
+                }
+                Err(error) => return failure(task, out, &format!("{error:#}")),
+            }
+            if stop.is_requested() {
+                return End::Interrupted;
+            }
+        }
+        let seconds = start.elapsed().as_secs_f64();
+        match record::write(task, out, seconds) {
+            Ok(()) => End::Finished { seconds },
+            Err(error) => failure(task, out, &format!("{error:#}")),
+        }
+    }
+
+    /// Runs the program once; its standard error goes to the task's log.
+    fn run_step(
+        &self,
+        folder: &Path,
+        arguments: &[String],
+        tell: &dyn Fn(f64, &str),
+    ) -> Result<ExitStatus> {
+        let mut log = open_log(folder)?;
+        writeln!(log, "$ ddl {}", arguments.join(" ")).context("the log cannot be written")?;
+        let errors = log.try_clone().context("the log cannot be shared")?;
+        let mut command = Command::new(&self.program);
+        command
+            .args(&self.leading)
+            .args(arguments)
+            .env("OMP_NUM_THREADS", self.threads.to_string())
+            .env("RAYON_NUM_THREADS", self.threads.to_string())
+            .stderr(Stdio::from(errors));
+        let (id, stdout) = self.children.start(&mut command)?;
+        let mut reached = 0.0_f64;
+        for line in BufReader::new(stdout).lines() {
+            let Ok(line) = line else { break };
+            match serde_json::from_str::<ProgressLine>(&line) {
+                Ok(progress) if progress.total > 0.0 => {
+                    // A program that begins a new stage counts from nothing again; the whole never
+                    // goes back.
+                    reached = reached.max((progress.done / progress.total).clamp(0.0, 1.0));
+                    tell(reached, &format!("{} {}", progress.stage, progress.message));
+                }
+                // Anything else is for the log, which may fail without harm to the task.
+                _ => drop(writeln!(log, "{line}")),
+            }
+        }
+        self.children.wait(id)
+    }
+}
+
+fn open_log(folder: &Path) -> Result<File> {
+    let path = folder.join("log.txt");
+    fs::create_dir_all(folder)
+        .and_then(|()| OpenOptions::new().create(true).append(true).open(&path))
+        .with_context(|| format!("{} cannot be opened", path.display()))
+}
+
+fn failure(task: &Task, out: &Path, what: &str) -> End {
+    let log = task.folder(out).join("log.txt");
+    let text = fs::read(&log).unwrap_or_default();
+    let text = String::from_utf8_lossy(&text);
+    let lines: Vec<&str> = text.lines().collect();
+    let last = &lines[lines.len().saturating_sub(LAST_LINES)..];
+    let end = last.join("\n    ");
+    End::Failed {
+        reason: format!("{what}; the end of {}:\n    {end}", log.display()),
+    }
+}
+
+#[cfg(test)]
+#[path = "local_tests.rs"]
+mod tests;

@@ -1,0 +1,111 @@
+//! What a plan holds, says to the program, and refuses.
+
+use super::*;
+
+pub(crate) fn settings() -> Settings {
+    Settings {
+        profile: "quick".to_owned(),
+        convention: "star".to_owned(),
+        data: Some(PathBuf::from("/recordings")),
+        device: "cpu".to_owned(),
+        cargo_profile: "release".to_owned(),
+        epochs: 4,
+        train_walkers: Some(800),
+        test_walkers: None,
+    }
+}
+
+fn plan(folds: &[&str], variants: &[&str], seeds: &[u64]) -> Result<Plan> {
+    let owned = |names: &[&str]| {
+        names
+            .iter()
+            .map(|&name| name.to_owned())
+            .collect::<Vec<_>>()
+    };
+    Plan::new(settings(), &owned(folds), &owned(variants), seeds)
+}
+
+#[test]
+fn every_combination_is_there_once_and_the_longest_comes_first() {
+    let plan = plan(&["eth", "univ", "zara2"], &["full", "star"], &[1, 2]).unwrap();
+    assert_eq!(plan.tasks.len(), 12);
+    assert!(
+        plan.tasks
+            .windows(2)
+            .all(|pair| pair[0].cost() >= pair[1].cost())
+    );
+    let ids: Vec<&str> = plan
+        .tasks
+        .iter()
+        .map(|task| task.id.as_str())
+        .take(4)
+        .collect();
+    assert_eq!(
+        ids,
+        ["univ-full-1", "univ-full-2", "univ-star-1", "univ-star-2"]
+    );
+}
+
+#[test]
+fn nothing_and_twice_the_same_are_refused() {
+    assert!(plan(&[], &["full"], &[1]).is_err());
+    let message = plan(&["eth", "eth"], &["full"], &[1])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("eth-full-1 is asked for twice"),
+        "{message}"
+    );
+}
+
+#[test]
+fn the_arguments_are_those_the_program_knows() {
+    let mut plan = plan(&["eth"], &["full"], &[7]).unwrap();
+    let out = Path::new("runs/x");
+    assert_eq!(
+        plan.train_arguments(&plan.tasks[0], out, 1).join(" "),
+        "train --convention star --data /recordings --fold eth --variant full --seed 7 \
+         --epochs 4 --train-walkers 800 --out runs/x/eth-full-7/run --device cpu --threads 1 \
+         --progress json"
+    );
+    plan.settings.data = None;
+    assert_eq!(
+        plan.evaluate_arguments(&plan.tasks[0], out, 2).join(" "),
+        "evaluate --model runs/x/eth-full-7/run --protocol published --protocol fair \
+         --protocol single --device cpu --threads 2 --progress json"
+    );
+}
+
+#[test]
+fn a_plan_survives_its_file_and_may_gain_tasks() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("runs/quick");
+    let one = plan(&["eth"], &["full"], &[1]).unwrap();
+    one.write(&out).unwrap();
+    let text = fs::read(out.join("plan.json")).unwrap();
+    assert_eq!(serde_json::from_slice::<Plan>(&text).unwrap(), one);
+    let mut two = plan(&["eth", "hotel"], &["full"], &[1]).unwrap();
+    two.settings.data = Some(PathBuf::from("/moved"));
+    two.write(&out).unwrap();
+}
+
+#[test]
+fn other_settings_do_not_mix_with_what_is_there() {
+    let folder = tempfile::tempdir().unwrap();
+    plan(&["eth"], &["full"], &[1])
+        .unwrap()
+        .write(folder.path())
+        .unwrap();
+    let mut other = plan(&["eth"], &["full"], &[1]).unwrap();
+    other.settings.epochs = 200;
+    other.settings.test_walkers = Some(5);
+    let message = other.write(folder.path()).unwrap_err().to_string();
+    assert!(message.contains("epochs 200 instead of 4"), "{message}");
+    assert!(
+        message.contains("test_walkers 5 instead of null"),
+        "{message}"
+    );
+    fs::write(folder.path().join("plan.json"), "{").unwrap();
+    let message = other.write(folder.path()).unwrap_err().to_string();
+    assert!(message.contains("damaged"), "{message}");
+}

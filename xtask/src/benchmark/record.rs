@@ -1,0 +1,46 @@
+//! What is remembered of a finished task, so that a second run leaves it out.
+
+use std::fs;
+use std::io::Write as _;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use serde::{Deserialize, Serialize};
+
+use super::plan::Task;
+
+/// In the task's folder; written when both training and scoring have succeeded.
+const FILE: &str = "finished.json";
+
+#[derive(Debug, Serialize, Deserialize)]
+struct Record {
+    task: String,
+    seconds: f64,
+}
+
+/// Whether the task was finished and its scores are still there.
+pub(super) fn is_finished(task: &Task, out: &Path) -> bool {
+    let record = fs::read(task.folder(out).join(FILE))
+        .ok()
+        .and_then(|text| serde_json::from_slice::<Record>(&text).ok());
+    record.is_some_and(|record| record.task == task.id)
+        && task.run_folder(out).join("report.json").is_file()
+}
+
+pub(super) fn write(task: &Task, out: &Path, seconds: f64) -> Result<()> {
+    let folder = task.folder(out);
+    let record = Record {
+        task: task.id.clone(),
+        seconds,
+    };
+    let text = serde_json::to_vec(&record).context("a record cannot be written as JSON")?;
+    tempfile::NamedTempFile::new_in(&folder)
+        .and_then(|mut temporary| temporary.write_all(&text).map(|()| temporary))
+        .and_then(|temporary| {
+            temporary
+                .persist(folder.join(FILE))
+                .map_err(|error| error.error)
+        })
+        .with_context(|| format!("{} cannot be written", folder.join(FILE).display()))?;
+    Ok(())
+}

@@ -1,0 +1,68 @@
+//! The commands, one a file.
+
+mod bench;
+mod benchmark;
+mod ci;
+mod data;
+mod setup;
+mod test;
+mod tidy;
+
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::Subcommand;
+
+use crate::libtorch::{self, Origin, Request};
+use crate::workspace::Workspace;
+
+/// What `cargo xtask` can do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Bring in libtorch, so that plain `cargo build`, `test`, `run` and `doc` work
+    Setup(setup::Arguments),
+    /// Print shell lines that set libtorch's variables, for tools that do not ask cargo
+    Env,
+    /// Find, fetch and verify the ETH/UCY recordings
+    Data(data::Arguments),
+    /// Train and score every fold, and write the report
+    Benchmark(Box<benchmark::Arguments>),
+    /// Run every test
+    Test(test::Arguments),
+    /// Run the micro-benchmarks of the crates
+    Bench(bench::Arguments),
+    /// Check the invariants of docs/architecture.md
+    Tidy,
+    /// Everything that must hold before a change goes in: format, tidy, lints, docs, tests
+    Ci,
+}
+
+impl Command {
+    pub(crate) fn run(self, workspace: &Workspace) -> Result<ExitCode> {
+        match self {
+            Self::Setup(arguments) => arguments.run(workspace),
+            Self::Env => setup::print_environment(workspace),
+            Self::Data(arguments) => arguments.run(workspace),
+            Self::Benchmark(arguments) => return arguments.run(workspace),
+            Self::Test(arguments) => arguments.run(workspace),
+            Self::Bench(arguments) => arguments.run(workspace),
+            Self::Tidy => tidy::run(workspace),
+            Self::Ci => ci::run(workspace),
+        }
+        .map(|()| ExitCode::SUCCESS)
+    }
+}
+
+/// Set-up before a command that builds: silent when nothing was to do.
+fn set_up(workspace: &Workspace) -> Result<()> {
+    let ready = libtorch::ensure(workspace, &Request::default())?;
+    if ready.reconfigured || ready.origin == Origin::Fetched {
+        eprintln!(
+            "libtorch {}: {} ({})",
+            libtorch::VERSION,
+            ready.folder.display(),
+            ready.origin
+        );
+    }
+    Ok(())
+}

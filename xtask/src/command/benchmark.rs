@@ -1,0 +1,290 @@
+//! `cargo xtask benchmark`: from nothing to the table.
+
+mod build;
+mod publish;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+use std::thread;
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+
+use super::set_up;
+use crate::benchmark::{
+    Display, End, Executor, Local, Plan, Profile, Settings, Stop, VARIANTS, fold_names, human,
+};
+use crate::data::{self, Chosen, Convention};
+use crate::workspace::{Workspace, absolute};
+
+/// Exit code of a run that was stopped and can be gone on with, as shells have it for Ctrl-C.
+const INTERRUPTED: u8 = 130;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// How much work: smoke (a minute), quick (minutes), paper (the paper's 200 epochs: days)
+    #[arg(long, default_value = "quick")]
+    profile: Profile,
+    /// star, social-gan or simulated [default: the first of these that can be had]
+    #[arg(long)]
+    convention: Option<Convention>,
+    /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
+    /// Folds to test on, as in `eth,hotel` [default: the profile's]
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    folds: Vec<String>,
+    /// Variants to train: full, no-goal-shift, no-dynamics, star, or all
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "NAMES",
+        default_value = "full"
+    )]
+    variants: Vec<String>,
+    /// Seeds; the report gives means and standard deviations over them
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "NUMBERS",
+        default_value = "1"
+    )]
+    seeds: Vec<u64>,
+    /// Processes side by side, which share the cores [default: one a core]
+    #[arg(long, value_name = "N")]
+    jobs: Option<usize>,
+    /// auto, cpu or cuda
+    #[arg(long, default_value = "cpu")]
+    device: String,
+    /// Folder of the results; one that is there is gone on with [default: `runs/CONVENTION-PROFILE`]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Cargo profile the program is built with
+    #[arg(long, default_value = "release", value_parser = ["release", "dev"])]
+    cargo_profile: String,
+    /// Walkers trained on in each epoch [default: the profile's]
+    #[arg(long, value_name = "N")]
+    train_walkers: Option<u32>,
+    /// Test walkers scored [default: the profile's]
+    #[arg(long, value_name = "N")]
+    test_walkers: Option<u32>,
+    /// Training epochs [default: the profile's]
+    #[arg(long, value_name = "N")]
+    epochs: Option<u32>,
+    /// Also write the report to docs/benchmark.md, with what made it
+    #[arg(long)]
+    publish: bool,
+}
+
+impl Arguments {
+    pub(crate) fn run(self, workspace: &Workspace) -> Result<ExitCode> {
+        let start = Instant::now();
+        let mut attempts = Vec::new();
+        let chosen = data::choose(
+            workspace,
+            self.convention,
+            self.data.as_deref(),
+            &mut |text| {
+                attempts.push(text.to_owned());
+            },
+        )?;
+        println!("data convention: {} ({})", chosen.convention, chosen.reason);
+        for attempt in attempts {
+            eprintln!("{attempt}");
+        }
+        let plan = self.plan(workspace, &chosen)?;
+        let out = self.out_folder(workspace, &plan)?;
+        plan.write(&out)?;
+        set_up(workspace)?;
+        let program = build::program(workspace, &self.cargo_profile)?;
+        let cores = thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let jobs = self.jobs.unwrap_or(cores);
+        ensure!(jobs > 0, "--jobs must be at least 1");
+        let threads = (cores / jobs).max(1);
+        println!(
+            "plan: {} tasks, {jobs} at a time with {threads} threads each, in {}",
+            plan.tasks.len(),
+            out.display()
+        );
+        let executor = Local::new(program.clone(), jobs, threads);
+        let ends = work_off(&executor, &plan, &out)?;
+        let finished: Vec<PathBuf> = plan
+            .tasks
+            .iter()
+            .zip(&ends)
+            .filter(|(_, end)| matches!(end, End::Finished { .. } | End::Kept))
+            .map(|(task, _)| task.run_folder(&out))
+            .collect();
+        if ends.contains(&End::Interrupted) {
+            println!(
+                "stopped after {}: {} of {} tasks are finished; the same command goes on from here",
+                human(start.elapsed()),
+                finished.len(),
+                ends.len()
+            );
+            return Ok(ExitCode::from(INTERRUPTED));
+        }
+        let failed = ends.len() - finished.len();
+        if !finished.is_empty() {
+            self.report(&plan, &program, &finished, &out)?;
+        }
+        println!("wall time: {}", human(start.elapsed()));
+        if failed > 0 {
+            println!(
+                "{failed} of {} tasks failed (above); a second run tries them again",
+                ends.len()
+            );
+            return Ok(ExitCode::FAILURE);
+        }
+        if self.publish {
+            publish::publish(workspace, &plan, &out, start.elapsed())?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+
+    fn plan(&self, workspace: &Workspace, chosen: &Chosen) -> Result<Plan> {
+        let known = fold_names(workspace, chosen.convention)?;
+        let folds = if self.folds.is_empty() {
+            known.into_iter().take(self.profile.folds).collect()
+        } else {
+            check_names("fold", &self.folds, &known)?;
+            self.folds.clone()
+        };
+        let all = VARIANTS.map(str::to_owned);
+        let variants = if self.variants == ["all"] {
+            all.to_vec()
+        } else {
+            check_names("variant", &self.variants, &all)?;
+            self.variants.clone()
+        };
+        let settings = Settings {
+            profile: self.profile.name.to_owned(),
+            convention: chosen.convention.name().to_owned(),
+            data: chosen.folder.clone(),
+            device: self.device.clone(),
+            cargo_profile: self.cargo_profile.clone(),
+            epochs: self.epochs.unwrap_or(self.profile.epochs),
+            train_walkers: self.train_walkers.or(self.profile.train_walkers),
+            test_walkers: self.test_walkers.or(self.profile.test_walkers),
+        };
+        Plan::new(settings, &folds, &variants, &self.seeds)
+    }
+
+    fn out_folder(&self, workspace: &Workspace, plan: &Plan) -> Result<PathBuf> {
+        match &self.out {
+            Some(folder) => absolute(folder),
+            None => Ok(workspace.path("runs").join(format!(
+                "{}-{}",
+                plan.settings.convention, plan.settings.profile
+            ))),
+        }
+    }
+
+    /// Has the program write the report over all finished runs, and prints it.
+    fn report(&self, plan: &Plan, program: &Path, runs: &[PathBuf], out: &Path) -> Result<()> {
+        let title = format!(
+            "Benchmark: {}, {}",
+            plan.settings.convention, self.profile.name
+        );
+        let output = Command::new(program)
+            .arg("report")
+            .args(runs)
+            .args(["--title", &title, "--out"])
+            .arg(out)
+            .output()
+            .with_context(|| format!("{} cannot be started", program.display()))?;
+        if !output.status.success() {
+            bail!(
+                "`ddl report` ended with {}: {}",
+                output.status,
+                String::from_utf8_lossy(&output.stderr).trim_end()
+            );
+        }
+        let file = out.join("report.md");
+        let text = fs::read_to_string(&file)
+            .with_context(|| format!("{} cannot be read", file.display()))?;
+        println!("\n{}\n", text.trim_end());
+        println!("report: {}", file.display());
+        println!("        {}", out.join("report.json").display());
+        Ok(())
+    }
+}
+
+/// Runs the plan; Ctrl-C (or a termination signal) stops it cleanly, a second one at once.
+fn work_off(executor: &dyn Executor, plan: &Plan, out: &Path) -> Result<Vec<End>> {
+    let stop = Stop::default();
+    let wish = stop.clone();
+    ctrlc::set_handler(move || {
+        wish.request();
+        match wish.wishes() {
+            1 => eprintln!("\nstopping: running tasks save what they have (again: stop at once)"),
+            _ => eprintln!("\nstopping at once"),
+        }
+    })
+    .context("Ctrl-C cannot be handled")?;
+    let display = Display::new(plan);
+    let ends = executor.run(plan, out, &display, &stop);
+    display.close();
+    ends
+}
+
+fn check_names(what: &str, asked: &[String], known: &[String]) -> Result<()> {
+    match asked.iter().find(|name| !known.contains(name)) {
+        Some(name) => bail!(
+            "there is no {what} {name:?}: choose from {}",
+            known.join(", ")
+        ),
+        None => Ok(()),
+    }
+}
+
+/// The benchmark as `ci` runs it: small, into a folder of its own, from the start, and without a
+/// second build of everything.
+pub(super) fn smoke(workspace: &Workspace) -> Result<()> {
+    let out = workspace.path("target/ci-benchmark");
+    if out.exists() {
+        fs::remove_dir_all(&out).with_context(|| format!("{} cannot be deleted", out.display()))?;
+    }
+    let arguments = Arguments {
+        profile: "smoke".parse()?,
+        convention: None,
+        data: None,
+        folds: Vec::new(),
+        variants: vec!["full".to_owned()],
+        seeds: vec![1],
+        jobs: None,
+        device: "cpu".to_owned(),
+        out: Some(out),
+        cargo_profile: "dev".to_owned(),
+        train_walkers: None,
+        test_walkers: None,
+        epochs: None,
+        publish: false,
+    };
+    let code = arguments.run(workspace)?;
+    ensure!(
+        code == ExitCode::SUCCESS,
+        "the smoke benchmark failed (above)"
+    );
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknown_names_are_refused_with_the_known_ones() {
+        let known = VARIANTS.map(str::to_owned);
+        check_names("variant", &["star".to_owned()], &known).unwrap();
+        let message = check_names("variant", &["ful".to_owned()], &known)
+            .unwrap_err()
+            .to_string();
+        assert_eq!(
+            message,
+            "there is no variant \"ful\": choose from full, no-goal-shift, no-dynamics, star"
+        );
+    }
+}

@@ -1,0 +1,148 @@
+//! Copies a report into the documentation, with what made it.
+
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+
+use crate::benchmark::{Plan, human};
+use crate::workspace::Workspace;
+
+const FILE: &str = "docs/benchmark.md";
+
+/// Writes `docs/benchmark.md`.
+pub(super) fn publish(
+    workspace: &Workspace,
+    plan: &Plan,
+    out: &Path,
+    took: Duration,
+) -> Result<()> {
+    let report = fs::read_to_string(out.join("report.md")).context("the report cannot be read")?;
+    let text = page(&report, plan, &workspace.commit(), &workspace.now(), took);
+    fs::write(workspace.path(FILE), text).with_context(|| format!("{FILE} cannot be written"))?;
+    println!("published: {FILE}");
+    Ok(())
+}
+
+/// The report with its origin below the title.
+fn page(report: &str, plan: &Plan, commit: &str, time: &str, took: Duration) -> String {
+    let (title, body) = match report.split_once('\n') {
+        Some((first, rest)) if first.starts_with("# ") => (first, rest),
+        _ => ("# Benchmark", report),
+    };
+    let settings = &plan.settings;
+    let limit =
+        |walkers: Option<u32>| walkers.map_or("all".to_owned(), |walkers| walkers.to_string());
+    let mut seeds: Vec<u64> = plan.tasks.iter().map(|task| task.seed).collect();
+    seeds.sort_unstable();
+    seeds.dedup();
+    let seeds: Vec<String> = seeds.iter().map(u64::to_string).collect();
+    format!(
+        "{title}\n\n\
+         <!-- Generated. Do not edit: run the command below. -->\n\
+         | made by | |\n|---|---|\n\
+         | command | `{}` |\n\
+         | data convention | {} |\n\
+         | seeds | {} |\n\
+         | epochs | {} |\n\
+         | walkers trained on in an epoch / scored | {} / {} |\n\
+         | device | {} |\n\
+         | commit | {commit} |\n\
+         | time | {time}, took {} |\n\n{}\n",
+        command(plan, &seeds),
+        settings.convention,
+        seeds.join(", "),
+        settings.epochs,
+        limit(settings.train_walkers),
+        limit(settings.test_walkers),
+        settings.device,
+        human(took),
+        body.trim()
+    )
+}
+
+/// A command line that does the same on another machine: no folder of this one is in it.
+fn command(plan: &Plan, seeds: &[String]) -> String {
+    let settings = &plan.settings;
+    let unique = |pick: fn(&crate::benchmark::Task) -> &String| {
+        let mut names: Vec<&str> = plan.tasks.iter().map(|task| pick(task).as_str()).collect();
+        names.sort_unstable();
+        names.dedup();
+        names.join(",")
+    };
+    let mut words = vec![
+        "cargo xtask benchmark".to_owned(),
+        format!("--profile {}", settings.profile),
+        format!("--convention {}", settings.convention),
+        format!("--folds {}", unique(|task| &task.fold)),
+        format!("--variants {}", unique(|task| &task.variant)),
+        format!("--seeds {}", seeds.join(",")),
+        format!("--epochs {}", settings.epochs),
+        format!("--device {}", settings.device),
+        format!("--cargo-profile {}", settings.cargo_profile),
+    ];
+    let walkers = [
+        ("train", settings.train_walkers),
+        ("test", settings.test_walkers),
+    ];
+    words.extend(walkers.into_iter().filter_map(|(which, walkers)| {
+        walkers.map(|walkers| format!("--{which}-walkers {walkers}"))
+    }));
+    words.push("--publish".to_owned());
+    words.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::benchmark::Settings;
+
+    #[test]
+    fn the_page_says_what_made_it_and_names_no_folder() {
+        let settings = Settings {
+            profile: "quick".to_owned(),
+            convention: "star".to_owned(),
+            data: Some("/secret/folder".into()),
+            device: "cpu".to_owned(),
+            cargo_profile: "release".to_owned(),
+            epochs: 4,
+            train_walkers: Some(800),
+            test_walkers: None,
+        };
+        let names = |names: &[&str]| {
+            names
+                .iter()
+                .map(|&name| name.to_owned())
+                .collect::<Vec<_>>()
+        };
+        let plan = Plan::new(
+            settings,
+            &names(&["hotel", "eth"]),
+            &names(&["full"]),
+            &[2, 1],
+        )
+        .unwrap();
+        let took = Duration::from_secs(61);
+        let text = page(
+            "# Title\n\n| a | table |\n",
+            &plan,
+            "0123456789ab",
+            "2024",
+            took,
+        );
+        assert!(text.starts_with("# Title\n"), "{text}");
+        assert!(text.ends_with("\n| a | table |\n"), "{text}");
+        for piece in [
+            "`cargo xtask benchmark --profile quick --convention star --folds eth,hotel --variants \
+             full --seeds 1,2 --epochs 4 --device cpu --cargo-profile release --train-walkers 800 \
+             --publish`",
+            "| commit | 0123456789ab |",
+            "| walkers trained on in an epoch / scored | 800 / all |",
+            "| time | 2024, took 1 min 1 s |",
+        ] {
+            assert!(text.contains(piece), "{piece} is not in {text}");
+        }
+        assert!(!text.contains("secret"));
+    }
+}

@@ -1,0 +1,89 @@
+//! `cargo xtask test`: every test of the workspace.
+
+use std::env;
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use clap::Args;
+
+use super::data::fetch_one;
+use super::set_up;
+use crate::data::{Convention, FETCHED};
+use crate::workspace::{Workspace, absolute, step};
+
+/// Packages that must build and pass with no libtorch on the machine.
+const WITHOUT_TORCH: [&str; 6] = [
+    "xtask",
+    "ddl-data",
+    "ddl-softdtw",
+    "ddl-dynamics",
+    "ddl-goal",
+    "ddl-eval",
+];
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Only what needs no libtorch; nothing is set up
+    #[arg(long)]
+    no_torch: bool,
+    /// Handed to `cargo test`, as in `-- --release some_test`
+    #[arg(last = true)]
+    rest: Vec<String>,
+}
+
+impl Arguments {
+    pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
+        if !self.no_torch {
+            set_up(workspace)?;
+        }
+        // Best effort: a test that needs recordings says itself what it lacks, and fails in CI.
+        for convention in Convention::RECORDED {
+            match fetch_one(workspace, convention, None) {
+                Ok(message) => eprintln!("{message}"),
+                Err(error) => eprintln!("{error:#}"),
+            }
+        }
+        if self.no_torch {
+            let packages = WITHOUT_TORCH.iter().flat_map(|package| ["-p", package]);
+            let arguments: Vec<&str> = packages.collect();
+            cargo_test(workspace, &arguments, &self.rest)?;
+            return cargo_test(
+                workspace,
+                &["-p", "ddl-tests", "--no-default-features"],
+                &self.rest,
+            );
+        }
+        cargo_test(workspace, &["--workspace"], &self.rest)
+    }
+}
+
+/// Every test, after set-up and fetching: the last step of `ci`.
+pub(super) fn run_all(workspace: &Workspace) -> Result<()> {
+    Arguments {
+        no_torch: false,
+        rest: Vec::new(),
+    }
+    .run(workspace)
+}
+
+fn cargo_test(workspace: &Workspace, selection: &[&str], rest: &[String]) -> Result<()> {
+    let mut command = workspace
+        .cargo(["test"])
+        .args(selection)
+        .args(rest)
+        // Tests run side by side already: a thread each keeps them from fighting for cores, and
+        // libtorch's sums in one order.
+        .env("OMP_NUM_THREADS", "1");
+    if let Some(folder) = recordings(workspace)? {
+        command = command.env("DDL_DATASETS", folder);
+    }
+    step("cargo test", &command)
+}
+
+/// The folder of recordings, absolute, because every test runs in its own package's folder.
+fn recordings(workspace: &Workspace) -> Result<Option<PathBuf>> {
+    if let Some(folder) = env::var_os("DDL_DATASETS").filter(|value| !value.is_empty()) {
+        return absolute(Path::new(&folder)).map(Some);
+    }
+    Ok(Some(workspace.path(FETCHED)).filter(|folder| folder.is_dir()))
+}

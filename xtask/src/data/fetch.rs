@@ -1,0 +1,53 @@
+//! Bringing in the recordings of one convention.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Result, bail};
+
+use super::manifest::{Entry, PinnedFile};
+use super::{Convention, source};
+use crate::python::Python;
+
+/// Puts every file of a convention that is missing or wrong into `folder`.
+///
+/// Sources are tried in the manifest's order; `say` hears about each attempt. Returns the name of
+/// the source that gave the last missing file, or none if nothing was missing.
+///
+/// # Errors
+/// Every source's own reason, in one line.
+pub(crate) fn fetch<'a>(
+    convention: Convention,
+    entry: &'a Entry,
+    folder: &Path,
+    say: &mut dyn FnMut(&str),
+) -> Result<Option<&'a str>> {
+    if missing(entry, folder).is_empty() {
+        return Ok(None);
+    }
+    let python = Python::find()?;
+    let mut reasons = Vec::new();
+    for source in &entry.sources {
+        say(&format!("{convention}: fetching from {}", source.name()));
+        match source::get(&python, source, &missing(entry, folder), folder) {
+            Ok(()) => return Ok(Some(source.name())),
+            Err(error) => reasons.push(format!("{}: {error:#}", source.name())),
+        }
+    }
+    // Only an empty folder can be removed: what arrived before is right and stays.
+    let _ = fs::remove_dir(folder);
+    bail!(
+        "the {convention} recordings cannot be fetched ({}); check the network, or copy them by \
+         hand (datasets/README.md)",
+        reasons.join("; ")
+    )
+}
+
+fn missing<'a>(entry: &'a Entry, folder: &Path) -> Vec<&'a PinnedFile> {
+    let is_wrong = |file: &&PinnedFile| file.pin().check(&folder.join(&file.name)).is_err();
+    entry.files.iter().filter(is_wrong).collect()
+}
+
+#[cfg(test)]
+#[path = "fetch_tests.rs"]
+mod tests;

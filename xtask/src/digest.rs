@@ -1,0 +1,182 @@
+//! Pinned contents: a length and a SHA-256, checked while the bytes pass by.
+
+use std::fmt::Write as _;
+use std::fs::{self, File};
+use std::io::{Read, Write};
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+use sha2::{Digest, Sha256};
+
+const BLOCK: usize = 1 << 16;
+
+/// What a file must hold, to the byte.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Pin<'a> {
+    /// SHA-256, 64 lower-case hexadecimal digits.
+    pub(crate) sha256: &'a str,
+    /// Length in bytes.
+    pub(crate) bytes: u64,
+}
+
+impl Pin<'_> {
+    /// Copies `from` to `to` and checks the pin on the way; what was written before an error is
+    /// the caller's to throw away.
+    ///
+    /// Reading stops as soon as more bytes arrive than are pinned.
+    pub(crate) fn copy(&self, from: &mut impl Read, to: &mut impl Write) -> Result<()> {
+        let mut hasher = Sha256::new();
+        let mut bytes = 0_u64;
+        let mut block = vec![0_u8; BLOCK];
+        loop {
+            let read = from.read(&mut block).context("reading stopped")?;
+            if read == 0 {
+                break;
+            }
+            bytes += read as u64;
+            if bytes > self.bytes {
+                bail!("longer than the pinned {} bytes", self.bytes);
+            }
+            hasher.update(&block[..read]);
+            to.write_all(&block[..read])
+                .context("writing stopped: is the disk full?")?;
+        }
+        if bytes < self.bytes {
+            bail!("ended after {bytes} of {} bytes", self.bytes);
+        }
+        let sha256 = hexadecimal(hasher);
+        if sha256 != self.sha256 {
+            bail!(
+                "wrong contents: SHA-256 {sha256}, pinned is {}",
+                self.sha256
+            );
+        }
+        Ok(())
+    }
+
+    /// Checks a file on disk.
+    pub(crate) fn check(&self, path: &Path) -> Result<()> {
+        File::open(path)
+            .context("cannot be opened")
+            .and_then(|mut file| self.copy(&mut file, &mut std::io::sink()))
+            .with_context(|| path.display().to_string())
+    }
+
+    /// Puts `from` at `path`, complete and right, or not at all.
+    ///
+    /// The bytes go to a temporary file in the same folder, which takes the final name only after
+    /// length and hash agree; a killed run leaves at most a nameless temporary file.
+    pub(crate) fn place(&self, from: &mut impl Read, path: &Path) -> Result<()> {
+        let folder = path.parent().context("a file needs a folder to lie in")?;
+        fs::create_dir_all(folder)
+            .with_context(|| format!("{} cannot be created", folder.display()))?;
+        let mut temporary = tempfile::Builder::new()
+            .prefix(".incoming-")
+            .tempfile_in(folder)
+            .with_context(|| format!("{} cannot be written to", folder.display()))?;
+        self.copy(from, &mut temporary)?;
+        temporary
+            .as_file()
+            .sync_all()
+            .context("writing stopped: is the disk full?")?;
+        let file = temporary
+            .persist(path)
+            .with_context(|| format!("{} cannot be written", path.display()))?;
+        readable_by_all(&file)
+    }
+}
+
+/// SHA-256 and length of a file.
+pub(crate) fn measure(path: &Path) -> Result<(String, u64)> {
+    let mut file =
+        File::open(path).with_context(|| format!("{} cannot be opened", path.display()))?;
+    let mut hasher = Sha256::new();
+    let mut bytes = 0_u64;
+    let mut block = vec![0_u8; BLOCK];
+    loop {
+        let read = file
+            .read(&mut block)
+            .with_context(|| format!("reading {} stopped", path.display()))?;
+        if read == 0 {
+            return Ok((hexadecimal(hasher), bytes));
+        }
+        bytes += read as u64;
+        hasher.update(&block[..read]);
+    }
+}
+
+/// Temporary files are private to their owner; the files they become need not be.
+fn readable_by_all(file: &File) -> Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        file.set_permissions(fs::Permissions::from_mode(0o644))
+            .context("the permissions of a new file cannot be set")?;
+    }
+    Ok(())
+}
+
+fn hexadecimal(hasher: Sha256) -> String {
+    hasher
+        .finalize()
+        .iter()
+        .fold(String::with_capacity(64), |mut text, byte| {
+            // Writing to a string cannot fail.
+            let _ = write!(text, "{byte:02x}");
+            text
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// SHA-256 of "abc", from FIPS 180-4's examples.
+    const ABC: Pin<'static> = Pin {
+        sha256: "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad",
+        bytes: 3,
+    };
+
+    fn placed(bytes: &[u8]) -> (Result<()>, Vec<String>) {
+        let folder = tempfile::tempdir().unwrap();
+        let outcome = ABC.place(&mut &bytes[..], &folder.path().join("abc"));
+        let names = fs::read_dir(folder.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        (outcome, names)
+    }
+
+    #[test]
+    fn right_bytes_are_placed() {
+        let (outcome, names) = placed(b"abc");
+        outcome.unwrap();
+        assert_eq!(names, ["abc"]);
+    }
+
+    #[test]
+    fn wrong_short_and_long_bytes_leave_nothing_behind() {
+        for (bytes, complaint) in [
+            (&b"abd"[..], "wrong contents"),
+            (b"ab", "ended after 2 of 3 bytes"),
+            (b"", "ended after 0 of 3 bytes"),
+            (b"abcd", "longer than the pinned 3 bytes"),
+        ] {
+            let (outcome, names) = placed(bytes);
+            let message = format!("{:#}", outcome.unwrap_err());
+            assert!(message.contains(complaint), "{message}");
+            assert!(names.is_empty(), "{names:?}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_download_does_not_touch_the_file_that_is_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("abc");
+        ABC.place(&mut &b"abc"[..], &path).unwrap();
+        ABC.place(&mut &b"xyz"[..], &path).unwrap_err();
+        assert_eq!(fs::read(&path).unwrap(), b"abc");
+        ABC.check(&path).unwrap();
+        assert_eq!(measure(&path).unwrap(), (ABC.sha256.to_owned(), 3));
+    }
+}

@@ -1,0 +1,170 @@
+//! libtorch: which one is pinned, where it lies, how to get it, how cargo is told.
+//!
+//! [`ensure`] is called first by every command that builds. When all is in place it reads three
+//! small files and returns.
+
+mod config;
+mod fetch;
+mod locate;
+mod pin;
+
+use std::env;
+use std::ffi::OsStr;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+
+pub(crate) use pin::VERSION;
+
+use crate::workspace::{Workspace, absolute, program_on_path};
+
+/// Where set-up may look and put things, beyond its defaults.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Request {
+    /// Folder that holds the kept libraries instead of the user's cache.
+    pub(crate) cache: Option<PathBuf>,
+    /// Folder that holds the pinned wheels, for machines without a package index.
+    pub(crate) wheel_dir: Option<PathBuf>,
+    /// Whether the hashes of the kept libraries are checked again.
+    pub(crate) verify: bool,
+}
+
+/// Where the libraries in use come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// The variable `LIBTORCH`.
+    Variable,
+    /// An earlier set-up, as the generated configuration remembers it.
+    Configured,
+    /// The folder for kept libraries, filled earlier.
+    Cache,
+    /// The pinned wheels, just now.
+    Fetched,
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Variable => "from the variable LIBTORCH",
+            Self::Configured => "as set up before",
+            Self::Cache => "from the cache",
+            Self::Fetched => "from the pinned wheels",
+        })
+    }
+}
+
+/// Libraries that the workspace now builds against.
+#[derive(Debug, Clone)]
+pub(crate) struct Ready {
+    pub(crate) folder: PathBuf,
+    pub(crate) origin: Origin,
+    /// Whether the generated cargo configuration had to be written.
+    pub(crate) reconfigured: bool,
+}
+
+/// Makes sure that plain `cargo build`, `test`, `run`, `bench` and `doc` work from here on.
+///
+/// # Errors
+/// In one line each: a missing C++ compiler, Python or pip; an unsupported platform; a `LIBTORCH`
+/// of another version; a failed download; a wheel that is not the pinned one; a full disk.
+pub(crate) fn ensure(workspace: &Workspace, request: &Request) -> Result<Ready> {
+    require_compiler()?;
+    let generated = workspace.path(config::GENERATED);
+    let (folder, origin) = choose(&generated, request)?;
+    if request.verify {
+        fetch::verify(&folder)?;
+    }
+    let reconfigured = config::write(&generated, &folder)?;
+    Ok(Ready {
+        folder,
+        origin,
+        reconfigured,
+    })
+}
+
+fn choose(generated: &Path, request: &Request) -> Result<(PathBuf, Origin)> {
+    let configured = config::read(generated);
+    let variable = env::var_os("LIBTORCH")
+        .filter(|value| !value.is_empty())
+        .map(PathBuf::from);
+    // Cargo hands the configured folder to every program it runs, this one too: only a value that
+    // differs from it was set by a person.
+    if let Some(folder) = variable.filter(|folder| configured.as_ref() != Some(folder)) {
+        let folder = absolute(&folder)?;
+        if let Err(reason) = locate::validate(&folder) {
+            bail!(
+                "LIBTORCH={} cannot be used: {reason}; unset LIBTORCH, or point it to libtorch \
+                 {VERSION}",
+                folder.display()
+            );
+        }
+        return Ok((folder, Origin::Variable));
+    }
+    let asked = request.cache.is_some() || request.wheel_dir.is_some();
+    if let Some(folder) = configured.filter(|folder| !asked && locate::validate(folder).is_ok()) {
+        return Ok((folder, Origin::Configured));
+    }
+    let cache = match &request.cache {
+        Some(folder) => absolute(folder)?,
+        None => user_cache()?,
+    };
+    let folder = cache.join(pin::folder_name());
+    if fetch::is_complete(&folder) && locate::validate(&folder).is_ok() {
+        return Ok((folder, Origin::Cache));
+    }
+    fetch::fetch(&folder, request.wheel_dir.as_deref())
+        .with_context(|| format!("libtorch {VERSION} could not be set up"))?;
+    Ok((folder, Origin::Fetched))
+}
+
+/// `$XDG_CACHE_HOME/ddl`, or `~/.cache/ddl`.
+fn user_cache() -> Result<PathBuf> {
+    let base = env::var_os("XDG_CACHE_HOME")
+        .map(PathBuf::from)
+        .filter(|path| path.is_absolute())
+        .or_else(|| env::home_dir().map(|home| home.join(".cache")))
+        .context("no home folder: give a folder for libtorch with `cargo xtask setup --cache`")?;
+    Ok(base.join("ddl"))
+}
+
+/// The binding of libtorch is a C++ file: without a compiler the build fails minutes later.
+fn require_compiler() -> Result<()> {
+    let compiler = env::var_os("CXX").filter(|value| !value.is_empty());
+    // CXX may carry a launcher and flags, as in `ccache g++`.
+    let program = compiler
+        .as_deref()
+        .and_then(OsStr::to_str)
+        .map_or("c++", |text| {
+            text.split_whitespace().next().unwrap_or("c++")
+        });
+    if !program_on_path(OsStr::new(program)) {
+        bail!(
+            "a C++ compiler is missing ({program} is not on the search path): install one, on \
+             Debian or Ubuntu with `apt install g++`"
+        );
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cache_is_below_the_users_cache_folder() {
+        let cache = user_cache().unwrap();
+        assert!(cache.is_absolute());
+        assert!(cache.ends_with("ddl"));
+    }
+
+    #[test]
+    fn a_stale_configuration_is_not_trusted() {
+        let folder = tempfile::tempdir().unwrap();
+        let generated = folder.path().join("config.generated.toml");
+        let gone = folder.path().join("gone");
+        config::write(&generated, &gone).unwrap();
+        assert_eq!(config::read(&generated), Some(gone.clone()));
+        assert!(locate::validate(&gone).is_err());
+    }
+}

@@ -1,0 +1,131 @@
+//! The generated cargo configuration: where libtorch lies, and the path to its libraries.
+//!
+//! `.cargo/config.toml` includes it, so plain cargo, an editor and this program all build with the
+//! same flags, and none of them undoes the other's work.
+
+use std::fs;
+use std::io::{ErrorKind, Write as _};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+
+/// Relative to the workspace root; git ignores it.
+pub(super) const GENERATED: &str = ".cargo/config.generated.toml";
+
+/// Writes the configuration, unless it is there already; whether it was written.
+///
+/// An unchanged file keeps its time stamp, so that nothing is rebuilt.
+pub(super) fn write(file: &Path, libtorch: &Path) -> Result<bool> {
+    let text = render(libtorch)?;
+    match fs::read_to_string(file) {
+        Ok(present) if present == text => return Ok(false),
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            return Err(error).with_context(|| format!("{} cannot be read", file.display()));
+        }
+        _ => {}
+    }
+    let folder = file
+        .parent()
+        .context("the configuration needs a folder to lie in")?;
+    let put = || -> std::io::Result<()> {
+        fs::create_dir_all(folder)?;
+        let mut temporary = tempfile::NamedTempFile::new_in(folder)?;
+        temporary.write_all(text.as_bytes())?;
+        temporary.persist(file)?;
+        Ok(())
+    };
+    put().with_context(|| format!("{} cannot be written", file.display()))?;
+    Ok(true)
+}
+
+/// The folder that the configuration names, if it is there and well formed.
+pub(super) fn read(file: &Path) -> Option<PathBuf> {
+    let table: toml::Table = fs::read_to_string(file).ok()?.parse().ok()?;
+    table
+        .get("env")?
+        .get("LIBTORCH")?
+        .as_str()
+        .map(PathBuf::from)
+}
+
+fn render(libtorch: &Path) -> Result<String> {
+    let shown = libtorch.display();
+    let Some(folder) = libtorch.to_str() else {
+        bail!("libtorch's path {shown} is not valid Unicode: choose another folder");
+    };
+    if folder.contains([',', '\n']) {
+        bail!(
+            "libtorch's path {shown} holds a comma or a line break, which the linker takes for \
+               the end of it: choose another folder"
+        );
+    }
+    let quote = |text: String| toml::Value::String(text).to_string();
+    let folder_text = quote(folder.to_owned());
+    let rpath = quote(format!("link-arg=-Wl,-rpath,{folder}/lib"));
+    Ok(format!(
+        "# Written by `cargo xtask setup`; delete it to set up anew. See docs/libtorch.md.\n\
+         [env]\n\
+         LIBTORCH = {folder_text}\n\
+         \n\
+         # Programs and tests find libtorch's libraries by this path, also when started by hand.\n\
+         # (xtask needs none: without this exception it would be rebuilt after set-up.)\n\
+         [target.'cfg(all(unix, not(ddl_xtask)))']\n\
+         rustflags = [\"-C\", {rpath}]\n\
+         \n\
+         # The examples in the documentation are linked by rustdoc, which has flags of its own.\n\
+         [build]\n\
+         rustdocflags = [\"-C\", {rpath}]\n"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_folder_is_read_back_and_the_flags_point_into_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join(".cargo/config.generated.toml");
+        // Quotes and spaces are legal in a folder's name.
+        let libtorch = Path::new("/opt/a \"quoted\" folder/libtorch");
+        assert!(write(&file, libtorch).unwrap());
+        assert_eq!(read(&file).as_deref(), Some(libtorch));
+        let table: toml::Table = fs::read_to_string(&file).unwrap().parse().unwrap();
+        let flags = table["target"]["cfg(all(unix, not(ddl_xtask)))"]["rustflags"]
+            .as_array()
+            .unwrap();
+        assert_eq!(
+            flags[1].as_str(),
+            Some("link-arg=-Wl,-rpath,/opt/a \"quoted\" folder/libtorch/lib")
+        );
+        assert_eq!(table["build"]["rustdocflags"].as_array(), Some(flags));
+    }
+
+    #[test]
+    fn an_unchanged_configuration_is_not_touched() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("config.generated.toml");
+        assert!(write(&file, Path::new("/opt/one")).unwrap());
+        let before = fs::metadata(&file).unwrap().modified().unwrap();
+        assert!(!write(&file, Path::new("/opt/one")).unwrap());
+        assert_eq!(fs::metadata(&file).unwrap().modified().unwrap(), before);
+        assert!(write(&file, Path::new("/opt/two")).unwrap());
+        assert_eq!(read(&file).as_deref(), Some(Path::new("/opt/two")));
+    }
+
+    #[test]
+    fn paths_that_the_linker_would_cut_are_refused() {
+        let message = render(Path::new("/opt/one,two")).unwrap_err().to_string();
+        assert!(message.contains("comma"), "{message}");
+    }
+
+    #[test]
+    fn a_damaged_configuration_counts_as_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("config.generated.toml");
+        assert_eq!(read(&file), None);
+        fs::write(&file, "[env\nLIBTORCH = ").unwrap();
+        assert_eq!(read(&file), None);
+        assert!(write(&file, Path::new("/opt/one")).unwrap());
+    }
+}

@@ -1,0 +1,57 @@
+//! `cargo xtask`: set-up, recordings, benchmark, tests and tidy checks of this workspace.
+//!
+//! The program depends on no `ddl` crate and not on libtorch, so it builds on a bare machine
+//! within seconds and can bring in the rest. One command, one file under `command/`; what the
+//! commands share lies in the rooms beside it:
+//!
+//! | room | what it knows |
+//! |---|---|
+//! | `libtorch` | which libtorch is pinned, where it lies, how to get it, how cargo is told |
+//! | `data` | which recordings are pinned, where they lie, how to get them |
+//! | `benchmark` | profiles, the plan, the executor that works it off, progress |
+//! | `tidy` | the invariants of `docs/architecture.md`, as checks |
+#![allow(
+    clippy::print_stdout,
+    reason = "a command-line program answers on standard output"
+)]
+
+mod benchmark;
+mod command;
+mod data;
+mod digest;
+mod libtorch;
+mod python;
+mod tidy;
+mod workspace;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::command::Command;
+use crate::workspace::Workspace;
+
+/// Set-up, recordings, benchmark, tests and tidy checks of the DDL workspace.
+#[derive(Debug, Parser)]
+#[command(
+    name = "cargo xtask",
+    bin_name = "cargo xtask",
+    version,
+    max_term_width = 100
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let outcome = Workspace::find().and_then(|workspace| arguments.command.run(&workspace));
+    match outcome {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

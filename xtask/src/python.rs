@@ -1,0 +1,149 @@
+//! Python 3, which carries out what needs a network or an archive format.
+//!
+//! Python is needed anyway (its package client fetches libtorch), so using its standard library
+//! keeps network, TLS and compression crates out of this program. The scripts lie in `python/`,
+//! are handed over on the command line, and decide nothing: hashes and names are checked here.
+
+use std::env;
+use std::ffi::OsString;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use anyhow::{Context, Result, bail};
+
+use crate::workspace::program_on_path;
+
+/// Streams an address to standard output.
+pub(crate) const DOWNLOAD: &str = include_str!("python/download.py");
+/// Prints the address of a file on the package index, found the way pip finds it.
+pub(crate) const INDEX_LINK: &str = include_str!("python/index_link.py");
+/// Copies chosen members of a zip archive.
+pub(crate) const EXTRACT_ZIP: &str = include_str!("python/extract_zip.py");
+/// Copies chosen members of a tar archive.
+pub(crate) const EXTRACT_TAR: &str = include_str!("python/extract_tar.py");
+
+/// A Python 3 interpreter.
+#[derive(Debug, Clone)]
+pub(crate) struct Python {
+    program: OsString,
+}
+
+impl Python {
+    /// `$PYTHON`, or `python3` on the search path.
+    pub(crate) fn find() -> Result<Self> {
+        let program = env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
+        if !program_on_path(&program) {
+            bail!(
+                "Python 3 is missing ({} is not on the search path): install it, on Debian or \
+                 Ubuntu with `apt install python3 python3-pip`",
+                program.display()
+            );
+        }
+        Ok(Self { program })
+    }
+
+    /// The interpreter, if it also has pip.
+    pub(crate) fn with_pip() -> Result<Self> {
+        let python = Self::find()?;
+        let has_pip = python
+            .script("import pip", [] as [&str; 0])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .status()
+            .is_ok_and(|status| status.success());
+        if !has_pip {
+            bail!(
+                "pip is missing from {}: install it, on Debian or Ubuntu with `apt install \
+                 python3-pip`",
+                python.program.display()
+            );
+        }
+        Ok(python)
+    }
+
+    /// A command that runs a script with arguments.
+    pub(crate) fn script<I>(&self, script: &str, arguments: I) -> Command
+    where
+        I: IntoIterator,
+        I::Item: AsRef<std::ffi::OsStr>,
+    {
+        let mut command = Command::new(&self.program);
+        command
+            .arg("-c")
+            .arg(script)
+            .args(arguments)
+            .stdin(Stdio::null());
+        command
+    }
+
+    /// A command that runs a module of Python's.
+    pub(crate) fn module(&self, module: &str) -> Command {
+        let mut command = Command::new(&self.program);
+        command.args(["-m", module]).stdin(Stdio::null());
+        command
+    }
+
+    /// Free space on the disk that holds `folder`, in bytes.
+    pub(crate) fn free_space(&self, folder: &Path) -> Result<u64> {
+        let mut command = self.script(
+            "import shutil, sys; print(shutil.disk_usage(sys.argv[1]).free)",
+            [folder],
+        );
+        read(&mut command)?
+            .trim()
+            .parse()
+            .context("Python did not print the free disk space")
+    }
+}
+
+/// Runs a script and returns what it printed; the last line of its error output is the error.
+pub(crate) fn read(command: &mut Command) -> Result<String> {
+    let output = command.output().context("Python cannot be started")?;
+    if !output.status.success() {
+        bail!("{}", complaint(&output.stderr));
+    }
+    String::from_utf8(output.stdout).context("Python printed something that is not text")
+}
+
+/// The last line that a failed script wrote, which is the one that says what went wrong.
+pub(crate) fn complaint(stderr: &[u8]) -> String {
+    let text = String::from_utf8_lossy(stderr);
+    text.lines()
+        .map(str::trim)
+        .rfind(|line| !line.is_empty())
+        .unwrap_or("Python stopped without a word")
+        .to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scripts_get_their_arguments_and_give_their_output() {
+        let python = Python::find().unwrap();
+        let mut script = python.script("import sys; print(sys.argv[1] + '!')", ["hello"]);
+        assert_eq!(read(&mut script).unwrap().trim(), "hello!");
+    }
+
+    #[test]
+    fn a_failed_script_is_an_error_with_its_last_line() {
+        let python = Python::find().unwrap();
+        let mut script = python.script("import sys; sys.exit('the index is on fire')", ["x"]);
+        assert_eq!(
+            read(&mut script).unwrap_err().to_string(),
+            "the index is on fire"
+        );
+    }
+
+    #[test]
+    fn the_temporary_folder_has_some_space() {
+        assert!(
+            Python::find()
+                .unwrap()
+                .free_space(&env::temp_dir())
+                .unwrap()
+                > 0
+        );
+    }
+}
