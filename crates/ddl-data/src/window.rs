@@ -110,7 +110,8 @@ impl Window {
         pedestrians: Vec<PedestrianId>,
         positions: Vec<Position>,
     ) -> Self {
-        debug_assert!(frames.len() == WINDOW && positions.len() == pedestrians.len() * WINDOW);
+        debug_assert!([OBSERVED, WINDOW].contains(&frames.len()));
+        debug_assert_eq!(positions.len(), pedestrians.len() * frames.len());
         Self {
             recording,
             frame_step,

@@ -1,6 +1,7 @@
 //! Multi-head attention (Vaswani et al. 2017, section 3.2), in the two forms STAR needs:
 //! every walker over its neighbours, and the newest token over all earlier ones.
 
+use crate::dropout::dropout;
 use crate::layers::{Linear, Mode};
 use crate::parameters::Initializer;
 use tch::Tensor;
@@ -82,9 +83,7 @@ impl MultiHeadAttention {
             .permute([2, 0, 3, 1, 4]);
         let (query, key, value) = (qkv.get(0), qkv.get(1), qkv.get(2));
         let scores = (query * self.scale()).matmul(&key.transpose(-1, -2)) + mask;
-        let weights = scores
-            .softmax(-1, scores.kind())
-            .dropout(self.dropout, mode.is_training());
+        let weights = dropout(scores.softmax(-1, scores.kind()), self.dropout, mode);
         let mixed = weights
             .matmul(&value)
             .transpose(1, 2)

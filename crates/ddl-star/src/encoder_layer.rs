@@ -3,6 +3,7 @@
 
 use crate::attention::{KeyValue, MultiHeadAttention};
 use crate::config::StarConfig;
+use crate::dropout::dropout;
 use crate::layers::{LayerNorm, Linear, Mode};
 use crate::parameters::Initializer;
 use tch::Tensor;
@@ -39,25 +40,26 @@ impl EncoderLayer {
     /// Every walker looks at its neighbours. Shapes as in [`MultiHeadAttention::among_walkers`].
     pub(crate) fn among_walkers(&self, x: &Tensor, mask: &Tensor, mode: Mode) -> Tensor {
         let attended = self.attention.among_walkers(x, mask, mode);
-        self.after_attention(x, &attended, mode)
+        self.after_attention(x, attended, mode)
     }
 
     /// The newest token looks at the remembered ones and itself.
     /// Shapes as in [`MultiHeadAttention::over_memory`].
     pub(crate) fn over_memory(&self, newest: &Tensor, memory: &[KeyValue], mode: Mode) -> Tensor {
         let attended = self.attention.over_memory(newest, memory);
-        self.after_attention(newest, &attended, mode)
+        self.after_attention(newest, attended, mode)
     }
 
     pub(crate) fn remember(&self, token: &Tensor) -> KeyValue {
         self.attention.remember(token)
     }
 
-    fn after_attention(&self, x: &Tensor, attended: &Tensor, mode: Mode) -> Tensor {
-        let dropout = |tensor: Tensor| tensor.dropout(self.dropout, mode.is_training());
-        let x = self.norm1.forward(&(x + dropout(attended.shallow_clone())));
-        let hidden = dropout(self.linear1.forward(&x).relu());
-        let fed = dropout(self.linear2.forward(&hidden));
+    fn after_attention(&self, x: &Tensor, attended: Tensor, mode: Mode) -> Tensor {
+        let x = self
+            .norm1
+            .forward(&(x + dropout(attended, self.dropout, mode)));
+        let hidden = dropout(self.linear1.forward(&x).relu(), self.dropout, mode);
+        let fed = dropout(self.linear2.forward(&hidden), self.dropout, mode);
         self.norm2.forward(&(x + fed))
     }
 }

@@ -63,9 +63,3 @@ pub enum Mode {
     /// Dropout off: the forecast is a function of its inputs.
     Evaluate,
 }
-
-impl Mode {
-    pub(crate) fn is_training(self) -> bool {
-        self == Self::Train
-    }
-}

@@ -5,6 +5,7 @@ mod batch;
 mod checkpoint;
 mod config;
 mod device;
+mod dropout;
 mod encoder_layer;
 mod error;
 mod flow;
@@ -23,7 +24,7 @@ mod train;
 
 pub use batch::SceneBatch;
 pub use checkpoint::{load_parameters, save_parameters};
-pub use config::{StarConfig, TrainingConfig, Variant};
+pub use config::{LearningRateSchedule, StarConfig, TrainingConfig, Variant};
 pub use device::{ComputeDevice, DeviceChoice, set_threads};
 pub use error::StarError;
 pub use flow::{FlowConstants, Integrator, natural_gradient_step};

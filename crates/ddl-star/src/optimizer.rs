@@ -10,7 +10,6 @@ const EPSILON: f64 = 1e-8;
 /// Adam over all learned numbers as one vector.
 #[derive(Debug)]
 pub struct Adam {
-    learning_rate: f64,
     steps: u64,
     pub(crate) first_moment: Tensor,
     pub(crate) second_moment: Tensor,
@@ -18,9 +17,8 @@ pub struct Adam {
 
 impl Adam {
     /// Fresh state for a network's parameters.
-    pub fn new(parameters: &Parameters, learning_rate: f64) -> Self {
+    pub fn new(parameters: &Parameters) -> Self {
         Self {
-            learning_rate,
             steps: 0,
             first_moment: parameters.flat().zeros_like(),
             second_moment: parameters.flat().zeros_like(),
@@ -46,6 +44,7 @@ impl Adam {
         gradient: &Tensor,
         norm: &Tensor,
         clip: f64,
+        learning_rate: f64,
     ) {
         let _guard = tch::no_grad_guard();
         let gradient = gradient * (clip / (norm + 1e-6)).clamp_max(1.0);
@@ -58,6 +57,6 @@ impl Adam {
         self.second_moment += gradient.square() * (1.0 - BETA_2);
         let scale = (&self.second_moment / correction_2).sqrt() + EPSILON;
         let mut flat = parameters.flat().shallow_clone();
-        flat -= (&self.first_moment / scale) * (self.learning_rate / correction_1);
+        flat -= (&self.first_moment / scale) * (learning_rate / correction_1);
     }
 }

@@ -75,7 +75,7 @@ impl Trainer {
         if schedule.is_empty() {
             return Err(StarError::NoTrainingWindows);
         }
-        let adam = Adam::new(network.parameters(), config.learning_rate);
+        let adam = Adam::new(network.parameters());
         Ok(Self {
             network,
             adam,
@@ -151,9 +151,16 @@ impl Trainer {
         let gradient = Tensor::cat(&rows, 0);
         let norm = gradient.norm();
         self.require_finite("gradient norm", norm.double_value(&[]))?;
-        let clip = self.config.gradient_clip;
-        self.adam
-            .step(self.network.parameters(), &gradient, &norm, clip);
+        let (_, total) = self.steps();
+        let config = &self.config;
+        let rate = config.learning_rate * config.learning_rate_schedule.factor(step, total);
+        self.adam.step(
+            self.network.parameters(),
+            &gradient,
+            &norm,
+            config.gradient_clip,
+            rate,
+        );
         self.progress.steps += 1;
         self.progress.loss_sum += value;
         self.progress.seconds += started.elapsed().as_secs_f64();

@@ -6,7 +6,7 @@ use crate::progress::Progress;
 use clap::Args;
 use ddl::data::Convention;
 use ddl::goal::GoalEstimatorParams;
-use ddl::star::TrainingConfig;
+use ddl::star::{LearningRateSchedule, TrainingConfig};
 use ddl::{RunDirectory, TrainingRequest, Variant};
 use std::path::PathBuf;
 
@@ -38,6 +38,12 @@ pub(crate) struct Train {
     /// Walkers a batch; the published 256 learns slowly on few epochs
     #[arg(long, default_value_t = 256)]
     batch_walkers: usize,
+    /// Largest step size of Adam
+    #[arg(long, default_value_t = 1.5e-3)]
+    learning_rate: f64,
+    /// How the step size changes: constant (as published) or cosine
+    #[arg(long, default_value = "constant")]
+    learning_rate_schedule: LearningRateSchedule,
     /// Share of the training recordings' time, at their ends, kept for validation
     #[arg(long, default_value_t = 0.0)]
     validation: f64,
@@ -62,6 +68,8 @@ impl Train {
                 epochs: self.epochs,
                 walkers_per_epoch: self.train_walkers,
                 batch_walkers: self.batch_walkers,
+                learning_rate: self.learning_rate,
+                learning_rate_schedule: self.learning_rate_schedule,
                 seed: self.seed,
                 ..TrainingConfig::default()
             },
