@@ -19,5 +19,7 @@ pub(crate) use executor::{End, Executor, Stop};
 pub(crate) use folds::fold_names;
 pub(crate) use local::Local;
 pub(crate) use plan::{Plan, Settings, Task, VARIANTS};
+#[cfg(test)]
+pub(crate) use profile::PUBLISHED;
 pub(crate) use profile::Profile;
 pub(crate) use progress::{Display, human};

@@ -21,6 +21,14 @@ use super::record;
 /// Lines of a log that are shown when a task fails.
 const LAST_LINES: usize = 8;
 
+/// Settings of glibc's allocator: memory freed by one tensor is kept for the next instead of going
+/// back to the system, which otherwise clears every page anew (a quarter of a training step).
+const KEEP_MEMORY: [(&str, &str); 3] = [
+    ("MALLOC_MMAP_THRESHOLD_", "4294967296"),
+    ("MALLOC_TRIM_THRESHOLD_", "8589934592"),
+    ("MALLOC_TOP_PAD_", "268435456"),
+];
+
 /// Runs up to `jobs` tasks at a time, each in a process of the program `ddl`.
 #[derive(Debug)]
 pub(crate) struct Local {
@@ -29,6 +37,8 @@ pub(crate) struct Local {
     leading: Vec<OsString>,
     jobs: usize,
     threads: usize,
+    /// What results name as the code that made them.
+    commit: String,
     children: Children,
 }
 
@@ -41,8 +51,14 @@ impl Local {
             leading: Vec::new(),
             jobs,
             threads,
+            commit: "unknown".to_owned(),
             children: Children::default(),
         }
+    }
+
+    /// Names the commit in all results.
+    pub(crate) fn of_commit(self, commit: String) -> Self {
+        Self { commit, ..self }
     }
 
     /// Puts arguments before those of every task, as in `nice ddl`.
@@ -169,6 +185,8 @@ impl Local {
             .args(arguments)
             .env("OMP_NUM_THREADS", self.threads.to_string())
             .env("RAYON_NUM_THREADS", self.threads.to_string())
+            .env("DDL_COMMIT", &self.commit)
+            .envs(KEEP_MEMORY)
             .stderr(Stdio::from(errors));
         let (id, stdout) = self.children.start(&mut command)?;
         let mut reached = 0.0_f64;

@@ -114,6 +114,7 @@ fn plan(folds: &[&str]) -> Plan {
         epochs: 20,
         train_walkers: None,
         test_walkers: None,
+        recipe: crate::benchmark::PUBLISHED,
     };
     let folds: Vec<String> = folds.iter().map(|&fold| fold.to_owned()).collect();
     Plan::new(settings, &folds, &["full".to_owned()], &[1]).unwrap()

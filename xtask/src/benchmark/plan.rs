@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail, ensure};
 use serde::{Deserialize, Serialize};
 
 use super::cost::Cost;
+use super::profile::Recipe;
 
 /// The published method and what is left of it without each of its two ideas.
 pub(crate) const VARIANTS: [&str; 4] = ["full", "no-goal-shift", "no-dynamics", "star"];
@@ -41,6 +42,7 @@ pub(crate) struct Settings {
     pub(crate) train_walkers: Option<u32>,
     /// Test walkers scored; none is all.
     pub(crate) test_walkers: Option<u32>,
+    pub(crate) recipe: Recipe,
 }
 
 /// One model: trained on all folds but one, scored on that one.
@@ -136,6 +138,10 @@ impl Plan {
         if let Some(walkers) = self.settings.train_walkers {
             push("--train-walkers", walkers.to_string());
         }
+        let recipe = &self.settings.recipe;
+        push("--batch-walkers", recipe.batch_walkers.to_string());
+        push("--learning-rate", recipe.learning_rate.to_string());
+        push("--learning-rate-schedule", recipe.schedule.to_string());
         push("--out", task.run_folder(out).display().to_string());
         self.common_arguments(threads, &mut push);
         arguments

@@ -12,6 +12,7 @@ pub(crate) fn settings() -> Settings {
         epochs: 4,
         train_walkers: Some(800),
         test_walkers: None,
+        recipe: crate::benchmark::PUBLISHED,
     }
 }
 
@@ -65,7 +66,8 @@ fn the_arguments_are_those_the_program_knows() {
     assert_eq!(
         plan.train_arguments(&plan.tasks[0], out, 1).join(" "),
         "train --convention star --data /recordings --fold eth --variant full --seed 7 \
-         --epochs 4 --train-walkers 800 --out runs/x/eth-full-7/run --device cpu --threads 1 \
+         --epochs 4 --train-walkers 800 --batch-walkers 256 --learning-rate 0.0015 \
+         --learning-rate-schedule constant --out runs/x/eth-full-7/run --device cpu --threads 1 \
          --progress json"
     );
     plan.settings.data = None;

@@ -108,7 +108,7 @@ impl Arguments {
             plan.tasks.len(),
             out.display()
         );
-        let executor = Local::new(program.clone(), jobs, threads);
+        let executor = Local::new(program.clone(), jobs, threads).of_commit(workspace.commit());
         let ends = work_off(&executor, &plan, &out)?;
         let finished: Vec<PathBuf> = plan
             .tasks
@@ -168,6 +168,7 @@ impl Arguments {
             epochs: self.epochs.unwrap_or(self.profile.epochs),
             train_walkers: self.train_walkers.or(self.profile.train_walkers),
             test_walkers: self.test_walkers.or(self.profile.test_walkers),
+            recipe: self.profile.recipe.clone(),
         };
         Plan::new(settings, &folds, &variants, &self.seeds)
     }

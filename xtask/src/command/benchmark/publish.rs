@@ -47,6 +47,7 @@ fn page(report: &str, plan: &Plan, commit: &str, time: &str, took: Duration) -> 
          | seeds | {} |\n\
          | epochs | {} |\n\
          | walkers trained on in an epoch / scored | {} / {} |\n\
+         | walkers a batch / largest step of Adam | {} / {} ({}) |\n\
          | device | {} |\n\
          | commit | {commit} |\n\
          | time | {time}, took {} |\n\n{}\n",
@@ -56,6 +57,9 @@ fn page(report: &str, plan: &Plan, commit: &str, time: &str, took: Duration) -> 
         settings.epochs,
         limit(settings.train_walkers),
         limit(settings.test_walkers),
+        settings.recipe.batch_walkers,
+        settings.recipe.learning_rate,
+        settings.recipe.schedule,
         settings.device,
         human(took),
         body.trim()
@@ -109,6 +113,7 @@ mod tests {
             epochs: 4,
             train_walkers: Some(800),
             test_walkers: None,
+            recipe: crate::benchmark::PUBLISHED,
         };
         let names = |names: &[&str]| {
             names
