@@ -27,10 +27,16 @@ pub(super) fn publish(
 
 /// The report with its origin below the title.
 fn page(report: &str, plan: &Plan, commit: &str, time: &str, took: Duration) -> String {
-    let (title, body) = match report.split_once('\n') {
-        Some((first, rest)) if first.starts_with("# ") => (first, rest),
-        _ => ("# Benchmark", report),
-    };
+    // The report opens with its data convention, then comes its title: the origin goes below both.
+    let end_of_title = report
+        .lines()
+        .scan(0, |end, line| {
+            *end += line.len() + 1;
+            Some((*end, line))
+        })
+        .find(|(_, line)| line.starts_with("# "))
+        .map_or(0, |(end, _)| end.min(report.len()));
+    let (title, body) = report.split_at(end_of_title);
     let settings = &plan.settings;
     let limit =
         |walkers: Option<u32>| walkers.map_or("all".to_owned(), |walkers| walkers.to_string());
@@ -39,7 +45,7 @@ fn page(report: &str, plan: &Plan, commit: &str, time: &str, took: Duration) -> 
     seeds.dedup();
     let seeds: Vec<String> = seeds.iter().map(u64::to_string).collect();
     format!(
-        "{title}\n\n\
+        "{}\n\n\
          <!-- Generated. Do not edit: run the command below. -->\n\
          | made by | |\n|---|---|\n\
          | command | `{}` |\n\
@@ -51,6 +57,7 @@ fn page(report: &str, plan: &Plan, commit: &str, time: &str, took: Duration) -> 
          | device | {} |\n\
          | commit | {commit} |\n\
          | time | {time}, took {} |\n\n{}\n",
+        title.trim(),
         command(plan, &seeds),
         settings.convention,
         seeds.join(", "),
