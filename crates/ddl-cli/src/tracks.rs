@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Tracks {
     /// csv with the header frame,pedestrian,x,y: metres, one row each 0.4 s
     tracks: PathBuf,
-    /// Raw frames between two rows of a pedestrian [default: the smallest difference found]
+    /// Raw frames between two rows of a pedestrian [default: the most common difference]
     #[arg(long)]
     frame_step: Option<i64>,
     /// Only the last frame instead of every frame with 8 observed ones behind it

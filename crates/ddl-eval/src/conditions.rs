@@ -44,6 +44,9 @@ pub struct Conditions {
     /// How the epoch scored was chosen, such as `last epoch`.
     #[serde(default)]
     pub selection: Option<String>,
+    /// Batch size and step size of the training, in words; `None` when nothing is trained.
+    #[serde(default)]
+    pub recipe: Option<String>,
     /// Device the forecasts were computed on, such as `cpu`; empty when unknown.
     #[serde(default)]
     pub device: String,
@@ -79,6 +82,7 @@ impl Conditions {
             seed: None,
             epochs: None,
             selection: None,
+            recipe: None,
             device: String::new(),
             commit: String::new(),
             training_subset: None,

@@ -21,7 +21,7 @@ use crate::retrieve::Retriever;
 ///
 /// # References
 /// Wang, Zhi, Batista, Chandra, *Pedestrian trajectory prediction using dynamics-based deep learning*, ICRA 2024,
-/// section III-B.
+/// section II-D.
 #[derive(Clone, Debug)]
 pub struct GoalEstimator {
     params: ValidGoalEstimatorParams,

@@ -1,4 +1,4 @@
-//! Size of the network, the four variants of the paper's ablation, and how to train.
+//! Size of the network, and the four variants of the paper's ablation.
 
 use crate::StarError;
 use serde::{Deserialize, Serialize};
@@ -116,7 +116,7 @@ impl StarConfig {
             noise_width: 16,
             spatial_dropout: 0.1,
             neighbour_box: 10.0,
-            sigma: 1e-8,
+            sigma: ddl_dynamics::PUBLISHED_SIGMA,
             time_step: ddl_data::TIME_STEP,
         }
     }
@@ -176,126 +176,7 @@ impl StarConfig {
     }
 }
 
-/// How Adam's step size changes over the training.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum LearningRateSchedule {
-    /// The same throughout, as published.
-    Constant,
-    /// Rises over the first twentieth, then falls along a half cosine to zero.
-    Cosine,
-}
-
-impl LearningRateSchedule {
-    /// Share of the training over which the cosine schedule rises.
-    const WARM_UP: f64 = 0.05;
-
-    /// Factor of the largest step size at step `step` of `total`, counted from 0.
-    #[must_use]
-    pub fn factor(self, step: u64, total: u64) -> f64 {
-        match self {
-            Self::Constant => 1.0,
-            Self::Cosine => {
-                let progress = (step as f64 + 0.5) / total.max(1) as f64;
-                let fall = (progress - Self::WARM_UP) / (1.0 - Self::WARM_UP);
-                if progress < Self::WARM_UP {
-                    progress / Self::WARM_UP
-                } else {
-                    0.5 * (1.0 + (std::f64::consts::PI * fall.min(1.0)).cos())
-                }
-            }
-        }
-    }
-}
-
-impl std::str::FromStr for LearningRateSchedule {
-    type Err = StarError;
-
-    fn from_str(text: &str) -> Result<Self, StarError> {
-        match text {
-            "constant" => Ok(Self::Constant),
-            "cosine" => Ok(Self::Cosine),
-            _ => Err(StarError::Config {
-                field: "learning_rate_schedule",
-                value: text.to_owned(),
-                rule: "one of constant, cosine",
-            }),
-        }
-    }
-}
-
-/// How to train. The defaults are the paper's.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TrainingConfig {
-    /// Passes over the training set (or over `walkers_per_epoch` of it).
-    pub epochs: usize,
-    /// Largest step size of Adam.
-    pub learning_rate: f64,
-    /// How the step size changes over the training.
-    pub learning_rate_schedule: LearningRateSchedule,
-    /// Largest allowed norm of the gradient.
-    pub gradient_clip: f64,
-    /// Windows are gathered into a batch until it holds more than this many walkers.
-    pub batch_walkers: usize,
-    /// Rotate each batch by a fresh random angle at every visit; angles add up, as published.
-    pub rotate: bool,
-    /// Train on at most about this many walkers an epoch, going round the whole set.
-    pub walkers_per_epoch: Option<usize>,
-    /// Seed of initial weights, batch order, rotation, noise and dropout.
-    pub seed: u64,
-}
-
-impl Default for TrainingConfig {
-    fn default() -> Self {
-        Self {
-            epochs: 200,
-            learning_rate: 1.5e-3,
-            learning_rate_schedule: LearningRateSchedule::Constant,
-            gradient_clip: 1.0,
-            batch_walkers: 256,
-            rotate: true,
-            walkers_per_epoch: None,
-            seed: 1,
-        }
-    }
-}
-
-impl TrainingConfig {
-    /// Checks every field.
-    ///
-    /// # Errors
-    /// [`StarError::Config`] naming the first field that is out of range.
-    pub fn check(&self) -> Result<(), StarError> {
-        require(self.epochs > 0, "epochs", &self.epochs, "at least 1")?;
-        let rate = self.learning_rate;
-        require(
-            rate.is_finite() && rate > 0.0,
-            "learning_rate",
-            &rate,
-            "finite and positive",
-        )?;
-        let clip = self.gradient_clip;
-        require(
-            clip.is_finite() && clip > 0.0,
-            "gradient_clip",
-            &clip,
-            "finite and positive",
-        )?;
-        require(
-            self.batch_walkers > 0,
-            "batch_walkers",
-            &self.batch_walkers,
-            "at least 1",
-        )?;
-        if let Some(walkers) = self.walkers_per_epoch {
-            require(walkers > 0, "walkers_per_epoch", &walkers, "at least 1")?;
-        }
-        Ok(())
-    }
-}
-
-fn require(
+pub(crate) fn require(
     holds: bool,
     field: &'static str,
     value: &dyn std::fmt::Display,
@@ -327,29 +208,6 @@ mod tests {
         assert!(bad.check().unwrap_err().to_string().contains("heads = 5"));
         let bad = StarConfig { sigma: 0.0, ..good };
         assert!(bad.check().unwrap_err().to_string().contains("sigma"));
-        let bad = TrainingConfig {
-            learning_rate: f64::NAN,
-            ..TrainingConfig::default()
-        };
-        assert!(
-            bad.check()
-                .unwrap_err()
-                .to_string()
-                .contains("learning_rate")
-        );
-    }
-
-    #[test]
-    fn the_cosine_schedule_rises_then_falls_to_nothing() {
-        let factors: Vec<f64> = (0..1000)
-            .map(|step| LearningRateSchedule::Cosine.factor(step, 1000))
-            .collect();
-        let top = factors.iter().copied().fold(0.0, f64::max);
-        assert!((top - 1.0).abs() < 1e-2 && factors[0] < 0.02 && factors[999] < 1e-4);
-        let peak = factors.iter().position(|&factor| factor == top).unwrap();
-        assert!((45..55).contains(&peak));
-        assert!(factors[..=peak].is_sorted());
-        assert!(factors[peak..].iter().rev().is_sorted());
     }
 
     #[test]

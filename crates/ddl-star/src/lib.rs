@@ -21,10 +21,11 @@ mod spatial;
 mod star;
 mod temporal;
 mod train;
+mod training_config;
 
 pub use batch::SceneBatch;
 pub use checkpoint::{load_parameters, save_parameters};
-pub use config::{LearningRateSchedule, StarConfig, TrainingConfig, Variant};
+pub use config::{StarConfig, Variant};
 pub use device::{ComputeDevice, DeviceChoice, set_threads};
 pub use error::StarError;
 pub use flow::{FlowConstants, Integrator, natural_gradient_step};
@@ -35,3 +36,4 @@ pub use optimizer::Adam;
 pub use parameters::Parameters;
 pub use star::{NoiseInput, StarNetwork};
 pub use train::{EpochReport, StepReport, Trainer};
+pub use training_config::{LearningRateSchedule, TrainingConfig};

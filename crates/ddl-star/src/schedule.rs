@@ -1,7 +1,7 @@
 //! Which windows form a batch, in which order batches are visited, and how each is turned.
 
-use crate::config::TrainingConfig;
 use crate::seed::{Stage, stream};
+use crate::training_config::TrainingConfig;
 use ddl_data::{Rotation, Window};
 use rand::RngExt as _;
 use std::f64::consts::PI;

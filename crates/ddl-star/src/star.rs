@@ -231,3 +231,31 @@ fn expected_factor(mean: &Tensor, weight: &Tensor) -> Tensor {
 
 /// Pivots of the expected metric below this count as this, in m/s.
 const SMALLEST_PIVOT: f64 = 1e-12;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The metric of the factor is the mean of the noisy metrics.
+    #[test]
+    fn the_expected_factor_is_that_of_the_mean_metric() {
+        tch::manual_seed(3);
+        let options = (Kind::Double, Device::Cpu);
+        let (mean, weight) = (
+            Tensor::randn([3], options),
+            Tensor::randn([3, 16], options) * 0.1,
+        );
+        let metric = |factors: &Tensor| {
+            let entry = |i: i64| factors.select(-1, i);
+            let (a, b, c) = (entry(0), entry(1), entry(2));
+            Tensor::stack(&[a.square(), &a * &b, b.square() + c.square()], -1)
+        };
+        let noise = Tensor::randn([400_000, 16], options);
+        let sampled = metric(&(&mean + noise.matmul(&weight.transpose(0, 1))));
+        let sampled = sampled.mean_dim([0i64].as_slice(), false, None::<Kind>);
+        let expected = metric(&expected_factor(&mean, &weight));
+        // standard error of the sampled mean: about 2e-3
+        let difference = (sampled - expected).abs().max().double_value(&[]);
+        assert!(difference < 1e-2, "{difference}");
+    }
+}

@@ -3,13 +3,13 @@
 use crate::StarError;
 use crate::batch::SceneBatch;
 use crate::checkpoint::{self, Progress};
-use crate::config::TrainingConfig;
 use crate::layers::Mode;
 use crate::loss::mean_squared_distance;
 use crate::optimizer::Adam;
 use crate::schedule::Schedule;
 use crate::seed::{Stage, stream};
 use crate::star::{NoiseInput, StarNetwork};
+use crate::training_config::TrainingConfig;
 use ddl_data::{WINDOW, Window};
 use rand::{Rng as _, RngExt as _};
 use rand_distr::StandardNormal;

@@ -49,8 +49,10 @@ pub enum DdlError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// The caller asked to stop; what was done so far is saved.
-    #[error("interrupted; what was done so far is saved, the same command goes on from there")]
+    /// The caller asked to stop. Training has saved its steps; an evaluation starts anew.
+    #[error(
+        "interrupted; finished steps of training are saved, the same command goes on from there"
+    )]
     Interrupted,
 }
 

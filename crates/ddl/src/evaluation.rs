@@ -4,9 +4,10 @@ use crate::DdlError;
 use crate::goals;
 use crate::model::Ddl;
 use crate::published::Published;
+use crate::straight_lines::straight_lines;
 use crate::test_set::TestSet;
 use ddl_data::{Dataset, Window};
-use ddl_eval::baseline::{self, GoalSource, StraightLine, WeightedGoals};
+use ddl_eval::baseline::{self, WeightedGoals};
 use ddl_eval::{Conditions, Forecast, ForecastError, Forecaster, Protocol, ResultRow, Scores};
 use ddl_star::TrainingConfig;
 use serde::{Deserialize, Serialize};
@@ -261,6 +262,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 selection: Some(selection.to_owned()),
                 device: self.model.device().name().to_owned(),
                 training_subset: subset(training),
+                recipe: Some(recipe(training)),
                 ..plain.clone()
             };
             let of_lines = Conditions {
@@ -294,38 +296,16 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
     }
 }
 
+/// How it was trained, in words.
+fn recipe(training: &TrainingConfig) -> String {
+    let (walkers, rate) = (training.batch_walkers, training.learning_rate);
+    let schedule = training.learning_rate_schedule;
+    format!("batches of more than {walkers} walkers, Adam with step size {rate} ({schedule})")
+}
+
 /// How much of the training set an epoch sees, in words; `None` for all of it.
 fn subset(training: &TrainingConfig) -> Option<String> {
     training.walkers_per_epoch.map(|walkers| {
         format!("about {walkers} walkers an epoch, going round a seeded order of all")
     })
-}
-
-/// Constant-speed lines to goals that are known already.
-fn straight_lines(
-    name: &'static str,
-    windows: &[Window],
-    goals: &[Vec<WeightedGoals>],
-) -> Result<Vec<Forecast>, ForecastError> {
-    windows
-        .iter()
-        .zip(goals)
-        .map(|(window, goals)| StraightLine::to(KnownGoals { name, goals }).forecast(window))
-        .collect()
-}
-
-/// The goals of one window.
-struct KnownGoals<'a> {
-    name: &'static str,
-    goals: &'a [WeightedGoals],
-}
-
-impl GoalSource for KnownGoals<'_> {
-    fn name(&self) -> String {
-        self.name.to_owned()
-    }
-
-    fn goals(&self, _window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
-        Ok(self.goals.to_vec())
-    }
 }

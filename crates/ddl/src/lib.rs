@@ -9,6 +9,7 @@ mod machine;
 mod model;
 mod published;
 mod run_directory;
+mod straight_lines;
 mod test_set;
 mod training;
 

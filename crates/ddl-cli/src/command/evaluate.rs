@@ -2,10 +2,11 @@
 
 use super::{Machine, Telling, dataset};
 use crate::interrupt::Interrupt;
-use crate::progress::Progress;
+use crate::progress::{Progress, ProgressMode};
 use clap::Args;
 use ddl::eval::Report;
 use ddl::{Ddl, EvaluationRequest, EvaluationSplit, Protocol};
+use std::io::Write as _;
 use std::path::PathBuf;
 
 /// Measure a trained model on the scene left out of its training, beside the baselines
@@ -41,19 +42,19 @@ impl Evaluate {
         let interrupt = Interrupt::catch()?;
         let model = Ddl::load(&self.model, self.machine.device)?;
         let request = EvaluationRequest {
-            protocols: self.protocols,
+            protocols: self.protocols.clone(),
             on: if self.validation {
                 EvaluationSplit::Validation
             } else {
                 EvaluationSplit::Test
             },
             test_walkers: self.test_walkers,
-            commit: self.telling.commit,
+            commit: self.telling.commit.clone(),
         };
         if ddl::is_evaluated(&model, &request)? {
-            return Ok(());
+            return self.tell(&Report::load(&model.run().report())?);
         }
-        let dataset = dataset(model.config().data.convention, self.data)?;
+        let dataset = dataset(model.config().data.convention, self.data.clone())?;
         let progress = Progress::new("evaluate", self.telling.progress);
         let rows = ddl::evaluate(&model, &dataset, &request, |now| {
             let (done, total) = now.walkers;
@@ -68,6 +69,37 @@ impl Evaluate {
         );
         let report = Report::new(title, rows)?;
         ddl::save_evaluation(&model, &request, &report)?;
+        self.tell(&report)
+    }
+
+    /// The results for people; programs read `report.json`.
+    fn tell(&self, report: &Report) -> anyhow::Result<()> {
+        if self.telling.progress != ProgressMode::Json {
+            print(report)?;
+        }
         Ok(())
     }
+}
+
+/// One line a result, under the conditions that tell it from the others.
+fn print(report: &Report) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    writeln!(
+        out,
+        "minADE/minFDE in metres; everything else is in the run's report.json"
+    )?;
+    for row in report.rows() {
+        let (conditions, scores) = (&row.conditions, &row.scores);
+        writeln!(
+            out,
+            "{:10} {:10} {:>6} walkers  {:.3}/{:.3}  {}",
+            conditions.protocol.name(),
+            conditions.window_rule.to_string(),
+            scores.pedestrians,
+            scores.min_ade,
+            scores.min_fde,
+            conditions.label()
+        )?;
+    }
+    Ok(())
 }

@@ -30,6 +30,7 @@ pub fn measure(
             seed,
             epochs: None,
             selection: None,
+            recipe: None,
             device: "cpu".to_owned(),
             training_subset: None,
             ..conditions.clone()

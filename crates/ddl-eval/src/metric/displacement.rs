@@ -12,7 +12,7 @@
 //!
 //! # References
 //! Pellegrini et al., "You'll never walk alone", ICCV 2009 (displacement errors); Gupta et al.,
-//! "Social GAN", CVPR 2018 (best of K); DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section IV.
+//! "Social GAN", CVPR 2018 (best of K); DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section III-A.
 
 use ddl_data::Position;
 

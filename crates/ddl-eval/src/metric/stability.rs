@@ -15,7 +15,7 @@
 //! overshoots the goal causes one frame later.
 //!
 //! # References
-//! DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section III: v = -P grad Phi.
+//! DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section II-E: v = -P grad Phi.
 
 use ddl_data::Position;
 use serde::{Deserialize, Serialize};

@@ -174,6 +174,7 @@ fn settings(line: &Line<'_>) -> String {
                 .as_deref()
                 .unwrap_or("all training windows");
             parts.push(format!("trained on {subset}"));
+            parts.extend(c.recipe.clone());
         }
     }
     parts.push(format!("device {}", known(&c.device)));
