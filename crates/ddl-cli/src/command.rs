@@ -12,7 +12,7 @@ use anyhow::Context as _;
 use clap::Args;
 use ddl::data::{Convention, Dataset, locate};
 use ddl::{DdlError, DeviceChoice};
-use std::path::PathBuf;
+use std::path::Path;
 
 /// Seed of the simulated crowds: one data set for everybody.
 const SIMULATION_SEED: u64 = 1;
@@ -47,11 +47,11 @@ pub(crate) struct Telling {
 }
 
 /// The recordings of a convention, from a folder or simulated.
-pub(crate) fn dataset(convention: Convention, data: Option<PathBuf>) -> anyhow::Result<Dataset> {
+pub(crate) fn dataset(convention: Convention, data: Option<&Path>) -> anyhow::Result<Dataset> {
     if convention == Convention::Simulated {
         return Ok(Dataset::simulated(SIMULATION_SEED));
     }
-    let folder = locate(convention, data.as_deref()).context(
+    let folder = locate(convention, data).context(
         "no recordings; `cargo xtask data fetch` gets them, or use --convention simulated",
     )?;
     Ok(Dataset::load(convention, &folder)?)

@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub(crate) struct Tracks {
     /// csv with the header frame,pedestrian,x,y: metres, one row each 0.4 s
-    tracks: PathBuf,
+    #[arg(value_name = "TRACKS")]
+    file: PathBuf,
     /// Raw frames between two rows of a pedestrian [default: the most common difference]
     #[arg(long)]
     frame_step: Option<i64>,
@@ -22,7 +23,7 @@ pub(crate) struct Tracks {
 impl Tracks {
     /// Windows of 8 observed frames, one a frame that has anybody to forecast.
     pub(crate) fn windows(&self) -> anyhow::Result<Vec<Window>> {
-        let mut recording: Recording = read_recording(&self.tracks, Format::Table)?;
+        let mut recording: Recording = read_recording(&self.file, Format::Table)?;
         if let Some(step) = self.frame_step {
             recording = recording.with_frame_step(step)?;
         }
@@ -31,7 +32,7 @@ impl Tracks {
             bail!(
                 "{}: nobody was observed for 8 frames in a row (frame step {}); a forecast needs \
                  3.2 s of track; give --frame-step when the rows are further apart",
-                self.tracks.display(),
+                self.file.display(),
                 recording.frame_step()
             );
         }

@@ -105,7 +105,7 @@ impl StarNetwork {
             position = self.next_positions(&position, goals, &reference, &emitted, integrator);
             forecast.push(position.shallow_clone());
             if t + 1 < OBSERVED + horizon {
-                sum = sum + &position;
+                sum = &sum + &position;
                 let centred = &position - batch.scene_mean.matmul(&sum) / (t + 1) as f64;
                 let spatial = self.spatial_tokens(&centred, &mask, mode);
                 let relative = &position - &reference;

@@ -1,5 +1,7 @@
 //! The differentiable flow against `ddl-dynamics`, in f64, also at the goal and next to it.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use ddl_dynamics::{Attractor, CholeskyMetric, Euler, NaturalGradientFlow, StableEuler, rollout};
 use ddl_star::{FlowConstants, Integrator, natural_gradient_step};
 use nalgebra::Vector2;

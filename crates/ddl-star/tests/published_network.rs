@@ -1,6 +1,8 @@
 //! Agreement with the published network: weights by formula, outputs computed by the published code
 //! in f64 on a CPU (`reference/star_ddl_forward.json`).
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use ddl_data::{PedestrianId, Window};
 use ddl_star::{
     ComputeDevice, DeviceChoice, Integrator, Mode, NoiseInput, SceneBatch, StarConfig, StarNetwork,

@@ -1,5 +1,7 @@
 //! Training: what it learns, and that stopping changes nothing.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use ddl_data::{Dataset, Window, WindowRule};
 use ddl_star::{
     ComputeDevice, DeviceChoice, StarConfig, StarError, StarNetwork, Trainer, TrainingConfig,

@@ -162,6 +162,6 @@ fn rules(convention: Convention) -> Vec<WindowRule> {
             WindowRule::SocialGan { min_pedestrians: 2 },
             WindowRule::SocialGan { min_pedestrians: 1 },
         ],
-        _ => vec![WindowRule::Complete],
+        Convention::Simulated => vec![WindowRule::Complete],
     }
 }

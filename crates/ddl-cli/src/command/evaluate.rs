@@ -18,7 +18,7 @@ pub(crate) struct Evaluate {
     /// Directory of the run
     #[arg(long)]
     model: PathBuf,
-    /// Folder of the recordings [default: $DDL_DATASETS, then datasets/eth_ucy]
+    /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
     #[arg(long)]
     data: Option<PathBuf>,
     /// published, fair or single; may be repeated
@@ -54,7 +54,7 @@ impl Evaluate {
         if ddl::is_evaluated(&model, &request)? {
             return self.tell(&Report::load(&model.run().report())?);
         }
-        let dataset = dataset(model.config().data.convention, self.data.clone())?;
+        let dataset = dataset(model.config().data.convention, self.data.as_deref())?;
         let progress = Progress::new("evaluate", self.telling.progress);
         let rows = ddl::evaluate(&model, &dataset, &request, |now| {
             let (done, total) = now.walkers;

@@ -17,7 +17,7 @@ pub(crate) struct Train {
     /// Data convention: star, social-gan or simulated
     #[arg(long, default_value = "star")]
     convention: Convention,
-    /// Folder of the recordings [default: $DDL_DATASETS, then datasets/eth_ucy]
+    /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
     #[arg(long)]
     data: Option<PathBuf>,
     /// Scene left out of training: eth, hotel, univ, zara1 or zara2
@@ -33,8 +33,8 @@ pub(crate) struct Train {
     #[arg(long, default_value_t = 200)]
     epochs: usize,
     /// Walkers an epoch, going round the training set [default: all]
-    #[arg(long)]
-    train_walkers: Option<usize>,
+    #[arg(long = "train-walkers")]
+    walkers_per_epoch: Option<usize>,
     /// Walkers a batch; the published 256 learns slowly on few epochs
     #[arg(long, default_value_t = 256)]
     batch_walkers: usize,
@@ -60,13 +60,13 @@ impl Train {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         self.machine.prepare()?;
         let interrupt = Interrupt::catch()?;
-        let dataset = dataset(self.convention, self.data)?;
+        let dataset = dataset(self.convention, self.data.as_deref())?;
         let request = TrainingRequest {
             fold: self.fold,
             variant: self.variant,
             training: TrainingConfig {
                 epochs: self.epochs,
-                walkers_per_epoch: self.train_walkers,
+                walkers_per_epoch: self.walkers_per_epoch,
                 batch_walkers: self.batch_walkers,
                 learning_rate: self.learning_rate,
                 learning_rate_schedule: self.learning_rate_schedule,
