@@ -3,7 +3,7 @@
 use crate::StarError;
 use crate::optimizer::Adam;
 use crate::parameters::Parameters;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use tch::{Kind, Tensor};
 
 /// Room for the header of a safetensors file beyond its numbers.
@@ -126,14 +126,16 @@ fn write(tensors: &[(String, Tensor)], path: &Path) -> Result<(), StarError> {
         path: path.to_owned(),
         source,
     };
-    let folder = path
-        .parent()
-        .map_or_else(|| PathBuf::from("."), Path::to_path_buf);
-    let temporary = tempfile::Builder::new()
-        .prefix(".writing-")
-        .suffix(".safetensors")
-        .tempfile_in(folder)
-        .map_err(io)?;
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let mut builder = tempfile::Builder::new();
+    let builder = builder.prefix(".writing-").suffix(".safetensors");
+    // Temporary files are private by default; results are as readable as the user's other files.
+    #[cfg(unix)]
+    let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let temporary = builder.tempfile_in(folder).map_err(io)?;
     Tensor::write_safetensors(tensors, temporary.path())?;
     temporary.as_file().sync_all().map_err(io)?;
     temporary.persist(path).map_err(|error| io(error.error))?;

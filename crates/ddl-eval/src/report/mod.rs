@@ -160,9 +160,12 @@ fn in_file(path: &Path, source: std::io::Error) -> ReportError {
 }
 
 fn write_whole(folder: &Path, path: &Path, text: &str) -> std::io::Result<()> {
-    let mut file = tempfile::Builder::new()
-        .prefix(".report-")
-        .tempfile_in(folder)?;
+    let mut builder = tempfile::Builder::new();
+    let builder = builder.prefix(".report-");
+    // Temporary files are private by default; results are as readable as the user's other files.
+    #[cfg(unix)]
+    let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.tempfile_in(folder)?;
     file.write_all(text.as_bytes())?;
     file.as_file().sync_all()?;
     file.persist(path)?;
