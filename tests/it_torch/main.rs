@@ -1,2 +1,14 @@
-//! The program.
-fn main() {}
+//! Tests across crates that need libtorch, and those of the program `ddl`.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod convergence;
+mod errors;
+mod evaluate_report;
+mod forecast_own_tracks;
+mod goals_and_info;
+mod leak;
+mod leak_in_reports;
+mod prepare;
+mod real_recordings;
+mod train_resume;

@@ -5,6 +5,7 @@ use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::Path;
 
+use crate::whole_file::readable_by_all;
 use anyhow::{Context, Result, bail};
 use sha2::{Digest, Sha256};
 
@@ -103,17 +104,6 @@ pub(crate) fn measure(path: &Path) -> Result<(String, u64)> {
         bytes += read as u64;
         hasher.update(&block[..read]);
     }
-}
-
-/// Temporary files are private to their owner; the files they become need not be.
-fn readable_by_all(file: &File) -> Result<()> {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        file.set_permissions(fs::Permissions::from_mode(0o644))
-            .context("the permissions of a new file cannot be set")?;
-    }
-    Ok(())
 }
 
 fn hexadecimal(hasher: Sha256) -> String {

@@ -22,6 +22,7 @@ mod digest;
 mod libtorch;
 mod python;
 mod tidy;
+mod whole_file;
 mod workspace;
 
 use std::process::ExitCode;

@@ -24,7 +24,7 @@ pub(crate) struct Machine {
     #[arg(long, default_value = "cpu")]
     pub(crate) device: DeviceChoice,
     /// Threads for tensor operations and goal search [default: all cores]
-    #[arg(long)]
+    #[arg(long, value_parser = at_least_one)]
     threads: Option<usize>,
 }
 
@@ -55,4 +55,13 @@ pub(crate) fn dataset(convention: Convention, data: Option<&Path>) -> anyhow::Re
         "no recordings; `cargo xtask data fetch` gets them, or use --convention simulated",
     )?;
     Ok(Dataset::load(convention, &folder)?)
+}
+
+/// A number that must not be 0.
+pub(crate) fn at_least_one(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) => Err("must be at least 1".to_owned()),
+        Ok(number) => Ok(number),
+        Err(error) => Err(format!("must be a whole number, at least 1 ({error})")),
+    }
 }

@@ -46,6 +46,9 @@ impl Tracks {
 /// Writes a whole output: to standard output, or to a file under a temporary name that is renamed.
 pub(crate) fn write_output(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
     match path {
+        // A device or a pipe is written to, not replaced.
+        Some(path) if path.exists() && !path.is_file() => std::fs::write(path, text)
+            .with_context(|| format!("cannot write to {}", path.display())),
         Some(path) => Ok(ddl::write_atomically(path, text.as_bytes())?),
         None => std::io::stdout()
             .lock()

@@ -117,6 +117,19 @@ impl Protocol {
         windows: &[Window],
     ) -> Result<Vec<Forecast>, ForecastError> {
         let forecasts = forecaster.forecast_all(&self.visible(windows))?;
+        self.admit(forecasts, &forecaster.name())
+    }
+
+    /// Holds forecasts that were made on [visible](Self::visible) windows to the number of hypotheses
+    /// allowed: under `single` the most likely one is kept, otherwise too many are an error.
+    ///
+    /// # Errors
+    /// A forecast has more hypotheses than the protocol allows.
+    pub fn admit(
+        self,
+        forecasts: Vec<Forecast>,
+        forecaster: &str,
+    ) -> Result<Vec<Forecast>, ForecastError> {
         if self == Self::Single {
             return Ok(forecasts.iter().map(Forecast::single).collect());
         }
@@ -128,7 +141,7 @@ impl Protocol {
             None => Ok(forecasts),
             Some(found) => Err(ForecastError::TooManyHypotheses {
                 protocol: self,
-                forecaster: forecaster.name(),
+                forecaster: forecaster.to_owned(),
                 allowed: self.hypotheses(),
                 found,
             }),

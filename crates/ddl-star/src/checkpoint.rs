@@ -46,7 +46,7 @@ pub fn load_parameters(parameters: &Parameters, path: &Path) -> Result<(), StarE
     }
     let mut pairs = Vec::new();
     for (name, target) in parameters.iter() {
-        let stored = find(&tensors, name, &target.size(), path)?;
+        let stored = find(&tensors, name, &target.size(), target.kind(), path)?;
         pairs.push((target.shallow_clone(), stored));
     }
     let _guard = tch::no_grad_guard();
@@ -92,11 +92,11 @@ pub(crate) fn load_training(
     path: &Path,
 ) -> Result<Progress, StarError> {
     let tensors = read(path, parameters.count() as u64 * 3 * 8)?;
-    let size = parameters.flat().size();
-    let weights = find(&tensors, WEIGHTS, &size, path)?;
-    let first = find(&tensors, FIRST_MOMENT, &size, path)?;
-    let second = find(&tensors, SECOND_MOMENT, &size, path)?;
-    let numbers: Vec<f64> = Vec::try_from(find(&tensors, PROGRESS, &[3], path)?)?;
+    let (size, kind) = (parameters.flat().size(), parameters.flat().kind());
+    let weights = find(&tensors, WEIGHTS, &size, kind, path)?;
+    let first = find(&tensors, FIRST_MOMENT, &size, kind, path)?;
+    let second = find(&tensors, SECOND_MOMENT, &size, kind, path)?;
+    let numbers: Vec<f64> = Vec::try_from(find(&tensors, PROGRESS, &[3], Kind::Double, path)?)?;
     let steps = numbers[0];
     if steps < 0.0 || steps.fract() != 0.0 {
         return Err(bad(
@@ -155,14 +155,19 @@ fn read(path: &Path, most_bytes: u64) -> Result<Vec<(String, Tensor)>, StarError
             format!("is {size} bytes long, a checkpoint of this network at most {most_bytes}"),
         ));
     }
-    Tensor::read_safetensors(path)
-        .map_err(|error| bad(path, format!("is not a whole safetensors file ({error})")))
+    Tensor::read_safetensors(path).map_err(|error| {
+        bad(
+            path,
+            format!("is not a whole safetensors file ({error}); delete it and train anew"),
+        )
+    })
 }
 
 fn find<'a>(
     tensors: &'a [(String, Tensor)],
     name: &str,
     shape: &[i64],
+    kind: Kind,
     path: &Path,
 ) -> Result<&'a Tensor, StarError> {
     let (_, tensor) = tensors
@@ -180,7 +185,8 @@ fn find<'a>(
         );
         return Err(bad(path, problem));
     }
-    if tensor.isfinite().all().int64_value(&[]) == 0 {
+    // in the precision it will have: a large f64 is infinite in f32
+    if tensor.to_kind(kind).isfinite().all().int64_value(&[]) == 0 {
         return Err(bad(path, format!("{name} holds NaN or infinite numbers")));
     }
     Ok(tensor)

@@ -70,11 +70,9 @@ impl ComputeDevice {
     }
 }
 
-/// Uses `threads` threads for tensor operations in this process. Call it once, at the start.
+/// Uses `threads` threads (at least one) for tensor operations in this process.
 pub fn set_threads(threads: usize) {
-    let threads = i32::try_from(threads.max(1)).unwrap_or(i32::MAX);
-    tch::set_num_interop_threads(1);
-    tch::set_num_threads(threads);
+    tch::set_num_threads(i32::try_from(threads.max(1)).unwrap_or(i32::MAX));
 }
 
 fn open_cuda() -> Result<(), StarError> {

@@ -92,7 +92,15 @@ impl StarNetwork {
         noise: &NoiseInput,
         integrator: Integrator,
     ) -> Result<Vec<WindowRollout>, StarError> {
-        let views: Vec<&Window> = windows.iter().collect();
+        // The network sees differences of positions only. They are taken in f64 here, from a point of
+        // each scene, so that tracks in map coordinates lose nothing in f32.
+        let origins: Vec<Position> = windows.iter().map(origin).collect();
+        let local: Vec<Window> = windows
+            .iter()
+            .zip(&origins)
+            .map(|(window, &origin)| window.map_positions(|_, _, p| relative(p, origin)))
+            .collect();
+        let views: Vec<&Window> = local.iter().collect();
         let half_box = self.config().neighbour_box;
         let batch = SceneBatch::new(
             &views,
@@ -105,7 +113,9 @@ impl StarNetwork {
         let walkers = batch.walkers();
         let mut flat = Vec::with_capacity(goal_count * walkers * 2);
         for k in 0..goal_count {
-            flat.extend(goals.iter().flatten().flat_map(|goals| goals[k]));
+            for (goals, &origin) in goals.iter().zip(&origins) {
+                flat.extend(goals.iter().flat_map(|goals| relative(goals[k], origin)));
+            }
         }
         let shape = [goal_count as i64, walkers as i64, 2];
         let goals = Tensor::from_slice(&flat)
@@ -120,16 +130,22 @@ impl StarNetwork {
             .to_kind(tch::Kind::Double)
             .contiguous();
         let numbers: Vec<f64> = Vec::try_from(ordered.reshape([-1]))?;
-        let mut positions = numbers.chunks_exact(2).map(|xy| [xy[0], xy[1]]);
+        let mut pairs = numbers.chunks_exact(2);
         Ok(windows
             .iter()
-            .map(|window| WindowRollout {
-                pedestrians: window.len(),
-                hypotheses,
-                positions: positions
+            .zip(origins)
+            .map(|(window, [x, y])| {
+                let count = window.len() * hypotheses * HORIZON;
+                let positions = pairs
                     .by_ref()
-                    .take(window.len() * hypotheses * HORIZON)
-                    .collect(),
+                    .take(count)
+                    .map(|p| [p[0] + x, p[1] + y])
+                    .collect();
+                WindowRollout {
+                    pedestrians: window.len(),
+                    hypotheses,
+                    positions,
+                }
             })
             .collect())
     }
@@ -149,6 +165,15 @@ impl StarNetwork {
             .to_device(self.device());
         NoiseInput::Draws(draws)
     }
+}
+
+/// A point of the scene: where the first pedestrian was last observed.
+fn origin(window: &Window) -> Position {
+    window.observed(0)[OBSERVED - 1]
+}
+
+fn relative(position: Position, origin: Position) -> Position {
+    [position[0] - origin[0], position[1] - origin[1]]
 }
 
 fn check_goals(

@@ -32,7 +32,6 @@ pub use flow::{FlowConstants, Integrator, natural_gradient_step};
 pub use forecast::{Noise, WindowRollout};
 pub use layers::Mode;
 pub use loss::mean_squared_distance;
-pub use optimizer::Adam;
 pub use parameters::Parameters;
 pub use star::{NoiseInput, StarNetwork};
 pub use train::{EpochReport, StepReport, Trainer};

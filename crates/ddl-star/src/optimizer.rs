@@ -9,7 +9,7 @@ const EPSILON: f64 = 1e-8;
 
 /// Adam over all learned numbers as one vector.
 #[derive(Debug)]
-pub struct Adam {
+pub(crate) struct Adam {
     steps: u64,
     pub(crate) first_moment: Tensor,
     pub(crate) second_moment: Tensor,
@@ -17,17 +17,12 @@ pub struct Adam {
 
 impl Adam {
     /// Fresh state for a network's parameters.
-    pub fn new(parameters: &Parameters) -> Self {
+    pub(crate) fn new(parameters: &Parameters) -> Self {
         Self {
             steps: 0,
             first_moment: parameters.flat().zeros_like(),
             second_moment: parameters.flat().zeros_like(),
         }
-    }
-
-    /// Steps taken so far.
-    pub fn steps(&self) -> u64 {
-        self.steps
     }
 
     pub(crate) fn set_steps(&mut self, steps: u64) {

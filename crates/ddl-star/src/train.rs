@@ -15,8 +15,13 @@ use rand::{Rng as _, RngExt as _};
 use rand_distr::StandardNormal;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 use tch::Tensor;
+
+/// libtorch has one generator a process: two trainings side by side take turns to draw from it, so
+/// that neither disturbs the other.
+static GENERATOR: Mutex<()> = Mutex::new(());
 
 /// What one step did.
 #[derive(Debug, Clone, PartialEq)]
@@ -139,8 +144,12 @@ impl Trainer {
         let started = Instant::now();
         let step = self.progress.steps;
         let batch = self.batch(step)?;
-        let noise = self.draw(step);
-        let loss = self.loss(&batch, &noise)?;
+        let loss = {
+            // Held from seeding to the last draw of dropout.
+            let _generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
+            let noise = self.draw(step);
+            self.loss(&batch, &noise)?
+        };
         let value = loss.double_value(&[]);
         self.require_finite("loss", value)?;
         let gradients = self.network.parameters().gradients(&loss)?;

@@ -33,6 +33,11 @@ pub enum DdlError {
     /// A report could not be put together or written.
     #[error(transparent)]
     Report(#[from] ddl_eval::ReportError),
+    /// The share of the training recordings kept for validation is no share.
+    #[error(
+        "validation = {0} is not allowed: a share of the recordings' time, at least 0, below 1"
+    )]
+    Validation(f64),
     /// A run directory that cannot be used.
     #[error("run {}: {problem}", path.display())]
     Run {

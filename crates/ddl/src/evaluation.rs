@@ -6,10 +6,11 @@ use crate::model::Ddl;
 use crate::published::Published;
 use crate::straight_lines::straight_lines;
 use crate::test_set::TestSet;
+use crate::training::digest;
+use crate::training_words::{recipe, subset};
 use ddl_data::{Dataset, Window};
 use ddl_eval::baseline::{self, WeightedGoals};
 use ddl_eval::{Conditions, Forecast, ForecastError, Forecaster, Protocol, ResultRow, Scores};
-use ddl_star::TrainingConfig;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -75,12 +76,15 @@ pub fn evaluate(
     let fold = dataset.fold(&data.fold)?;
     let test = match request.on {
         EvaluationSplit::Test => TestSet::new(&fold, data.convention, request.test_walkers),
-        EvaluationSplit::Validation if data.validation > 0.0 => TestSet::validation(
-            &fold,
-            data.window_rule,
-            data.validation,
-            request.test_walkers,
-        ),
+        EvaluationSplit::Validation if data.validation > 0.0 => {
+            let (rule, fraction) = (data.window_rule, data.validation);
+            if digest(&fold.training_split(rule, fraction).training) != data.sha256 {
+                let problem = "was trained on other recordings than these, whose last part it may \
+                               have seen; give the --data it was trained on";
+                return Err(DdlError::run(model.run().path(), problem));
+            }
+            TestSet::validation(&fold, rule, fraction, request.test_walkers)
+        }
         EvaluationSplit::Validation => {
             let problem = "kept nothing for validation; train it with --validation 0.2";
             return Err(DdlError::run(model.run().path(), problem));
@@ -147,16 +151,9 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         })?;
         let mut rows = Vec::new();
         for protocol in protocols {
-            let kept = |forecasts: &[Forecast]| -> Vec<Forecast> {
-                let single = protocol == Protocol::Single;
-                forecasts
-                    .iter()
-                    .map(|f| if single { f.single() } else { f.clone() })
-                    .collect()
-            };
             let of_protocol = Forecasts {
-                model: kept(&forecasts.model),
-                lines: kept(&forecasts.lines),
+                model: protocol.admit(forecasts.model.clone(), &model.name())?,
+                lines: protocol.admit(forecasts.lines.clone(), "straight line")?,
             };
             rows.extend(self.rows(protocol, "last epoch", "the estimated goals", &of_protocol)?);
         }
@@ -171,8 +168,9 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             .test
             .headline()
             .take_while(|window| {
+                let first = walkers == 0;
                 walkers += window.len();
-                walkers <= SELECTION_WALKERS
+                first || walkers <= SELECTION_WALKERS
             })
             .cloned()
             .collect();
@@ -238,6 +236,10 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let training = &config.training;
         let mut rows = Vec::new();
         for (rule, indices) in &self.test.rules {
+            // a small part may hold no window of one of the rules
+            if indices.is_empty() {
+                continue;
+            }
             let windows: Vec<Window> = indices
                 .iter()
                 .map(|&index| self.test.windows[index].clone())
@@ -294,18 +296,4 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             ControlFlow::Break(()) => Err(DdlError::Interrupted),
         }
     }
-}
-
-/// How it was trained, in words.
-fn recipe(training: &TrainingConfig) -> String {
-    let (walkers, rate) = (training.batch_walkers, training.learning_rate);
-    let schedule = training.learning_rate_schedule;
-    format!("batches of more than {walkers} walkers, Adam with step size {rate} ({schedule})")
-}
-
-/// How much of the training set an epoch sees, in words; `None` for all of it.
-fn subset(training: &TrainingConfig) -> Option<String> {
-    training.walkers_per_epoch.map(|walkers| {
-        format!("about {walkers} walkers an epoch, going round a seeded order of all")
-    })
 }

@@ -3,7 +3,25 @@
 use crate::run_directory::{read_json, write_json};
 use crate::{Ddl, DdlError, EvaluationRequest};
 use ddl_eval::Report;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
+
+/// What the results depend on besides the run itself and the recordings, which are pinned by hash
+/// wherever the benchmark gets them.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Record {
+    request: EvaluationRequest,
+    device: String,
+}
+
+impl Record {
+    fn new(model: &Ddl, request: &EvaluationRequest) -> Self {
+        Self {
+            request: request.clone(),
+            device: model.device().name().to_owned(),
+        }
+    }
+}
 
 /// Whether the run already holds the results of exactly this evaluation.
 ///
@@ -14,7 +32,7 @@ pub fn is_evaluated(model: &Ddl, request: &EvaluationRequest) -> Result<bool, Dd
     if !record.is_file() || !model.run().report().is_file() {
         return Ok(false);
     }
-    Ok(read_json::<EvaluationRequest>(&record)? == *request)
+    Ok(read_json::<Record>(&record)? == Record::new(model, request))
 }
 
 /// Writes `report.json`, then the record of what was asked for.
@@ -33,7 +51,7 @@ pub fn save_evaluation(
     }
     let json = report.to_json()?;
     crate::write_atomically(&model.run().report(), json.as_bytes())?;
-    write_json(&record, request)
+    write_json(&record, &Record::new(model, request))
 }
 
 fn record_file(model: &Ddl) -> PathBuf {

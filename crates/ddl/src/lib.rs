@@ -12,6 +12,7 @@ mod run_directory;
 mod straight_lines;
 mod test_set;
 mod training;
+mod training_words;
 
 pub use ddl_data as data;
 pub use ddl_dynamics as dynamics;

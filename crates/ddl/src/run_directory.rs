@@ -220,7 +220,7 @@ impl RunDirectory {
             .enumerate()
             .map(|(index, line)| {
                 serde_json::from_str(line)
-                    .map_err(|error| DdlError::run(&path, format!("line {}: {error}", index + 1)))
+                    .map_err(|error| DdlError::run(&path, format!("line {} is damaged ({error}); delete the file to go on without the record of earlier epochs", index + 1)))
             })
             .collect()
     }
@@ -238,7 +238,12 @@ impl RunDirectory {
 /// Reads a JSON file.
 pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, DdlError> {
     let text = std::fs::read_to_string(path).map_err(|error| DdlError::io(path, error))?;
-    serde_json::from_str(&text).map_err(|error| DdlError::run(path, error.to_string()))
+    serde_json::from_str(&text).map_err(|error| {
+        DdlError::run(
+            path,
+            format!("is damaged ({error}); delete it and run the command again"),
+        )
+    })
 }
 
 /// Writes a JSON file under a temporary name and renames it.

@@ -6,8 +6,8 @@ use crate::run_directory::{FORMAT, RunConfig, RunDirectory, TrainingData};
 use ddl_data::{Convention, Dataset, Window, WindowRule};
 use ddl_goal::GoalEstimatorParams;
 use ddl_star::{
-    ComputeDevice, DeviceChoice, StarConfig, StarNetwork, StepReport, Trainer, TrainingConfig,
-    Variant, save_parameters,
+    ComputeDevice, DeviceChoice, StarConfig, StarError, StarNetwork, StepReport, Trainer,
+    TrainingConfig, Variant, save_parameters,
 };
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
@@ -62,6 +62,12 @@ pub fn train(
     dataset: &Dataset,
     mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
 ) -> Result<(), DdlError> {
+    // Everything is checked before the directory is claimed: a mistake must not leave a run behind.
+    request.training.check()?;
+    request.goals.clone().check()?;
+    if !(0.0..1.0).contains(&request.validation) {
+        return Err(DdlError::Validation(request.validation));
+    }
     let device = ComputeDevice::open(request.device)?;
     let fold = dataset.fold(&request.fold)?;
     let window_rule = training_rule(dataset.convention());
@@ -71,6 +77,9 @@ pub fn train(
     } else {
         fold.training_windows(window_rule)
     };
+    if windows.is_empty() {
+        return Err(StarError::NoTrainingWindows.into());
+    }
     let run = &request.out;
     let config = RunConfig {
         format: FORMAT,
@@ -141,7 +150,7 @@ pub(crate) fn training_rule(convention: Convention) -> WindowRule {
 }
 
 /// SHA-256 of the windows' positions.
-fn digest(windows: &[Window]) -> String {
+pub(crate) fn digest(windows: &[Window]) -> String {
     let mut hasher = Sha256::new();
     for window in windows {
         hasher.update(window.recording().as_bytes());

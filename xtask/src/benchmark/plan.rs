@@ -1,11 +1,13 @@
 //! The plan: which models are trained and scored, as data.
 
 use std::fs;
-use std::io::{ErrorKind, Write as _};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use serde::{Deserialize, Serialize};
+
+use crate::whole_file;
 
 use super::cost::Cost;
 use super::profile::Recipe;
@@ -198,12 +200,7 @@ impl Plan {
             }
         }
         let text = serde_json::to_vec_pretty(self).context("the plan cannot be written as JSON")?;
-        fs::create_dir_all(out)
-            .and_then(|()| tempfile::NamedTempFile::new_in(out))
-            .and_then(|mut temporary| temporary.write_all(&text).map(|()| temporary))
-            .and_then(|temporary| temporary.persist(&file).map_err(|error| error.error))
-            .with_context(|| format!("{} cannot be written", file.display()))?;
-        Ok(())
+        whole_file::write(&file, &text)
     }
 
     fn check_same_settings(&self, before: &Self, out: &Path) -> Result<()> {

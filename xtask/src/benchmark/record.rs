@@ -1,9 +1,9 @@
 //! What is remembered of a finished task, so that a second run leaves it out.
 
 use std::fs;
-use std::io::Write as _;
 use std::path::Path;
 
+use crate::whole_file;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 
@@ -34,13 +34,5 @@ pub(super) fn write(task: &Task, out: &Path, seconds: f64) -> Result<()> {
         seconds,
     };
     let text = serde_json::to_vec(&record).context("a record cannot be written as JSON")?;
-    tempfile::NamedTempFile::new_in(&folder)
-        .and_then(|mut temporary| temporary.write_all(&text).map(|()| temporary))
-        .and_then(|temporary| {
-            temporary
-                .persist(folder.join(FILE))
-                .map_err(|error| error.error)
-        })
-        .with_context(|| format!("{} cannot be written", folder.join(FILE).display()))?;
-    Ok(())
+    whole_file::write(&folder.join(FILE), &text)
 }

@@ -56,7 +56,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
     /// auto, cpu or cuda
-    #[arg(long, default_value = "cpu")]
+    #[arg(long, default_value = "cpu", value_parser = ["auto", "cpu", "cuda"])]
     device: String,
     /// Folder of the results; one that is there is gone on with [default: `runs/CONVENTION-PROFILE`]
     #[arg(long, value_name = "DIR")]
@@ -80,6 +80,7 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<ExitCode> {
+        ensure!(self.jobs != Some(0), "--jobs must be at least 1");
         let start = Instant::now();
         let mut attempts = Vec::new();
         let chosen = data::choose(
@@ -101,7 +102,6 @@ impl Arguments {
         let program = build::program(workspace, &self.cargo_profile)?;
         let cores = thread::available_parallelism().map_or(1, std::num::NonZero::get);
         let jobs = self.jobs.unwrap_or(cores);
-        ensure!(jobs > 0, "--jobs must be at least 1");
         let threads = (cores / jobs).max(1);
         println!(
             "plan: {} tasks, {jobs} at a time with {threads} threads each, in {}",
@@ -139,6 +139,12 @@ impl Arguments {
             return Ok(ExitCode::FAILURE);
         }
         if self.publish {
+            ensure!(
+                !ends.contains(&End::Kept),
+                "--publish describes one whole run, but some tasks were kept from an earlier one: \
+                 delete {} or choose another --out",
+                out.display()
+            );
             publish::publish(workspace, &plan, &out, start.elapsed())?;
         }
         Ok(ExitCode::SUCCESS)

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 
 use super::locate::find_right;
 use super::{Convention, FETCHED, Manifest, Places, fetch};
@@ -41,9 +41,38 @@ pub(crate) fn choose(
             reason: format!("as asked for; {found}"),
         });
     }
+    if let Some(folder) = data {
+        // A folder that was named is meant: nothing is fetched into a mistyped one.
+        let mut found = false;
+        for convention in Convention::RECORDED {
+            if let Some(entry) = manifest.entry(convention) {
+                found |= find_right(&places, convention, entry)?.is_some();
+            }
+        }
+        ensure!(
+            found,
+            "{} holds no recordings: correct --data, or say with --convention what to fetch there",
+            folder.display()
+        );
+    }
+    first_that_can_be_had(workspace, &manifest, &places, data, say)
+}
+
+/// The recorded conventions in turn, then the simulated crowd.
+fn first_that_can_be_had(
+    workspace: &Workspace,
+    manifest: &Manifest,
+    places: &Places,
+    data: Option<&Path>,
+    say: &mut dyn FnMut(&str),
+) -> Result<Chosen> {
     let mut reasons = Vec::new();
     for convention in Convention::RECORDED {
-        match obtain(workspace, &manifest, &places, convention, data, say) {
+        if let Some(entry) = manifest.entry(convention) {
+            // Recordings that are there and not the pinned ones are an error, not a reason to go on.
+            find_right(places, convention, entry)?;
+        }
+        match obtain(workspace, manifest, places, convention, data, say) {
             Ok((folder, found)) => {
                 reasons.push(found);
                 let reason = reasons.join("; ");
@@ -130,7 +159,11 @@ mod tests {
     fn without_recordings_and_network_the_crowd_is_simulated_and_says_why() {
         let (folder, workspace) = workspace();
         let data = folder.path().join("empty");
-        let chosen = choose(&workspace, None, Some(&data), &mut |_| {}).unwrap();
+        let manifest = Manifest::load(&workspace).unwrap();
+        let places = Places::new(&workspace, Some(&data)).unwrap();
+        let chosen =
+            first_that_can_be_had(&workspace, &manifest, &places, Some(&data), &mut |_| {})
+                .unwrap();
         assert_eq!(chosen.convention, Convention::Simulated);
         assert_eq!(chosen.folder, None);
         for word in ["star is not in", "social-gan is not in", "simulated"] {
@@ -138,6 +171,9 @@ mod tests {
         }
         let error = choose(&workspace, Some(Convention::Star), Some(&data), &mut |_| {});
         assert!(format!("{:#}", error.unwrap_err()).contains("cannot be fetched"));
+        // a folder that was named and holds nothing is a mistake, not a reason to simulate
+        let error = choose(&workspace, None, Some(&data), &mut |_| {}).unwrap_err();
+        assert!(format!("{error:#}").contains("correct --data"), "{error:#}");
     }
 
     #[test]
@@ -150,6 +186,9 @@ mod tests {
             fs::write(data.join(&file.name), "1,2\n1,1\n0,0\n0,0\n").unwrap();
         }
         let error = choose(&workspace, Some(Convention::Star), Some(&data), &mut |_| {});
+        let message = format!("{:#}", error.unwrap_err());
+        assert!(message.contains("8 of 8 files are wrong"), "{message}");
+        let error = choose(&workspace, None, Some(&data), &mut |_| {});
         let message = format!("{:#}", error.unwrap_err());
         assert!(message.contains("8 of 8 files are wrong"), "{message}");
     }

@@ -1,6 +1,6 @@
 //! `ddl evaluate`.
 
-use super::{Machine, Telling, dataset};
+use super::{Machine, Telling, at_least_one, dataset};
 use crate::interrupt::Interrupt;
 use crate::progress::{Progress, ProgressMode};
 use clap::Args;
@@ -28,7 +28,7 @@ pub(crate) struct Evaluate {
     #[arg(long)]
     validation: bool,
     /// Measure a seeded part of the test windows with at least so many walkers [default: all]
-    #[arg(long)]
+    #[arg(long, value_parser = at_least_one)]
     test_walkers: Option<usize>,
     #[command(flatten)]
     machine: Machine,

@@ -20,7 +20,8 @@ pub(crate) struct Train {
     /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
     #[arg(long)]
     data: Option<PathBuf>,
-    /// Scene left out of training: eth, hotel, univ, zara1 or zara2
+    /// Scene left out of training: eth, hotel, univ, zara1 or zara2; of the simulated ones corridor,
+    /// crossing, plaza, bottleneck or doorway
     #[arg(long)]
     fold: String,
     /// full, no-goal-shift, no-dynamics or star (neither)

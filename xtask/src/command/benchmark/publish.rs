@@ -7,6 +7,7 @@ use std::time::Duration;
 use anyhow::{Context, Result};
 
 use crate::benchmark::{Plan, human};
+use crate::whole_file;
 use crate::workspace::Workspace;
 
 const FILE: &str = "docs/benchmark.md";
@@ -20,7 +21,7 @@ pub(super) fn publish(
 ) -> Result<()> {
     let report = fs::read_to_string(out.join("report.md")).context("the report cannot be read")?;
     let text = page(&report, plan, &workspace.commit(), &workspace.now(), took);
-    fs::write(workspace.path(FILE), text).with_context(|| format!("{FILE} cannot be written"))?;
+    whole_file::write(&workspace.path(FILE), text.as_bytes())?;
     println!("published: {FILE}");
     Ok(())
 }

@@ -1,0 +1,17 @@
+//! A training in words, as results name it.
+
+use ddl_star::TrainingConfig;
+
+/// How it was trained, in words.
+pub(crate) fn recipe(training: &TrainingConfig) -> String {
+    let (walkers, rate) = (training.batch_walkers, training.learning_rate);
+    let schedule = training.learning_rate_schedule;
+    format!("batches of more than {walkers} walkers, Adam with step size {rate} ({schedule})")
+}
+
+/// How much of the training set an epoch sees, in words; `None` for all of it.
+pub(crate) fn subset(training: &TrainingConfig) -> Option<String> {
+    training.walkers_per_epoch.map(|walkers| {
+        format!("about {walkers} walkers an epoch, going round a seeded order of all")
+    })
+}

@@ -1,0 +1,79 @@
+//! Runs that are missing, unfinished, damaged, or another's; devices that are not there.
+
+use super::{FORECAST, fails, folder_with_model};
+use ddl::Variant;
+use ddl_tests::{program, tiny_model};
+
+#[test]
+fn a_missing_model_is_named() {
+    let folder = folder_with_model();
+    for command_line in [
+        "forecast --model nowhere tracks.csv",
+        "goals --model nowhere tracks.csv",
+        "evaluate --model nowhere",
+        "info --model nowhere",
+    ] {
+        fails(folder.path(), command_line, &["nowhere", "ddl train"]);
+    }
+    let report = "report nowhere --out pages";
+    fails(folder.path(), report, &["nowhere", "ddl evaluate"]);
+}
+
+#[test]
+fn an_unfinished_run_is_no_model() {
+    let folder = folder_with_model();
+    std::fs::remove_file(folder.path().join("run/model.safetensors")).unwrap();
+    fails(folder.path(), FORECAST, &["not finished", "ddl train"]);
+}
+
+/// Whichever file of the run ends too early, it is named and nothing is forecast from it.
+#[test]
+fn half_a_file_is_named() {
+    for file in ["model.safetensors", "experts.safetensors", "config.json"] {
+        let folder = folder_with_model();
+        let path = folder.path().join("run").join(file);
+        let whole = std::fs::read(&path).unwrap();
+        for kept in [whole.len() / 2, whole.len() - 1, 0] {
+            std::fs::write(&path, &whole[..kept]).unwrap();
+            fails(folder.path(), FORECAST, &[file]);
+        }
+    }
+}
+
+/// The configuration of another network, copied over that of the run.
+#[test]
+fn weights_of_another_network_are_refused() {
+    let folder = folder_with_model();
+    let other = tiny_model::folder(Variant::Star);
+    let config = "config.json";
+    let over = folder.path().join("run").join(config);
+    std::fs::copy(other.path().join(config), over).unwrap();
+    fails(folder.path(), FORECAST, &["model.safetensors", "shape"]);
+}
+
+/// A run without validation cannot be measured on it, and one without results not be reported.
+#[test]
+fn what_a_run_does_not_hold_is_said() {
+    let folder = folder_with_model();
+    let validation = "evaluate --model run --validation";
+    fails(folder.path(), validation, &["--validation 0.2"]);
+    fails(folder.path(), "report run --out pages", &["ddl evaluate"]);
+}
+
+#[test]
+fn cuda_that_is_not_there_is_an_error_and_not_the_cpu() {
+    let folder = folder_with_model();
+    let info = program::run(folder.path(), "info --json").succeeds();
+    if info.contains("\"cuda\": \"available\"") {
+        eprintln!("skipped: this machine has CUDA");
+        return;
+    }
+    for command_line in [
+        "train --convention simulated --fold corridor --out new",
+        "evaluate --model run",
+        FORECAST,
+    ] {
+        let on_cuda = format!("{command_line} --device cuda");
+        fails(folder.path(), &on_cuda, &["cuda", "--device cpu"]);
+    }
+}

@@ -1,0 +1,214 @@
+//! `ddl train`, `ddl evaluate`, `ddl report`: the way of a number from the recordings to the page.
+
+use ddl::data::{Convention, WindowRule};
+use ddl::eval::{Report, ResultRow};
+use ddl::star::EpochReport;
+use ddl::{Protocol, RunDirectory};
+use ddl_tests::folder_contents::{self, Contents};
+use ddl_tests::program;
+use serde::Deserialize;
+use std::path::Path;
+
+const TRAIN: &str = "train --convention simulated --fold plaza --seed 5 --epochs 2 --train-walkers 200 \
+                     --batch-walkers 64 --out run --threads 1";
+const EVALUATE: &str = "evaluate --model run --protocol published --protocol fair --protocol single \
+                        --test-walkers 60 --threads 1";
+
+/// A line of `--progress json`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Progress {
+    stage: String,
+    done: f64,
+    total: f64,
+    message: String,
+}
+
+/// Runs a command with `--progress json` and `--commit`, and checks what it tells.
+fn told(folder: &Path, command_line: &str) -> Vec<Progress> {
+    let command_line = format!("{command_line} --progress json --commit 0123abc");
+    let lines: Vec<Progress> = program::run(folder, &command_line)
+        .succeeds()
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let stage = command_line.split(' ').next().unwrap();
+    assert!(
+        lines
+            .iter()
+            .all(|line| line.stage == stage && !line.message.is_empty())
+    );
+    assert!(
+        lines
+            .iter()
+            .all(|line| line.total > 0.0 && line.done <= line.total)
+    );
+    assert!(lines.windows(2).all(|pair| pair[0].done <= pair[1].done));
+    assert!(
+        lines
+            .windows(2)
+            .all(|pair| same(pair[0].total, pair[1].total))
+    );
+    if let Some(last) = lines.last() {
+        assert!(same(last.done, last.total), "{stage} ended at {last:?}");
+    }
+    lines
+}
+
+fn same(a: f64, b: f64) -> bool {
+    a.to_bits() == b.to_bits()
+}
+
+/// Runs a command a second time: it has nothing to do, says nothing, and changes nothing.
+fn returns_at_once(folder: &Path, command_line: &str) {
+    let before: Contents = folder_contents::read(folder);
+    assert!(
+        told(folder, command_line).is_empty(),
+        "worked a second time"
+    );
+    let after = folder_contents::read(folder);
+    assert_eq!(
+        folder_contents::differences(&before, &after),
+        Vec::<String>::new()
+    );
+}
+
+fn check_run(run: &Path) {
+    let directory = RunDirectory::new(run);
+    let files = [
+        directory.model(),
+        directory.optimizer(),
+        directory.experts(),
+        directory.epoch(1),
+        directory.epoch(2),
+        run.join("config.json"),
+    ];
+    for file in files {
+        assert!(file.is_file(), "{} is missing", file.display());
+    }
+    let config = directory.config().unwrap();
+    assert_eq!(config.data.convention, Convention::Simulated);
+    assert_eq!(
+        (config.data.fold.as_str(), config.training.seed),
+        ("plaza", 5)
+    );
+    assert_eq!(config.commit, "0123abc");
+    let metrics = std::fs::read_to_string(run.join("metrics.jsonl")).unwrap();
+    let epochs: Vec<EpochReport> = metrics
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    assert_eq!(epochs, directory.metrics().unwrap());
+    let numbers: Vec<_> = epochs
+        .iter()
+        .map(|epoch| (epoch.epoch, epoch.batches))
+        .collect();
+    assert_eq!(numbers, [(1, 4), (2, 4)]);
+    assert!(
+        epochs
+            .iter()
+            .all(|epoch| epoch.loss.is_finite() && epoch.loss > 0.0)
+    );
+}
+
+/// Every row names the conditions of its number.
+fn check_conditions(row: &ResultRow) {
+    let conditions = &row.conditions;
+    assert_eq!(conditions.convention, Convention::Simulated);
+    assert_eq!(conditions.window_rule, WindowRule::Complete);
+    assert_eq!(conditions.fold, "plaza");
+    assert_eq!(
+        (conditions.device.as_str(), conditions.commit.as_str()),
+        ("cpu", "0123abc")
+    );
+    assert!(!conditions.forecaster.is_empty());
+    let subset = conditions.test_subset.as_deref().unwrap();
+    assert!(subset.contains("60 walkers"), "{subset}");
+    if conditions.forecaster != "DDL" {
+        return;
+    }
+    assert_eq!(conditions.variant.as_deref(), Some("full"));
+    assert_eq!((conditions.seed, conditions.epochs), (Some(5), Some(2)));
+    let training = conditions.training_subset.as_deref().unwrap();
+    assert!(training.contains("200 walkers"), "{training}");
+    let selection = conditions.selection.as_deref().unwrap();
+    let on_test = conditions.protocol == Protocol::Published;
+    assert_eq!(selection.contains("TEST"), on_test, "{selection}");
+}
+
+fn check_rows(rows: &[ResultRow]) {
+    rows.iter().for_each(check_conditions);
+    for protocol in Protocol::ALL {
+        let of_protocol: Vec<&ResultRow> = rows
+            .iter()
+            .filter(|row| row.conditions.protocol == protocol)
+            .collect();
+        let model: Vec<_> = of_protocol
+            .iter()
+            .filter(|row| row.conditions.forecaster == "DDL")
+            .collect();
+        assert_eq!(model.len(), 1, "{protocol}");
+        assert_eq!(model[0].scores.hypotheses, protocol.hypotheses());
+        for baseline in ["constant velocity", "straight line to"] {
+            let named = |row: &&&ResultRow| row.conditions.forecaster.starts_with(baseline);
+            assert!(
+                of_protocol.iter().any(|row| named(&row)),
+                "{protocol}: {baseline}"
+            );
+        }
+        let walkers = model[0].scores.pedestrians;
+        assert!((60..100).contains(&walkers), "{walkers}");
+        for row in &of_protocol {
+            assert_eq!(
+                row.scores.pedestrians, walkers,
+                "{}",
+                row.conditions.forecaster
+            );
+            assert!(row.scores.min_ade.is_finite() && row.scores.min_ade > 0.0);
+            assert!(row.scores.min_fde <= row.scores.fde_at_min_ade);
+        }
+        if !protocol.shows_future() {
+            let stability = model[0].scores.stability.unwrap();
+            assert!(stability.decreasing >= 1.0, "{protocol}: {stability:?}");
+        }
+    }
+}
+
+#[test]
+fn a_number_goes_from_the_recordings_to_the_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let run = here.join("run");
+
+    // 200 walkers in batches of 64: 4 steps an epoch
+    let steps = told(here, TRAIN);
+    assert_eq!(steps.len(), 8);
+    assert!(steps[7].message.contains("epoch 2"));
+    check_run(&run);
+    returns_at_once(here, TRAIN);
+
+    let walkers = told(here, EVALUATE);
+    assert!(walkers.len() >= 2);
+    let report = Report::load(&run.join("report.json")).unwrap();
+    check_rows(report.rows());
+    returns_at_once(here, EVALUATE);
+
+    let page = "report run --title Plaza --out pages";
+    assert_eq!(program::run(here, page).succeeds(), "");
+    let collected = Report::load(&here.join("pages/report.json")).unwrap();
+    assert_eq!(collected.title(), "Plaza");
+    assert_eq!(collected.rows(), report.rows());
+    let markdown = std::fs::read_to_string(here.join("pages/report.md")).unwrap();
+    assert!(markdown.lines().next().unwrap().contains("simulated"));
+    let warning = Protocol::Published.warning().unwrap();
+    for text in [
+        "Plaza",
+        "`fair`",
+        "`single`",
+        "`published`",
+        "0123abc",
+        warning,
+    ] {
+        assert!(markdown.contains(text), "{text} is not on the page");
+    }
+}

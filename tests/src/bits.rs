@@ -1,0 +1,23 @@
+//! Forecasts compared bit by bit: `==` on floats calls 0.0 and -0.0 the same.
+
+use ddl_eval::Forecast;
+
+/// Every number of a forecast as its bits: shape, then weights, goals and positions.
+#[must_use]
+pub fn of(forecast: &Forecast) -> Vec<u64> {
+    let (pedestrians, hypotheses) = (forecast.pedestrians(), forecast.hypotheses());
+    let mut bits = vec![pedestrians as u64, hypotheses as u64];
+    for (i, k) in (0..pedestrians).flat_map(|i| (0..hypotheses).map(move |k| (i, k))) {
+        bits.push(forecast.weight(i, k).to_bits());
+        let goal = forecast.goal(i, k);
+        let positions = forecast.hypothesis(i, k).iter().chain(&goal);
+        bits.extend(positions.flatten().map(|coordinate| coordinate.to_bits()));
+    }
+    bits
+}
+
+/// The bits of many forecasts, one entry a window.
+#[must_use]
+pub fn of_all(forecasts: &[Forecast]) -> Vec<Vec<u64>> {
+    forecasts.iter().map(of).collect()
+}

@@ -1,0 +1,59 @@
+//! The simulated crowds as the tests use them: test windows of one scene, experts from the others.
+
+use ddl_data::{Dataset, TIME_STEP, Window, WindowRule};
+use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
+
+/// Seed of the crowds: that of the program, so that both see the same people.
+const SEED: u64 = 1;
+/// The scene left out of training.
+pub const FOLD: &str = "corridor";
+/// Tracks of the expert library: enough for 100 experts to differ, few enough to be searched at once.
+const EXPERTS: usize = 600;
+
+/// The five simulated scenes.
+#[must_use]
+pub fn dataset() -> Dataset {
+    Dataset::simulated(SEED)
+}
+
+/// Test windows with their futures, of 2 to `most` pedestrians, spread over the whole recording.
+///
+/// # Panics
+/// If the scene has no `count` such windows.
+#[must_use]
+pub fn windows(count: usize, most: usize) -> Vec<Window> {
+    let dataset = dataset();
+    let fold = dataset.fold(FOLD).expect("the simulated scene exists");
+    let all = fold.test_windows(WindowRule::Complete);
+    let fitting: Vec<_> = all
+        .into_iter()
+        .filter(|window| (2..=most).contains(&window.len()))
+        .collect();
+    assert!(
+        fitting.len() >= count,
+        "{} windows of 2 to {most} pedestrians, {count} wanted",
+        fitting.len()
+    );
+    let stride = fitting.len() / count;
+    fitting.into_iter().step_by(stride).take(count).collect()
+}
+
+/// A goal estimator whose experts walk in the training scenes.
+///
+/// # Panics
+/// If the parameters are out of range.
+#[must_use]
+pub fn goal_estimator(params: GoalEstimatorParams) -> GoalEstimator {
+    let dataset = dataset();
+    let fold = dataset.fold(FOLD).expect("the simulated scene exists");
+    let windows = fold.training_windows(WindowRule::Complete);
+    let tracks: Vec<_> = windows
+        .iter()
+        .flat_map(|window| (0..window.len()).map(|i| window.track(i).to_vec()))
+        .collect();
+    let stride = (tracks.len() / EXPERTS).max(1);
+    let some = tracks.into_iter().step_by(stride).collect();
+    let library = ExpertLibrary::new(some, TIME_STEP).expect("simulated tracks are whole");
+    let params = params.check().expect("the tests give sound parameters");
+    GoalEstimator::new(params, library).expect("there are more tracks than experts")
+}

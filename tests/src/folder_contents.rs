@@ -1,0 +1,65 @@
+//! What lies in a folder, to show that a command wrote nothing, or the same bytes again.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Every file below a folder with its bytes, and every folder with `None`, by path relative to it.
+pub type Contents = BTreeMap<PathBuf, Option<Vec<u8>>>;
+
+/// Reads everything below `folder`.
+///
+/// # Panics
+/// If it cannot be read.
+#[must_use]
+pub fn read(folder: &Path) -> Contents {
+    let mut contents = Contents::new();
+    let mut waiting = vec![folder.to_owned()];
+    while let Some(next) = waiting.pop() {
+        let entries = std::fs::read_dir(&next).expect("the folder can be listed");
+        for entry in entries {
+            let path = entry.expect("the folder can be listed").path();
+            let relative = path.strip_prefix(folder).unwrap_or(&path).to_owned();
+            if path.is_dir() {
+                contents.insert(relative, None);
+                waiting.push(path);
+            } else {
+                let bytes = std::fs::read(&path).expect("the file can be read");
+                contents.insert(relative, Some(bytes));
+            }
+        }
+    }
+    contents
+}
+
+/// Writes contents that were read before into `folder`, which is made if need be.
+///
+/// # Panics
+/// If a file cannot be written.
+pub fn write(contents: &Contents, folder: &Path) {
+    std::fs::create_dir_all(folder).expect("the folder can be made");
+    for (relative, bytes) in contents {
+        let path = folder.join(relative);
+        match bytes {
+            None => std::fs::create_dir_all(&path).expect("the folder can be made"),
+            Some(bytes) => std::fs::write(&path, bytes).expect("the file can be written"),
+        }
+    }
+}
+
+/// Names of the files and folders that differ, for a message that does not print megabytes.
+#[must_use]
+pub fn differences(before: &Contents, after: &Contents) -> Vec<String> {
+    let names: std::collections::BTreeSet<&PathBuf> = before.keys().chain(after.keys()).collect();
+    names
+        .into_iter()
+        .filter_map(|name| {
+            let what = match (before.get(name), after.get(name)) {
+                (None, _) => "is new",
+                (_, None) => "is gone",
+                (Some(old), Some(new)) if old != new => "has changed",
+                _ => return None,
+            };
+            Some(format!("{} {what}", name.display()))
+        })
+        .collect()
+}

@@ -1,0 +1,54 @@
+//! Tracks such as a user of the program brings along, as csv.
+
+use std::fmt::Write as _;
+
+/// One row: frame, pedestrian, x and y in metres.
+pub type Row = (i64, i64, f64, f64);
+
+/// Raw frames between two rows of a pedestrian.
+pub const FRAME_STEP: i64 = 10;
+
+/// Coordinates are whole multiples of this, as those of a tracker are: about a millimetre, and a power of
+/// two, so that moving the origin of the map by whole metres rounds nothing.
+const RESOLUTION: f64 = 1.0 / 1024.0;
+
+/// Three people for `frames` frames of 0.4 s: one walks east, one comes to meet them, one hardly moves.
+#[must_use]
+pub fn three_people(frames: i64) -> Vec<Row> {
+    let place = |t: f64, pedestrian: i64| match pedestrian {
+        1 => (0.5 * t, 0.05 * (1.3 * t).sin()),
+        2 => (9.0 - 0.45 * t, 0.8 + 0.04 * t),
+        _ => (4.0 + 0.02 * (2.1 * t).sin(), -1.5 + 0.01 * t),
+    };
+    (0..frames)
+        .flat_map(|t| (1..=3).map(move |pedestrian| (t, pedestrian)))
+        .map(|(t, pedestrian)| {
+            let (x, y) = place(t as f64, pedestrian);
+            let [x, y] = [x, y].map(|c: f64| (c / RESOLUTION).round() * RESOLUTION);
+            (t * FRAME_STEP, pedestrian, x, y)
+        })
+        .collect()
+}
+
+/// The rows as the program reads them.
+#[must_use]
+pub fn csv(rows: &[Row]) -> String {
+    let mut text = "frame,pedestrian,x,y\n".to_owned();
+    for (frame, pedestrian, x, y) in rows {
+        let _ = writeln!(text, "{frame},{pedestrian},{x},{y}"); // writing to a string cannot fail
+    }
+    text
+}
+
+/// The rows in another order, which is the same at every call.
+#[must_use]
+pub fn shuffled(rows: &[Row]) -> Vec<Row> {
+    let mut rows = rows.to_vec();
+    // multiplication by an odd number permutes the numbers below 2^64, and scatters the first few
+    let mut place = 0_u64;
+    rows.sort_by_cached_key(|_| {
+        place += 1;
+        place.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    });
+    rows
+}

@@ -1,0 +1,122 @@
+//! A model trained in seconds on the simulated crowds, once for a whole test binary.
+
+use crate::crowd;
+use crate::folder_contents::{self, Contents};
+use ddl::data::Dataset;
+use ddl::goal::GoalEstimatorParams;
+use ddl::star::TrainingConfig;
+use ddl::{Ddl, DeviceChoice, RunDirectory, TrainingRequest, Variant};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::{Mutex, Once, OnceLock};
+use tempfile::TempDir;
+
+/// Walkers it is trained on: enough for every weight to have moved.
+pub const WALKERS: usize = 96;
+
+/// A model in a folder of its own, which a test may damage.
+#[derive(Debug)]
+pub struct TinyModel {
+    /// The model, loaded from the folder.
+    pub model: Ddl,
+    folder: TempDir,
+}
+
+impl TinyModel {
+    /// The folder of the run.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+}
+
+/// A copy of the tiny model of a variant; the first call of a variant trains it.
+///
+/// # Panics
+/// If it cannot be trained, written or loaded.
+#[must_use]
+pub fn of(variant: Variant) -> TinyModel {
+    let folder = folder(variant);
+    let model = Ddl::load(folder.path(), DeviceChoice::Cpu).expect("the tiny model loads");
+    TinyModel { model, folder }
+}
+
+/// A copy of the tiny model's folder alone.
+///
+/// # Panics
+/// If it cannot be trained or written.
+#[must_use]
+pub fn folder(variant: Variant) -> TempDir {
+    static TRAINED: [OnceLock<Contents>; 4] = [const { OnceLock::new() }; 4];
+    use_one_thread();
+    let index = Variant::ALL
+        .iter()
+        .position(|&known| known == variant)
+        .expect("ALL holds every variant");
+    let contents = TRAINED[index].get_or_init(|| trained(variant));
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    folder_contents::write(contents, folder.path());
+    folder
+}
+
+/// One thread for tensors in this process, where tests run side by side already: sums are then in one
+/// order. To be called before the first tensor is made; may be called again.
+///
+/// # Panics
+/// Never: the CPU is always there.
+pub fn use_one_thread() {
+    static PREPARED: Once = Once::new();
+    PREPARED.call_once(|| {
+        ddl::prepare(DeviceChoice::Cpu, Some(1)).expect("the CPU is always there");
+    });
+}
+
+/// Trains in this process, one run at a time: libtorch has one generator of random numbers, and runs
+/// side by side would draw from each other's.
+///
+/// # Panics
+/// If training fails.
+pub fn train(request: &TrainingRequest, dataset: &Dataset) {
+    static TRAINING: Mutex<()> = Mutex::new(());
+    use_one_thread();
+    let _one_at_a_time = TRAINING.lock();
+    ddl::train(request, dataset, |_| ControlFlow::Continue(())).expect("training succeeds");
+}
+
+/// Walkers a batch when `walkers` are trained on: four batches.
+#[must_use]
+pub fn batch_walkers(walkers: usize) -> usize {
+    walkers / 4
+}
+
+/// What is trained: one epoch of `walkers` walkers.
+#[must_use]
+pub fn request(fold: &str, variant: Variant, walkers: usize, out: &Path) -> TrainingRequest {
+    let training = TrainingConfig {
+        epochs: 1,
+        walkers_per_epoch: Some(walkers),
+        batch_walkers: batch_walkers(walkers),
+        ..TrainingConfig::default()
+    };
+    TrainingRequest {
+        fold: fold.to_owned(),
+        variant,
+        // as the program has it
+        goals: GoalEstimatorParams::default().seed(training.seed),
+        training,
+        validation: 0.0,
+        out: RunDirectory::new(out),
+        device: DeviceChoice::Cpu,
+        commit: "of the tests".to_owned(),
+    }
+}
+
+/// Trains and keeps the files in memory: a folder in a static would never be removed.
+fn trained(variant: Variant) -> Contents {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    train(
+        &request(crowd::FOLD, variant, WALKERS, folder.path()),
+        &crowd::dataset(),
+    );
+    folder_contents::read(folder.path())
+}
