@@ -46,8 +46,21 @@ fn main() -> ExitCode {
                 error.downcast_ref::<ddl::DdlError>(),
                 Some(ddl::DdlError::Interrupted)
             );
-            eprintln!("{}: {error:#}", if interrupted { "ddl" } else { "error" });
+            let who = if interrupted { "ddl" } else { "error" };
+            eprintln!("{who}: {}", message(&error));
             ExitCode::from(if interrupted { 130 } else { 1 })
         }
     }
+}
+
+/// An error and its causes, each said once: some errors already say their cause themselves.
+fn message(error: &anyhow::Error) -> String {
+    let mut message = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if !message.contains(&cause) {
+            let separator = if message.is_empty() { "" } else { ": " };
+            message = message + separator + &cause;
+        }
+    }
+    message
 }

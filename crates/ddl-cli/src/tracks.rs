@@ -3,7 +3,7 @@
 use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{Format, Recording, Window, read_recording};
-use std::io::Write as _;
+use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
 /// Which tracks to read.
@@ -50,9 +50,10 @@ pub(crate) fn write_output(path: Option<&Path>, text: &str) -> anyhow::Result<()
         Some(path) if path.exists() && !path.is_file() => std::fs::write(path, text)
             .with_context(|| format!("cannot write to {}", path.display())),
         Some(path) => Ok(ddl::write_atomically(path, text.as_bytes())?),
-        None => std::io::stdout()
-            .lock()
-            .write_all(text.as_bytes())
-            .context("cannot write to standard output"),
+        None => match std::io::stdout().lock().write_all(text.as_bytes()) {
+            // whoever reads has seen enough, as in `ddl forecast .. | head`
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+            result => result.context("cannot write to standard output"),
+        },
     }
 }

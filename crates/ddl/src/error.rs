@@ -38,6 +38,17 @@ pub enum DdlError {
         "validation = {0} is not allowed: a share of the recordings' time, at least 0, below 1"
     )]
     Validation(f64),
+    /// The training set holds fewer tracks than the goal estimator retrieves.
+    #[error(
+        "{tracks} tracks of 20 frames to train on, but the goal estimator retrieves {experts}; \
+         train on more recordings, or ask for fewer experts"
+    )]
+    TooFewTracks {
+        /// Tracks there are.
+        tracks: usize,
+        /// Experts retrieved.
+        experts: usize,
+    },
     /// A run directory that cannot be used.
     #[error("run {}: {problem}", path.display())]
     Run {

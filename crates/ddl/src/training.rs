@@ -60,11 +60,11 @@ pub struct TrainingProgress {
 pub fn train(
     request: &TrainingRequest,
     dataset: &Dataset,
-    mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
+    observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
 ) -> Result<(), DdlError> {
     // Everything is checked before the directory is claimed: a mistake must not leave a run behind.
     request.training.check()?;
-    request.goals.clone().check()?;
+    let goal_params = request.goals.clone().check()?;
     if !(0.0..1.0).contains(&request.validation) {
         return Err(DdlError::Validation(request.validation));
     }
@@ -79,6 +79,13 @@ pub fn train(
     };
     if windows.is_empty() {
         return Err(StarError::NoTrainingWindows.into());
+    }
+    let (tracks, experts) = (
+        windows.iter().map(Window::len).sum::<usize>(),
+        goal_params.experts(),
+    );
+    if tracks < experts {
+        return Err(DdlError::TooFewTracks { tracks, experts });
     }
     let run = &request.out;
     let config = RunConfig {
@@ -111,6 +118,16 @@ pub fn train(
     if run.optimizer().is_file() {
         trainer.resume(&run.optimizer())?;
     }
+    run_epochs(&mut trainer, run, config.keep_every, observe)
+}
+
+/// Trains to the end, saving what a later call needs to go on.
+fn run_epochs(
+    trainer: &mut Trainer,
+    run: &RunDirectory,
+    keep_every: usize,
+    mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
+) -> Result<(), DdlError> {
     let mut epochs = run.metrics()?;
     epochs.truncate(trainer.completed_epochs());
     let mut saved = Instant::now();
@@ -118,7 +135,7 @@ pub fn train(
         let step = trainer.step()?;
         if let Some(epoch) = &step.finished_epoch {
             epochs.push(epoch.clone());
-            if epoch.epoch % config.keep_every == 0 || trainer.is_finished() {
+            if epoch.epoch % keep_every == 0 || trainer.is_finished() {
                 save_parameters(trainer.network().parameters(), &run.epoch(epoch.epoch))?;
             }
             run.write_metrics(&epochs)?;
