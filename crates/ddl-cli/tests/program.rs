@@ -1,6 +1,8 @@
 //! The program starts, names itself and its commands. That this test exists also makes `cargo test
 //! --workspace` build the program, which the tests of the workspace run.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use std::process::Command;
 
 fn ddl(argument: &str) -> String {
