@@ -23,7 +23,8 @@ pub(crate) struct Machine {
     /// Device: auto, cpu or cuda
     #[arg(long, default_value = "cpu")]
     pub(crate) device: DeviceChoice,
-    /// Threads for tensor operations and goal search [default: all cores]
+    /// Threads for tensor operations and goal search [default: all cores; 1 for a forecast, whose
+    /// tensors are too small to share]
     #[arg(long, value_parser = at_least_one)]
     threads: Option<usize>,
 }
@@ -32,6 +33,11 @@ impl Machine {
     /// Opens the device and sets the threads, before anything else touches libtorch.
     pub(crate) fn prepare(&self) -> Result<(), DdlError> {
         ddl::prepare(self.device, self.threads)
+    }
+
+    /// The same for a few small tensors: a second thread would only wait.
+    pub(crate) fn prepare_for_little(&self) -> Result<(), DdlError> {
+        ddl::prepare(self.device, self.threads.or(Some(1)))
     }
 }
 

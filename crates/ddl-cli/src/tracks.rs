@@ -2,7 +2,7 @@
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use ddl::data::{Format, Recording, Window, read_recording};
+use ddl::data::{Format, Recording, TIME_STEP, Window, read_recording};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ pub(crate) struct Tracks {
     /// Raw frames between two rows of a pedestrian [default: the most common difference]
     #[arg(long)]
     frame_step: Option<i64>,
-    /// Only the last frame instead of every frame with 8 observed ones behind it
+    /// Only the last frame of the file, with those who are in it, instead of every frame with 8 observed ones behind it
     #[arg(long)]
     last: bool,
 }
@@ -36,10 +36,32 @@ impl Tracks {
                 recording.frame_step()
             );
         }
+        warn_of_implausible_speed(&windows);
         if self.last {
             windows.drain(..windows.len() - 1);
         }
         Ok(windows)
+    }
+}
+
+/// Faster than anybody walks, in m/s.
+const IMPLAUSIBLE_SPEED: f64 = 4.0;
+
+/// Wrong units or a wrong rate give forecasts that look confident and mean nothing.
+fn warn_of_implausible_speed(windows: &[Window]) {
+    let mut speeds: Vec<f64> = windows
+        .iter()
+        .flat_map(|window| (0..window.len()).map(|i| window.observed(i)))
+        .flat_map(|track| track.windows(2))
+        .map(|step| (step[1][0] - step[0][0]).hypot(step[1][1] - step[0][1]) / TIME_STEP)
+        .collect();
+    speeds.sort_by(f64::total_cmp);
+    let median = speeds.get(speeds.len() / 2).copied().unwrap_or(0.0);
+    if median > IMPLAUSIBLE_SPEED {
+        eprintln!(
+            "warning: half of the steps are faster than {median:.1} m/s; are the positions in metres, \
+             and the rows of a pedestrian 0.4 s apart?"
+        );
     }
 }
 

@@ -100,7 +100,7 @@ fn load_cuda() -> Result<(), String> {
             Err(error) => {
                 return Err(format!(
                     "libtorch_cuda.so cannot be loaded ({error}); put the lib folder of a CUDA \
-                     build of torch 2.11.0 on LD_LIBRARY_PATH, or use --device cpu"
+                     build of torch 2.11.0 on LD_LIBRARY_PATH (docs/libtorch.md), or use --device cpu"
                 ));
             }
         }

@@ -21,11 +21,11 @@ pub fn prepare(device: DeviceChoice, threads: Option<usize>) -> Result<(), DdlEr
     Ok(())
 }
 
-/// "available", or why CUDA is not.
+/// "yes", or "no" and why.
 #[must_use]
 pub fn cuda_status() -> String {
     match ComputeDevice::open(DeviceChoice::Cuda) {
-        Ok(_) => "available".into(),
-        Err(error) => error.to_string(),
+        Ok(_) => "yes".into(),
+        Err(error) => format!("no ({error})"),
     }
 }

@@ -190,10 +190,17 @@ impl RunDirectory {
     pub fn config(&self) -> Result<RunConfig, DdlError> {
         let path = self.config_file();
         if !path.is_file() {
-            return Err(DdlError::run(
-                &self.0,
-                "has no config.json; it is not the directory of a run (`ddl train --out` makes one)",
-            ));
+            let inside = self.0.join("run");
+            let problem = if inside.join("config.json").is_file() {
+                format!(
+                    "has no config.json, but {} has one: name that",
+                    inside.display()
+                )
+            } else {
+                "has no config.json; it is not the directory of a run (`ddl train --out` makes one)"
+                    .to_owned()
+            };
+            return Err(DdlError::run(&self.0, problem));
         }
         let config: RunConfig = read_json(&path)?;
         if config.format != FORMAT {

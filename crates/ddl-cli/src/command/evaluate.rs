@@ -51,7 +51,7 @@ impl Evaluate {
             test_walkers: self.test_walkers,
             commit: self.telling.commit.clone(),
         };
-        if ddl::is_evaluated(&model, &request)? {
+        if ddl::is_evaluated(&model, &request) {
             return self.tell(&Report::load(&model.run().report())?);
         }
         let dataset = dataset(model.config().data.convention, self.data.as_deref())?;

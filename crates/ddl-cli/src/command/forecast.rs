@@ -66,7 +66,7 @@ struct Hypothesis {
 
 impl Forecast {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        self.machine.prepare()?;
+        self.machine.prepare_for_little()?;
         let windows = self.tracks.windows()?;
         let model = Ddl::load(&self.model, self.machine.device)?;
         let forecasts = model.forecast_all(&windows)?;
