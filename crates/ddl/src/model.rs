@@ -21,10 +21,9 @@ const NOISE_HYPOTHESES: usize = 20;
 /// # Examples
 /// ```no_run
 /// use ddl::{Ddl, DeviceChoice, Forecaster as _};
-/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # fn example(window: &ddl::data::Window) -> Result<(), Box<dyn std::error::Error>> {
 /// let model = Ddl::load("runs/eth".as_ref(), DeviceChoice::Cpu)?;
-/// # let window: ddl::data::Window = unimplemented!();
-/// let forecast = model.forecast(&window)?;
+/// let forecast = model.forecast(window)?;
 /// let likeliest = forecast.hypothesis(0, forecast.most_likely(0)); // 12 positions, metres
 /// # Ok(()) }
 /// ```
