@@ -73,21 +73,21 @@ impl StarNetwork {
         // The observed frames differ between hypotheses only through the goal they are shifted by:
         // `relative` has one batch entry a distinct reference.
         let mut memory = GraphMemory::default();
-        let mut token = None;
-        for t in 0..=last {
+        let mut observe = |t: i64| {
             let relative = observed.get(t) - &reference;
             let mask = batch.neighbour_mask.narrow(0, t, 1);
-            token = Some(self.step(
+            self.step(
                 &mut memory,
                 &relative,
                 &spatial.narrow(0, t, 1),
                 &mask,
                 mode,
-            ));
-        }
-        let Some(mut token) = token else {
-            unreachable!("OBSERVED is at least one frame")
+            )
         };
+        let mut token = observe(0);
+        for t in 1..=last {
+            token = observe(t);
+        }
         if token.size()[0] < hypotheses {
             token = token.expand([hypotheses, -1, -1], false);
             memory = memory.expand_batch(hypotheses);
