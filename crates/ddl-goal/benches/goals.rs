@@ -63,7 +63,7 @@ fn kmeans(criterion: &mut Criterion) {
     let mut next = numbers(4);
     let points: Vec<[f64; 2]> = (0..100).map(|_| [8.0 * next(), 3.0 * next()]).collect();
     criterion.bench_function("k-means, 100 points, 20 clusters, 10 restarts", |b| {
-        b.iter(|| KMeans::new(20).fit(black_box(&points), 1, 0));
+        b.iter(|| KMeans::new(20).fit(black_box(&points), 1));
     });
 }
 

@@ -24,6 +24,11 @@ pub enum ParamsError {
         /// The value that was given.
         gamma: f64,
     },
+    /// The published query, which reads the future, in a frame it was not published with.
+    #[error(
+        "query is published-future and frame is heading: the query that reads the future belongs to frame world"
+    )]
+    FutureInHeadingFrame,
 }
 
 /// A track that cannot be used.

@@ -1,8 +1,11 @@
-//! The goal estimator: retrieve similar walkers, cluster where they ended.
+//! The goal estimator: retrieve similar walkers, and place goals among where they ended.
 
 use rayon::prelude::*;
 
+use crate::analogues::Analogues;
 use crate::error::GoalError;
+use crate::expert::Expert;
+use crate::frame::RetrievalFrame;
 use crate::goal_set::GoalSet;
 use crate::kmeans::KMeans;
 use crate::library::ExpertLibrary;
@@ -10,6 +13,20 @@ use crate::params::ValidGoalEstimatorParams;
 use crate::retrieve::Retriever;
 
 /// Estimates where walkers are heading from how similar walkers of a library went on.
+///
+/// In [`RetrievalFrame::Heading`], the default, every walker is described in its [`crate::HeadingFrame`]: by its
+/// velocities, divided by its pace (mean speed + 0.25 m/s), and by how its end deviates from repeating its last step.
+///
+/// 1. The N tracks of the library, or mirror images of tracks, with the least squared difference of the divided
+///    velocities are the experts. A step counts half as much as the one after it.
+/// 2. An expert at distance d has the weight exp(−(d − `d_1`) / (0.4 `d_N`)), with `d_1` the least and `d_N` the largest
+///    distance, normalised to sum to 1.
+/// 3. K goals are chosen among the experts' deviations such that the weighted mean distance of the nearest goal is small:
+///    cells are cut in two, the costliest first, and three steps of Lloyd's iteration follow. Nothing is random.
+/// 4. Each goal is carried over to the walker: where repeating the last step leads, plus the deviation. Its weight is
+///     the sum of the weights of the experts nearest to it.
+///
+/// In [`RetrievalFrame::World`], the published estimator:
 ///
 /// 1. The observed velocities (m/s, forward differences) are compared with those of every track of the library in the
 ///    normalised soft-DTW distance, and the N nearest are the experts (equations 4 and 5 of the paper).
@@ -26,31 +43,42 @@ use crate::retrieve::Retriever;
 pub struct GoalEstimator {
     params: ValidGoalEstimatorParams,
     library: ExpertLibrary,
-    retriever: Retriever,
-    kmeans: KMeans,
+    method: Method,
+}
+
+/// What the frame of the retrieval calls for.
+#[derive(Clone, Debug)]
+enum Method {
+    World(Retriever, KMeans),
+    Heading(Analogues),
 }
 
 impl GoalEstimator {
     /// Prepares an estimator.
     ///
     /// # Errors
-    /// [`GoalError::TooFewTracks`] when the library is smaller than the number of experts; errors of a library whose
-    /// velocities leave the range of `f64`.
+    /// [`GoalError::TooFewTracks`] when the library is smaller than the number of experts and the frame is
+    /// [`RetrievalFrame::World`]; errors of a library whose velocities leave the range of `f64`.
     pub fn new(
         params: ValidGoalEstimatorParams,
         library: ExpertLibrary,
     ) -> Result<Self, GoalError> {
-        if library.len() < params.experts() {
-            let (tracks, experts) = (library.len(), params.experts());
-            return Err(GoalError::TooFewTracks { tracks, experts });
-        }
-        let retriever = Retriever::new(&library, params.gamma(), params.query())?;
-        let kmeans = KMeans::new(params.clusters()).restarts(params.restarts());
+        let method = match params.frame() {
+            RetrievalFrame::Heading => Method::Heading(Analogues::new(&library)?),
+            RetrievalFrame::World => {
+                if library.len() < params.experts() {
+                    let (tracks, experts) = (library.len(), params.experts());
+                    return Err(GoalError::TooFewTracks { tracks, experts });
+                }
+                let retriever = Retriever::new(&library, params.gamma(), params.query())?;
+                let kmeans = KMeans::new(params.clusters()).restarts(params.restarts());
+                Method::World(retriever, kmeans)
+            }
+        };
         Ok(Self {
             params,
             library,
-            retriever,
-            kmeans,
+            method,
         })
     }
 
@@ -73,18 +101,24 @@ impl GoalEstimator {
     /// # Errors
     /// A track that is too short, not finite, or so far out that distances leave the range of `f64`.
     pub fn estimate(&self, track: &[[f64; 2]]) -> Result<GoalSet, GoalError> {
-        let velocities = self.retriever.velocities(track)?;
-        let experts = self
-            .retriever
-            .nearest_to_velocities(&velocities, self.params.experts())?;
-        let ends: Vec<[f64; 2]> = experts
-            .iter()
-            .map(|expert| self.library.end(expert.index))
-            .collect();
-        let clustering = self
-            .kmeans
-            .fit(&ends, self.params.seed(), stream_of(&velocities))?;
-        Ok(GoalSet::new(track[0], &clustering, experts))
+        let (experts, clusters) = (self.params.experts(), self.params.clusters());
+        match &self.method {
+            Method::Heading(analogues) => analogues.goals(track, experts, clusters),
+            Method::World(retriever, kmeans) => {
+                let experts = retriever.nearest(track, experts)?;
+                let ends: Vec<[f64; 2]> = experts
+                    .iter()
+                    .map(|expert| self.library.end(expert.index))
+                    .collect();
+                let clustering = kmeans.fit(&ends, self.params.seed())?;
+                let place = |[x, y]: &[f64; 2]| [track[0][0] + x, track[0][1] + y];
+                let goals = clustering.centres().iter().map(place).collect();
+                let share = |size: usize| size as f64 / ends.len() as f64;
+                let weights = clustering.sizes().into_iter().map(share).collect();
+                let experts = experts.iter().map(Expert::from).collect();
+                Ok(GoalSet::new(goals, weights, experts))
+            }
+        }
     }
 
     /// The goals of many walkers, in parallel over the current `rayon` pool.
@@ -107,15 +141,4 @@ impl GoalEstimator {
             })
             .collect()
     }
-}
-
-/// The stream of random numbers of a query: the FNV-1a hash of what is compared, so that it follows from the query alone.
-fn stream_of(velocities: &[[f64; 2]]) -> u64 {
-    let bytes = velocities
-        .as_flattened()
-        .iter()
-        .flat_map(|value| value.to_le_bytes());
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
 }

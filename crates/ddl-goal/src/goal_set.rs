@@ -1,8 +1,6 @@
 //! The goals estimated for one walker.
 
-use ddl_softdtw::Neighbour;
-
-use crate::kmeans::Clustering;
+use crate::expert::Expert;
 use crate::points::squared_distance;
 
 /// Possible goals of one walker with their weights, most likely first.
@@ -12,34 +10,23 @@ use crate::points::squared_distance;
 pub struct GoalSet {
     goals: Vec<[f64; 2]>,
     weights: Vec<f64>,
-    experts: Vec<Neighbour>,
+    experts: Vec<Expert>,
 }
 
 impl GoalSet {
-    /// Goals at `origin` plus the centres of a clustering of the experts' relative endpoints.
-    pub(crate) fn new(origin: [f64; 2], clustering: &Clustering, experts: Vec<Neighbour>) -> Self {
-        let total = clustering.labels().len() as f64;
-        let mut ranked: Vec<([f64; 2], usize)> = clustering
-            .centres()
-            .iter()
-            .copied()
-            .zip(clustering.sizes())
-            .collect();
-        ranked.sort_by(|(a, a_size), (b, b_size)| {
-            b_size
-                .cmp(a_size)
+    /// Goals with as many weights that sum to 1, in any order.
+    pub(crate) fn new(goals: Vec<[f64; 2]>, weights: Vec<f64>, experts: Vec<Expert>) -> Self {
+        let mut ranked: Vec<([f64; 2], f64)> = goals.into_iter().zip(weights).collect();
+        ranked.sort_by(|(a, a_weight), (b, b_weight)| {
+            b_weight
+                .total_cmp(a_weight)
                 .then(a[0].total_cmp(&b[0]))
                 .then(a[1].total_cmp(&b[1]))
         });
+        let (goals, weights) = ranked.into_iter().unzip();
         Self {
-            goals: ranked
-                .iter()
-                .map(|(c, _)| [origin[0] + c[0], origin[1] + c[1]])
-                .collect(),
-            weights: ranked
-                .iter()
-                .map(|&(_, size)| size as f64 / total)
-                .collect(),
+            goals,
+            weights,
             experts,
         }
     }
@@ -51,7 +38,10 @@ impl GoalSet {
         &self.goals
     }
 
-    /// Share of the experts that ended nearest to each goal; sums to 1.
+    /// Estimated probability of each goal to be the one nearest the true end; sums to 1.
+    ///
+    /// It is the share of the experts whose carried-over end is nearest the goal, each expert counted by its likeness
+    /// ([`crate::RetrievalFrame::Heading`]) or all alike ([`crate::RetrievalFrame::World`]).
     ///
     /// Of repeated goals one has the whole share and the others have 0.
     pub fn weights(&self) -> &[f64] {
@@ -75,7 +65,9 @@ impl GoalSet {
     }
 
     /// The walkers of the library the goals come from, most similar first.
-    pub fn experts(&self) -> &[Neighbour] {
+    ///
+    /// In [`crate::RetrievalFrame::Heading`] the first 100 of them.
+    pub fn experts(&self) -> &[Expert] {
         &self.experts
     }
 }

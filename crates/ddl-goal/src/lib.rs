@@ -1,23 +1,33 @@
 #![doc = include_str!("../README.md")]
 
+mod analogues;
 mod error;
 mod estimator;
+mod expert;
 mod frame;
 mod goal_set;
+mod heading;
 mod kmeans;
 mod library;
 mod lloyd;
+mod motion;
+mod motion_index;
 mod params;
 mod points;
 mod retrieve;
 mod seeding;
+mod span;
+mod split;
 
 pub use ddl_softdtw::Neighbour;
 pub use error::{GoalError, KMeansError, LibraryError, ParamsError, TrackError};
 pub use estimator::GoalEstimator;
-pub use frame::QuerySpan;
+pub use expert::Expert;
+pub use frame::RetrievalFrame;
 pub use goal_set::GoalSet;
+pub use heading::HeadingFrame;
 pub use kmeans::{Clustering, KMeans};
 pub use library::{ExpertLibrary, TRACK_LENGTH};
 pub use params::{GoalEstimatorParams, ValidGoalEstimatorParams};
 pub use retrieve::Retriever;
+pub use span::QuerySpan;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LibraryError, TrackError};
-use crate::frame::check_finite;
+use crate::span::check_finite;
 
 /// Positions of a complete track: 8 observed and 12 to forecast.
 pub const TRACK_LENGTH: usize = 20;

@@ -1,7 +1,7 @@
 //! Points in the plane, equal ones counted together.
 
-/// Distinct points with their multiplicities, sorted.
-#[derive(Debug)]
+/// Points with weights: multiplicities where [`Points::distinct`] made them.
+#[derive(Debug, Default)]
 pub(crate) struct Points {
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
@@ -9,7 +9,7 @@ pub(crate) struct Points {
 }
 
 impl Points {
-    /// The distinct points, and for each point given its place among them.
+    /// The distinct points, sorted, with their multiplicities, and for each point given its place among them.
     pub(crate) fn distinct(points: &[[f64; 2]]) -> (Self, Vec<usize>) {
         // Adding 0 turns −0 into +0: they are one point.
         let clean = |index: usize| points[index].map(|value| value + 0.0);
@@ -18,24 +18,23 @@ impl Points {
             let (a, b) = (clean(a), clean(b));
             a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
         });
-        let mut distinct = Self {
-            x: Vec::new(),
-            y: Vec::new(),
-            weight: Vec::new(),
-        };
+        let mut distinct = Self::default();
         let mut place = vec![0; points.len()];
         for same in
             order.chunk_by(|&a, &b| clean(a).map(f64::to_bits) == clean(b).map(f64::to_bits))
         {
-            let [x, y] = clean(same[0]);
             for &index in same {
                 place[index] = distinct.len();
             }
-            distinct.x.push(x);
-            distinct.y.push(y);
-            distinct.weight.push(same.len() as f64);
+            distinct.push(clean(same[0]), same.len() as f64);
         }
         (distinct, place)
+    }
+
+    pub(crate) fn push(&mut self, [x, y]: [f64; 2], weight: f64) {
+        self.x.push(x);
+        self.y.push(y);
+        self.weight.push(weight);
     }
 
     pub(crate) fn len(&self) -> usize {

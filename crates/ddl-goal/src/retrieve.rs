@@ -1,10 +1,10 @@
 //! Retrieval of the walkers who moved most alike.
 
-use ddl_softdtw::{Cost, Neighbour, SearchError, SearchIndex, SoftDtw};
+use ddl_softdtw::{Cost, Neighbour, SearchIndex, SoftDtw};
 
 use crate::error::{GoalError, LibraryError};
-use crate::frame::{QuerySpan, velocities};
 use crate::library::ExpertLibrary;
+use crate::span::{QuerySpan, velocities};
 
 /// Finds the tracks of a library whose velocities are nearest in the normalised soft-DTW distance.
 ///
@@ -50,19 +50,7 @@ impl Retriever {
     /// # Errors
     /// A track that is too short or not finite.
     pub fn nearest(&self, track: &[[f64; 2]], experts: usize) -> Result<Vec<Neighbour>, GoalError> {
-        Ok(self.nearest_to_velocities(&self.velocities(track)?, experts)?)
-    }
-
-    /// What is compared: the velocities (m/s) of the part of `track` that may be read.
-    pub(crate) fn velocities(&self, track: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, GoalError> {
-        Ok(velocities(track, self.time_step, self.span)?)
-    }
-
-    pub(crate) fn nearest_to_velocities(
-        &self,
-        velocities: &[[f64; 2]],
-        experts: usize,
-    ) -> Result<Vec<Neighbour>, SearchError> {
-        self.index.nearest(velocities, experts)
+        let velocities = velocities(track, self.time_step, self.span)?;
+        Ok(self.index.nearest(&velocities, experts)?)
     }
 }

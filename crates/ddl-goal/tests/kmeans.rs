@@ -45,7 +45,7 @@ fn as_good_as_scikit_learn() {
         // Fit by fit, with the same ten restarts.
         let seeds = set.inertia_of_seeds.len();
         let ours = (0..seeds as u64).map(|seed| {
-            let fitted = KMeans::new(set.clusters).fit(&set.points, seed, 0);
+            let fitted = KMeans::new(set.clusters).fit(&set.points, seed);
             fitted.expect("valid").inertia() / seeds as f64
         });
         let theirs = set.inertia_of_seeds.iter().sum::<f64>() / seeds as f64;
@@ -58,7 +58,7 @@ fn as_good_as_scikit_learn() {
         // The best of all: ten fits of ten restarts there, one of a hundred here.
         let clustering = KMeans::new(set.clusters)
             .restarts(100)
-            .fit(&set.points, 0, 0)
+            .fit(&set.points, 0)
             .unwrap();
         let (found, best) = (clustering.inertia(), set.inertia);
         assert!(found <= best * 1.02, "{}: {found} against {best}", set.name);
@@ -69,7 +69,7 @@ fn as_good_as_scikit_learn() {
 fn fewer_distinct_points_than_clusters_repeat_centres() {
     let mut points = vec![[1.0, 2.0]; 60];
     points.extend([[3.0, 4.0]; 40]);
-    let clustering = KMeans::new(5).fit(&points, 3, 0).unwrap();
+    let clustering = KMeans::new(5).fit(&points, 3).unwrap();
     assert_eq!(
         clustering.centres(),
         [[1.0, 2.0], [3.0, 4.0], [1.0, 2.0], [3.0, 4.0], [1.0, 2.0]]
@@ -77,15 +77,13 @@ fn fewer_distinct_points_than_clusters_repeat_centres() {
     assert_eq!(clustering.sizes(), [60, 40, 0, 0, 0]);
     assert_eq!(clustering.inertia(), 0.0);
     // The two zeros are one point.
-    let zeros = KMeans::new(2)
-        .fit(&[[0.0, -0.0], [-0.0, 0.0]], 0, 0)
-        .unwrap();
+    let zeros = KMeans::new(2).fit(&[[0.0, -0.0], [-0.0, 0.0]], 0).unwrap();
     assert_eq!(zeros.sizes(), [2, 0]);
 }
 
 #[test]
 fn bad_input_is_refused_by_name() {
-    let fit = |kmeans: KMeans, points: &[[f64; 2]]| kmeans.fit(points, 0, 0).unwrap_err();
+    let fit = |kmeans: KMeans, points: &[[f64; 2]]| kmeans.fit(points, 0).unwrap_err();
     let one = [[0.0, 0.0]];
     assert_eq!(fit(KMeans::new(0), &one), KMeansError::NoClusters);
     assert_eq!(
@@ -109,7 +107,7 @@ proptest! {
 
     #[test]
     fn every_point_is_in_its_nearest_cluster(points in points(), clusters in 1..25_usize, seed: u64) {
-        let clustering = KMeans::new(clusters).restarts(2).fit(&points, seed, 0)?;
+        let clustering = KMeans::new(clusters).restarts(2).fit(&points, seed)?;
         prop_assert_eq!(clustering.centres().len(), clusters);
         prop_assert_eq!(clustering.labels().len(), points.len());
         prop_assert_eq!(clustering.sizes().iter().sum::<usize>(), points.len());
@@ -128,7 +126,7 @@ proptest! {
         let mut last = f64::INFINITY;
         for iterations in 0..12 {
             let kmeans = KMeans::new(clusters).restarts(1).tolerance(0.0).max_iterations(iterations);
-            let inertia = kmeans.fit(&points, seed, 0)?.inertia();
+            let inertia = kmeans.fit(&points, seed)?.inertia();
             prop_assert!(inertia <= last * (1.0 + 1e-12) + 1e-12, "{} after {}", inertia, last);
             last = inertia;
         }
@@ -136,7 +134,7 @@ proptest! {
 
     #[test]
     fn converged_centres_are_means(points in points(), clusters in 1..12_usize, seed: u64) {
-        let clustering = KMeans::new(clusters).restarts(1).tolerance(0.0).fit(&points, seed, 0)?;
+        let clustering = KMeans::new(clusters).restarts(1).tolerance(0.0).fit(&points, seed)?;
         let sizes = clustering.sizes();
         for (k, centre) in clustering.centres().iter().enumerate().filter(|&(k, _)| sizes[k] > 0) {
             for d in 0..2 {
@@ -157,9 +155,9 @@ proptest! {
         seed: u64,
     ) {
         let kmeans = KMeans::new(clusters).restarts(2);
-        let one = kmeans.fit(&points, seed, 0)?;
+        let one = kmeans.fit(&points, seed)?;
         let reordered: Vec<[f64; 2]> = shuffled.iter().map(|&i| points[i]).collect();
-        let other = kmeans.fit(&reordered, seed, 0)?;
+        let other = kmeans.fit(&reordered, seed)?;
         prop_assert_eq!(one.centres(), other.centres());
         prop_assert_eq!(one.inertia().to_bits(), other.inertia().to_bits());
         for (place, &original) in shuffled.iter().enumerate() {
@@ -169,7 +167,7 @@ proptest! {
 
     #[test]
     fn more_restarts_are_never_worse(points in points(), clusters in 2..20_usize, seed: u64) {
-        let fit = |restarts| KMeans::new(clusters).restarts(restarts).fit(&points, seed, 0);
+        let fit = |restarts| KMeans::new(clusters).restarts(restarts).fit(&points, seed);
         prop_assert!(fit(8)?.inertia() <= fit(2)?.inertia());
     }
 }

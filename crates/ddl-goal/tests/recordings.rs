@@ -11,7 +11,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, Neighbour};
+use ddl_goal::{Expert, ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet};
 use serde::Deserialize;
 
 const RECORDINGS: [&str; 8] = [
@@ -183,7 +183,7 @@ fn expert_distances_are_the_published_ones() {
             let goals = estimator.estimate(track).unwrap();
             for (&rank, expected) in &walker.distance_rank {
                 // The published distances are formed in f32 from values near 10 m²/s².
-                let agrees = |expert: &Neighbour| (expert.distance - expected).abs() < 3e-6;
+                let agrees = |expert: &Expert| (expert.distance - expected).abs() < 3e-6;
                 let ranks = &goals.experts()[rank - 1..rank + FURTHER];
                 assert!(
                     ranks.iter().any(agrees),

@@ -1,0 +1,109 @@
+//! Goals from analogues: walkers who moved alike, each seen from its own heading, and how they went on.
+
+use crate::error::{GoalError, LibraryError, TrackError};
+use crate::expert::Expert;
+use crate::goal_set::GoalSet;
+use crate::library::{ExpertLibrary, TRACK_LENGTH};
+use crate::lloyd::Run;
+use crate::motion::Motion;
+use crate::motion_index::{Alike, MotionIndex};
+use crate::points::Points;
+use crate::split::first_centres;
+
+/// Temperature of the weights, in distances of the farthest analogue.
+const TEMPERATURE: f64 = 0.4;
+/// Steps of Lloyd's iteration. More of them fit the goals to these analogues, and not to the walker.
+const ITERATIONS: usize = 3;
+/// Analogues that a goal set keeps.
+const KEPT: usize = 100;
+/// Largest deviation (m) whose square, summed over many walkers, is still finite.
+const LARGEST: f64 = 1e150;
+
+/// A library prepared for [`crate::RetrievalFrame::Heading`].
+#[derive(Clone, Debug)]
+pub(crate) struct Analogues {
+    index: MotionIndex,
+    /// How each track deviates from going straight on, in its own frame (m).
+    deviations: Vec<[f64; 2]>,
+    time_step: f64,
+}
+
+impl Analogues {
+    pub(crate) fn new(library: &ExpertLibrary) -> Result<Self, LibraryError> {
+        let time_step = library.time_step();
+        let prepared = |track: &Vec<[f64; 2]>| {
+            let motion = Motion::new(track, time_step)?;
+            let deviation = motion.deviation(track[TRACK_LENGTH - 1]);
+            let usable = deviation.iter().all(|d| d.abs() < LARGEST); // false for NaN
+            let index = TRACK_LENGTH - 2;
+            usable
+                .then_some((motion.components, deviation))
+                .ok_or(TrackError::VelocityOverflow { index })
+        };
+        let tracks = library.tracks().iter().enumerate();
+        let (components, deviations): (Vec<_>, Vec<_>) = tracks
+            .map(|(index, track)| {
+                prepared(track).map_err(|source| LibraryError::Track { index, source })
+            })
+            .collect::<Result<Vec<_>, _>>()?
+            .into_iter()
+            .unzip();
+        Ok(Self {
+            index: MotionIndex::new(&components),
+            deviations,
+            time_step,
+        })
+    }
+
+    /// `clusters` goals of a walker, from its `experts` nearest analogues.
+    pub(crate) fn goals(
+        &self,
+        track: &[[f64; 2]],
+        experts: usize,
+        clusters: usize,
+    ) -> Result<GoalSet, GoalError> {
+        let motion = Motion::new(track, self.time_step)?;
+        let found = self.index.nearest(&motion.components, experts);
+        let points = self.weighted_deviations(&found);
+        let mut centres = first_centres(&points, clusters);
+        for again in 0..clusters - centres.len() {
+            centres.push(centres[again]);
+        }
+        let mut run = Run::from_centres(&points, centres);
+        run.iterate(&points, ITERATIONS, 0.0);
+        let mut weights = vec![0.0; clusters];
+        for (&label, weight) in run.labels.iter().zip(&points.weight) {
+            weights[label as usize] += weight;
+        }
+        let goals: Vec<_> = run.centres.iter().map(|&d| motion.end(d)).collect();
+        if !goals.as_flattened().iter().all(|value| value.is_finite()) {
+            let index = track.len().min(8) - 2;
+            return Err(TrackError::VelocityOverflow { index }.into());
+        }
+        let experts = found.iter().take(KEPT).map(Expert::from).collect();
+        Ok(GoalSet::new(goals, weights, experts))
+    }
+
+    /// Deviations of the analogues, weighted by likeness; the weights sum to 1.
+    fn weighted_deviations(&self, found: &[Alike]) -> Points {
+        let distance = |alike: &Alike| f64::from(alike.distance);
+        let nearest = found.first().map_or(0.0, distance);
+        let temperature = TEMPERATURE * found.last().map_or(0.0, distance);
+        let likeness = |alike: &Alike| {
+            let further = distance(alike) - nearest;
+            if further > 0.0 {
+                (-further / temperature).exp()
+            } else {
+                1.0
+            }
+        };
+        let total: f64 = found.iter().map(likeness).sum();
+        let mut points = Points::default();
+        for alike in found {
+            let [ahead, left] = self.deviations[alike.index];
+            let left = if alike.mirrored { -left } else { left };
+            points.push([ahead, left], likeness(alike) / total);
+        }
+        points
+    }
+}

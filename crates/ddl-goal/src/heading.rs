@@ -1,0 +1,114 @@
+//! A walker's own coordinates: where it is and which way it is heading.
+
+use crate::error::TrackError;
+use crate::span::check_finite;
+
+/// Length of the last step (m) below which it says little about the heading.
+const SHORT_STEP: f64 = 0.2;
+/// Length (m) below which a motion is rounding and has no direction.
+const NEGLIGIBLE: f64 = 1e-6;
+
+/// Coordinates of one walker: the origin at its last observed position, the first axis along its heading, the second
+/// axis to the left of it.
+///
+/// With s the last step and l the way from the first to the last observed position, the heading is the direction of
+///
+/// h = s + max(0, 1 − |s| / 0.2 m) l.
+///
+/// So a walker heads where its last step led, and the shorter that step, the more the whole observation counts. Whoever
+/// has |h| below 1 µm stands, and keeps the axes of the world. The frame depends continuously on the positions except
+/// at h = 0, where no continuous choice exists.
+///
+/// Turning or moving the scene turns or moves the frame with it: coordinates in it stay the same, but for those who
+/// stand. Mirroring the scene changes the sign of the second coordinate.
+///
+/// # Numerics
+/// [`HeadingFrame::to_world`] undoes [`HeadingFrame::to_frame`] up to rounding: about 1e-16 of the largest coordinate.
+///
+/// # Examples
+/// ```
+/// use ddl_goal::HeadingFrame;
+/// let frame = HeadingFrame::new(&[[2.0, 1.0], [2.0, 1.5], [2.0, 2.0]])?;
+/// assert_eq!(frame.to_frame([2.0, 5.0]), [3.0, 0.0]); // 3 m ahead
+/// assert_eq!(frame.to_frame([1.0, 2.0]), [0.0, 1.0]); // 1 m to the left
+/// assert_eq!(frame.to_world([3.0, 0.0]), [2.0, 5.0]);
+/// # Ok::<(), ddl_goal::TrackError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeadingFrame {
+    origin: [f64; 2],
+    heading: [f64; 2],
+}
+
+impl HeadingFrame {
+    /// The frame of a walker.
+    ///
+    /// # Shapes
+    /// `observed`: at least 2 positions (m), all of them read: hand over no position of the future.
+    ///
+    /// # Errors
+    /// Fewer than 2 positions, one that is not finite, or positions so far apart that their difference is not finite.
+    pub fn new(observed: &[[f64; 2]]) -> Result<Self, TrackError> {
+        let [first, before, last] = match *observed {
+            [first, last] => [first, first, last],
+            [first, .., before, last] => [first, before, last],
+            _ => {
+                let found = observed.len();
+                return Err(TrackError::TooShort { found, needed: 2 });
+            }
+        };
+        check_finite(observed)?;
+        let way = |from: [f64; 2]| [last[0] - from[0], last[1] - from[1]];
+        let (step, whole) = (way(before), way(first));
+        let share = (1.0 - step[0].hypot(step[1]) / SHORT_STEP).max(0.0);
+        let toward = [step[0] + share * whole[0], step[1] + share * whole[1]];
+        let length = toward[0].hypot(toward[1]);
+        if !length.is_finite() {
+            let index = observed.len() - 2;
+            return Err(TrackError::VelocityOverflow { index });
+        }
+        let heading = if length < NEGLIGIBLE {
+            [1.0, 0.0]
+        } else {
+            toward.map(|component| component / length)
+        };
+        Ok(Self {
+            origin: last,
+            heading,
+        })
+    }
+
+    /// The last observed position (m): the origin.
+    pub fn origin(&self) -> [f64; 2] {
+        self.origin
+    }
+
+    /// Unit vector of the heading in the coordinates of the world: the first axis.
+    pub fn heading(&self) -> [f64; 2] {
+        self.heading
+    }
+
+    /// A position of the world (m) in this frame: metres ahead, metres to the left.
+    pub fn to_frame(&self, point: [f64; 2]) -> [f64; 2] {
+        self.turn_to_frame([point[0] - self.origin[0], point[1] - self.origin[1]])
+    }
+
+    /// A position in this frame (m) in the coordinates of the world.
+    pub fn to_world(&self, point: [f64; 2]) -> [f64; 2] {
+        let [cos, sin] = self.heading;
+        let [ahead, left] = point;
+        [
+            self.origin[0] + cos * ahead - sin * left,
+            self.origin[1] + sin * ahead + cos * left,
+        ]
+    }
+
+    /// A displacement or velocity of the world in the axes of this frame.
+    pub fn turn_to_frame(&self, vector: [f64; 2]) -> [f64; 2] {
+        let [cos, sin] = self.heading;
+        [
+            cos * vector[0] + sin * vector[1],
+            cos * vector[1] - sin * vector[0],
+        ]
+    }
+}

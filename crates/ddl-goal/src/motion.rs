@@ -1,0 +1,69 @@
+//! How a walker moved, in its own frame and compared with its own pace.
+
+use crate::error::TrackError;
+use crate::heading::HeadingFrame;
+use crate::library::TRACK_LENGTH;
+use crate::span::{QuerySpan, velocities};
+
+/// Components that are compared: 7 velocities ahead, then 7 to the left.
+pub(crate) const COMPONENTS: usize = 2 * STEPS;
+/// Velocities of an observation.
+const STEPS: usize = 7;
+/// Weight of a squared difference against that of the next later step.
+const FADING: f64 = 0.5;
+/// Pace of somebody who stands (m/s): keeps the noise of standing walkers from counting as motion.
+const STANDING_PACE: f64 = 0.25;
+
+/// The observed motion of one walker.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motion {
+    /// The walker's own coordinates.
+    pub(crate) frame: HeadingFrame,
+    /// Velocities in the frame, divided by the pace; earlier ones are scaled down.
+    pub(crate) components: [f32; COMPONENTS],
+    /// Where the walker would end (m, in the frame) if it repeated its last step.
+    pub(crate) straight_on: [f64; 2],
+}
+
+impl Motion {
+    /// The motion in the first 8 positions (m) of `track`, `time_step` seconds apart.
+    pub(crate) fn new(track: &[[f64; 2]], time_step: f64) -> Result<Self, TrackError> {
+        let span = QuerySpan::Observed;
+        let velocities = velocities(track, time_step, span)?;
+        let frame = HeadingFrame::new(&track[..span.positions()])?;
+        let speeds = velocities.iter().map(|v| v[0].hypot(v[1]));
+        let pace = STANDING_PACE + speeds.sum::<f64>() / STEPS as f64;
+        if !pace.is_finite() {
+            return Err(TrackError::VelocityOverflow { index: 0 });
+        }
+        let mut components = [0.0; COMPONENTS];
+        let mut scale = 1.0;
+        for step in (0..STEPS).rev() {
+            let [ahead, left] = frame.turn_to_frame(velocities[step]);
+            components[step] = (scale * (ahead / pace)) as f32;
+            components[STEPS + step] = (scale * (left / pace)) as f32;
+            scale *= FADING.sqrt();
+        }
+        let seconds = (TRACK_LENGTH - span.positions()) as f64 * time_step;
+        let straight_on = frame
+            .turn_to_frame(velocities[STEPS - 1])
+            .map(|velocity| seconds * velocity);
+        Ok(Self {
+            frame,
+            components,
+            straight_on,
+        })
+    }
+
+    /// How far `end` (m) is from the end straight on, ahead and to the left (m).
+    pub(crate) fn deviation(&self, end: [f64; 2]) -> [f64; 2] {
+        let end = self.frame.to_frame(end);
+        [0, 1].map(|d| end[d] - self.straight_on[d])
+    }
+
+    /// The end (m) with this deviation (m): the inverse of [`Motion::deviation`].
+    pub(crate) fn end(&self, deviation: [f64; 2]) -> [f64; 2] {
+        let in_frame = [0, 1].map(|d| self.straight_on[d] + deviation[d]);
+        self.frame.to_world(in_frame)
+    }
+}

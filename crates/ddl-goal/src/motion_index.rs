@@ -1,0 +1,118 @@
+//! The tracks of a library that moved most like a walker, their mirror images among them.
+
+use crate::motion::COMPONENTS;
+
+/// Tracks compared at once: the loop over them becomes vector instructions.
+const LANES: usize = 16;
+
+/// Sixteen tracks, one a lane.
+type Block = [[f32; LANES]; COMPONENTS];
+
+/// A track of the library or its mirror image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Alike {
+    pub(crate) index: usize,
+    pub(crate) mirrored: bool,
+    /// Sum of the squared differences of the components.
+    pub(crate) distance: f32,
+}
+
+/// Motions prepared for an exhaustive search.
+#[derive(Clone, Debug)]
+pub(crate) struct MotionIndex {
+    blocks: Vec<Block>,
+    len: usize,
+}
+
+impl MotionIndex {
+    pub(crate) fn new(motions: &[[f32; COMPONENTS]]) -> Self {
+        let block = |motions: &[[f32; COMPONENTS]]| {
+            // Lanes without a track are infinitely far from everybody.
+            let mut block = [[f32::INFINITY; LANES]; COMPONENTS];
+            for (lane, motion) in motions.iter().enumerate() {
+                for (components, &component) in block.iter_mut().zip(motion) {
+                    components[lane] = component;
+                }
+            }
+            block
+        };
+        Self {
+            blocks: motions.chunks(LANES).map(block).collect(),
+            len: motions.len(),
+        }
+    }
+
+    /// The `wanted` nearest of the tracks and their mirror images (all where there are fewer), nearest first, ties by
+    /// index, a track before its image.
+    pub(crate) fn nearest(&self, query: &[f32; COMPONENTS], wanted: usize) -> Vec<Alike> {
+        let wanted = wanted.min(2 * self.len);
+        if wanted == 0 {
+            return Vec::new();
+        }
+        let mut kept: Vec<u64> = Vec::with_capacity(2 * wanted + 2 * LANES);
+        let mut bound = f32::INFINITY;
+        for (first, block) in (0..).step_by(LANES).zip(&self.blocks) {
+            let both = distances(query, block);
+            for (mirrored, distances) in both.iter().enumerate() {
+                // Without an early exit this is one vector comparison.
+                let near = distances.iter().fold(false, |any, &d| any | (d < bound));
+                if near {
+                    for (lane, &distance) in distances.iter().enumerate() {
+                        if distance < bound {
+                            kept.push(key(distance, 2 * (first + lane) + mirrored));
+                        }
+                    }
+                }
+            }
+            if kept.len() >= 2 * wanted {
+                let (_, &mut last, _) = kept.select_nth_unstable(wanted - 1);
+                kept.truncate(wanted);
+                bound = distance_of(last);
+            }
+        }
+        kept.sort_unstable();
+        kept.truncate(wanted);
+        kept.iter().map(|&key| alike(key)).collect()
+    }
+}
+
+/// Squared distances of a query to sixteen tracks, and to their mirror images.
+fn distances(query: &[f32; COMPONENTS], block: &Block) -> [[f32; LANES]; 2] {
+    let (ahead, left) = query.split_at(COMPONENTS / 2);
+    let (blocks_ahead, blocks_left) = block.split_at(COMPONENTS / 2);
+    let mut own = [0.0; LANES];
+    for (&query, track) in ahead.iter().zip(blocks_ahead) {
+        for lane in 0..LANES {
+            let difference = query - track[lane];
+            own[lane] += difference * difference;
+        }
+    }
+    let mut image = own;
+    for (&query, track) in left.iter().zip(blocks_left) {
+        for lane in 0..LANES {
+            let (difference, sum) = (query - track[lane], query + track[lane]);
+            own[lane] += difference * difference;
+            image[lane] += sum * sum;
+        }
+    }
+    [own, image]
+}
+
+/// Distance and number in one integer that sorts by distance, then number: bits of floats that are not negative are
+/// ordered like the floats. 2³¹ tracks would fill 700 GB.
+fn key(distance: f32, number: usize) -> u64 {
+    (u64::from(distance.to_bits()) << 32) | number as u64
+}
+
+fn distance_of(key: u64) -> f32 {
+    f32::from_bits((key >> 32) as u32)
+}
+
+fn alike(key: u64) -> Alike {
+    let number = (key & 0xffff_ffff) as usize;
+    Alike {
+        index: number / 2,
+        mirrored: number % 2 == 1,
+        distance: distance_of(key),
+    }
+}

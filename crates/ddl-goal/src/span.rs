@@ -1,0 +1,127 @@
+//! How much of a track a retrieval may look at, and the velocities in it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::TrackError;
+
+/// How much of a track a retrieval may look at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum QuerySpan {
+    /// The 7 forward differences of the 8 observed positions: nothing of the future. What every honest protocol uses.
+    #[default]
+    Observed,
+    /// 8 forward differences, the last of which reads position 9, the first one to be forecast: what the published code
+    /// does. Only to reproduce published numbers.
+    PublishedFuture,
+}
+
+impl QuerySpan {
+    /// Number of velocities that are compared: 7 or 8.
+    pub fn velocities(self) -> usize {
+        match self {
+            Self::Observed => 7,
+            Self::PublishedFuture => 8,
+        }
+    }
+
+    /// Number of positions that are read, from the first: 8 or 9.
+    pub fn positions(self) -> usize {
+        self.velocities() + 1
+    }
+
+    /// Whether the first position to be forecast is read.
+    pub fn reads_future(self) -> bool {
+        self == Self::PublishedFuture
+    }
+}
+
+/// Forward differences (m/s) of the positions that `span` may read; later positions are not looked at.
+///
+/// # Shapes
+/// `track`: at least [`QuerySpan::positions`] positions (m), `time_step` (s) apart.
+pub(crate) fn velocities(
+    track: &[[f64; 2]],
+    time_step: f64,
+    span: QuerySpan,
+) -> Result<Vec<[f64; 2]>, TrackError> {
+    let needed = span.positions();
+    let read = track.get(..needed).ok_or(TrackError::TooShort {
+        found: track.len(),
+        needed,
+    })?;
+    check_finite(read)?;
+    read.windows(2)
+        .enumerate()
+        .map(|(index, pair)| {
+            let velocity = [0, 1].map(|d| (pair[1][d] - pair[0][d]) / time_step);
+            let finite = velocity.iter().all(|component| component.is_finite());
+            finite
+                .then_some(velocity)
+                .ok_or(TrackError::VelocityOverflow { index })
+        })
+        .collect()
+}
+
+/// The first position that is not finite, as an error.
+pub(crate) fn check_finite(positions: &[[f64; 2]]) -> Result<(), TrackError> {
+    match positions
+        .iter()
+        .position(|p| !(p[0].is_finite() && p[1].is_finite()))
+    {
+        Some(index) => Err(TrackError::NonFinite {
+            index,
+            x: positions[index][0],
+            y: positions[index][1],
+        }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
+
+    use super::{QuerySpan, velocities};
+    use crate::error::TrackError;
+
+    fn walk(positions: usize) -> Vec<[f64; 2]> {
+        (0..positions)
+            .map(|i| [0.5 * i as f64, -(i as f64).powi(2)])
+            .collect()
+    }
+
+    #[test]
+    fn velocities_are_forward_differences_of_what_the_span_reads() {
+        let observed = velocities(&walk(8), 0.5, QuerySpan::Observed).unwrap();
+        assert_eq!(observed.len(), 7);
+        assert_eq!(observed[0], [1.0, -2.0]);
+        assert_eq!(observed[6], [1.0, -26.0]);
+        let published = velocities(&walk(9), 0.5, QuerySpan::PublishedFuture).unwrap();
+        assert_eq!(published[..7], observed[..]);
+        assert_eq!(published[7], [1.0, -30.0]);
+    }
+
+    #[test]
+    fn positions_beyond_the_span_are_not_even_checked() {
+        let mut track = walk(20);
+        track[8] = [f64::NAN, 0.0];
+        assert!(velocities(&track, 0.4, QuerySpan::Observed).is_ok());
+        assert!(matches!(
+            velocities(&track, 0.4, QuerySpan::PublishedFuture),
+            Err(TrackError::NonFinite { index: 8, .. })
+        ));
+        assert_eq!(
+            velocities(&walk(8), 0.4, QuerySpan::PublishedFuture),
+            Err(TrackError::TooShort {
+                found: 8,
+                needed: 9
+            })
+        );
+        let far = [[-1e308, 0.0], [1e308, 0.0]].repeat(4);
+        assert_eq!(
+            velocities(&far, 0.4, QuerySpan::Observed),
+            Err(TrackError::VelocityOverflow { index: 0 })
+        );
+    }
+}
