@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, KMeans};
+use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, KMeans, QuerySpan};
 
 /// Numbers in [0, 1).
 fn numbers(seed: u64) -> impl FnMut() -> f64 {
@@ -43,13 +43,20 @@ fn tracks(count: usize, seed: u64) -> Vec<Vec<[f64; 2]>> {
 fn estimate(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("goals of one walker");
     group.sample_size(20);
-    for library in [1_000, 10_000, 37_000] {
-        let params = GoalEstimatorParams::default().check().expect("valid");
+    let published = GoalEstimatorParams::published().query(QuerySpan::Observed);
+    let default = GoalEstimatorParams::default;
+    for (frame, library, params) in [
+        ("heading", 1_000, default()),
+        ("heading", 10_000, default()),
+        ("heading", 37_000, default()),
+        ("world", 37_000, published),
+    ] {
+        let params = params.check().expect("valid");
         let library_of = ExpertLibrary::new(tracks(library, 2), 0.4).expect("valid");
         let estimator = GoalEstimator::new(params, library_of).expect("enough tracks");
         let queries = tracks(16, 3);
         let mut next = queries.iter().cycle();
-        group.bench_function(BenchmarkId::from_parameter(library), |b| {
+        group.bench_function(BenchmarkId::new(frame, library), |b| {
             b.iter(|| {
                 next.next()
                     .map(|track| estimator.estimate(black_box(track)))

@@ -12,6 +12,8 @@ use crate::split::first_centres;
 
 /// Temperature of the weights, in distances of the farthest analogue.
 const TEMPERATURE: f64 = 0.4;
+/// Squared difference of motions below which it is rounding.
+const ROUNDING: f64 = 1e-9;
 /// Steps of Lloyd's iteration. More of them fit the goals to these analogues, and not to the walker.
 const ITERATIONS: usize = 3;
 /// Analogues that a goal set keeps.
@@ -88,15 +90,8 @@ impl Analogues {
     fn weighted_deviations(&self, found: &[Alike]) -> Points {
         let distance = |alike: &Alike| f64::from(alike.distance);
         let nearest = found.first().map_or(0.0, distance);
-        let temperature = TEMPERATURE * found.last().map_or(0.0, distance);
-        let likeness = |alike: &Alike| {
-            let further = distance(alike) - nearest;
-            if further > 0.0 {
-                (-further / temperature).exp()
-            } else {
-                1.0
-            }
-        };
+        let temperature = TEMPERATURE * found.last().map_or(0.0, distance).max(ROUNDING);
+        let likeness = |alike: &Alike| ((nearest - distance(alike)) / temperature).exp();
         let total: f64 = found.iter().map(likeness).sum();
         let mut points = Points::default();
         for alike in found {

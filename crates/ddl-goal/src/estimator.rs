@@ -24,7 +24,7 @@ use crate::retrieve::Retriever;
 /// 3. K goals are chosen among the experts' deviations such that the weighted mean distance of the nearest goal is small:
 ///    cells are cut in two, the costliest first, and three steps of Lloyd's iteration follow. Nothing is random.
 /// 4. Each goal is carried over to the walker: where repeating the last step leads, plus the deviation. Its weight is
-///     the sum of the weights of the experts nearest to it.
+///    the sum of the weights of the experts nearest to it.
 ///
 /// In [`RetrievalFrame::World`], the published estimator:
 ///

@@ -54,9 +54,9 @@ impl MotionIndex {
         for (first, block) in (0..).step_by(LANES).zip(&self.blocks) {
             let both = distances(query, block);
             for (mirrored, distances) in both.iter().enumerate() {
-                // Without an early exit this is one vector comparison.
-                let near = distances.iter().fold(false, |any, &d| any | (d < bound));
-                if near {
+                // Without an early exit the minimum is a few vector instructions.
+                let least = |least, &d| if d < least { d } else { least };
+                if distances.iter().fold(f32::INFINITY, least) < bound {
                     for (lane, &distance) in distances.iter().enumerate() {
                         if distance < bound {
                             kept.push(key(distance, 2 * (first + lane) + mirrored));
@@ -114,5 +114,52 @@ fn alike(key: u64) -> Alike {
         index: number / 2,
         mirrored: number % 2 == 1,
         distance: distance_of(key),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Alike, COMPONENTS, MotionIndex};
+    use proptest::prelude::*;
+
+    fn motion() -> impl Strategy<Value = [f32; COMPONENTS]> {
+        // Coarse numbers now and then: equal motions and ties.
+        let coarse = prop::array::uniform14((-2..3_i32).prop_map(|v| v as f32 / 2.0));
+        prop_oneof![coarse, prop::array::uniform14(-3.0..3.0_f32)]
+    }
+
+    /// Every track and every image compared, one after the other, and sorted.
+    fn all(motions: &[[f32; COMPONENTS]], query: &[f32; COMPONENTS]) -> Vec<Alike> {
+        let mut all = Vec::new();
+        for (index, motion) in motions.iter().enumerate() {
+            for mirrored in [false, true] {
+                let sign = if mirrored { -1.0 } else { 1.0 };
+                let squares = query.iter().zip(motion).enumerate();
+                let distance = squares.fold(0.0_f32, |sum, (i, (q, m))| {
+                    let m = if i < COMPONENTS / 2 { *m } else { sign * m };
+                    sum + (q - m) * (q - m)
+                });
+                all.push(Alike {
+                    index,
+                    mirrored,
+                    distance,
+                });
+            }
+        }
+        all.sort_by(|a, b| a.distance.total_cmp(&b.distance)); // stable: ties stay in order
+        all
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn the_nearest_are_those_of_a_full_sort(
+            motions in prop::collection::vec(motion(), 1..200), query in motion(), wanted in 0..450_usize,
+        ) {
+            let mut expected = all(&motions, &query);
+            expected.truncate(wanted);
+            prop_assert_eq!(MotionIndex::new(&motions).nearest(&query, wanted), expected);
+        }
     }
 }

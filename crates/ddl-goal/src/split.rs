@@ -72,3 +72,85 @@ impl Cell {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::first_centres;
+    use crate::points::{Points, squared_distance};
+    use proptest::prelude::*;
+
+    fn weighted(points: &[([f64; 2], f64)]) -> Points {
+        let mut all = Points::default();
+        for &(point, weight) in points {
+            all.push(point, weight);
+        }
+        all
+    }
+
+    /// Weighted sum of the distances to the nearest centre.
+    fn cost(points: &Points, centres: &[[f64; 2]]) -> f64 {
+        let nearest = |i: usize| {
+            let squares = centres.iter().map(|&c| squared_distance(c, points.get(i)));
+            squares.fold(f64::INFINITY, f64::min).sqrt()
+        };
+        (0..points.len())
+            .map(|i| points.weight[i] * nearest(i))
+            .sum()
+    }
+
+    #[test]
+    fn groups_far_apart_get_a_centre_each() {
+        let groups = [[0.0, 0.0], [9.0, 0.0], [0.0, 9.0], [9.0, 9.0], [4.5, 20.0]];
+        let points: Vec<_> = groups
+            .iter()
+            .flat_map(|&[x, y]| [-0.1, 0.0, 0.1].map(|d| ([x + d, y - d / 2.0], 1.0 + x)))
+            .collect();
+        let mut centres = first_centres(&weighted(&points), 5);
+        centres.sort_by(|a, b| a[1].total_cmp(&b[1]).then(a[0].total_cmp(&b[0])));
+        let expected = [[0.0, 0.0], [9.0, 0.0], [0.0, 9.0], [9.0, 9.0], [4.5, 20.0]];
+        for (centre, expected) in centres.iter().zip(expected) {
+            assert!(squared_distance(*centre, expected) < 1e-20, "{centre:?}");
+        }
+    }
+
+    #[test]
+    fn no_more_centres_than_places() {
+        let points = weighted(&[([1.0, 2.0], 0.3), ([3.0, 4.0], 0.5), ([1.0, 2.0], 0.2)]);
+        let mut centres = first_centres(&points, 7);
+        centres.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        assert_eq!(centres, [[1.0, 2.0], [3.0, 4.0]]);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn every_centre_is_within_the_points_and_the_sum_of_squares_falls(
+            points in prop::collection::vec((prop::array::uniform2(-9.0..9.0_f64), 0.01..1.0_f64), 1..150),
+            clusters in 1..30_usize,
+        ) {
+            let points = weighted(&points);
+            let centres = first_centres(&points, clusters);
+            prop_assert!(!centres.is_empty() && centres.len() <= clusters);
+            prop_assert!(centres.as_flattened().iter().all(|v| v.abs() <= 9.0 + 1e-12));
+            // Cells only ever get finer: a cut lowers the sum of squares.
+            let squares = |clusters| {
+                let centres = first_centres(&points, clusters);
+                let nearest = |i| centres.iter().map(|&c| squared_distance(c, points.get(i))).fold(f64::MAX, f64::min);
+                (0..points.len()).map(|i| points.weight[i] * nearest(i)).sum::<f64>()
+            };
+            prop_assert!(squares(1) >= squares(clusters) - 1e-9);
+        }
+
+        #[test]
+        fn evenly_spread_points_are_covered_well(count in 200..600_usize, clusters in 4..25_usize) {
+            // The plane's best arrangement of n centres in a unit square leaves a mean distance of about 0.377 / √n.
+            let points: Vec<_> = (0..count)
+                .map(|i| ([(i as f64 * 0.754_877_666).fract(), (i as f64 * 0.569_840_291).fract()], 1.0 / count as f64))
+                .collect();
+            let points = weighted(&points);
+            let cost = cost(&points, &first_centres(&points, clusters));
+            prop_assert!(cost * (clusters as f64).sqrt() < 0.377 * 1.3, "{} with {}", cost, clusters);
+        }
+    }
+}

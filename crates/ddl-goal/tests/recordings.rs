@@ -11,7 +11,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use ddl_goal::{Expert, ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet};
+use ddl_goal::{Expert, ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
 use serde::Deserialize;
 
 const RECORDINGS: [&str; 8] = [
@@ -228,4 +228,31 @@ fn the_mean_goal_error_of_a_test_scene_is_the_published_one() {
     let mean = errors.sum::<f64>() / queries.len() as f64;
     assert!((mean - 0.548).abs() < 0.01, "{mean} m");
     println!("mean goal error of {} walkers: {mean:.4} m", queries.len());
+}
+
+/// The library and the walkers are of recordings that meet in no street: students, and shoppers elsewhere.
+#[test]
+fn in_their_own_frame_walkers_of_one_street_tell_about_those_of_another() {
+    let Some(folder) = folder() else { return };
+    let windows = |recording| Tracks::read(&folder, recording).complete_windows();
+    let library: Vec<_> = windows("students003").into_values().collect();
+    let walkers: Vec<_> = windows("zara03").into_values().step_by(5).collect();
+    let queries: Vec<&[[f64; 2]]> = walkers.iter().map(|track| &track[..8]).collect();
+    let mean_error = |params: GoalEstimatorParams| {
+        let library = ExpertLibrary::new(library.clone(), 0.4).unwrap();
+        let estimator = GoalEstimator::new(params.check().unwrap(), library).unwrap();
+        let estimated = estimator.estimate_batch(&queries).unwrap();
+        let errors = estimated
+            .iter()
+            .zip(&walkers)
+            .map(|(goals, track)| goal_error(goals, track));
+        errors.sum::<f64>() / walkers.len() as f64
+    };
+    let world = mean_error(GoalEstimatorParams::published().query(QuerySpan::Observed));
+    let own = mean_error(GoalEstimatorParams::default());
+    println!(
+        "{} walkers: {own:.4} m, {world:.4} m in the frame of the world",
+        walkers.len()
+    );
+    assert!(own < 0.85 * world, "{own} m, {world} m");
 }

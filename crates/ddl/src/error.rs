@@ -38,10 +38,10 @@ pub enum DdlError {
         "validation = {0} is not allowed: a share of the recordings' time, at least 0, below 1"
     )]
     Validation(f64),
-    /// The training set holds fewer tracks than the goal estimator retrieves.
+    /// The training set holds fewer tracks than the published goal estimator retrieves.
     #[error(
-        "{tracks} tracks of 20 frames to train on, but the goal estimator retrieves {experts}; \
-         train on more recordings, or ask for fewer experts"
+        "{tracks} tracks of 20 frames to train on, but the published goal estimator, which \
+         evaluation runs too, retrieves {experts}; train on more recordings"
     )]
     TooFewTracks {
         /// Tracks there are.

@@ -104,8 +104,7 @@ impl Ddl {
     /// The estimator of the published protocol, whose query reads the first future frame.
     pub(crate) fn published_estimator(&self) -> Result<GoalEstimator, DdlError> {
         let library: ExpertLibrary = self.estimator.library().clone();
-        let params: GoalEstimatorParams =
-            self.config.goals.clone().query(QuerySpan::PublishedFuture);
+        let params: GoalEstimatorParams = self.config.goals.clone().into_published();
         Ok(GoalEstimator::new(params.check()?, library)?)
     }
 

@@ -64,7 +64,7 @@ pub fn train(
 ) -> Result<(), DdlError> {
     // Everything is checked before the directory is claimed: a mistake must not leave a run behind.
     request.training.check()?;
-    let goal_params = request.goals.clone().check()?;
+    request.goals.clone().check()?;
     if !(0.0..1.0).contains(&request.validation) {
         return Err(DdlError::Validation(request.validation));
     }
@@ -80,9 +80,11 @@ pub fn train(
     if windows.is_empty() {
         return Err(StarError::NoTrainingWindows.into());
     }
+    // Evaluation runs the published estimator too, which needs as many tracks as it retrieves.
+    let published = request.goals.clone().into_published().check()?;
     let (tracks, experts) = (
         windows.iter().map(Window::len).sum::<usize>(),
-        goal_params.experts(),
+        published.experts(),
     );
     if tracks < experts {
         return Err(DdlError::TooFewTracks { tracks, experts });
