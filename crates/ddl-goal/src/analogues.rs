@@ -92,12 +92,15 @@ impl Analogues {
         let nearest = found.first().map_or(0.0, distance);
         let temperature = TEMPERATURE * found.last().map_or(0.0, distance).max(ROUNDING);
         let likeness = |alike: &Alike| ((nearest - distance(alike)) / temperature).exp();
-        let total: f64 = found.iter().map(likeness).sum();
         let mut points = Points::default();
         for alike in found {
             let [ahead, left] = self.deviations[alike.index];
             let left = if alike.mirrored { -left } else { left };
-            points.push([ahead, left], likeness(alike) / total);
+            points.push([ahead, left], likeness(alike));
+        }
+        let total: f64 = points.weight.iter().sum();
+        for weight in &mut points.weight {
+            *weight /= total;
         }
         points
     }

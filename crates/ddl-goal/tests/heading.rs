@@ -1,5 +1,6 @@
 //! A walker's own frame, and goals in it: what turning, moving and mirroring the scene does to them.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
+#![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, HeadingFrame, TrackError};
 use proptest::prelude::*;
