@@ -28,7 +28,7 @@ fn a_tiny_run_of_the_hotel_fold() {
         let output = command.arg("--data").arg(&data).output().unwrap();
         Finished::new(format!("ddl {command_line}"), &output).succeeds()
     };
-    let train = "train --fold hotel --epochs 1 --train-walkers 60 --batch-walkers 30 --out run \
+    let train = "train --fold hotel --epochs 1 --train-walkers 60 --batch-walkers 30 --proposal-steps 10 --out run \
                  --threads 1";
     assert_eq!(run_on_data(train), "");
     let run = RunDirectory::new(here.join("run"));

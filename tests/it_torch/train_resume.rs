@@ -11,10 +11,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::Duration;
 
+/// Steps of the proposal network, before those of the forecasting network.
+const GOAL_STEPS: usize = 12;
 /// 3 epochs of 8 steps.
 const STEPS: usize = 24;
 const TRAIN: &str = "train --convention simulated --fold doorway --epochs 3 --train-walkers 128 \
-                     --batch-walkers 16 --threads 1 --progress json --out run";
+                     --batch-walkers 16 --proposal-steps 12 --threads 1 --progress json --out run";
 
 /// Training under way, and what it tells.
 struct Training {
@@ -107,13 +109,19 @@ fn interrupted_equals_whole(interrupt: impl FnOnce(&Path)) {
 #[test]
 fn an_interrupted_run_goes_on_to_the_same_bytes() {
     interrupted_equals_whole(|folder| {
-        for (steps, signal) in [(11, "INT"), (3, "INT")] {
+        let in_the_first_stage = GOAL_STEPS / 2;
+        for steps in [in_the_first_stage, GOAL_STEPS - in_the_first_stage + 8, 3] {
             let mut training = Training::start(folder);
             training.wait_for(steps);
-            let finished = training.signal(signal);
+            let finished = training.signal("INT");
             assert_eq!(finished.code, Some(130), "{finished:#?}");
             assert!(finished.stderr.contains("saved"), "{finished:#?}");
-            assert!(folder.join("run/optimizer.safetensors").is_file());
+            let state = if steps == in_the_first_stage {
+                "run/proposal-state.safetensors"
+            } else {
+                "run/optimizer.safetensors"
+            };
+            assert!(folder.join(state).is_file());
         }
     });
 }
@@ -123,7 +131,7 @@ fn an_interrupted_run_goes_on_to_the_same_bytes() {
 fn a_terminated_run_saves_too() {
     let folder = tempfile::tempdir().unwrap();
     let mut training = Training::start(folder.path());
-    training.wait_for(2);
+    training.wait_for(GOAL_STEPS + 2);
     let finished = training.signal("TERM");
     assert_eq!(finished.code, Some(130), "{finished:#?}");
     assert!(folder.path().join("run/optimizer.safetensors").is_file());
@@ -141,8 +149,8 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
         std::thread::sleep(before_the_first_step);
         training.kill();
         for part in [random >> 16, random >> 32] {
-            // at most 5 steps and a moment, so that it cannot be through after two
-            let (steps, moment) = (part % 5 + 1, Duration::from_micros(part / 5 % 90_000));
+            // at most 8 steps and a moment, so that it cannot be through after two
+            let (steps, moment) = (part % 8 + 1, Duration::from_micros(part / 5 % 90_000));
             eprintln!("killed {moment:?} after step {steps} of the attempt");
             let mut training = Training::start(folder);
             training.wait_for(usize::try_from(steps).unwrap());

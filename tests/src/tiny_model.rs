@@ -3,9 +3,8 @@
 use crate::crowd;
 use crate::folder_contents::{self, Contents};
 use ddl::data::Dataset;
-use ddl::goal::GoalEstimatorParams;
-use ddl::star::TrainingConfig;
-use ddl::{Ddl, DeviceChoice, RunDirectory, TrainingRequest, Variant};
+use ddl::star::{ProposalConfig, TrainingConfig};
+use ddl::{Ddl, DeviceChoice, GoalRecipe, RunDirectory, TrainingRequest, TrainingStage, Variant};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::{Mutex, Once, OnceLock};
@@ -101,14 +100,32 @@ pub fn request(fold: &str, variant: Variant, walkers: usize, out: &Path) -> Trai
     TrainingRequest {
         fold: fold.to_owned(),
         variant,
-        // as the program has it
-        goals: GoalEstimatorParams::default().seed(training.seed),
+        goals: goal_recipe(training.seed),
         training,
         validation: 0.0,
+        validation_recordings: Vec::new(),
+        until: TrainingStage::Network,
         out: RunDirectory::new(out),
         device: DeviceChoice::Cpu,
         commit: "of the tests".to_owned(),
     }
+}
+
+/// Goals proposed by two small networks, a few steps old.
+#[must_use]
+pub fn goal_recipe(seed: u64) -> GoalRecipe {
+    let mut recipe = GoalRecipe::proposed(seed);
+    if let Some(proposal) = &mut recipe.proposal {
+        proposal.network = ProposalConfig {
+            members: 2,
+            width: 24,
+            neighbour_width: 16,
+            ..ProposalConfig::default()
+        };
+        proposal.training.steps = 20;
+        proposal.training.batch = 32;
+    }
+    recipe
 }
 
 /// Trains and keeps the files in memory: a folder in a static would never be removed.

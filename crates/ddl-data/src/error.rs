@@ -248,6 +248,16 @@ pub enum DataError {
         /// The names there are.
         known: Vec<String>,
     },
+    /// A recording to set apart that the fold does not train on.
+    #[error("{name:?} is no training recording of fold {fold}; those are {}", .known.join(", "))]
+    NotATrainingRecording {
+        /// The fold.
+        fold: &'static str,
+        /// The name asked for.
+        name: String,
+        /// The training recordings.
+        known: Vec<String>,
+    },
     /// No fold of this name.
     #[error("no fold {name:?} in the {convention} convention; it has {}", .known.join(", "))]
     UnknownFold {

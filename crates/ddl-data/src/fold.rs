@@ -1,5 +1,6 @@
 //! Leave-one-out folds, and the chronological split that keeps validation apart from training.
 
+use crate::error::DataError;
 use crate::recording::Recording;
 use crate::{Window, WindowRule};
 
@@ -9,6 +10,8 @@ pub struct Fold<'a> {
     name: &'static str,
     test: Vec<&'a Recording>,
     training: Vec<&'a Recording>,
+    /// Training recordings that are kept for validation whole.
+    set_apart: Vec<&'a Recording>,
 }
 
 /// The windows of a fold's training recordings, divided by time.
@@ -36,7 +39,28 @@ impl<'a> Fold<'a> {
             name,
             test,
             training,
+            set_apart: Vec::new(),
         }
+    }
+
+    /// Keeps training recordings for validation whole: nothing of them is trained on.
+    ///
+    /// In `star` and `social-gan` no fold tests on `uni_examples` and `zara03`: they show what a model makes of recordings
+    /// it has never seen.
+    ///
+    /// # Errors
+    /// [`DataError::NotATrainingRecording`] for a name that is not a training recording of this fold.
+    pub fn set_apart(mut self, names: &[String]) -> Result<Self, DataError> {
+        for name in names {
+            let index = self.training.iter().position(|r| r.name() == name);
+            let index = index.ok_or_else(|| DataError::NotATrainingRecording {
+                fold: self.name,
+                name: name.clone(),
+                known: self.training.iter().map(|r| r.name().to_owned()).collect(),
+            })?;
+            self.set_apart.push(self.training.remove(index));
+        }
+        Ok(self)
     }
 
     /// The fold's name, that of its test scene.
@@ -49,9 +73,14 @@ impl<'a> Fold<'a> {
         &self.test
     }
 
-    /// The recordings to train on: all others.
+    /// The recordings to train on: all others, but for those set apart.
     pub fn training_recordings(&self) -> &[&'a Recording] {
         &self.training
+    }
+
+    /// Training recordings that are kept for validation whole.
+    pub fn recordings_set_apart(&self) -> &[&'a Recording] {
+        &self.set_apart
     }
 
     /// The windows to test on, recording by recording, in order of time.
@@ -82,7 +111,8 @@ impl<'a> Fold<'a> {
     /// The cut of a recording with n annotated frames comes before the frame with index
     /// floor((1 - f) n), f being `validation_fraction` (clamped to [0, 1], NaN taken as 0). Windows
     /// that span the cut belong to neither side, so that no position is seen in both. With f = 0.2
-    /// this is the training/validation split of the Social-GAN convention.
+    /// this is the training/validation split of the Social-GAN convention. Recordings [set apart](Self::set_apart) are
+    /// validated on whole.
     #[must_use]
     pub fn training_split(&self, rule: WindowRule, validation_fraction: f64) -> TrainingSplit {
         let fraction = if validation_fraction.is_nan() {
@@ -107,6 +137,8 @@ impl<'a> Fold<'a> {
                 }
             }
         }
+        let set_apart = self.set_apart.iter().flat_map(|r| r.windows(rule));
+        split.validation.extend(set_apart);
         split
     }
 }

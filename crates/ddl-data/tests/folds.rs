@@ -55,6 +55,45 @@ fn training_and_validation_share_no_moment_of_a_simulated_crowd() {
 }
 
 #[test]
+fn recordings_set_apart_are_validated_on_whole_and_not_trained_on() {
+    let dataset = Dataset::simulated(2);
+    let rule = WindowRule::Complete;
+    let whole = dataset.recording("crossing").unwrap().windows(rule);
+    let fold = dataset.fold("plaza").unwrap();
+    let apart = fold.clone().set_apart(&["crossing".to_owned()]).unwrap();
+    let split = apart.training_split(rule, 0.25);
+    let of_crossing: Vec<Window> = split
+        .validation
+        .iter()
+        .filter(|w| w.recording() == "crossing")
+        .cloned()
+        .collect();
+    assert_eq!(of_crossing, whole);
+    let training = apart.training_windows(rule);
+    assert!(
+        split
+            .training
+            .iter()
+            .chain(&training)
+            .all(|w| w.recording() != "crossing")
+    );
+    let others = fold
+        .training_split(rule, 0.25)
+        .training
+        .into_iter()
+        .filter(|w| w.recording() != "crossing");
+    assert_eq!(split.training, others.collect::<Vec<_>>());
+    let error = fold
+        .set_apart(&["plaza".to_owned()])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.starts_with("\"plaza\" is no training recording of fold plaza; those are corridor"),
+        "{error}"
+    );
+}
+
+#[test]
 fn odd_fractions_leave_everything_on_one_side() {
     let dataset = Dataset::simulated(2);
     let fold = dataset.fold("plaza").unwrap();

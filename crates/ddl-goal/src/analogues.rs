@@ -1,21 +1,20 @@
 //! Goals from analogues: walkers who moved alike, each seen from its own heading, and how they went on.
 
+use crate::choice::choose;
 use crate::error::{GoalError, LibraryError, TrackError};
 use crate::expert::Expert;
 use crate::goal_set::GoalSet;
 use crate::library::{ExpertLibrary, TRACK_LENGTH};
-use crate::lloyd::Run;
 use crate::motion::Motion;
 use crate::motion_index::{Alike, MotionIndex};
 use crate::points::Points;
-use crate::split::first_centres;
 
 /// Temperature of the weights, in distances of the farthest analogue.
 const TEMPERATURE: f64 = 0.4;
 /// Squared difference of motions below which it is rounding.
 const ROUNDING: f64 = 1e-9;
 /// Steps of Lloyd's iteration. More of them fit the goals to these analogues, and not to the walker.
-const ITERATIONS: usize = 3;
+const STEPS: usize = 3;
 /// Analogues that a goal set keeps.
 const KEPT: usize = 100;
 /// Largest deviation (m) whose square, summed over many walkers, is still finite.
@@ -67,23 +66,14 @@ impl Analogues {
         let motion = Motion::new(track, self.time_step)?;
         let found = self.index.nearest(&motion.components, experts);
         let points = self.weighted_deviations(&found);
-        let mut centres = first_centres(&points, clusters);
-        for again in 0..clusters - centres.len() {
-            centres.push(centres[again]);
-        }
-        let mut run = Run::from_centres(&points, centres);
-        run.iterate(&points, ITERATIONS, 0.0);
-        let mut weights = vec![0.0; clusters];
-        for (&label, weight) in run.labels.iter().zip(&points.weight) {
-            weights[label as usize] += weight;
-        }
-        let goals: Vec<_> = run.centres.iter().map(|&d| motion.end(d)).collect();
+        let choice = choose(&points, clusters, STEPS);
+        let goals: Vec<_> = choice.goals.iter().map(|&d| motion.end(d)).collect();
         if !goals.as_flattened().iter().all(|value| value.is_finite()) {
             let index = track.len().min(8) - 2;
             return Err(TrackError::VelocityOverflow { index }.into());
         }
         let experts = found.iter().take(KEPT).map(Expert::from).collect();
-        Ok(GoalSet::new(goals, weights, experts))
+        Ok(GoalSet::new(goals, choice.weights, experts))
     }
 
     /// Deviations of the analogues, weighted by likeness; the weights sum to 1.

@@ -129,6 +129,12 @@ pub enum KMeansError {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum GoalError {
+    /// Ends that goals cannot be chosen for.
+    #[error("goals of given ends: {problem}")]
+    Ends {
+        /// What is wrong with them.
+        problem: String,
+    },
     /// The library holds fewer tracks than experts are to be retrieved.
     #[error(
         "the library holds {tracks} tracks but {experts} experts are to be retrieved: give it more tracks or lower `experts`"

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod analogues;
+mod choice;
 mod error;
 mod estimator;
 mod expert;
@@ -14,6 +15,7 @@ mod motion;
 mod motion_index;
 mod params;
 mod points;
+mod proposed;
 mod retrieve;
 mod seeding;
 mod span;

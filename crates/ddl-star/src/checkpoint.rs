@@ -117,11 +117,11 @@ pub(crate) fn load_training(
 }
 
 /// The tensor on the CPU, contiguous and without gradient.
-fn plain(tensor: &Tensor) -> Tensor {
+pub(crate) fn plain(tensor: &Tensor) -> Tensor {
     tensor.detach().to_device(tch::Device::Cpu).contiguous()
 }
 
-fn write(tensors: &[(String, Tensor)], path: &Path) -> Result<(), StarError> {
+pub(crate) fn write(tensors: &[(String, Tensor)], path: &Path) -> Result<(), StarError> {
     let io = |source| StarError::Io {
         path: path.to_owned(),
         source,
@@ -142,7 +142,7 @@ fn write(tensors: &[(String, Tensor)], path: &Path) -> Result<(), StarError> {
     Ok(())
 }
 
-fn read(path: &Path, most_bytes: u64) -> Result<Vec<(String, Tensor)>, StarError> {
+pub(crate) fn read(path: &Path, most_bytes: u64) -> Result<Vec<(String, Tensor)>, StarError> {
     let size = std::fs::metadata(path)
         .map_err(|source| StarError::Io {
             path: path.to_owned(),
@@ -163,7 +163,7 @@ fn read(path: &Path, most_bytes: u64) -> Result<Vec<(String, Tensor)>, StarError
     })
 }
 
-fn find<'a>(
+pub(crate) fn find<'a>(
     tensors: &'a [(String, Tensor)],
     name: &str,
     shape: &[i64],
@@ -192,7 +192,7 @@ fn find<'a>(
     Ok(tensor)
 }
 
-fn bad(path: &Path, problem: String) -> StarError {
+pub(crate) fn bad(path: &Path, problem: String) -> StarError {
     StarError::Checkpoint {
         path: path.to_owned(),
         problem,

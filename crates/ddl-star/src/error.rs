@@ -59,6 +59,22 @@ pub enum StarError {
         /// First window of the batch, as recording@frame.
         windows: String,
     },
+    /// The loss of the proposal network or its gradient is no longer a number.
+    #[error(
+        "step {step} of the proposal network: the {quantity} is {value}; the last good checkpoint is \
+         kept; lower the learning rate or look at the walkers of that batch (the first is number \
+         {example} of the examples)"
+    )]
+    ProposalNonFinite {
+        /// Steps done before.
+        step: u64,
+        /// "loss" or "gradient norm".
+        quantity: &'static str,
+        /// The value met.
+        value: f64,
+        /// First example of the batch.
+        example: usize,
+    },
     /// Training was given nothing to learn from.
     #[error("no training windows: every epoch needs at least one window with its future")]
     NoTrainingWindows,

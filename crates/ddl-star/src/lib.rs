@@ -14,6 +14,7 @@ mod layers;
 mod loss;
 mod optimizer;
 mod parameters;
+mod proposal;
 mod rollout;
 mod schedule;
 mod seed;
@@ -33,6 +34,10 @@ pub use forecast::{Noise, WindowRollout};
 pub use layers::Mode;
 pub use loss::mean_squared_distance;
 pub use parameters::Parameters;
+pub use proposal::{
+    ProposalConfig, ProposalExample, ProposalNetwork, ProposalStep, ProposalTrainer,
+    ProposalTraining, ProposedEnds, WalkerView,
+};
 pub use star::{NoiseInput, StarNetwork};
 pub use train::{EpochReport, StepReport, Trainer};
 pub use training_config::{LearningRateSchedule, TrainingConfig};

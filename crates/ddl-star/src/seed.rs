@@ -2,6 +2,11 @@
 
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
+use std::sync::Mutex;
+
+/// libtorch has one generator a process: two trainings side by side take turns to draw from it, so
+/// that neither disturbs the other.
+pub(crate) static GENERATOR: Mutex<()> = Mutex::new(());
 
 /// What the numbers are for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,6 +21,10 @@ pub(crate) enum Stage {
     Step,
     /// Noise vectors of forecasts.
     Forecast,
+    /// Initial weights of the proposal network.
+    ProposalWeights,
+    /// Batches and augmentation of the proposal network.
+    ProposalStep,
 }
 
 /// The stream of a stage; `index` separates steps of one stage.

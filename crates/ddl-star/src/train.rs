@@ -7,7 +7,7 @@ use crate::layers::Mode;
 use crate::loss::mean_squared_distance;
 use crate::optimizer::Adam;
 use crate::schedule::Schedule;
-use crate::seed::{Stage, stream};
+use crate::seed::{GENERATOR, Stage, stream};
 use crate::star::{NoiseInput, StarNetwork};
 use crate::training_config::TrainingConfig;
 use ddl_data::{WINDOW, Window};
@@ -15,13 +15,9 @@ use rand::{Rng as _, RngExt as _};
 use rand_distr::StandardNormal;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::PoisonError;
 use std::time::Instant;
 use tch::Tensor;
-
-/// libtorch has one generator a process: two trainings side by side take turns to draw from it, so
-/// that neither disturbs the other.
-static GENERATOR: Mutex<()> = Mutex::new(());
 
 /// What one step did.
 #[derive(Debug, Clone, PartialEq)]

@@ -38,6 +38,9 @@ pub enum DdlError {
         "validation = {0} is not allowed: a share of the recordings' time, at least 0, below 1"
     )]
     Validation(f64),
+    /// The share of the retrieved goals beside the proposed ones is no share.
+    #[error("retrieved_share = {0} is not allowed: 0 to 1")]
+    RetrievedShare(f64),
     /// The training set holds fewer tracks than the published goal estimator retrieves.
     #[error(
         "{tracks} tracks of 20 frames to train on, but the published goal estimator, which \

@@ -6,7 +6,6 @@ use crate::model::Ddl;
 use crate::published::Published;
 use crate::straight_lines::straight_lines;
 use crate::test_set::TestSet;
-use crate::training::digest;
 use crate::training_words::{recipe, subset};
 use ddl_data::{Dataset, Window};
 use ddl_eval::baseline::{self, WeightedGoals};
@@ -64,32 +63,12 @@ pub fn evaluate(
     request: &EvaluationRequest,
     observe: impl FnMut(&EvaluationProgress) -> ControlFlow<()>,
 ) -> Result<Vec<ResultRow>, DdlError> {
-    let data = &model.config().data;
-    if data.convention != dataset.convention() {
-        let problem = format!(
-            "was trained on `{}` data and cannot be measured on `{}` data",
-            data.convention,
-            dataset.convention()
-        );
-        return Err(DdlError::run(model.run().path(), problem));
-    }
-    let fold = dataset.fold(&data.fold)?;
-    let test = match request.on {
-        EvaluationSplit::Test => TestSet::new(&fold, data.convention, request.test_walkers),
-        EvaluationSplit::Validation if data.validation > 0.0 => {
-            let (rule, fraction) = (data.window_rule, data.validation);
-            if digest(&fold.training_split(rule, fraction).training) != data.sha256 {
-                let problem = "was trained on other recordings than these, whose last part it may \
-                               have seen; give the --data it was trained on";
-                return Err(DdlError::run(model.run().path(), problem));
-            }
-            TestSet::validation(&fold, rule, fraction, request.test_walkers)
-        }
-        EvaluationSplit::Validation => {
-            let problem = "kept nothing for validation; train it with --validation 0.2";
-            return Err(DdlError::run(model.run().path(), problem));
-        }
-    };
+    let test = TestSet::of_run(
+        model.goal_model(),
+        dataset,
+        request.on,
+        request.test_walkers,
+    )?;
     let passes = usize::from(request.protocols.contains(&Protocol::Published))
         + usize::from(
             request
@@ -142,7 +121,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         };
         let model = self.model;
         let forecasts = self.forecast(first, |windows| {
-            let goals = goals::of_windows(model.estimator(), windows)?;
+            let goals = model.goal_model().goals(windows)?;
             let lines = straight_lines("the estimated goals", windows, &goals::weighted(&goals)?)?;
             Ok(Forecasts {
                 model: model.forecast_towards(windows, goals)?,
@@ -162,7 +141,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
 
     fn published(&mut self) -> Result<Vec<ResultRow>, DdlError> {
         let protocol = Protocol::Published;
-        let estimator = self.model.published_estimator()?;
+        let estimator = self.model.goal_model().published_estimator()?;
         let mut walkers = 0;
         let windows: Vec<Window> = self
             .test

@@ -5,14 +5,14 @@ use ddl_eval::ForecastError;
 use ddl_eval::baseline::WeightedGoals;
 use ddl_goal::{GoalEstimator, GoalSet};
 
-/// The goal sets of every pedestrian of every window.
+/// The retrieved goal sets of every pedestrian of every window.
 ///
 /// The estimator sees the observed positions alone, unless it is the published one, whose query
 /// reads one future position.
 ///
 /// # Errors
 /// When a window is shorter than the estimator's query.
-pub(crate) fn of_windows(
+pub(crate) fn retrieved(
     estimator: &GoalEstimator,
     windows: &[Window],
 ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
@@ -56,7 +56,7 @@ pub(crate) fn nearest_true_end(
     };
     windows
         .iter()
-        .zip(of_windows(estimator, windows)?)
+        .zip(retrieved(estimator, windows)?)
         .map(of_window)
         .collect()
 }

@@ -1,11 +1,10 @@
 //! A trained model: the network, its goal estimator, and how the two make a forecast.
 
-use crate::DdlError;
 use crate::run_directory::{RunConfig, RunDirectory};
-use crate::{experts, goals};
+use crate::{DdlError, GoalModel};
 use ddl_data::{Position, Window};
 use ddl_eval::{Forecast, ForecastError, Forecaster};
-use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
+use ddl_goal::GoalSet;
 use ddl_star::{ComputeDevice, Integrator, Noise, StarNetwork, WindowRollout, load_parameters};
 use std::path::Path;
 
@@ -29,11 +28,9 @@ const NOISE_HYPOTHESES: usize = 20;
 /// ```
 #[derive(Debug)]
 pub struct Ddl {
-    run: RunDirectory,
-    config: RunConfig,
+    goals: GoalModel,
     device: ComputeDevice,
     network: StarNetwork,
-    estimator: GoalEstimator,
 }
 
 impl Ddl {
@@ -51,26 +48,21 @@ impl Ddl {
         }
         let device = ComputeDevice::open(device)?;
         let network = load_network(&config, device, &run.model())?;
-        let library = experts::load(&run.experts())?;
-        let params = config.goals.clone().query(QuerySpan::Observed);
-        let estimator = GoalEstimator::new(params.check()?, library)?;
         Ok(Self {
-            run,
-            config,
+            goals: GoalModel::of_run(run, config, device)?,
             device,
             network,
-            estimator,
         })
     }
 
     /// What decided the model.
     pub fn config(&self) -> &RunConfig {
-        &self.config
+        self.goals.config()
     }
 
     /// Where the model lies.
     pub fn run(&self) -> &RunDirectory {
-        &self.run
+        self.goals.run()
     }
 
     /// Where it computes.
@@ -78,39 +70,19 @@ impl Ddl {
         self.device
     }
 
-    /// Numbers learned by the network.
+    /// Numbers learned by the forecasting network.
     pub fn parameter_count(&self) -> usize {
         self.network.parameters().count()
     }
 
-    /// The goal estimator, which sees the observed positions alone.
-    pub fn estimator(&self) -> &GoalEstimator {
-        &self.estimator
-    }
-
-    /// The goals of every pedestrian of a window.
-    ///
-    /// # Errors
-    /// When the estimator fails.
-    pub fn goals(&self, window: &Window) -> Result<Vec<GoalSet>, ForecastError> {
-        Ok(
-            goals::of_windows(&self.estimator, std::slice::from_ref(window))?
-                .into_iter()
-                .flatten()
-                .collect(),
-        )
-    }
-
-    /// The estimator of the published protocol, whose query reads the first future frame.
-    pub(crate) fn published_estimator(&self) -> Result<GoalEstimator, DdlError> {
-        let library: ExpertLibrary = self.estimator.library().clone();
-        let params: GoalEstimatorParams = self.config.goals.clone().into_published();
-        Ok(GoalEstimator::new(params.check()?, library)?)
+    /// Where its goals come from.
+    pub fn goal_model(&self) -> &GoalModel {
+        &self.goals
     }
 
     /// The network, with the weights kept after `epoch`.
     pub(crate) fn network_of_epoch(&self, epoch: usize) -> Result<StarNetwork, DdlError> {
-        load_network(&self.config, self.device, &self.run.epoch(epoch))
+        load_network(self.config(), self.device, &self.run().epoch(epoch))
     }
 
     /// One hypothesis a goal for every pedestrian, with the goal's weight; for the variant without
@@ -120,7 +92,7 @@ impl Ddl {
         windows: &[Window],
         sets: Vec<Vec<GoalSet>>,
     ) -> Result<Vec<Forecast>, ForecastError> {
-        if !self.config.star.variant.uses_goal() {
+        if !self.config().star.variant.uses_goal() {
             return self.forecast_without_goals(windows);
         }
         let goals: Vec<Vec<Vec<Position>>> = sets
@@ -146,7 +118,7 @@ impl Ddl {
     fn forecast_without_goals(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
         let noise = Noise::Draws {
             count: NOISE_HYPOTHESES,
-            seed: self.config.training.seed,
+            seed: self.config().training.seed,
         };
         self.network
             .forecast_windows(
@@ -174,7 +146,7 @@ impl Forecaster for Ddl {
     }
 
     fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
-        let goals = goals::of_windows(&self.estimator, windows)?;
+        let goals = self.goals.goals(windows)?;
         self.forecast_towards(windows, goals)
     }
 }

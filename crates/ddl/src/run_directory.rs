@@ -7,22 +7,23 @@
 //! | `optimizer.safetensors` | weights, Adam's state and progress of a run under way |
 //! | `epochs/NNN.safetensors` | weights after some of the epochs |
 //! | `experts.safetensors` | tracks of the expert library |
+//! | `proposal.safetensors` | weights of the proposal network; there only when it is trained |
+//! | `proposal-state.safetensors` | weights, Adam's state and progress of its training under way |
 //! | `model.safetensors` | the final weights; there only when training is finished |
 //! | `report.json` | results of the evaluation |
 //! | `evaluation.json` | which evaluation that was |
 //!
 //! Every file is written under a temporary name and renamed.
 
-use crate::DdlError;
+use crate::{DdlError, GoalRecipe};
 use ddl_data::{Convention, WindowRule};
-use ddl_goal::GoalEstimatorParams;
 use ddl_star::{EpochReport, StarConfig, TrainingConfig};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Version of the directory's layout.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 /// Everything that decides what a run computes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -34,8 +35,8 @@ pub struct RunConfig {
     pub star: StarConfig,
     /// How it is trained.
     pub training: TrainingConfig,
-    /// The goal estimator.
-    pub goals: GoalEstimatorParams,
+    /// What the goals come from.
+    pub goals: GoalRecipe,
     /// What it is trained on.
     pub data: TrainingData,
     /// Weights are kept after every so many epochs.
@@ -76,6 +77,8 @@ pub struct TrainingData {
     pub window_rule: WindowRule,
     /// Share of the training recordings' time, at their ends, kept for validation; 0 for none.
     pub validation: f64,
+    /// Training recordings kept for validation whole.
+    pub validation_recordings: Vec<String>,
     /// Training windows.
     pub windows: usize,
     /// Walkers in them.
@@ -114,6 +117,16 @@ impl RunDirectory {
         self.0.join("experts.safetensors")
     }
 
+    /// Weights of the proposal network.
+    pub fn proposal(&self) -> PathBuf {
+        self.0.join("proposal.safetensors")
+    }
+
+    /// State of the proposal network's training under way.
+    pub(crate) fn proposal_state(&self) -> PathBuf {
+        self.0.join("proposal-state.safetensors")
+    }
+
     /// Results.
     pub fn report(&self) -> PathBuf {
         self.0.join("report.json")
@@ -137,6 +150,11 @@ impl RunDirectory {
     /// Whether training is finished.
     pub fn is_trained(&self) -> bool {
         self.model().is_file()
+    }
+
+    /// Whether everything that goals come from is there.
+    pub(crate) fn has_goals(&self, recipe: &GoalRecipe) -> bool {
+        self.experts().is_file() && (recipe.proposal.is_none() || self.proposal().is_file())
     }
 
     /// Epochs whose weights are kept, ascending.

@@ -1,7 +1,9 @@
 //! The windows a model is measured on: the test windows of its fold under the headline rule and the
 //! one printed beside it, or the validation part of its training recordings.
 
-use ddl_data::{Convention, Fold, PedestrianId, Window, WindowRule};
+use crate::training::digest;
+use crate::{DdlError, EvaluationSplit, GoalModel};
+use ddl_data::{Convention, Dataset, Fold, PedestrianId, Window, WindowRule};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -20,6 +22,49 @@ pub(crate) struct TestSet {
 }
 
 impl TestSet {
+    /// The windows that the run may be measured on.
+    ///
+    /// # Errors
+    /// When the data is not what the run was trained on, or it kept nothing for validation.
+    pub(crate) fn of_run(
+        goals: &GoalModel,
+        dataset: &Dataset,
+        on: EvaluationSplit,
+        walkers: Option<usize>,
+    ) -> Result<Self, DdlError> {
+        let data = &goals.config().data;
+        let wrong = |problem: String| Err(DdlError::run(goals.run().path(), problem));
+        if data.convention != dataset.convention() {
+            return wrong(format!(
+                "was trained on `{}` data and cannot be measured on `{}` data",
+                data.convention,
+                dataset.convention()
+            ));
+        }
+        let fold = dataset
+            .fold(&data.fold)?
+            .set_apart(&data.validation_recordings)?;
+        match on {
+            EvaluationSplit::Test => Ok(Self::new(&fold, data.convention, walkers)),
+            EvaluationSplit::Validation
+                if data.validation > 0.0 || !data.validation_recordings.is_empty() =>
+            {
+                let (rule, fraction) = (data.window_rule, data.validation);
+                if digest(&fold.training_split(rule, fraction).training) != data.sha256 {
+                    return wrong(
+                        "was trained on other recordings than these, whose last part it may have \
+                         seen; give the --data it was trained on"
+                            .to_owned(),
+                    );
+                }
+                Ok(Self::validation(&fold, rule, fraction, walkers))
+            }
+            EvaluationSplit::Validation => {
+                wrong("kept nothing for validation; train it with --validation 0.2".to_owned())
+            }
+        }
+    }
+
     /// The fold's test windows, or a seeded part of them with about `walkers` walkers.
     pub(crate) fn new(fold: &Fold<'_>, convention: Convention, walkers: Option<usize>) -> Self {
         let by_rule: Vec<(WindowRule, Vec<Window>)> = rules(convention)
@@ -70,7 +115,16 @@ impl TestSet {
             subset: None,
         }
         .at_most(walkers);
-        let name = format!("validation: the last {fraction} of the TRAINING recordings");
+        let name = format!(
+            "validation: the last {fraction} of the TRAINING recordings{}",
+            match fold.recordings_set_apart() {
+                [] => String::new(),
+                apart => {
+                    let names: Vec<&str> = apart.iter().map(|r| r.name()).collect();
+                    format!(", and {} whole", names.join(", "))
+                }
+            }
+        );
         let subset = part
             .subset
             .map_or(name.clone(), |subset| format!("{name}; {subset}"));

@@ -1,13 +1,11 @@
 //! Training of one fold into a run directory, stopped and resumed at will.
 
-use crate::DdlError;
-use crate::experts;
 use crate::run_directory::{FORMAT, RunConfig, RunDirectory, TrainingData};
+use crate::{DdlError, GoalRecipe, goal_training};
 use ddl_data::{Convention, Dataset, Window, WindowRule};
-use ddl_goal::GoalEstimatorParams;
 use ddl_star::{
-    ComputeDevice, DeviceChoice, StarConfig, StarError, StarNetwork, StepReport, Trainer,
-    TrainingConfig, Variant, save_parameters,
+    ComputeDevice, DeviceChoice, ProposalStep, StarConfig, StarError, StarNetwork, StepReport,
+    Trainer, TrainingConfig, Variant, save_parameters,
 };
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
@@ -15,7 +13,7 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 /// A run under way is saved at least this often.
-const SAVE_EVERY: Duration = Duration::from_secs(30);
+pub(crate) const SAVE_EVERY: Duration = Duration::from_secs(30);
 /// Weights of at most about this many epochs are kept.
 const KEPT_EPOCHS: usize = 20;
 
@@ -30,8 +28,12 @@ pub struct TrainingRequest {
     pub training: TrainingConfig,
     /// Share of the training recordings' time, at their ends, kept for validation; 0 for none.
     pub validation: f64,
-    /// The goal estimator that goes with the network.
-    pub goals: GoalEstimatorParams,
+    /// Training recordings kept for validation whole.
+    pub validation_recordings: Vec<String>,
+    /// What the goals come from.
+    pub goals: GoalRecipe,
+    /// The last stage to train; a later call may go on.
+    pub until: TrainingStage,
     /// The run's directory.
     pub out: RunDirectory,
     /// Where to compute.
@@ -40,13 +42,31 @@ pub struct TrainingRequest {
     pub commit: String,
 }
 
+/// The stages of a training, in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum TrainingStage {
+    /// What the goals come from: the expert library and the proposal network.
+    Goals,
+    /// The forecasting network.
+    Network,
+}
+
 /// What training tells its observer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrainingProgress {
-    /// Steps done and in all.
+    /// Steps of the stage done and in all.
     pub steps: (u64, u64),
     /// The step just done.
-    pub step: StepReport,
+    pub step: TrainingStep,
+}
+
+/// A step of one of the stages.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TrainingStep {
+    /// Of the proposal network.
+    Goals(ProposalStep),
+    /// Of the forecasting network.
+    Network(StepReport),
 }
 
 /// Trains the fold, or goes on where an earlier call stopped, or returns at once when it is done.
@@ -60,16 +80,18 @@ pub struct TrainingProgress {
 pub fn train(
     request: &TrainingRequest,
     dataset: &Dataset,
-    observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
+    mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
 ) -> Result<(), DdlError> {
     // Everything is checked before the directory is claimed: a mistake must not leave a run behind.
     request.training.check()?;
-    request.goals.clone().check()?;
+    request.goals.check()?;
     if !(0.0..1.0).contains(&request.validation) {
         return Err(DdlError::Validation(request.validation));
     }
     let device = ComputeDevice::open(request.device)?;
-    let fold = dataset.fold(&request.fold)?;
+    let fold = dataset
+        .fold(&request.fold)?
+        .set_apart(&request.validation_recordings)?;
     let window_rule = training_rule(dataset.convention());
     let windows = if request.validation > 0.0 {
         fold.training_split(window_rule, request.validation)
@@ -81,7 +103,7 @@ pub fn train(
         return Err(StarError::NoTrainingWindows.into());
     }
     // Evaluation runs the published estimator too, which needs as many tracks as it retrieves.
-    let published = request.goals.clone().into_published().check()?;
+    let published = request.goals.retrieval.clone().into_published().check()?;
     let (tracks, experts) = (
         windows.iter().map(Window::len).sum::<usize>(),
         published.experts(),
@@ -100,6 +122,7 @@ pub fn train(
             fold: fold.name().to_owned(),
             window_rule,
             validation: request.validation,
+            validation_recordings: request.validation_recordings.clone(),
             windows: windows.len(),
             walkers: windows.iter().map(Window::len).sum(),
             sha256: digest(&windows),
@@ -109,11 +132,18 @@ pub fn train(
         device: device.name().to_owned(),
     };
     run.claim(&config)?;
-    if run.is_trained() {
+    goal_training::train(
+        config.goals.proposal.as_ref(),
+        &windows,
+        run,
+        device,
+        |steps, step| {
+            let step = TrainingStep::Goals(step.clone());
+            observe(&TrainingProgress { steps, step })
+        },
+    )?;
+    if run.is_trained() || request.until == TrainingStage::Goals {
         return Ok(());
-    }
-    if !run.experts().is_file() {
-        experts::save(&experts::library(&windows)?, &run.experts())?;
     }
     let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
     let mut trainer = Trainer::new(network, windows, config.training.clone())?;
@@ -145,7 +175,7 @@ fn run_epochs(
         let due = step.finished_epoch.is_some() || saved.elapsed() > SAVE_EVERY;
         let stop = observe(&TrainingProgress {
             steps: trainer.steps(),
-            step,
+            step: TrainingStep::Network(step),
         })
         .is_break();
         if due || stop {

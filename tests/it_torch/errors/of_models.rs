@@ -29,7 +29,12 @@ fn an_unfinished_run_is_no_model() {
 /// Whichever file of the run ends too early, it is named and nothing is forecast from it.
 #[test]
 fn half_a_file_is_named() {
-    for file in ["model.safetensors", "experts.safetensors", "config.json"] {
+    for file in [
+        "model.safetensors",
+        "proposal.safetensors",
+        "experts.safetensors",
+        "config.json",
+    ] {
         let folder = folder_with_model();
         let path = folder.path().join("run").join(file);
         let whole = std::fs::read(&path).unwrap();

@@ -1,24 +1,49 @@
 //! `ddl goals`.
 
+use super::{Machine, dataset};
 use crate::tracks::{Tracks, write_output};
-use anyhow::Context as _;
-use clap::Args;
-use ddl::{Ddl, DeviceChoice};
+use anyhow::{Context as _, bail};
+use clap::{Args, ValueEnum};
+use ddl::data::Window;
+use ddl::goal::GoalSet;
+use ddl::{EvaluationSplit, GoalEvaluation, GoalModel};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Estimate where the people of your own tracks are going, as csv
+/// Estimate where the people of your own tracks are going, as csv; or measure how good a run's goals are
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  ddl goals --model runs/eth tracks.csv")]
+#[command(
+    after_help = "Examples:\n  ddl goals --model runs/eth tracks.csv\n  ddl goals --model runs/eth --measure test"
+)]
 pub(crate) struct Goals {
-    /// Directory of a trained run, which holds the expert library
+    /// Directory of a run whose goals are trained (`ddl train --only-goals` is enough)
     #[arg(long)]
     model: PathBuf,
     #[command(flatten)]
-    tracks: Tracks,
+    tracks: Option<Tracks>,
+    /// Compare the goals with the true ends of the recordings the run was trained without
+    #[arg(long, value_enum, conflicts_with = "file")]
+    measure: Option<Measure>,
+    /// Folder of the recordings to measure on [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
+    #[arg(long, requires = "measure")]
+    data: Option<PathBuf>,
+    /// The measurement as JSON
+    #[arg(long, requires = "measure")]
+    json: bool,
     /// File to write [default: standard output]
     #[arg(long, short)]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    machine: Machine,
+}
+
+/// What to measure on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Measure {
+    /// The scene left out of training
+    Test,
+    /// What was kept for validation
+    Validation,
 }
 
 #[derive(Serialize)]
@@ -33,26 +58,83 @@ struct Row {
 
 impl Goals {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        let windows = self.tracks.windows()?;
-        let model = Ddl::load(&self.model, DeviceChoice::Cpu)?;
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        for window in &windows {
-            let last = window.frames()[ddl::data::OBSERVED - 1];
-            for (pedestrian, set) in window.pedestrians().iter().zip(model.goals(window)?) {
-                for (goal, (position, weight)) in set.goals().iter().zip(set.weights()).enumerate()
-                {
-                    writer.serialize(Row {
-                        observed_until: last,
-                        pedestrian: pedestrian.0,
-                        goal,
-                        weight: *weight,
-                        x: position[0],
-                        y: position[1],
-                    })?;
-                }
+        let text = match (&self.tracks, self.measure) {
+            (_, Some(measure)) => self.measure(measure)?,
+            (Some(tracks), None) => {
+                self.machine.prepare_for_little()?;
+                let windows = tracks.windows()?;
+                let model = GoalModel::load(&self.model, self.machine.device)?;
+                csv(&windows, &model.goals(&windows)?)?
+            }
+            (None, None) => bail!("give a file of tracks, or --measure test"),
+        };
+        write_output(self.output.as_deref(), &text)
+    }
+
+    fn measure(&self, measure: Measure) -> anyhow::Result<String> {
+        self.machine.prepare()?;
+        let model = GoalModel::load(&self.model, self.machine.device)?;
+        let dataset = dataset(model.config().data.convention, self.data.as_deref())?;
+        let on = match measure {
+            Measure::Test => EvaluationSplit::Test,
+            Measure::Validation => EvaluationSplit::Validation,
+        };
+        let (evaluation, _) = ddl::evaluate_goals(&model, &dataset, on)?;
+        Ok(if self.json {
+            serde_json::to_string_pretty(&evaluation)? + "\n"
+        } else {
+            words(&evaluation)
+        })
+    }
+}
+
+fn csv(windows: &[Window], sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for (window, sets) in windows.iter().zip(sets) {
+        let last = window.frames()[ddl::data::OBSERVED - 1];
+        for (pedestrian, set) in window.pedestrians().iter().zip(sets) {
+            for (goal, (position, weight)) in set.goals().iter().zip(set.weights()).enumerate() {
+                writer.serialize(Row {
+                    observed_until: last,
+                    pedestrian: pedestrian.0,
+                    goal,
+                    weight: *weight,
+                    x: position[0],
+                    y: position[1],
+                })?;
             }
         }
-        let bytes = writer.into_inner().context("cannot finish the csv")?;
-        write_output(self.output.as_deref(), &String::from_utf8(bytes)?)
     }
+    let bytes = writer.into_inner().context("cannot finish the csv")?;
+    Ok(String::from_utf8(bytes)?)
+}
+
+/// The measurement for people.
+fn words(evaluation: &GoalEvaluation) -> String {
+    let mut text = format!(
+        "fold {}, {} goals a walker, {}\n{}\n{:14} {:>7}  {:>20}  {:>14}\n",
+        evaluation.fold,
+        evaluation.clusters,
+        evaluation.goals,
+        evaluation.windows,
+        "recording",
+        "walkers",
+        "nearest goal off (m)",
+        "likeliest (m)",
+    );
+    let all = ("all".to_owned(), evaluation.all);
+    let by_recording = evaluation.recordings.iter().map(|(n, e)| (n.clone(), *e));
+    for (name, errors) in by_recording.chain([all]) {
+        text += &format!(
+            "{name:14} {:>7}  {:>20.3}  {:>14.3}\n",
+            errors.walkers, errors.oracle_fde, errors.likeliest_fde
+        );
+    }
+    if let Some(calibration) = &evaluation.calibration {
+        text += &format!(
+            "probabilities: log loss {:.3} (equal ones {:.3}), calibration error {:.4}\n",
+            calibration.log_loss, calibration.uniform_log_loss, calibration.expected_error
+        );
+    }
+    text + &format!("estimated in {:.2} s\n", evaluation.seconds)
 }

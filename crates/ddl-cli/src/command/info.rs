@@ -29,7 +29,8 @@ impl Info {
                 json!({
                     "config": model.config(),
                     "parameters": model.parameter_count(),
-                    "experts": model.estimator().library().len(),
+                    "goal_parameters": model.goal_model().parameter_count(),
+                    "experts": model.goal_model().estimator().library().len(),
                     "epochs": model.run().metrics()?,
                 })
             }

@@ -3,11 +3,11 @@
 use super::{Machine, Telling, dataset};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
-use clap::Args;
+use anyhow::Context as _;
+use clap::{Args, ValueEnum};
 use ddl::data::Convention;
-use ddl::goal::GoalEstimatorParams;
-use ddl::star::{LearningRateSchedule, TrainingConfig};
-use ddl::{RunDirectory, TrainingRequest, Variant};
+use ddl::star::{LearningRateSchedule, ProposalTraining, TrainingConfig};
+use ddl::{GoalRecipe, RunDirectory, TrainingRequest, TrainingStage, TrainingStep, Variant};
 use std::path::PathBuf;
 
 /// Train a model on all scenes but one; resumes where an earlier run of the same command stopped
@@ -48,6 +48,21 @@ pub(crate) struct Train {
     /// Share of the training recordings' time, at their ends, kept for validation
     #[arg(long, default_value_t = 0.0)]
     validation: f64,
+    /// Training recordings kept for validation whole, such as uni_examples,zara03
+    #[arg(long, value_delimiter = ',')]
+    validation_recordings: Vec<String>,
+    /// Where goals come from: proposed by a network trained first, or retrieved from the training tracks
+    #[arg(long, value_enum, default_value_t = GoalsFrom::Proposed)]
+    goals: GoalsFrom,
+    /// Batches that the proposal network is trained on
+    #[arg(long, default_value_t = ProposalTraining::default().steps)]
+    proposal_steps: u64,
+    /// JSON file with all of it: the part `goals` of a run's config.json
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["goals", "proposal_steps"])]
+    goal_recipe: Option<PathBuf>,
+    /// Stop when the goals are trained; the same command without this goes on
+    #[arg(long)]
+    only_goals: bool,
     /// Directory of the run
     #[arg(long)]
     out: PathBuf,
@@ -57,11 +72,18 @@ pub(crate) struct Train {
     telling: Telling,
 }
 
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum GoalsFrom {
+    Proposed,
+    Retrieved,
+}
+
 impl Train {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         self.machine.prepare()?;
         let interrupt = Interrupt::catch()?;
         let dataset = dataset(self.convention, self.data.as_deref())?;
+        let goals = self.goal_recipe()?;
         let request = TrainingRequest {
             fold: self.fold,
             variant: self.variant,
@@ -75,18 +97,51 @@ impl Train {
                 ..TrainingConfig::default()
             },
             validation: self.validation,
-            goals: GoalEstimatorParams::default().seed(self.seed),
+            validation_recordings: self.validation_recordings,
+            goals,
+            until: if self.only_goals {
+                TrainingStage::Goals
+            } else {
+                TrainingStage::Network
+            },
             out: RunDirectory::new(self.out),
             device: self.machine.device,
             commit: self.telling.commit,
         };
-        let progress = Progress::new("train", self.telling.progress);
+        let goals = Progress::new("goals", self.telling.progress);
+        let network = Progress::new("train", self.telling.progress);
         ddl::train(&request, &dataset, |now| {
             let (done, total) = now.steps;
-            let (epoch, loss) = (now.step.epoch, now.step.loss);
-            progress.tell(done, total, &format!("epoch {epoch} loss {loss:.4}"));
+            match &now.step {
+                TrainingStep::Goals(step) => {
+                    goals.tell(done, total, &format!("within {:.2} m", step.distance));
+                }
+                TrainingStep::Network(step) => {
+                    let (epoch, loss) = (step.epoch, step.loss);
+                    network.tell(done, total, &format!("epoch {epoch} loss {loss:.4}"));
+                }
+            }
             interrupt.flow()
         })?;
         Ok(())
+    }
+
+    fn goal_recipe(&self) -> anyhow::Result<GoalRecipe> {
+        if let Some(path) = &self.goal_recipe {
+            let text = std::fs::read_to_string(path)
+                .with_context(|| format!("cannot read {}", path.display()))?;
+            return serde_json::from_str(&text)
+                .with_context(|| format!("{} is no recipe for goals", path.display()));
+        }
+        Ok(match self.goals {
+            GoalsFrom::Retrieved => GoalRecipe::retrieved(self.seed),
+            GoalsFrom::Proposed => {
+                let mut recipe = GoalRecipe::proposed(self.seed);
+                if let Some(proposal) = &mut recipe.proposal {
+                    proposal.training.steps = self.proposal_steps;
+                }
+                recipe
+            }
+        })
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! All are functions of a [`Scene`](crate::Scene): N pedestrians, K hypotheses, 12 frames, metres.
 
+pub mod calibration;
 pub mod collision;
 pub mod displacement;
 pub mod goal;

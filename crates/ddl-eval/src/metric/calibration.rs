@@ -1,0 +1,113 @@
+//! Whether probabilities mean what they say: of all goals given the probability p, a share p should
+//! turn out to be the nearest to the true end.
+//!
+//! ```text
+//! log loss = -1/N sum_i ln w_{i, k*(i)}      nats, k*(i) the hypothesis nearest the truth
+//! ```
+//!
+//! Equal weights have the log loss ln K. Reference: Guo et al., *On calibration of modern neural
+//! networks*, ICML 2017 (reliability diagram, expected calibration error).
+
+use serde::{Deserialize, Serialize};
+
+/// Bins of the reliability table, each with as many goals.
+const BINS: usize = 10;
+/// Smallest probability that is told from 0 in the log loss.
+const SMALLEST: f64 = 1e-6;
+
+/// Reliability of the probabilities of many sets of hypotheses.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Calibration {
+    /// Mean of -ln of the probability given to the nearest hypothesis, nats; probabilities below 1e-6
+    /// count as that.
+    pub log_loss: f64,
+    /// What equal probabilities would have: ln K, averaged over the sets.
+    pub uniform_log_loss: f64,
+    /// Mean over the bins of |predicted - observed|, weighted by their size.
+    pub expected_error: f64,
+    /// By rising probability; fewer than ten where there are few hypotheses.
+    pub bins: Vec<CalibrationBin>,
+}
+
+/// Hypotheses of about the same probability.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CalibrationBin {
+    /// Their mean probability.
+    pub predicted: f64,
+    /// Share of them that were the nearest to the truth.
+    pub observed: f64,
+    /// How many there are.
+    pub count: usize,
+}
+
+impl Calibration {
+    /// Of sets of probabilities, each with the index of the hypothesis that was nearest to the truth.
+    ///
+    /// `None` without sets.
+    ///
+    /// # Panics
+    /// When an index is out of range.
+    #[must_use]
+    pub fn of<'a>(sets: impl IntoIterator<Item = (&'a [f64], usize)>) -> Option<Self> {
+        let mut all: Vec<(f64, bool)> = Vec::new();
+        let (mut count, mut loss, mut uniform) = (0_usize, 0.0, 0.0);
+        for (weights, nearest) in sets {
+            count += 1;
+            loss -= weights[nearest].max(SMALLEST).ln();
+            uniform += (weights.len() as f64).ln();
+            all.extend(weights.iter().enumerate().map(|(k, &w)| (w, k == nearest)));
+        }
+        if count == 0 {
+            return None;
+        }
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let bin = |members: &[(f64, bool)]| {
+            let size = members.len() as f64;
+            CalibrationBin {
+                predicted: members.iter().map(|(w, _)| w).sum::<f64>() / size,
+                observed: members.iter().filter(|(_, nearest)| *nearest).count() as f64 / size,
+                count: members.len(),
+            }
+        };
+        let bins: Vec<_> = all.chunks(all.len().div_ceil(BINS)).map(bin).collect();
+        let off = |bin: &CalibrationBin| (bin.predicted - bin.observed).abs() * bin.count as f64;
+        Some(Self {
+            log_loss: loss / count as f64,
+            uniform_log_loss: uniform / count as f64,
+            expected_error: bins.iter().map(off).sum::<f64>() / all.len() as f64,
+            bins,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+
+    #[test]
+    fn probabilities_that_come_true_have_no_error() {
+        // Of two goals, the likelier (0.75) is the nearest three times out of four.
+        let weights = [0.75, 0.25];
+        let sets: Vec<_> = (0..400)
+            .map(|i| (&weights[..], usize::from(i % 4 == 0)))
+            .collect();
+        let calibration = Calibration::of(sets).unwrap();
+        let entropy = -(0.75 * 0.75_f64.ln() + 0.25 * 0.25_f64.ln());
+        assert_relative_eq!(calibration.log_loss, entropy, epsilon = 1e-12);
+        assert_relative_eq!(calibration.uniform_log_loss, 2.0_f64.ln(), epsilon = 1e-12);
+        assert!(calibration.expected_error < 0.01);
+        assert_eq!(calibration.bins.len(), 10);
+    }
+
+    #[test]
+    fn overconfidence_shows() {
+        let weights = [1.0, 0.0];
+        let sets: Vec<_> = (0..100).map(|i| (&weights[..], i % 2)).collect();
+        let calibration = Calibration::of(sets).unwrap();
+        assert_relative_eq!(calibration.expected_error, 0.5, epsilon = 1e-12);
+        assert_relative_eq!(calibration.log_loss, -0.5 * SMALLEST.ln(), epsilon = 1e-12);
+        assert_eq!(Calibration::of([]), None);
+    }
+}

@@ -1,0 +1,57 @@
+//! Changes to a batch that leave a plausible scene: mirrored, turned, enlarged, observed less well.
+//!
+//! A fold's windows overlap: some ten thousand of them show about a thousand different walkers. What
+//! identifies a walker must therefore change from visit to visit, or it is learned by heart.
+
+use super::config::ProposalTraining;
+use super::data::Views;
+use tch::{Kind, Tensor};
+
+/// Standard deviation of what is added to each of a neighbour's positions (metres).
+const NEIGHBOUR_NOISE: f64 = 0.02;
+
+/// Augments a batch with numbers from libtorch's generator.
+///
+/// # Shapes
+/// `views` `[M, B, ..]`, `future` `[M, B, 12, 2]`; the same come back.
+pub(crate) fn augment(
+    views: &Views,
+    future: &Tensor,
+    training: &ProposalTraining,
+) -> (Views, Tensor) {
+    let size = future.size();
+    let per_walker = [size[0], size[1]];
+    let options = (future.kind(), future.device());
+    let uniform = || Tensor::rand(per_walker, options) * 2.0 - 1.0;
+    let scale = (uniform() * training.scale).exp();
+    let mirror = uniform().sign();
+    let angle = Tensor::randn(per_walker, options) * training.turn;
+    let (cos, sin) = (&scale * angle.cos(), &scale * angle.sin());
+    // Row vectors: p' = p [[cos, sin], [-m sin, m cos]], a turn after a mirror image in the x axis.
+    let matrix = Tensor::stack(
+        &[
+            Tensor::stack(&[cos.shallow_clone(), sin.shallow_clone()], -1),
+            Tensor::stack(&[-(&mirror * &sin), &mirror * &cos], -1),
+        ],
+        -2,
+    );
+    let noise = |tensor: &Tensor, deviation: f64| tensor.randn_like() * deviation;
+    let neighbours = views.neighbours.matmul(&matrix.unsqueeze(2));
+    let whole_track = neighbours.narrow(3, 0, 1);
+    let neighbours = &neighbours
+        + noise(&whole_track, training.neighbour_jitter)
+        + noise(&neighbours, NEIGHBOUR_NOISE);
+    let seeing = Tensor::rand(per_walker, options)
+        .ge(training.blindness)
+        .to_kind(Kind::Float)
+        .to_kind(options.0)
+        .unsqueeze(-1);
+    let own = views.own.matmul(&matrix);
+    let own = &own + noise(&own, training.jitter);
+    let augmented = Views {
+        own,
+        neighbours,
+        present: &views.present * seeing,
+    };
+    (augmented, future.matmul(&matrix))
+}

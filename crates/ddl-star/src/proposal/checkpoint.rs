@@ -1,0 +1,66 @@
+//! The state of a training under way, as one file.
+
+use super::trainer::Progress;
+use crate::StarError;
+use crate::checkpoint::{bad, find, plain, read, write};
+use crate::optimizer::Adam;
+use crate::parameters::Parameters;
+use std::path::Path;
+use tch::{Kind, Tensor};
+
+const TENSORS: [&str; 4] = ["parameters", "average", "first_moment", "second_moment"];
+const PROGRESS: &str = "progress";
+
+pub(super) fn save(
+    parameters: &Parameters,
+    average: &Tensor,
+    adam: &Adam,
+    progress: Progress,
+    path: &Path,
+) -> Result<(), StarError> {
+    let all = [
+        parameters.flat(),
+        average,
+        &adam.first_moment,
+        &adam.second_moment,
+    ];
+    let mut tensors: Vec<(String, Tensor)> = TENSORS
+        .iter()
+        .zip(all)
+        .map(|(name, tensor)| ((*name).to_owned(), plain(tensor)))
+        .collect();
+    let numbers = Tensor::from_slice(&[progress.steps as f64, progress.distance]);
+    tensors.push((PROGRESS.to_owned(), numbers));
+    write(&tensors, path)
+}
+
+/// Restores all of it; nothing is changed when the file is not whole.
+pub(super) fn load(
+    parameters: &Parameters,
+    average: &mut Tensor,
+    adam: &mut Adam,
+    path: &Path,
+) -> Result<Progress, StarError> {
+    let tensors = read(path, parameters.count() as u64 * TENSORS.len() as u64 * 8)?;
+    let (size, kind) = (parameters.flat().size(), parameters.flat().kind());
+    let stored = TENSORS
+        .iter()
+        .map(|name| find(&tensors, name, &size, kind, path))
+        .collect::<Result<Vec<_>, _>>()?;
+    let numbers: Vec<f64> = Vec::try_from(find(&tensors, PROGRESS, &[2], Kind::Double, path)?)?;
+    let steps = numbers[0];
+    if steps < 0.0 || steps.fract() != 0.0 {
+        let problem = format!("the step count is {steps}, not a whole number");
+        return Err(bad(path, problem));
+    }
+    let _guard = tch::no_grad_guard();
+    parameters.flat().shallow_clone().f_copy_(stored[0])?;
+    average.f_copy_(stored[1])?;
+    adam.first_moment.f_copy_(stored[2])?;
+    adam.second_moment.f_copy_(stored[3])?;
+    adam.set_steps(steps as u64);
+    Ok(Progress {
+        steps: steps as u64,
+        distance: numbers[1],
+    })
+}

@@ -1,0 +1,107 @@
+//! What the network sees of a walker, and the same for many walkers as tensors.
+
+use super::config::ProposalConfig;
+use crate::StarError;
+use ddl_data::{HORIZON, OBSERVED, Position};
+use tch::{Device, Kind, Tensor};
+
+/// A walker and the walkers nearby over the observed steps, in the walker's own frame (metres): the
+/// last own position is the origin and the heading is +x.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WalkerView {
+    /// The walker.
+    pub own: [Position; OBSERVED],
+    /// Others in the scene, nearest first at the last observed step; may be empty, and longer than
+    /// what the network looks at.
+    pub neighbours: Vec<[Position; OBSERVED]>,
+}
+
+/// A walker with its future, in the frame of the view (metres).
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProposalExample {
+    /// What was observed.
+    pub view: WalkerView,
+    /// What followed.
+    pub future: [Position; HORIZON],
+}
+
+/// Views as tensors.
+///
+/// # Shapes
+/// `own` `[.., T, 2]`, `neighbours` `[.., J, T, 2]`, `present` `[.., J]` (1 or 0), with T = 8.
+#[derive(Debug)]
+pub(crate) struct Views {
+    pub(crate) own: Tensor,
+    pub(crate) neighbours: Tensor,
+    pub(crate) present: Tensor,
+}
+
+impl Views {
+    pub(crate) fn new<'a>(
+        views: impl ExactSizeIterator<Item = &'a WalkerView>,
+        config: &ProposalConfig,
+        device: Device,
+        kind: Kind,
+    ) -> Result<Self, StarError> {
+        let (count, slots) = (views.len() as i64, config.neighbours);
+        let track = (OBSERVED * 2) as i64;
+        let (mut own, mut neighbours, mut present) = (Vec::new(), Vec::new(), Vec::new());
+        for view in views {
+            own.extend_from_slice(view.own.as_flattened());
+            let taken = view.neighbours.len().min(slots);
+            for neighbour in &view.neighbours[..taken] {
+                neighbours.extend_from_slice(neighbour.as_flattened());
+            }
+            neighbours.resize(neighbours.len() + (slots - taken) * OBSERVED * 2, 0.0);
+            present.extend((0..slots).map(|slot| f64::from(u8::from(slot < taken))));
+        }
+        let tensor = |values: &[f64], shape: &[i64]| -> Result<Tensor, StarError> {
+            Ok(Tensor::f_from_slice(values)?
+                .f_reshape(shape)?
+                .to_kind(kind)
+                .to_device(device))
+        };
+        let slots = slots as i64;
+        Ok(Self {
+            own: tensor(&own, &[count, track / 2, 2])?,
+            neighbours: tensor(&neighbours, &[count, slots, track / 2, 2])?,
+            present: tensor(&present, &[count, slots])?,
+        })
+    }
+
+    /// The views of the given rows, in the shape of `rows`.
+    ///
+    /// # Shapes
+    /// `rows` `[M, B]` -> tensors `[M, B, ..]`.
+    pub(crate) fn rows(&self, rows: &Tensor) -> Self {
+        let take = |tensor: &Tensor| rows_of(tensor, rows);
+        Self {
+            own: take(&self.own),
+            neighbours: take(&self.neighbours),
+            present: take(&self.present),
+        }
+    }
+
+    /// The same walkers for each of `members` members: `[B, ..]` -> `[M, B, ..]`, without a copy.
+    pub(crate) fn for_each_of(&self, members: i64) -> Self {
+        let repeat = |tensor: &Tensor| {
+            let mut shape = tensor.size();
+            shape.insert(0, members);
+            tensor.unsqueeze(0).expand(shape.as_slice(), false)
+        };
+        Self {
+            own: repeat(&self.own),
+            neighbours: repeat(&self.neighbours),
+            present: repeat(&self.present),
+        }
+    }
+}
+
+/// Rows of `tensor` `[N, ..]` by `rows` `[M, B]` -> `[M, B, ..]`.
+pub(crate) fn rows_of(tensor: &Tensor, rows: &Tensor) -> Tensor {
+    let mut shape = rows.size();
+    shape.extend_from_slice(&tensor.size()[1..]);
+    tensor
+        .index_select(0, &rows.reshape([-1]))
+        .reshape(shape.as_slice())
+}

@@ -1,0 +1,204 @@
+//! Training of the proposal network, one step at a time.
+
+use super::augment::augment;
+use super::checkpoint;
+use super::config::ProposalTraining;
+use super::data::{ProposalExample, Views, rows_of};
+use super::loss::{LossWeights, winner_takes_all};
+use super::network::ProposalNetwork;
+use crate::StarError;
+use crate::optimizer::Adam;
+use crate::seed::{GENERATOR, Stage, stream};
+use crate::training_config::LearningRateSchedule;
+use rand::{Rng as _, RngExt as _};
+use std::path::Path;
+use std::sync::PoisonError;
+use tch::Tensor;
+
+/// Share of the past that the running mean of the weights keeps at each step.
+const AVERAGE: f64 = 0.999;
+/// Share of the past that the reported distance keeps at each step.
+const REPORTED: f64 = 0.98;
+
+/// What one step did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProposalStep {
+    /// Steps done, this one included.
+    pub done: u64,
+    /// Running mean of the training distance (metres): relaxed at first, of the nearest end at last.
+    pub distance: f64,
+}
+
+/// How far a training has come.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Progress {
+    pub(super) steps: u64,
+    pub(super) distance: f64,
+}
+
+/// A proposal network in training. Every step draws from its own random stream, so that a run that
+/// was stopped, saved and resumed gives the same weights as one that was not.
+#[derive(Debug)]
+pub struct ProposalTrainer {
+    network: ProposalNetwork,
+    adam: Adam,
+    /// Running mean of the weights, which is what is used in the end.
+    average: Tensor,
+    views: Views,
+    future: Tensor,
+    training: ProposalTraining,
+    progress: Progress,
+}
+
+impl ProposalTrainer {
+    /// Prepares training on the examples.
+    ///
+    /// # Errors
+    /// [`StarError::Config`] for a bad configuration, [`StarError::NoTrainingWindows`] without
+    /// examples.
+    pub fn new(
+        network: ProposalNetwork,
+        examples: &[ProposalExample],
+        training: ProposalTraining,
+    ) -> Result<Self, StarError> {
+        training.check()?;
+        if examples.is_empty() {
+            return Err(StarError::NoTrainingWindows);
+        }
+        let (device, kind) = (network.device().torch(), network.kind());
+        let views = Views::new(
+            examples.iter().map(|example| &example.view),
+            network.config(),
+            device,
+            kind,
+        )?;
+        let future: Vec<f64> = examples
+            .iter()
+            .flat_map(|example| example.future.as_flattened())
+            .copied()
+            .collect();
+        let future = Tensor::f_from_slice(&future)?
+            .f_reshape([examples.len() as i64, -1, 2])?
+            .to_kind(kind)
+            .to_device(device);
+        Ok(Self {
+            adam: Adam::new(network.parameters()),
+            average: network.parameters().flat().detach().copy(),
+            network,
+            views,
+            future,
+            training,
+            progress: Progress::default(),
+        })
+    }
+
+    /// Steps done, and steps in all.
+    pub fn steps(&self) -> (u64, u64) {
+        (self.progress.steps, self.training.steps)
+    }
+
+    /// Whether all steps are done.
+    pub fn is_finished(&self) -> bool {
+        self.progress.steps >= self.training.steps
+    }
+
+    /// Ends training and hands the network over, with the running mean of its weights.
+    ///
+    /// # Errors
+    /// [`StarError::Torch`] when libtorch fails.
+    pub fn into_network(self) -> Result<ProposalNetwork, StarError> {
+        let _guard = tch::no_grad_guard();
+        let mut flat = self.network.parameters().flat().shallow_clone();
+        flat.f_copy_(&self.average)?;
+        Ok(self.network)
+    }
+
+    /// Saves weights, their mean, the optimiser and the progress to one file.
+    ///
+    /// # Errors
+    /// When the file cannot be written; an earlier one is then left as it was.
+    pub fn save(&self, path: &Path) -> Result<(), StarError> {
+        let parameters = self.network.parameters();
+        checkpoint::save(parameters, &self.average, &self.adam, self.progress, path)
+    }
+
+    /// Goes on from a saved state of the same run.
+    ///
+    /// # Errors
+    /// [`StarError::Checkpoint`] when the file is not a whole state of this network.
+    pub fn resume(&mut self, path: &Path) -> Result<(), StarError> {
+        let parameters = self.network.parameters();
+        self.progress = checkpoint::load(parameters, &mut self.average, &mut self.adam, path)?;
+        Ok(())
+    }
+
+    /// One batch for every member: forward, backward, clipped Adam step.
+    ///
+    /// # Errors
+    /// [`StarError::ProposalNonFinite`] when loss or gradient is no longer a number; the weights are
+    /// then those before the step.
+    pub fn step(&mut self) -> Result<ProposalStep, StarError> {
+        let step = self.progress.steps;
+        let training = &self.training;
+        let (rows, views, future) = self.batch(step);
+        let weights = LossWeights {
+            relaxed: training.relaxed_at(step),
+            waypoints: training.waypoint_weight,
+            probability: training.probability_weight,
+        };
+        let proposals = self.network.forward(&views);
+        let (loss, distance) = winner_takes_all(&proposals, &future, weights);
+        let parameters = self.network.parameters();
+        let gradients = parameters.gradients(&loss)?;
+        let flat: Vec<Tensor> = gradients.iter().map(|g| g.reshape([-1])).collect();
+        let gradient = Tensor::cat(&flat, 0);
+        let norm = gradient.norm();
+        let (distance, norm_value) = (distance.double_value(&[]), norm.double_value(&[]));
+        for (quantity, value) in [("loss", distance), ("gradient norm", norm_value)] {
+            if !value.is_finite() {
+                let example = rows.int64_value(&[0, 0]) as usize;
+                return Err(StarError::ProposalNonFinite {
+                    step,
+                    quantity,
+                    value,
+                    example,
+                });
+            }
+        }
+        let rate =
+            training.learning_rate * LearningRateSchedule::Cosine.factor(step, training.steps);
+        // Members learn apart: the norm of all their gradients grows with the root of their number.
+        let clip = training.gradient_clip * (self.network.config().members as f64).sqrt();
+        self.adam.step(parameters, &gradient, &norm, clip, rate);
+        let _guard = tch::no_grad_guard();
+        // Young means follow quickly, so that the initial weights are soon forgotten.
+        let kept = AVERAGE.min((step as f64 + 1.0) / (step as f64 + 10.0));
+        let _ = self.average.lerp_(&parameters.flat().detach(), 1.0 - kept);
+        let kept = if step == 0 { 0.0 } else { REPORTED };
+        self.progress.distance = kept * self.progress.distance + (1.0 - kept) * distance;
+        self.progress.steps += 1;
+        Ok(ProposalStep {
+            done: self.progress.steps,
+            distance: self.progress.distance,
+        })
+    }
+
+    /// The rows `[M, B]` of a step, drawn for each member, and their augmented views and futures.
+    fn batch(&self, step: u64) -> (Tensor, Views, Tensor) {
+        let mut rng = stream(self.training.seed, Stage::ProposalStep, step);
+        let (members, batch) = (self.network.config().members, self.training.batch);
+        let examples = self.future.size()[0];
+        let rows: Vec<i64> = (0..members * batch)
+            .map(|_| rng.random_range(0..examples))
+            .collect();
+        let rows = Tensor::from_slice(&rows)
+            .reshape([members, batch])
+            .to_device(self.future.device());
+        let (views, future) = (self.views.rows(&rows), rows_of(&self.future, &rows));
+        // Held from seeding to the last draw.
+        let _generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
+        tch::manual_seed((rng.next_u64() >> 1).cast_signed());
+        let (views, future) = augment(&views, &future, &self.training);
+        (rows, views, future)
+    }
+}

@@ -1,0 +1,50 @@
+//! The first stage of a training: what the goals come from.
+
+use crate::run_directory::RunDirectory;
+use crate::training::SAVE_EVERY;
+use crate::{DdlError, ProposalRecipe, experts, views};
+use ddl_data::Window;
+use ddl_goal::GoalError;
+use ddl_star::{ComputeDevice, ProposalNetwork, ProposalStep, ProposalTrainer, save_parameters};
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+/// Writes the expert library and trains the proposal network, whatever of it is not there yet.
+pub(crate) fn train(
+    recipe: Option<&ProposalRecipe>,
+    windows: &[Window],
+    run: &RunDirectory,
+    device: ComputeDevice,
+    mut observe: impl FnMut((u64, u64), &ProposalStep) -> ControlFlow<()>,
+) -> Result<(), DdlError> {
+    if !run.experts().is_file() {
+        experts::save(&experts::library(windows)?, &run.experts())?;
+    }
+    let Some(recipe) = recipe.filter(|_| !run.proposal().is_file()) else {
+        return Ok(());
+    };
+    let examples = views::examples(windows, recipe.network.neighbours).map_err(GoalError::from)?;
+    let network = ProposalNetwork::new(recipe.network.clone(), recipe.training.seed, device)?;
+    let mut trainer = ProposalTrainer::new(network, &examples, recipe.training.clone())?;
+    drop(examples);
+    let state = run.proposal_state();
+    if state.is_file() {
+        trainer.resume(&state)?;
+    }
+    let mut saved = Instant::now();
+    while !trainer.is_finished() {
+        let step = trainer.step()?;
+        let stop = observe(trainer.steps(), &step).is_break();
+        if stop || saved.elapsed() > SAVE_EVERY {
+            trainer.save(&state)?;
+            saved = Instant::now();
+        }
+        if stop {
+            return Err(DdlError::Interrupted);
+        }
+    }
+    save_parameters(trainer.into_network()?.parameters(), &run.proposal())?;
+    // of no use any more; a file that cannot be removed does no harm
+    let _ = std::fs::remove_file(&state);
+    Ok(())
+}

@@ -1,0 +1,66 @@
+//! What a proposal network sees of the walkers of a window.
+
+use ddl_data::{OBSERVED, Position, Window};
+use ddl_goal::{HeadingFrame, TrackError};
+use ddl_star::{ProposalExample, WalkerView};
+
+/// A walker's own frame, and what is seen from it.
+#[derive(Debug)]
+pub(crate) struct Seen {
+    pub(crate) frame: HeadingFrame,
+    pub(crate) view: WalkerView,
+}
+
+/// Every pedestrian of a window with its `neighbours` nearest others, from the observed frames.
+///
+/// # Errors
+/// When positions are too far apart for their differences to be finite.
+pub(crate) fn of_window(window: &Window, neighbours: usize) -> Result<Vec<Seen>, TrackError> {
+    (0..window.len())
+        .map(|i| {
+            let frame = HeadingFrame::new(window.observed(i))?;
+            let view = WalkerView {
+                own: in_frame(&frame, window.observed(i)),
+                neighbours: nearest(window, i, neighbours)
+                    .map(|j| in_frame(&frame, window.observed(j)))
+                    .collect(),
+            };
+            Ok(Seen { frame, view })
+        })
+        .collect()
+}
+
+/// Every pedestrian of the windows with its future, to learn from; windows without one are left out.
+///
+/// # Errors
+/// As [`of_window`].
+pub(crate) fn examples(
+    windows: &[Window],
+    neighbours: usize,
+) -> Result<Vec<ProposalExample>, TrackError> {
+    let mut examples = Vec::new();
+    for window in windows.iter().filter(|window| window.has_future()) {
+        for (i, seen) in of_window(window, neighbours)?.into_iter().enumerate() {
+            let future = in_frame(&seen.frame, &window.track(i)[OBSERVED..]);
+            let view = seen.view;
+            examples.push(ProposalExample { view, future });
+        }
+    }
+    Ok(examples)
+}
+
+/// The others of a window, nearest to pedestrian `i` at the last observed frame first.
+fn nearest(window: &Window, i: usize, count: usize) -> impl Iterator<Item = usize> {
+    let last = |j: usize| window.observed(j)[OBSERVED - 1];
+    let here = last(i);
+    let mut others: Vec<(f64, usize)> = (0..window.len())
+        .filter(|&j| j != i)
+        .map(|j| ((last(j)[0] - here[0]).hypot(last(j)[1] - here[1]), j))
+        .collect();
+    others.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    others.into_iter().take(count).map(|(_, j)| j)
+}
+
+fn in_frame<const T: usize>(frame: &HeadingFrame, track: &[Position]) -> [Position; T] {
+    std::array::from_fn(|t| frame.to_frame(track[t]))
+}
