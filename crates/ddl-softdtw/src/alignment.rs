@@ -1,4 +1,8 @@
 //! The backward recursion: the expected alignment of two sequences, and the gradients it gives.
+#![expect(
+    clippy::inline_always,
+    reason = "the lanes stay in registers only when what works on them is inlined"
+)]
 
 use crate::cost::{Cost, Length, Metric, Squared};
 use crate::exp2::{LANES, Lanes};
@@ -17,12 +21,17 @@ impl Record for Shares {
     fn step(&mut self, addends: &[Lanes; 3], sums: &Lanes) {
         let mut shares = *addends;
         for l in 0..LANES {
-            let scale = 1.0 / sums[l];
+            // A plain number is 0 where no path comes.
+            let scale = if sums[l] > 0.0 { 1.0 / sums[l] } else { 0.0 };
             for share in &mut shares {
                 share[l] *= scale;
             }
         }
         self.steps.push(shares);
+    }
+
+    fn restart(&mut self) {
+        self.steps.clear();
     }
 }
 
@@ -37,8 +46,12 @@ struct Gathered<const D: usize> {
 impl<T: Scalar, const D: usize> Grid<'_, T, D> {
     /// The value and its gradients, or `None` where the log domain must be used (as [`Grid::value`]).
     ///
-    /// E(i, j) = E(i+1, j+1) s_diagonal(i+1, j+1) + E(i+1, j) s_up(i+1, j) + E(i, j+1) s_left(i, j+1), with the shares s
-    /// of the ways into a cell: the strips of the forward recursion, backwards.
+    /// ```text
+    /// E(i, j) = E(i+1, j+1) d(i+1, j+1) + E(i+1, j) u(i+1, j) + E(i, j+1) l(i, j+1)
+    /// ```
+    ///
+    /// with the shares d, u, l of the diagonal, the upper and the left way into a cell: the strips of the forward
+    /// recursion, backwards.
     pub(crate) fn gradients(&self) -> Option<Gradients<D>> {
         let mut shares = Shares {
             steps: Vec::with_capacity(self.steps()),
@@ -90,10 +103,8 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         gathered: &mut Gathered<D>,
     ) -> [[f64; D]; LANES] {
         let (start, end) = (strip.start, strip.end);
-        let columns = self.columns.len();
         let arriving = &mut gathered.arriving[..end + LANES];
         let mut of_rows = [[0.0; D]; LANES];
-        let mut of_columns = [[0.0; D]; LANES];
         let mut y = self.window(end);
         // What the step before (the next column) sent left, and up and along the diagonal to the lane above.
         let mut left = [0.0; LANES];
@@ -103,7 +114,6 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
             let d = start + offset;
             if d < end {
                 y = [y[1], y[2], y[3], self.column(d, LANES - 1)];
-                of_columns = [of_columns[1], of_columns[2], of_columns[3], [0.0; D]];
             }
             let from_below = [above[1], above[2], above[3], arriving[d]];
             arriving[d] = 0.0;
@@ -117,32 +127,24 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
             }
             for l in 0..LANES {
                 let slope = metric.slope(&strip.x[l], &y[l]);
+                let mut part = [0.0; D];
                 for k in 0..D {
-                    let part = expected[l] * slope[k];
-                    of_rows[l][k] += part;
-                    of_columns[l][k] -= part;
+                    part[k] = expected[l] * slope[k];
+                    of_rows[l][k] += part[k];
+                }
+                // Beyond the first and the last column nothing is expected.
+                let column = gathered.of_columns.get_mut(d.wrapping_sub(l));
+                if let Some(of_column) = column {
+                    for k in 0..D {
+                        of_column[k] -= part[k];
+                    }
                 }
             }
             // Lane 0 sends to the strip above: up to its own column, where the diagonal of the next column arrives too.
             arriving[d + LANES - 1] += above[0];
-            if d < columns {
-                add(&mut gathered.of_columns[d], &of_columns[0]);
-            }
         }
-        // What lane 0 of the first step sends along its diagonal, and the columns that had not yet left the lanes.
+        // What lane 0 of the first step sends along its diagonal.
         arriving[start + LANES - 2] += diagonal[0];
-        for (l, of_column) in of_columns.iter().enumerate().skip(1) {
-            let column = start.checked_sub(l);
-            if let Some(sum) = column.and_then(|c| gathered.of_columns.get_mut(c)) {
-                add(sum, of_column);
-            }
-        }
         of_rows
-    }
-}
-
-fn add<const D: usize>(into: &mut [f64; D], by: &[f64; D]) {
-    for (into, by) in into.iter_mut().zip(by) {
-        *into += by;
     }
 }

@@ -60,3 +60,41 @@ impl Band {
         first..=end
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::Band;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn ranges_hold_the_cells_of_the_definition_and_are_connected(
+            n in 1..40_usize, m in 1..40_usize, radius in 0..45_usize,
+        ) {
+            let reach = (2 * radius).max(1) * (n.max(m) - 1);
+            let mut before = 0..=0;
+            for i in 0..n {
+                let range = Band::new(radius).columns(i, n, m);
+                for j in 0..m {
+                    let inside = 2 * (i * (m - 1)).abs_diff(j * (n - 1)) <= reach;
+                    prop_assert_eq!(range.contains(&j), inside, "cell {} {}", i, j);
+                }
+                // A path can step from the row above into this one, and both ends only grow.
+                prop_assert!(range.start() <= range.end() && *range.start() <= before.end() + 1);
+                prop_assert!(range.start() >= before.start() && range.end() >= before.end());
+                before = range;
+            }
+            prop_assert_eq!(*before.end(), m - 1);
+        }
+    }
+
+    #[test]
+    fn the_largest_radius_is_no_band() {
+        assert_eq!(Band::new(usize::MAX).columns(3, 7, 9), 0..=8);
+        assert_eq!(Band::new(0).columns(0, 1, 9), 0..=8);
+        assert_eq!(Band::new(0).columns(0, 1, 1), 0..=0);
+    }
+}

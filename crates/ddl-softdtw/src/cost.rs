@@ -1,4 +1,8 @@
 //! The cost of matching one step of `x` with one step of `y`.
+#![expect(
+    clippy::inline_always,
+    reason = "the lanes stay in registers only when what works on them is inlined"
+)]
 
 use crate::grid::widened;
 use crate::scalar::Scalar;

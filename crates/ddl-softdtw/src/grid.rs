@@ -1,4 +1,8 @@
 //! The grid of all pairs of steps, cut into strips of a few rows.
+#![expect(
+    clippy::inline_always,
+    reason = "the lanes stay in registers only when what works on them is inlined"
+)]
 
 use std::ops::RangeInclusive;
 

@@ -17,6 +17,7 @@ mod sieve;
 mod softmin;
 mod value;
 mod wavefront;
+mod weight;
 
 pub use band::Band;
 pub use cost::Cost;

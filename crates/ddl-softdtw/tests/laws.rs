@@ -1,7 +1,8 @@
 //! What soft-DTW must satisfy whatever the sequences.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
-use ddl_softdtw::{Cost, SoftDtw, SoftDtwError};
+use ddl_softdtw::{Band, Cost, SoftDtw, SoftDtwError};
 use proptest::prelude::*;
 
 type Sequence = Vec<[f64; 2]>;
@@ -124,6 +125,36 @@ proptest! {
     }
 
     #[test]
+    fn the_fast_recursion_is_the_log_domain_within_both_bounds(
+        x in prop::collection::vec(prop::array::uniform2(-1.0..1.0_f64), 1..40),
+        y in prop::collection::vec(prop::array::uniform2(-1.0..1.0_f64), 1..40),
+        gamma in -5.0..4.0_f64, scale in -2.0..4.0_f64, cost in cost(),
+    ) {
+        let scaled = |s: &Sequence| s.iter().map(|p| p.map(|v| v * 10.0_f64.powf(scale))).collect::<Vec<_>>();
+        let (x, y, gamma) = (scaled(&x), scaled(&y), 10.0_f64.powf(gamma));
+        let (fast, slow) = (dtw(gamma, cost).value(&x, &y)?, dtw(gamma, cost).log_domain_value(&x, &y)?);
+        let path = (x.len() + y.len()) as f64;
+        let bound = (14.0 + 2.0 * path) * f64::EPSILON / 2.0 * (slow.abs() + gamma * path);
+        prop_assert!((fast - slow).abs() <= bound, "{} {}", fast, slow);
+    }
+
+    #[test]
+    fn f32_is_f64_rounded_once(
+        x in prop::collection::vec(prop::array::uniform2(-3.0..3.0_f32), 1..12),
+        y in prop::collection::vec(prop::array::uniform2(-3.0..3.0_f32), 1..12),
+        gamma in 0.0..3.0_f64, cost in cost(),
+    ) {
+        let wide = |s: &[[f32; 2]]| s.iter().map(|p| p.map(f64::from)).collect::<Vec<_>>();
+        let dtw = dtw(gamma, cost);
+        prop_assert_eq!(dtw.value(&x, &y)?, dtw.value(&wide(&x), &wide(&y))? as f32);
+        prop_assert_eq!(dtw.normalised(&x, &y)?, dtw.normalised(&wide(&x), &wide(&y))? as f32);
+        let (_, narrow) = dtw.normalised_and_gradient(&x, &y)?;
+        let (_, wide) = dtw.normalised_and_gradient(&wide(&x), &wide(&y))?;
+        let rounded: Vec<_> = wide.iter().map(|p| p.map(|v| v as f32)).collect();
+        prop_assert_eq!(narrow, rounded);
+    }
+
+    #[test]
     fn the_gradient_is_the_slope(x in sequence(), y in sequence(), gamma in 0.05..3.0_f64, cost in cost()) {
         let dtw = dtw(gamma, cost);
         // Where two steps nearly coincide the Euclidean cost has a kink that finite differences step over.
@@ -166,16 +197,20 @@ proptest! {
     }
 
     #[test]
-    fn the_gradient_of_a_translation_invariant_value_sums_to_that_of_y(
+    fn the_gradients_of_a_translation_invariant_value_sum_to_0(
         x in sequence(), y in sequence(), gamma in 0.0..3.0_f64, cost in cost(),
     ) {
         let dtw = dtw(gamma, cost);
-        let (_, of_x) = dtw.value_and_gradient(&x, &y)?;
-        let (_, of_y) = dtw.value_and_gradient(&y, &x)?;
-        // With one best path of several equally good ones (gamma = 0) the two may differ; generic inputs have one.
+        let (value, of_x, of_y) = dtw.value_and_gradients(&x, &y)?;
+        prop_assert_eq!((value, of_x.clone()), dtw.value_and_gradient(&x, &y)?);
         for d in 0..2 {
             let total: f64 = of_x.iter().chain(&of_y).map(|g| g[d]).sum();
             prop_assert!(total.abs() < 1e-9, "{}", total);
+        }
+        // With several best paths (gamma = 0) the two orders may follow different ones; generic inputs have one.
+        let (_, swapped) = dtw.value_and_gradient(&y, &x)?;
+        for (a, b) in of_y.as_flattened().iter().zip(swapped.as_flattened()) {
+            prop_assert!((a - b).abs() < 1e-9, "{} {}", a, b);
         }
     }
 
@@ -183,15 +218,26 @@ proptest! {
     fn no_finite_input_gives_nan(
         x in prop::collection::vec(prop::array::uniform2(prop::num::f64::NORMAL | prop::num::f64::ZERO | prop::num::f64::SUBNORMAL), 1..6),
         y in prop::collection::vec(prop::array::uniform2(prop::num::f64::NORMAL | prop::num::f64::ZERO), 1..6),
-        gamma in prop_oneof![Just(0.0), Just(f64::MIN_POSITIVE), Just(1e-3), Just(1.0), Just(1e300)],
-        cost in cost(),
+        gamma in prop_oneof![Just(0.0), Just(f64::MIN_POSITIVE / 4.0), Just(1e-3), Just(1.0), Just(1e300), Just(f64::MAX)],
+        cost in cost(), radius in prop::option::of(0..4_usize), tiny in any::<bool>(),
     ) {
-        let dtw = dtw(gamma, cost);
+        let free = dtw(gamma, cost);
+        let dtw = radius.map_or(free, |radius| free.with_band(Band::new(radius)));
+        // Components of every size, or all of them small enough for their squares.
+        let shrunk = |s: &Sequence| s.iter().map(|p| p.map(|v| if tiny { v % 1e150 } else { v })).collect::<Vec<_>>();
+        let (x, y) = (shrunk(&x), shrunk(&y));
         for result in [dtw.value(&x, &y), dtw.normalised(&x, &y), dtw.value_and_gradient(&x, &y).map(|r| r.0)] {
             match result {
                 Ok(value) => prop_assert!(value.is_finite()),
-                Err(error) => prop_assert_eq!(error, SoftDtwError::Overflow),
+                Err(error) => prop_assert!(!tiny && error == SoftDtwError::Overflow || gamma > 1e299, "{}", error),
             }
+        }
+        let narrow = |s: &Sequence| s.iter().map(|p| p.map(|v| (v as f32).clamp(f32::MIN, f32::MAX))).collect::<Vec<_>>();
+        match dtw.value_and_gradient(&narrow(&x), &narrow(&y)) {
+            Ok((value, gradient)) => {
+                prop_assert!(value.is_finite() && gradient.as_flattened().iter().all(|g| g.is_finite()));
+            }
+            Err(error) => prop_assert_eq!(error, SoftDtwError::Overflow),
         }
     }
 }
@@ -227,6 +273,27 @@ fn long_sequences_and_other_dimensions() {
 }
 
 #[test]
+fn the_number_of_paths_may_leave_the_range_of_f64() {
+    // All costs 0: minus the logarithm of a Delannoy number, here about 2^3400.
+    let smooth = dtw(1.0, Cost::SquaredEuclidean);
+    let zeros = |steps| vec![[0.0_f64]; steps];
+    let value = smooth.value(&zeros(1500), &zeros(1200)).unwrap();
+    let oracle = smooth.log_domain_value(&zeros(1500), &zeros(1200)).unwrap();
+    assert!(value < -2300.0);
+    assert!((value - oracle).abs() < 1e-9, "{value} {oracle}");
+    // And half a power of two lost in each of 2 · 1400 cells does not either.
+    let half = vec![[std::f64::consts::LN_2.sqrt() * 0.7]; 1400];
+    let value = smooth.value(&half, &zeros(1400)).unwrap();
+    let oracle = smooth.log_domain_value(&half, &zeros(1400)).unwrap();
+    assert!((value - oracle).abs() < 1e-9, "{value} {oracle}");
+    let (_, gradient) = smooth.value_and_gradient(&half, &zeros(1400)).unwrap();
+    let (_, oracle) = smooth.log_domain_gradient(&half, &zeros(1400)).unwrap();
+    for (a, b) in gradient.iter().zip(&oracle) {
+        assert!((a[0] - b[0]).abs() < 1e-8, "{} {}", a[0], b[0]);
+    }
+}
+
+#[test]
 fn bad_input_is_refused_by_name() {
     for gamma in [-1.0, f64::NAN, f64::INFINITY] {
         let error = SoftDtw::new(gamma, Cost::SquaredEuclidean).unwrap_err();
@@ -248,4 +315,11 @@ fn bad_input_is_refused_by_name() {
         dtw.value(&[[1e200]], &[[-1e200]]),
         Err(SoftDtwError::Overflow)
     );
+    // In f64 this is a number, in f32 it is not.
+    assert_eq!(
+        dtw.value(&[[3e38_f32]], &[[0.0]]),
+        Err(SoftDtwError::Overflow)
+    );
+    let straight = SoftDtw::new(1.0, Cost::Euclidean).unwrap();
+    assert_eq!(straight.value(&[[3e38_f32]], &[[0.0]]), Ok(3e38));
 }
