@@ -187,8 +187,8 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
                 diagonal = up;
                 row[d] = cells.last();
             }
+            // The diagonal of the next step may stay as it is: the step after that takes its own from these.
             cells = cells.normalised();
-            diagonal = diagonal.normalised();
             next = stop + 1;
         }
         *largest = t_max;
@@ -230,5 +230,28 @@ mod tests {
                 prop_assert_eq!(plain, (significand, exponent));
             }
         }
+    }
+
+    #[test]
+    fn plain_numbers_reach_to_their_limit() {
+        // One row: R is 2^−t to the power of the number of columns.
+        let (x, y) = ([[1.0]], [[0.0]; 26]);
+        let (gamma, cost, band) = (1.0, Cost::SquaredEuclidean, None);
+        let grid = Grid {
+            rows: &x,
+            columns: &y,
+            gamma,
+            cost,
+            band,
+        };
+        let limit = PLAIN / 27.0;
+        let run = |scale| {
+            let row = &mut [Plain::NONE_ONE; SHORT];
+            grid.run::<Plain>(scale, limit, row, &mut Forget)
+        };
+        let (significand, exponent) = run(limit).expect("just within");
+        let log2 = significand.log2() + exponent;
+        assert!((log2 + 26.0 * limit).abs() < 1e-11, "{log2}");
+        assert!(run(limit * 1.001).is_none());
     }
 }
