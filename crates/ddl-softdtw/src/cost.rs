@@ -1,4 +1,11 @@
 //! The cost of matching one step of `x` with one step of `y`.
+#![expect(
+    clippy::inline_always,
+    reason = "the lanes stay in registers only when what works on them is inlined"
+)]
+
+use crate::grid::widened;
+use crate::scalar::Scalar;
 
 /// Distance between two steps, the entries of the cost matrix Δ(x, y).
 ///
@@ -21,79 +28,114 @@ pub enum Cost {
 }
 
 impl Cost {
-    /// Cost of matching step `a` with step `b`; never negative, infinite when it exceeds the range of `f64`.
+    /// Cost of matching step `a` with step `b`; never negative, infinite when it exceeds the range of the number type.
     #[must_use]
-    pub fn between<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> f64 {
-        match self {
-            Self::SquaredEuclidean => squared(a, b),
-            Self::Euclidean => length(a, b),
+    pub fn between<T: Scalar, const D: usize>(self, a: &[T; D], b: &[T; D]) -> T {
+        let (a, b) = (&widened(a), &widened(b));
+        T::rounded(match self {
+            Self::SquaredEuclidean => Squared.between(a, b),
+            Self::Euclidean => Length.between(a, b),
+        })
+    }
+}
+
+/// A cost as a type, so that the loops over cells know it.
+pub(crate) trait Metric: Copy {
+    /// Cost of two steps.
+    fn between<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> f64;
+
+    /// Derivative of the cost with respect to `a`; that with respect to `b` is its negative.
+    fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D];
+}
+
+/// |a − b|².
+#[derive(Clone, Copy)]
+pub(crate) struct Squared;
+
+/// |a − b|.
+#[derive(Clone, Copy)]
+pub(crate) struct Length;
+
+impl Metric for Squared {
+    #[inline(always)]
+    fn between<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> f64 {
+        let mut sum = 0.0;
+        for k in 0..D {
+            sum += (a[k] - b[k]) * (a[k] - b[k]);
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D] {
+        let mut slope = [0.0; D];
+        for k in 0..D {
+            slope[k] = 2.0 * (a[k] - b[k]);
+        }
+        slope
+    }
+}
+
+impl Metric for Length {
+    #[inline(always)]
+    fn between<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> f64 {
+        let squared = Squared.between(a, b);
+        // Squares overflow above 1e154 and lose digits below 1e-154: there the differences are scaled first.
+        if (1e-280..=1e280).contains(&squared) {
+            squared.sqrt()
+        } else {
+            scaled_length(a, b)
         }
     }
 
-    /// Derivative of the cost with respect to `a`, times `weight`, added to `into`.
-    ///
-    /// At `a == b` the Euclidean cost has no derivative; 0 is the subgradient of least norm.
-    pub(crate) fn add_gradient<const D: usize>(
-        self,
-        a: &[f64; D],
-        b: &[f64; D],
-        weight: f64,
-        into: &mut [f64; D],
-    ) {
-        let scale = match self {
-            Self::SquaredEuclidean => 2.0 * weight,
-            Self::Euclidean => {
-                let length = length(a, b);
-                if length == 0.0 {
-                    return;
-                }
-                weight / length
+    /// At `a == b` there is no derivative; 0 is the subgradient of least norm.
+    #[inline(always)]
+    fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D] {
+        let length = self.between(a, b);
+        let mut slope = [0.0; D];
+        if length > 0.0 {
+            for k in 0..D {
+                slope[k] = (a[k] - b[k]) / length;
             }
-        };
-        for (into, (a, b)) in into.iter_mut().zip(a.iter().zip(b)) {
-            *into += scale * (a - b);
         }
+        slope
     }
 }
 
-fn squared<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
-}
-
-fn length<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
-    let squared = squared(a, b);
-    // Squares overflow above 1e154 and lose digits below 1e-154: there the differences are scaled first.
-    if (1e-280..=1e280).contains(&squared) {
-        return squared.sqrt();
-    }
-    let largest = a
-        .iter()
-        .zip(b)
-        .map(|(a, b)| (a - b).abs())
-        .fold(0.0, f64::max);
+#[cold]
+fn scaled_length<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+    let differences = || a.iter().zip(b).map(|(a, b)| (a - b).abs());
+    let largest = differences().fold(0.0, f64::max);
     if largest == 0.0 || largest.is_infinite() {
         return largest;
     }
-    let scaled: f64 = a
-        .iter()
-        .zip(b)
-        .map(|(a, b)| ((a - b) / largest).powi(2))
-        .sum();
-    largest * scaled.sqrt()
+    largest
+        * differences()
+            .map(|d| (d / largest).powi(2))
+            .sum::<f64>()
+            .sqrt()
 }
 
 #[cfg(test)]
 mod tests {
     #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
-    use super::Cost;
+    use super::{Cost, Length, Metric};
 
     #[test]
     fn the_euclidean_cost_neither_overflows_nor_underflows() {
-        for scale in [1e-200, 1.0, 1e200] {
-            let length = Cost::Euclidean.between(&[3.0 * scale, 0.0], &[0.0, 4.0 * scale]);
+        for scale in [1e-200_f64, 1.0, 1e200] {
+            let length: f64 = Cost::Euclidean.between(&[3.0 * scale, 0.0], &[0.0, 4.0 * scale]);
             assert!((length / (5.0 * scale) - 1.0).abs() < 1e-15, "{length}");
         }
+        let smallest = f64::from_bits(1);
+        assert_eq!(Cost::Euclidean.between(&[smallest], &[0.0]), smallest);
+        assert_eq!(Length.slope(&[smallest], &[0.0]), [1.0]);
+        assert_eq!(Length.slope(&[2.0, 3.0], &[2.0, 3.0]), [0.0, 0.0]);
         assert_eq!(Cost::Euclidean.between(&[1.0; 3], &[1.0; 3]), 0.0);
+        assert_eq!(
+            Cost::Euclidean.between(&[3.0e30_f32, 0.0], &[0.0, 4.0e30]),
+            5.0e30
+        );
     }
 }

@@ -50,8 +50,10 @@ pub enum SoftDtwError {
         /// The value found there.
         value: f64,
     },
-    /// The inputs are finite but their distance is larger than the largest `f64`.
-    #[error("the soft-DTW value leaves the range of f64: scale the sequences (or gamma) down")]
+    /// The inputs are finite but their distance, or its gradient, is larger than the largest number of their type.
+    #[error(
+        "the soft-DTW value or gradient leaves the range of the number type: scale the sequences (or gamma) down, or use f64"
+    )]
     Overflow,
 }
 

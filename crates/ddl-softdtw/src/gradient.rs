@@ -1,11 +1,9 @@
 //! The gradient of soft-DTW: how much each cell of the alignment counts, times the slope of its cost.
 
 use crate::error::{SequenceRole, SoftDtwError};
-use crate::softmin::softmin_weights;
-use crate::value::{SoftDtw, check, finite};
-
-/// Weights of the three ways into a cell: from (i−1, j−1), (i−1, j) and (i, j−1).
-type Ways = [f64; 3];
+use crate::log_domain::Gradients;
+use crate::scalar::Scalar;
+use crate::value::{SoftDtw, check, finite, normalise, rounded};
 
 impl SoftDtw {
     /// `D_γ(x, y)` and its gradient with respect to `x`.
@@ -14,15 +12,17 @@ impl SoftDtw {
     /// warping path drawn with weight exp(−cost/γ) passes cell (i, j).
     ///
     /// # Shapes
-    /// `x`: n steps, `y`: m steps; the gradient has the shape of `x`. Memory: O(n m).
+    /// `x`: n steps, `y`: m steps; the gradient has the shape of `x`. Memory: O(n m), with a band O(n · its width).
     ///
     /// # Errors
-    /// As [`SoftDtw::value`]; also [`SoftDtwError::Overflow`] when a component of the gradient leaves the range of `f64`.
+    /// As [`SoftDtw::value`]; also [`SoftDtwError::Overflow`] when a component of the gradient leaves the range of `T`.
     ///
     /// # Numerics
-    /// The weights of each smoothed minimum are kept from the forward recursion, where they are formed from differences;
-    /// the backward recursion only multiplies and adds them, so it neither overflows nor loses digits at small γ.
-    /// γ = 0 gives the gradient along one best path (a subgradient), and the Euclidean cost counts 0 where `x_i = y_j`.
+    /// The weights of each smoothed minimum are kept from the forward recursion; the backward recursion only multiplies
+    /// and adds them, none of them negative, so it neither overflows nor cancels: with the bound b on the error of the
+    /// value ([`SoftDtw`]), E(i, j) has a relative error of at most 3 b / γ as long as that is small. The value is that of
+    /// [`SoftDtw::value`] to the last bit. γ = 0 gives the gradient along one best path (a subgradient), and the Euclidean
+    /// cost counts 0 where `x_i = y_j`.
     ///
     /// # References
     /// Cuturi & Blondel (2017), algorithm 2.
@@ -33,28 +33,47 @@ impl SoftDtw {
     /// let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean)?;
     /// // One step against one step: the gradient of (x − y)².
     /// let (value, gradient) = dtw.value_and_gradient(&[[3.0]], &[[1.0]])?;
-    /// assert_eq!((value, gradient), (4.0, vec![[4.0]]));
+    /// assert!((value - 4.0_f64).abs() < 1e-14);
+    /// assert_eq!(gradient, [[4.0]]);
     /// # Ok::<(), ddl_softdtw::SoftDtwError>(())
     /// ```
-    pub fn value_and_gradient<const D: usize>(
+    pub fn value_and_gradient<T: Scalar, const D: usize>(
         &self,
-        x: &[[f64; D]],
-        y: &[[f64; D]],
-    ) -> Result<(f64, Vec<[f64; D]>), SoftDtwError> {
+        x: &[[T; D]],
+        y: &[[T; D]],
+    ) -> Result<(T, Vec<[T; D]>), SoftDtwError> {
         check(x, SequenceRole::X)?;
         check(y, SequenceRole::Y)?;
-        let (value, ways) = self.forward(x, y);
-        let value = finite(value)?;
-        let gradient = self.backward(x, y, &ways);
-        if gradient
-            .as_flattened()
-            .iter()
-            .all(|component| component.is_finite())
-        {
-            Ok((value, gradient))
-        } else {
-            Err(SoftDtwError::Overflow)
-        }
+        let (value, of_x, _) = self.gradients_unchecked(x, y);
+        Ok((rounded(value)?, narrowed(&of_x)?))
+    }
+
+    /// `D_γ(x, y)`, its gradient with respect to `x` and its gradient with respect to `y`, at the price of one.
+    ///
+    /// # Shapes
+    /// The gradients have the shapes of `x` and of `y`.
+    ///
+    /// # Errors
+    /// As [`SoftDtw::value_and_gradient`].
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_softdtw::{Cost, SoftDtw};
+    /// let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean)?;
+    /// let (_, of_x, of_y) = dtw.value_and_gradients(&[[3.0]], &[[1.0]])?;
+    /// assert_eq!((of_x, of_y), (vec![[4.0]], vec![[-4.0]]));
+    /// # Ok::<(), ddl_softdtw::SoftDtwError>(())
+    /// ```
+    #[expect(clippy::type_complexity, reason = "a value and two gradients")]
+    pub fn value_and_gradients<T: Scalar, const D: usize>(
+        &self,
+        x: &[[T; D]],
+        y: &[[T; D]],
+    ) -> Result<(T, Vec<[T; D]>, Vec<[T; D]>), SoftDtwError> {
+        check(x, SequenceRole::X)?;
+        check(y, SequenceRole::Y)?;
+        let (value, of_x, of_y) = self.gradients_unchecked(x, y);
+        Ok((rounded(value)?, narrowed(&of_x)?, narrowed(&of_y)?))
     }
 
     /// The normalised value and its gradient with respect to `x` (see [`SoftDtw::normalised`]).
@@ -64,14 +83,21 @@ impl SoftDtw {
     ///
     /// # Errors
     /// As [`SoftDtw::value_and_gradient`].
-    pub fn normalised_and_gradient<const D: usize>(
+    pub fn normalised_and_gradient<T: Scalar, const D: usize>(
         &self,
-        x: &[[f64; D]],
-        y: &[[f64; D]],
-    ) -> Result<(f64, Vec<[f64; D]>), SoftDtwError> {
-        let value = self.normalised(x, y)?;
-        let (_, mut gradient) = self.value_and_gradient(x, y)?;
-        let (_, own) = self.value_and_gradient(x, x)?;
+        x: &[[T; D]],
+        y: &[[T; D]],
+    ) -> Result<(T, Vec<[T; D]>), SoftDtwError> {
+        check(x, SequenceRole::X)?;
+        check(y, SequenceRole::Y)?;
+        let (value, mut gradient, _) = self.gradients_unchecked(x, y);
+        let value = finite(value)?;
+        if self.gamma() == 0.0 {
+            // D(x, x) is 0 whatever x.
+            return Ok((rounded(value)?, narrowed(&gradient)?));
+        }
+        let (self_x, own, _) = self.gradients_unchecked(x, x);
+        let value = normalise(value, self_x, self.self_value(y));
         for (component, own) in gradient
             .as_flattened_mut()
             .iter_mut()
@@ -79,55 +105,57 @@ impl SoftDtw {
         {
             *component -= own;
         }
-        Ok((value, gradient))
+        Ok((rounded(value)?, narrowed(&gradient)?))
     }
 
-    /// The value, and for each cell (row by row) the weights of the ways into it.
-    fn forward<const D: usize>(&self, x: &[[f64; D]], y: &[[f64; D]]) -> (f64, Vec<Ways>) {
-        let mut ways = Vec::with_capacity(x.len() * y.len());
-        let mut row = vec![f64::INFINITY; y.len()];
-        let mut corner = 0.0;
-        for step in x {
-            let mut diagonal = corner;
-            let mut left = f64::INFINITY;
-            for (cell, other) in row.iter_mut().zip(y) {
-                let up = *cell;
-                let (smallest, weights) = softmin_weights([diagonal, up, left], self.gamma());
-                ways.push(weights);
-                left = self.cost().between(step, other) + smallest;
-                *cell = left;
-                diagonal = up;
-            }
-            corner = f64::INFINITY;
-        }
-        (row.last().copied().unwrap_or(f64::INFINITY), ways)
-    }
-
-    /// `Σ_j E(i, j) ∂δ(x_i, y_j)/∂x_i` for every i, from the last row up.
-    fn backward<const D: usize>(
+    /// The value and both gradients of checked sequences; not finite where they exceed the range of `f64`.
+    fn gradients_unchecked<T: Scalar, const D: usize>(
         &self,
-        x: &[[f64; D]],
-        y: &[[f64; D]],
-        ways: &[Ways],
-    ) -> Vec<[f64; D]> {
-        let columns = y.len();
-        let mut gradient = vec![[0.0; D]; x.len()];
-        // arriving[j]: what the cells already visited send to cell (i, j); one more entry catches column −1.
-        let mut arriving = vec![0.0; columns + 1];
-        arriving[columns] = 1.0;
-        for (i, row) in ways.chunks_exact(columns).enumerate().rev() {
-            let mut next = vec![0.0; columns + 1];
-            for (j, &[diagonal, up, left]) in row.iter().enumerate().rev() {
-                // Column j of the matrix is entry j + 1, so that what leaves to the left of column 0 has a place.
-                let expected = arriving[j + 1];
-                self.cost()
-                    .add_gradient(&x[i], &y[j], expected, &mut gradient[i]);
-                next[j] += expected * diagonal;
-                next[j + 1] += expected * up;
-                arriving[j] += expected * left;
-            }
-            arriving = next;
+        x: &[[T; D]],
+        y: &[[T; D]],
+    ) -> Gradients<D> {
+        let grid = self.grid(x, y);
+        let gradients = grid
+            .gradients()
+            .unwrap_or_else(|| grid.log_domain_gradients());
+        let (value, of_rows, of_columns) = gradients;
+        if x.len() < y.len() {
+            (value, of_columns, of_rows)
+        } else {
+            (value, of_rows, of_columns)
         }
-        gradient
+    }
+
+    /// [`SoftDtw::value_and_gradient`] by the recursion as it is written down: slow, and what tests hold the fast one to.
+    #[doc(hidden)]
+    pub fn log_domain_gradient<T: Scalar, const D: usize>(
+        &self,
+        x: &[[T; D]],
+        y: &[[T; D]],
+    ) -> Result<(f64, Vec<[f64; D]>), SoftDtwError> {
+        check(x, SequenceRole::X)?;
+        check(y, SequenceRole::Y)?;
+        let (value, of_rows, of_columns) = self.grid(x, y).log_domain_gradients();
+        let gradient = if x.len() < y.len() {
+            of_columns
+        } else {
+            of_rows
+        };
+        Ok((finite(value)?, narrowed(&gradient)?))
+    }
+}
+
+/// The gradient in the number type of its sequences.
+fn narrowed<T: Scalar, const D: usize>(gradient: &[[f64; D]]) -> Result<Vec<[T; D]>, SoftDtwError> {
+    let narrow = gradient.iter().map(|step| step.map(T::rounded));
+    let narrow: Vec<[T; D]> = narrow.collect();
+    if narrow
+        .as_flattened()
+        .iter()
+        .all(|component| component.widened().is_finite())
+    {
+        Ok(narrow)
+    } else {
+        Err(SoftDtwError::Overflow)
     }
 }

@@ -1,17 +1,27 @@
 #![doc = include_str!("../README.md")]
 
+mod alignment;
+mod band;
 mod cost;
 mod error;
+mod exp2;
 mod gradient;
+mod grid;
 mod lanes;
+mod log_domain;
 mod range;
+mod scalar;
 mod search;
 mod select;
 mod sieve;
 mod softmin;
 mod value;
+mod wavefront;
+mod weight;
 
+pub use band::Band;
 pub use cost::Cost;
 pub use error::{SearchError, SequenceRole, SoftDtwError};
+pub use scalar::Scalar;
 pub use search::{Neighbour, SearchIndex};
 pub use value::SoftDtw;

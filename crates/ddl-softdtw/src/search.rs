@@ -81,7 +81,7 @@ impl<const D: usize> SearchIndex<D> {
             self_values,
             sieve: None,
         };
-        if dtw.gamma() > 0.0 && dtw.cost() == Cost::SquaredEuclidean {
+        if dtw.gamma() > 0.0 && dtw.cost() == Cost::SquaredEuclidean && dtw.band().is_none() {
             let candidates: Vec<_> = (0..index.len()).map(|i| index.candidate(i)).collect();
             index.sieve = Sieve::build(dtw.gamma(), &candidates, &index.self_values);
         }

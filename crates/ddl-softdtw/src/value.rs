@@ -1,10 +1,13 @@
-//! The soft-DTW value in `f64` and the log domain: the oracle everything faster is measured against.
+//! The soft-DTW value of two sequences.
 
+use crate::band::Band;
 use crate::cost::Cost;
 use crate::error::{SequenceRole, SoftDtwError};
-use crate::softmin::softmin;
+use crate::grid::Grid;
+use crate::scalar::Scalar;
+use crate::wavefront::Forget;
 
-/// Soft-DTW with a fixed smoothing γ and cost.
+/// Soft-DTW with a fixed smoothing γ and cost, and a band if one is wanted.
 ///
 /// ```text
 /// r(i, j) = δ(x_i, y_j) + min_γ( r(i−1, j−1), r(i−1, j), r(i, j−1) ),   r(0, 0) = 0
@@ -12,11 +15,20 @@ use crate::softmin::softmin;
 /// ```
 ///
 /// γ = 0 is hard DTW (`min_γ` becomes the minimum). With γ > 0 the value can be negative, and D(x, x) is not 0: see
-/// [`SoftDtw::normalised`].
+/// [`SoftDtw::normalised`]. Sequences consist of `f32` or `f64`; γ is an `f64` in both cases.
 ///
 /// # Numerics
-/// `f64`, log domain: no finite input gives NaN, and the only overflow, a true value beyond the range of `f64`, is an
-/// error. `D(x, y)` and `D(y, x)` agree to the last bit.
+/// With u = 2^−53, D components a step and lengths n and m, the computed value v errs by at most
+///
+/// ```text
+/// (D + 12) u ( |v| + γ (n + m) )      as a rule,
+/// (D + 2 (n + m)) u |v|               for γ = 0 and where some cost exceeds γ · 3.1e15 / (n + m)
+/// ```
+///
+/// (and, for `f32`, by the rounding of the result). The first is that of a recursion with exp(−δ/γ) on numbers of
+/// unlimited exponent, where nothing underflows and nothing cancels; the second that of the log domain. No finite input
+/// gives NaN, and the only overflow, a true value beyond the range of the number type, is an error. `D(x, y)` and
+/// `D(y, x)` agree to the last bit.
 ///
 /// # References
 /// Cuturi & Blondel, *Soft-DTW: a differentiable loss function for time-series*, ICML 2017, algorithm 1; DDL paper,
@@ -34,18 +46,32 @@ use crate::softmin::softmin;
 pub struct SoftDtw {
     gamma: f64,
     cost: Cost,
+    band: Option<Band>,
 }
 
 impl SoftDtw {
-    /// Soft-DTW with smoothing `gamma` (unit of the cost; 0 = hard DTW).
+    /// Soft-DTW with smoothing `gamma` (unit of the cost; 0 = hard DTW), over all warping paths.
     ///
     /// # Errors
     /// [`SoftDtwError::InvalidGamma`] when `gamma` is negative, infinite or NaN.
     pub fn new(gamma: f64, cost: Cost) -> Result<Self, SoftDtwError> {
         if gamma.is_finite() && gamma >= 0.0 {
-            Ok(Self { gamma, cost })
+            Ok(Self {
+                gamma,
+                cost,
+                band: None,
+            })
         } else {
             Err(SoftDtwError::InvalidGamma { gamma })
+        }
+    }
+
+    /// The same over the warping paths within `band` only, which takes a time in proportion to its width.
+    #[must_use]
+    pub fn with_band(self, band: Band) -> Self {
+        Self {
+            band: Some(band),
+            ..self
         }
     }
 
@@ -59,24 +85,31 @@ impl SoftDtw {
         self.cost
     }
 
+    /// The band warping paths are kept in, if any.
+    pub fn band(&self) -> Option<Band> {
+        self.band
+    }
+
     /// `D_γ(x, y)`, in the unit of the cost.
     ///
     /// # Shapes
-    /// `x`: n steps, `y`: m steps, n and m at least 1, not necessarily equal.
+    /// `x`: n steps, `y`: m steps, n and m at least 1, not necessarily equal. Memory: O(min(n, m)).
     ///
     /// # Errors
-    /// An empty sequence, a component that is not finite, or a value beyond the range of `f64`.
-    pub fn value<const D: usize>(
+    /// An empty sequence, a component that is not finite, or a value beyond the range of `T`.
+    pub fn value<T: Scalar, const D: usize>(
         &self,
-        x: &[[f64; D]],
-        y: &[[f64; D]],
-    ) -> Result<f64, SoftDtwError> {
+        x: &[[T; D]],
+        y: &[[T; D]],
+    ) -> Result<T, SoftDtwError> {
         check(x, SequenceRole::X)?;
         check(y, SequenceRole::Y)?;
-        finite(self.value_unchecked(x, y))
+        rounded(self.value_unchecked(x, y))
     }
 
     /// `D_γ(x, y) − (D_γ(x, x) + D_γ(y, y)) / 2`, in the unit of the cost: exactly 0 for `x == y`.
+    ///
+    /// The band, if there is one, holds in all three terms.
     ///
     /// # Errors
     /// As [`SoftDtw::value`].
@@ -90,17 +123,19 @@ impl SoftDtw {
     /// assert_eq!(dtw.normalised(&x, &x)?, 0.0);
     /// # Ok::<(), ddl_softdtw::SoftDtwError>(())
     /// ```
-    pub fn normalised<const D: usize>(
+    pub fn normalised<T: Scalar, const D: usize>(
         &self,
-        x: &[[f64; D]],
-        y: &[[f64; D]],
-    ) -> Result<f64, SoftDtwError> {
-        let value = self.value(x, y)?;
-        finite(normalise(value, self.self_value(x), self.self_value(y)))
+        x: &[[T; D]],
+        y: &[[T; D]],
+    ) -> Result<T, SoftDtwError> {
+        check(x, SequenceRole::X)?;
+        check(y, SequenceRole::Y)?;
+        let value = finite(self.value_unchecked(x, y))?;
+        rounded(normalise(value, self.self_value(x), self.self_value(y)))
     }
 
     /// `D_γ(x, x)` of a checked sequence. Exactly 0 for γ = 0.
-    pub(crate) fn self_value<const D: usize>(&self, x: &[[f64; D]]) -> f64 {
+    pub(crate) fn self_value<T: Scalar, const D: usize>(&self, x: &[[T; D]]) -> f64 {
         if self.gamma == 0.0 {
             0.0
         } else {
@@ -108,23 +143,43 @@ impl SoftDtw {
         }
     }
 
-    /// The recursion, for checked sequences; infinite when the true value exceeds the range of `f64`.
-    pub(crate) fn value_unchecked<const D: usize>(&self, x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
-        // One row is kept: before cell (i, j) is written, row[j] still holds r(i−1, j).
-        let mut row = vec![f64::INFINITY; y.len()];
-        let mut corner = 0.0; // r(i−1, 0): 0 above the first row, +inf below it
-        for step in x {
-            let mut diagonal = corner;
-            let mut left = f64::INFINITY;
-            for (cell, other) in row.iter_mut().zip(y) {
-                let up = *cell;
-                left = self.cost.between(step, other) + softmin(diagonal, up, left, self.gamma);
-                *cell = left;
-                diagonal = up;
-            }
-            corner = f64::INFINITY;
+    /// The value of checked sequences; infinite when it exceeds the range of `f64`.
+    pub(crate) fn value_unchecked<T: Scalar, const D: usize>(
+        &self,
+        x: &[[T; D]],
+        y: &[[T; D]],
+    ) -> f64 {
+        let grid = self.grid(x, y);
+        grid.value(&mut Forget)
+            .unwrap_or_else(|| grid.log_domain_value())
+    }
+
+    /// The grid of two checked sequences, the shorter one along the rows of memory.
+    pub(crate) fn grid<'a, T, const D: usize>(
+        &self,
+        x: &'a [[T; D]],
+        y: &'a [[T; D]],
+    ) -> Grid<'a, T, D> {
+        let (rows, columns) = if x.len() < y.len() { (y, x) } else { (x, y) };
+        Grid {
+            rows,
+            columns,
+            gamma: self.gamma,
+            cost: self.cost,
+            band: self.band,
         }
-        row.last().copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// [`SoftDtw::value`] by the recursion as it is written down: slow, and what tests hold the fast one to.
+    #[doc(hidden)]
+    pub fn log_domain_value<T: Scalar, const D: usize>(
+        &self,
+        x: &[[T; D]],
+        y: &[[T; D]],
+    ) -> Result<f64, SoftDtwError> {
+        check(x, SequenceRole::X)?;
+        check(y, SequenceRole::Y)?;
+        finite(self.grid(x, y).log_domain_value())
     }
 }
 
@@ -135,23 +190,30 @@ pub(crate) fn normalise(value: f64, self_x: f64, self_y: f64) -> f64 {
 }
 
 pub(crate) fn finite(value: f64) -> Result<f64, SoftDtwError> {
-    if value.is_finite() {
-        Ok(value)
+    rounded(value)
+}
+
+/// The nearest number of type `T`.
+pub(crate) fn rounded<T: Scalar>(value: f64) -> Result<T, SoftDtwError> {
+    let rounded = T::rounded(value);
+    if rounded.widened().is_finite() {
+        Ok(rounded)
     } else {
         Err(SoftDtwError::Overflow)
     }
 }
 
 /// At least one step, and finite components only.
-pub(crate) fn check<const D: usize>(
-    steps: &[[f64; D]],
+pub(crate) fn check<T: Scalar, const D: usize>(
+    steps: &[[T; D]],
     sequence: SequenceRole,
 ) -> Result<(), SoftDtwError> {
     if steps.is_empty() {
         return Err(SoftDtwError::EmptySequence { sequence });
     }
     for (step, components) in steps.iter().enumerate() {
-        for (component, &value) in components.iter().enumerate() {
+        for (component, value) in components.iter().enumerate() {
+            let value = value.widened();
             if !value.is_finite() {
                 return Err(SoftDtwError::NonFinite {
                     sequence,

@@ -1,0 +1,108 @@
+//! The grid of all pairs of steps, cut into strips of a few rows.
+#![expect(
+    clippy::inline_always,
+    reason = "the lanes stay in registers only when what works on them is inlined"
+)]
+
+use std::ops::RangeInclusive;
+
+use crate::band::Band;
+use crate::cost::Cost;
+use crate::exp2::{LANES, Lanes};
+use crate::scalar::Scalar;
+
+/// Two checked sequences and what is asked of them: row i is step i of one, column j step j of the other.
+pub(crate) struct Grid<'a, T, const D: usize> {
+    pub(crate) rows: &'a [[T; D]],
+    pub(crate) columns: &'a [[T; D]],
+    pub(crate) gamma: f64,
+    pub(crate) cost: Cost,
+    pub(crate) band: Option<Band>,
+}
+
+/// Consecutive rows that advance together, one a lane, each one column behind the row above it: in step d of the strip
+/// lane l is at column d − l.
+pub(crate) struct Strip<const D: usize> {
+    /// The rows' steps. Lanes above the first row repeat it.
+    pub(crate) x: [[f64; D]; LANES],
+    /// First and last step in which some lane is at a column of the grid (and of the band).
+    pub(crate) start: usize,
+    pub(crate) end: usize,
+    /// First and last step in which each lane is in the band; for a grid without one they hold nothing.
+    pub(crate) first: Lanes,
+    pub(crate) last: Lanes,
+    /// The lane of row 0, in the strip that holds it: every path starts there, in step `start`.
+    pub(crate) corner: Option<usize>,
+}
+
+impl<T: Scalar, const D: usize> Grid<'_, T, D> {
+    /// The columns of row `row` that a path may pass.
+    pub(crate) fn band_columns(&self, row: usize) -> RangeInclusive<usize> {
+        let (n, m) = (self.rows.len(), self.columns.len());
+        self.band.map_or(0..=m - 1, |band| band.columns(row, n, m))
+    }
+
+    /// Number of strips.
+    pub(crate) fn strips(&self) -> usize {
+        self.rows.len().div_ceil(LANES)
+    }
+
+    /// Strip `index`. The first one may have fewer rows than lanes, so that the last row is always in the last lane.
+    pub(crate) fn strip(&self, index: usize) -> Strip<D> {
+        let (n, m) = (self.rows.len(), self.columns.len());
+        let spare = self.strips() * LANES - n;
+        let top = if index == 0 { spare } else { 0 };
+        let row = |lane: usize| (index * LANES + lane).saturating_sub(spare);
+        let mut strip = Strip {
+            x: [[0.0; D]; LANES],
+            start: top,
+            end: m - 1 + LANES - 1,
+            first: [f64::INFINITY; LANES],
+            last: [0.0; LANES],
+            corner: (index == 0).then_some(spare),
+        };
+        for (lane, x) in strip.x.iter_mut().enumerate() {
+            *x = widened(&self.rows[row(lane)]);
+        }
+        if self.band.is_some() {
+            for lane in top..LANES {
+                let columns = self.band_columns(row(lane));
+                if lane == top {
+                    strip.start = columns.start() + lane;
+                }
+                strip.end = columns.end() + lane;
+                strip.first[lane] = (columns.start() + lane) as f64;
+                strip.last[lane] = strip.end as f64;
+            }
+        }
+        strip
+    }
+
+    /// The step of the column that `lane` is at in step `d` of a strip; beyond the ends the first or the last one.
+    ///
+    /// Cells beyond the ends are computed and not used. Their costs are those of real cells: nothing in them overflows
+    /// unless it does within the grid.
+    #[inline(always)]
+    pub(crate) fn column(&self, d: usize, lane: usize) -> [f64; D] {
+        widened(&self.columns[d.saturating_sub(lane).min(self.columns.len() - 1)])
+    }
+
+    /// [`Grid::column`] for every lane.
+    pub(crate) fn window(&self, d: usize) -> [[f64; D]; LANES] {
+        let mut window = [[0.0; D]; LANES];
+        for (lane, y) in window.iter_mut().enumerate() {
+            *y = self.column(d, lane);
+        }
+        window
+    }
+}
+
+/// The components of a step as `f64`.
+#[inline(always)]
+pub(crate) fn widened<T: Scalar, const D: usize>(step: &[T; D]) -> [f64; D] {
+    let mut wide = [0.0; D];
+    for (wide, component) in wide.iter_mut().zip(step) {
+        *wide = component.widened();
+    }
+    wide
+}

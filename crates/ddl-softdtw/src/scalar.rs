@@ -1,0 +1,41 @@
+//! The numbers a sequence may consist of: `f32` and `f64`.
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// Component of a step: `f32` or `f64`, nothing else.
+///
+/// Everything is computed in `f64` and rounded once at the end, so an `f32` result is the `f64` result of the same
+/// (widened) sequences to within half a unit in its last place. The trait is sealed: that claim is proved for these two.
+pub trait Scalar:
+    sealed::Sealed + Copy + PartialEq + std::fmt::Debug + Send + Sync + 'static
+{
+    /// The same number as `f64`, exactly.
+    fn widened(self) -> f64;
+
+    /// The nearest number of this type; infinite when `value` is too large for it.
+    fn rounded(value: f64) -> Self;
+}
+
+impl Scalar for f32 {
+    fn widened(self) -> f64 {
+        f64::from(self)
+    }
+
+    fn rounded(value: f64) -> Self {
+        value as f32
+    }
+}
+
+impl Scalar for f64 {
+    fn widened(self) -> f64 {
+        self
+    }
+
+    fn rounded(value: f64) -> Self {
+        value
+    }
+}

@@ -1,0 +1,172 @@
+//! What the Sakoe-Chiba band must do to soft-DTW.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use ddl_softdtw::{Band, Cost, SearchIndex, SoftDtw};
+use proptest::prelude::*;
+
+type Sequence = Vec<[f64; 2]>;
+
+fn sequence(longest: usize) -> impl Strategy<Value = Sequence> {
+    prop::collection::vec(prop::array::uniform2(-2.0..2.0_f64), 1..=longest)
+}
+
+fn cost() -> impl Strategy<Value = Cost> {
+    prop_oneof![Just(Cost::SquaredEuclidean), Just(Cost::Euclidean)]
+}
+
+fn banded(gamma: f64, cost: Cost, radius: usize) -> SoftDtw {
+    SoftDtw::new(gamma, cost)
+        .unwrap()
+        .with_band(Band::new(radius))
+}
+
+/// The costs of all warping paths from cell (i, j) to the last one that stay in the band, each walked to its end.
+fn costs_of_paths(
+    (cost, radius): (Cost, usize),
+    (x, y): (&[[f64; 2]], &[[f64; 2]]),
+    (i, j): (usize, usize),
+    so_far: f64,
+    found: &mut Vec<f64>,
+) {
+    let (n, m) = (x.len(), y.len());
+    if i == n || j == m {
+        return;
+    }
+    let off = (i * (m - 1)).abs_diff(j * (n - 1)) as f64;
+    if off > (radius as f64).max(0.5) * (n.max(m) - 1) as f64 {
+        return;
+    }
+    let so_far = so_far + cost.between(&x[i], &y[j]);
+    if (i, j) == (n - 1, m - 1) {
+        found.push(so_far);
+    }
+    for next in [(i + 1, j + 1), (i + 1, j), (i, j + 1)] {
+        costs_of_paths((cost, radius), (x, y), next, so_far, found);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn it_is_the_sum_over_the_paths_in_the_band(
+        x in sequence(6), y in sequence(6), radius in 0..4_usize, gamma in 0.2..3.0_f64, cost in cost(),
+    ) {
+        let mut costs = Vec::new();
+        costs_of_paths((cost, radius), (&x, &y), (0, 0), 0.0, &mut costs);
+        prop_assert!(!costs.is_empty(), "no band is too narrow for a path");
+        let sum: f64 = costs.iter().map(|c| (-c / gamma).exp()).sum();
+        let value = banded(gamma, cost, radius).value(&x, &y)?;
+        prop_assert!((value + gamma * sum.ln()).abs() < 1e-12, "{} {}", value, -gamma * sum.ln());
+        let cheapest = costs.into_iter().fold(f64::INFINITY, f64::min);
+        let hard = banded(0.0, cost, radius).value(&x, &y)?;
+        prop_assert!((hard - cheapest).abs() < 1e-13 * (1.0 + cheapest));
+    }
+
+    #[test]
+    fn a_narrower_band_raises_it_and_a_wide_one_changes_nothing(
+        x in sequence(30), y in sequence(30), gamma in 0.0..3.0_f64, cost in cost(),
+    ) {
+        let free = SoftDtw::new(gamma, cost)?;
+        let shorter = x.len().min(y.len());
+        for wide in [shorter - 1, shorter, usize::MAX] {
+            let value = banded(gamma, cost, wide).value(&x, &y)?;
+            prop_assert_eq!(value.to_bits(), free.value(&x, &y)?.to_bits());
+            let (value, of_x, of_y) = banded(gamma, cost, wide).value_and_gradients(&x, &y)?;
+            let (free_value, free_of_x, free_of_y) = free.value_and_gradients(&x, &y)?;
+            prop_assert_eq!(value.to_bits(), free_value.to_bits());
+            prop_assert_eq!((of_x, of_y), (free_of_x, free_of_y));
+        }
+        let mut wider = free.value(&x, &y)?;
+        for radius in (0..shorter).rev() {
+            let value = banded(gamma, cost, radius).value(&x, &y)?;
+            prop_assert!(value >= wider - 1e-12 * (1.0 + wider.abs()), "radius {}", radius);
+            wider = value;
+        }
+    }
+
+    #[test]
+    fn radius_0_compares_step_by_step(
+        steps in prop::collection::vec((prop::array::uniform2(-2.0..2.0_f64), prop::array::uniform2(-2.0..2.0_f64)), 1..30),
+        gamma in 0.0..3.0_f64, cost in cost(),
+    ) {
+        let (x, y): (Sequence, Sequence) = steps.into_iter().unzip();
+        let sum: f64 = x.iter().zip(&y).map(|(a, b)| cost.between(a, b)).sum();
+        let value = banded(gamma, cost, 0).value(&x, &y)?;
+        prop_assert!((value - sum).abs() < 1e-13 * (sum + 100.0 * gamma), "{} {}", value, sum);
+    }
+
+    #[test]
+    fn it_is_symmetric_to_the_last_bit(
+        x in sequence(20), y in sequence(20), radius in 0..20_usize, gamma in 0.0..3.0_f64, cost in cost(),
+    ) {
+        let dtw = banded(gamma, cost, radius);
+        prop_assert_eq!(dtw.value(&x, &y)?.to_bits(), dtw.value(&y, &x)?.to_bits());
+        prop_assert_eq!(dtw.normalised(&x, &y)?.to_bits(), dtw.normalised(&y, &x)?.to_bits());
+        prop_assert_eq!(dtw.normalised(&x, &x)?.to_bits(), 0.0_f64.to_bits());
+    }
+
+    #[test]
+    fn the_gradients_are_the_slopes(
+        x in sequence(9), y in sequence(9), radius in 0..5_usize, gamma in 0.1..3.0_f64,
+    ) {
+        let dtw = banded(gamma, Cost::SquaredEuclidean, radius);
+        let (_, of_x, of_y) = dtw.value_and_gradients(&x, &y)?;
+        let h = 1e-5;
+        for (moves_x, gradient) in [(true, of_x), (false, of_y)] {
+            for (i, step) in gradient.iter().enumerate() {
+                let at = |by: f64| {
+                    let (mut x, mut y) = (x.clone(), y.clone());
+                    if moves_x { x[i][1] += by } else { y[i][1] += by }
+                    dtw.value(&x, &y)
+                };
+                let slope = (at(h)? - at(-h)?) / (2.0 * h);
+                prop_assert!((step[1] - slope).abs() < 1e-6, "{} {}", step[1], slope);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_narrow_band_on_long_sequences_is_the_log_domain_value() {
+    let wave = |steps: usize, phase: f64| -> Sequence {
+        (0..steps)
+            .map(|i| i as f64 / steps as f64 * 60.0 + phase)
+            .map(|t| [t.sin(), t.cos()])
+            .collect()
+    };
+    for (n, m, radius) in [(700, 700, 0), (700, 500, 3), (301, 700, 20)] {
+        let dtw = banded(0.3, Cost::SquaredEuclidean, radius);
+        let (x, y) = (wave(n, 0.0), wave(m, 0.4));
+        let value = dtw.value(&x, &y).unwrap();
+        let oracle = dtw.log_domain_value(&x, &y).unwrap();
+        assert!((value - oracle).abs() < 1e-10, "{value} {oracle}");
+        let (_, gradient) = dtw.value_and_gradient(&x, &y).unwrap();
+        let (_, oracle) = dtw.log_domain_gradient(&x, &y).unwrap();
+        for (a, b) in gradient.as_flattened().iter().zip(oracle.as_flattened()) {
+            assert!((a - b).abs() < 1e-10, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn a_search_keeps_to_the_band() {
+    let dtw = banded(0.5, Cost::SquaredEuclidean, 1);
+    let walk = |k: usize| -> Sequence {
+        (0..8)
+            .map(|i| [((i * (k + 3)) % 7) as f64 * 0.2, (k % 5) as f64 * 0.1])
+            .collect()
+    };
+    let candidates: Vec<Sequence> = (0..40).map(walk).collect();
+    let query = walk(50);
+    let found = SearchIndex::build(&dtw, &candidates)
+        .unwrap()
+        .nearest(&query, 5)
+        .unwrap();
+    let distance = |y: &Sequence| dtw.normalised(&query, y).unwrap();
+    let mut expected: Vec<f64> = candidates.iter().map(distance).collect();
+    expected.sort_by(f64::total_cmp);
+    for (found, expected) in found.iter().zip(expected) {
+        assert_eq!(found.distance.to_bits(), expected.to_bits());
+    }
+}

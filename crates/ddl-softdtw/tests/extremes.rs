@@ -1,0 +1,145 @@
+//! Extreme and wrong input: huge and tiny numbers, long sequences, what is refused.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use ddl_softdtw::{Band, Cost, SoftDtw, SoftDtwError};
+use proptest::prelude::*;
+
+type Sequence = Vec<[f64; 2]>;
+
+fn cost() -> impl Strategy<Value = Cost> {
+    prop_oneof![Just(Cost::SquaredEuclidean), Just(Cost::Euclidean)]
+}
+
+fn dtw(gamma: f64, cost: Cost) -> SoftDtw {
+    SoftDtw::new(gamma, cost).expect("valid gamma")
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_finite_input_gives_nan(
+        x in prop::collection::vec(prop::array::uniform2(prop::num::f64::NORMAL | prop::num::f64::ZERO | prop::num::f64::SUBNORMAL), 1..6),
+        y in prop::collection::vec(prop::array::uniform2(prop::num::f64::NORMAL | prop::num::f64::ZERO), 1..6),
+        gamma in prop_oneof![Just(0.0), Just(f64::MIN_POSITIVE / 4.0), Just(1e-3), Just(1.0), Just(1e300), Just(f64::MAX)],
+        cost in cost(), radius in prop::option::of(0..4_usize), tiny in any::<bool>(),
+    ) {
+        let free = dtw(gamma, cost);
+        let dtw = radius.map_or(free, |radius| free.with_band(Band::new(radius)));
+        // Components of every size, or all of them small enough for their squares.
+        let shrunk = |s: &Sequence| s.iter().map(|p| p.map(|v| if tiny { v % 1e150 } else { v })).collect::<Vec<_>>();
+        let (x, y) = (shrunk(&x), shrunk(&y));
+        for result in [dtw.value(&x, &y), dtw.normalised(&x, &y), dtw.value_and_gradient(&x, &y).map(|r| r.0)] {
+            match result {
+                Ok(value) => prop_assert!(value.is_finite()),
+                Err(error) => prop_assert!(!tiny && error == SoftDtwError::Overflow || gamma > 1e299, "{}", error),
+            }
+        }
+        let narrow = |s: &Sequence| s.iter().map(|p| p.map(|v| (v as f32).clamp(f32::MIN, f32::MAX))).collect::<Vec<_>>();
+        match dtw.value_and_gradient(&narrow(&x), &narrow(&y)) {
+            Ok((value, gradient)) => {
+                prop_assert!(value.is_finite() && gradient.as_flattened().iter().all(|g| g.is_finite()));
+            }
+            Err(error) => prop_assert_eq!(error, SoftDtwError::Overflow),
+        }
+    }
+}
+
+#[test]
+fn costs_of_a_million_at_a_thousandth_are_finite() {
+    let x: Vec<[f64; 2]> = (0..8).map(|i| [1000.0 + f64::from(i), 0.0]).collect();
+    let y: Vec<[f64; 2]> = (0..8).map(|i| [0.0, f64::from(i)]).collect();
+    let sharp = dtw(1e-3, Cost::SquaredEuclidean);
+    let hard = dtw(0.0, Cost::SquaredEuclidean).value(&x, &y).unwrap();
+    assert!(hard > 8e6);
+    assert!((sharp.value(&x, &y).unwrap() - hard).abs() < 0.02);
+    let (_, gradient) = sharp.value_and_gradient(&x, &y).unwrap();
+    assert!(gradient.as_flattened().iter().all(|g| g.is_finite()));
+    assert!(
+        gradient.iter().all(|g| g[0] > 1999.0),
+        "every step pulls towards y"
+    );
+}
+
+#[test]
+fn long_sequences_and_other_dimensions() {
+    let wave = |phase: f64| -> Vec<[f64; 3]> {
+        (0..500)
+            .map(|i| 0.1 * f64::from(i) + phase)
+            .map(|t| [t.sin(), t.cos(), 0.01 * t])
+            .collect()
+    };
+    let dtw = dtw(0.1, Cost::SquaredEuclidean);
+    let near = dtw.normalised(&wave(0.0), &wave(0.1)).unwrap();
+    let far = dtw.normalised(&wave(0.0), &wave(2.0)).unwrap();
+    assert!(near.is_finite() && near < far);
+}
+
+#[test]
+fn the_number_of_paths_may_leave_the_range_of_f64() {
+    // All costs 0: minus the logarithm of a Delannoy number, here about 2^3400.
+    let smooth = dtw(1.0, Cost::SquaredEuclidean);
+    let zeros = |steps| vec![[0.0_f64]; steps];
+    let value = smooth.value(&zeros(1500), &zeros(1200)).unwrap();
+    let oracle = smooth.log_domain_value(&zeros(1500), &zeros(1200)).unwrap();
+    assert!(value < -2300.0);
+    assert!((value - oracle).abs() < 1e-9, "{value} {oracle}");
+    // And half a power of two lost in each of 2 · 1400 cells does not either.
+    let half = vec![[std::f64::consts::LN_2.sqrt() * 0.7]; 1400];
+    let value = smooth.value(&half, &zeros(1400)).unwrap();
+    let oracle = smooth.log_domain_value(&half, &zeros(1400)).unwrap();
+    assert!((value - oracle).abs() < 1e-9, "{value} {oracle}");
+    let (_, gradient) = smooth.value_and_gradient(&half, &zeros(1400)).unwrap();
+    let (_, oracle) = smooth.log_domain_gradient(&half, &zeros(1400)).unwrap();
+    for (a, b) in gradient.iter().zip(&oracle) {
+        assert!((a[0] - b[0]).abs() < 1e-8, "{} {}", a[0], b[0]);
+    }
+}
+
+#[test]
+fn a_path_of_thousands_of_cells_along_one_row_and_one_column_is_not_lost() {
+    // Each cell of the cheap path takes half a power of two, 2299 in the first row and as many in the last column.
+    let (gamma, steps) = (1.0, 2300);
+    let off = (0.49 * std::f64::consts::LN_2).sqrt();
+    let x: Vec<_> = (0..steps)
+        .map(|i| [if i == 0 { 0.0 } else { 10.0 }])
+        .collect();
+    let y: Vec<_> = (0..steps)
+        .map(|j| [if j + 1 == steps { 10.0 + off } else { off }])
+        .collect();
+    let expected = 2.0 * f64::from(steps - 1) * off * off;
+    let value = dtw(gamma, Cost::SquaredEuclidean).value(&x, &y).unwrap();
+    // Every other path is dearer by at least 90.
+    assert!((value - expected).abs() < 1e-9, "{value} {expected}");
+}
+
+#[test]
+fn bad_input_is_refused_by_name() {
+    for gamma in [-1.0, f64::NAN, f64::INFINITY] {
+        let error = SoftDtw::new(gamma, Cost::SquaredEuclidean).unwrap_err();
+        assert!(matches!(error, SoftDtwError::InvalidGamma { .. }));
+    }
+    let dtw = dtw(1.0, Cost::SquaredEuclidean);
+    let empty: &[[f64; 1]] = &[];
+    let message = |result: Result<f64, SoftDtwError>| result.unwrap_err().to_string();
+    let expected = "sequence y is empty: soft-DTW needs at least one step";
+    assert_eq!(message(dtw.value(&[[0.0]], empty)), expected);
+    assert!(dtw.value(empty, &[[0.0]]).is_err());
+    let expected = "sequence x, step 1, component 0 is NaN: must be finite";
+    assert_eq!(message(dtw.value(&[[0.0], [f64::NAN]], &[[0.0]])), expected);
+    assert!(
+        dtw.value_and_gradient(&[[0.0]], &[[f64::INFINITY]])
+            .is_err()
+    );
+    assert_eq!(
+        dtw.value(&[[1e200]], &[[-1e200]]),
+        Err(SoftDtwError::Overflow)
+    );
+    // In f64 this is a number, in f32 it is not.
+    assert_eq!(
+        dtw.value(&[[3e38_f32]], &[[0.0]]),
+        Err(SoftDtwError::Overflow)
+    );
+    let straight = SoftDtw::new(1.0, Cost::Euclidean).unwrap();
+    assert_eq!(straight.value(&[[3e38_f32]], &[[0.0]]), Ok(3e38));
+}

@@ -1,0 +1,132 @@
+//! The stated error bounds, against values in 60 decimal digits (`reference/high_precision.py` made them).
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+#![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
+
+use ddl_softdtw::{Band, Cost, Scalar, SoftDtw};
+use serde::Deserialize;
+
+/// Unit roundoff of `f64`.
+const UNIT: f64 = f64::EPSILON / 2.0;
+
+#[derive(Deserialize)]
+struct Reference {
+    cases: Vec<Case>,
+}
+
+#[derive(Deserialize)]
+struct Case {
+    n: usize,
+    m: usize,
+    dimension: usize,
+    spread: f64,
+    offset: f64,
+    gamma: f64,
+    cost: String,
+    radius: Option<usize>,
+    value: f64,
+    normalised: Option<f64>,
+    /// Of all steps of x, or of its first and last two.
+    gradient: Vec<Vec<f64>>,
+}
+
+/// The sequences of the script: multiples of 1/64, exact in `f32`.
+fn sequence<T: Scalar, const D: usize>(
+    steps: usize,
+    seed: usize,
+    spread: f64,
+    offset: f64,
+) -> Vec<[T; D]> {
+    let component = |i: usize, k: usize| {
+        let residue = (37 * i * i + 11 * seed * i + 29 * k + 13 * seed) % 101;
+        T::rounded(offset + (residue as f64 - 50.0) * spread / 64.0)
+    };
+    (0..steps)
+        .map(|i| std::array::from_fn(|k| component(i, k)))
+        .collect()
+}
+
+/// The larger of the errors of value and normalised value, in units of the stated bound.
+fn compare<const D: usize>(number: usize, case: &Case) -> f64 {
+    let cost = match case.cost.as_str() {
+        "squared_euclidean" => Cost::SquaredEuclidean,
+        "euclidean" => Cost::Euclidean,
+        other => panic!("case {number}: unknown cost {other}"),
+    };
+    let free = SoftDtw::new(case.gamma, cost).unwrap();
+    let dtw = case
+        .radius
+        .map_or(free, |radius| free.with_band(Band::new(radius)));
+    let x = sequence::<f64, D>(case.n, 1, case.spread, case.offset);
+    let y = sequence::<f64, D>(case.m, 2, case.spread, 0.0);
+    let (n, m) = (case.n as f64, case.m as f64);
+    let bound = |value: f64| (D as f64 + 12.0) * UNIT * (value.abs() + case.gamma * (n + m));
+
+    let (value, gradient) = dtw.value_and_gradient(&x, &y).unwrap();
+    assert_eq!(value.to_bits(), dtw.value(&x, &y).unwrap().to_bits());
+    let mut ratio = (value - case.value).abs() / bound(case.value);
+    if let Some(expected) = case.normalised {
+        let own = [dtw.value(&x, &x).unwrap(), dtw.value(&y, &y).unwrap()];
+        let slack = bound(value) + 0.5 * own.iter().map(|v| bound(*v)).sum::<f64>();
+        let error = (dtw.normalised(&x, &y).unwrap() - expected).abs();
+        ratio = ratio.max(error / slack);
+    }
+    assert!(ratio <= 1.0, "case {number}: {value} {}", case.value);
+
+    // The oracle has its own rounding, which grows with the length of a path.
+    let slow = dtw.log_domain_value(&x, &y).unwrap();
+    let slack = (1.0 + n + m) * bound(case.value);
+    assert!((slow - case.value).abs() <= slack, "case {number}: {slow}");
+
+    // |Σ_j E(i, j) slope(i, j)| errs by at most 3 b / γ times its absolute terms, none of which is larger than this.
+    let longest = x
+        .iter()
+        .flat_map(|a| y.iter().map(|b| Cost::Euclidean.between(a, b)));
+    let slope = match cost {
+        Cost::SquaredEuclidean => 2.0 * longest.fold(0.0, f64::max),
+        _ => 1.0,
+    };
+    let slack = (3.0 * bound(value) / case.gamma + 4.0 * UNIT * m) * slope * m;
+    let shown = (0..case.n).filter(|i| case.n <= 10 || *i < 2 || *i + 2 >= case.n);
+    assert_eq!(shown.clone().count(), case.gradient.len());
+    for (i, expected) in shown.zip(&case.gradient) {
+        for (found, expected) in gradient[i].iter().zip(expected) {
+            let error = (found - expected).abs();
+            assert!(
+                error <= slack,
+                "case {number}, step {i}: {found} {expected}"
+            );
+        }
+    }
+
+    let narrow_x = sequence::<f32, D>(case.n, 1, case.spread, case.offset);
+    let narrow_y = sequence::<f32, D>(case.m, 2, case.spread, 0.0);
+    let (narrow, narrow_gradient) = dtw.value_and_gradient(&narrow_x, &narrow_y).unwrap();
+    assert_eq!(narrow, value as f32);
+    assert_eq!(narrow, dtw.value(&narrow_x, &narrow_y).unwrap());
+    for (narrow, wide) in narrow_gradient
+        .as_flattened()
+        .iter()
+        .zip(gradient.as_flattened())
+    {
+        assert_eq!(*narrow, *wide as f32);
+    }
+    ratio
+}
+
+#[test]
+fn values_and_gradients_keep_the_stated_bounds() {
+    let text = include_str!("reference/high_precision.json");
+    let reference: Reference = serde_json::from_str(text).unwrap();
+    assert_eq!(reference.cases.len(), 26);
+    let mut worst = 0.0_f64;
+    for (number, case) in reference.cases.iter().enumerate() {
+        let ratio = match case.dimension {
+            1 => compare::<1>(number, case),
+            2 => compare::<2>(number, case),
+            3 => compare::<3>(number, case),
+            other => panic!("case {number}: {other} dimensions"),
+        };
+        worst = worst.max(ratio);
+    }
+    assert!(worst > 1e-3, "a bound a thousand times too wide: {worst}");
+}
