@@ -1,0 +1,211 @@
+//! The proposal network: what it learns, what its ends do not depend on, and how its training is resumed.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use ddl_star::{
+    ComputeDevice, DeviceChoice, ProposalConfig, ProposalExample, ProposalNetwork, ProposalTrainer,
+    ProposalTraining, ProposedEnds, StarError, WalkerView, load_parameters, save_parameters,
+};
+use std::f64::consts::TAU;
+
+fn device() -> ComputeDevice {
+    ComputeDevice::open(DeviceChoice::Cpu).unwrap()
+}
+
+fn small() -> ProposalConfig {
+    ProposalConfig {
+        members: 2,
+        ends: 6,
+        width: 32,
+        neighbour_width: 16,
+        ..ProposalConfig::default()
+    }
+}
+
+fn network() -> ProposalNetwork {
+    ProposalNetwork::new(small(), 3, device()).unwrap()
+}
+
+/// A view of somebody who walks at `speed` (m/s) with `neighbours` ahead.
+fn view(speed: f64, neighbours: usize) -> WalkerView {
+    let walk = |speed: f64, x: f64, y: f64| {
+        std::array::from_fn(|t| [x + speed * 0.4 * (t as f64 - 7.0), y])
+    };
+    WalkerView {
+        own: walk(speed, 0.0, 0.0),
+        neighbours: (0..neighbours)
+            .map(|j| walk(-0.8, 2.0 + j as f64, 0.3 * j as f64))
+            .collect(),
+    }
+}
+
+/// Walkers who go on straight or turn left or right by 60 degrees, a third each.
+fn examples() -> Vec<ProposalExample> {
+    (0..90)
+        .map(|i| {
+            let speed = 0.7 + 0.01 * f64::from(i);
+            let (sin, cos) = (f64::from(i % 3 - 1) * TAU / 6.0).sin_cos();
+            let future = std::array::from_fn(|t| {
+                let way = speed * 0.4 * (t as f64 + 1.0);
+                [way * cos, way * sin]
+            });
+            let view = view(speed, 0);
+            ProposalExample { view, future }
+        })
+        .collect()
+}
+
+fn training(steps: u64) -> ProposalTraining {
+    ProposalTraining {
+        steps,
+        batch: 32,
+        learning_rate: 4e-3,
+        ..ProposalTraining::default()
+    }
+}
+
+/// Mean distance of the nearest end to the true one (m).
+fn oracle(network: &ProposalNetwork, examples: &[ProposalExample]) -> f64 {
+    let views: Vec<_> = examples
+        .iter()
+        .map(|example| example.view.clone())
+        .collect();
+    let proposed = network.propose(&views).unwrap();
+    let nearest = |(proposed, example): (&ProposedEnds, &ProposalExample)| {
+        let [x, y] = example.future[11];
+        let off = proposed
+            .ends
+            .iter()
+            .map(|end| (end[0] - x).hypot(end[1] - y));
+        off.fold(f64::INFINITY, f64::min)
+    };
+    proposed.iter().zip(examples).map(nearest).sum::<f64>() / examples.len() as f64
+}
+
+fn trained(steps: u64) -> ProposalNetwork {
+    let mut trainer = ProposalTrainer::new(network(), &examples(), training(steps)).unwrap();
+    while !trainer.is_finished() {
+        trainer.step().unwrap();
+    }
+    assert_eq!(trainer.steps(), (steps, steps));
+    trainer.into_network().unwrap()
+}
+
+#[test]
+fn it_learns_where_walkers_go_on_a_fork() {
+    let before = oracle(&network(), &examples());
+    let after = trained(250);
+    let error = oracle(&after, &examples());
+    assert!(
+        before > 1.0 && error < 0.45,
+        "{before:.2} m before, {error:.2} m after"
+    );
+    // Who walks fast ends further: the ends are not one table for all.
+    let reach = |speed| {
+        let proposed = after.propose(&[view(speed, 0)]).unwrap();
+        let lengths = proposed[0].ends.iter().map(|end| end[0].hypot(end[1]));
+        lengths.fold(0.0, f64::max)
+    };
+    assert!(reach(1.5) > reach(0.8) + 1.0);
+}
+
+#[test]
+fn weights_are_a_distribution_over_the_ends_of_all_members() {
+    for proposed in network().propose(&[view(1.0, 0), view(0.0, 3)]).unwrap() {
+        assert_eq!(proposed.ends.len(), 12);
+        assert_eq!(proposed.weights.len(), 12);
+        assert!((proposed.weights.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+        assert!(
+            proposed
+                .ends
+                .as_flattened()
+                .iter()
+                .all(|value| value.is_finite())
+        );
+    }
+    assert!(network().propose(&[]).unwrap().is_empty());
+}
+
+/// Largest difference of the ends proposed for the first views of two calls.
+fn apart(network: &ProposalNetwork, a: &[WalkerView], b: &[WalkerView]) -> f64 {
+    let ends = |views: &[WalkerView]| network.propose(views).unwrap().remove(0).ends;
+    let pairs = ends(a).into_iter().zip(ends(b));
+    pairs
+        .map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]))
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn only_near_neighbours_count_in_any_order_and_other_views_never() {
+    let network = network();
+    let walker = view(1.1, 4);
+    let mut shuffled = walker.clone();
+    shuffled.neighbours.reverse();
+    assert!(apart(&network, &[walker.clone()], &[shuffled]) < 1e-4);
+    let mut with_far = walker.clone();
+    with_far.neighbours.push([[40.0, 3.0]; 8]);
+    assert!(apart(&network, &[walker.clone()], &[with_far]) < 1e-4);
+    let company = [walker.clone(), view(0.2, 8), view(1.9, 1)];
+    assert!(apart(&network, &[walker.clone()], &company) < 1e-4);
+    // and a neighbour in the way does
+    assert!(apart(&network, &[walker], &[view(1.1, 0)]) > 1e-3);
+    // more neighbours than are looked at
+    let crowd = view(1.0, 30);
+    let mut seen = crowd.clone();
+    seen.neighbours.truncate(8);
+    assert!(apart(&network, &[crowd], &[seen]) < 1e-9);
+}
+
+#[test]
+fn a_resumed_training_ends_with_the_same_weights() {
+    let folder = tempfile::tempdir().unwrap();
+    let (state, whole, resumed) = (
+        folder.path().join("state.safetensors"),
+        folder.path().join("whole.safetensors"),
+        folder.path().join("resumed.safetensors"),
+    );
+    save_parameters(trained(12).parameters(), &whole).unwrap();
+    let mut first = ProposalTrainer::new(network(), &examples(), training(12)).unwrap();
+    for _ in 0..5 {
+        first.step().unwrap();
+    }
+    first.save(&state).unwrap();
+    drop(first);
+    let mut second = ProposalTrainer::new(network(), &examples(), training(12)).unwrap();
+    second.resume(&state).unwrap();
+    assert_eq!(second.steps(), (5, 12));
+    while !second.is_finished() {
+        second.step().unwrap();
+    }
+    save_parameters(second.into_network().unwrap().parameters(), &resumed).unwrap();
+    assert!(std::fs::read(&whole).unwrap() == std::fs::read(&resumed).unwrap());
+
+    let loaded = network();
+    load_parameters(loaded.parameters(), &whole).unwrap();
+    assert_eq!(
+        oracle(&loaded, &examples()),
+        oracle(&trained(12), &examples())
+    );
+    let bytes = std::fs::read(&state).unwrap();
+    std::fs::write(&state, &bytes[..bytes.len() / 2]).unwrap();
+    let mut third = ProposalTrainer::new(network(), &examples(), training(12)).unwrap();
+    let error = third.resume(&state).unwrap_err();
+    assert!(matches!(error, StarError::Checkpoint { .. }), "{error}");
+}
+
+#[test]
+fn what_cannot_be_learned_from_is_refused() {
+    let nothing = ProposalTrainer::new(network(), &[], training(5));
+    assert!(matches!(nothing, Err(StarError::NoTrainingWindows)));
+    let mut broken = examples();
+    for example in &mut broken {
+        example.future[11] = [f64::NAN, 0.0];
+    }
+    let mut trainer = ProposalTrainer::new(network(), &broken, training(5)).unwrap();
+    let error = trainer.step().unwrap_err();
+    assert!(
+        matches!(error, StarError::ProposalNonFinite { step: 0, .. }),
+        "{error}"
+    );
+    assert_eq!(trainer.steps(), (0, 5));
+}
