@@ -5,6 +5,7 @@ mod error;
 mod gradient;
 mod lanes;
 mod range;
+mod recursion;
 mod search;
 mod select;
 mod sieve;
@@ -13,5 +14,6 @@ mod value;
 
 pub use cost::Cost;
 pub use error::{SearchError, SequenceRole, SoftDtwError};
+pub use lanes::InstructionSet;
 pub use search::{Neighbour, SearchIndex};
 pub use value::SoftDtw;
