@@ -4,6 +4,8 @@ use std::fmt;
 
 use thiserror::Error;
 
+use crate::lanes::InstructionSet;
+
 /// Which of the two sequences of a comparison an error speaks of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SequenceRole {
@@ -69,6 +71,12 @@ pub enum SearchError {
         index: usize,
         /// What is wrong with it (sequence y).
         source: SoftDtwError,
+    },
+    /// The processor does not have the vector instructions that were asked for.
+    #[error("this processor has no {set} instructions: choose one of InstructionSet::available()")]
+    InstructionSet {
+        /// The choice that was refused.
+        set: InstructionSet,
     },
     /// The query is not a valid sequence, or no distance to it can be represented.
     #[error("query: {0}")]

@@ -1,11 +1,13 @@
 #![doc = include_str!("../README.md")]
 
+mod blocks;
 mod cost;
 mod error;
 mod gradient;
 mod lanes;
 mod range;
 mod recursion;
+mod refine;
 mod search;
 mod select;
 mod sieve;

@@ -9,7 +9,7 @@ pub(crate) const COST_LIMIT: f32 = 109.0;
 /// Bound on the relative error of [`Simd::exp2`].
 pub(crate) const EXP2_ERROR: f64 = 3e-7;
 /// Largest cost of a cell in `f64`, log2 units.
-pub(crate) const COST_LIMIT_64: f64 = 960.0;
+pub(crate) const COST_LIMIT_64: f64 = 900.0;
 /// Bound on the relative error of [`Simd::wide_exp2`], ten units of rounding.
 pub(crate) const EXP2_ERROR_64: f64 = 1.2e-15;
 

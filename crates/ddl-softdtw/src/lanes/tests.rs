@@ -86,7 +86,7 @@ fn exponents_out_of_range_are_clamped() {
         let mut narrow = [-f32::INFINITY; LANES];
         narrow[..5].copy_from_slice(&[0.0, -COST_LIMIT, -1e30, f32::NAN, -110.0]);
         let mut wide = [-f64::INFINITY; WIDE_LANES];
-        wide[..5].copy_from_slice(&[0.0, -COST_LIMIT_64, -1e300, f64::NAN, -961.0]);
+        wide[..5].copy_from_slice(&[0.0, -COST_LIMIT_64, -1e300, f64::NAN, -901.0]);
         dispatch.run(Exp2(&mut narrow, &mut wide));
         for (l, power) in narrow.iter().enumerate() {
             let exact = if l == 0 { 1.0 } else { (-COST_LIMIT).exp2() };

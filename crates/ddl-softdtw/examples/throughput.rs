@@ -1,0 +1,57 @@
+//! Time of a pair (query × candidate) of the search for the 100 nearest, on one thread.
+//!
+//! ```text
+//! cargo run --release --example throughput -- [steps] [queries] [portable|avx2|avx512]
+//! ```
+//! With `perf stat -e instructions:u` before the program, the instructions of a run of 2 n queries less those of a run of
+//! n queries, divided by n times the number of candidates, are the instructions of a pair.
+#![expect(clippy::print_stdout, reason = "what it is for")]
+
+#[path = "../benches/recordings.rs"]
+mod recordings;
+
+use std::time::Instant;
+
+use ddl_softdtw::{Cost, InstructionSet, SearchIndex, SoftDtw};
+use recordings::Windows;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let number = |i: usize, default: usize| match arguments.get(i) {
+        Some(text) => text.parse(),
+        None => Ok(default),
+    };
+    let (steps, count) = (number(0, 8)?, number(1, 200)?);
+    let sets = match arguments.get(2).map(String::as_str) {
+        None => InstructionSet::available(),
+        Some("portable") => vec![InstructionSet::Portable],
+        Some("avx2") => vec![InstructionSet::Avx2],
+        Some("avx512") => vec![InstructionSet::Avx512],
+        Some(other) => return Err(format!("{other}: portable, avx2 or avx512").into()),
+    };
+    let windows = Windows::load(steps);
+    let queries = windows.some_queries(count);
+    let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean)?;
+    let index = SearchIndex::build(&dtw, &windows.candidates)?;
+    let pairs = (queries.len() * index.len()) as f64;
+    println!(
+        "{} windows of {steps} steps: {} queries x {} candidates",
+        windows.source,
+        queries.len(),
+        index.len()
+    );
+    for set in sets {
+        let index = index.clone().with_instruction_set(set)?;
+        let mut times = Vec::new();
+        for query in &queries {
+            let start = Instant::now();
+            index.nearest(query, 100)?;
+            times.push(start.elapsed().as_secs_f64());
+        }
+        let mean = times.iter().sum::<f64>() / pairs * 1e9;
+        times.sort_by(f64::total_cmp);
+        let median = times[times.len() / 2] / index.len() as f64 * 1e9;
+        println!("{set}: mean {mean:.2}, median query {median:.2} ns a pair");
+    }
+    Ok(())
+}
