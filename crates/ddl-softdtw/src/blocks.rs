@@ -51,6 +51,16 @@ impl<const D: usize> Narrowing<D> {
     }
 }
 
+/// Sixteen numbers that a register of any size is loaded from in one access to the cache.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(crate) struct Line(pub(crate) Lanes);
+
+/// One step of sixteen sequences, aligned likewise.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(crate) struct Step<const D: usize>(pub(crate) [Lanes; D]);
+
 /// Sequences by length, sixteen to a block.
 #[derive(Clone, Debug)]
 pub(crate) struct Blocks<const D: usize> {
@@ -63,7 +73,7 @@ pub(crate) struct Blocks<const D: usize> {
     pub(crate) runs: Vec<Run>,
     /// Which sequence is in a lane of a block, or [`FREE`].
     pub(crate) members: Vec<[usize; LANES]>,
-    samples: Vec<[Lanes; D]>,
+    samples: Vec<Step<D>>,
 }
 
 /// Blocks of sequences of one length.
@@ -107,12 +117,12 @@ impl<const D: usize> Blocks<D> {
     fn push(&mut self, sequences: &[&[[f64; D]]], members: &[usize]) {
         let first = self.samples.len();
         let steps = sequences[members[0]].len();
-        self.samples.resize(first + steps, [[0.0; LANES]; D]);
+        self.samples.resize(first + steps, Step([[0.0; LANES]; D]));
         let mut lanes = [FREE; LANES];
         for (lane, &member) in members.iter().enumerate() {
             lanes[lane] = member;
             for (step, sample) in sequences[member].iter().zip(&mut self.samples[first..]) {
-                for (lanes, value) in sample.iter_mut().zip(self.narrowing.step(step)) {
+                for (lanes, value) in sample.0.iter_mut().zip(self.narrowing.step(step)) {
                     lanes[lane] = value;
                 }
             }
@@ -121,7 +131,7 @@ impl<const D: usize> Blocks<D> {
     }
 
     /// The steps of `blocks` (places in [`Blocks::members`]) of a run, one block after the other.
-    pub(crate) fn samples(&self, run: &Run, blocks: &Range<usize>) -> &[[Lanes; D]] {
+    pub(crate) fn samples(&self, run: &Run, blocks: &Range<usize>) -> &[Step<D>] {
         let step = |block: usize| run.first + (block - run.blocks.start) * run.steps;
         &self.samples[step(blocks.start)..step(blocks.end)]
     }
@@ -146,7 +156,7 @@ mod tests {
             (2, 2, 4)
         );
         let mut seen = vec![false; 45];
-        let first = blocks.samples(&blocks.runs[0], &(0..1))[0][0][0];
+        let first = blocks.samples(&blocks.runs[0], &(0..1))[0].0[0][0];
         for run in &blocks.runs {
             for block in run.blocks.clone() {
                 let samples = blocks.samples(run, &(block..block + 1));
@@ -158,7 +168,7 @@ mod tests {
                     assert!(!std::mem::replace(&mut seen[member], true));
                     assert_eq!(sequences[member].len(), run.steps);
                     // Sequence 0 is in the first lane, and differences survive the shift.
-                    assert!((samples[0][0][lane] - first - member as f32).abs() < 1e-5);
+                    assert!((samples[0].0[0][lane] - first - member as f32).abs() < 1e-5);
                 }
             }
         }

@@ -72,6 +72,14 @@ pub enum SearchError {
         /// What is wrong with it (sequence y).
         source: SoftDtwError,
     },
+    /// A weighted sum needs one weight for each sequence.
+    #[error("{weights} weights for {sequences} sequences: give one for each")]
+    Weights {
+        /// Number of weights that were given.
+        weights: usize,
+        /// Number of sequences of the batch.
+        sequences: usize,
+    },
     /// The processor does not have the vector instructions that were asked for.
     #[error("this processor has no {set} instructions: choose one of InstructionSet::available()")]
     InstructionSet {

@@ -55,6 +55,7 @@ pub(crate) trait Simd: Copy {
     fn add(self, a: Self::Narrow, b: Self::Narrow) -> Self::Narrow;
     fn sub(self, a: Self::Narrow, b: Self::Narrow) -> Self::Narrow;
     fn mul(self, a: Self::Narrow, b: Self::Narrow) -> Self::Narrow;
+    fn div(self, a: Self::Narrow, b: Self::Narrow) -> Self::Narrow;
     /// a b + c, rounded once or twice.
     fn mul_add(self, a: Self::Narrow, b: Self::Narrow, c: Self::Narrow) -> Self::Narrow;
     /// c − a b, rounded once or twice.
@@ -72,8 +73,19 @@ pub(crate) trait Simd: Copy {
     #[expect(clippy::inline_always, reason = "the lanes must stay in registers")]
     #[inline(always)]
     fn exp2(self, exponent: Self::Narrow) -> Self::Narrow {
-        exp2::by_rounding(self, exponent)
+        let [power] = self.exp2_each([exponent]);
+        power
     }
+
+    /// [`Simd::exp2`] of several registers, a stage at a time, so that none waits for the others.
+    #[expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+    #[inline(always)]
+    fn exp2_each<const G: usize>(self, exponents: [Self::Narrow; G]) -> [Self::Narrow; G] {
+        exp2::by_rounding(self, exponents)
+    }
+
+    /// K b for K of at least 2^−[`COST_LIMIT`], with up to [`FLOOR`] added to b so that the product is not denormal.
+    fn weigh(self, k: Self::Narrow, b: Self::Narrow) -> Self::Narrow;
 
     /// K (diagonal + up + left), one cell of the recursion, for K of at least 2^−[`COST_LIMIT`]. Up to [`FLOOR`] is added
     /// to the sum, so that no product is denormal: denormal numbers would make the recursion ten times slower.

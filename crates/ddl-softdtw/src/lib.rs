@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod batch;
 mod blocks;
 mod cost;
 mod error;
@@ -14,6 +15,7 @@ mod sieve;
 mod softmin;
 mod value;
 
+pub use batch::{BatchGradients, SoftDtwBatch};
 pub use cost::Cost;
 pub use error::{SearchError, SequenceRole, SoftDtwError};
 pub use lanes::InstructionSet;

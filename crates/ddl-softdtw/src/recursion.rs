@@ -9,52 +9,89 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use crate::lanes::{Lanes, Simd};
+use crate::blocks::{Line, Step};
+use crate::lanes::Simd;
+
+/// Cells whose similarities are computed together: enough independent operations to fill the time each one takes.
+const GROUP: usize = 4;
 
 /// Scores of one part of a block: start · Σ over warping paths of 2^−cost, for each lane.
 ///
 /// # Shapes
-/// `query`: n steps; `block`: m steps of D components of sixteen lanes; `row`: m registers of working memory.
+/// `query`: n steps; `block`: m steps; `row`: m registers of working memory, of any content. Where the compiler knows m
+/// the row stays in registers.
 #[inline(always)]
 pub(crate) fn recursion<S: Simd, const D: usize>(
     simd: S,
     query: &[[f32; D]],
-    block: &[[Lanes; D]],
+    block: &[Step<D>],
     part: usize,
     start: S::Narrow,
     row: &mut [S::Narrow],
 ) -> S::Narrow {
     let zero = simd.splat(0.0);
+    let steps = block.len();
     row.fill(zero);
     let mut corner = start;
     let mut left = zero;
     for step in query {
         let mut diagonal = corner;
         left = zero;
-        for (cell, candidates) in row.iter_mut().zip(block) {
-            let k = simd.exp2(minus_cost(simd, step, candidates, part));
-            let up = *cell;
-            left = simd.cell(k, diagonal, up, left);
-            *cell = left;
-            diagonal = up;
+        let mut first = 0;
+        while first < steps {
+            let ks = similarities(simd, step, block, first, part);
+            for g in 0..GROUP {
+                if first + g < steps {
+                    let up = row[first + g];
+                    left = simd.cell(ks[g], diagonal, up, left);
+                    row[first + g] = left;
+                    diagonal = up;
+                }
+            }
+            first += GROUP;
         }
         corner = zero;
     }
     left
 }
 
-/// −|x − y|² of a query step and one step of each candidate.
+/// 2^−|x − y|² of a step x and all steps y of one part of a block.
 #[inline(always)]
-fn minus_cost<S: Simd, const D: usize>(
+pub(crate) fn similarities_of_row<S: Simd, const D: usize>(
+    simd: S,
+    x: &[f32; D],
+    block: &[Step<D>],
+    part: usize,
+    into: &mut [Line],
+) {
+    for first in (0..block.len()).step_by(GROUP) {
+        let ks = similarities(simd, x, block, first, part);
+        for g in 0..GROUP {
+            if let Some(line) = into.get_mut(first + g) {
+                simd.store(ks[g], &mut line.0, part);
+            }
+        }
+    }
+}
+
+/// 2^−|x − y|² of a query step x and the steps y from `first` on, as far as there are any.
+#[inline(always)]
+fn similarities<S: Simd, const D: usize>(
     simd: S,
     step: &[f32; D],
-    candidates: &[Lanes; D],
+    block: &[Step<D>],
+    first: usize,
     part: usize,
-) -> S::Narrow {
-    let mut sum = simd.splat(0.0);
-    for d in 0..D {
-        let difference = simd.sub(simd.splat(step[d]), simd.load(&candidates[d], part));
-        sum = simd.neg_mul_add(difference, difference, sum);
+) -> [S::Narrow; GROUP] {
+    let mut exponents = [simd.splat(0.0); GROUP];
+    for g in 0..GROUP {
+        if first + g < block.len() {
+            for d in 0..D {
+                let y = simd.load(&block[first + g].0[d], part);
+                let difference = simd.sub(simd.splat(step[d]), y);
+                exponents[g] = simd.neg_mul_add(difference, difference, exponents[g]);
+            }
+        }
     }
-    sum
+    simd.exp2_each(exponents)
 }

@@ -4,7 +4,7 @@
 
 use std::ops;
 
-use crate::blocks::{Blocks, FREE, Run};
+use crate::blocks::{Blocks, FREE, Run, Step};
 use crate::lanes::{Dispatch, Kernel, LANES, Lanes, Simd};
 use crate::range::Range;
 use crate::recursion::recursion;
@@ -138,7 +138,7 @@ struct Sweep<'a, const D: usize> {
     query: &'a [[f32; D]],
     /// Steps of each candidate.
     steps: usize,
-    samples: &'a [[Lanes; D]],
+    samples: &'a [Step<D>],
     weights: &'a [Lanes],
     members: &'a [[usize; LANES]],
     start: f32,
@@ -156,15 +156,8 @@ impl<const D: usize> Kernel for Sweep<'_, D> {
             8 => self.fixed::<S, 8>(simd),
             steps => {
                 let mut row = vec![simd.splat(0.0); steps];
-                let samples = self.samples.chunks_exact(steps);
-                for (block, (samples, weights)) in samples.zip(self.weights).enumerate() {
-                    let mut scores = [0.0; LANES];
-                    for part in 0..S::PARTS {
-                        let start = simd.mul(simd.load(weights, part), simd.splat(self.start));
-                        let score = recursion(simd, self.query, samples, part, start, &mut row);
-                        simd.store(score, &mut scores, part);
-                    }
-                    offer_all(simd, self.selection, &scores, &self.members[block]);
+                for (b, block) in self.samples.chunks_exact(steps).enumerate() {
+                    self.block(simd, b, block, &mut row);
                 }
             }
         }
@@ -174,41 +167,34 @@ impl<const D: usize> Kernel for Sweep<'_, D> {
 impl<const D: usize> Sweep<'_, D> {
     #[inline(always)]
     fn fixed<S: Simd, const M: usize>(&mut self, simd: S) {
-        let (samples, _) = self.samples.as_chunks::<M>();
-        for (block, (samples, weights)) in samples.iter().zip(self.weights).enumerate() {
-            let mut scores = [0.0; LANES];
-            for part in 0..S::PARTS {
-                let start = simd.mul(simd.load(weights, part), simd.splat(self.start));
-                let mut row = [simd.splat(0.0); M];
-                let score = recursion(simd, self.query, samples, part, start, &mut row);
-                simd.store(score, &mut scores, part);
-            }
-            offer_all(simd, self.selection, &scores, &self.members[block]);
+        let (blocks, _) = self.samples.as_chunks::<M>();
+        for (b, block) in blocks.iter().enumerate() {
+            self.block(simd, b, block, &mut [simd.splat(0.0); M]);
+        }
+    }
+
+    /// The scores of block `b`, offered where they reach the threshold.
+    #[inline(always)]
+    fn block<S: Simd>(&mut self, simd: S, b: usize, block: &[Step<D>], row: &mut [S::Narrow]) {
+        let mut scores = [0.0; LANES];
+        let threshold = simd.splat(self.selection.threshold());
+        let mut mask = 0;
+        for part in 0..S::PARTS {
+            let start = simd.mul(simd.load(&self.weights[b], part), simd.splat(self.start));
+            let score = recursion(simd, self.query, block, part, start, row);
+            mask |= simd.at_least(score, threshold) << (part * S::WIDTH);
+            simd.store(score, &mut scores, part);
+        }
+        if mask != 0 {
+            offer(self.selection, &scores, &self.members[b], mask);
         }
     }
 }
 
-/// Offers the scores of a block that reach the threshold.
-#[inline(always)]
-fn offer_all<S: Simd>(
-    simd: S,
-    selection: &mut Selection,
-    scores: &Lanes,
-    members: &[usize; LANES],
-) {
-    let threshold = simd.splat(selection.threshold());
-    let mut mask = 0;
-    for part in 0..S::PARTS {
-        mask |= simd.at_least(simd.load(scores, part), threshold) << (part * S::WIDTH);
-    }
-    if mask != 0 {
-        offer_some(selection, scores, members, mask);
-    }
-}
-
+/// Offers the scores of the lanes in `mask`.
 #[cold]
 #[inline(never)]
-fn offer_some(selection: &mut Selection, scores: &Lanes, members: &[usize; LANES], mut mask: u32) {
+fn offer(selection: &mut Selection, scores: &Lanes, members: &[usize; LANES], mut mask: u32) {
     while mask != 0 {
         let lane = mask.trailing_zeros() as usize;
         mask &= mask - 1;

@@ -9,7 +9,8 @@ use super::x86::{Avx2, Avx512};
 
 /// Vector instructions that the kernels can be run with.
 ///
-/// The choice changes the speed only: results are the same to the last bit.
+/// The choice changes the speed: the results of a search are the same to the last bit, those of
+/// [`SoftDtwBatch`](crate::SoftDtwBatch) within their error bound.
 ///
 /// # Examples
 /// ```

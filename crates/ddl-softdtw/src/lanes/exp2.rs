@@ -58,19 +58,40 @@ const WIDE_POLYNOMIAL: [f64; 12] = [
 
 /// exponent = k + f with integer k and |f| ≤ 1/2: a polynomial gives 2^f, and k is added to its exponent.
 #[inline(always)]
-pub(super) fn by_rounding<S: Simd>(simd: S, exponent: S::Narrow) -> S::Narrow {
+pub(super) fn by_rounding<S: Simd, const G: usize>(
+    simd: S,
+    mut exponents: [S::Narrow; G],
+) -> [S::Narrow; G] {
     let rounding = simd.splat(ROUNDING);
-    let exponent = simd.max(exponent, simd.splat(-COST_LIMIT));
-    let shifted = simd.add(exponent, rounding);
-    let f = simd.sub(exponent, simd.sub(shifted, rounding));
-    let mut power = simd.splat(POLYNOMIAL[5]);
-    power = simd.mul_add(power, f, simd.splat(POLYNOMIAL[4]));
-    power = simd.mul_add(power, f, simd.splat(POLYNOMIAL[3]));
-    power = simd.mul_add(power, f, simd.splat(POLYNOMIAL[2]));
-    power = simd.mul_add(power, f, simd.splat(POLYNOMIAL[1]));
-    power = simd.mul_add(power, f, simd.splat(POLYNOMIAL[0]));
-    simd.scale(power, shifted)
+    let mut fractions = exponents;
+    let mut powers = exponents;
+    for g in 0..G {
+        let exponent = simd.max(exponents[g], simd.splat(-COST_LIMIT));
+        exponents[g] = simd.add(exponent, rounding);
+        fractions[g] = simd.sub(exponent, simd.sub(exponents[g], rounding));
+    }
+    for g in 0..G {
+        powers[g] = simd.mul_add(
+            simd.splat(POLYNOMIAL[DEGREE]),
+            fractions[g],
+            simd.splat(POLYNOMIAL[DEGREE - 1]),
+        );
+    }
+    for i in 0..DEGREE - 1 {
+        for g in 0..G {
+            powers[g] = simd.mul_add(
+                powers[g],
+                fractions[g],
+                simd.splat(POLYNOMIAL[DEGREE - 2 - i]),
+            );
+        }
+    }
+    for g in 0..G {
+        powers[g] = simd.scale(powers[g], exponents[g]);
+    }
+    powers
 }
+const DEGREE: usize = POLYNOMIAL.len() - 1;
 
 #[inline(always)]
 pub(super) fn wide_by_rounding<S: Simd>(simd: S, exponent: S::Wide) -> S::Wide {

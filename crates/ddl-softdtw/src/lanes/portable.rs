@@ -67,6 +67,11 @@ impl Simd for Portable {
     }
 
     #[inline(always)]
+    fn div(self, a: Narrow, b: Narrow) -> Narrow {
+        each_lane!(a, |l| a[l] / b[l])
+    }
+
+    #[inline(always)]
     fn mul_add(self, a: Narrow, b: Narrow, c: Narrow) -> Narrow {
         each_lane!(a, |l| a[l] * b[l] + c[l])
     }
@@ -96,6 +101,11 @@ impl Simd for Portable {
             let bits = power[l].to_bits();
             f32::from_bits(bits.wrapping_add(exponent[l].to_bits() << 23))
         })
+    }
+
+    #[inline(always)]
+    fn weigh(self, k: Narrow, b: Narrow) -> Narrow {
+        each_lane!(k, |l| k[l] * (b[l] + FLOOR))
     }
 
     #[inline(always)]

@@ -103,11 +103,11 @@ fn exponents_out_of_range_are_clamped() {
 struct Operations<'a>([&'a Lanes; 3], [&'a WideLanes; 3]);
 
 impl Kernel for Operations<'_> {
-    type Output = ([Lanes; 8], u32, [WideLanes; 5]);
+    type Output = ([Lanes; 10], u32, [WideLanes; 5]);
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Self::Output {
-        let mut narrow = [[0.0; LANES]; 8];
+        let mut narrow = [[0.0; LANES]; 10];
         let mut wide = [[0.0; WIDE_LANES]; 5];
         let mut mask = 0;
         for part in 0..S::PARTS {
@@ -122,6 +122,8 @@ impl Kernel for Operations<'_> {
             simd.store(simd.max(a, b), &mut narrow[5], part);
             simd.store(simd.splat(2.5), &mut narrow[6], part);
             simd.store(simd.cell(a, b, c, simd.splat(0.5)), &mut narrow[7], part);
+            simd.store(simd.weigh(a, b), &mut narrow[8], part);
+            simd.store(simd.div(a, simd.splat(4.0)), &mut narrow[9], part);
             mask |= simd.at_least(a, b) << (part * S::WIDTH);
             let a = simd.wide_load(self.1[0], part);
             let b = simd.wide_load(self.1[1], part);
@@ -156,6 +158,9 @@ fn operations_are_what_their_names_say() {
             assert_eq!(mask >> l & 1 == 1, a >= b, "{set}, lane {l}");
             let (cell, exact) = (narrow[7][l], a * (b + c + 0.5));
             assert!(cell >= exact && cell <= exact + a.max(1.0) * FLOOR * 1.1);
+            assert_eq!(narrow[9][l], a / 4.0);
+            let (product, exact) = (narrow[8][l], a * b);
+            assert!((product - exact).abs() <= a.max(1.0) * FLOOR * 1.1);
         }
         for l in 0..WIDE_LANES {
             let (a, b) = (wide_a[l], wide_b[l]);
@@ -173,6 +178,7 @@ fn a_cell_is_never_denormal() {
     let wide = [0.0; WIDE_LANES];
     each_set(|dispatch| {
         let (narrow, ..) = dispatch.run(Operations([&tiny, &zero, &zero], [&wide; 3]));
-        assert!(narrow[7].iter().all(|cell| cell.is_normal()));
+        let cells = narrow[7].iter().chain(&narrow[8]);
+        assert!(cells.into_iter().all(|cell| cell.is_normal()));
     });
 }

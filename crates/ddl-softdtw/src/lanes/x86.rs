@@ -12,6 +12,7 @@
 use std::arch::x86_64::*;
 
 use super::exp2::{COST_LIMIT, UPWARD_POLYNOMIAL};
+const DEGREE: usize = UPWARD_POLYNOMIAL.len() - 1;
 use super::{Kernel, Lanes, Simd, WideLanes};
 
 /// Added to every sum of weighted predecessors, 2^−100. A fused product that is added to it is not rounded to a denormal
@@ -64,6 +65,7 @@ impl Simd for Avx2 {
         fn add(a: __m256, b: __m256) -> __m256 = _mm256_add_ps(a, b);
         fn sub(a: __m256, b: __m256) -> __m256 = _mm256_sub_ps(a, b);
         fn mul(a: __m256, b: __m256) -> __m256 = _mm256_mul_ps(a, b);
+        fn div(a: __m256, b: __m256) -> __m256 = _mm256_div_ps(a, b);
         fn mul_add(a: __m256, b: __m256, c: __m256) -> __m256 = _mm256_fmadd_ps(a, b, c);
         fn neg_mul_add(a: __m256, b: __m256, c: __m256) -> __m256 = _mm256_fnmadd_ps(a, b, c);
         fn max(a: __m256, b: __m256) -> __m256 = _mm256_max_ps(a, b);
@@ -82,6 +84,11 @@ impl Simd for Avx2 {
             _mm256_castpd_si256(power),
             _mm256_slli_epi64::<52>(_mm256_castpd_si256(exponent)),
         ));
+    }
+
+    #[inline(always)]
+    fn weigh(self, k: __m256, b: __m256) -> __m256 {
+        self.mul_add(k, b, self.splat(FUSED_FLOOR))
     }
 
     #[inline(always)]
@@ -148,6 +155,7 @@ impl Simd for Avx512 {
         fn add(a: __m512, b: __m512) -> __m512 = _mm512_add_ps(a, b);
         fn sub(a: __m512, b: __m512) -> __m512 = _mm512_sub_ps(a, b);
         fn mul(a: __m512, b: __m512) -> __m512 = _mm512_mul_ps(a, b);
+        fn div(a: __m512, b: __m512) -> __m512 = _mm512_div_ps(a, b);
         fn mul_add(a: __m512, b: __m512, c: __m512) -> __m512 = _mm512_fmadd_ps(a, b, c);
         fn neg_mul_add(a: __m512, b: __m512, c: __m512) -> __m512 = _mm512_fnmadd_ps(a, b, c);
         fn max(a: __m512, b: __m512) -> __m512 = _mm512_max_ps(a, b);
@@ -170,16 +178,40 @@ impl Simd for Avx512 {
 
     /// As [`super::exp2`], with f = exponent − floor(exponent) and the power scaled by one instruction each.
     #[inline(always)]
-    fn exp2(self, exponent: __m512) -> __m512 {
-        let exponent = self.max(exponent, self.splat(-COST_LIMIT));
-        let f = self.above_floor(exponent);
-        let mut power = self.splat(UPWARD_POLYNOMIAL[5]);
-        power = self.mul_add(power, f, self.splat(UPWARD_POLYNOMIAL[4]));
-        power = self.mul_add(power, f, self.splat(UPWARD_POLYNOMIAL[3]));
-        power = self.mul_add(power, f, self.splat(UPWARD_POLYNOMIAL[2]));
-        power = self.mul_add(power, f, self.splat(UPWARD_POLYNOMIAL[1]));
-        power = self.mul_add(power, f, self.splat(UPWARD_POLYNOMIAL[0]));
-        self.scale_by_floor(power, exponent)
+    fn exp2_each<const G: usize>(self, mut exponents: [__m512; G]) -> [__m512; G] {
+        let mut fractions = exponents;
+        let mut powers = exponents;
+        for g in 0..G {
+            exponents[g] = self.max(exponents[g], self.splat(-COST_LIMIT));
+        }
+        for g in 0..G {
+            fractions[g] = self.above_floor(exponents[g]);
+        }
+        for g in 0..G {
+            powers[g] = self.mul_add(
+                self.splat(UPWARD_POLYNOMIAL[DEGREE]),
+                fractions[g],
+                self.splat(UPWARD_POLYNOMIAL[DEGREE - 1]),
+            );
+        }
+        for i in 0..DEGREE - 1 {
+            for g in 0..G {
+                powers[g] = self.mul_add(
+                    powers[g],
+                    fractions[g],
+                    self.splat(UPWARD_POLYNOMIAL[DEGREE - 2 - i]),
+                );
+            }
+        }
+        for g in 0..G {
+            powers[g] = self.scale_by_floor(powers[g], exponents[g]);
+        }
+        powers
+    }
+
+    #[inline(always)]
+    fn weigh(self, k: __m512, b: __m512) -> __m512 {
+        self.mul_add(k, b, self.splat(FUSED_FLOOR))
     }
 
     #[inline(always)]
