@@ -3,17 +3,20 @@
 use crate::blocks::{Blocks, FREE, Run};
 use crate::cost::Cost;
 use crate::error::{SearchError, SequenceRole};
-use crate::lanes::{Dispatch, FLOOR, InstructionSet};
+use crate::lanes::{Dispatch, InstructionSet, LANES, WIDE_LANES};
 use crate::range::Range;
 use crate::value::{SoftDtw, check};
 use forward_backward::{ForwardBackward, Working};
+use wide::WidePairs;
 
 mod forward_backward;
+mod wide;
 
 /// Largest proven error of log2 of a score that `f32` may have: beyond it a pair is evaluated in `f64`.
 const WIDEST_ERROR: f64 = 2e-4;
-/// log2 of the largest value that the backward recursion starts from.
-const LARGEST_SEED_LOG2: i16 = 100;
+/// Takes the place of a sequence, the value and the gradient of the pair.
+trait Visit<const D: usize>: FnMut(usize, f64, &[[f64; D]]) {}
+impl<const D: usize, F: FnMut(usize, f64, &[[f64; D]])> Visit<D> for F {}
 
 /// Sequences y prepared for `D_γ(x, y)` and its gradient with respect to x, for one x after the other: barycentres, losses
 /// over many sequences.
@@ -21,8 +24,8 @@ const LARGEST_SEED_LOG2: i16 = 100;
 /// # Numerics
 /// Sixteen pairs at once in `f32`, for γ > 0 and the squared cost. The proven error of a value is at most 1.4e-4 γ; for
 /// velocities of walkers (γ = 1 m²/s², eight steps) values and gradients are within 1e-5 of those of [`SoftDtw`]. What
-/// does not fit is evaluated in `f64` by [`SoftDtw`]: values beyond about 47 γ, sequences of more than 32 steps or too
-/// large for the bound, other costs, γ = 0.
+/// does not fit is evaluated in `f64`: values beyond about 47 γ, sequences of more than 32 steps or too large for the
+/// bound; and by [`SoftDtw`] itself what is beyond that: about 570 γ, 180 steps, the Euclidean cost, γ = 0.
 ///
 /// Everything runs on the calling thread. The last bits depend on the instruction set.
 ///
@@ -179,63 +182,79 @@ impl<const D: usize> SoftDtwBatch<D> {
         Ok((sum, total))
     }
 
-    /// Evaluates every pair, in an order that depends on the lengths of the sequences alone.
-    fn each_pair(
-        &self,
-        x: &[[f64; D]],
-        mut visit: impl FnMut(usize, f64, &[[f64; D]]),
-    ) -> Result<(), SearchError> {
+    /// Evaluates every pair, in an order that depends on the inputs alone.
+    fn each_pair(&self, x: &[[f64; D]], mut visit: impl Visit<D>) -> Result<(), SearchError> {
         check(x, SequenceRole::X)?;
-        let exactly = |index: usize, visit: &mut dyn FnMut(usize, f64, &[[f64; D]])| {
+        let mut left = Vec::new();
+        match &self.blocks {
+            Some(blocks) => self.narrow_pairs(blocks, x, &mut left, &mut visit),
+            None => left.extend(0..self.len()),
+        }
+        // Eight pairs of one length go together.
+        left.sort_by_key(|&index| (self.sequences[index].len(), index));
+        let mut beyond = Vec::new();
+        let mut wide = WidePairs::new(self.dtw, self.dispatch);
+        for run in left.chunk_by(|&a, &b| self.sequences[a].len() == self.sequences[b].len()) {
+            for block in run.chunks(WIDE_LANES) {
+                wide.evaluate(x, block, &self.sequences, &mut beyond, &mut visit);
+            }
+        }
+        for index in beyond {
             let evaluated = self.dtw.value_and_gradient(x, &self.sequences[index]);
             let (value, gradient) =
                 evaluated.map_err(|source| SearchError::Candidate { index, source })?;
             visit(index, value, &gradient);
-            Ok::<(), SearchError>(())
-        };
-        let Some(blocks) = &self.blocks else {
-            return (0..self.len()).try_for_each(|index| exactly(index, &mut visit));
-        };
+        }
+        Ok(())
+    }
+
+    /// Evaluates what `f32` holds, and leaves the rest.
+    fn narrow_pairs(
+        &self,
+        blocks: &Blocks<D>,
+        x: &[[f64; D]],
+        left: &mut Vec<usize>,
+        visit: &mut impl Visit<D>,
+    ) {
         let narrow = blocks.narrowing.narrow(x);
         let largest = blocks.largest.max(blocks.narrowing.largest(x.iter()));
+        let slope = 2.0 / blocks.narrowing.scale;
         let mut working = Working::new();
         let mut gradient = vec![[0.0; D]; x.len()];
         for run in &blocks.runs {
-            let range = Accurate::new(x.len(), run, largest, D);
+            let Some(accurate) = Accurate::new(x.len(), run, largest, D) else {
+                let members = blocks.members[run.blocks.clone()].as_flattened();
+                left.extend(members.iter().filter(|&&member| member != FREE));
+                continue;
+            };
             for block in run.blocks.clone() {
-                let members = blocks.members[block].iter().enumerate();
-                let members = members.filter(|(_, member)| **member != FREE);
-                let Some(range) = range else {
-                    members
-                        .map(|(_, &member)| member)
-                        .try_for_each(|member| exactly(member, &mut visit))?;
-                    continue;
-                };
                 self.dispatch.run(ForwardBackward {
                     x: &narrow,
                     block: blocks.samples(run, &(block..block + 1)),
-                    start: range.start,
-                    seed: range.seed,
+                    start: accurate.start,
+                    seed: accurate.seed,
                     working: &mut working,
                 });
-                for (lane, &member) in members {
-                    let score = working.scores[lane];
-                    if score < range.smallest {
-                        exactly(member, &mut visit)?;
+                for lane in 0..LANES {
+                    let (member, score) = (blocks.members[block][lane], working.scores[lane]);
+                    if member == FREE {
+                        continue;
+                    }
+                    if score < accurate.smallest {
+                        left.push(member);
                         continue;
                     }
                     // Dividing by a power of two is exact.
-                    let value = -self.dtw.gamma() * f64::from(score / range.start).ln();
+                    let value = -self.dtw.gamma() * f64::from(score / accurate.start).ln();
                     for (into, lanes) in gradient.iter_mut().zip(&working.gradient) {
                         for (into, lanes) in into.iter_mut().zip(lanes) {
-                            *into = f64::from(lanes[lane]) * (2.0 / blocks.narrowing.scale);
+                            *into = f64::from(lanes[lane]) * slope;
                         }
                     }
                     visit(member, value, &gradient);
                 }
             }
         }
-        Ok(())
     }
 }
 
@@ -243,7 +262,7 @@ impl<const D: usize> SoftDtwBatch<D> {
 #[derive(Clone, Copy, Debug)]
 struct Accurate {
     start: f32,
-    /// What the backward recursion starts from: sums of differences times this do not overflow.
+    /// What the backward recursion starts from.
     seed: f32,
     /// The smallest such score.
     smallest: f32,
@@ -251,19 +270,13 @@ struct Accurate {
 
 impl Accurate {
     /// `None` when no score would do.
-    ///
-    /// The floor that a cell adds to β meets at most α < 2^125 there: over all cells it changes E by at most
-    /// n m · floor · 2^125 / (seed · score), which is kept below 2^−24.
     fn new(n: usize, run: &Run, largest: f64, dimension: usize) -> Option<Self> {
         let range = Range::narrow(n, run.steps)?;
-        let seed_log2 = range.start_log2().min(LARGEST_SEED_LOG2);
-        let cells_log2 = ((n * run.steps) as f64).log2();
-        let floors = cells_log2 + f64::from(FLOOR).log2() + 125.0 + 24.0 - f64::from(seed_log2);
-        let smallest = range.smallest_accurate_log2().max(floors);
+        let smallest = range.smallest_aligned_log2(n * run.steps);
         let error = range.error_log2(smallest, largest, dimension);
         (error <= WIDEST_ERROR).then(|| Self {
             start: f32::from(range.start_log2()).exp2(),
-            seed: f32::from(seed_log2).exp2(),
+            seed: f32::from(range.seed_log2()).exp2(),
             smallest: smallest.exp2() as f32,
         })
     }

@@ -14,7 +14,7 @@ use crate::value::SoftDtw;
 /// Added to every sum of predecessors, 2^−120: times 2^−900 it is still a normal number.
 pub(crate) const WIDE_FLOOR: f64 = f64::from_bits((1023 - 120) << 52);
 /// Outside of these the squares of the differences may leave the range of `f64` where their cost does not.
-const GAMMAS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
+pub(crate) const GAMMAS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
 
 /// Bound on the error of a value in log2 units, for warping paths of up to `path` cells and a `cost` that holds all but
 /// 2^−30 of the sum.
@@ -142,7 +142,7 @@ impl PairValues {
 }
 
 /// Writes a sequence into one lane.
-fn spread<const D: usize>(steps: &[[f64; D]], lane: usize, into: &mut [[WideLanes; D]]) {
+pub(crate) fn spread<const D: usize>(steps: &[[f64; D]], lane: usize, into: &mut [[WideLanes; D]]) {
     for (step, into) in steps.iter().zip(into) {
         for (value, lanes) in step.iter().zip(into) {
             lanes[lane] = *value;
