@@ -3,11 +3,12 @@
 //! ```text
 //! cargo run --release --example throughput -- [steps] [queries] [portable|avx2|avx512]
 //! ```
-//! With `perf stat -e instructions:u` before the program, the instructions of a run of 2 n queries less those of a run of
-//! n queries, divided by n times the number of candidates, are the instructions of a pair.
+//! Instructions of a pair: count those of the program with `perf stat -e instructions:u`, or with
+//! `valgrind --tool=callgrind` for `portable` and `avx2`, for two numbers of queries. The difference, divided by the
+//! number of pairs the runs differ by, is free of what it takes to start.
 #![expect(clippy::print_stdout, reason = "what it is for")]
 
-#[path = "../benches/recordings.rs"]
+#[path = "../benches/recordings/mod.rs"]
 mod recordings;
 
 use std::time::Instant;
@@ -32,11 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let windows = Windows::load(steps);
     let queries = windows.some_queries(count);
     let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean)?;
-    let index = SearchIndex::build(
-        &dtw,
-        &windows.candidates
-            [..std::env::var("C").map_or(windows.candidates.len(), |w| w.parse().unwrap())],
-    )?;
+    let index = SearchIndex::build(&dtw, &windows.candidates)?;
     let pairs = (queries.len() * index.len()) as f64;
     println!(
         "{} windows of {steps} steps: {} queries x {} candidates",
@@ -49,10 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut times = Vec::new();
         for query in &queries {
             let start = Instant::now();
-            index.nearest(
-                query,
-                std::env::var("W").map_or(100, |w| w.parse().unwrap()),
-            )?;
+            index.nearest(query, 100)?;
             times.push(start.elapsed().as_secs_f64());
         }
         times.sort_by(f64::total_cmp);

@@ -139,8 +139,6 @@ impl<const D: usize> Blocks<D> {
 
 #[cfg(test)]
 mod tests {
-    #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
-
     use super::{Blocks, FREE};
 
     #[test]
@@ -155,7 +153,7 @@ mod tests {
             (blocks.longest, blocks.runs.len(), blocks.members.len()),
             (2, 2, 4)
         );
-        let mut seen = vec![false; 45];
+        let mut seen = [false; 45];
         let first = blocks.samples(&blocks.runs[0], &(0..1))[0].0[0][0];
         for run in &blocks.runs {
             for block in run.blocks.clone() {

@@ -46,6 +46,8 @@ pub(crate) struct PairValues {
     dispatch: Dispatch,
 }
 
+/// Both sequences of a pair.
+type Both<'a, const D: usize> = (&'a [[f64; D]], &'a [[f64; D]]);
 /// A pair that waits for its block: its place in the answer, and both sequences.
 type Pair<'a, const D: usize> = (usize, &'a [[f64; D]], &'a [[f64; D]]);
 
@@ -57,7 +59,7 @@ impl PairValues {
     /// `D_γ` of every pair of checked sequences.
     pub(crate) fn of<'a, const D: usize>(
         &self,
-        pairs: impl Iterator<Item = (&'a [[f64; D]], &'a [[f64; D]])>,
+        pairs: impl Iterator<Item = Both<'a, D>>,
     ) -> Vec<PairValue> {
         let mut pairs: Vec<Pair<'a, D>> = pairs.enumerate().map(|(i, (x, y))| (i, x, y)).collect();
         let mut values = vec![PairValue::AtLeast(f64::NEG_INFINITY); pairs.len()];
@@ -85,9 +87,9 @@ impl PairValues {
     }
 
     /// `D_γ` of every pair of checked sequences, from the log domain where the exponential one does not reach.
-    pub(crate) fn all<const D: usize>(&self, pairs: &[(&[[f64; D]], &[[f64; D]])]) -> Vec<f64> {
+    pub(crate) fn all<const D: usize>(&self, pairs: &[Both<'_, D>]) -> Vec<f64> {
         let known = self.of(pairs.iter().copied());
-        let value = |(pair, known): (&(_, _), _)| match known {
+        let value = |(pair, known): (&Both<'_, D>, _)| match known {
             PairValue::Known(value) => value,
             PairValue::AtLeast(_) => self.beyond(pair.0, pair.1),
         };

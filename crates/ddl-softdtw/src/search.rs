@@ -183,7 +183,7 @@ impl<const D: usize> SearchIndex<D> {
             checked?;
             let survivors = survivors.next().flatten();
             let survivors = survivors.unwrap_or_else(|| (0..self.len()).collect());
-            self.rank(query, survivors, wanted)
+            self.rank(query, &survivors, wanted)
         };
         queries.iter().zip(checked).map(answer).collect()
     }
@@ -192,7 +192,7 @@ impl<const D: usize> SearchIndex<D> {
     fn rank(
         &self,
         query: &[[f64; D]],
-        candidates: Vec<usize>,
+        candidates: &[usize],
         wanted: usize,
     ) -> Result<Vec<Neighbour>, SoftDtwError> {
         if wanted == 0 {

@@ -18,11 +18,10 @@ const NEGLIGIBLE: f32 = f32::from_bits((127 - 120) << 23);
 pub(super) struct Working<const D: usize> {
     /// R(n, m), start value included.
     pub(super) scores: Lanes,
-    /// Σ_j E(i, j) (x_i − y_j) for every step and component, in scaled units.
+    /// `Σ_j E(i, j) (x_i − y_j)` for every step and component, in scaled units.
     pub(super) gradient: Vec<[Lanes; D]>,
     k: Vec<Line>,
     alpha: Vec<Line>,
-    row: Vec<Line>,
 }
 
 impl<const D: usize> Working<D> {
@@ -32,7 +31,6 @@ impl<const D: usize> Working<D> {
             gradient: Vec::new(),
             k: Vec::new(),
             alpha: Vec::new(),
-            row: Vec::new(),
         }
     }
 
@@ -42,7 +40,6 @@ impl<const D: usize> Working<D> {
         self.gradient.resize(n, [[0.0; LANES]; D]);
         self.k.resize(n * m, zero);
         self.alpha.resize(n * m, zero);
-        self.row.resize(m + 1, zero);
     }
 }
 
@@ -63,35 +60,54 @@ impl<const D: usize> Kernel for ForwardBackward<'_, D> {
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) {
         self.working.resize(self.x.len(), self.block.len());
-        for part in 0..S::PARTS {
-            let score = self.forward(simd, part);
-            simd.store(score, &mut self.working.scores, part);
-            self.backward(simd, part, score);
+        let zero = simd.splat(0.0);
+        // Rows stay in registers where their length is known to the compiler.
+        if let Ok(block) = <&[Step<D>; 7]>::try_from(self.block) {
+            self.parts(simd, block, &mut [zero; 7]);
+        } else if let Ok(block) = <&[Step<D>; 8]>::try_from(self.block) {
+            self.parts(simd, block, &mut [zero; 8]);
+        } else {
+            self.parts(simd, self.block, &mut vec![zero; self.block.len()]);
         }
     }
 }
 
 impl<const D: usize> ForwardBackward<'_, D> {
+    #[inline(always)]
+    fn parts<S: Simd>(&mut self, simd: S, block: &[Step<D>], row: &mut [S::Narrow]) {
+        for part in 0..S::PARTS {
+            let score = self.forward(simd, block, part, row);
+            simd.store(score, &mut self.working.scores, part);
+            self.backward(simd, block, part, score, row);
+        }
+    }
+
     /// The recursion, which leaves K and α of every cell behind.
     #[inline(always)]
-    fn forward<S: Simd>(&mut self, simd: S, part: usize) -> S::Narrow {
+    fn forward<S: Simd>(
+        &mut self,
+        simd: S,
+        block: &[Step<D>],
+        part: usize,
+        row: &mut [S::Narrow],
+    ) -> S::Narrow {
         let zero = simd.splat(0.0);
-        let Working { k, alpha, row, .. } = &mut *self.working;
-        let m = self.block.len();
-        row.fill(Line([0.0; LANES]));
+        let Working { k, alpha, .. } = &mut *self.working;
+        let m = block.len();
+        row.fill(zero);
         let mut corner = simd.splat(self.start);
         let mut left = zero;
         let rows = k.chunks_exact_mut(m).zip(alpha.chunks_exact_mut(m));
         for (x, (k, alpha)) in self.x.iter().zip(rows) {
-            similarities_of_row(simd, x, self.block, part, k);
+            similarities_of_row(simd, x, block, part, k);
             let mut diagonal = corner;
             left = zero;
-            for ((up, k), alpha) in row.iter_mut().zip(k).zip(alpha) {
-                let above = simd.load(&up.0, part);
-                left = simd.cell(simd.load(&k.0, part), diagonal, above, left);
-                simd.store(left, &mut up.0, part);
-                simd.store(left, &mut alpha.0, part);
-                diagonal = above;
+            for j in 0..m {
+                let up = row[j];
+                left = simd.cell(simd.load(&k[j].0, part), diagonal, up, left);
+                row[j] = left;
+                simd.store(left, &mut alpha[j].0, part);
+                diagonal = up;
             }
             corner = zero;
         }
@@ -103,21 +119,24 @@ impl<const D: usize> ForwardBackward<'_, D> {
     /// α / R(n, m) times β is E times the seed: far above the numbers that are added to both products, which keep them from
     /// becoming denormal.
     #[inline(always)]
-    fn backward<S: Simd>(&mut self, simd: S, part: usize, score: S::Narrow) {
+    fn backward<S: Simd>(
+        &mut self,
+        simd: S,
+        block: &[Step<D>],
+        part: usize,
+        score: S::Narrow,
+        row: &mut [S::Narrow],
+    ) {
         let zero = simd.splat(0.0);
         let (one, negligible) = (simd.splat(1.0), simd.splat(NEGLIGIBLE));
         let inverse = simd.div(one, score);
         let unit = simd.splat(1.0 / self.seed);
         let Working {
-            k,
-            alpha,
-            row,
-            gradient,
-            ..
+            k, alpha, gradient, ..
         } = &mut *self.working;
-        let m = self.block.len();
-        // row[j] holds K β of cell (i + 1, j); one more entry is 0 beyond the last column.
-        row.fill(Line([0.0; LANES]));
+        let m = block.len();
+        // row[j] holds K β of cell (i + 1, j).
+        row.fill(zero);
         // What the last cell is given stands for the end of the paths.
         let mut end = simd.splat(self.seed);
         let rows = k.chunks_exact(m).zip(alpha.chunks_exact(m));
@@ -128,17 +147,17 @@ impl<const D: usize> ForwardBackward<'_, D> {
             end = zero;
             let mut diagonal = zero;
             for j in (0..m).rev() {
-                let down = simd.load(&row[j].0, part);
+                let down = row[j];
                 let beta = simd.add(simd.add(diagonal, down), right);
                 let share = simd.mul_add(simd.load(&alpha[j].0, part), inverse, negligible);
                 let expected = simd.mul_add(share, beta, one);
                 for d in 0..D {
-                    let y = simd.load(&self.block[j].0[d], part);
+                    let y = simd.load(&block[j].0[d], part);
                     let difference = simd.sub(simd.splat(x[d]), y);
                     sums[d] = simd.mul_add(expected, difference, sums[d]);
                 }
                 right = simd.weigh(simd.load(&k[j].0, part), beta);
-                simd.store(right, &mut row[j].0, part);
+                row[j] = right;
                 diagonal = down;
             }
             for d in 0..D {

@@ -64,9 +64,9 @@ fn what_leaves_the_range_is_evaluated_in_f64() {
     let (value, gradient) = worst_errors(&dtw, &far[30..40], &far);
     // The sequences are four times as long as a walker's, and so are their errors.
     assert!(value < 4e-5 && gradient < 4e-5, "{value:e} {gradient:e}");
-    // None of these fits f32, and the last three not even the exponential domain.
+    // Only the nearest pairs of the first fit f32; the last three do not even fit the exponential domain.
     for (gamma, cost, scale, length, bound) in [
-        (1e-2, Cost::SquaredEuclidean, 1.0, 8, 1e-10),
+        (1e-2, Cost::SquaredEuclidean, 1.0, 8, 1e-6),
         (1.0, Cost::SquaredEuclidean, 1.0, 40, 1e-10),
         (1.0, Cost::SquaredEuclidean, 1.0, 170, 1e-9),
         (0.0, Cost::SquaredEuclidean, 1.0, 8, 0.0),

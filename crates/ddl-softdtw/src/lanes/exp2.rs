@@ -30,6 +30,7 @@ const POLYNOMIAL: [f32; 6] = [
 
 /// 2^f on [0, 1], degree 5 (Remez exchange, 7.5e-8).
 #[cfg(target_arch = "x86_64")]
+#[expect(clippy::excessive_precision, reason = "as the exchange printed them")]
 pub(super) const UPWARD_POLYNOMIAL: [f32; 6] = [
     0.999_999_9,
     0.693_153_07,
@@ -40,7 +41,11 @@ pub(super) const UPWARD_POLYNOMIAL: [f32; 6] = [
 ];
 
 /// 2^f on [−1/2, 1/2], degree 11 (Remez exchange, 3.1e-18).
-#[expect(clippy::excessive_precision, reason = "as the exchange printed them")]
+#[expect(
+    clippy::excessive_precision,
+    clippy::approx_constant,
+    reason = "as the exchange printed them"
+)]
 const WIDE_POLYNOMIAL: [f64; 12] = [
     1.0,
     0.693_147_180_559_945_330_461,
@@ -64,26 +69,16 @@ pub(super) fn by_rounding<S: Simd, const G: usize>(
 ) -> [S::Narrow; G] {
     let rounding = simd.splat(ROUNDING);
     let mut fractions = exponents;
-    let mut powers = exponents;
     for g in 0..G {
         let exponent = simd.max(exponents[g], simd.splat(-COST_LIMIT));
         exponents[g] = simd.add(exponent, rounding);
         fractions[g] = simd.sub(exponent, simd.sub(exponents[g], rounding));
     }
-    for g in 0..G {
-        powers[g] = simd.mul_add(
-            simd.splat(POLYNOMIAL[DEGREE]),
-            fractions[g],
-            simd.splat(POLYNOMIAL[DEGREE - 1]),
-        );
-    }
-    for i in 0..DEGREE - 1 {
+    let [lower @ .., highest] = POLYNOMIAL;
+    let mut powers = [simd.splat(highest); G];
+    for coefficient in lower.into_iter().rev() {
         for g in 0..G {
-            powers[g] = simd.mul_add(
-                powers[g],
-                fractions[g],
-                simd.splat(POLYNOMIAL[DEGREE - 2 - i]),
-            );
+            powers[g] = simd.mul_add(powers[g], fractions[g], simd.splat(coefficient));
         }
     }
     for g in 0..G {
@@ -91,7 +86,6 @@ pub(super) fn by_rounding<S: Simd, const G: usize>(
     }
     powers
 }
-const DEGREE: usize = POLYNOMIAL.len() - 1;
 
 #[inline(always)]
 pub(super) fn wide_by_rounding<S: Simd>(simd: S, exponent: S::Wide) -> S::Wide {
@@ -99,13 +93,10 @@ pub(super) fn wide_by_rounding<S: Simd>(simd: S, exponent: S::Wide) -> S::Wide {
     let exponent = simd.wide_max(exponent, simd.wide_splat(-COST_LIMIT_64));
     let shifted = simd.wide_add(exponent, rounding);
     let f = simd.wide_sub(exponent, simd.wide_sub(shifted, rounding));
-    let mut power = simd.wide_splat(WIDE_POLYNOMIAL[11]);
-    let mut i = 11;
-    // A counted loop: an iterator's closure would not be compiled for the instruction set.
-    while i > 0 {
-        i -= 1;
-        power = simd.wide_mul(power, f);
-        power = simd.wide_add(power, simd.wide_splat(WIDE_POLYNOMIAL[i]));
+    let [lower @ .., highest] = WIDE_POLYNOMIAL;
+    let mut power = simd.wide_splat(highest);
+    for coefficient in lower.into_iter().rev() {
+        power = simd.wide_add(simd.wide_mul(power, f), simd.wide_splat(coefficient));
     }
     simd.wide_scale(power, shifted)
 }

@@ -8,11 +8,14 @@
     reason = "instructions that not every processor has, and loads and stores through pointers"
 )]
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+#![allow(
+    clippy::wildcard_imports,
+    reason = "the names of instructions say where they are from"
+)]
 
 use std::arch::x86_64::*;
 
 use super::exp2::{COST_LIMIT, UPWARD_POLYNOMIAL};
-const DEGREE: usize = UPWARD_POLYNOMIAL.len() - 1;
 use super::{Kernel, Lanes, Simd, WideLanes};
 
 /// Added to every sum of weighted predecessors, 2^−100. A fused product that is added to it is not rounded to a denormal
@@ -176,31 +179,19 @@ impl Simd for Avx512 {
         ));
     }
 
-    /// As [`super::exp2`], with f = exponent − floor(exponent) and the power scaled by one instruction each.
+    /// As in [`super::exp2`], with f = exponent − floor(exponent) and the power scaled by one instruction each.
     #[inline(always)]
     fn exp2_each<const G: usize>(self, mut exponents: [__m512; G]) -> [__m512; G] {
         let mut fractions = exponents;
-        let mut powers = exponents;
         for g in 0..G {
             exponents[g] = self.max(exponents[g], self.splat(-COST_LIMIT));
-        }
-        for g in 0..G {
             fractions[g] = self.above_floor(exponents[g]);
         }
-        for g in 0..G {
-            powers[g] = self.mul_add(
-                self.splat(UPWARD_POLYNOMIAL[DEGREE]),
-                fractions[g],
-                self.splat(UPWARD_POLYNOMIAL[DEGREE - 1]),
-            );
-        }
-        for i in 0..DEGREE - 1 {
+        let [lower @ .., highest] = UPWARD_POLYNOMIAL;
+        let mut powers = [self.splat(highest); G];
+        for coefficient in lower.into_iter().rev() {
             for g in 0..G {
-                powers[g] = self.mul_add(
-                    powers[g],
-                    fractions[g],
-                    self.splat(UPWARD_POLYNOMIAL[DEGREE - 2 - i]),
-                );
+                powers[g] = self.mul_add(powers[g], fractions[g], self.splat(coefficient));
             }
         }
         for g in 0..G {

@@ -1,9 +1,11 @@
-use super::{PairValue, PairValues, wide_error_log2};
+use super::{Both, PairValue, PairValues, wide_error_log2};
 use crate::lanes::{Dispatch, InstructionSet};
 use crate::{Cost, SoftDtw};
 
+type Pair<const D: usize> = (Vec<[f64; D]>, Vec<[f64; D]>);
+
 /// Pairs of wavy sequences of several lengths; `scale` sets how far apart they are.
-fn pairs(count: usize, scale: f64) -> Vec<(Vec<[f64; 2]>, Vec<[f64; 2]>)> {
+fn pairs(count: usize, scale: f64) -> Vec<Pair<2>> {
     let wave = |i: usize, steps: usize| -> Vec<[f64; 2]> {
         (0..steps)
             .map(|j| {
@@ -24,9 +26,7 @@ fn each_set(dtw: SoftDtw) -> impl Iterator<Item = PairValues> {
         .map(move |dispatch| PairValues::new(dtw, dispatch))
 }
 
-fn borrowed<const D: usize>(
-    pairs: &[(Vec<[f64; D]>, Vec<[f64; D]>)],
-) -> Vec<(&[[f64; D]], &[[f64; D]])> {
+fn borrowed<const D: usize>(pairs: &[Pair<D>]) -> Vec<Both<'_, D>> {
     pairs.iter().map(|(x, y)| (&x[..], &y[..])).collect()
 }
 
