@@ -1,4 +1,4 @@
-//! Time of a pair (query × candidate) of the search for the 100 nearest, on one thread.
+//! Time of a pair (query × candidate) of the search for the 100 nearest, one query at a time on one thread, and in a batch.
 //!
 //! ```text
 //! cargo run --release --example throughput -- [steps] [queries] [portable|avx2|avx512]
@@ -51,11 +51,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         times.sort_by(f64::total_cmp);
         let quantile = |tenths: usize| times[times.len() * tenths / 10] / index.len() as f64 * 1e9;
+        let start = Instant::now();
+        index.nearest_batch(&queries, 100)?;
         println!(
-            "{set}: {:.2} ns a pair (median query), {:.2} (fastest), {:.2} (mean)",
-            quantile(5),
+            "{set}: {:.2} ns a pair (fastest query), {:.2} (median), {:.2} (mean), {:.2} (a batch on {} threads)",
             quantile(0),
+            quantile(5),
             times.iter().sum::<f64>() / pairs * 1e9,
+            start.elapsed().as_secs_f64() / pairs * 1e9,
+            rayon::current_num_threads(),
         );
     }
     Ok(())

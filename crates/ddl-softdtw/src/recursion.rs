@@ -16,16 +16,17 @@
 use crate::blocks::{Line, Step};
 use crate::lanes::Simd;
 
-/// Cells whose similarities are computed together: enough independent operations to fill the time each one takes.
-const GROUP: usize = 4;
+/// Cells whose similarities are computed together where the length of a sequence is not known to the compiler: enough
+/// independent operations to fill the time each one takes.
+pub(crate) const GROUP: usize = 4;
 
 /// Scores of one part of a block: start · Σ over warping paths of 2^−cost, for each lane.
 ///
 /// # Shapes
 /// `query`: n steps; `block`: m steps; `row`: m registers of working memory, of any content. Where the compiler knows m
-/// the row stays in registers.
+/// the row stays in registers. Similarities are computed G at a time: m, or [`GROUP`].
 #[inline(always)]
-pub(crate) fn recursion<S: Simd, const D: usize>(
+pub(crate) fn recursion<S: Simd, const D: usize, const G: usize>(
     simd: S,
     query: &[[f32; D]],
     block: &[Step<D>],
@@ -43,8 +44,8 @@ pub(crate) fn recursion<S: Simd, const D: usize>(
         left = zero;
         let mut first = 0;
         while first < steps {
-            let ks = similarities(simd, step, block, first, part);
-            for g in 0..GROUP {
+            let ks = similarities::<S, D, G>(simd, step, block, first, part);
+            for g in 0..G {
                 if first + g < steps {
                     let up = row[first + g];
                     left = simd.cell(ks[g], diagonal, up, left);
@@ -52,7 +53,7 @@ pub(crate) fn recursion<S: Simd, const D: usize>(
                     diagonal = up;
                 }
             }
-            first += GROUP;
+            first += G;
         }
         corner = zero;
     }
@@ -61,16 +62,16 @@ pub(crate) fn recursion<S: Simd, const D: usize>(
 
 /// 2^−|x − y|² of a step x and all steps y of one part of a block.
 #[inline(always)]
-pub(crate) fn similarities_of_row<S: Simd, const D: usize>(
+pub(crate) fn similarities_of_row<S: Simd, const D: usize, const G: usize>(
     simd: S,
     x: &[f32; D],
     block: &[Step<D>],
     part: usize,
     into: &mut [Line],
 ) {
-    for first in (0..block.len()).step_by(GROUP) {
-        let ks = similarities(simd, x, block, first, part);
-        for g in 0..GROUP {
+    for first in (0..block.len()).step_by(G) {
+        let ks = similarities::<S, D, G>(simd, x, block, first, part);
+        for g in 0..G {
             if let Some(line) = into.get_mut(first + g) {
                 simd.store(ks[g], &mut line.0, part);
             }
@@ -78,17 +79,17 @@ pub(crate) fn similarities_of_row<S: Simd, const D: usize>(
     }
 }
 
-/// 2^−|x − y|² of a query step x and the steps y from `first` on, as far as there are any.
+/// 2^−|x − y|² of a query step x and G steps y from `first` on, as far as there are any.
 #[inline(always)]
-fn similarities<S: Simd, const D: usize>(
+fn similarities<S: Simd, const D: usize, const G: usize>(
     simd: S,
     step: &[f32; D],
     block: &[Step<D>],
     first: usize,
     part: usize,
-) -> [S::Narrow; GROUP] {
-    let mut exponents = [simd.splat(0.0); GROUP];
-    for g in 0..GROUP {
+) -> [S::Narrow; G] {
+    let mut exponents = [simd.splat(0.0); G];
+    for g in 0..G {
         if first + g < block.len() {
             for d in 0..D {
                 let y = simd.load(&block[first + g].0[d], part);

@@ -7,7 +7,7 @@ use std::ops;
 use crate::blocks::{Blocks, FREE, Run, Step};
 use crate::lanes::{Dispatch, Kernel, LANES, Lanes, Simd};
 use crate::range::Range;
-use crate::recursion::recursion;
+use crate::recursion::{GROUP, recursion};
 use crate::select::Selection;
 
 /// Blocks that several queries go through before the next ones: they and the working memory fit into the second cache.
@@ -152,12 +152,14 @@ impl<const D: usize> Kernel for Sweep<'_, D> {
     fn run<S: Simd>(mut self, simd: S) {
         // The row stays in registers where its length is known to the compiler: the lengths that pedestrians have.
         match self.steps {
-            7 => self.fixed::<S, 7>(simd),
-            8 => self.fixed::<S, 8>(simd),
+            7 => self.fixed::<S, 7, 7>(simd),
+            // Eight similarities, a row and the coefficients do not fit into the few registers of the smallest sets.
+            8 if S::WIDTH < 8 => self.fixed::<S, 8, GROUP>(simd),
+            8 => self.fixed::<S, 8, 8>(simd),
             steps => {
                 let mut row = vec![simd.splat(0.0); steps];
                 for (b, block) in self.samples.chunks_exact(steps).enumerate() {
-                    self.block(simd, b, block, &mut row);
+                    self.block::<S, GROUP>(simd, b, block, &mut row);
                 }
             }
         }
@@ -166,22 +168,28 @@ impl<const D: usize> Kernel for Sweep<'_, D> {
 
 impl<const D: usize> Sweep<'_, D> {
     #[inline(always)]
-    fn fixed<S: Simd, const M: usize>(&mut self, simd: S) {
+    fn fixed<S: Simd, const M: usize, const G: usize>(&mut self, simd: S) {
         let (blocks, _) = self.samples.as_chunks::<M>();
         for (b, block) in blocks.iter().enumerate() {
-            self.block(simd, b, block, &mut [simd.splat(0.0); M]);
+            self.block::<S, G>(simd, b, block, &mut [simd.splat(0.0); M]);
         }
     }
 
     /// The scores of block `b`, offered where they reach the threshold.
     #[inline(always)]
-    fn block<S: Simd>(&mut self, simd: S, b: usize, block: &[Step<D>], row: &mut [S::Narrow]) {
+    fn block<S: Simd, const G: usize>(
+        &mut self,
+        simd: S,
+        b: usize,
+        block: &[Step<D>],
+        row: &mut [S::Narrow],
+    ) {
         let mut scores = [0.0; LANES];
         let threshold = simd.splat(self.selection.threshold());
         let mut mask = 0;
         for part in 0..S::PARTS {
             let start = simd.mul(simd.load(&self.weights[b], part), simd.splat(self.start));
-            let score = recursion(simd, self.query, block, part, start, row);
+            let score = recursion::<S, D, G>(simd, self.query, block, part, start, row);
             mask |= simd.at_least(score, threshold) << (part * S::WIDTH);
             simd.store(score, &mut scores, part);
         }

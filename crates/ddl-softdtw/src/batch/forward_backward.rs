@@ -8,7 +8,7 @@
 
 use crate::blocks::{Line, Step};
 use crate::lanes::{Kernel, LANES, Lanes, Simd};
-use crate::recursion::similarities_of_row;
+use crate::recursion::{GROUP, similarities_of_row};
 
 /// Added to α / R(n, m), 2^−120: what β makes of it is nothing against the seed of β.
 const NEGLIGIBLE: f32 = f32::from_bits((127 - 120) << 23);
@@ -63,20 +63,25 @@ impl<const D: usize> Kernel for ForwardBackward<'_, D> {
         let zero = simd.splat(0.0);
         // Rows stay in registers where their length is known to the compiler.
         if let Ok(block) = <&[Step<D>; 7]>::try_from(self.block) {
-            self.parts(simd, block, &mut [zero; 7]);
+            self.parts::<S, 7>(simd, block, &mut [zero; 7]);
         } else if let Ok(block) = <&[Step<D>; 8]>::try_from(self.block) {
-            self.parts(simd, block, &mut [zero; 8]);
+            self.parts::<S, 8>(simd, block, &mut [zero; 8]);
         } else {
-            self.parts(simd, self.block, &mut vec![zero; self.block.len()]);
+            self.parts::<S, GROUP>(simd, self.block, &mut vec![zero; self.block.len()]);
         }
     }
 }
 
 impl<const D: usize> ForwardBackward<'_, D> {
     #[inline(always)]
-    fn parts<S: Simd>(&mut self, simd: S, block: &[Step<D>], row: &mut [S::Narrow]) {
+    fn parts<S: Simd, const G: usize>(
+        &mut self,
+        simd: S,
+        block: &[Step<D>],
+        row: &mut [S::Narrow],
+    ) {
         for part in 0..S::PARTS {
-            let score = self.forward(simd, block, part, row);
+            let score = self.forward::<S, G>(simd, block, part, row);
             simd.store(score, &mut self.working.scores, part);
             self.backward(simd, block, part, score, row);
         }
@@ -84,7 +89,7 @@ impl<const D: usize> ForwardBackward<'_, D> {
 
     /// The recursion, which leaves K and α of every cell behind.
     #[inline(always)]
-    fn forward<S: Simd>(
+    fn forward<S: Simd, const G: usize>(
         &mut self,
         simd: S,
         block: &[Step<D>],
@@ -99,7 +104,7 @@ impl<const D: usize> ForwardBackward<'_, D> {
         let mut left = zero;
         let rows = k.chunks_exact_mut(m).zip(alpha.chunks_exact_mut(m));
         for (x, (k, alpha)) in self.x.iter().zip(rows) {
-            similarities_of_row(simd, x, block, part, k);
+            similarities_of_row::<S, D, G>(simd, x, block, part, k);
             let mut diagonal = corner;
             left = zero;
             for j in 0..m {
