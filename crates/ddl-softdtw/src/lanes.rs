@@ -110,13 +110,13 @@ pub(crate) trait Simd: Copy {
     /// Adds the low bits of `exponent`'s representation to the exponent of `power`.
     fn wide_scale(self, power: Self::Wide, exponent: Self::Wide) -> Self::Wide;
 
-    /// 2^`exponent` for exponents that are not positive, to a relative error of [`EXP2_ERROR_64`].
+    /// 2^exponent for exponents that are not positive, to a relative error of [`EXP2_ERROR_64`], of several registers.
     ///
     /// Exponents below −[`COST_LIMIT_64`] (and NaN) count as −[`COST_LIMIT_64`]: no result is denormal.
     #[expect(clippy::inline_always, reason = "the lanes must stay in registers")]
     #[inline(always)]
-    fn wide_exp2(self, exponent: Self::Wide) -> Self::Wide {
-        exp2::wide_by_rounding(self, exponent)
+    fn wide_exp2_each<const G: usize>(self, exponents: [Self::Wide; G]) -> [Self::Wide; G] {
+        exp2::wide_by_rounding(self, exponents)
     }
 }
 

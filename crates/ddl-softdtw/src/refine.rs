@@ -27,6 +27,9 @@ pub(crate) fn wide_error_log2(path: f64, cost: f64, dimension: usize) -> f64 {
     costs + (path * (EXP2_ERROR_64 + 4.0 * UNIT) + 2.0 * UNIT) * std::f64::consts::LOG2_E
 }
 
+/// Cells whose similarities are computed together, so that the processor is kept busy.
+pub(crate) const WIDE_GROUP: usize = 4;
+
 /// What the exponential domain says of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum PairValue {
@@ -195,22 +198,32 @@ impl<const D: usize> Kernel for WideRecursion<'_, D> {
             for x in self.x {
                 let mut diagonal = corner;
                 left = zero;
-                for (cell, y) in self.row.iter_mut().zip(self.y) {
-                    let mut cost = zero;
-                    for d in 0..D {
-                        let x = simd.wide_load(&x[d], part);
-                        let difference = simd.wide_sub(x, simd.wide_load(&y[d], part));
-                        cost = simd.wide_add(cost, simd.wide_mul(difference, difference));
+                for (row, y) in self
+                    .row
+                    .chunks_mut(WIDE_GROUP)
+                    .zip(self.y.chunks(WIDE_GROUP))
+                {
+                    let mut exponents = [zero; WIDE_GROUP];
+                    for (exponent, y) in exponents.iter_mut().zip(y) {
+                        let mut cost = zero;
+                        for d in 0..D {
+                            let x = simd.wide_load(&x[d], part);
+                            let difference = simd.wide_sub(x, simd.wide_load(&y[d], part));
+                            cost = simd.wide_add(cost, simd.wide_mul(difference, difference));
+                        }
+                        if self.cost == Cost::Euclidean {
+                            cost = simd.wide_sqrt(cost);
+                        }
+                        *exponent = simd.wide_mul(cost, scale);
                     }
-                    if self.cost == Cost::Euclidean {
-                        cost = simd.wide_sqrt(cost);
+                    let ks = simd.wide_exp2_each(exponents);
+                    for (cell, k) in row.iter_mut().zip(ks) {
+                        let up = simd.wide_load(cell, part);
+                        let others = simd.wide_add(simd.wide_add(diagonal, up), floor);
+                        left = simd.wide_mul(k, simd.wide_add(others, left));
+                        simd.wide_store(left, cell, part);
+                        diagonal = up;
                     }
-                    let k = simd.wide_exp2(simd.wide_mul(cost, scale));
-                    let up = simd.wide_load(cell, part);
-                    let others = simd.wide_add(simd.wide_add(diagonal, up), floor);
-                    left = simd.wide_mul(k, simd.wide_add(others, left));
-                    simd.wide_store(left, cell, part);
-                    diagonal = up;
                 }
                 corner = zero;
             }

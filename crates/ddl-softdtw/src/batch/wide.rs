@@ -6,7 +6,7 @@ use super::Visit;
 use crate::cost::Cost;
 use crate::lanes::{Dispatch, Kernel, Simd, WIDE_LANES, WideLanes};
 use crate::range::Range;
-use crate::refine::{GAMMAS, WIDE_FLOOR, spread};
+use crate::refine::{GAMMAS, WIDE_FLOOR, WIDE_GROUP, spread};
 use crate::value::SoftDtw;
 
 /// Evaluates one x against eight sequences at a time; the memory for it is kept.
@@ -127,29 +127,37 @@ impl<const D: usize> WideForwardBackward<'_, D> {
         row.fill([0.0; WIDE_LANES]);
         let m = y.len();
         let mut corner = simd.wide_splat(self.start);
+        let mut left = zero;
         let rows = k.chunks_exact_mut(m).zip(alpha.chunks_exact_mut(m));
         for (x, (k, alpha)) in self.x.iter().zip(rows) {
-            let mut diagonal = corner;
-            let mut left = zero;
-            for j in 0..m {
-                let mut cost = zero;
-                for d in 0..D {
-                    let difference =
-                        simd.wide_sub(simd.wide_splat(x[d]), simd.wide_load(&y[j][d], part));
-                    cost = simd.wide_add(cost, simd.wide_mul(difference, difference));
+            for (k, y) in k.chunks_mut(WIDE_GROUP).zip(y.chunks(WIDE_GROUP)) {
+                let mut exponents = [zero; WIDE_GROUP];
+                for (exponent, y) in exponents.iter_mut().zip(y) {
+                    let mut cost = zero;
+                    for d in 0..D {
+                        let y = simd.wide_load(&y[d], part);
+                        let difference = simd.wide_sub(simd.wide_splat(x[d]), y);
+                        cost = simd.wide_add(cost, simd.wide_mul(difference, difference));
+                    }
+                    *exponent = simd.wide_mul(cost, scale);
                 }
-                let similarity = simd.wide_exp2(simd.wide_mul(cost, scale));
+                for (k, power) in k.iter_mut().zip(simd.wide_exp2_each(exponents)) {
+                    simd.wide_store(power, k, part);
+                }
+            }
+            let mut diagonal = corner;
+            left = zero;
+            for j in 0..m {
                 let up = simd.wide_load(&row[j], part);
                 let others = simd.wide_add(simd.wide_add(diagonal, up), floor);
-                left = simd.wide_mul(similarity, simd.wide_add(others, left));
-                simd.wide_store(similarity, &mut k[j], part);
+                left = simd.wide_mul(simd.wide_load(&k[j], part), simd.wide_add(others, left));
                 simd.wide_store(left, &mut alpha[j], part);
                 simd.wide_store(left, &mut row[j], part);
                 diagonal = up;
             }
             corner = zero;
-            simd.wide_store(left, scores, part);
         }
+        simd.wide_store(left, scores, part);
     }
 
     #[inline(always)]

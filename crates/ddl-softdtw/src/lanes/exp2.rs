@@ -10,7 +10,7 @@ pub(crate) const COST_LIMIT: f32 = 109.0;
 pub(crate) const EXP2_ERROR: f64 = 3e-7;
 /// Largest cost of a cell in `f64`, log2 units.
 pub(crate) const COST_LIMIT_64: f64 = 900.0;
-/// Bound on the relative error of [`Simd::wide_exp2`], ten units of rounding.
+/// Bound on the relative error of [`Simd::wide_exp2_each`], ten units of rounding.
 pub(crate) const EXP2_ERROR_64: f64 = 1.2e-15;
 
 /// Adding and subtracting 1.5 · 2^23 rounds a small number to an integer, which then sits in the low bits of the sum.
@@ -88,15 +88,27 @@ pub(super) fn by_rounding<S: Simd, const G: usize>(
 }
 
 #[inline(always)]
-pub(super) fn wide_by_rounding<S: Simd>(simd: S, exponent: S::Wide) -> S::Wide {
+pub(super) fn wide_by_rounding<S: Simd, const G: usize>(
+    simd: S,
+    mut exponents: [S::Wide; G],
+) -> [S::Wide; G] {
     let rounding = simd.wide_splat(WIDE_ROUNDING);
-    let exponent = simd.wide_max(exponent, simd.wide_splat(-COST_LIMIT_64));
-    let shifted = simd.wide_add(exponent, rounding);
-    let f = simd.wide_sub(exponent, simd.wide_sub(shifted, rounding));
-    let [lower @ .., highest] = WIDE_POLYNOMIAL;
-    let mut power = simd.wide_splat(highest);
-    for coefficient in lower.into_iter().rev() {
-        power = simd.wide_add(simd.wide_mul(power, f), simd.wide_splat(coefficient));
+    let mut fractions = exponents;
+    for g in 0..G {
+        let exponent = simd.wide_max(exponents[g], simd.wide_splat(-COST_LIMIT_64));
+        exponents[g] = simd.wide_add(exponent, rounding);
+        fractions[g] = simd.wide_sub(exponent, simd.wide_sub(exponents[g], rounding));
     }
-    simd.wide_scale(power, shifted)
+    let [lower @ .., highest] = WIDE_POLYNOMIAL;
+    let mut powers = [simd.wide_splat(highest); G];
+    for coefficient in lower.into_iter().rev() {
+        for g in 0..G {
+            let product = simd.wide_mul(powers[g], fractions[g]);
+            powers[g] = simd.wide_add(product, simd.wide_splat(coefficient));
+        }
+    }
+    for g in 0..G {
+        powers[g] = simd.wide_scale(powers[g], exponents[g]);
+    }
+    powers
 }

@@ -23,7 +23,7 @@ impl Kernel for Exp2<'_> {
         for part in 0..S::PARTS {
             let power = simd.exp2(simd.load(self.0, part));
             simd.store(power, self.0, part);
-            let power = simd.wide_exp2(simd.wide_load(self.1, part));
+            let [power] = simd.wide_exp2_each([simd.wide_load(self.1, part)]);
             simd.wide_store(power, self.1, part);
         }
     }
