@@ -24,7 +24,7 @@ impl<const D: usize, F: FnMut(usize, f64, &[[f64; D]])> Visit<D> for F {}
 /// # Numerics
 /// Sixteen pairs at once in `f32`, for γ > 0 and the squared cost. The proven error of a value is at most 1.4e-4 γ; for
 /// velocities of walkers (γ = 1 m²/s², eight steps) values and gradients are within 1e-5 of those of [`SoftDtw`]. What
-/// does not fit is evaluated in `f64`: values beyond about 47 γ, sequences of more than 32 steps or too large for the
+/// does not fit is evaluated in `f64`: values beyond about 57 γ (39 γ without fused multiplication), sequences of more than 32 steps or too large for the
 /// bound; and by [`SoftDtw`] itself what is beyond that: about 570 γ, 180 steps, the Euclidean cost, γ = 0.
 ///
 /// Everything runs on the calling thread. The last bits depend on the instruction set.
@@ -222,7 +222,8 @@ impl<const D: usize> SoftDtwBatch<D> {
         let mut working = Working::new();
         let mut gradient = vec![[0.0; D]; x.len()];
         for run in &blocks.runs {
-            let Some(accurate) = Accurate::new(x.len(), run, largest, D) else {
+            let Some(accurate) = Accurate::new(self.dispatch.floor(), x.len(), run, largest, D)
+            else {
                 let members = blocks.members[run.blocks.clone()].as_flattened();
                 left.extend(members.iter().filter(|&&member| member != FREE));
                 continue;
@@ -270,8 +271,8 @@ struct Accurate {
 
 impl Accurate {
     /// `None` when no score would do.
-    fn new(n: usize, run: &Run, largest: f64, dimension: usize) -> Option<Self> {
-        let range = Range::narrow(n, run.steps)?;
+    fn new(floor: f32, n: usize, run: &Run, largest: f64, dimension: usize) -> Option<Self> {
+        let range = Range::narrow_with(floor, n, run.steps)?;
         let smallest = range.smallest_aligned_log2(n * run.steps);
         let error = range.error_log2(smallest, largest, dimension);
         (error <= WIDEST_ERROR).then(|| Self {

@@ -23,8 +23,9 @@ pub(crate) use exp2::{COST_LIMIT, COST_LIMIT_64, EXP2_ERROR, EXP2_ERROR_64};
 
 /// Numbers in a group.
 pub(crate) const LANES: usize = 16;
-/// Bound on what [`Simd::cell`] adds to a sum of predecessors, 2^−16: times 2^−[`COST_LIMIT`] it is a normal number.
-pub(crate) const FLOOR: f32 = 1.0 / 65536.0;
+/// Bound on what [`Simd::cell`] adds to a sum of predecessors, on any machine: times 2^−[`COST_LIMIT`] it is a normal
+/// number.
+pub(crate) const FLOOR: f32 = 0.25;
 /// One number for each of sixteen candidates.
 pub(crate) type Lanes = [f32; LANES];
 /// Wide numbers in a group: what fills the registers of one part of [`Lanes`] holds half as many of them.
@@ -43,6 +44,8 @@ pub(crate) trait Simd: Copy {
     type Wide: Copy;
     /// Lanes of a register.
     const WIDTH: usize;
+    /// What [`Simd::cell`] adds to a sum of predecessors, at most: [`FLOOR`] or less.
+    const FLOOR: f32;
     /// Registers that make up a group.
     const PARTS: usize = LANES / Self::WIDTH;
 
@@ -85,11 +88,11 @@ pub(crate) trait Simd: Copy {
         exp2::by_rounding(self, exponents)
     }
 
-    /// K b for K of at least 2^−[`COST_LIMIT`], with up to [`FLOOR`] added to b so that the product is not denormal.
+    /// K b for K of at least 2^−[`COST_LIMIT`], with up to [`Simd::FLOOR`] added to b so that the product is not denormal.
     fn weigh(self, k: Self::Narrow, b: Self::Narrow) -> Self::Narrow;
 
-    /// K (diagonal + up + left), one cell of the recursion, for K of at least 2^−[`COST_LIMIT`]. Up to [`FLOOR`] is added
-    /// to the sum, so that no product is denormal: denormal numbers would make the recursion ten times slower.
+    /// K (diagonal + up + left), one cell of the recursion, for K of at least 2^−[`COST_LIMIT`]. Up to [`Simd::FLOOR`] is
+    /// added to the sum, so that no product is denormal: denormal numbers would make the recursion ten times slower.
     fn cell(
         self,
         k: Self::Narrow,

@@ -60,9 +60,15 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// The range in `f32` for lengths `n` and `m`, or `None` when the sequences are too long for it.
+    /// The range in `f32` for lengths `n` and `m` on any machine, or `None` when the sequences are too long for it.
     pub(crate) fn narrow(n: usize, m: usize) -> Option<Self> {
         Self::of(NARROW, n, m)
+    }
+
+    /// The same for the instruction set that adds `floor` ([`crate::lanes::Simd::FLOOR`]).
+    pub(crate) fn narrow_with(floor: f32, n: usize, m: usize) -> Option<Self> {
+        let floor = f64::from(floor);
+        Self::of(Format { floor, ..NARROW }, n, m)
     }
 
     /// The range in `f64`.
@@ -186,11 +192,14 @@ mod tests {
     }
 
     #[test]
-    fn walkers_have_room_for_values_of_47_gamma() {
+    fn walkers_have_room_for_values_of_47_gamma_and_57_if_fused() {
         let range = Range::narrow(8, 8).expect("short");
         let reach = f64::from(range.start_log2()) - range.smallest_accurate_log2();
         assert!(reach * std::f64::consts::LN_2 > 47.0, "{reach}");
         assert!(Range::narrow(NARROW.longest + 1, 8).is_none());
+        let fused = Range::narrow_with(2.0_f32.powi(-100), 8, 8).expect("short");
+        let reach = f64::from(fused.start_log2()) - fused.smallest_accurate_log2();
+        assert!(reach * std::f64::consts::LN_2 > 57.0, "{reach}");
     }
 
     #[test]

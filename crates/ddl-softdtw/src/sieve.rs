@@ -69,7 +69,7 @@ impl<const D: usize> Sieve<D> {
     ) -> Vec<Option<Vec<usize>>> {
         let mut searches: Vec<Option<Search<D>>> = queries
             .iter()
-            .map(|query| self.search(query, wanted))
+            .map(|query| self.search(dispatch, query, wanted))
             .collect();
         for run in &self.blocks.runs {
             let mut first = run.blocks.start;
@@ -88,8 +88,8 @@ impl<const D: usize> Sieve<D> {
     }
 
     /// A query before its first block, or `None` when no score of it could be trusted.
-    fn search(&self, query: &[[f64; D]], wanted: usize) -> Option<Search<D>> {
-        let range = Range::narrow(query.len(), self.blocks.longest)?;
+    fn search(&self, dispatch: Dispatch, query: &[[f64; D]], wanted: usize) -> Option<Search<D>> {
+        let range = Range::narrow_with(dispatch.floor(), query.len(), self.blocks.longest)?;
         let narrowing = &self.blocks.narrowing;
         let largest = self.blocks.largest.max(narrowing.largest(query.iter()));
         let widest = range.margin_log2(range.smallest_accurate_log2(), largest, D)?;

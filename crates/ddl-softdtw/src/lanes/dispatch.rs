@@ -109,6 +109,17 @@ impl Dispatch {
         }
     }
 
+    /// [`Simd::FLOOR`] of the instruction set.
+    pub(crate) fn floor(self) -> f32 {
+        match self {
+            Self::Portable(_) => Portable::FLOOR,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(_) => Avx2::FLOOR,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(_) => Avx512::FLOOR,
+        }
+    }
+
     /// Runs `kernel` with the instruction set.
     #[inline]
     pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {

@@ -5,7 +5,7 @@
 use super::Simd;
 
 /// Largest cost of a cell, log2 units: a larger one counts as this.
-pub(crate) const COST_LIMIT: f32 = 109.0;
+pub(crate) const COST_LIMIT: f32 = 124.0;
 /// Bound on the relative error of [`Simd::exp2`].
 pub(crate) const EXP2_ERROR: f64 = 3e-7;
 /// Largest cost of a cell in `f64`, log2 units.

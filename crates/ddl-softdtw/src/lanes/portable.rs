@@ -28,6 +28,7 @@ impl Simd for Portable {
     type Narrow = Narrow;
     type Wide = Wide;
     const WIDTH: usize = WIDTH;
+    const FLOOR: f32 = FLOOR;
 
     #[inline]
     fn run<K: Kernel>(self, kernel: K) -> K::Output {

@@ -52,6 +52,7 @@ impl Simd for Avx2 {
     type Narrow = __m256;
     type Wide = __m256d;
     const WIDTH: usize = 8;
+    const FLOOR: f32 = FUSED_FLOOR;
 
     #[inline]
     fn run<K: Kernel>(self, kernel: K) -> K::Output {
@@ -142,6 +143,7 @@ impl Simd for Avx512 {
     type Narrow = __m512;
     type Wide = __m512d;
     const WIDTH: usize = 16;
+    const FLOOR: f32 = FUSED_FLOOR;
 
     #[inline]
     fn run<K: Kernel>(self, kernel: K) -> K::Output {

@@ -32,7 +32,7 @@ fn each_set() -> impl Iterator<Item = Dispatch> {
 /// Scores of all candidates: with nothing to select among, everything is kept.
 fn scores(sieve: &Sieve<2>, dispatch: Dispatch, query: &[[f64; 2]]) -> (Search<2>, Vec<f32>) {
     let count = sieve.blocks.members.as_flattened().len();
-    let mut search = sieve.search(query, count).expect("in range");
+    let mut search = sieve.search(dispatch, query, count).expect("in range");
     for run in &sieve.blocks.runs {
         sieve.sweep(dispatch, run, run.blocks.clone(), &mut search);
     }
@@ -86,7 +86,7 @@ fn few_survive_where_f32_can_tell_and_nothing_is_decided_where_it_cannot() {
     let offset = walks(4000, 8, 1e5);
     let sieve_of_offset = sieve(1.0, &offset).2.expect("fits f32");
     // The hundred nearest of the last query are too far for the range.
-    let far = walks(1, 8, 6.0);
+    let far = walks(1, 8, 8.0);
     for dispatch in each_set() {
         let found = sieve_of_near.survivors(dispatch, &[&near[7], &near[9], &far[0]], 100);
         for (query, survivors) in [7, 9].into_iter().zip(&found) {
