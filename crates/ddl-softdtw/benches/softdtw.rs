@@ -1,75 +1,106 @@
-//! Speed of the value, the gradient and the search on synthetic walkers.
+//! Speed of the value, the gradient, the search and the batch.
 //!
-//! The search reports pairs (query × candidate) a second on one thread: 1 / (pairs/s) is the time of a pair.
+//! The search and the batch report pairs a second on one thread, for each instruction set of the machine. Their windows
+//! are those of the real recordings where `DDL_DATASETS` names the folder that holds them, synthetic ones otherwise: the
+//! name of the benchmark says which.
+
+mod recordings;
 
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use ddl_softdtw::{Cost, SearchIndex, SoftDtw};
+use ddl_softdtw::{BatchGradients, Cost, InstructionSet, SearchIndex, SoftDtw, SoftDtwBatch};
+use recordings::{Windows, walkers};
 
-type Walk = Vec<[f64; 2]>;
+fn dtw() -> SoftDtw {
+    SoftDtw::new(1.0, Cost::SquaredEuclidean).expect("valid gamma")
+}
 
-/// Velocities (m/s) of walkers with constant headings and some sway, one in ten of them standing.
-fn walkers(count: usize, steps: usize, seed: u64) -> Vec<Walk> {
-    let mut state = seed;
-    let mut next = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    (0..count)
-        .map(|_| {
-            let speed = if next() < 0.1 {
-                0.0
-            } else {
-                0.4 + 1.2 * next()
-            };
-            let (sin, cos) = (std::f64::consts::TAU * next()).sin_cos();
-            let mut sway = || 0.1 * (speed + 0.1) * (next() - 0.5);
-            (0..steps)
-                .map(|_| [speed * cos + sway(), speed * sin + sway()])
-                .collect()
-        })
+/// A smooth sequence in D dimensions.
+fn wave<const D: usize>(steps: usize, phase: f64) -> Vec<[f64; D]> {
+    let at = |i: usize, d: usize| (phase + 0.1 * i as f64 + d as f64).sin();
+    (0..steps)
+        .map(|i| std::array::from_fn(|d| at(i, d)))
         .collect()
 }
 
-fn pair(criterion: &mut Criterion) {
-    let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean).expect("valid gamma");
-    let walks = walkers(2, 8, 1);
-    let mut group = criterion.benchmark_group("pair 8x8x2");
+fn pair<const D: usize>(criterion: &mut Criterion, x: &[[f64; D]], y: &[[f64; D]]) {
+    let dtw = dtw();
+    let name = format!("pair {}x{}x{D}", x.len(), y.len());
+    let mut group = criterion.benchmark_group(name);
     group.bench_function("value", |b| {
-        b.iter(|| dtw.value(black_box(&walks[0]), black_box(&walks[1])));
+        b.iter(|| dtw.value(black_box(x), black_box(y)));
     });
     group.bench_function("value and gradient", |b| {
-        b.iter(|| dtw.value_and_gradient(black_box(&walks[0]), black_box(&walks[1])));
+        b.iter(|| dtw.value_and_gradient(black_box(x), black_box(y)));
     });
     group.finish();
 }
 
+fn pairs(criterion: &mut Criterion) {
+    let walks = walkers(2, 8, 1);
+    pair(criterion, &walks[0], &walks[1]);
+    pair::<2>(criterion, &wave(64, 0.0), &wave(64, 0.3));
+    pair::<8>(criterion, &wave(256, 0.0), &wave(256, 0.3));
+}
+
 fn search(criterion: &mut Criterion) {
-    let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean).expect("valid gamma");
-    let mut group = criterion.benchmark_group("search nearest 100");
-    group.sample_size(20);
     for steps in [7, 8] {
-        for candidates in [1_000, 10_000, 37_000] {
-            let index = SearchIndex::build(&dtw, &walkers(candidates, steps, 2)).expect("valid");
-            let queries = walkers(16, steps, 3);
-            group.throughput(Throughput::Elements((candidates * queries.len()) as u64));
-            group.bench_function(
-                BenchmarkId::new(format!("{steps} steps"), candidates),
-                |b| {
-                    b.iter(|| {
-                        for query in &queries {
-                            black_box(index.nearest(query, 100)).expect("valid");
-                        }
-                    });
-                },
-            );
+        let windows = Windows::load(steps);
+        let queries = windows.some_queries(24);
+        let index = SearchIndex::build(&dtw(), &windows.candidates).expect("valid");
+        let name = format!("search nearest 100, {} windows", windows.source);
+        let mut group = criterion.benchmark_group(name);
+        group.sample_size(20);
+        group.throughput(Throughput::Elements((index.len() * queries.len()) as u64));
+        for set in InstructionSet::available() {
+            let index = index.clone().with_instruction_set(set).expect("available");
+            let id = BenchmarkId::new(format!("{steps} steps"), set);
+            group.bench_function(id, |b| {
+                b.iter(|| {
+                    for query in &queries {
+                        black_box(index.nearest(query, 100)).expect("valid");
+                    }
+                });
+            });
         }
+        group.finish();
+    }
+}
+
+fn batch(criterion: &mut Criterion) {
+    let windows = Windows::load(8);
+    let queries = windows.some_queries(24);
+    let sequences = &windows.candidates[..4096];
+    let weights = vec![1.0; sequences.len()];
+    let name = format!("batch 8x8x2, {} windows", windows.source);
+    let mut group = criterion.benchmark_group(name);
+    group.sample_size(20);
+    let pairs = (sequences.len() * queries.len()) as u64;
+    group.throughput(Throughput::Elements(pairs));
+    for set in InstructionSet::available() {
+        let batch = SoftDtwBatch::build(&dtw(), sequences).expect("valid");
+        let batch = batch.with_instruction_set(set).expect("available");
+        let mut results = BatchGradients::default();
+        group.bench_function(BenchmarkId::new("values and gradients", set), |b| {
+            b.iter(|| {
+                for x in &queries {
+                    batch
+                        .values_and_gradients_into(black_box(x), &mut results)
+                        .expect("valid");
+                }
+            });
+        });
+        group.bench_function(BenchmarkId::new("weighted sum", set), |b| {
+            b.iter(|| {
+                for x in &queries {
+                    black_box(batch.weighted_sum(x, &weights)).expect("valid");
+                }
+            });
+        });
     }
     group.finish();
 }
 
-criterion_group!(benches, pair, search);
+criterion_group!(benches, pairs, search, batch);
 criterion_main!(benches);

@@ -4,6 +4,8 @@ use std::fmt;
 
 use thiserror::Error;
 
+use crate::lanes::InstructionSet;
+
 /// Which of the two sequences of a comparison an error speaks of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SequenceRole {
@@ -71,6 +73,20 @@ pub enum SearchError {
         index: usize,
         /// What is wrong with it (sequence y).
         source: SoftDtwError,
+    },
+    /// A weighted sum needs one weight for each sequence.
+    #[error("{weights} weights for {sequences} sequences: give one for each")]
+    Weights {
+        /// Number of weights that were given.
+        weights: usize,
+        /// Number of sequences of the batch.
+        sequences: usize,
+    },
+    /// The processor does not have the vector instructions that were asked for.
+    #[error("this processor has no {set} instructions: choose one of InstructionSet::available()")]
+    InstructionSet {
+        /// The choice that was refused.
+        set: InstructionSet,
     },
     /// The query is not a valid sequence, or no distance to it can be represented.
     #[error("query: {0}")]

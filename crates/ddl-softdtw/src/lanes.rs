@@ -1,189 +1,127 @@
-//! The recursion on sixteen candidates at once, in `f32` and the exponential domain.
+//! Sixteen numbers at a time: the arithmetic of the kernels, on whatever vector instructions the machine has.
 //!
-//! With K = 2^−cost and costs in log2 units, R(i, j) = K(i, j) (R(i−1, j−1) + R(i−1, j) + R(i, j−1)) sums 2^−cost over all
-//! warping paths: no exponential and no logarithm in the recursion. Written as plain loops over `[f32; 16]`, which the
-//! compiler turns into vector instructions on every target.
+//! Data lie in groups of sixteen lanes on every machine. A kernel is written once, as a [`Kernel`], for any [`Simd`]: it
+//! goes through a group in [`Simd::PARTS`] parts of [`Simd::WIDTH`] lanes, the size of one register. [`Dispatch::run`]
+//! compiles it for each instruction set and picks the one that was chosen.
 //!
-//! # Range
-//! Costs are clamped to [`COST_LIMIT`] and [`FLOOR`] is added to every sum of three predecessors, so that every product
-//! is a normal number: denormal numbers would make the recursion ten times slower for distant candidates. What both do
-//! to small scores is bounded in [`crate::range`].
+//! A value of a type that implements [`Simd`] is the proof that the machine has the instructions, so that all methods are
+//! safe to call. What is `unsafe` lies in one module.
+//!
+//! # Numerics
+//! `f64` operations are rounded one by one (there is no fused multiplication), so that every instruction set gives the
+//! same bits. `f32` operations may be fused and may differ in the last bits; they obey the same error bounds.
 
-/// Candidates processed together.
+mod dispatch;
+mod exp2;
+mod portable;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+pub use dispatch::InstructionSet;
+pub(crate) use dispatch::{Dispatch, Kernel};
+pub(crate) use exp2::{COST_LIMIT, COST_LIMIT_64, EXP2_ERROR, EXP2_ERROR_64};
+
+/// Numbers in a group.
 pub(crate) const LANES: usize = 16;
-/// One number for each of the candidates of a block.
+/// Bound on what [`Simd::cell`] adds to a sum of predecessors, on any machine: times 2^−[`COST_LIMIT`] it is a normal
+/// number.
+pub(crate) const FLOOR: f32 = 0.25;
+/// One number for each of sixteen candidates.
 pub(crate) type Lanes = [f32; LANES];
+/// Wide numbers in a group: what fills the registers of one part of [`Lanes`] holds half as many of them.
+pub(crate) const WIDE_LANES: usize = LANES / 2;
+/// One wide number for each of eight candidates.
+pub(crate) type WideLanes = [f64; WIDE_LANES];
 
-/// Largest cost of a cell, log2 units: a larger one counts as this.
-pub(crate) const COST_LIMIT: f32 = 109.0;
-/// Added to every sum of predecessors, 2^−16: times 2^−109 it is still a normal number.
-pub(crate) const FLOOR: f32 = 1.0 / 65536.0;
-/// Bound on the relative error of [`exp2_minus`].
-pub(crate) const EXP2_ERROR: f64 = 3e-7;
-
-/// Adding and subtracting 1.5 · 2^23 rounds a small number to an integer, which then sits in the low bits of the sum.
-const ROUNDING: f32 = 12_582_912.0;
-
-/// 2^−f on [−1/2, 1/2]: the polynomial of degree 5 with the least largest relative error (Remez exchange, 7.5e-8).
-const POLYNOMIAL: [f32; 6] = [
-    1.000_000_1,
-    -0.693_146_97,
-    0.240_221_2,
-    -0.055_507_13,
-    0.009_675_541,
-    -0.001_327_647_2,
-];
-
-/// 2^−cost for 0 ≤ cost ≤ [`COST_LIMIT`], to a relative error of [`EXP2_ERROR`].
+/// Vector arithmetic of one instruction set.
 ///
-/// cost = k + f with integer k and |f| ≤ 1/2: a polynomial gives 2^−f, and k is subtracted from its exponent.
-#[expect(
-    clippy::inline_always,
-    reason = "the lanes stay in registers only when this is inlined"
-)]
-#[inline(always)]
-fn exp2_minus(cost: f32) -> f32 {
-    let shifted = ROUNDING - cost;
-    let minus_k = shifted - ROUNDING;
-    let f = minus_k + cost;
-    let mut power = POLYNOMIAL[5];
-    power = power * f + POLYNOMIAL[4];
-    power = power * f + POLYNOMIAL[3];
-    power = power * f + POLYNOMIAL[2];
-    power = power * f + POLYNOMIAL[1];
-    power = power * f + POLYNOMIAL[0];
-    f32::from_bits(power.to_bits().wrapping_add(shifted.to_bits() << 23))
-}
+/// Loads and stores touch the lanes `part * WIDTH ..` of a group (`part * WIDTH / 2 ..` of a wide one) and panic when
+/// `part >= PARTS`, a check that disappears in a loop over `0..PARTS`.
+pub(crate) trait Simd: Copy {
+    /// `WIDTH` numbers in `f32`.
+    type Narrow: Copy;
+    /// `WIDTH / 2` numbers in `f64`.
+    type Wide: Copy;
+    /// Lanes of a register.
+    const WIDTH: usize;
+    /// What [`Simd::cell`] adds to a sum of predecessors, at most: [`FLOOR`] or less.
+    const FLOOR: f32;
+    /// Registers that make up a group.
+    const PARTS: usize = LANES / Self::WIDTH;
 
-/// Squared distance of a query step to one step of each candidate, clamped, as 2^−distance.
-#[expect(
-    clippy::inline_always,
-    reason = "the lanes stay in registers only when this is inlined"
-)]
-#[inline(always)]
-fn similarity<const D: usize>(query: &[f32; D], candidates: &[Lanes; D]) -> Lanes {
-    let mut cost = [0.0_f32; LANES];
-    for (query, candidates) in query.iter().zip(candidates) {
-        for (cost, candidate) in cost.iter_mut().zip(candidates) {
-            let difference = query - candidate;
-            *cost += difference * difference;
-        }
-    }
-    // A loop, not `map`: the call it makes is not inlined and passes all lanes through memory.
-    for cost in &mut cost {
-        *cost = exp2_minus(if *cost < COST_LIMIT {
-            *cost
-        } else {
-            COST_LIMIT
-        });
-    }
-    cost
-}
+    /// Compiles `kernel` with this instruction set and runs it.
+    fn run<K: Kernel>(self, kernel: K) -> K::Output;
 
-/// Scores of a block: start · Σ over warping paths of 2^−cost, for each lane.
-///
-/// # Shapes
-/// `query`: n steps; `block`: m steps of D components of sixteen lanes; `row`: m lanes of working memory.
-#[expect(
-    clippy::inline_always,
-    reason = "the lanes stay in registers only when this is inlined"
-)]
-#[inline(always)]
-fn recursion<const D: usize>(
-    query: &[[f32; D]],
-    block: &[[Lanes; D]],
-    start: &Lanes,
-    row: &mut [Lanes],
-) -> Lanes {
-    row.fill([0.0; LANES]);
-    let mut corner = *start;
-    for step in query {
-        let mut diagonal = corner;
-        let mut left = [0.0_f32; LANES];
-        for (cell, candidates) in row.iter_mut().zip(block) {
-            let k = similarity(step, candidates);
-            let up = *cell;
-            for l in 0..LANES {
-                left[l] = k[l] * ((diagonal[l] + up[l] + FLOOR) + left[l]);
-            }
-            *cell = left;
-            diagonal = up;
-        }
-        corner = [0.0; LANES];
-    }
-    row.last().copied().unwrap_or([0.0; LANES])
-}
+    fn splat(self, value: f32) -> Self::Narrow;
+    fn load(self, from: &Lanes, part: usize) -> Self::Narrow;
+    fn store(self, value: Self::Narrow, into: &mut Lanes, part: usize);
+    fn add(self, a: Self::Narrow, b: Self::Narrow) -> Self::Narrow;
+    fn sub(self, a: Self::Narrow, b: Self::Narrow) -> Self::Narrow;
+    fn mul(self, a: Self::Narrow, b: Self::Narrow) -> Self::Narrow;
+    fn div(self, a: Self::Narrow, b: Self::Narrow) -> Self::Narrow;
+    /// a b + c, rounded once or twice.
+    fn mul_add(self, a: Self::Narrow, b: Self::Narrow, c: Self::Narrow) -> Self::Narrow;
+    /// c − a b, rounded once or twice.
+    fn neg_mul_add(self, a: Self::Narrow, b: Self::Narrow, c: Self::Narrow) -> Self::Narrow;
+    /// The larger of each two numbers; `b` where `a` is NaN.
+    fn max(self, a: Self::Narrow, b: Self::Narrow) -> Self::Narrow;
+    /// Bit l is set where a >= b in lane l of the part.
+    fn at_least(self, a: Self::Narrow, b: Self::Narrow) -> u32;
+    /// Adds the low bits of `exponent`'s representation to the exponent of `power`.
+    fn scale(self, power: Self::Narrow, exponent: Self::Narrow) -> Self::Narrow;
 
-/// [`recursion`] with the row on the stack and its length known to the compiler for the lengths that pedestrians have.
-pub(crate) fn scores<const D: usize>(
-    query: &[[f32; D]],
-    block: &[[Lanes; D]],
-    start: &Lanes,
-    row: &mut Vec<Lanes>,
-) -> Lanes {
-    if let Ok(block) = <&[[Lanes; D]; 7]>::try_from(block) {
-        return recursion(query, block, start, &mut [[0.0; LANES]; 7]);
+    /// 2^`exponent` for exponents that are not positive, to a relative error of [`EXP2_ERROR`].
+    ///
+    /// Exponents below −[`COST_LIMIT`] (and NaN) count as −[`COST_LIMIT`]: no result is denormal.
+    #[expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+    #[allow(dead_code, reason = "for kernels with one register at a time")]
+    #[inline(always)]
+    fn exp2(self, exponent: Self::Narrow) -> Self::Narrow {
+        let [power] = self.exp2_each([exponent]);
+        power
     }
-    if let Ok(block) = <&[[Lanes; D]; 8]>::try_from(block) {
-        return recursion(query, block, start, &mut [[0.0; LANES]; 8]);
+
+    /// [`Simd::exp2`] of several registers, a stage at a time, so that none waits for the others.
+    #[expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+    #[inline(always)]
+    fn exp2_each<const G: usize>(self, exponents: [Self::Narrow; G]) -> [Self::Narrow; G] {
+        exp2::by_rounding(self, exponents)
     }
-    row.resize(block.len(), [0.0; LANES]);
-    recursion(query, block, start, row)
+
+    /// K b for K of at least 2^−[`COST_LIMIT`], with up to [`Simd::FLOOR`] added to b so that the product is not denormal.
+    fn weigh(self, k: Self::Narrow, b: Self::Narrow) -> Self::Narrow;
+
+    /// K (diagonal + up + left), one cell of the recursion, for K of at least 2^−[`COST_LIMIT`]. Up to [`Simd::FLOOR`] is
+    /// added to the sum, so that no product is denormal: denormal numbers would make the recursion ten times slower.
+    fn cell(
+        self,
+        k: Self::Narrow,
+        diagonal: Self::Narrow,
+        up: Self::Narrow,
+        left: Self::Narrow,
+    ) -> Self::Narrow;
+
+    fn wide_splat(self, value: f64) -> Self::Wide;
+    fn wide_load(self, from: &WideLanes, part: usize) -> Self::Wide;
+    fn wide_store(self, value: Self::Wide, into: &mut WideLanes, part: usize);
+    fn wide_add(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    fn wide_sub(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    fn wide_mul(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    /// The larger of each two numbers; `b` where `a` is NaN.
+    fn wide_max(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    fn wide_sqrt(self, a: Self::Wide) -> Self::Wide;
+    /// Adds the low bits of `exponent`'s representation to the exponent of `power`.
+    fn wide_scale(self, power: Self::Wide, exponent: Self::Wide) -> Self::Wide;
+
+    /// 2^exponent for exponents that are not positive, to a relative error of [`EXP2_ERROR_64`], of several registers.
+    ///
+    /// Exponents below −[`COST_LIMIT_64`] (and NaN) count as −[`COST_LIMIT_64`]: no result is denormal.
+    #[expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+    #[inline(always)]
+    fn wide_exp2_each<const G: usize>(self, exponents: [Self::Wide; G]) -> [Self::Wide; G] {
+        exp2::wide_by_rounding(self, exponents)
+    }
 }
 
 #[cfg(test)]
-mod tests {
-    #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
-
-    use super::{COST_LIMIT, EXP2_ERROR, LANES, exp2_minus, scores};
-    use crate::{Cost, SoftDtw};
-
-    #[test]
-    fn exp2_keeps_its_error_bound_over_the_whole_range() {
-        let steps = 400_000_u32;
-        let mut worst = 0.0_f64;
-        for i in 0..=steps {
-            let cost = COST_LIMIT * (i as f32 / steps as f32);
-            let exact = (-f64::from(cost)).exp2();
-            worst = worst.max((f64::from(exp2_minus(cost)) / exact - 1.0).abs());
-        }
-        assert!(worst < EXP2_ERROR, "{worst:e}");
-        assert!(worst > 1e-8, "a test that cannot fail: {worst:e}");
-        assert_eq!(exp2_minus(0.0), 1.000_000_1);
-    }
-
-    #[test]
-    fn lanes_agree_with_the_log_domain_and_far_ones_stay_normal() {
-        let gamma = std::f64::consts::LN_2.recip(); // costs are then log2 units as they are
-        let dtw = SoftDtw::new(gamma, Cost::SquaredEuclidean).expect("valid");
-        let query: Vec<[f64; 2]> = (0..6)
-            .map(|i| [f64::from(i) * 0.1, 1.0 - f64::from(i) * 0.2])
-            .collect();
-        for steps in [1, 5, 7, 8, 11] {
-            let mut block = vec![[[0.0_f32; LANES]; 2]; steps];
-            for (i, step) in block.iter_mut().enumerate() {
-                let far = |l| if l == LANES - 1 { 1e3 } else { 0.0 };
-                *step = [
-                    std::array::from_fn(|l| 0.01 * (l * i) as f32),
-                    std::array::from_fn(|l| 0.9 - 0.04 * l as f32 + far(l)),
-                ];
-            }
-            let narrow: Vec<[f32; 2]> = query.iter().map(|q| q.map(|v| v as f32)).collect();
-            let start = 2.0_f32.powi(100);
-            let scores = scores(&narrow, &block, &[start; LANES], &mut Vec::new());
-            for l in 0..LANES - 1 {
-                let candidate: Vec<[f64; 2]> = block
-                    .iter()
-                    .map(|step| [f64::from(step[0][l]), f64::from(step[1][l])])
-                    .collect();
-                let exact = dtw.value(&query, &candidate).expect("finite");
-                let fast = -gamma * f64::from(scores[l] / start).ln();
-                assert!(
-                    (fast - exact).abs() < 2e-5,
-                    "{steps} steps, lane {l}: {fast} {exact}"
-                );
-            }
-            assert!(scores[LANES - 1].is_normal() && scores[LANES - 1] < 1.0);
-        }
-    }
-}
+mod tests;

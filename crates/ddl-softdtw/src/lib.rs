@@ -2,6 +2,8 @@
 
 mod alignment;
 mod band;
+mod batch;
+mod blocks;
 mod cost;
 mod error;
 mod exp2;
@@ -11,6 +13,8 @@ mod lanes;
 mod log_domain;
 mod range;
 mod scalar;
+mod recursion;
+mod refine;
 mod search;
 mod select;
 mod sieve;
@@ -20,8 +24,10 @@ mod wavefront;
 mod weight;
 
 pub use band::Band;
+pub use batch::{BatchGradients, SoftDtwBatch};
 pub use cost::Cost;
 pub use error::{SearchError, SequenceRole, SoftDtwError};
+pub use lanes::InstructionSet;
 pub use scalar::Scalar;
 pub use search::{Neighbour, SearchIndex};
 pub use value::SoftDtw;

@@ -1,21 +1,54 @@
-//! How far the `f32` recursion of [`crate::lanes`] can be trusted: its range and its rounding error.
+//! How far the recursion in the exponential domain can be trusted: its range and its rounding error, in `f32` and `f64`.
 //!
 //! Everything here is in log2 units: a score Z stands for the soft-DTW value −γ ln 2 · log2(Z / start).
 
-use crate::lanes::{COST_LIMIT, EXP2_ERROR, FLOOR};
+use crate::lanes::{COST_LIMIT, COST_LIMIT_64, EXP2_ERROR, FLOOR};
+use crate::refine::{WIDE_FLOOR, wide_error_log2};
 
 /// Unit roundoff of `f32`.
 const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
-/// Longest sequence of the `f32` recursion.
-const LONGEST: usize = 32;
-/// A score must exceed the error of clamping and flooring by this factor (2^24) to count as accurate.
-const HEADROOM_LOG2: f64 = 24.0;
 /// A margin beyond this (log2 units) would let nearly everything through the sieve.
 const WIDEST_MARGIN: f64 = 0.25;
+
+/// What the numbers of a recursion can hold.
+#[derive(Clone, Copy, Debug)]
+struct Format {
+    /// Longest sequence.
+    longest: usize,
+    /// Largest cost of a cell.
+    cost_limit: f64,
+    /// Added to every sum of predecessors, at most.
+    floor: f64,
+    /// log2 of the largest number, less two bits for rounding and for the sums of three terms.
+    top: f64,
+    /// log2 of the largest start of a backward recursion: sums of differences times this do not overflow.
+    largest_seed: i16,
+    /// A score must exceed the error of clamping and flooring by 2 to this power to count as accurate.
+    headroom: f64,
+}
+
+const NARROW: Format = Format {
+    longest: 32,
+    cost_limit: COST_LIMIT as f64,
+    floor: FLOOR as f64,
+    top: 125.0,
+    largest_seed: 100,
+    headroom: 24.0,
+};
+
+const WIDE: Format = Format {
+    longest: 180,
+    cost_limit: COST_LIMIT_64,
+    floor: WIDE_FLOOR,
+    top: 1020.0,
+    largest_seed: 900,
+    headroom: 56.0,
+};
 
 /// The range of the recursion for a query of n steps against candidates of up to m steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Range {
+    format: Format,
     /// log2 of the number of warping paths (a Delannoy number), which bounds Z / start.
     paths_log2: f64,
     /// log2 of the number of paths from any cell to the last one, all cells together.
@@ -27,21 +60,34 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// The range for lengths `n` and `m`, or `None` when the sequences are too long for `f32`.
-    pub(crate) fn of(n: usize, m: usize) -> Option<Self> {
-        if n.max(m) > LONGEST {
+    /// The range in `f32` for lengths `n` and `m` on any machine, or `None` when the sequences are too long for it.
+    pub(crate) fn narrow(n: usize, m: usize) -> Option<Self> {
+        Self::of(NARROW, n, m)
+    }
+
+    /// The same for the instruction set that adds `floor` ([`crate::lanes::Simd::FLOOR`]).
+    pub(crate) fn narrow_with(floor: f32, n: usize, m: usize) -> Option<Self> {
+        let floor = f64::from(floor);
+        Self::of(Format { floor, ..NARROW }, n, m)
+    }
+
+    /// The range in `f64`.
+    pub(crate) fn wide(n: usize, m: usize) -> Option<Self> {
+        Self::of(WIDE, n, m)
+    }
+
+    fn of(format: Format, n: usize, m: usize) -> Option<Self> {
+        if n.max(m) > format.longest {
             return None;
         }
         let (paths, tails) = delannoy(n, m);
         let paths_log2 = paths.log2();
-        // Two bits are kept free for rounding and for the sums of three terms.
-        let start_log2 = (125.0 - paths_log2.ceil()) as i16;
-        let longest_path = (n + m - 1) as f64;
         Some(Self {
+            format,
             paths_log2,
             tails_log2: tails.log2(),
-            start_log2,
-            longest_path,
+            start_log2: (format.top - paths_log2.ceil()) as i16,
+            longest_path: (n + m - 1) as f64,
         })
     }
 
@@ -52,16 +98,32 @@ impl Range {
 
     /// The smallest score (log2, start included) that the clamp on costs and the floor on sums leave accurate.
     ///
-    /// Each of the at most `paths` paths gains at most 2^−`COST_LIMIT` by the clamp, and each cell passes on at most
-    /// `FLOOR` times the number of paths from it to the last cell.
+    /// Each of the at most `paths` paths gains at most 2^−`cost_limit` by the clamp, and each cell passes on at most
+    /// `floor` times the number of paths from it to the last cell.
     pub(crate) fn smallest_accurate_log2(&self) -> f64 {
         let start = f64::from(self.start_log2);
-        let clamp = start + self.paths_log2 - f64::from(COST_LIMIT);
-        let floor = f64::from(FLOOR).log2() + self.tails_log2;
-        clamp.max(floor) + 1.0 + HEADROOM_LOG2
+        let clamp = start + self.paths_log2 - self.format.cost_limit;
+        let floor = self.format.floor.log2() + self.tails_log2;
+        clamp.max(floor) + 1.0 + self.format.headroom
     }
 
-    /// Bound on the error of log2(score) for scores of at least `score_log2` (start included), for inputs of absolute
+    /// log2 of what a backward recursion β starts from, which sums the paths from a cell to the last one.
+    pub(crate) fn seed_log2(&self) -> i16 {
+        self.start_log2.min(self.format.largest_seed)
+    }
+
+    /// The smallest score (log2, start included) for which the expected alignment α β / (seed · score) of each of n m
+    /// `cells` is accurate as well.
+    ///
+    /// The floor that a cell adds to β meets at most α = 2^`top` there: over all cells it changes the expected alignment by
+    /// at most cells · floor · 2^`top` / (seed · score).
+    pub(crate) fn smallest_aligned_log2(&self, cells: usize) -> f64 {
+        let floors = (cells as f64 * self.format.floor).log2() + self.format.top;
+        let smallest = floors + self.format.headroom - f64::from(self.seed_log2());
+        smallest.max(self.smallest_accurate_log2())
+    }
+
+    /// Bound on the error of log2(score) in `f32` for scores of at least `score_log2` (start included), for inputs of absolute
     /// value up to `largest` and dimension `dimension`.
     ///
     /// Paths whose cost C exceeds `paths + (start − score) + 30` hold less than 2^−30 of the score. For the others, with
@@ -70,23 +132,31 @@ impl Range {
     /// the error of exp2 and four roundings.
     pub(crate) fn error_log2(&self, score_log2: f64, largest: f64, dimension: usize) -> f64 {
         let (path, dimension) = (self.longest_path, dimension as f64);
-        let cost = self.paths_log2 + (f64::from(self.start_log2) - score_log2).max(0.0) + 30.0;
+        let cost = self.cost_log2(score_log2);
         let input = largest * UNIT;
         let spread = path * dimension;
         let costs = 4.0 * input * (spread * cost).sqrt()
             + 4.0 * input * input * spread
             + (dimension + 3.0) * UNIT * cost;
         let cells = path * (EXP2_ERROR + 4.0 * UNIT) * std::f64::consts::LOG2_E;
-        let tails = 2.0_f64.powf(-HEADROOM_LOG2) * 3.0;
+        let tails = 2.0_f64.powf(-self.format.headroom) * 3.0;
         costs + cells + tails
     }
 
     /// Width of the band below the n-th score that may hold members of the true n best, or `None` when it would be so wide
-    /// that the sieve is of no use. Both the n-th score and a candidate's may err, hence twice the error.
+    /// that the sieve is of no use. Both the n-th score and a candidate's may err, hence twice the error; that of the
+    /// `f64` values is added, so that what is ruled out is further than the n-th neighbour in computed values too.
     pub(crate) fn margin_log2(&self, score_log2: f64, largest: f64, dim: usize) -> Option<f64> {
         // A candidate just inside the band scores a little lower than the n-th: one unit covers it.
-        let margin = 2.0 * self.error_log2(score_log2 - 1.0, largest, dim);
+        let score_log2 = score_log2 - 1.0;
+        let refined = wide_error_log2(self.longest_path, self.cost_log2(score_log2), dim);
+        let margin = 2.0 * (self.error_log2(score_log2, largest, dim) + refined);
         (margin <= WIDEST_MARGIN).then_some(margin)
+    }
+
+    /// Paths of a larger cost hold less than 2^−30 of a score.
+    fn cost_log2(&self, score_log2: f64) -> f64 {
+        self.paths_log2 + (f64::from(self.start_log2) - score_log2).max(0.0) + 30.0
     }
 }
 
@@ -110,7 +180,7 @@ fn delannoy(n: usize, m: usize) -> (f64, f64) {
 mod tests {
     #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
-    use super::{LONGEST, Range, delannoy};
+    use super::{NARROW, Range, WIDE, delannoy};
 
     #[test]
     fn paths_are_the_central_delannoy_numbers() {
@@ -122,10 +192,23 @@ mod tests {
     }
 
     #[test]
-    fn walkers_have_room_for_values_of_47_gamma() {
-        let range = Range::of(8, 8).expect("short");
+    fn walkers_have_room_for_values_of_47_gamma_and_57_if_fused() {
+        let range = Range::narrow(8, 8).expect("short");
         let reach = f64::from(range.start_log2()) - range.smallest_accurate_log2();
         assert!(reach * std::f64::consts::LN_2 > 47.0, "{reach}");
-        assert!(Range::of(LONGEST + 1, 8).is_none());
+        assert!(Range::narrow(NARROW.longest + 1, 8).is_none());
+        let fused = Range::narrow_with(2.0_f32.powi(-100), 8, 8).expect("short");
+        let reach = f64::from(fused.start_log2()) - fused.smallest_accurate_log2();
+        assert!(reach * std::f64::consts::LN_2 > 57.0, "{reach}");
+    }
+
+    #[test]
+    fn in_f64_they_have_room_for_570_gamma_and_long_ones_for_100() {
+        for (steps, gammas) in [(8, 570.0), (WIDE.longest, 100.0)] {
+            let range = Range::wide(steps, steps).expect("short");
+            let reach = f64::from(range.start_log2()) - range.smallest_accurate_log2();
+            assert!(reach * std::f64::consts::LN_2 > gammas, "{reach}");
+        }
+        assert!(Range::wide(WIDE.longest + 1, 8).is_none());
     }
 }

@@ -4,15 +4,21 @@ use rayon::prelude::*;
 
 use crate::cost::Cost;
 use crate::error::{SearchError, SequenceRole, SoftDtwError};
+use crate::lanes::{Dispatch, InstructionSet};
+use crate::refine::{PairValue, PairValues};
 use crate::sieve::Sieve;
 use crate::value::{SoftDtw, check, finite, normalise};
+
+/// Queries that go through the candidates together.
+const TOGETHER: usize = 8;
 
 /// A candidate found by a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Neighbour {
     /// Position of the candidate in the list the index was built from, from 0.
     pub index: usize,
-    /// Normalised soft-DTW distance to the query, in the unit of the cost, evaluated in `f64`.
+    /// Normalised soft-DTW distance to the query, in the unit of the cost, evaluated in `f64`; exactly 0 for a candidate
+    /// that equals the query.
     pub distance: f64,
 }
 
@@ -39,6 +45,7 @@ pub struct SearchIndex<const D: usize> {
     /// D(y, y) of every candidate.
     self_values: Vec<f64>,
     sieve: Option<Sieve<D>>,
+    dispatch: Dispatch,
 }
 
 impl<const D: usize> SearchIndex<D> {
@@ -57,17 +64,13 @@ impl<const D: usize> SearchIndex<D> {
         if candidates.is_empty() {
             return Err(SearchError::NoCandidates);
         }
-        let checked_self_value = |candidate: &S| {
-            check(candidate.as_ref(), SequenceRole::Y)?;
-            finite(dtw.self_value(candidate.as_ref()))
-        };
-        // Collected first: a parallel collect into a Result would report whichever error came first in time.
-        let self_values: Vec<_> = candidates.par_iter().map(checked_self_value).collect();
-        let self_values = self_values
-            .into_iter()
-            .enumerate()
-            .map(|(index, value)| value.map_err(|source| SearchError::Candidate { index, source }))
-            .collect::<Result<Vec<_>, _>>()?;
+        let checked: Vec<_> = candidates
+            .iter()
+            .map(|candidate| check(candidate.as_ref(), SequenceRole::Y))
+            .collect();
+        for (index, checked) in checked.into_iter().enumerate() {
+            checked.map_err(|source| SearchError::Candidate { index, source })?;
+        }
         let mut steps = Vec::new();
         let mut offsets = vec![0];
         for candidate in candidates {
@@ -78,9 +81,11 @@ impl<const D: usize> SearchIndex<D> {
             dtw: *dtw,
             steps,
             offsets,
-            self_values,
+            self_values: Vec::new(),
             sieve: None,
+            dispatch: Dispatch::detect(),
         };
+        index.self_values = index.evaluate_self_values()?;
         if dtw.gamma() > 0.0 && dtw.cost() == Cost::SquaredEuclidean && dtw.band().is_none() {
             let candidates: Vec<_> = (0..index.len()).map(|i| index.candidate(i)).collect();
             index.sieve = Sieve::build(dtw.gamma(), &candidates, &index.self_values);
@@ -88,14 +93,29 @@ impl<const D: usize> SearchIndex<D> {
         Ok(index)
     }
 
+    /// The same index searched with another instruction set than the fastest of the machine, for tests and measurements:
+    /// the results are the same to the last bit.
+    ///
+    /// # Errors
+    /// [`SearchError::InstructionSet`] when the machine lacks it.
+    pub fn with_instruction_set(self, set: InstructionSet) -> Result<Self, SearchError> {
+        let dispatch = Dispatch::new(set).ok_or(SearchError::InstructionSet { set })?;
+        Ok(Self { dispatch, ..self })
+    }
+
+    /// The instruction set that searches run with.
+    pub fn instruction_set(&self) -> InstructionSet {
+        self.dispatch.instruction_set()
+    }
+
     /// Number of candidates.
     pub fn len(&self) -> usize {
-        self.self_values.len()
+        self.offsets.len() - 1
     }
 
     /// Never true: an index without candidates cannot be built.
     pub fn is_empty(&self) -> bool {
-        self.self_values.is_empty()
+        self.len() == 0
     }
 
     /// The distance that is searched in.
@@ -109,7 +129,8 @@ impl<const D: usize> SearchIndex<D> {
     /// [`SearchError::Query`] when the query is empty or not finite, or when a distance to be returned leaves the range of
     /// `f64`.
     pub fn nearest(&self, query: &[[f64; D]], n: usize) -> Result<Vec<Neighbour>, SearchError> {
-        Ok(self.search(query, n)?)
+        let mut found = self.search(&[query], n);
+        Ok(found.pop().unwrap_or(Ok(Vec::new()))?)
     }
 
     /// [`SearchIndex::nearest`] for many queries, in parallel over the current `rayon` pool.
@@ -126,10 +147,12 @@ impl<const D: usize> SearchIndex<D> {
     where
         S: AsRef<[[f64; D]]> + Sync,
     {
-        let found: Vec<_> = queries
-            .par_iter()
-            .map(|q| self.search(q.as_ref(), n))
-            .collect();
+        let together = |queries: &[S]| {
+            let queries: Vec<_> = queries.iter().map(AsRef::as_ref).collect();
+            self.search(&queries, n)
+        };
+        // Collected first: a parallel collect into a Result would report whichever error came first in time.
+        let found: Vec<_> = queries.par_chunks(TOGETHER).flat_map(together).collect();
         found
             .into_iter()
             .enumerate()
@@ -137,42 +160,105 @@ impl<const D: usize> SearchIndex<D> {
             .collect()
     }
 
-    fn search(&self, query: &[[f64; D]], n: usize) -> Result<Vec<Neighbour>, SoftDtwError> {
-        check(query, SequenceRole::X)?;
-        let self_query = finite(self.dtw.self_value(query))?;
+    /// The answers to a few queries that go through the candidates together.
+    fn search(
+        &self,
+        queries: &[&[[f64; D]]],
+        n: usize,
+    ) -> Vec<Result<Vec<Neighbour>, SoftDtwError>> {
         let wanted = n.min(self.len());
+        let checked = queries.iter().map(|query| check(query, SequenceRole::X));
+        let checked: Vec<Result<(), SoftDtwError>> = checked.collect();
+        let sieve = self
+            .sieve
+            .as_ref()
+            .filter(|_| wanted > 0 && wanted < self.len());
+        let valid = queries.iter().zip(&checked);
+        let valid: Vec<_> = valid.filter(|(_, c)| c.is_ok()).map(|(q, _)| *q).collect();
+        let mut survivors = sieve
+            .map(|sieve| sieve.survivors(self.dispatch, &valid, wanted))
+            .unwrap_or_default()
+            .into_iter();
+        let answer = |(query, checked): (&&[[f64; D]], Result<(), SoftDtwError>)| {
+            checked?;
+            let survivors = survivors.next().flatten();
+            let survivors = survivors.unwrap_or_else(|| (0..self.len()).collect());
+            self.rank(query, &survivors, wanted)
+        };
+        queries.iter().zip(checked).map(answer).collect()
+    }
+
+    /// The `wanted` nearest of some candidates, evaluated in `f64`.
+    fn rank(
+        &self,
+        query: &[[f64; D]],
+        candidates: &[usize],
+        wanted: usize,
+    ) -> Result<Vec<Neighbour>, SoftDtwError> {
         if wanted == 0 {
             return Ok(Vec::new());
         }
-        let sieve = self.sieve.as_ref().filter(|_| wanted < self.len());
-        let survivors = sieve
-            .and_then(|sieve| sieve.survivors(query, wanted))
-            .unwrap_or_else(|| (0..self.len()).collect());
-        let mut found: Vec<Neighbour> = survivors
-            .into_iter()
-            .map(|index| {
-                let value = self.dtw.value_unchecked(query, self.candidate(index));
-                let distance = normalise(value, self_query, self.self_values[index]);
-                Neighbour { index, distance }
-            })
-            .collect();
-        let order = |a: &Neighbour, b: &Neighbour| {
-            a.distance
-                .total_cmp(&b.distance)
-                .then(a.index.cmp(&b.index))
+        let values = PairValues::new(self.dtw, self.dispatch);
+        let self_query = values.all(&[(query, query)])[0];
+        let neighbour = |index: usize, value: f64| Neighbour {
+            index,
+            distance: normalise(value, self_query, self.self_values[index]),
         };
-        if wanted < found.len() {
-            found.select_nth_unstable_by(wanted, order);
-            found.truncate(wanted);
+        let pairs = candidates.iter().map(|&i| (query, self.candidate(i)));
+        let (mut found, mut beyond) = (Vec::with_capacity(candidates.len()), Vec::new());
+        for (&index, value) in candidates.iter().zip(values.of(pairs)) {
+            match value {
+                PairValue::Known(value) => found.push(neighbour(index, value)),
+                PairValue::AtLeast(bound) => beyond.push(neighbour(index, bound)),
+            }
         }
-        found.sort_unstable_by(order);
+        nearest_first(&mut found, wanted);
+        if found.len() == wanted {
+            let last = found[wanted - 1].distance;
+            beyond.retain(|at_least| at_least.distance <= last);
+        }
+        if !beyond.is_empty() {
+            found.extend(beyond.iter().map(|&Neighbour { index, .. }| {
+                neighbour(index, values.beyond(query, self.candidate(index)))
+            }));
+            nearest_first(&mut found, wanted);
+        }
         found
             .iter()
             .try_for_each(|neighbour| finite(neighbour.distance).map(|_| ()))?;
         Ok(found)
     }
 
+    /// D(y, y) of every candidate, computed as the values of the search are: the distance of equal sequences is 0.
+    fn evaluate_self_values(&self) -> Result<Vec<f64>, SearchError> {
+        let indices: Vec<usize> = (0..self.len()).collect();
+        let values = PairValues::new(self.dtw, self.dispatch);
+        let chunks = indices.par_chunks(1024).flat_map(|indices| {
+            let candidates = indices.iter().map(|&i| self.candidate(i));
+            values.all(&candidates.map(|y| (y, y)).collect::<Vec<_>>())
+        });
+        let evaluated: Vec<f64> = chunks.collect();
+        for (index, &value) in evaluated.iter().enumerate() {
+            finite(value).map_err(|source| SearchError::Candidate { index, source })?;
+        }
+        Ok(evaluated)
+    }
+
     fn candidate(&self, index: usize) -> &[[f64; D]] {
         &self.steps[self.offsets[index]..self.offsets[index + 1]]
     }
+}
+
+/// Leaves the `wanted` nearest (all, if there are fewer), in order, ties by index.
+fn nearest_first(found: &mut Vec<Neighbour>, wanted: usize) {
+    let order = |a: &Neighbour, b: &Neighbour| {
+        a.distance
+            .total_cmp(&b.distance)
+            .then(a.index.cmp(&b.index))
+    };
+    if wanted < found.len() {
+        found.select_nth_unstable_by(wanted, order);
+        found.truncate(wanted);
+    }
+    found.sort_unstable_by(order);
 }

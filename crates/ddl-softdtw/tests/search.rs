@@ -1,6 +1,8 @@
 //! The search against evaluating every candidate in `f64`.
 
-use ddl_softdtw::{Cost, Neighbour, SearchError, SearchIndex, SoftDtw, SoftDtwError};
+use ddl_softdtw::{
+    Cost, InstructionSet, Neighbour, SearchError, SearchIndex, SoftDtw, SoftDtwError,
+};
 use proptest::prelude::*;
 
 type Walk = Vec<[f64; 2]>;
@@ -62,18 +64,18 @@ fn brute_force(dtw: &SoftDtw, candidates: &[Walk], query: &Walk) -> Vec<Neighbou
     all
 }
 
-/// Distances to 1e-9, and the set up to ties within 1e-9 of the n-th distance.
-fn assert_same(found: &[Neighbour], oracle: &[Neighbour], n: usize) {
+/// Distances to `tolerance`, and the set up to ties within `tolerance` of the n-th distance.
+fn assert_same(found: &[Neighbour], oracle: &[Neighbour], n: usize, tolerance: f64) {
     let n = n.min(oracle.len());
     assert_eq!(found.len(), n);
     for (found, oracle) in found.iter().zip(oracle) {
         assert!(
-            (found.distance - oracle.distance).abs() < 1e-9,
+            (found.distance - oracle.distance).abs() < tolerance,
             "{found:?} {oracle:?}"
         );
     }
     let last = oracle[n - 1].distance;
-    for clear in oracle.iter().filter(|o| o.distance < last - 1e-9) {
+    for clear in oracle.iter().filter(|o| o.distance < last - tolerance) {
         assert!(
             found.iter().any(|f| f.index == clear.index),
             "{clear:?} is missing"
@@ -84,7 +86,7 @@ fn assert_same(found: &[Neighbour], oracle: &[Neighbour], n: usize) {
             .iter()
             .find(|o| o.index == found.index)
             .expect("a candidate");
-        assert!((itself.distance - found.distance).abs() < 1e-9);
+        assert!((itself.distance - found.distance).abs() < tolerance);
     }
     let ordered = |p: &[Neighbour]| (p[0].distance, p[0].index) < (p[1].distance, p[1].index);
     assert!(
@@ -95,11 +97,14 @@ fn assert_same(found: &[Neighbour], oracle: &[Neighbour], n: usize) {
 
 fn compare(dtw: SoftDtw, candidates: &[Walk], queries: &[Walk], n: usize) {
     let index = SearchIndex::build(&dtw, candidates).expect("valid");
+    // A distance is a small difference of values of the size of gamma.
+    let tolerance = 1e-9_f64.max(1e-13 * dtw.gamma());
     for query in queries {
         assert_same(
             &index.nearest(query, n).expect("valid"),
             &brute_force(&dtw, candidates, query),
             n,
+            tolerance,
         );
     }
 }
@@ -206,6 +211,76 @@ fn the_number_of_threads_changes_nothing() {
             .unwrap();
         let batch = pool.install(|| index.nearest_batch(&queries, 50)).unwrap();
         assert_eq!(batch, one_by_one);
+    }
+}
+
+/// Neighbours with the bits of their distances.
+fn bits(found: &[Neighbour]) -> Vec<(usize, u64)> {
+    found
+        .iter()
+        .map(|n| (n.index, n.distance.to_bits()))
+        .collect()
+}
+
+#[test]
+fn the_instruction_set_changes_nothing() {
+    let mut numbers = Numbers(8);
+    let mut candidates: Vec<Walk> = (0..900).map(|i| numbers.walker(1 + i % 12)).collect();
+    candidates.extend((0..900).map(|i| numbers.standing(7 + i % 2)));
+    let mut queries: Vec<Walk> = (0..8).map(|i| numbers.walker(3 + i)).collect();
+    queries.extend((0..8).map(|_| numbers.standing(8)));
+    // One too far for the sieve, one too far for the exponential domain.
+    queries.push(vec![[12.0, 0.0]; 8]);
+    queries.push(vec![[90.0, 0.0]; 8]);
+    for (gamma, cost) in [
+        (1.0, Cost::SquaredEuclidean),
+        (0.02, Cost::SquaredEuclidean),
+        (0.5, Cost::Euclidean),
+        (0.0, Cost::SquaredEuclidean),
+    ] {
+        let dtw = SoftDtw::new(gamma, cost).unwrap();
+        let index = SearchIndex::build(&dtw, &candidates).unwrap();
+        assert_eq!(index.instruction_set(), InstructionSet::detect());
+        let expected: Vec<_> = queries
+            .iter()
+            .map(|q| bits(&index.nearest(q, 70).unwrap()))
+            .collect();
+        for set in InstructionSet::available() {
+            let index = index.clone().with_instruction_set(set).unwrap();
+            assert_eq!(index.instruction_set(), set);
+            let found = index.nearest_batch(&queries, 70).unwrap();
+            let found: Vec<_> = found.iter().map(|found| bits(found)).collect();
+            assert_eq!(found, expected, "{set}, gamma {gamma}");
+        }
+    }
+}
+
+#[test]
+fn an_instruction_set_the_machine_lacks_is_refused() {
+    let index = SearchIndex::build(&squared(1.0), &[vec![[0.0]]]).unwrap();
+    for set in [
+        InstructionSet::Portable,
+        InstructionSet::Avx2,
+        InstructionSet::Avx512,
+    ] {
+        let chosen = index.clone().with_instruction_set(set);
+        assert_eq!(chosen.is_ok(), set.is_available());
+        if let Err(error) = chosen {
+            assert_eq!(error, SearchError::InstructionSet { set });
+        }
+    }
+}
+
+#[test]
+fn equal_sequences_are_at_distance_zero() {
+    let mut numbers = Numbers(9);
+    let candidates: Vec<Walk> = (0..50).map(|i| numbers.walker(1 + i % 9)).collect();
+    for gamma in [0.0, 1e-4, 1.0] {
+        let index = SearchIndex::build(&squared(gamma), &candidates).unwrap();
+        for (i, candidate) in candidates.iter().enumerate() {
+            let nearest = index.nearest(candidate, 2).unwrap();
+            assert_eq!(bits(&nearest[..1]), [(i, 0.0_f64.to_bits())]);
+        }
     }
 }
 

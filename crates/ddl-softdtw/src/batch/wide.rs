@@ -1,0 +1,206 @@
+//! Values and gradients of eight pairs in `f64` and the exponential domain: what is beyond `f32`.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use super::Visit;
+use crate::cost::Cost;
+use crate::lanes::{Dispatch, Kernel, Simd, WIDE_LANES, WideLanes};
+use crate::range::Range;
+use crate::refine::{GAMMAS, WIDE_FLOOR, WIDE_GROUP, spread};
+use crate::value::SoftDtw;
+
+/// Evaluates one x against eight sequences at a time; the memory for it is kept.
+pub(super) struct WidePairs<const D: usize> {
+    dtw: SoftDtw,
+    dispatch: Dispatch,
+    y: Vec<[WideLanes; D]>,
+    gradient: Vec<[WideLanes; D]>,
+    k: Vec<WideLanes>,
+    alpha: Vec<WideLanes>,
+    row: Vec<WideLanes>,
+    /// The gradient of one pair.
+    single: Vec<[f64; D]>,
+}
+
+impl<const D: usize> WidePairs<D> {
+    pub(super) fn new(dtw: SoftDtw, dispatch: Dispatch) -> Self {
+        Self {
+            dtw,
+            dispatch,
+            y: Vec::new(),
+            gradient: Vec::new(),
+            k: Vec::new(),
+            alpha: Vec::new(),
+            row: Vec::new(),
+            single: Vec::new(),
+        }
+    }
+
+    /// Evaluates `x` against up to eight of `sequences`, all of one length; what is out of range goes to `beyond`.
+    pub(super) fn evaluate(
+        &mut self,
+        x: &[[f64; D]],
+        members: &[usize],
+        sequences: &[Vec<[f64; D]>],
+        beyond: &mut Vec<usize>,
+        visit: &mut impl Visit<D>,
+    ) {
+        let (n, m) = (x.len(), sequences[members[0]].len());
+        let gamma = self.dtw.gamma();
+        let fits = self.dtw.cost() == Cost::SquaredEuclidean && GAMMAS.contains(&gamma);
+        let Some(range) = Range::wide(n, m).filter(|_| fits) else {
+            beyond.extend(members);
+            return;
+        };
+        self.y.resize(m, [[0.0; WIDE_LANES]; D]);
+        for lane in 0..WIDE_LANES {
+            let member = members[lane.min(members.len() - 1)];
+            spread(&sequences[member], lane, &mut self.y);
+        }
+        self.gradient.resize(n, [[0.0; WIDE_LANES]; D]);
+        self.k.resize(n * m, [0.0; WIDE_LANES]);
+        self.alpha.resize(n * m, [0.0; WIDE_LANES]);
+        self.row.resize(m, [0.0; WIDE_LANES]);
+        self.single.resize(n, [0.0; D]);
+        let start = f64::from(range.start_log2()).exp2();
+        let scores = self.dispatch.run(WideForwardBackward {
+            x,
+            start,
+            seed: f64::from(range.seed_log2()).exp2(),
+            scale: -std::f64::consts::LOG2_E / gamma,
+            working: self,
+        });
+        let smallest = range.smallest_aligned_log2(n * m).exp2();
+        for (lane, &member) in members.iter().enumerate() {
+            if scores[lane] < smallest {
+                beyond.push(member);
+                continue;
+            }
+            for (single, lanes) in self.single.iter_mut().zip(&self.gradient) {
+                for (single, lanes) in single.iter_mut().zip(lanes) {
+                    *single = lanes[lane];
+                }
+            }
+            // Dividing by a power of two is exact.
+            let value = -gamma * (scores[lane] * (1.0 / start)).ln();
+            visit(member, value, &self.single);
+        }
+    }
+}
+
+/// The two recursions of [`super::forward_backward`] in `f64`.
+struct WideForwardBackward<'a, const D: usize> {
+    x: &'a [[f64; D]],
+    start: f64,
+    seed: f64,
+    /// −log2 e / γ.
+    scale: f64,
+    working: &'a mut WidePairs<D>,
+}
+
+impl<const D: usize> Kernel for WideForwardBackward<'_, D> {
+    /// R(n, m), start value included.
+    type Output = WideLanes;
+
+    #[inline(always)]
+    fn run<S: Simd>(mut self, simd: S) -> WideLanes {
+        let mut scores = [0.0; WIDE_LANES];
+        for part in 0..S::PARTS {
+            self.forward(simd, part, &mut scores);
+        }
+        let inverse = scores.map(|score| 1.0 / score);
+        for part in 0..S::PARTS {
+            self.backward(simd, part, &inverse);
+        }
+        scores
+    }
+}
+
+impl<const D: usize> WideForwardBackward<'_, D> {
+    #[inline(always)]
+    fn forward<S: Simd>(&mut self, simd: S, part: usize, scores: &mut WideLanes) {
+        let (zero, scale) = (simd.wide_splat(0.0), simd.wide_splat(self.scale));
+        let floor = simd.wide_splat(WIDE_FLOOR);
+        let WidePairs {
+            y, k, alpha, row, ..
+        } = &mut *self.working;
+        row.fill([0.0; WIDE_LANES]);
+        let m = y.len();
+        let mut corner = simd.wide_splat(self.start);
+        let mut left = zero;
+        let rows = k.chunks_exact_mut(m).zip(alpha.chunks_exact_mut(m));
+        for (x, (k, alpha)) in self.x.iter().zip(rows) {
+            for (k, y) in k.chunks_mut(WIDE_GROUP).zip(y.chunks(WIDE_GROUP)) {
+                let mut exponents = [zero; WIDE_GROUP];
+                for (exponent, y) in exponents.iter_mut().zip(y) {
+                    let mut cost = zero;
+                    for d in 0..D {
+                        let y = simd.wide_load(&y[d], part);
+                        let difference = simd.wide_sub(simd.wide_splat(x[d]), y);
+                        cost = simd.wide_add(cost, simd.wide_mul(difference, difference));
+                    }
+                    *exponent = simd.wide_mul(cost, scale);
+                }
+                for (k, power) in k.iter_mut().zip(simd.wide_exp2_each(exponents)) {
+                    simd.wide_store(power, k, part);
+                }
+            }
+            let mut diagonal = corner;
+            left = zero;
+            for j in 0..m {
+                let up = simd.wide_load(&row[j], part);
+                let others = simd.wide_add(simd.wide_add(diagonal, up), floor);
+                left = simd.wide_mul(simd.wide_load(&k[j], part), simd.wide_add(others, left));
+                simd.wide_store(left, &mut alpha[j], part);
+                simd.wide_store(left, &mut row[j], part);
+                diagonal = up;
+            }
+            corner = zero;
+        }
+        simd.wide_store(left, scores, part);
+    }
+
+    #[inline(always)]
+    fn backward<S: Simd>(&mut self, simd: S, part: usize, inverse: &WideLanes) {
+        let zero = simd.wide_splat(0.0);
+        let floor = simd.wide_splat(WIDE_FLOOR);
+        let inverse = simd.wide_load(inverse, part);
+        // The slope of the squared cost is twice the difference.
+        let unit = simd.wide_splat(2.0 / self.seed);
+        let WidePairs {
+            y,
+            k,
+            alpha,
+            row,
+            gradient,
+            ..
+        } = &mut *self.working;
+        row.fill([0.0; WIDE_LANES]);
+        let m = y.len();
+        let mut end = simd.wide_splat(self.seed);
+        let rows = k.chunks_exact(m).zip(alpha.chunks_exact(m));
+        for ((x, gradient), (k, alpha)) in self.x.iter().zip(gradient).zip(rows).rev() {
+            let mut sums = [zero; D];
+            let mut right = end;
+            let mut diagonal = zero;
+            end = zero;
+            for j in (0..m).rev() {
+                let down = simd.wide_load(&row[j], part);
+                let beta = simd.wide_add(simd.wide_add(diagonal, down), right);
+                let share = simd.wide_mul(simd.wide_load(&alpha[j], part), inverse);
+                let expected = simd.wide_mul(share, beta);
+                for d in 0..D {
+                    let difference =
+                        simd.wide_sub(simd.wide_splat(x[d]), simd.wide_load(&y[j][d], part));
+                    sums[d] = simd.wide_add(sums[d], simd.wide_mul(expected, difference));
+                }
+                right = simd.wide_mul(simd.wide_load(&k[j], part), simd.wide_add(beta, floor));
+                simd.wide_store(right, &mut row[j], part);
+                diagonal = down;
+            }
+            for d in 0..D {
+                simd.wide_store(simd.wide_mul(sums[d], unit), &mut gradient[d], part);
+            }
+        }
+    }
+}

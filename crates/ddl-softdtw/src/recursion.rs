@@ -1,0 +1,102 @@
+//! The recursion on sixteen candidates at once, in `f32` and the exponential domain.
+//!
+//! With K = 2^−cost and costs in log2 units, R(i, j) = K(i, j) (R(i−1, j−1) + R(i−1, j) + R(i, j−1)) sums 2^−cost over all
+//! warping paths: no exponential and no logarithm in the recursion.
+//!
+//! # Range
+//! Costs are clamped and a floor is added to every sum of three predecessors ([`Simd::exp2`], [`Simd::cell`]), so that
+//! every product is a normal number. What both do to small scores is bounded in [`crate::range`].
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+#![expect(
+    clippy::needless_range_loop,
+    reason = "arrays of registers that advance together"
+)]
+
+use crate::blocks::{Line, Step};
+use crate::lanes::Simd;
+
+/// Cells whose similarities are computed together where the length of a sequence is not known to the compiler: enough
+/// independent operations to fill the time each one takes.
+pub(crate) const GROUP: usize = 4;
+
+/// Scores of one part of a block: start · Σ over warping paths of 2^−cost, for each lane.
+///
+/// # Shapes
+/// `query`: n steps; `block`: m steps; `row`: m registers of working memory, of any content. Where the compiler knows m
+/// the row stays in registers. Similarities are computed G at a time: m, or [`GROUP`].
+#[inline(always)]
+pub(crate) fn recursion<S: Simd, const D: usize, const G: usize>(
+    simd: S,
+    query: &[[f32; D]],
+    block: &[Step<D>],
+    part: usize,
+    start: S::Narrow,
+    row: &mut [S::Narrow],
+) -> S::Narrow {
+    let zero = simd.splat(0.0);
+    let steps = block.len();
+    row.fill(zero);
+    let mut corner = start;
+    let mut left = zero;
+    for step in query {
+        let mut diagonal = corner;
+        left = zero;
+        let mut first = 0;
+        while first < steps {
+            let ks = similarities::<S, D, G>(simd, step, block, first, part);
+            for g in 0..G {
+                if first + g < steps {
+                    let up = row[first + g];
+                    left = simd.cell(ks[g], diagonal, up, left);
+                    row[first + g] = left;
+                    diagonal = up;
+                }
+            }
+            first += G;
+        }
+        corner = zero;
+    }
+    left
+}
+
+/// 2^−|x − y|² of a step x and all steps y of one part of a block.
+#[inline(always)]
+pub(crate) fn similarities_of_row<S: Simd, const D: usize, const G: usize>(
+    simd: S,
+    x: &[f32; D],
+    block: &[Step<D>],
+    part: usize,
+    into: &mut [Line],
+) {
+    for first in (0..block.len()).step_by(G) {
+        let ks = similarities::<S, D, G>(simd, x, block, first, part);
+        for g in 0..G {
+            if let Some(line) = into.get_mut(first + g) {
+                simd.store(ks[g], &mut line.0, part);
+            }
+        }
+    }
+}
+
+/// 2^−|x − y|² of a query step x and G steps y from `first` on, as far as there are any.
+#[inline(always)]
+fn similarities<S: Simd, const D: usize, const G: usize>(
+    simd: S,
+    step: &[f32; D],
+    block: &[Step<D>],
+    first: usize,
+    part: usize,
+) -> [S::Narrow; G] {
+    let mut exponents = [simd.splat(0.0); G];
+    for g in 0..G {
+        if first + g < block.len() {
+            for d in 0..D {
+                let y = simd.load(&block[first + g].0[d], part);
+                let difference = simd.sub(simd.splat(step[d]), y);
+                exponents[g] = simd.neg_mul_add(difference, difference, exponents[g]);
+            }
+        }
+    }
+    simd.exp2_each(exponents)
+}

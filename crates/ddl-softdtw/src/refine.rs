@@ -1,0 +1,237 @@
+//! Values of many pairs in `f64`, eight at a time in the exponential domain.
+//!
+//! What decides a search is computed here. The value of a pair depends on the pair alone: not on its neighbours in the
+//! vector, on the instruction set or on the number of threads, because every operation is rounded by itself and in the
+//! same order everywhere.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use crate::cost::Cost;
+use crate::lanes::{Dispatch, EXP2_ERROR_64, Kernel, Simd, WIDE_LANES, WideLanes};
+use crate::range::Range;
+use crate::value::SoftDtw;
+
+/// Added to every sum of predecessors, 2^−120: times 2^−900 it is still a normal number.
+pub(crate) const WIDE_FLOOR: f64 = f64::from_bits((1023 - 120) << 52);
+/// Outside of these the squares of the differences may leave the range of `f64` where their cost does not.
+pub(crate) const GAMMAS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
+
+/// Bound on the error of a value in log2 units, for warping paths of up to `path` cells and a `cost` that holds all but
+/// 2^−30 of the sum.
+///
+/// Each squared difference is rounded twice, their sum, its root and its scaling D + 1 times, and the scale was rounded
+/// twice; each cell adds the error of exp2 and four roundings, and the logarithm one.
+pub(crate) fn wide_error_log2(path: f64, cost: f64, dimension: usize) -> f64 {
+    const UNIT: f64 = f64::EPSILON / 2.0;
+    let costs = (dimension as f64 + 6.0) * UNIT * cost;
+    costs + (path * (EXP2_ERROR_64 + 4.0 * UNIT) + 2.0 * UNIT) * std::f64::consts::LOG2_E
+}
+
+/// Cells whose similarities are computed together, so that the processor is kept busy.
+pub(crate) const WIDE_GROUP: usize = 4;
+
+/// What the exponential domain says of a pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum PairValue {
+    /// The value `D_γ(x, y)`.
+    Known(f64),
+    /// It is at least this: too large for the range of the recursion.
+    AtLeast(f64),
+}
+
+/// Evaluates pairs of sequences in blocks of eight.
+///
+/// # Numerics
+/// The error of a known value is at most γ ln 2 times [`wide_error_log2`]: 4e-14 γ for eight steps and values near 0.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PairValues {
+    dtw: SoftDtw,
+    dispatch: Dispatch,
+}
+
+/// Both sequences of a pair.
+type Both<'a, const D: usize> = (&'a [[f64; D]], &'a [[f64; D]]);
+/// A pair that waits for its block: its place in the answer, and both sequences.
+type Pair<'a, const D: usize> = (usize, &'a [[f64; D]], &'a [[f64; D]]);
+
+impl PairValues {
+    pub(crate) fn new(dtw: SoftDtw, dispatch: Dispatch) -> Self {
+        Self { dtw, dispatch }
+    }
+
+    /// `D_γ` of every pair of checked sequences.
+    pub(crate) fn of<'a, const D: usize>(
+        &self,
+        pairs: impl Iterator<Item = Both<'a, D>>,
+    ) -> Vec<PairValue> {
+        let mut pairs: Vec<Pair<'a, D>> = pairs.enumerate().map(|(i, (x, y))| (i, x, y)).collect();
+        let mut values = vec![PairValue::AtLeast(f64::NEG_INFINITY); pairs.len()];
+        if !GAMMAS.contains(&self.dtw.gamma()) {
+            return values;
+        }
+        let lengths = |pair: &Pair<'a, D>| (pair.1.len(), pair.2.len());
+        if !pairs.is_sorted_by_key(lengths) {
+            pairs.sort_by_key(lengths);
+        }
+        let mut working = Working::default();
+        for same in pairs.chunk_by(|a, b| lengths(a) == lengths(b)) {
+            let (n, m) = lengths(&same[0]);
+            let Some(range) = Range::wide(n, m) else {
+                continue;
+            };
+            for block in same.chunks(WIDE_LANES) {
+                let sums = self.block(range, block, &mut working);
+                for (&(place, ..), sum) in block.iter().zip(sums) {
+                    values[place] = self.value(range, sum);
+                }
+            }
+        }
+        values
+    }
+
+    /// `D_γ` of every pair of checked sequences, from the log domain where the exponential one does not reach.
+    pub(crate) fn all<const D: usize>(&self, pairs: &[Both<'_, D>]) -> Vec<f64> {
+        let known = self.of(pairs.iter().copied());
+        let value = |(pair, known): (&Both<'_, D>, _)| match known {
+            PairValue::Known(value) => value,
+            PairValue::AtLeast(_) => self.beyond(pair.0, pair.1),
+        };
+        pairs.iter().zip(known).map(value).collect()
+    }
+
+    /// The value of a pair that is beyond the exponential domain.
+    pub(crate) fn beyond<const D: usize>(&self, x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
+        self.dtw.value_unchecked(x, y)
+    }
+
+    /// Sums over the warping paths of up to eight pairs of equal lengths, start value included.
+    fn block<const D: usize>(
+        &self,
+        range: Range,
+        pairs: &[Pair<'_, D>],
+        working: &mut Working<D>,
+    ) -> WideLanes {
+        let (_, x, y) = pairs[0];
+        working.x.resize(x.len(), [[0.0; WIDE_LANES]; D]);
+        working.y.resize(y.len(), [[0.0; WIDE_LANES]; D]);
+        working.row.resize(y.len(), [0.0; WIDE_LANES]);
+        for lane in 0..WIDE_LANES {
+            // Free lanes repeat the last pair: nothing in them can be slow or out of range.
+            let (_, x, y) = pairs[lane.min(pairs.len() - 1)];
+            spread(x, lane, &mut working.x);
+            spread(y, lane, &mut working.y);
+        }
+        self.dispatch.run(WideRecursion {
+            x: &working.x,
+            y: &working.y,
+            row: &mut working.row,
+            start: f64::from(range.start_log2()).exp2(),
+            scale: -std::f64::consts::LOG2_E / self.dtw.gamma(),
+            cost: self.dtw.cost(),
+        })
+    }
+
+    fn value(&self, range: Range, sum: f64) -> PairValue {
+        let gamma = self.dtw.gamma();
+        let start = f64::from(range.start_log2());
+        let smallest = range.smallest_accurate_log2();
+        if sum >= smallest.exp2() {
+            // Dividing by a power of two is exact, and the logarithm of the quotient loses no digits to the start.
+            PairValue::Known(-gamma * (sum * (-start).exp2()).ln())
+        } else {
+            // Clamp and floor only add to the sum; one unit covers its rounding.
+            let reach = (start - smallest) * std::f64::consts::LN_2 - 1.0;
+            PairValue::AtLeast(gamma * reach)
+        }
+    }
+}
+
+/// Writes a sequence into one lane.
+pub(crate) fn spread<const D: usize>(steps: &[[f64; D]], lane: usize, into: &mut [[WideLanes; D]]) {
+    for (step, into) in steps.iter().zip(into) {
+        for (value, lanes) in step.iter().zip(into) {
+            lanes[lane] = *value;
+        }
+    }
+}
+
+/// Memory of a block, kept from one to the next.
+struct Working<const D: usize> {
+    x: Vec<[WideLanes; D]>,
+    y: Vec<[WideLanes; D]>,
+    row: Vec<WideLanes>,
+}
+
+impl<const D: usize> Default for Working<D> {
+    fn default() -> Self {
+        Self {
+            x: Vec::new(),
+            y: Vec::new(),
+            row: Vec::new(),
+        }
+    }
+}
+
+/// The recursion of [`crate::recursion`] in `f64`, on eight pairs.
+struct WideRecursion<'a, const D: usize> {
+    x: &'a [[WideLanes; D]],
+    y: &'a [[WideLanes; D]],
+    row: &'a mut [WideLanes],
+    start: f64,
+    /// −log2 e / γ.
+    scale: f64,
+    cost: Cost,
+}
+
+impl<const D: usize> Kernel for WideRecursion<'_, D> {
+    type Output = WideLanes;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> WideLanes {
+        let (zero, scale) = (simd.wide_splat(0.0), simd.wide_splat(self.scale));
+        let floor = simd.wide_splat(WIDE_FLOOR);
+        let mut sums = [0.0; WIDE_LANES];
+        for part in 0..S::PARTS {
+            self.row.fill([0.0; WIDE_LANES]);
+            let mut corner = simd.wide_splat(self.start);
+            let mut left = zero;
+            for x in self.x {
+                let mut diagonal = corner;
+                left = zero;
+                for (row, y) in self
+                    .row
+                    .chunks_mut(WIDE_GROUP)
+                    .zip(self.y.chunks(WIDE_GROUP))
+                {
+                    let mut exponents = [zero; WIDE_GROUP];
+                    for (exponent, y) in exponents.iter_mut().zip(y) {
+                        let mut cost = zero;
+                        for d in 0..D {
+                            let x = simd.wide_load(&x[d], part);
+                            let difference = simd.wide_sub(x, simd.wide_load(&y[d], part));
+                            cost = simd.wide_add(cost, simd.wide_mul(difference, difference));
+                        }
+                        if self.cost == Cost::Euclidean {
+                            cost = simd.wide_sqrt(cost);
+                        }
+                        *exponent = simd.wide_mul(cost, scale);
+                    }
+                    let ks = simd.wide_exp2_each(exponents);
+                    for (cell, k) in row.iter_mut().zip(ks) {
+                        let up = simd.wide_load(cell, part);
+                        let others = simd.wide_add(simd.wide_add(diagonal, up), floor);
+                        left = simd.wide_mul(k, simd.wide_add(others, left));
+                        simd.wide_store(left, cell, part);
+                        diagonal = up;
+                    }
+                }
+                corner = zero;
+            }
+            simd.wide_store(left, &mut sums, part);
+        }
+        sums
+    }
+}
+
+#[cfg(test)]
+mod tests;

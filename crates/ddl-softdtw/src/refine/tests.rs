@@ -1,0 +1,111 @@
+use super::{Both, PairValue, PairValues, wide_error_log2};
+use crate::lanes::{Dispatch, InstructionSet};
+use crate::{Cost, SoftDtw};
+
+type Pair<const D: usize> = (Vec<[f64; D]>, Vec<[f64; D]>);
+
+/// Pairs of wavy sequences of several lengths; `scale` sets how far apart they are.
+fn pairs(count: usize, scale: f64) -> Vec<Pair<2>> {
+    let wave = |i: usize, steps: usize| -> Vec<[f64; 2]> {
+        (0..steps)
+            .map(|j| {
+                let at = (i * 37 + j * 11) as f64;
+                [scale * at.sin(), scale * (1.3 * at).cos()]
+            })
+            .collect()
+    };
+    (0..count)
+        .map(|i| (wave(i, 1 + i % 9), wave(7 * i + 3, 1 + i % 8)))
+        .collect()
+}
+
+fn each_set(dtw: SoftDtw) -> impl Iterator<Item = PairValues> {
+    InstructionSet::available()
+        .into_iter()
+        .filter_map(Dispatch::new)
+        .map(move |dispatch| PairValues::new(dtw, dispatch))
+}
+
+fn borrowed<const D: usize>(pairs: &[Pair<D>]) -> Vec<Both<'_, D>> {
+    pairs.iter().map(|(x, y)| (&x[..], &y[..])).collect()
+}
+
+#[test]
+fn known_values_keep_their_error_bound_and_their_bits() {
+    let unit = f64::EPSILON / 2.0;
+    let mut worst = 0.0_f64;
+    for cost in [Cost::SquaredEuclidean, Cost::Euclidean] {
+        for (scale, gamma) in [(1.0, 1.0), (0.1, 1.0), (3.0, 0.5), (1e3, 1e6), (0.0, 1e-3)] {
+            let dtw = SoftDtw::new(gamma, cost).expect("valid");
+            let pairs = pairs(100, scale);
+            let pairs = borrowed(&pairs);
+            let mut first = None;
+            for values in each_set(dtw) {
+                let found = values.of(pairs.iter().copied());
+                for (&(x, y), &value) in pairs.iter().zip(&found) {
+                    let exact = dtw.value_unchecked(x, y);
+                    let PairValue::Known(value) = value else {
+                        panic!("{scale}, {gamma}: {exact} is beyond {value:?}");
+                    };
+                    let path = (x.len() + y.len() - 1) as f64;
+                    // Eight steps have fewer than 2^16 paths.
+                    let spread = exact.max(0.0) / gamma * std::f64::consts::LOG2_E + 16.0 + 30.0;
+                    let bound = wide_error_log2(path, spread, 2) * std::f64::consts::LN_2;
+                    // The oracle rounds as well: an exponential, a logarithm and a sum in every cell of the path.
+                    let oracle = 4.0 * unit * path * (spread + 1.0);
+                    worst = worst.max((value - exact).abs() / gamma / (bound + oracle));
+                }
+                assert_eq!(*first.get_or_insert_with(|| found.clone()), found);
+            }
+        }
+    }
+    assert!(worst < 1.0, "an error {worst} times its bound");
+    assert!(worst > 1e-4, "the bound is far too wide: {worst}");
+}
+
+#[test]
+fn what_is_out_of_reach_is_bounded_from_below_and_taken_from_the_log_domain() {
+    for gamma in [1e-3, 1e-2, 0.1] {
+        let dtw = SoftDtw::new(gamma, Cost::SquaredEuclidean).expect("valid");
+        let pairs = pairs(200, 3.0);
+        let pairs = borrowed(&pairs);
+        for values in each_set(dtw) {
+            let mut beyond = 0;
+            for (&(x, y), value) in pairs.iter().zip(values.of(pairs.iter().copied())) {
+                if let PairValue::AtLeast(bound) = value {
+                    let exact = dtw.value_unchecked(x, y);
+                    assert!(exact > bound && bound > 450.0 * gamma, "{exact} {bound}");
+                    beyond += 1;
+                }
+            }
+            assert!(beyond > 0, "gamma {gamma}");
+            for (&(x, y), value) in pairs.iter().zip(values.all(&pairs)) {
+                let exact = dtw.value_unchecked(x, y);
+                assert!((value - exact).abs() < 1e-11, "{value} {exact}");
+            }
+        }
+    }
+}
+
+#[test]
+fn extreme_inputs_are_left_to_the_log_domain() {
+    let long = vec![[0.5]; 300];
+    for (gamma, x, y) in [
+        (0.0, vec![[1.0]], vec![[2.0]]),
+        (f64::MIN_POSITIVE, vec![[1e-300]], vec![[2e-300]]),
+        (1e200, vec![[1e60]], vec![[2e60]]),
+        (1.0, vec![[1e300]], vec![[-1e300]]),
+        (1.0, long.clone(), long),
+    ] {
+        let dtw = SoftDtw::new(gamma, Cost::SquaredEuclidean).expect("valid");
+        for values in each_set(dtw) {
+            let pair = [(&x[..], &y[..])];
+            assert!(matches!(
+                values.of(pair.into_iter())[0],
+                PairValue::AtLeast(_)
+            ));
+            let exact = dtw.value_unchecked(&x, &y);
+            assert_eq!(values.all(&pair)[0].to_bits(), exact.to_bits());
+        }
+    }
+}
