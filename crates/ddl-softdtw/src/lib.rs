@@ -12,6 +12,7 @@ mod refine;
 mod search;
 mod select;
 mod sieve;
+mod sliding;
 mod softmin;
 mod value;
 
@@ -20,4 +21,5 @@ pub use cost::Cost;
 pub use error::{SearchError, SequenceRole, SoftDtwError};
 pub use lanes::InstructionSet;
 pub use search::{Neighbour, SearchIndex};
+pub use sliding::{SlidingError, SlidingIndex, WindowNeighbour};
 pub use value::SoftDtw;
