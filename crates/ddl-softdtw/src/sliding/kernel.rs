@@ -17,9 +17,11 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use crate::lanes::{Kernel, LANES, Lanes, Simd};
+use crate::lanes::{Kernel, LANES, Simd};
 use crate::select::Selection;
-use crate::sliding::accuracy::{COST_CEILING, FLOOR};
+use crate::sliding::accuracy::FLOOR;
+use crate::sliding::column::{Column, Setting, advance_back, advance_front, similarities};
+use crate::sliding::hits::Hits;
 use crate::sliding::layout::Layout;
 
 /// All windows of a query against all windows of the layout.
@@ -35,9 +37,6 @@ pub(super) struct Sweep<'a, const D: usize, const M: usize, const EXACT: bool> {
     pub(super) selections: &'a mut [Selection],
 }
 
-/// One number for every row of a block.
-type Column<S, const M: usize> = [<S as Simd>::Narrow; M];
-
 /// Working memory of a sweep.
 struct Memory<S: Simd, const M: usize> {
     /// K of a block of query rows at every step of the pieces, and of the block below it.
@@ -45,20 +44,8 @@ struct Memory<S: Simd, const M: usize> {
     below: Vec<Column<S, M>>,
     /// B(j) and B(j + 1): entry [q][r] is for the last cell (c + 1 + r, j + q).
     backs: [[Column<S, M>; M]; 2],
-    /// Unfinished Z: entry [k] is for the first row c − k. Window b of the pieces is at b modulo the length.
+    /// Unfinished Z: entry [k] is for the first row c − k. Window b of the pieces is at b modulo their number.
     sums: Vec<Column<S, M>>,
-}
-
-/// What does not change during a sweep.
-#[derive(Clone, Copy)]
-struct Setting<S: Simd> {
-    simd: S,
-    rows: usize,
-    part: usize,
-    zero: S::Narrow,
-    floor: S::Narrow,
-    front: S::Narrow,
-    back: S::Narrow,
 }
 
 impl<const D: usize, const M: usize, const EXACT: bool> Kernel for Sweep<'_, D, M, EXACT> {
@@ -83,6 +70,7 @@ impl<const D: usize, const M: usize, const EXACT: bool> Kernel for Sweep<'_, D, 
             backs: [[[zero; M]; M]; 2],
             sums: vec![[zero; M]; rows.next_power_of_two()],
         };
+        let windows = self.selections.len();
         let mut hits = Hits::new(self.selections, rows);
         for group in self.layout.groups() {
             let steps = group.samples.len();
@@ -99,7 +87,7 @@ impl<const D: usize, const M: usize, const EXACT: bool> Kernel for Sweep<'_, D, 
                     similarities(setting, group.samples, block, &mut memory.above);
                 }
                 let mut first = 0;
-                while first < hits.selections.len() {
+                while first < windows {
                     hits.open(first);
                     match blocks.next() {
                         Some(block) => {
@@ -114,58 +102,6 @@ impl<const D: usize, const M: usize, const EXACT: bool> Kernel for Sweep<'_, D, 
                 }
             }
         }
-    }
-}
-
-/// K of the steps of `block` and all `samples`, a column for each of the samples.
-#[inline(always)]
-fn similarities<S: Simd, const D: usize, const M: usize>(
-    setting: Setting<S>,
-    samples: &[[Lanes; D]],
-    block: &[[f32; D]],
-    into: &mut [Column<S, M>],
-) {
-    let simd = setting.simd;
-    let lowest = simd.splat(-COST_CEILING);
-    for (sample, column) in samples.iter().zip(into) {
-        for (step, k) in block.iter().zip(column) {
-            let mut exponent = setting.zero;
-            for d in 0..D {
-                let other = simd.load(&sample[d], setting.part);
-                let difference = simd.sub(simd.splat(step[d]), other);
-                exponent = simd.neg_mul_add(difference, difference, exponent);
-            }
-            *k = simd.exp2(simd.max(exponent, lowest));
-        }
-    }
-}
-
-/// The next column of a recursion: `state` holds the column before it, `edge` enters the first row from outside.
-///
-/// Row r of the recursion is row r of `k`, or with `UPWARDS` the r-th of its last `rows` from the end.
-#[inline(always)]
-fn advance<S: Simd, const M: usize, const UPWARDS: bool>(
-    setting: Setting<S>,
-    rows: usize,
-    k: &Column<S, M>,
-    state: &mut Column<S, M>,
-    edge: S::Narrow,
-) {
-    let (simd, floor) = (setting.simd, setting.floor);
-    if rows == 0 {
-        return;
-    }
-    let row = |r: usize| if UPWARDS { rows - 1 - r } else { r };
-    let mut diagonal = state[0];
-    let mut up = simd.mul_add(k[row(0)], simd.add(diagonal, edge), floor);
-    state[0] = up;
-    for r in 1..rows {
-        let (k, left) = (k[row(r)], state[r]);
-        // `up` is the one that is waited for: it comes last.
-        let others = simd.mul_add(k, simd.add(left, diagonal), floor);
-        up = simd.mul_add(k, up, others);
-        state[r] = up;
-        diagonal = left;
     }
 }
 
@@ -207,33 +143,6 @@ fn pairs<S: Simd, const M: usize>(
         }
         std::mem::swap(&mut backs, &mut next_backs);
     }
-}
-
-/// The next column of F(j): first cells in column j − l.
-#[inline(always)]
-fn advance_front<S: Simd, const M: usize>(
-    setting: Setting<S>,
-    k: &Column<S, M>,
-    l: usize,
-    front: &mut Column<S, M>,
-) {
-    let edge = if l == 0 { setting.front } else { setting.zero };
-    advance::<S, M, true>(setting, setting.rows, k, front, edge);
-}
-
-/// The next column of B(j): last cells in column j + q.
-#[inline(always)]
-fn advance_back<S: Simd, const M: usize>(
-    setting: Setting<S>,
-    k: &Column<S, M>,
-    q: usize,
-    back: &mut Column<S, M>,
-    backs: &mut [Column<S, M>; M],
-) {
-    // Row c is left downwards from m itself or diagonally.
-    let edge = if q < 2 { setting.back } else { setting.zero };
-    advance::<S, M, false>(setting, setting.rows - 1, k, back, edge);
-    backs[q] = *back;
 }
 
 /// Adds F(j) B(j) for the pairs whose window of the pieces begins in column j − l to their sums, and compares what is complete.
@@ -308,75 +217,21 @@ fn last_window<S: Simd, const M: usize>(
     hits: &mut Hits<'_>,
 ) {
     let Setting { simd, rows, .. } = setting;
-    for window in 0..hits.weights.len() {
-        let mut state = [setting.zero; M];
+    let windows = hits.weights.len();
+    for window in (0..windows).step_by(2) {
+        // Two at a time: one chain of dependent operations would leave the processor waiting.
+        let next = (window + 1).min(windows - 1);
+        let (mut state, mut next_state) = ([setting.zero; M], [setting.zero; M]);
         for l in 0..rows {
-            let edge = if l == 0 { setting.front } else { setting.zero };
-            let k = &memory.above[window + rows - 1 - l];
-            advance::<S, M, true>(setting, rows, k, &mut state, edge);
+            let last = rows - 1 - l;
+            advance_front(setting, &memory.above[window + last], l, &mut state);
+            advance_front(setting, &memory.above[next + last], l, &mut next_state);
         }
         state[rows - 1] = simd.mul(state[rows - 1], setting.back);
         compare(setting, window, &state, hits);
-    }
-}
-
-/// The selections of a query and what a score must reach to be of interest to those of the current block.
-struct Hits<'a> {
-    selections: &'a mut [Selection],
-    /// Windows that start before the block.
-    first: usize,
-    /// Entry k is for the window that starts k rows before the end of the block.
-    thresholds: Vec<f32>,
-    /// Weights of the windows of the group, and the first window of each of its lanes.
-    weights: &'a [Lanes],
-    first_windows: &'a [usize; LANES],
-}
-
-impl<'a> Hits<'a> {
-    fn new(selections: &'a mut [Selection], rows: usize) -> Self {
-        Self {
-            selections,
-            first: 0,
-            thresholds: vec![f32::INFINITY; rows],
-            weights: &[],
-            first_windows: &[0; LANES],
+        if next != window {
+            next_state[rows - 1] = simd.mul(next_state[rows - 1], setting.back);
+            compare(setting, next, &next_state, hits);
         }
     }
-
-    /// Turns to the block whose first row starts window `first`.
-    #[inline]
-    fn open(&mut self, first: usize) {
-        self.first = first;
-        let rows = self.thresholds.len();
-        for k in 0..rows {
-            self.thresholds[k] = match self.selections.get(first + rows - 1 - k) {
-                Some(selection) => least(selection),
-                None => f32::INFINITY,
-            };
-        }
-    }
-
-    /// Takes the scores of one window of each piece, for each k those that `reached` has a bit for.
-    #[inline(never)]
-    fn offer(&mut self, reached: &[u32], scores: &[Lanes], first_lane: usize, window: usize) {
-        let last = self.first + self.thresholds.len() - 1;
-        for (k, (&reached, scores)) in reached.iter().zip(scores).enumerate() {
-            if reached == 0 {
-                continue;
-            }
-            let selection = &mut self.selections[last - k];
-            let mut left = reached;
-            while left != 0 {
-                let lane = first_lane + left.trailing_zeros() as usize;
-                selection.offer(scores[lane], self.first_windows[lane] + window);
-                left &= left - 1;
-            }
-            self.thresholds[k] = least(selection);
-        }
-    }
-}
-
-/// At least the smallest normal number: the score 0 of a place without a window is of no interest.
-fn least(selection: &Selection) -> f32 {
-    selection.threshold().max(f32::MIN_POSITIVE)
 }
