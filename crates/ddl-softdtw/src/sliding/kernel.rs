@@ -42,9 +42,9 @@ struct Memory<S: Simd, const M: usize> {
     /// K of a block of query rows at every step of the pieces, and of the block below it.
     above: Vec<Column<S, M>>,
     below: Vec<Column<S, M>>,
-    /// B(j) and B(j + 1): entry [q][r] is for the last cell (c + 1 + r, j + q).
+    /// B(j) and B(j + 1): entry `[q][r]` is for the last cell (c + 1 + r, j + q).
     backs: [[Column<S, M>; M]; 2],
-    /// Unfinished Z: entry [k] is for the first row c − k. Window b of the pieces is at b modulo their number.
+    /// Unfinished Z: entry `[k]` is for the first row c − k. Window b of the pieces is at b modulo their number.
     sums: Vec<Column<S, M>>,
 }
 
