@@ -1,0 +1,84 @@
+//! Speed of the sliding search: all windows of the tracks of one scene against all windows of the others.
+//!
+//! Reports pairs (window × window) a second on one thread, the choice of the 100 nearest and their `f64` distances
+//! included: 1 / (pairs/s) is the time of a pair. The tracks are those of the real recordings where `DDL_DATASETS` names
+//! their folder, synthetic walkers otherwise; the names of the benchmarks say which.
+
+#[path = "../tests/recorded/mod.rs"]
+mod recorded;
+
+use std::hint::black_box;
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use ddl_softdtw::{Cost, InstructionSet, SlidingIndex, SoftDtw};
+
+type Track = Vec<[f64; 2]>;
+
+/// Velocities of a complete window of 20 positions.
+const COMPLETE: usize = 19;
+/// Query tracks of a measurement, evenly spread.
+const QUERIES: usize = 30;
+
+/// Velocities (m/s) of walkers who keep their headings with some sway for 2 to 24 seconds, one in ten of them standing.
+fn walkers(count: usize, seed: u64) -> Vec<Track> {
+    let mut state = seed;
+    let mut next = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..count)
+        .map(|_| {
+            let stands = next() < 0.1;
+            let speed = if stands { 0.0 } else { 0.4 + 1.2 * next() };
+            let (sin, cos) = (std::f64::consts::TAU * next()).sin_cos();
+            let steps = 5 + (55.0 * next()) as usize;
+            let mut sway = || 0.1 * (speed + 0.1) * (next() - 0.5);
+            (0..steps)
+                .map(|_| [speed * cos + sway(), speed * sin + sway()])
+                .collect()
+        })
+        .collect()
+}
+
+fn sliding(criterion: &mut Criterion) {
+    let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean).expect("valid gamma");
+    let (source, (queries, tracks)) = match recorded::folder() {
+        Some(folder) => ("real", recorded::split(&folder, "eth")),
+        None => ("synthetic", (walkers(400, 1), walkers(1_800, 2))),
+    };
+    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let one_thread = one_thread.expect("a thread");
+    let mut group = criterion.benchmark_group(format!("sliding, {source} tracks"));
+    group.sample_size(20);
+    for length in [7, 8] {
+        // Windows that have the rest of a complete window behind them, those of the queries too.
+        let tail = COMPLETE - length;
+        let index = SlidingIndex::build(&dtw, &tracks, length, tail).expect("valid");
+        let queries = queries.iter().filter(|track| track.len() >= COMPLETE);
+        let queries: Vec<_> = queries.map(|track| &track[..track.len() - tail]).collect();
+        let every = queries.len().div_ceil(QUERIES);
+        let queries: Vec<_> = queries.into_iter().step_by(every).collect();
+        let windows: usize = queries.iter().map(|query| query.len() + 1 - length).sum();
+        for set in InstructionSet::available() {
+            let index = index.clone().with_instruction_set(set).expect("available");
+            for n in [100, 1] {
+                group.throughput(Throughput::Elements((index.len() * windows) as u64));
+                let name = BenchmarkId::new(format!("{length} steps, nearest {n}"), set);
+                group.bench_function(name, |b| {
+                    let search = || {
+                        for query in &queries {
+                            black_box(index.nearest_windows(query, n)).expect("valid");
+                        }
+                    };
+                    one_thread.install(|| b.iter(search));
+                });
+            }
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, sliding);
+criterion_main!(benches);

@@ -1,0 +1,331 @@
+//! Exact search for the nearest among all windows of many tracks.
+
+mod accuracy;
+mod column;
+mod error;
+mod hits;
+mod kernel;
+mod layout;
+mod rank;
+mod sieve;
+
+use rayon::prelude::*;
+
+use crate::cost::Cost;
+use crate::error::{SequenceRole, SoftDtwError};
+use crate::lanes::{Dispatch, InstructionSet};
+use crate::refine::PairValues;
+use crate::value::{SoftDtw, check, finite};
+
+pub use error::SlidingError;
+use layout::Layout;
+use sieve::Sieve;
+
+/// Windows of a query that are searched for together; a longer query is cut.
+const QUERY_WINDOWS: usize = 64;
+
+/// A window of a track found by a search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WindowNeighbour {
+    /// Position of the track in the list the index was built from, from 0.
+    pub track: usize,
+    /// First step of the window in its track, from 0.
+    pub offset: usize,
+    /// Normalised soft-DTW distance to the query, in the unit of the cost, evaluated in `f64`.
+    pub distance: f64,
+}
+
+/// Where a window is.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    track: usize,
+    offset: usize,
+}
+
+/// All windows of one length of many tracks, prepared for repeated search; `D` components a step.
+///
+/// [`SearchIndex`](crate::SearchIndex) takes its candidates one by one. Here they are the windows of `length` consecutive
+/// steps of tracks that are longer, from every step on, and neighbouring windows share nearly all they are computed from:
+/// 2^(−cost/γ) of a step of the query and a step of a track serves up to `length`² pairs of windows, and so do the sums
+/// over the warping paths before and behind a common cell. A query track with all its windows
+/// ([`SlidingIndex::nearest_windows`]) shares on both sides, a single window ([`SlidingIndex::nearest`]) on one. The answer
+/// is that of a [`SearchIndex`](crate::SearchIndex) of the same windows, many times faster; where candidates do not
+/// overlap, there is nothing to share and that index is the one to use.
+///
+/// # Numerics
+/// Set, order and distances are decided in `f64`, to a relative error of the sum over the paths below 1e-12: results are
+/// exact up to ties within γ · 1e-12 and do not depend on the number of threads or the instruction set.
+///
+/// # Examples
+/// ```
+/// use ddl_softdtw::{Cost, SlidingIndex, SoftDtw};
+/// let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean)?;
+/// // Velocities (m/s) of someone who walks, then stops, and of someone who walks on.
+/// let tracks = [vec![[1.2], [1.2], [1.1], [0.3], [0.0], [0.0]], vec![[1.4], [1.4], [1.4], [1.4]]];
+/// let index = SlidingIndex::build(&dtw, &tracks, 3, 0)?;
+/// assert_eq!(index.len(), 4 + 2);
+/// let nearest = index.nearest(&[[1.1], [0.4], [0.0]], 2)?;
+/// assert_eq!((nearest[0].track, nearest[0].offset), (0, 2));
+/// assert!(nearest[0].distance <= nearest[1].distance);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct SlidingIndex<const D: usize> {
+    dtw: SoftDtw,
+    length: usize,
+    /// All steps of all tracks in f64, one track after the other.
+    steps: Vec<[f64; D]>,
+    /// Where track t begins in `steps`.
+    first_steps: Vec<usize>,
+    /// Where every window is, by track and offset.
+    places: Vec<Place>,
+    /// D(y, y) of every window.
+    self_values: Vec<f64>,
+    sieve: Option<Sieve<D>>,
+    dispatch: Dispatch,
+}
+
+impl<const D: usize> SlidingIndex<D> {
+    /// Prepares all windows of `length` steps with at least `tail` more steps behind them in their track.
+    ///
+    /// # Shapes
+    /// Tracks of any length: shorter ones than `length + tail` have no window.
+    ///
+    /// # Errors
+    /// A window of 0 steps, no window in any track, a track that is not finite.
+    pub fn build<T>(
+        dtw: &SoftDtw,
+        tracks: &[T],
+        length: usize,
+        tail: usize,
+    ) -> Result<Self, SlidingError>
+    where
+        T: AsRef<[[f64; D]]> + Sync,
+    {
+        if length == 0 {
+            return Err(SlidingError::EmptyWindow);
+        }
+        let tracks: Vec<&[[f64; D]]> = tracks.iter().map(AsRef::as_ref).collect();
+        for (index, track) in tracks.iter().enumerate() {
+            if !track.is_empty() {
+                check(track, SequenceRole::Y)
+                    .map_err(|source| SlidingError::Track { index, source })?;
+            }
+        }
+        let windows = |track: &&[[f64; D]]| {
+            let needed = length.saturating_add(tail);
+            (track.len() + 1).saturating_sub(needed)
+        };
+        let windows: Vec<usize> = tracks.iter().map(windows).collect();
+        let places: Vec<_> = windows.iter().enumerate().flat_map(places_of).collect();
+        if places.is_empty() {
+            return Err(SlidingError::NoWindows {
+                tracks: tracks.len(),
+                length,
+                tail,
+            });
+        }
+        let mut index = Self {
+            dtw: *dtw,
+            length,
+            steps: tracks.concat(),
+            first_steps: running_sums(tracks.iter().map(|track| track.len())),
+            places,
+            self_values: Vec::new(),
+            sieve: None,
+            dispatch: Dispatch::detect(),
+        };
+        index.self_values = index.own_values()?;
+        if dtw.gamma() > 0.0 && dtw.cost() == Cost::SquaredEuclidean {
+            let layout = Layout::new(dtw.gamma(), &tracks, &windows, length, &index.self_values);
+            index.sieve = Sieve::new(layout);
+        }
+        Ok(index)
+    }
+
+    /// The same index, searched with the instructions of `set` instead of the fastest of this machine.
+    ///
+    /// # Errors
+    /// [`SlidingError::InstructionSet`] when this machine lacks them.
+    pub fn with_instruction_set(mut self, set: InstructionSet) -> Result<Self, SlidingError> {
+        self.dispatch = Dispatch::new(set).ok_or(SlidingError::InstructionSet { set })?;
+        Ok(self)
+    }
+
+    /// The instructions that a search uses.
+    pub fn instruction_set(&self) -> InstructionSet {
+        self.dispatch.instruction_set()
+    }
+
+    /// Number of windows that are searched.
+    pub fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Never true: an index without windows cannot be built.
+    pub fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// Steps of a window.
+    pub fn window_length(&self) -> usize {
+        self.length
+    }
+
+    /// The distance that is searched in.
+    pub fn soft_dtw(&self) -> SoftDtw {
+        self.dtw
+    }
+
+    /// The `n` windows nearest to the window `query` (all of them when there are fewer), nearest first, ties by track and
+    /// offset.
+    ///
+    /// # Errors
+    /// A query that is not finite or not of the length of a window, or a distance to be returned that leaves the range of
+    /// `f64`.
+    pub fn nearest(
+        &self,
+        query: &[[f64; D]],
+        n: usize,
+    ) -> Result<Vec<WindowNeighbour>, SlidingError> {
+        if query.len() != self.length {
+            return Err(SlidingError::QueryLength {
+                found: query.len(),
+                length: self.length,
+            });
+        }
+        let mut found = self.search_track(query, n).map_err(SlidingError::Query)?;
+        Ok(found.pop().unwrap_or_default())
+    }
+
+    /// For every window of the track `query`, from its first step on, the `n` windows nearest to it.
+    ///
+    /// A query shorter than a window has none. Long queries are searched in parallel over the current `rayon` pool.
+    ///
+    /// # Errors
+    /// As [`SlidingIndex::nearest`].
+    pub fn nearest_windows(
+        &self,
+        query: &[[f64; D]],
+        n: usize,
+    ) -> Result<Vec<Vec<WindowNeighbour>>, SlidingError> {
+        self.search_track(query, n).map_err(SlidingError::Query)
+    }
+
+    /// [`SlidingIndex::nearest_windows`] for many tracks, in parallel over the current `rayon` pool.
+    ///
+    /// The result does not depend on the number of threads.
+    ///
+    /// # Errors
+    /// [`SlidingError::BatchQuery`] for the first track that is not valid.
+    pub fn nearest_windows_batch<T>(
+        &self,
+        queries: &[T],
+        n: usize,
+    ) -> Result<Vec<Vec<Vec<WindowNeighbour>>>, SlidingError>
+    where
+        T: AsRef<[[f64; D]]> + Sync,
+    {
+        // Collected first: a parallel collect into a Result would report whichever error came first in time.
+        let found: Vec<_> = queries
+            .par_iter()
+            .map(|query| self.search_track(query.as_ref(), n))
+            .collect();
+        found
+            .into_iter()
+            .enumerate()
+            .map(|(index, found)| {
+                found.map_err(|source| SlidingError::BatchQuery { index, source })
+            })
+            .collect()
+    }
+
+    fn search_track(
+        &self,
+        query: &[[f64; D]],
+        n: usize,
+    ) -> Result<Vec<Vec<WindowNeighbour>>, SoftDtwError> {
+        if !query.is_empty() {
+            check(query, SequenceRole::X)?;
+        }
+        let windows = (query.len() + 1).saturating_sub(self.length);
+        let starts: Vec<usize> = (0..windows).step_by(QUERY_WINDOWS).collect();
+        let part = |&start: &usize| {
+            let windows = QUERY_WINDOWS.min(windows - start);
+            self.search(&query[start..start + windows + self.length - 1], n)
+        };
+        let found: Vec<_> = starts.par_iter().map(part).collect();
+        let mut all = Vec::with_capacity(windows);
+        for found in found {
+            all.append(&mut found?);
+        }
+        Ok(all)
+    }
+
+    /// The windows nearest to every window of a part of a query.
+    fn search(
+        &self,
+        query: &[[f64; D]],
+        n: usize,
+    ) -> Result<Vec<Vec<WindowNeighbour>>, SoftDtwError> {
+        let windows: Vec<_> = query.windows(self.length).collect();
+        let wanted = n.min(self.len());
+        if wanted == 0 {
+            return Ok(vec![Vec::new(); windows.len()]);
+        }
+        let sieve = self.sieve.as_ref().filter(|_| wanted < self.len());
+        let survivors = match sieve {
+            Some(sieve) => sieve.survivors(self.dispatch, query, wanted),
+            None => vec![None; windows.len()],
+        };
+        let pairs: Vec<_> = windows.iter().map(|&window| (window, window)).collect();
+        let own = self.pair_values().all(&pairs);
+        let mut found = Vec::with_capacity(windows.len());
+        for ((window, survivors), own) in windows.into_iter().zip(survivors).zip(own) {
+            let survivors = survivors.unwrap_or_else(|| (0..self.len()).collect());
+            found.push(self.decide(window, finite(own)?, &survivors, wanted)?);
+        }
+        Ok(found)
+    }
+
+    fn pair_values(&self) -> PairValues {
+        PairValues::new(self.dtw, self.dispatch)
+    }
+
+    /// D(y, y) of every window.
+    fn own_values(&self) -> Result<Vec<f64>, SlidingError> {
+        let windows: Vec<usize> = (0..self.len()).collect();
+        let own = windows.par_chunks(1024).flat_map(|windows| {
+            let windows = windows.iter().map(|&window| self.window(window));
+            let pairs: Vec<_> = windows.map(|window| (window, window)).collect();
+            self.pair_values().all(&pairs)
+        });
+        let values: Vec<f64> = own.collect();
+        match values.iter().position(|value| !value.is_finite()) {
+            None => Ok(values),
+            Some(window) => Err(SlidingError::Track {
+                index: self.places[window].track,
+                source: SoftDtwError::Overflow,
+            }),
+        }
+    }
+
+    fn window(&self, window: usize) -> &[[f64; D]] {
+        let Place { track, offset } = self.places[window];
+        &self.steps[self.first_steps[track] + offset..][..self.length]
+    }
+}
+
+fn places_of((track, &windows): (usize, &usize)) -> impl Iterator<Item = Place> + use<> {
+    (0..windows).map(move |offset| Place { track, offset })
+}
+
+/// Sums of all numbers before each of `numbers`, and of all.
+fn running_sums(numbers: impl Iterator<Item = usize>) -> Vec<usize> {
+    let mut sums = vec![0];
+    sums.extend(numbers.scan(0, |sum, number| {
+        *sum += number;
+        Some(*sum)
+    }));
+    sums
+}

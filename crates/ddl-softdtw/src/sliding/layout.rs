@@ -1,0 +1,234 @@
+//! Where the windows of all tracks lie: pieces of tracks, one to a lane, sixteen to a group.
+
+use crate::lanes::{LANES, Lanes};
+
+/// Most windows of a piece: longer tracks are cut, so that the similarities of a group stay in the cache.
+const LONGEST_PIECE: usize = 64;
+
+/// The windows of all tracks in `f32`, scaled and shifted.
+#[derive(Clone, Debug)]
+pub(super) struct Layout<const D: usize> {
+    /// √(log2 e / γ): squared differences are then costs in log2 units.
+    scale: f64,
+    /// Mean of all steps, subtracted before rounding: differences do not notice, the rounding error does.
+    shift: [f64; D],
+    /// Largest absolute value among the scaled and shifted components.
+    largest: f64,
+    /// Steps of a window.
+    length: usize,
+    groups: Vec<Group>,
+    samples: Vec<[Lanes; D]>,
+    weights: Vec<Lanes>,
+}
+
+/// Up to sixteen pieces of about one length.
+#[derive(Clone, Debug)]
+struct Group {
+    /// First step in `samples`.
+    first_sample: usize,
+    /// First window in `weights`.
+    first_weight: usize,
+    /// Windows of the longest piece.
+    windows: usize,
+    /// Identity of the first window of each lane.
+    first_windows: [usize; LANES],
+}
+
+/// One group as the kernel sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct GroupView<'a, const D: usize> {
+    /// Steps of the pieces; what lies behind the end of a shorter piece is 0.
+    pub(super) samples: &'a [[Lanes; D]],
+    /// 2^(D(y, y) / 2) of each window, with D in log2 units; 0 where there is no window.
+    pub(super) weights: &'a [Lanes],
+    /// Identity of the first window of each lane; those of a lane are consecutive.
+    pub(super) first_windows: &'a [usize; LANES],
+}
+
+/// Consecutive windows of one track.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    track: usize,
+    offset: usize,
+    windows: usize,
+    first_window: usize,
+}
+
+impl<const D: usize> Layout<D> {
+    /// Lays out the first `windows[t]` windows of `length` steps of every track t, whose D(y, y) are `self_values`, track by
+    /// track.
+    pub(super) fn new(
+        gamma: f64,
+        tracks: &[&[[f64; D]]],
+        windows: &[usize],
+        length: usize,
+        self_values: &[f64],
+    ) -> Self {
+        let scale = (std::f64::consts::LOG2_E / gamma).sqrt();
+        let used = || {
+            let tracks = tracks
+                .iter()
+                .zip(windows)
+                .filter(|&(_, &windows)| windows > 0);
+            tracks.flat_map(|(track, windows)| &track[..windows + length - 1])
+        };
+        let count = used().count() as f64;
+        let shift = std::array::from_fn(|d| used().map(|step| step[d] / count).sum());
+        let mut layout = Self {
+            scale,
+            shift,
+            largest: 0.0,
+            length,
+            groups: Vec::new(),
+            samples: Vec::new(),
+            weights: Vec::new(),
+        };
+        layout.largest = layout.largest_of(used());
+        let mut pieces = pieces(windows);
+        pieces.sort_by_key(|piece| std::cmp::Reverse(piece.windows));
+        for members in pieces.chunks(LANES) {
+            layout.push_group(tracks, members, self_values);
+        }
+        layout
+    }
+
+    fn push_group(&mut self, tracks: &[&[[f64; D]]], members: &[Piece], self_values: &[f64]) {
+        let (first_sample, first_weight) = (self.samples.len(), self.weights.len());
+        let windows = members.iter().map(|piece| piece.windows).max().unwrap_or(0);
+        let steps = windows + self.length - 1;
+        self.samples.resize(first_sample + steps, [[0.0; LANES]; D]);
+        self.weights.resize(first_weight + windows, [0.0; LANES]);
+        let mut first_windows = [0; LANES];
+        for (lane, piece) in members.iter().enumerate() {
+            first_windows[lane] = piece.first_window;
+            let steps = &tracks[piece.track][piece.offset..][..piece.windows + self.length - 1];
+            let narrow: Vec<_> = steps.iter().map(|step| self.narrow(step)).collect();
+            for (sample, step) in self.samples[first_sample..].iter_mut().zip(narrow) {
+                for (lanes, value) in sample.iter_mut().zip(step) {
+                    lanes[lane] = value;
+                }
+            }
+            let own = &self_values[piece.first_window..][..piece.windows];
+            for (weight, own) in self.weights[first_weight..].iter_mut().zip(own) {
+                let half_log2 = own * self.scale * self.scale / 2.0;
+                weight[lane] = half_log2.exp2() as f32;
+            }
+        }
+        self.groups.push(Group {
+            first_sample,
+            first_weight,
+            windows,
+            first_windows,
+        });
+    }
+
+    /// Steps of a window.
+    pub(super) fn length(&self) -> usize {
+        self.length
+    }
+
+    pub(super) fn groups(&self) -> impl Iterator<Item = GroupView<'_, D>> {
+        self.groups.iter().map(|group| GroupView {
+            samples: &self.samples[group.first_sample..][..group.windows + self.length - 1],
+            weights: &self.weights[group.first_weight..][..group.windows],
+            first_windows: &group.first_windows,
+        })
+    }
+
+    /// A step shifted, scaled and rounded to `f32`.
+    pub(super) fn narrow(&self, step: &[f64; D]) -> [f32; D] {
+        std::array::from_fn(|d| ((step[d] - self.shift[d]) * self.scale) as f32)
+    }
+
+    /// Largest absolute value among the shifted and scaled components of the windows and of `query`.
+    pub(super) fn largest_with(&self, query: &[[f64; D]]) -> f64 {
+        self.largest.max(self.largest_of(query.iter()))
+    }
+
+    fn largest_of<'a>(&self, steps: impl Iterator<Item = &'a [f64; D]>) -> f64 {
+        let components = steps.flat_map(|step| step.iter().zip(&self.shift));
+        components
+            .map(|(v, s)| ((v - s) * self.scale).abs())
+            .fold(0.0, f64::max)
+    }
+}
+
+/// The windows of all tracks in pieces, those of one track as equal as they can be.
+fn pieces(windows: &[usize]) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    let mut first_window = 0;
+    for (track, &windows) in windows.iter().enumerate() {
+        let count = windows.div_ceil(LONGEST_PIECE);
+        let mut offset = 0;
+        for left in (1..=count).rev() {
+            let windows = (windows - offset).div_ceil(left);
+            pieces.push(Piece {
+                track,
+                offset,
+                windows,
+                first_window: first_window + offset,
+            });
+            offset += windows;
+        }
+        first_window += windows;
+    }
+    pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LONGEST_PIECE, Layout, pieces};
+
+    #[test]
+    fn pieces_cover_every_window_once() {
+        let windows = [0, 1, LONGEST_PIECE, LONGEST_PIECE + 1, 0, 1000, 7];
+        let pieces = pieces(&windows);
+        let mut seen = vec![0; windows.iter().sum()];
+        for piece in &pieces {
+            assert!((1..=LONGEST_PIECE).contains(&piece.windows), "{piece:?}");
+            let before: usize = windows[..piece.track].iter().sum();
+            assert_eq!(piece.first_window, before + piece.offset);
+            seen[piece.first_window..][..piece.windows]
+                .iter_mut()
+                .for_each(|count| *count += 1);
+        }
+        assert!(seen.iter().all(|&count| count == 1));
+    }
+
+    #[test]
+    fn every_window_has_its_steps_and_its_weight() {
+        let track = |t: usize, steps: usize| -> Vec<[f64; 1]> {
+            (0..steps).map(|i| [(100 * t + i) as f64]).collect()
+        };
+        let tracks: Vec<_> = (0..40).map(|t| track(t, 3 + 5 * t)).collect();
+        let slices: Vec<&[[f64; 1]]> = tracks.iter().map(Vec::as_slice).collect();
+        let windows: Vec<usize> = tracks.iter().map(|track| track.len() - 2).collect();
+        let count: usize = windows.iter().sum();
+        let own: Vec<f64> = (0..count).map(|w| -(w as f64) * 1e-3).collect();
+        let layout = Layout::new(1.0, &slices, &windows, 3, &own);
+        let mut seen = 0;
+        for group in layout.groups() {
+            for (w, weights) in group.weights.iter().enumerate() {
+                for (lane, &weight) in weights.iter().enumerate().filter(|(_, w)| **w > 0.0) {
+                    let window = group.first_windows[lane] + w;
+                    let half_log2 = own[window] * std::f64::consts::LOG2_E / 2.0;
+                    assert!((f64::from(weight).log2() - half_log2).abs() < 1e-6);
+                    let (mut track, mut offset) = (0, window);
+                    while offset >= windows[track] {
+                        offset -= windows[track];
+                        track += 1;
+                    }
+                    for step in 0..3 {
+                        let narrow = layout.narrow(&tracks[track][offset + step]);
+                        assert_eq!(
+                            group.samples[w + step][0][lane].to_bits(),
+                            narrow[0].to_bits()
+                        );
+                    }
+                    seen += 1;
+                }
+            }
+        }
+        assert_eq!(seen, count);
+    }
+}
