@@ -1,7 +1,6 @@
 //! Values and gradients of one sequence against many.
 
 use crate::blocks::{Blocks, FREE, Run};
-use crate::cost::Cost;
 use crate::error::{SearchError, SequenceRole};
 use crate::lanes::{Dispatch, InstructionSet, LANES, WIDE_LANES};
 use crate::range::Range;
@@ -93,7 +92,7 @@ impl<const D: usize> SoftDtwBatch<D> {
             check(sequence, SequenceRole::Y)
                 .map_err(|source| SearchError::Candidate { index, source })?;
         }
-        let narrow = dtw.gamma() > 0.0 && dtw.cost() == Cost::SquaredEuclidean;
+        let narrow = dtw.suits_lanes();
         Ok(Self {
             dtw: *dtw,
             blocks: narrow.then(|| Blocks::new(dtw.gamma(), &slices)),

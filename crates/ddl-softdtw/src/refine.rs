@@ -66,7 +66,7 @@ impl PairValues {
     ) -> Vec<PairValue> {
         let mut pairs: Vec<Pair<'a, D>> = pairs.enumerate().map(|(i, (x, y))| (i, x, y)).collect();
         let mut values = vec![PairValue::AtLeast(f64::NEG_INFINITY); pairs.len()];
-        if !GAMMAS.contains(&self.dtw.gamma()) {
+        if !GAMMAS.contains(&self.dtw.gamma()) || self.dtw.band().is_some() {
             return values;
         }
         let lengths = |pair: &Pair<'a, D>| (pair.1.len(), pair.2.len());

@@ -2,7 +2,6 @@
 
 use rayon::prelude::*;
 
-use crate::cost::Cost;
 use crate::error::{SearchError, SequenceRole, SoftDtwError};
 use crate::lanes::{Dispatch, InstructionSet};
 use crate::refine::{PairValue, PairValues};
@@ -86,7 +85,7 @@ impl<const D: usize> SearchIndex<D> {
             dispatch: Dispatch::detect(),
         };
         index.self_values = index.evaluate_self_values()?;
-        if dtw.gamma() > 0.0 && dtw.cost() == Cost::SquaredEuclidean && dtw.band().is_none() {
+        if dtw.suits_lanes() {
             let candidates: Vec<_> = (0..index.len()).map(|i| index.candidate(i)).collect();
             index.sieve = Sieve::build(dtw.gamma(), &candidates, &index.self_values);
         }

@@ -11,7 +11,6 @@ mod sieve;
 
 use rayon::prelude::*;
 
-use crate::cost::Cost;
 use crate::error::{SequenceRole, SoftDtwError};
 use crate::lanes::{Dispatch, InstructionSet};
 use crate::refine::PairValues;
@@ -136,7 +135,7 @@ impl<const D: usize> SlidingIndex<D> {
             dispatch: Dispatch::detect(),
         };
         index.self_values = index.own_values()?;
-        if dtw.gamma() > 0.0 && dtw.cost() == Cost::SquaredEuclidean {
+        if dtw.suits_lanes() {
             let layout = Layout::new(dtw.gamma(), &tracks, &windows, length, &index.self_values);
             index.sieve = Sieve::new(layout);
         }

@@ -134,6 +134,11 @@ impl SoftDtw {
         rounded(normalise(value, self.self_value(x), self.self_value(y)))
     }
 
+    /// Whether the kernels that compute many pairs in vector lanes apply: they know neither bands nor other costs.
+    pub(crate) fn suits_lanes(&self) -> bool {
+        self.gamma > 0.0 && self.cost == Cost::SquaredEuclidean && self.band.is_none()
+    }
+
     /// `D_γ(x, x)` of a checked sequence. Exactly 0 for γ = 0.
     pub(crate) fn self_value<T: Scalar, const D: usize>(&self, x: &[[T; D]]) -> f64 {
         if self.gamma == 0.0 {

@@ -1,7 +1,7 @@
 //! What the Sakoe-Chiba band must do to soft-DTW.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use ddl_softdtw::{Band, Cost, SearchIndex, SoftDtw};
+use ddl_softdtw::{Band, Cost, SearchIndex, SlidingIndex, SoftDtw, SoftDtwBatch};
 use proptest::prelude::*;
 
 type Sequence = Vec<[f64; 2]>;
@@ -168,5 +168,47 @@ fn a_search_keeps_to_the_band() {
     expected.sort_by(f64::total_cmp);
     for (found, expected) in found.iter().zip(expected) {
         assert_eq!(found.distance.to_bits(), expected.to_bits());
+    }
+}
+
+/// The kernels that compute many pairs at once know no band: where there is one, they must not be used.
+#[test]
+fn a_batch_and_a_sliding_search_keep_to_the_band() {
+    let track: Sequence = (0..60)
+        .map(|i| [(f64::from(i * i % 11)) * 0.2, (f64::from(i) * 0.7).sin()])
+        .collect();
+    let windows: Vec<Sequence> = track.windows(8).map(<[_]>::to_vec).collect();
+    let query: Sequence = (0..8).map(|i| [f64::from(i % 3) * 0.4, 0.2]).collect();
+    for cost in [Cost::SquaredEuclidean, Cost::Euclidean] {
+        let dtw = banded(0.5, cost, 1);
+        let whole = SoftDtw::new(0.5, cost).unwrap();
+        let batch = SoftDtwBatch::build(&dtw, &windows).unwrap();
+        let found = batch.values_and_gradients(&query).unwrap();
+        for (i, y) in windows.iter().enumerate() {
+            let (value, gradient) = dtw.value_and_gradient(&query, y).unwrap();
+            assert!((found.values()[i] - value).abs() < 1e-5, "{cost:?}, {i}");
+            let of_batch = found.gradient(i).unwrap();
+            for (a, b) in of_batch.iter().flatten().zip(gradient.iter().flatten()) {
+                assert!((a - b).abs() < 1e-5, "{cost:?}, {i}: {a} {b}");
+            }
+        }
+        let apart =
+            |y: &Sequence| (dtw.value(&query, y).unwrap() - whole.value(&query, y).unwrap()).abs();
+        assert!(
+            windows.iter().map(apart).fold(0.0, f64::max) > 1e-3,
+            "the band changes nothing"
+        );
+
+        let sliding = SlidingIndex::build(&dtw, std::slice::from_ref(&track), 8, 0).unwrap();
+        let plain = SearchIndex::build(&dtw, &windows).unwrap();
+        for n in [1, 5, 53] {
+            let expected = plain.nearest(&query, n).unwrap();
+            let found = sliding.nearest(&query, n).unwrap();
+            assert_eq!(found.len(), expected.len());
+            for (found, expected) in found.iter().zip(&expected) {
+                assert_eq!((found.track, found.offset), (0, expected.index));
+                assert_eq!(found.distance.to_bits(), expected.distance.to_bits());
+            }
+        }
     }
 }

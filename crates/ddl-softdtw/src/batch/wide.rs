@@ -3,7 +3,6 @@
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
 use super::Visit;
-use crate::cost::Cost;
 use crate::lanes::{Dispatch, Kernel, Simd, WIDE_LANES, WideLanes};
 use crate::range::Range;
 use crate::refine::{GAMMAS, WIDE_FLOOR, WIDE_GROUP, spread};
@@ -47,7 +46,7 @@ impl<const D: usize> WidePairs<D> {
     ) {
         let (n, m) = (x.len(), sequences[members[0]].len());
         let gamma = self.dtw.gamma();
-        let fits = self.dtw.cost() == Cost::SquaredEuclidean && GAMMAS.contains(&gamma);
+        let fits = self.dtw.suits_lanes() && GAMMAS.contains(&gamma);
         let Some(range) = Range::wide(n, m).filter(|_| fits) else {
             beyond.extend(members);
             return;
