@@ -250,20 +250,3 @@ pub enum ReportError {
         source: std::io::Error,
     },
 }
-
-/// A figure cannot be drawn.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum FigureError {
-    /// The forecast is of other people than the window holds.
-    #[error("the window holds {expected} pedestrians, the forecast {found}")]
-    Pedestrians {
-        /// Pedestrians in the window.
-        expected: usize,
-        /// Pedestrians in the forecast.
-        found: usize,
-    },
-    /// The drawing library failed.
-    #[error("the drawing failed: {0}")]
-    Drawing(String),
-}

@@ -5,7 +5,7 @@ use ddl_data::{HORIZON, Position};
 use crate::error::ForecastShapeError;
 
 /// How far the weights of a pedestrian may sum from 1.
-const WEIGHT_TOLERANCE: f64 = 1e-6;
+pub(crate) const WEIGHT_TOLERANCE: f64 = 1e-6;
 
 /// K weighted hypotheses of 12 positions for each of N pedestrians, in the order of the window.
 ///

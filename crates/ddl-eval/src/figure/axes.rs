@@ -2,22 +2,15 @@
 
 use ddl_data::Position;
 
-use super::canvas::{Canvas, GRID, Pixel, Place};
-use crate::error::FigureError;
+use super::{
+    canvas::{Canvas, GRID, Pixel, Place},
+    clip,
+    error::FigureError,
+    layout::Layout,
+};
 
-/// The plot fills at most this many pixels.
-const LARGEST: (f64, f64) = (1240.0, 960.0);
-/// Neither side of the plot is smaller, pixels.
-const SMALLEST: (f64, f64) = (620.0, 460.0);
-/// Space around the plot: left, top, right (the legend), bottom; pixels.
-const LEFT: i32 = 120;
-const TOP: i32 = 84;
-const RIGHT: i32 = 440;
-const BOTTOM: i32 = 110;
 /// A scene where everybody stands still is shown this wide, metres.
 const LEAST_SPAN: f64 = 4.0;
-/// Margin around the points, share of the span.
-const MARGIN: f64 = 0.05;
 
 /// The plot area of a picture.
 #[derive(Debug, Clone, Copy)]
@@ -28,11 +21,14 @@ pub(super) struct Axes {
     high: Position,
     /// Pixels a metre.
     scale: f64,
+    layout: &'static Layout,
+    /// Upper left corner of the space that plot and lettering have together, pixels.
+    origin: Pixel,
 }
 
 impl Axes {
     /// A plot that holds every point.
-    pub(super) fn around(points: &[Position]) -> Self {
+    pub(super) fn around(points: &[Position], layout: &'static Layout) -> Self {
         let range = |axis: usize| {
             let low = points.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min);
             let high = points
@@ -41,26 +37,34 @@ impl Axes {
                 .fold(f64::NEG_INFINITY, f64::max);
             // Without points there is nothing to show but empty axes around the origin.
             let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
-            let span = (high - low).max(LEAST_SPAN) * (1.0 + 2.0 * MARGIN);
+            let span = (high - low).max(LEAST_SPAN) * (1.0 + 2.0 * layout.margin);
             (f64::midpoint(low, high), span)
         };
         let ((x, width), (y, height)) = (range(0), range(1));
-        let scale = (LARGEST.0 / width).min(LARGEST.1 / height);
-        let width = width.max(SMALLEST.0 / scale);
-        let height = height.max(SMALLEST.1 / scale);
+        let scale = (layout.largest.0 / width).min(layout.largest.1 / height);
+        let width = width.max(layout.smallest.0 / scale);
+        let height = height.max(layout.smallest.1 / scale);
         Self {
             low: [x - width / 2.0, y - height / 2.0],
             high: [x + width / 2.0, y + height / 2.0],
             scale,
+            layout,
+            origin: (0, 0),
         }
     }
 
-    /// Size of the whole picture, pixels.
+    /// The same plot elsewhere: `origin` is the upper left corner of its space, lettering included.
+    pub(super) fn at(mut self, origin: Pixel) -> Self {
+        self.origin = origin;
+        self
+    }
+
+    /// Size of the space that plot and lettering have together, pixels.
     pub(super) fn size(&self) -> (u32, u32) {
-        let (right, bottom) = self.corner();
+        let [_, (right, bottom)] = self.frame();
         (
-            (right + RIGHT).unsigned_abs(),
-            (bottom + BOTTOM).unsigned_abs(),
+            (right + self.layout.right - self.origin.0).unsigned_abs(),
+            (bottom + self.layout.bottom - self.origin.1).unsigned_abs(),
         )
     }
 
@@ -68,50 +72,64 @@ impl Axes {
     pub(super) fn pixel(&self, p: Position) -> Pixel {
         let x = (p[0] - self.low[0]) * self.scale;
         let y = (self.high[1] - p[1]) * self.scale;
-        (LEFT + x.round() as i32, TOP + y.round() as i32)
+        (
+            self.origin.0 + self.layout.left + x.round() as i32,
+            self.origin.1 + self.layout.top + y.round() as i32,
+        )
     }
 
-    /// Whether a pixel lies within the frame.
-    pub(super) fn shows(&self, (x, y): Pixel) -> bool {
-        let (right, bottom) = self.corner();
-        (LEFT..=right).contains(&x) && (TOP..=bottom).contains(&y)
+    /// A position within the frame as a pixel, others not at all.
+    pub(super) fn shown(&self, p: Position) -> Option<Pixel> {
+        let within = (0..2).all(|axis| (self.low[axis]..=self.high[axis]).contains(&p[axis]));
+        within.then(|| self.pixel(p))
     }
 
-    /// Upper left corner of the space for the legend.
-    pub(super) fn beside(&self) -> Pixel {
-        (self.corner().0 + 30, TOP)
+    /// What lies within the frame of a path, in pieces.
+    pub(super) fn cut(&self, path: &[Position]) -> Vec<Vec<Pixel>> {
+        clip::within(path, self.low, self.high)
+            .iter()
+            .map(|piece| piece.iter().map(|p| self.pixel(*p)).collect())
+            .collect()
     }
 
-    /// Lower right corner of the plot.
-    fn corner(&self) -> Pixel {
-        self.pixel([self.high[0], self.low[1]])
+    /// Upper left and lower right corner of the plot.
+    pub(super) fn frame(&self) -> [Pixel; 2] {
+        [
+            self.pixel([self.low[0], self.high[1]]),
+            self.pixel([self.high[0], self.low[1]]),
+        ]
     }
 
-    /// Draws grid, frame, numbers, names of the axes and the title.
-    pub(super) fn draw(&self, canvas: &Canvas<'_>, title: &str) -> Result<(), FigureError> {
-        let (right, bottom) = self.corner();
-        let step = self.tick_step();
+    /// Draws grid, frame and numbers.
+    pub(super) fn draw(&self, canvas: &Canvas<'_>) -> Result<(), FigureError> {
+        let [(left, top), (right, bottom)] = self.frame();
+        let (step, size) = (self.tick_step(), self.layout.numbers);
         for tick in ticks(self.low[0], self.high[0], step) {
             let (x, _) = self.pixel([tick, self.low[1]]);
-            canvas.line(&[(x, TOP), (x, bottom)], GRID, 1)?;
-            canvas.text(&number(tick, step), (x, bottom + 14), 26, Place::Below)?;
+            canvas.line(&[(x, top), (x, bottom)], GRID, 1)?;
+            canvas.text(&number(tick, step), (x, bottom + 14), size, Place::Below)?;
         }
         for tick in ticks(self.low[1], self.high[1], step) {
             let (_, y) = self.pixel([self.low[0], tick]);
-            canvas.line(&[(LEFT, y), (right, y)], GRID, 1)?;
-            canvas.text(&number(tick, step), (LEFT - 14, y), 26, Place::LeftOf)?;
+            canvas.line(&[(left, y), (right, y)], GRID, 1)?;
+            canvas.text(&number(tick, step), (left - 14, y), size, Place::LeftOf)?;
         }
-        canvas.frame([(LEFT, TOP), (right, bottom)])?;
-        let centre = (i32::midpoint(LEFT, right), i32::midpoint(TOP, bottom));
-        canvas.text("x (m)", (centre.0, bottom + 56), 28, Place::Below)?;
-        canvas.text("y (m)", (36, centre.1), 28, Place::Upwards)?;
-        canvas.text(title, (LEFT, TOP / 2), 36, Place::RightOf)
+        canvas.frame(self.frame())
     }
 
-    /// One step for both axes: 1, 2 or 5 times a power of ten, at most 11 of them on the longer side.
+    /// Writes the names of the axes outside the numbers.
+    pub(super) fn draw_names(&self, canvas: &Canvas<'_>) -> Result<(), FigureError> {
+        let [(left, top), (right, bottom)] = self.frame();
+        let centre = (i32::midpoint(left, right), i32::midpoint(top, bottom));
+        canvas.text("x (m)", (centre.0, bottom + 56), 28, Place::Below)?;
+        canvas.text("y (m)", (self.origin.0 + 36, centre.1), 28, Place::Upwards)
+    }
+
+    /// One step for both axes: 1, 2 or 5 times a power of ten, as many on the longer side as the layout
+    /// says and at most one more.
     fn tick_step(&self) -> f64 {
         let span = (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]);
-        let raw = span / 10.0;
+        let raw = span / self.layout.steps;
         let power = 10_f64.powf(raw.log10().floor());
         let steps = [1.0, 2.0, 5.0, 10.0].map(|s| s * power);
         steps
@@ -139,28 +157,52 @@ fn number(tick: f64, step: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure::layout::{PANEL, SCENE};
 
     #[test]
     fn one_metre_is_as_long_up_as_across() {
-        let axes = Axes::around(&[[0.0, 0.0], [30.0, 2.0]]);
-        let (a, b, c) = (
-            axes.pixel([1.0, 1.0]),
-            axes.pixel([2.0, 1.0]),
-            axes.pixel([1.0, 2.0]),
-        );
-        assert!(((b.0 - a.0) - (a.1 - c.1)).abs() <= 1);
-        assert!(axes.shows(axes.pixel([0.0, 0.0])) && axes.shows(axes.pixel([30.0, 2.0])));
-        assert!(!axes.shows(axes.pixel([60.0, 0.0])));
+        for layout in [&SCENE, &PANEL] {
+            let axes = Axes::around(&[[0.0, 0.0], [30.0, 2.0]], layout).at((700, 90));
+            let (a, b, c) = (
+                axes.pixel([1.0, 1.0]),
+                axes.pixel([2.0, 1.0]),
+                axes.pixel([1.0, 2.0]),
+            );
+            assert!(((b.0 - a.0) - (a.1 - c.1)).abs() <= 1);
+            assert!(axes.shown([0.0, 0.0]).is_some() && axes.shown([30.0, 2.0]).is_some());
+            assert!(axes.shown([60.0, 0.0]).is_none());
+        }
     }
 
     #[test]
     fn extreme_scenes_have_readable_axes() {
         for points in [vec![], vec![[5.0, -3.0]], vec![[-1e5, 0.0], [1e5, 0.0]]] {
-            let axes = Axes::around(&points);
-            let (width, height) = axes.size();
-            assert!(width <= 1800 && height < 1400, "{width} x {height}");
-            let count = ticks(axes.low[0], axes.high[0], axes.tick_step()).count();
-            assert!((2..=11).contains(&count), "{count} ticks");
+            for (layout, most) in [(&SCENE, 11), (&PANEL, 8)] {
+                let axes = Axes::around(&points, layout);
+                let (width, height) = axes.size();
+                assert!(width <= 1800 && height < 1400, "{width} x {height}");
+                let count = ticks(axes.low[0], axes.high[0], axes.tick_step()).count();
+                assert!((2..=most).contains(&count), "{count} ticks");
+            }
+        }
+    }
+
+    #[test]
+    fn panels_are_of_one_size_wherever_they_are() {
+        let size = |points: &[Position], origin| Axes::around(points, &PANEL).at(origin).size();
+        let one = size(&[[0.0, 0.0], [30.0, 2.0]], (0, 0));
+        assert_eq!(one, size(&[[0.0, 0.0], [1.0, 50.0]], (640, 1300)));
+        assert_eq!(one, size(&[], (20, 0)));
+    }
+
+    #[test]
+    fn what_is_cut_stays_within_the_frame() {
+        let axes = Axes::around(&[[0.0, 0.0], [10.0, 10.0]], &PANEL);
+        let [(left, top), (right, bottom)] = axes.frame();
+        let pieces = axes.cut(&[[5.0, 5.0], [1e6, -3e5], [5.0, -1e6], [5.0, 5.0]]);
+        assert_eq!(pieces.len(), 2);
+        for (x, y) in pieces.into_iter().flatten() {
+            assert!((left..=right).contains(&x) && (top..=bottom).contains(&y));
         }
     }
 }

@@ -15,7 +15,7 @@ use plotters::{
     },
 };
 
-use crate::error::FigureError;
+use super::error::FigureError;
 
 /// A place on the canvas: pixels from the left, pixels from the top.
 pub(super) type Pixel = (i32, i32);
@@ -28,6 +28,10 @@ pub(super) const TRUTH: RGBColor = RGBColor(0, 114, 178);
 pub(super) const FORECAST: RGBColor = RGBColor(213, 94, 0);
 /// Bluish green of Okabe and Ito.
 pub(super) const GOAL: RGBColor = RGBColor(0, 158, 115);
+/// Orange of Okabe and Ito.
+pub(super) const EXPERT: RGBColor = RGBColor(230, 159, 0);
+/// Under a shape that must stand out.
+pub(super) const PAPER: RGBColor = RGBColor(255, 255, 255);
 /// Lines of the grid.
 pub(super) const GRID: RGBColor = RGBColor(228, 228, 228);
 /// Frame and numbers.
@@ -52,7 +56,7 @@ pub(super) struct Canvas<'a>(DrawingArea<SVGBackend<'a>, Shift>);
 impl<'a> Canvas<'a> {
     pub(super) fn new(svg: &'a mut String, size: (u32, u32)) -> Result<Self, FigureError> {
         let area = SVGBackend::with_string(svg, size).into_drawing_area();
-        area.fill(&RGBColor(255, 255, 255)).map_err(failed)?;
+        area.fill(&PAPER).map_err(failed)?;
         Ok(Self(area))
     }
 
@@ -95,9 +99,10 @@ impl<'a> Canvas<'a> {
         at: Pixel,
         colour: impl Into<RGBAColor>,
         radius: i32,
+        width: u32,
     ) -> Result<(), FigureError> {
         self.0
-            .draw(&Circle::new(at, radius, stroke(colour, 3)))
+            .draw(&Circle::new(at, radius, stroke(colour, width)))
             .map_err(failed)
     }
 
@@ -120,7 +125,7 @@ impl<'a> Canvas<'a> {
             (0..10).map(corner).collect()
         };
         let radius = f64::from(radius);
-        let rim = Polygon::new(corners(radius + 4.0), RGBColor(255, 255, 255).filled());
+        let rim = Polygon::new(corners(radius + 4.0), PAPER.filled());
         self.0.draw(&rim).map_err(failed)?;
         self.0
             .draw(&Polygon::new(corners(radius), colour.into().filled()))
@@ -152,12 +157,22 @@ impl<'a> Canvas<'a> {
             _ => font,
         };
         let style = TextStyle::from(font).color(&INK).pos(Pos::new(h, v));
+        // XML has no control characters, and titles come from users.
+        let text = text.replace(char::is_control, " ");
         self.0.draw(&Text::new(text, at, style)).map_err(failed)
     }
 
     pub(super) fn finish(self) -> Result<(), FigureError> {
         self.0.present().map_err(failed)
     }
+}
+
+/// Width of a text in pixels, about: fonts differ, and the reader's is not known.
+pub(super) fn text_width(text: &str, size: i32) -> i32 {
+    // The back end writes sizes divided by 1.24; letters of a wide sans-serif are
+    // about 0.53 of that wide.
+    let width = text.chars().count() as f64 * f64::from(size) * 0.53 / 1.24;
+    width.ceil() as i32
 }
 
 fn stroke(colour: impl Into<RGBAColor>, width: u32) -> ShapeStyle {

@@ -1,0 +1,240 @@
+//! How a walker moved: standing, straight on, turning, slowing down, speeding up.
+
+use std::fmt;
+
+use ddl_data::{HORIZON, OBSERVED, Position, TIME_STEP, WINDOW};
+
+use crate::metric::displacement::distance;
+
+/// Who stays this near to the first position stands (m).
+const STANDING: f64 = 1.0;
+/// A shorter way has no direction (m).
+const NO_DIRECTION: f64 = 0.5;
+/// Who turns less goes straight on (degrees).
+const TURN: f64 = 20.0;
+/// Who changes the speed by less keeps it (share of the observed speed).
+const CHANGE: f64 = 0.3;
+
+/// How a walker of 20 positions moved, seen with its true future.
+///
+/// For choosing and grouping examples once forecasts are made: it reads the future, so no forecast may
+/// depend on it.
+///
+/// With a = p(8) - p(1) the observed way and b = p(20) - p(8) the true one, the first that holds:
+///
+/// ```text
+/// standing         every |p(t) - p(1)| < 1 m
+/// speeding up      |a| < 0.5 m
+/// slowing down     |b| < 0.5 m
+/// turning left     angle from a to b >= 20 degrees        (right: <= -20 degrees)
+/// slowing down     |b| / 4.8 s <= 0.7 |a| / 2.8 s
+/// speeding up      |b| / 4.8 s >= 1.3 |a| / 2.8 s
+/// straight on      otherwise
+/// ```
+///
+/// Left is from x to y, counter-clockwise where y points up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum MotionKind {
+    /// Within 1 m of the first position all the time.
+    Standing,
+    /// None of the others.
+    Straight,
+    /// 20 degrees or more to the left.
+    TurningLeft,
+    /// 20 degrees or more to the right.
+    TurningRight,
+    /// At most 0.7 of the observed speed.
+    SlowingDown,
+    /// At least 1.3 of the observed speed.
+    SpeedingUp,
+}
+
+impl MotionKind {
+    /// Every kind, in the order in which they are shown.
+    pub const ALL: [Self; 6] = [
+        Self::Standing,
+        Self::Straight,
+        Self::TurningLeft,
+        Self::TurningRight,
+        Self::SlowingDown,
+        Self::SpeedingUp,
+    ];
+
+    /// The kind of motion of a track of 20 positions (m, 0.4 s apart); `None` for other tracks and for
+    /// positions that are not finite.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_eval::MotionKind;
+    /// let track: Vec<_> = (0..20).map(|t| [0.5 * f64::from(t), 0.02 * f64::from(t * t)]).collect();
+    /// assert_eq!(MotionKind::of(&track), Some(MotionKind::TurningLeft));
+    /// ```
+    #[must_use]
+    pub fn of(track: &[Position]) -> Option<Self> {
+        if track.len() != WINDOW || !track.iter().flatten().all(|c| c.is_finite()) {
+            return None;
+        }
+        let [first, last, end] = [0, OBSERVED - 1, WINDOW - 1].map(|t| track[t]);
+        if track.iter().all(|p| distance(*p, first) < STANDING) {
+            return Some(Self::Standing);
+        }
+        let (observed, future) = (distance(first, last), distance(last, end));
+        if observed < NO_DIRECTION {
+            return Some(Self::SpeedingUp);
+        }
+        if future < NO_DIRECTION {
+            return Some(Self::SlowingDown);
+        }
+        let turn = turn([first, last, end]);
+        if turn.abs() >= TURN {
+            let left = turn > 0.0;
+            return Some(if left {
+                Self::TurningLeft
+            } else {
+                Self::TurningRight
+            });
+        }
+        let before = observed / ((OBSERVED - 1) as f64 * TIME_STEP);
+        let after = future / (HORIZON as f64 * TIME_STEP);
+        Some(if after <= (1.0 - CHANGE) * before {
+            Self::SlowingDown
+        } else if after >= (1.0 + CHANGE) * before {
+            Self::SpeedingUp
+        } else {
+            Self::Straight
+        })
+    }
+}
+
+/// Angle between the two ways that three places make, degrees; positive to the left.
+fn turn([first, last, end]: [Position; 3]) -> f64 {
+    let (a, b) = (
+        [last[0] - first[0], last[1] - first[1]],
+        [end[0] - last[0], end[1] - last[1]],
+    );
+    let (cross, dot) = (a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+    cross.atan2(dot).to_degrees()
+}
+
+impl fmt::Display for MotionKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Standing => "standing",
+            Self::Straight => "straight on",
+            Self::TurningLeft => "turning left",
+            Self::TurningRight => "turning right",
+            Self::SlowingDown => "slowing down",
+            Self::SpeedingUp => "speeding up",
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use MotionKind::{SlowingDown, SpeedingUp, Standing, Straight, TurningLeft, TurningRight};
+    use proptest::{collection::vec, prelude::*};
+
+    use super::*;
+
+    /// 7 steps of one velocity, then 12 of another; metres a step.
+    fn track(before: Position, after: Position) -> Vec<Position> {
+        let steps = [before; OBSERVED - 1].into_iter().chain([after; HORIZON]);
+        let mut here = [3.0, -2.0];
+        let walked = steps.map(|step| {
+            here = [here[0] + step[0], here[1] + step[1]];
+            here
+        });
+        [[3.0, -2.0]].into_iter().chain(walked).collect()
+    }
+
+    #[test]
+    fn each_kind_is_told_from_the_others() {
+        let angle = |degrees: f64| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            [0.5 * cos, 0.5 * sin]
+        };
+        for (before, after, expected) in [
+            ([0.01, 0.0], [0.0, 0.02], Standing),
+            ([0.5, 0.0], [0.5, 0.0], Straight),
+            ([0.5, 0.0], angle(19.0), Straight),
+            ([0.5, 0.0], angle(21.0), TurningLeft),
+            ([0.5, 0.0], angle(-21.0), TurningRight),
+            ([0.5, 0.0], angle(180.0), TurningLeft),
+            ([0.5, 0.0], [0.34, 0.0], SlowingDown),
+            ([0.5, 0.0], [0.36, 0.0], Straight),
+            ([0.5, 0.0], [0.64, 0.0], Straight),
+            ([0.5, 0.0], [0.66, 0.0], SpeedingUp),
+            // From standing, and to a stand: the direction is noise.
+            ([0.0, 0.01], [0.5, 0.0], SpeedingUp),
+            ([0.5, 0.0], [0.0, -0.02], SlowingDown),
+        ] {
+            assert_eq!(
+                MotionKind::of(&track(before, after)),
+                Some(expected),
+                "{after:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn who_walks_a_circle_does_not_stand() {
+        let circle: Vec<Position> = (0..WINDOW)
+            .map(|t| {
+                let (sin, cos) = (t as f64 / (WINDOW - 1) as f64 * std::f64::consts::TAU).sin_cos();
+                [2.0 * cos, 2.0 * sin]
+            })
+            .collect();
+        assert_eq!(MotionKind::of(&circle), Some(TurningLeft));
+    }
+
+    #[test]
+    fn other_tracks_have_no_kind() {
+        assert_eq!(MotionKind::of(&track([0.5, 0.0], [0.5, 0.0])[1..]), None);
+        let mut broken = track([0.5, 0.0], [0.5, 0.0]);
+        broken[10][1] = f64::NAN;
+        assert_eq!(MotionKind::of(&broken), None);
+        assert_eq!(MotionKind::of(&[]), None);
+    }
+
+    proptest! {
+        #[test]
+        fn the_mirror_image_turns_the_other_way(
+            steps in vec((-1.0..1.0_f64, -1.0..1.0_f64), WINDOW)
+        ) {
+            let mut here = [0.0, 0.0];
+            let track: Vec<Position> = steps
+                .into_iter()
+                .map(|(x, y)| {
+                    here = [here[0] + x, here[1] + y];
+                    here
+                })
+                .collect();
+            let mirrored: Vec<Position> = track.iter().map(|p| [p[0], -p[1]]).collect();
+            let expected = MotionKind::of(&track).map(|kind| match kind {
+                TurningLeft => TurningRight,
+                TurningRight => TurningLeft,
+                other => other,
+            });
+            prop_assert_eq!(MotionKind::of(&mirrored), expected);
+        }
+
+        #[test]
+        fn where_and_in_which_direction_does_not_matter(
+            (before, speed, degrees) in (0.1..0.9_f64, 0.1..0.9_f64, -180.0..180.0_f64),
+            (dx, dy, angle) in (-1e3..1e3_f64, -1e3..1e3_f64, 0.0..6.0_f64),
+        ) {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let track = track([before, 0.0], [speed * cos, speed * sin]);
+            let ratio = speed / before;
+            // Not on a border, where rounding decides.
+            prop_assume!((degrees.abs() - TURN).abs() > 1e-3 && degrees.abs() < 179.9);
+            prop_assume!((ratio - 0.7).abs() > 1e-3 && (ratio - 1.3).abs() > 1e-3);
+            let (sin, cos) = angle.sin_cos();
+            let moved: Vec<Position> = track
+                .iter()
+                .map(|p| [cos * p[0] - sin * p[1] + dx, sin * p[0] + cos * p[1] + dy])
+                .collect();
+            prop_assert_eq!(MotionKind::of(&moved), MotionKind::of(&track));
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! What a picture of estimated goals holds; how it looks is for eyes.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use ddl_data::{Convention, Dataset, Position, WINDOW, WindowRule, locate};
+use ddl_eval::{
+    FigureError, MotionKind,
+    baseline::WeightedGoals,
+    figure::{self, GoalCase},
+};
+
+/// Circles of the legend: 3 observed dots, a true end, 3 goals of some probability, and the nearest with
+/// its rim.
+const LEGEND_CIRCLES: usize = 3 + 1 + 3 + 2;
+/// Circles of a panel but for the goals that are not the nearest: 8 observed dots, a true end, the nearest
+/// with its rim.
+const PANEL_CIRCLES: usize = 8 + 1 + 2;
+
+fn walk(from: Position, step: Position) -> Vec<Position> {
+    (0..WINDOW)
+        .map(|t| [from[0] + t as f64 * step[0], from[1] + t as f64 * step[1]])
+        .collect()
+}
+
+/// Somebody who starts at `from`, with `k` goals beyond the end and as many experts as asked for.
+fn case(title: &str, from: Position, step: Position, k: usize, experts: usize) -> GoalCase {
+    let track = walk(from, step);
+    let end = track[WINDOW - 1];
+    let goals = (1..=k)
+        .map(|g| [end[0] + 0.25 * g as f64, end[1]])
+        .collect();
+    let goals = WeightedGoals::new(goals, vec![1.0 / k as f64; k]).unwrap();
+    let expert = |e: usize| walk(from, [step[0], step[1] + 0.01 * e as f64]);
+    GoalCase::new(title, &track, goals)
+        .unwrap()
+        .with_experts((0..experts).map(expert).collect())
+        .unwrap()
+}
+
+fn count(svg: &str, shape: &str) -> usize {
+    svg.matches(shape).count()
+}
+
+#[test]
+fn every_role_is_drawn_and_named() {
+    let cases = [
+        case("<eth>, pedestrian 7", [0.0, 0.0], [0.5, 0.0], 5, 30),
+        case("hotel, pedestrian 9", [2.0, 3.0], [0.0, -0.4], 20, 10),
+    ];
+    let svg = figure::goals("Goals & ends", &cases).unwrap();
+    assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+    for text in [
+        "\nGoals &amp; ends\n",
+        "\n&lt;eth&gt;, pedestrian 7\n",
+        "\nhotel, pedestrian 9\n",
+        "\nobserved, 3.2 s\n",
+        "\ntruth, 4.8 s, and its end\n",
+        "\nhow similar walkers went on\n",
+        "\ngoals of 1, 5, 20 % probability\n",
+        "\ngoal nearest the true end\n",
+        "\nAxes: metres from the last observed position\n",
+    ] {
+        assert_eq!(count(&svg, text), 1, "`{text}`");
+    }
+    assert_eq!(count(&svg, "nearest goal 0.25 m off"), 2);
+    let circles = LEGEND_CIRCLES + 2 * PANEL_CIRCLES + 4 + 19;
+    assert_eq!(count(&svg, "<circle"), circles);
+    // Experts leave the last observed position as one line each; the legend has three.
+    assert_eq!(count(&svg, "opacity=\"0.3\" stroke=\"#E69F00\""), 40 + 3);
+    assert_eq!(svg, figure::goals("Goals & ends", &cases).unwrap());
+}
+
+#[test]
+fn a_goal_of_four_times_the_weight_has_twice_the_radius() {
+    let track = walk([0.0, 0.0], [0.5, 0.0]);
+    let places = vec![[9.5, 0.5], [8.0, 1.0], [9.0, -2.0]];
+    let goals = WeightedGoals::new(places, vec![0.2, 0.16, 0.64]).unwrap();
+    let case = GoalCase::new("a", &track, goals).unwrap();
+    let svg = figure::goals("", &[case]).unwrap();
+    // 40 px for a certain goal: 16 and 32; the legend has rings of 4, 9 and 18.
+    for (radius, rings) in [(16, 1), (32, 1), (4, 1), (9, 1)] {
+        let ring = format!("r=\"{radius}\" opacity=\"1\" fill=\"none\" stroke=\"#009E73\"");
+        assert_eq!(count(&svg, &ring), rings, "{ring}");
+    }
+    let nearest = "r=\"18\" opacity=\"1\" fill=\"none\" stroke=\"#D55E00\"";
+    assert_eq!(count(&svg, nearest), 1);
+}
+
+#[test]
+fn without_experts_the_legend_has_none() {
+    let svg = figure::goals("", &[case("a", [0.0, 0.0], [0.5, 0.0], 3, 0)]).unwrap();
+    assert!(!svg.contains("similar walkers") && !svg.contains("#E69F00"));
+    assert_eq!(count(&svg, "<circle"), LEGEND_CIRCLES + PANEL_CIRCLES + 2);
+}
+
+#[test]
+fn the_place_in_the_world_does_not_matter() {
+    let picture = |from| figure::goals("", &[case("a", from, [0.5, 0.25], 4, 8)]).unwrap();
+    // Powers of two and their sums: no rounding at either place.
+    assert_eq!(picture([0.0, 0.0]), picture([524_288.0, -4_194_304.0]));
+}
+
+#[test]
+fn people_who_stand_and_goals_at_one_place_are_shown() {
+    let track = walk([7.0, 7.0], [0.0, 0.0]);
+    let goals = WeightedGoals::new(vec![[7.0, 7.0]; 4], vec![1.0, 0.0, 0.0, 0.0]).unwrap();
+    let case = GoalCase::new("stands", &track, goals).unwrap();
+    let case = case.with_experts(vec![track; 3]).unwrap();
+    let svg = figure::goals("", &[case]).unwrap();
+    assert!(svg.contains("nearest goal 0.00 m off"));
+    assert_eq!(count(&svg, "<circle"), LEGEND_CIRCLES + PANEL_CIRCLES + 3);
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
+}
+
+#[test]
+fn experts_that_lead_far_away_are_cut_and_do_not_shrink_the_walker() {
+    let sane = case("a", [0.0, 0.0], [0.5, 0.0], 3, 0);
+    let here = [3.5, 0.0];
+    let mut stray = vec![here; WINDOW];
+    stray[WINDOW - 1] = [7e5, 7e5];
+    let with = sane.clone().with_experts(vec![stray]).unwrap();
+    let (svg, bare) = (
+        figure::goals("", &[with]).unwrap(),
+        figure::goals("", &[sane]).unwrap(),
+    );
+    let circles = |svg: &str| -> Vec<String> {
+        let x = |line: &str| line.split_whitespace().nth(1).unwrap().to_owned();
+        svg.lines()
+            .filter(|l| l.starts_with("<circle"))
+            .map(x)
+            .collect()
+    };
+    // The panel stands as it stood: only the legend has changed. Its shapes come first.
+    assert_eq!(
+        circles(&svg)[LEGEND_CIRCLES..],
+        circles(&bare)[LEGEND_CIRCLES..]
+    );
+    let size: i32 = svg.split('"').nth(1).unwrap().parse().unwrap();
+    for points in svg.split("points=\"").skip(1) {
+        let points = points.split('"').next().unwrap();
+        let across = points
+            .split_whitespace()
+            .map(|p| p.split(',').next().unwrap());
+        assert!(
+            across
+                .map(|x| x.parse::<i32>().unwrap())
+                .all(|x| (0..=size).contains(&x))
+        );
+    }
+}
+
+#[test]
+fn one_to_nine_cases_make_a_picture() {
+    let cases: Vec<_> = (0..10)
+        .map(|n| case("a", [0.0, 0.0], [0.5, 0.1 * f64::from(n)], 3, 2))
+        .collect();
+    for found in [0, 10] {
+        let error = figure::goals("", &cases[..found]).unwrap_err();
+        assert!(matches!(error, FigureError::Cases { found: f, most: 9 } if f == found));
+    }
+    let mut last = 0;
+    for n in 1..=9 {
+        let svg = figure::goals("", &cases[..n]).unwrap();
+        let circles = count(&svg, "<circle");
+        assert_eq!(circles, LEGEND_CIRCLES + n * (PANEL_CIRCLES + 2));
+        assert!(circles > last);
+        last = circles;
+    }
+}
+
+/// Real walkers of every kind, each with its own median error, make one picture.
+#[test]
+fn typical_walkers_of_a_recording_make_a_picture() {
+    let found =
+        locate(Convention::Star, None).and_then(|folder| Dataset::load(Convention::Star, &folder));
+    let dataset = match found {
+        Ok(dataset) => dataset,
+        Err(why) => {
+            assert!(
+                std::env::var_os("CI").is_none(),
+                "in CI the recordings must be there: {why}"
+            );
+            eprintln!("skipped, the recordings are not here: {why}");
+            return;
+        }
+    };
+    let windows = dataset
+        .fold("hotel")
+        .unwrap()
+        .test_windows(WindowRule::Published);
+    let mut cases = Vec::new();
+    for window in &windows {
+        for i in 0..window.len() {
+            let track = window.track(i);
+            // Straight on, and as far as before.
+            let [a, b] = [track[0], track[7]];
+            let ahead = [0, 1].map(|d| b[d] + (b[d] - a[d]) / 7.0 * 12.0);
+            let title = MotionKind::of(track).unwrap().to_string();
+            cases.push(GoalCase::new(title, track, WeightedGoals::certain(ahead)).unwrap());
+        }
+    }
+    assert_eq!(cases.len(), 1026);
+    let kind = |case: &GoalCase| {
+        let is = |kind: &MotionKind| kind.to_string() == case.title();
+        MotionKind::ALL.into_iter().find(is).unwrap()
+    };
+    let walkers: Vec<_> = cases
+        .iter()
+        .map(|case| (kind(case), case.error()))
+        .collect();
+    let picked = figure::typical_walkers(&walkers);
+    let kinds: Vec<_> = picked.iter().map(|&i| walkers[i].0).collect();
+    assert_eq!(kinds, MotionKind::ALL, "the recording has all of them");
+    let shown: Vec<_> = picked.iter().map(|&i| cases[i].clone()).collect();
+    let svg = figure::goals("hotel", &shown).unwrap();
+    assert_eq!(count(&svg, "<circle"), LEGEND_CIRCLES + 6 * PANEL_CIRCLES);
+    for case in &shown {
+        assert!(svg.contains(&format!("nearest goal {:.2} m off", case.error())));
+    }
+}
