@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod analogues;
+mod carry_over;
 mod choice;
 mod error;
 mod estimator;

@@ -52,6 +52,9 @@ pub enum DdlError {
         /// Experts retrieved.
         experts: usize,
     },
+    /// A picture could not be drawn.
+    #[error(transparent)]
+    Figure(#[from] ddl_eval::FigureError),
     /// A run directory that cannot be used.
     #[error("run {}: {problem}", path.display())]
     Run {

@@ -30,6 +30,17 @@ pub struct GoalEvaluation {
     pub seconds: f64,
 }
 
+/// Figures, with the windows and goals they were measured on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredGoals {
+    /// The figures.
+    pub evaluation: GoalEvaluation,
+    /// Windows with their futures.
+    pub windows: Vec<Window>,
+    /// The goals of every pedestrian of every window.
+    pub sets: Vec<Vec<GoalSet>>,
+}
+
 /// Distances between goals and true ends, means over walkers (metres).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct GoalErrors {
@@ -65,8 +76,7 @@ impl GoalErrors {
 /// Measures the goals of a run on the test windows of its fold (headline rule, all walkers) or on its
 /// validation windows.
 ///
-/// The goals see the 8 observed frames alone. The windows and their goals come back beside the
-/// figures, to be drawn.
+/// The goals see the 8 observed frames alone.
 ///
 /// # Errors
 /// When the data is not what the run was trained on, or goals cannot be estimated.
@@ -74,7 +84,7 @@ pub fn evaluate_goals(
     model: &GoalModel,
     dataset: &Dataset,
     on: EvaluationSplit,
-) -> Result<(GoalEvaluation, Vec<(Window, Vec<GoalSet>)>), DdlError> {
+) -> Result<MeasuredGoals, DdlError> {
     let test = TestSet::of_run(model, dataset, on, None)?;
     let rule = test.rules.first().map(|(rule, _)| *rule);
     let windows: Vec<Window> = test.headline().cloned().collect();
@@ -121,5 +131,9 @@ pub fn evaluate_goals(
         recordings,
         seconds,
     };
-    Ok((evaluation, windows.into_iter().zip(sets).collect()))
+    Ok(MeasuredGoals {
+        evaluation,
+        windows,
+        sets,
+    })
 }

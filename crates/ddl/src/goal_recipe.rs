@@ -34,7 +34,7 @@ impl Default for ProposalRecipe {
         Self {
             network: ProposalConfig::default(),
             training: ProposalTraining::default(),
-            retrieved_share: 0.2,
+            retrieved_share: 0.3,
         }
     }
 }

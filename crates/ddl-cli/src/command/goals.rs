@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// Estimate where the people of your own tracks are going, as csv; or measure how good a run's goals are
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  ddl goals --model runs/eth tracks.csv\n  ddl goals --model runs/eth --measure test"
+    after_help = "Examples:\n  ddl goals --model runs/eth tracks.csv\n  ddl goals --model runs/eth --measure test --svg goals.svg"
 )]
 pub(crate) struct Goals {
     /// Directory of a run whose goals are trained (`ddl train --only-goals` is enough)
@@ -30,6 +30,9 @@ pub(crate) struct Goals {
     /// The measurement as JSON
     #[arg(long, requires = "measure")]
     json: bool,
+    /// Also draw walkers with typical errors, one of each kind of motion, as an SVG
+    #[arg(long, requires = "measure", value_name = "FILE")]
+    svg: Option<PathBuf>,
     /// File to write [default: standard output]
     #[arg(long, short)]
     output: Option<PathBuf>,
@@ -79,11 +82,15 @@ impl Goals {
             Measure::Test => EvaluationSplit::Test,
             Measure::Validation => EvaluationSplit::Validation,
         };
-        let (evaluation, _) = ddl::evaluate_goals(&model, &dataset, on)?;
+        let measured = ddl::evaluate_goals(&model, &dataset, on)?;
+        if let Some(path) = &self.svg {
+            write_output(Some(path), &ddl::goal_picture(&model, &measured)?)?;
+        }
+        let evaluation = &measured.evaluation;
         Ok(if self.json {
-            serde_json::to_string_pretty(&evaluation)? + "\n"
+            serde_json::to_string_pretty(evaluation)? + "\n"
         } else {
-            words(&evaluation)
+            words(evaluation)
         })
     }
 }

@@ -1,0 +1,88 @@
+//! A picture of estimated goals: for each kind of motion the walker with the median error.
+
+use crate::goal_evaluation::MeasuredGoals;
+use crate::{DdlError, GoalModel};
+use ddl_data::Window;
+use ddl_eval::baseline::WeightedGoals;
+use ddl_eval::figure::{self, GoalCase};
+use ddl_eval::{ForecastError, MotionKind};
+use ddl_goal::GoalSet;
+
+/// Retrieved walkers that are drawn, the most similar ones.
+const EXPERTS: usize = 60;
+
+/// An SVG of typical walkers: what was observed, the retrieved walkers, the goals, and how it went on.
+///
+/// # Errors
+/// When a picture cannot be drawn of such goals.
+pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<String, DdlError> {
+    let walkers: Vec<Walker<'_>> = measured
+        .windows
+        .iter()
+        .zip(&measured.sets)
+        .flat_map(|(window, sets)| {
+            (0..)
+                .zip(sets)
+                .filter_map(|(i, set)| Walker::new(window, i, set))
+        })
+        .collect();
+    let errors: Vec<_> = walkers
+        .iter()
+        .map(|walker| (walker.kind, walker.error))
+        .collect();
+    let cases = figure::typical_walkers(&errors)
+        .into_iter()
+        .map(|index| walkers[index].case(model))
+        .collect::<Result<Vec<_>, _>>()?;
+    let evaluation = &measured.evaluation;
+    let title = format!(
+        "Goals of typical walkers: fold {}, {}",
+        evaluation.fold, evaluation.windows
+    );
+    Ok(figure::goals(&title, &cases)?)
+}
+
+/// A walker whose future is known.
+struct Walker<'a> {
+    window: &'a Window,
+    index: usize,
+    set: &'a GoalSet,
+    kind: MotionKind,
+    error: f64,
+}
+
+impl<'a> Walker<'a> {
+    fn new(window: &'a Window, index: usize, set: &'a GoalSet) -> Option<Self> {
+        let end = window.end(index)?;
+        let [x, y] = set.goals()[set.nearest(end)];
+        Some(Self {
+            window,
+            index,
+            set,
+            kind: MotionKind::of(window.track(index))?,
+            error: (x - end[0]).hypot(y - end[1]),
+        })
+    }
+
+    fn case(&self, model: &GoalModel) -> Result<GoalCase, DdlError> {
+        let title = format!(
+            "{}, frame {}, no. {}: {}",
+            self.window.recording(),
+            self.window.start_frame(),
+            self.window.pedestrians()[self.index],
+            self.kind
+        );
+        let observed = self.window.observed(self.index);
+        let retrieved = model.estimator().estimate(observed)?;
+        let experts = retrieved
+            .experts()
+            .iter()
+            .take(EXPERTS)
+            .map(|expert| model.estimator().carry_over(expert, observed))
+            .collect::<Result<Vec<_>, _>>()?;
+        let goals = WeightedGoals::new(self.set.goals().to_vec(), self.set.weights().to_vec())
+            .map_err(ForecastError::from)?;
+        let track = self.window.track(self.index);
+        Ok(GoalCase::new(title, track, goals)?.with_experts(experts)?)
+    }
+}
