@@ -51,7 +51,7 @@ pub struct GoalEstimator {
 /// What the frame of the retrieval calls for.
 #[derive(Clone, Debug)]
 enum Method {
-    World(Retriever, KMeans),
+    World(Box<Retriever>, KMeans),
     Heading(Analogues),
 }
 
@@ -74,7 +74,7 @@ impl GoalEstimator {
                 }
                 let retriever = Retriever::new(&library, params.gamma(), params.query())?;
                 let kmeans = KMeans::new(params.clusters()).restarts(params.restarts());
-                Method::World(retriever, kmeans)
+                Method::World(Box::new(retriever), kmeans)
             }
         };
         Ok(Self {

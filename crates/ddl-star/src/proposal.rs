@@ -5,6 +5,7 @@
 //! ends comes close to the true one ("winner takes all"): the K ends then lie where an error that
 //! counts only the nearest of them is smallest. Trained in a minute or two on one core.
 
+mod affine;
 mod augment;
 mod checkpoint;
 mod config;

@@ -120,9 +120,9 @@ impl GoalModel {
             .into_par_iter()
             .map(|(frame, proposed, retrieved)| {
                 let (mut ends, mut weights) = (proposed.ends, proposed.weights);
-                weights
-                    .iter_mut()
-                    .for_each(|weight| *weight *= 1.0 - retrieved_share);
+                for weight in &mut weights {
+                    *weight *= 1.0 - retrieved_share;
+                }
                 ends.extend(retrieved.goals().iter().map(|&goal| frame.to_frame(goal)));
                 weights.extend(retrieved.weights().iter().map(|w| w * retrieved_share));
                 GoalSet::of_ends(&frame, &ends, &weights, clusters)

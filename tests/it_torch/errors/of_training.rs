@@ -9,7 +9,7 @@ use ddl_tests::{program, tiny_model};
 fn half_a_checkpoint_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let train = "train --convention simulated --fold corridor --epochs 1 --train-walkers 20 \
-                 --batch-walkers 20 --out run --threads 1";
+                 --batch-walkers 20 --proposal-steps 3 --out run --threads 1";
     let _ = program::run(folder.path(), train).succeeds();
     let run = folder.path().join("run");
     let checkpoint = run.join("optimizer.safetensors");
@@ -24,6 +24,8 @@ fn a_folder_that_holds_another_run_is_not_trained_over() {
     let folder = folder_with_model();
     let walkers = tiny_model::WALKERS;
     let batch = tiny_model::batch_walkers(walkers);
+    let recipe = serde_json::to_string(&tiny_model::goal_recipe(1)).unwrap();
+    std::fs::write(folder.path().join("recipe.json"), recipe).unwrap();
     for (different, part) in [
         ("--fold corridor --seed 77", "`training`"),
         ("--fold corridor --variant star", "`star`"),
@@ -32,9 +34,12 @@ fn a_folder_that_holds_another_run_is_not_trained_over() {
         // everything else as the tiny model was trained
         let train = format!(
             "train --convention simulated --epochs 1 --train-walkers {walkers} \
-             --batch-walkers {batch} --out run {different}"
+             --batch-walkers {batch} --goal-recipe recipe.json --out run {different}"
         );
         fails(folder.path(), &train, &["another run", part]);
+        let other_goals = train.replace("--goal-recipe recipe.json", "--proposal-steps 21");
+        let other_goals = other_goals.replace(different, "--fold corridor");
+        fails(folder.path(), &other_goals, &["another run", "`goals`"]);
     }
 }
 
@@ -65,12 +70,17 @@ fn an_unknown_fold_is_answered_with_those_there_are() {
 fn numbers_out_of_range_are_refused_before_anything_is_written() {
     let folder = tempfile::tempdir().unwrap();
     // should one be taken after all, it must not train for long
-    let short = [("--epochs", "1"), ("--train-walkers", "1")];
+    let short = [
+        ("--epochs", "1"),
+        ("--train-walkers", "1"),
+        ("--proposal-steps", "1"),
+    ];
     for (option, value, field) in [
         ("--epochs", "0", "epochs"),
         ("--batch-walkers", "0", "batch_walkers"),
         ("--train-walkers", "0", "walkers_per_epoch"),
         ("--learning-rate", "NaN", "learning_rate"),
+        ("--proposal-steps", "0", "steps"),
         ("--validation", "NaN", "validation"),
         ("--validation", "1", "validation"),
     ] {

@@ -18,6 +18,9 @@ use super::executor::{End, Executor, Stop, Watch};
 use super::plan::{Plan, Task};
 use super::record;
 
+/// Share of a training that its first stage, the goals, is shown as.
+const GOALS: f64 = 0.15;
+
 /// Lines of a log that are shown when a task fails.
 const LAST_LINES: usize = 8;
 
@@ -142,6 +145,7 @@ impl Local {
         let train = task.train_cost / task.cost();
         let steps = [
             (plan.train_arguments(task, out, self.threads), 0.0, train),
+            (plan.goals_arguments(task, out, self.threads), train, train),
             (plan.evaluate_arguments(task, out, self.threads), train, 1.0),
         ];
         for (arguments, from, to) in steps {
@@ -196,7 +200,12 @@ impl Local {
                 Ok(progress) if progress.total > 0.0 => {
                     // A program that begins a new stage counts from nothing again; the whole never
                     // goes back.
-                    reached = reached.max((progress.done / progress.total).clamp(0.0, 1.0));
+                    let fraction = (progress.done / progress.total).clamp(0.0, 1.0);
+                    reached = reached.max(match progress.stage.as_str() {
+                        "goals" => GOALS * fraction,
+                        "train" => GOALS + (1.0 - GOALS) * fraction,
+                        _ => fraction,
+                    });
                     tell(reached, &format!("{} {}", progress.stage, progress.message));
                 }
                 // Anything else is for the log, which may fail without harm to the task.

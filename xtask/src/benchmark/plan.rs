@@ -42,6 +42,9 @@ pub(crate) struct Settings {
     pub(crate) epochs: u32,
     /// Walkers trained on in each epoch; none is all.
     pub(crate) train_walkers: Option<u32>,
+    /// Batches that the proposal network is trained on; none is the program's default.
+    #[serde(default)]
+    pub(crate) proposal_steps: Option<u32>,
     /// Test walkers scored; none is all.
     pub(crate) test_walkers: Option<u32>,
     pub(crate) recipe: Recipe,
@@ -140,6 +143,9 @@ impl Plan {
         if let Some(walkers) = self.settings.train_walkers {
             push("--train-walkers", walkers.to_string());
         }
+        if let Some(steps) = self.settings.proposal_steps {
+            push("--proposal-steps", steps.to_string());
+        }
         let recipe = &self.settings.recipe;
         push("--batch-walkers", recipe.batch_walkers.to_string());
         push("--learning-rate", recipe.learning_rate.to_string());
@@ -169,6 +175,23 @@ impl Plan {
             push("--test-walkers", walkers.to_string());
         }
         self.common_arguments(threads, &mut push);
+        arguments
+    }
+
+    /// Arguments with which the program measures and draws the goals it forecasts towards.
+    pub(crate) fn goals_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
+        let mut arguments = vec!["goals".to_owned(), "--json".to_owned()];
+        let mut push = |flag: &str, value: String| arguments.extend([flag.to_owned(), value]);
+        let file = |name: &str| task.folder(out).join(name).display().to_string();
+        push("--model", task.run_folder(out).display().to_string());
+        push("--measure", "test".to_owned());
+        if let Some(data) = &self.settings.data {
+            push("--data", data.display().to_string());
+        }
+        push("--svg", file("goals.svg"));
+        push("--output", file("goals.json"));
+        push("--device", self.settings.device.clone());
+        push("--threads", threads.to_string());
         arguments
     }
 

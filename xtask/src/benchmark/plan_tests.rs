@@ -11,6 +11,7 @@ pub(crate) fn settings() -> Settings {
         cargo_profile: "release".to_owned(),
         epochs: 4,
         train_walkers: Some(800),
+        proposal_steps: Some(30),
         test_walkers: None,
         recipe: crate::benchmark::PUBLISHED,
     }
@@ -66,7 +67,7 @@ fn the_arguments_are_those_the_program_knows() {
     assert_eq!(
         plan.train_arguments(&plan.tasks[0], out, 1).join(" "),
         "train --convention star --data /recordings --fold eth --variant full --seed 7 \
-         --epochs 4 --train-walkers 800 --batch-walkers 256 --learning-rate 0.0015 \
+         --epochs 4 --train-walkers 800 --proposal-steps 30 --batch-walkers 256 --learning-rate 0.0015 \
          --learning-rate-schedule constant --out runs/x/eth-full-7/run --device cpu --threads 1 \
          --progress json"
     );
@@ -75,6 +76,11 @@ fn the_arguments_are_those_the_program_knows() {
         plan.evaluate_arguments(&plan.tasks[0], out, 2).join(" "),
         "evaluate --model runs/x/eth-full-7/run --protocol published --protocol fair \
          --protocol single --device cpu --threads 2 --progress json"
+    );
+    assert_eq!(
+        plan.goals_arguments(&plan.tasks[0], out, 2).join(" "),
+        "goals --json --model runs/x/eth-full-7/run --measure test --svg runs/x/eth-full-7/goals.svg \
+         --output runs/x/eth-full-7/goals.json --device cpu --threads 2"
     );
 }
 

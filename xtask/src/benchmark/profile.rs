@@ -15,6 +15,8 @@ pub(crate) struct Profile {
     pub(crate) epochs: u32,
     /// Walkers trained on in each epoch; none is all.
     pub(crate) train_walkers: Option<u32>,
+    /// Batches that the proposal network is trained on; none is the program's default.
+    pub(crate) proposal_steps: Option<u32>,
     /// Test walkers scored; none is all.
     pub(crate) test_walkers: Option<u32>,
     pub(crate) recipe: Recipe,
@@ -49,11 +51,11 @@ const SHORT: Recipe = Recipe {
 #[rustfmt::skip]
 const PROFILES: [Profile; 3] = [
     // Shows that everything works; its numbers mean nothing.
-    Profile { name: "smoke", folds: 2, epochs: 1, train_walkers: Some(600), test_walkers: Some(150), recipe: PUBLISHED },
+    Profile { name: "smoke", folds: 2, epochs: 1, train_walkers: Some(600), proposal_steps: Some(40), test_walkers: Some(150), recipe: PUBLISHED },
     // Numbers worth reading, in minutes on two cores.
-    Profile { name: "quick", folds: 5, epochs: 10, train_walkers: Some(4000), test_walkers: Some(2500), recipe: SHORT },
+    Profile { name: "quick", folds: 5, epochs: 10, train_walkers: Some(4000), proposal_steps: None, test_walkers: Some(2500), recipe: SHORT },
     // The paper's amount of training, on every window.
-    Profile { name: "paper", folds: 5, epochs: 200, train_walkers: None, test_walkers: None, recipe: PUBLISHED },
+    Profile { name: "paper", folds: 5, epochs: 200, train_walkers: None, proposal_steps: None, test_walkers: None, recipe: PUBLISHED },
 ];
 
 impl FromStr for Profile {

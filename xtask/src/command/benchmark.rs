@@ -173,6 +173,7 @@ impl Arguments {
             cargo_profile: self.cargo_profile.clone(),
             epochs: self.epochs.unwrap_or(self.profile.epochs),
             train_walkers: self.train_walkers.or(self.profile.train_walkers),
+            proposal_steps: self.profile.proposal_steps,
             test_walkers: self.test_walkers.or(self.profile.test_walkers),
             recipe: self.profile.recipe.clone(),
         };

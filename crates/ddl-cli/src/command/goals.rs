@@ -118,30 +118,31 @@ fn csv(windows: &[Window], sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
 
 /// The measurement for people.
 fn words(evaluation: &GoalEvaluation) -> String {
-    let mut text = format!(
-        "fold {}, {} goals a walker, {}\n{}\n{:14} {:>7}  {:>20}  {:>14}\n",
-        evaluation.fold,
-        evaluation.clusters,
-        evaluation.goals,
-        evaluation.windows,
-        "recording",
-        "walkers",
-        "nearest goal off (m)",
-        "likeliest (m)",
-    );
+    let mut lines = vec![
+        format!(
+            "fold {}, {} goals a walker, {}",
+            evaluation.fold, evaluation.clusters, evaluation.goals
+        ),
+        evaluation.windows.clone(),
+        format!(
+            "{:14} {:>7}  {:>20}  {:>14}",
+            "recording", "walkers", "nearest goal off (m)", "likeliest (m)"
+        ),
+    ];
     let all = ("all".to_owned(), evaluation.all);
     let by_recording = evaluation.recordings.iter().map(|(n, e)| (n.clone(), *e));
     for (name, errors) in by_recording.chain([all]) {
-        text += &format!(
-            "{name:14} {:>7}  {:>20.3}  {:>14.3}\n",
+        lines.push(format!(
+            "{name:14} {:>7}  {:>20.3}  {:>14.3}",
             errors.walkers, errors.oracle_fde, errors.likeliest_fde
-        );
+        ));
     }
     if let Some(calibration) = &evaluation.calibration {
-        text += &format!(
-            "probabilities: log loss {:.3} (equal ones {:.3}), calibration error {:.4}\n",
+        lines.push(format!(
+            "probabilities: log loss {:.3} (equal ones {:.3}), calibration error {:.4}",
             calibration.log_loss, calibration.uniform_log_loss, calibration.expected_error
-        );
+        ));
     }
-    text + &format!("estimated in {:.2} s\n", evaluation.seconds)
+    lines.push(format!("estimated in {:.2} s\n", evaluation.seconds));
+    lines.join("\n")
 }

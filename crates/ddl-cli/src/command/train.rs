@@ -48,7 +48,7 @@ pub(crate) struct Train {
     /// Share of the training recordings' time, at their ends, kept for validation
     #[arg(long, default_value_t = 0.0)]
     validation: f64,
-    /// Training recordings kept for validation whole, such as uni_examples,zara03
+    /// Training recordings kept for validation whole, such as `uni_examples,zara03`
     #[arg(long, value_delimiter = ',')]
     validation_recordings: Vec<String>,
     /// Where goals come from: proposed by a network trained first, or retrieved from the training tracks

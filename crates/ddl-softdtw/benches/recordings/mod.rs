@@ -1,26 +1,26 @@
 //! Windows to measure with: of the real recordings where they are, of synthetic walkers otherwise.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+#[path = "../../tests/recorded/mod.rs"]
+mod recorded;
+
+use std::path::Path;
 
 pub(crate) type Walk = Vec<[f64; 2]>;
 
 /// Frames of a window: 8 observed and 12 to come.
 const FRAMES: i64 = 20;
-/// Seconds from one frame to the next.
-const TIME_STEP: f64 = 0.4;
-/// Recordings that candidates are taken from, with the frames from one position to the next.
-const CANDIDATES: [(&str, i64); 7] = [
-    ("hotel", 10),
-    ("zara01", 10),
-    ("zara02", 10),
-    ("zara03", 10),
-    ("students001", 10),
-    ("students003", 10),
-    ("uni_examples", 10),
+/// Recordings that candidates are taken from.
+const CANDIDATES: [&str; 7] = [
+    "hotel",
+    "zara01",
+    "zara02",
+    "zara03",
+    "students001",
+    "students003",
+    "uni_examples",
 ];
 /// The recording that queries are taken from.
-const QUERIES: (&str, i64) = ("eth", 6);
+const QUERIES: &str = "eth";
 
 /// Candidates, queries and where they come from.
 pub(crate) struct Windows {
@@ -32,7 +32,7 @@ pub(crate) struct Windows {
 impl Windows {
     /// The first `steps` velocities (m/s) of all complete windows: those of one recording against those of seven others.
     pub(crate) fn load(steps: usize) -> Self {
-        let Some(folder) = folder() else {
+        let Some(folder) = recorded::folder() else {
             return Self {
                 source: "synthetic",
                 candidates: walkers(37_000, steps, 2),
@@ -41,11 +41,11 @@ impl Windows {
         };
         let candidates = CANDIDATES
             .iter()
-            .flat_map(|&(name, step)| windows(&folder, name, step, steps));
+            .flat_map(|name| windows(&folder, name, steps));
         Self {
             source: "real",
             candidates: candidates.collect(),
-            queries: windows(&folder, QUERIES.0, QUERIES.1, steps),
+            queries: windows(&folder, QUERIES, steps),
         }
     }
 
@@ -56,45 +56,16 @@ impl Windows {
     }
 }
 
-/// The folder that `DDL_DATASETS` names, if the recordings lie in it.
-fn folder() -> Option<PathBuf> {
-    let folder = PathBuf::from(std::env::var_os("DDL_DATASETS")?);
-    [folder.join("star"), folder]
-        .into_iter()
-        .find(|folder| folder.join("eth.csv").is_file())
-}
-
-/// Velocities of the complete windows of a recording: four lines of frame, pedestrian, y (m) and x (m).
-fn windows(folder: &Path, name: &str, step: i64, steps: usize) -> Vec<Walk> {
-    let path = folder.join(format!("{name}.csv"));
-    let text = std::fs::read_to_string(&path).expect("a readable recording");
-    let lines: Vec<Vec<f64>> = text
-        .lines()
-        .map(|line| {
-            let fields = line.split(',').map(|field| field.trim().parse());
-            fields.collect::<Result<_, _>>().expect("numbers")
-        })
-        .collect();
-    let [frames, pedestrians, ys, xs] = lines.as_slice() else {
-        panic!("{}: four lines were expected", path.display());
-    };
-    let mut tracks: BTreeMap<i64, BTreeMap<i64, [f64; 2]>> = BTreeMap::new();
-    for ((frame, pedestrian), (y, x)) in frames.iter().zip(pedestrians).zip(ys.iter().zip(xs)) {
-        let track = tracks.entry(*pedestrian as i64).or_default();
-        track.insert(*frame as i64, [*x, *y]);
-    }
+/// Velocities (m/s) of the complete windows of a recording.
+fn windows(folder: &Path, name: &str, steps: usize) -> Vec<Walk> {
     let mut windows = Vec::new();
-    for track in tracks.values() {
+    for track in recorded::walkers(folder, name).values() {
         for &start in track.keys() {
-            let positions = (0..FRAMES).map(|i| track.get(&(start + i * step)).copied());
-            let Some(positions) = positions.collect::<Option<Walk>>() else {
-                continue;
-            };
-            let velocity = |pair: &[[f64; 2]]| {
-                let [from, to] = [pair[0], pair[1]];
-                [(to[0] - from[0]) / TIME_STEP, (to[1] - from[1]) / TIME_STEP]
-            };
-            windows.push(positions.windows(2).take(steps).map(velocity).collect());
+            let frames = (0..FRAMES).map(|i| start + i * recorded::frame_step(name));
+            let positions = frames.map(|frame| track.get(&frame).copied());
+            if let Some(positions) = positions.collect::<Option<Walk>>() {
+                windows.push(recorded::differences(&positions[..=steps]));
+            }
         }
     }
     windows

@@ -1,5 +1,7 @@
 //! Velocities of the walkers of the real recordings, for tests and benchmarks.
 
+#![allow(dead_code, reason = "each program needs a part")]
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -24,8 +26,9 @@ pub(crate) fn folder() -> Option<PathBuf> {
         .find(|folder| folder.join("eth.csv").is_file())
 }
 
-/// Velocities (m/s) of every walker of a recording over every stretch without a gap, in order of pedestrian and time.
-pub(crate) fn velocities(folder: &Path, recording: &str) -> Vec<Track> {
+/// Frame to position (m) of every walker of a recording, by pedestrian: the file has four lines, of frames, pedestrians, y
+/// and x.
+pub(crate) fn walkers(folder: &Path, recording: &str) -> BTreeMap<i64, BTreeMap<i64, [f64; 2]>> {
     let path = folder.join(format!("{recording}.csv"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let parse = |field: &str| field.trim().parse::<f64>().expect("a number");
@@ -34,23 +37,35 @@ pub(crate) fn velocities(folder: &Path, recording: &str) -> Vec<Track> {
         .map(|line| line.split(',').map(parse).collect())
         .collect();
     let [frames, pedestrians, ys, xs] = rows.as_slice() else {
-        panic!("{}: four rows are expected", path.display())
+        panic!("{}: four lines are expected", path.display())
     };
     let mut walkers: BTreeMap<i64, BTreeMap<i64, [f64; 2]>> = BTreeMap::new();
     for i in 0..frames.len() {
         let walker = walkers.entry(pedestrians[i] as i64).or_default();
         walker.insert(frames[i] as i64, [xs[i], ys[i]]);
     }
-    let frame_step = if recording == "eth" { 6 } else { 10 };
+    walkers
+}
+
+/// Frames of a recording from one position to the next.
+pub(crate) fn frame_step(recording: &str) -> i64 {
+    if recording == "eth" { 6 } else { 10 }
+}
+
+/// Forward differences (m/s).
+pub(crate) fn differences(positions: &[[f64; 2]]) -> Track {
+    let velocity = |pair: &[[f64; 2]]| [0, 1].map(|d| (pair[1][d] - pair[0][d]) / TIME_STEP);
+    positions.windows(2).map(velocity).collect()
+}
+
+/// Velocities (m/s) of every walker of a recording over every stretch without a gap, in order of pedestrian and time.
+pub(crate) fn velocities(folder: &Path, recording: &str) -> Vec<Track> {
     let mut tracks = Vec::new();
-    for walker in walkers.into_values() {
+    for walker in walkers(folder, recording).into_values() {
         let positions: Vec<_> = walker.into_iter().collect();
-        for stretch in positions.chunk_by(|a, b| b.0 - a.0 == frame_step) {
-            let velocity = |pair: &[(i64, [f64; 2])]| {
-                let ((_, a), (_, b)) = (pair[0], pair[1]);
-                [(b[0] - a[0]) / TIME_STEP, (b[1] - a[1]) / TIME_STEP]
-            };
-            tracks.push(stretch.windows(2).map(velocity).collect());
+        for stretch in positions.chunk_by(|a, b| b.0 - a.0 == frame_step(recording)) {
+            let positions: Track = stretch.iter().map(|&(_, position)| position).collect();
+            tracks.push(differences(&positions));
         }
     }
     tracks

@@ -29,8 +29,8 @@ pub(crate) fn winner_takes_all(
         let squared = offset.square();
         (squared.sum_dim_intlist([-1i64].as_slice(), false, None::<Kind>) + 1e-6).sqrt()
     };
-    let mut distance = length(&proposals.ends - end);
-    if weights.waypoints > 0.0 {
+    let off_the_end = length(&proposals.ends - end);
+    let distance = if weights.waypoints > 0.0 {
         let steps: Vec<i64> = WAYPOINTS
             .iter()
             .map(|share| (share * HORIZON as f64) as i64 - 1)
@@ -38,9 +38,10 @@ pub(crate) fn winner_takes_all(
         let index = Tensor::from_slice(&steps).to_device(future.device());
         let on_the_way = future.index_select(2, &index).unsqueeze(2);
         let off = length(&proposals.waypoints - on_the_way);
-        let mean = off.mean_dim([-1i64].as_slice(), false, None::<Kind>);
-        distance = distance + mean * weights.waypoints;
-    }
+        off_the_end + off.mean_dim([-1i64].as_slice(), false, None::<Kind>) * weights.waypoints
+    } else {
+        off_the_end
+    };
     let (sorted, order) = distance.sort(-1, false);
     let ends = distance.size()[2];
     let share: Vec<f64> = (0..ends)

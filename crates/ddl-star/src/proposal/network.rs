@@ -1,5 +1,6 @@
 //! The network: an ensemble of small perceptrons with attention over the neighbours.
 
+use super::affine::Affine;
 use super::config::ProposalConfig;
 use super::data::{Views, WalkerView};
 use crate::StarError;
@@ -27,34 +28,6 @@ pub struct ProposedEnds {
     pub ends: Vec<Position>,
     /// Probability of each to be the nearest to the true end; sums to 1.
     pub weights: Vec<f64>,
-}
-
-/// An affine map of every member: y = x W + b.
-#[derive(Debug)]
-struct Affine {
-    weight: Tensor,
-    bias: Tensor,
-}
-
-impl Affine {
-    /// Uniform weights with the variance `gain`² · 2 / inputs (He et al. 2015), no bias.
-    fn new(
-        init: &mut Initializer,
-        name: &str,
-        (members, inputs, outputs): (i64, i64, i64),
-        gain: f64,
-    ) -> Self {
-        let bound = gain * (6.0 / inputs as f64).sqrt();
-        let weight = init.uniform(format!("{name}.weight"), &[members, inputs, outputs], bound);
-        let bias = init.constant(format!("{name}.bias"), &[members, 1, outputs], 0.0);
-        Self { weight, bias }
-    }
-
-    /// # Shapes
-    /// `x` `[M, B, inputs]` -> `[M, B, outputs]`.
-    fn forward(&self, x: &Tensor) -> Tensor {
-        self.bias.baddbmm(x, &self.weight, 1.0, 1.0)
-    }
 }
 
 /// What the network says of a batch.
@@ -109,34 +82,30 @@ impl ProposalNetwork {
         );
         let (m, width, near) = (config.members, config.width, config.neighbour_width);
         let ends = config.ends;
-        let init = &mut init;
         let own_features = (OBSERVED * 2 + (OBSERVED - 1) * 2) as i64;
-        let own = Affine::new(init, "own", (m, own_features, width), 1.0);
+        let own = Affine::new(&mut init, "own", (m, own_features, width), 1.0);
         let neighbour = [
-            Affine::new(init, "neighbour.0", (m, NEIGHBOUR_FEATURES, near), 1.0),
-            Affine::new(init, "neighbour.1", (m, near, near), 1.0),
+            Affine::new(&mut init, "neighbour.0", (m, NEIGHBOUR_FEATURES, near), 1.0),
+            Affine::new(&mut init, "neighbour.1", (m, near, near), 1.0),
         ];
-        let query = Affine::new(init, "query", (m, width, near), 0.5);
-        let key = Affine::new(init, "key", (m, near, near), 0.5);
-        let value = Affine::new(init, "value", (m, near, near), 1.0);
+        let query = Affine::new(&mut init, "query", (m, width, near), 0.5);
+        let key = Affine::new(&mut init, "key", (m, near, near), 0.5);
+        let value = Affine::new(&mut init, "value", (m, near, near), 1.0);
         let hidden = (0..config.layers)
             .map(|layer| {
                 let inputs = if layer == 0 { width + near + 1 } else { width };
-                Affine::new(init, &format!("hidden.{layer}"), (m, inputs, width), 1.0)
+                Affine::new(
+                    &mut init,
+                    &format!("hidden.{layer}"),
+                    (m, inputs, width),
+                    1.0,
+                )
             })
             .collect();
-        let end_layer = Affine::new(init, "ends", (m, width, ends * 2), 0.3);
+        let end_layer = Affine::new(&mut init, "ends", (m, width, ends * 2), 0.3);
         let waypoint_outputs = ends * WAYPOINTS.len() as i64 * 2;
-        let waypoints = Affine::new(init, "waypoints", (m, width, waypoint_outputs), 0.3);
-        let logits = Affine::new(init, "logits", (m, width, ends), 0.1);
-        let init = std::mem::replace(
-            init,
-            Initializer::new(
-                stream(seed, Stage::ProposalWeights, 0),
-                device.torch(),
-                kind,
-            ),
-        );
+        let waypoints = Affine::new(&mut init, "waypoints", (m, width, waypoint_outputs), 0.3);
+        let logits = Affine::new(&mut init, "logits", (m, width, ends), 0.1);
         Ok(Self {
             config,
             device,

@@ -120,6 +120,7 @@ mod tests {
             cargo_profile: "release".to_owned(),
             epochs: 4,
             train_walkers: Some(800),
+            proposal_steps: None,
             test_walkers: None,
             recipe: crate::benchmark::PUBLISHED,
         };
