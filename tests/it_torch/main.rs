@@ -7,6 +7,7 @@ mod errors;
 mod evaluate_report;
 mod forecast_own_tracks;
 mod goals_and_info;
+mod goals_measured;
 mod leak;
 mod leak_in_reports;
 mod prepare;

@@ -1,7 +1,7 @@
 //! Goals that stand for many weighted ends, wherever the ends come from.
 
 use crate::choice::choose;
-use crate::error::{GoalError, TrackError};
+use crate::error::GoalError;
 use crate::goal_set::GoalSet;
 use crate::heading::HeadingFrame;
 use crate::points::Points;
@@ -61,8 +61,10 @@ impl GoalSet {
             if !end.iter().all(|value| value.abs() < LARGEST) {
                 return wrong(format!("end {index} is ({}, {})", end[0], end[1]));
             }
-            if *weight > 0.0 {
-                points.push(end, weight / total);
+            // the share may be 0 where the weight is not
+            let share = weight / total;
+            if share > 0.0 {
+                points.push(end, share);
             }
         }
         let choice = choose(&points, clusters, STEPS);
@@ -72,7 +74,7 @@ impl GoalSet {
             .map(|&end| frame.to_world(end))
             .collect();
         if !goals.as_flattened().iter().all(|value| value.is_finite()) {
-            return Err(TrackError::VelocityOverflow { index: 0 }.into());
+            return wrong("a goal is too far out to be carried into the world".to_owned());
         }
         Ok(Self::new(goals, choice.weights, Vec::new()))
     }

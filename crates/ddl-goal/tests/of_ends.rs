@@ -1,6 +1,7 @@
 //! Goals that stand for given ends.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
+#![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
 use ddl_goal::{GoalError, GoalSet, HeadingFrame};
 use proptest::prelude::*;
@@ -24,20 +25,18 @@ fn mean_distance(set: &GoalSet, ends: &[[f64; 2]], weights: &[f64]) -> f64 {
 
 proptest! {
     #[test]
-    fn weights_are_a_distribution_and_more_goals_come_nearer(
+    fn weights_are_a_distribution_and_enough_goals_are_the_ends(
         ends in prop::collection::vec((prop::array::uniform2(-9.0..9.0_f64), 0.01..1.0_f64), 1..120),
     ) {
         let (ends, weights): (Vec<_>, Vec<_>) = ends.into_iter().unzip();
         let set = |clusters| GoalSet::of_ends(&frame(), &ends, &weights, clusters).unwrap();
         let mut last = f64::INFINITY;
-        for clusters in [1, 5, 40, 150] {
+        for clusters in [1, 5, 150] {
             let set = set(clusters);
             prop_assert_eq!(set.goals().len(), clusters);
             prop_assert!((set.weights().iter().sum::<f64>() - 1.0).abs() < 1e-9);
             prop_assert!(set.weights().is_sorted_by(|a, b| a >= b));
             let distance = mean_distance(&set, &ends, &weights);
-            // Not a law of the method, but five to eight times as many goals cannot be as far in practice.
-            prop_assert!(distance <= last + 1e-9, "{} goals: {} after {}", clusters, distance, last);
             last = distance;
         }
         prop_assert!(last < 1e-9, "as many goals as ends, and yet {} away", last);

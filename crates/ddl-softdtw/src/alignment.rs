@@ -5,7 +5,7 @@
 )]
 
 use crate::cost::{Cost, Length, Metric, Squared};
-use crate::exp2::{LANES, Lanes};
+use crate::exp2::{Lanes, STRIP};
 use crate::grid::{Grid, Strip};
 use crate::log_domain::Gradients;
 use crate::scalar::Scalar;
@@ -20,7 +20,7 @@ impl Record for Shares {
     #[inline(always)]
     fn step(&mut self, addends: &[Lanes; 3], sums: &Lanes) {
         let mut shares = *addends;
-        for l in 0..LANES {
+        for l in 0..STRIP {
             // A plain number is 0 where no path comes.
             let scale = if sums[l] > 0.0 { 1.0 / sums[l] } else { 0.0 };
             for share in &mut shares {
@@ -58,12 +58,12 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         };
         let value = self.value(&mut shares)?;
         let mut gathered = Gathered {
-            arriving: vec![0.0; self.columns.len() + 2 * (LANES - 1)],
+            arriving: vec![0.0; self.columns.len() + 2 * (STRIP - 1)],
             of_rows: vec![[0.0; D]; self.rows.len()],
             of_columns: vec![[0.0; D]; self.columns.len()],
         };
         // Every path ends in the last cell: as if it came from the last column below.
-        gathered.arriving[self.columns.len() + LANES - 2] = 1.0;
+        gathered.arriving[self.columns.len() + STRIP - 2] = 1.0;
         let mut steps = shares.steps.as_slice();
         for index in (0..self.strips()).rev() {
             let strip = self.strip(index);
@@ -73,10 +73,10 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
                 Cost::SquaredEuclidean => self.retreat(Squared, &strip, own, &mut gathered),
                 Cost::Euclidean => self.retreat(Length, &strip, own, &mut gathered),
             };
-            let spare = self.strips() * LANES - self.rows.len();
+            let spare = self.strips() * STRIP - self.rows.len();
             for (lane, of_lane) in of_lanes.into_iter().enumerate() {
                 // Lanes above the first row belong to no row.
-                if let Some(row) = (index * LANES + lane).checked_sub(spare) {
+                if let Some(row) = (index * STRIP + lane).checked_sub(spare) {
                     gathered.of_rows[row] = of_lane;
                 }
             }
@@ -101,31 +101,31 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         strip: &Strip<D>,
         shares: &[[Lanes; 3]],
         gathered: &mut Gathered<D>,
-    ) -> [[f64; D]; LANES] {
+    ) -> [[f64; D]; STRIP] {
         let (start, end) = (strip.start, strip.end);
-        let arriving = &mut gathered.arriving[..end + LANES];
-        let mut of_rows = [[0.0; D]; LANES];
+        let arriving = &mut gathered.arriving[..end + STRIP];
+        let mut of_rows = [[0.0; D]; STRIP];
         let mut y = self.window(end);
         // What the step before (the next column) sent left, and up and along the diagonal to the lane above.
-        let mut left = [0.0; LANES];
-        let mut above = [0.0; LANES];
-        let mut diagonal = [0.0; LANES];
+        let mut left = [0.0; STRIP];
+        let mut above = [0.0; STRIP];
+        let mut diagonal = [0.0; STRIP];
         for (offset, [to_diagonal, to_up, to_left]) in shares.iter().enumerate().rev() {
             let d = start + offset;
             if d < end {
-                y = [y[1], y[2], y[3], self.column(d, LANES - 1)];
+                y = [y[1], y[2], y[3], self.column(d, STRIP - 1)];
             }
             let from_below = [above[1], above[2], above[3], arriving[d]];
             arriving[d] = 0.0;
-            let mut expected = [0.0; LANES];
-            for l in 0..LANES {
+            let mut expected = [0.0; STRIP];
+            for l in 0..STRIP {
                 expected[l] = left[l] + from_below[l];
                 left[l] = expected[l] * to_left[l];
                 let up = expected[l] * to_up[l];
                 above[l] = up + diagonal[l];
                 diagonal[l] = expected[l] * to_diagonal[l];
             }
-            for l in 0..LANES {
+            for l in 0..STRIP {
                 let slope = metric.slope(&strip.x[l], &y[l]);
                 let mut part = [0.0; D];
                 for k in 0..D {
@@ -141,10 +141,10 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
                 }
             }
             // Lane 0 sends to the strip above: up to its own column, where the diagonal of the next column arrives too.
-            arriving[d + LANES - 1] += above[0];
+            arriving[d + STRIP - 1] += above[0];
         }
         // What lane 0 of the first step sends along its diagonal.
-        arriving[start + LANES - 2] += diagonal[0];
+        arriving[start + STRIP - 2] += diagonal[0];
         of_rows
     }
 }

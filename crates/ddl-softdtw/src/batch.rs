@@ -1,7 +1,7 @@
 //! Values and gradients of one sequence against many.
 
 use crate::blocks::{Blocks, FREE, Run};
-use crate::error::{SearchError, SequenceRole};
+use crate::error::{SearchError, SequenceRole, SoftDtwError};
 use crate::lanes::{Dispatch, InstructionSet, LANES, WIDE_LANES};
 use crate::range::Range;
 use crate::value::{SoftDtw, check};
@@ -26,7 +26,8 @@ impl<const D: usize, F: FnMut(usize, f64, &[[f64; D]])> Visit<D> for F {}
 /// does not fit is evaluated in `f64`: values beyond about 57 γ (39 γ without fused multiplication), sequences of more than 32 steps or too large for the
 /// bound; and by [`SoftDtw`] itself what is beyond that: about 570 γ, 180 steps, the Euclidean cost, γ = 0.
 ///
-/// Everything runs on the calling thread. The last bits depend on the instruction set.
+/// Everything runs on the calling thread. The last bits of a pair depend on the instruction set and, because
+/// all sequences are shifted by their common mean, on the other sequences.
 ///
 /// # Examples
 /// A step towards the mean of three sequences (Cuturi & Blondel 2017, section 3.1):
@@ -157,7 +158,8 @@ impl<const D: usize> SoftDtwBatch<D> {
     /// `weights`: one for each sequence.
     ///
     /// # Errors
-    /// [`SearchError::Weights`] for a wrong number of weights; otherwise as [`SoftDtwBatch::values_and_gradients`].
+    /// [`SearchError::Weights`] for a wrong number of weights, [`SearchError::Weight`] for one that is not finite, and
+    /// [`SoftDtwError::Overflow`] for a sum that is not; otherwise as [`SoftDtwBatch::values_and_gradients`].
     pub fn weighted_sum(
         &self,
         x: &[[f64; D]],
@@ -169,7 +171,11 @@ impl<const D: usize> SoftDtwBatch<D> {
                 sequences: self.len(),
             });
         }
-        let (mut sum, mut total) = (0.0, vec![[0.0; D]; x.len()]);
+        if let Some(index) = weights.iter().position(|weight| !weight.is_finite()) {
+            let weight = weights[index];
+            return Err(SearchError::Weight { index, weight });
+        }
+        let (mut sum, mut total) = (0.0_f64, vec![[0.0; D]; x.len()]);
         self.each_pair(x, |index, value, gradient| {
             let weight = weights[index];
             sum += weight * value;
@@ -178,7 +184,12 @@ impl<const D: usize> SoftDtwBatch<D> {
                 *total += weight * component;
             }
         })?;
-        Ok((sum, total))
+        let finite = sum.is_finite() && total.as_flattened().iter().all(|g: &f64| g.is_finite());
+        if finite {
+            Ok((sum, total))
+        } else {
+            Err(SoftDtwError::Overflow.into())
+        }
     }
 
     /// Evaluates every pair, in an order that depends on the inputs alone.

@@ -82,6 +82,14 @@ pub enum SearchError {
         /// Number of sequences of the batch.
         sequences: usize,
     },
+    /// A weighted sum needs finite weights.
+    #[error("weight {index} is {weight}: must be finite")]
+    Weight {
+        /// Position of the weight, from 0.
+        index: usize,
+        /// Its value.
+        weight: f64,
+    },
     /// The processor does not have the vector instructions that were asked for.
     #[error("this processor has no {set} instructions: choose one of InstructionSet::available()")]
     InstructionSet {

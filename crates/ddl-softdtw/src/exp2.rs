@@ -5,9 +5,9 @@
 )]
 
 /// Cells computed together: neighbours on an antidiagonal, one a row.
-pub(crate) const LANES: usize = 4;
+pub(crate) const STRIP: usize = 4;
 /// One number for each of the cells computed together.
-pub(crate) type Lanes = [f64; LANES];
+pub(crate) type Lanes = [f64; STRIP];
 
 /// Adding and subtracting 1.5 · 2^52 rounds a number below 2^51 to an integer, which then sits in the low bits of the sum.
 pub(crate) const ROUNDING: f64 = 6_755_399_441_055_744.0;
@@ -33,9 +33,9 @@ const POLYNOMIAL: [f64; 11] = [
 /// Relative error of 2^−f: at most 2.3e-16. No number in range gives anything but a normal one.
 #[inline(always)]
 pub(crate) fn exp2_minus(t: &Lanes) -> (Lanes, Lanes) {
-    let mut whole = [0.0; LANES];
-    let mut power = [0.0; LANES];
-    for l in 0..LANES {
+    let mut whole = [0.0; STRIP];
+    let mut power = [0.0; STRIP];
+    for l in 0..STRIP {
         whole[l] = (t[l] + ROUNDING) - ROUNDING;
         let f = t[l] - whole[l];
         let ff = f * f;

@@ -8,7 +8,7 @@ use std::ops::RangeInclusive;
 
 use crate::band::Band;
 use crate::cost::Cost;
-use crate::exp2::{LANES, Lanes};
+use crate::exp2::{Lanes, STRIP};
 use crate::scalar::Scalar;
 
 /// Two checked sequences and what is asked of them: row i is step i of one, column j step j of the other.
@@ -24,7 +24,7 @@ pub(crate) struct Grid<'a, T, const D: usize> {
 /// lane l is at column d − l.
 pub(crate) struct Strip<const D: usize> {
     /// The rows' steps. Lanes above the first row repeat it.
-    pub(crate) x: [[f64; D]; LANES],
+    pub(crate) x: [[f64; D]; STRIP],
     /// First and last step in which some lane is at a column of the grid (and of the band).
     pub(crate) start: usize,
     pub(crate) end: usize,
@@ -44,28 +44,28 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
 
     /// Number of strips.
     pub(crate) fn strips(&self) -> usize {
-        self.rows.len().div_ceil(LANES)
+        self.rows.len().div_ceil(STRIP)
     }
 
     /// Strip `index`. The first one may have fewer rows than lanes, so that the last row is always in the last lane.
     pub(crate) fn strip(&self, index: usize) -> Strip<D> {
         let (n, m) = (self.rows.len(), self.columns.len());
-        let spare = self.strips() * LANES - n;
+        let spare = self.strips() * STRIP - n;
         let top = if index == 0 { spare } else { 0 };
-        let row = |lane: usize| (index * LANES + lane).saturating_sub(spare);
+        let row = |lane: usize| (index * STRIP + lane).saturating_sub(spare);
         let mut strip = Strip {
-            x: [[0.0; D]; LANES],
+            x: [[0.0; D]; STRIP],
             start: top,
-            end: m - 1 + LANES - 1,
-            first: [f64::INFINITY; LANES],
-            last: [0.0; LANES],
+            end: m - 1 + STRIP - 1,
+            first: [f64::INFINITY; STRIP],
+            last: [0.0; STRIP],
             corner: (index == 0).then_some(spare),
         };
         for (lane, x) in strip.x.iter_mut().enumerate() {
             *x = widened(&self.rows[row(lane)]);
         }
         if self.band.is_some() {
-            for lane in top..LANES {
+            for lane in top..STRIP {
                 let columns = self.band_columns(row(lane));
                 if lane == top {
                     strip.start = columns.start() + lane;
@@ -88,8 +88,8 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
     }
 
     /// [`Grid::column`] for every lane.
-    pub(crate) fn window(&self, d: usize) -> [[f64; D]; LANES] {
-        let mut window = [[0.0; D]; LANES];
+    pub(crate) fn window(&self, d: usize) -> [[f64; D]; STRIP] {
+        let mut window = [[0.0; D]; STRIP];
         for (lane, y) in window.iter_mut().enumerate() {
             *y = self.column(d, lane);
         }

@@ -74,7 +74,6 @@ pub(crate) trait Simd: Copy {
     ///
     /// Exponents below −[`COST_LIMIT`] (and NaN) count as −[`COST_LIMIT`]: no result is denormal.
     #[expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-    #[allow(dead_code, reason = "for kernels with one register at a time")]
     #[inline(always)]
     fn exp2(self, exponent: Self::Narrow) -> Self::Narrow {
         let [power] = self.exp2_each([exponent]);

@@ -29,7 +29,7 @@
 )]
 
 use crate::cost::{Cost, Length, Metric, Squared};
-use crate::exp2::{LANES, Lanes};
+use crate::exp2::{Lanes, STRIP};
 use crate::grid::{Grid, Strip};
 use crate::scalar::Scalar;
 use crate::weight::{Plain, Scaled, Weight};
@@ -74,7 +74,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         }
         // Entry c + 3 is column c. A step reads entry d + 3 (column d) for its first lane and writes entry d (column d − 3)
         // from its last; three entries before and after the columns take what the slanted ends of a strip read and write.
-        let length = self.columns.len() + 2 * (LANES - 1);
+        let length = self.columns.len() + 2 * (STRIP - 1);
         let path = (self.rows.len() + self.columns.len()) as f64;
         let mut end = None;
         if length <= SHORT && self.rows.len() <= SHORT {
@@ -107,7 +107,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         row: &mut [W::One],
         record: &mut impl Record,
     ) -> Option<(f64, f64)> {
-        let mut largest = [0.0; LANES];
+        let mut largest = [0.0; STRIP];
         for index in 0..self.strips() {
             let strip = self.strip(index);
             let t_max = &mut largest;
@@ -128,13 +128,13 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
             if largest.iter().any(|&t| t > limit) {
                 return None;
             }
-            if (index + 1) % (STRETCH / LANES) == 0 {
+            if (index + 1) % (STRETCH / STRIP) == 0 {
                 for cell in &mut *row {
                     *cell = W::normalised_one(*cell);
                 }
             }
         }
-        Some(W::parts(row[self.columns.len() + LANES - 2]))
+        Some(W::parts(row[self.columns.len() + STRIP - 2]))
     }
 
     /// One strip: `row` holds the row above it before, its last row after. `largest` takes the largest t of each lane.
@@ -149,11 +149,11 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         record: &mut impl Record,
     ) {
         let (start, end) = (strip.start, strip.end);
-        let row = &mut row[..end + LANES];
+        let row = &mut row[..end + STRIP];
         let mut cells = W::NONE;
         let mut diagonal = match strip.corner {
             Some(lane) => W::origin(lane),
-            None => W::NONE.below(row[start + LANES - 2]),
+            None => W::NONE.below(row[start + STRIP - 2]),
         };
         let mut t_max = *largest;
         let mut y = self.window(start);
@@ -164,17 +164,17 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
                 if d > start {
                     y = [self.column(d, 0), y[0], y[1], y[2]];
                 }
-                let mut t = [0.0; LANES];
-                for l in 0..LANES {
+                let mut t = [0.0; STRIP];
+                for l in 0..STRIP {
                     t[l] = metric.between(&strip.x[l], &y[l]) * scale;
                 }
-                let up = cells.below(row[d + LANES - 1]);
+                let up = cells.below(row[d + STRIP - 1]);
                 let (reached, (addends, sums)) = W::cells(&diagonal, &up, &cells, &t);
                 cells = reached;
                 if BANDED {
                     let step = d as f64;
-                    let mut inside = [false; LANES];
-                    for l in 0..LANES {
+                    let mut inside = [false; STRIP];
+                    for l in 0..STRIP {
                         inside[l] = strip.first[l] <= step && step <= strip.last[l];
                         t[l] = if inside[l] { t[l] } else { 0.0 };
                     }

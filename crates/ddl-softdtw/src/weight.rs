@@ -4,7 +4,7 @@
     reason = "the lanes stay in registers only when what works on them is inlined"
 )]
 
-use crate::exp2::{LANES, Lanes, ROUNDING, exp2_minus};
+use crate::exp2::{Lanes, ROUNDING, STRIP, exp2_minus};
 
 /// Exponent of a cell that no path reaches: far below every other, far from overflow.
 const NOTHING: f64 = -1_152_921_504_606_846_976.0; // −2^60
@@ -38,7 +38,7 @@ pub(crate) trait Weight: Copy {
     fn cells(diagonal: &Self, up: &Self, left: &Self, t: &Lanes) -> (Self, Addends);
 
     /// None in the lanes that are not `inside`.
-    fn within(self, inside: [bool; LANES]) -> Self;
+    fn within(self, inside: [bool; STRIP]) -> Self;
 
     /// The same numbers with every significand in [1, 2).
     fn normalised(self) -> Self;
@@ -60,8 +60,8 @@ pub(crate) struct Scaled<V> {
 impl Weight for Scaled<Lanes> {
     type One = Scaled<f64>;
     const NONE: Self = Self {
-        significand: [1.0; LANES],
-        exponent: [NOTHING; LANES],
+        significand: [1.0; STRIP],
+        exponent: [NOTHING; STRIP],
     };
     const NONE_ONE: Scaled<f64> = Scaled {
         significand: 1.0,
@@ -89,22 +89,22 @@ impl Weight for Scaled<Lanes> {
     #[inline(always)]
     fn last(&self) -> Scaled<f64> {
         Scaled {
-            significand: self.significand[LANES - 1],
-            exponent: self.exponent[LANES - 1],
+            significand: self.significand[STRIP - 1],
+            exponent: self.exponent[STRIP - 1],
         }
     }
 
     #[inline(always)]
     fn cells(diagonal: &Self, up: &Self, left: &Self, t: &Lanes) -> (Self, Addends) {
-        let mut top = [0.0; LANES];
+        let mut top = [0.0; STRIP];
         for (l, top) in top.iter_mut().enumerate() {
             let (a, b, c) = (diagonal.exponent[l], up.exponent[l], left.exponent[l]);
             let bc = if b > c { b } else { c };
             *top = if a > bc { a } else { bc };
         }
-        let mut addends = [[0.0; LANES]; 3];
+        let mut addends = [[0.0; STRIP]; 3];
         for (addend, way) in addends.iter_mut().zip([diagonal, up, left]) {
-            for l in 0..LANES {
+            for l in 0..STRIP {
                 let shift = way.exponent[l] - top[l];
                 let shift = if shift > FARTHEST { shift } else { FARTHEST };
                 // The low bits of the sum are the shift; moved to the place of the exponent they multiply by 2^shift.
@@ -113,9 +113,9 @@ impl Weight for Scaled<Lanes> {
             }
         }
         let (whole, power) = exp2_minus(t);
-        let mut sums = [0.0; LANES];
+        let mut sums = [0.0; STRIP];
         let mut cells = *left;
-        for l in 0..LANES {
+        for l in 0..STRIP {
             sums[l] = sum(&addends, l);
             cells.significand[l] = power[l] * sums[l];
             cells.exponent[l] = top[l] - whole[l];
@@ -124,7 +124,7 @@ impl Weight for Scaled<Lanes> {
     }
 
     #[inline(always)]
-    fn within(mut self, inside: [bool; LANES]) -> Self {
+    fn within(mut self, inside: [bool; STRIP]) -> Self {
         for (exponent, inside) in self.exponent.iter_mut().zip(inside) {
             *exponent = if inside { *exponent } else { NOTHING };
         }
@@ -134,7 +134,7 @@ impl Weight for Scaled<Lanes> {
     // Not inlined, and by value: it is rare, and behind a reference the lanes would not stay in registers.
     #[inline(never)]
     fn normalised(mut self) -> Self {
-        for l in 0..LANES {
+        for l in 0..STRIP {
             let one = Self::normalised_one(Scaled {
                 significand: self.significand[l],
                 exponent: self.exponent[l],
@@ -165,7 +165,7 @@ pub(crate) struct Plain(Lanes);
 
 impl Weight for Plain {
     type One = f64;
-    const NONE: Self = Self([0.0; LANES]);
+    const NONE: Self = Self([0.0; STRIP]);
     const NONE_ONE: f64 = 0.0;
 
     #[inline(always)]
@@ -184,16 +184,16 @@ impl Weight for Plain {
 
     #[inline(always)]
     fn last(&self) -> f64 {
-        self.0[LANES - 1]
+        self.0[STRIP - 1]
     }
 
     #[inline(always)]
     fn cells(diagonal: &Self, up: &Self, left: &Self, t: &Lanes) -> (Self, Addends) {
         let addends = [diagonal.0, up.0, left.0];
         let (whole, power) = exp2_minus(t);
-        let mut sums = [0.0; LANES];
-        let mut cells = [0.0; LANES];
-        for l in 0..LANES {
+        let mut sums = [0.0; STRIP];
+        let mut cells = [0.0; STRIP];
+        for l in 0..STRIP {
             sums[l] = sum(&addends, l);
             let shift = (ROUNDING - whole[l]).to_bits() << 52;
             cells[l] = f64::from_bits(power[l].to_bits().wrapping_add(shift)) * sums[l];
@@ -202,7 +202,7 @@ impl Weight for Plain {
     }
 
     #[inline(always)]
-    fn within(mut self, inside: [bool; LANES]) -> Self {
+    fn within(mut self, inside: [bool; STRIP]) -> Self {
         for (one, inside) in self.0.iter_mut().zip(inside) {
             *one = if inside { *one } else { 0.0 };
         }

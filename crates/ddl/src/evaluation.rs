@@ -243,7 +243,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 selection: Some(selection.to_owned()),
                 device: self.model.device().name().to_owned(),
                 training_subset: subset(training),
-                recipe: Some(recipe(training)),
+                recipe: Some(recipe(training, &config.goals)),
                 ..plain.clone()
             };
             let of_lines = Conditions {

@@ -89,6 +89,9 @@ impl GoalModel {
 
     /// The goals of every pedestrian of every window, from the observed frames alone.
     ///
+    /// The network computes in single precision, many walkers at a time: a walker's goals may differ from those it has in
+    /// other company by rounding, and near a tie between two choices of goals by more.
+    ///
     /// # Errors
     /// When positions are so far apart that distances leave the range of `f64`, or libtorch fails.
     pub fn goals(&self, windows: &[Window]) -> Result<Vec<Vec<GoalSet>>, ForecastError> {

@@ -65,6 +65,12 @@ impl RunConfig {
     }
 }
 
+/// The part of `config.json` that every layout has.
+#[derive(Deserialize)]
+struct Layout {
+    format: u32,
+}
+
 /// What a run is trained on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -220,15 +226,14 @@ impl RunDirectory {
             };
             return Err(DdlError::run(&self.0, problem));
         }
-        let config: RunConfig = read_json(&path)?;
-        if config.format != FORMAT {
-            let problem = format!(
-                "has layout {}, this program reads {FORMAT}; train it anew",
-                config.format
-            );
+        // The layout first: what another one holds may not be understood.
+        let Layout { format } = read_json(&path)?;
+        if format != FORMAT {
+            let problem =
+                format!("has layout {format}, this program reads {FORMAT}; train it anew");
             return Err(DdlError::run(&self.0, problem));
         }
-        Ok(config)
+        read_json(&path)
     }
 
     /// Reads `metrics.jsonl`; empty when no epoch is done.

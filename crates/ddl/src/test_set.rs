@@ -60,7 +60,7 @@ impl TestSet {
                 Ok(Self::validation(&fold, rule, fraction, walkers))
             }
             EvaluationSplit::Validation => {
-                wrong("kept nothing for validation; train it with --validation 0.2".to_owned())
+                wrong("kept nothing for validation; train it with --validation 0.2 or --validation-recordings".to_owned())
             }
         }
     }
@@ -115,16 +115,16 @@ impl TestSet {
             subset: None,
         }
         .at_most(walkers);
-        let name = format!(
-            "validation: the last {fraction} of the TRAINING recordings{}",
-            match fold.recordings_set_apart() {
-                [] => String::new(),
-                apart => {
-                    let names: Vec<&str> = apart.iter().map(|r| r.name()).collect();
-                    format!(", and {} whole", names.join(", "))
-                }
-            }
-        );
+        let mut parts = Vec::new();
+        if fraction > 0.0 {
+            parts.push(format!("the last {fraction} of the TRAINING recordings"));
+        }
+        let apart = fold.recordings_set_apart();
+        if !apart.is_empty() {
+            let names: Vec<&str> = apart.iter().map(|r| r.name()).collect();
+            parts.push(format!("{} whole", names.join(", ")));
+        }
+        let name = format!("validation: {}", parts.join(", and "));
         let subset = part
             .subset
             .map_or(name.clone(), |subset| format!("{name}; {subset}"));

@@ -3,6 +3,7 @@
 use crate::run_directory::{FORMAT, RunConfig, RunDirectory, TrainingData};
 use crate::{DdlError, GoalRecipe, goal_training};
 use ddl_data::{Convention, Dataset, Window, WindowRule};
+use ddl_goal::RetrievalFrame;
 use ddl_star::{
     ComputeDevice, DeviceChoice, ProposalStep, StarConfig, StarError, StarNetwork, StepReport,
     Trainer, TrainingConfig, Variant, save_parameters,
@@ -104,9 +105,14 @@ pub fn train(
     }
     // Evaluation runs the published estimator too, which needs as many tracks as it retrieves.
     let published = request.goals.retrieval.clone().into_published().check()?;
+    let retrieval = request.goals.retrieval.clone().check()?;
     let (tracks, experts) = (
         windows.iter().map(Window::len).sum::<usize>(),
-        published.experts(),
+        match retrieval.frame() {
+            RetrievalFrame::World => published.experts().max(retrieval.experts()),
+            // a smaller library is used whole
+            RetrievalFrame::Heading => published.experts(),
+        },
     );
     if tracks < experts {
         return Err(DdlError::TooFewTracks { tracks, experts });

@@ -1,12 +1,16 @@
 //! A training in words, as results name it.
 
+use crate::GoalRecipe;
 use ddl_star::TrainingConfig;
 
 /// How it was trained, in words.
-pub(crate) fn recipe(training: &TrainingConfig) -> String {
+pub(crate) fn recipe(training: &TrainingConfig, goals: &GoalRecipe) -> String {
     let (walkers, rate) = (training.batch_walkers, training.learning_rate);
     let schedule = training.learning_rate_schedule;
-    format!("batches of more than {walkers} walkers, Adam with step size {rate} ({schedule})")
+    let goals = goals.words();
+    format!(
+        "batches of more than {walkers} walkers, Adam with step size {rate} ({schedule}); goals {goals}"
+    )
 }
 
 /// How much of the training set an epoch sees, in words; `None` for all of it.

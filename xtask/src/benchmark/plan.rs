@@ -19,7 +19,7 @@ pub(crate) const VARIANTS: [&str; 4] = ["full", "no-goal-shift", "no-dynamics", 
 const PROTOCOLS: [&str; 3] = ["published", "fair", "single"];
 
 /// Layout of `plan.json`.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// Everything to do, independent of who does it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -43,7 +43,6 @@ pub(crate) struct Settings {
     /// Walkers trained on in each epoch; none is all.
     pub(crate) train_walkers: Option<u32>,
     /// Batches that the proposal network is trained on; none is the program's default.
-    #[serde(default)]
     pub(crate) proposal_steps: Option<u32>,
     /// Test walkers scored; none is all.
     pub(crate) test_walkers: Option<u32>,

@@ -13,6 +13,7 @@ use std::path::PathBuf;
 /// Estimate where the people of your own tracks are going, as csv; or measure how good a run's goals are
 #[derive(Debug, Args)]
 #[command(
+    mut_arg("file", |file| file.required(false).required_unless_present("measure")),
     after_help = "Examples:\n  ddl goals --model runs/eth tracks.csv\n  ddl goals --model runs/eth --measure test --svg goals.svg"
 )]
 pub(crate) struct Goals {
@@ -25,13 +26,13 @@ pub(crate) struct Goals {
     #[arg(long, value_enum, conflicts_with = "file")]
     measure: Option<Measure>,
     /// Folder of the recordings to measure on [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
-    #[arg(long, requires = "measure")]
+    #[arg(long)]
     data: Option<PathBuf>,
     /// The measurement as JSON
-    #[arg(long, requires = "measure")]
+    #[arg(long)]
     json: bool,
     /// Also draw walkers with typical errors, one of each kind of motion, as an SVG
-    #[arg(long, requires = "measure", value_name = "FILE")]
+    #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
     /// File to write [default: standard output]
     #[arg(long, short)]
@@ -61,6 +62,9 @@ struct Row {
 
 impl Goals {
     pub(crate) fn run(self) -> anyhow::Result<()> {
+        if self.measure.is_none() && (self.json || self.svg.is_some() || self.data.is_some()) {
+            bail!("--json, --svg and --data go with --measure test or --measure validation");
+        }
         let text = match (&self.tracks, self.measure) {
             (_, Some(measure)) => self.measure(measure)?,
             (Some(tracks), None) => {

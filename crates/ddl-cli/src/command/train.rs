@@ -3,7 +3,7 @@
 use super::{Machine, Telling, dataset};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use ddl::data::Convention;
 use ddl::star::{LearningRateSchedule, ProposalTraining, TrainingConfig};
@@ -54,9 +54,8 @@ pub(crate) struct Train {
     /// Where goals come from: proposed by a network trained first, or retrieved from the training tracks
     #[arg(long, value_enum, default_value_t = GoalsFrom::Proposed)]
     goals: GoalsFrom,
-    /// Batches that the proposal network is trained on
-    #[arg(long, default_value_t = ProposalTraining::default().steps)]
-    proposal_steps: u64,
+    #[arg(long, help = format!("Batches that the proposal network is trained on [default: {}]", ProposalTraining::default().steps))]
+    proposal_steps: Option<u64>,
     /// JSON file with all of it: the part `goals` of a run's config.json
     #[arg(long, value_name = "FILE", conflicts_with_all = ["goals", "proposal_steps"])]
     goal_recipe: Option<PathBuf>,
@@ -133,15 +132,18 @@ impl Train {
             return serde_json::from_str(&text)
                 .with_context(|| format!("{} is no recipe for goals", path.display()));
         }
-        Ok(match self.goals {
-            GoalsFrom::Retrieved => GoalRecipe::retrieved(self.seed),
-            GoalsFrom::Proposed => {
-                let mut recipe = GoalRecipe::proposed(self.seed);
-                if let Some(proposal) = &mut recipe.proposal {
-                    proposal.training.steps = self.proposal_steps;
-                }
-                recipe
+        match (self.goals, self.proposal_steps) {
+            (GoalsFrom::Retrieved, Some(_)) => {
+                bail!("--proposal-steps is for --goals proposed: retrieved goals have no network")
             }
-        })
+            (GoalsFrom::Retrieved, None) => Ok(GoalRecipe::retrieved(self.seed)),
+            (GoalsFrom::Proposed, steps) => {
+                let mut recipe = GoalRecipe::proposed(self.seed);
+                if let (Some(proposal), Some(steps)) = (&mut recipe.proposal, steps) {
+                    proposal.training.steps = steps;
+                }
+                Ok(recipe)
+            }
+        }
     }
 }

@@ -129,3 +129,36 @@ fn bad_input_is_refused_by_name() {
         "{error}"
     );
 }
+
+#[test]
+fn cells_far_from_every_path_leave_nothing_in_a_gradient() {
+    // The cheapest path costs 552 γ; a path through the huge difference must not count, whatever its size.
+    let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean).unwrap();
+    for huge in [1e5, 1e10, 1e40, 1e100, 1e300] {
+        let (x, y) = (vec![[huge], [23.5]], vec![[huge], [0.0], [23.5]]);
+        for set in InstructionSet::available() {
+            let batch = SoftDtwBatch::build(&dtw, std::slice::from_ref(&y)).unwrap();
+            let batch = batch.with_instruction_set(set).unwrap();
+            let found = batch.values_and_gradients(&x).unwrap();
+            let (value, gradient) = dtw.value_and_gradient(&x, &y).unwrap();
+            assert!((found.values()[0] - value).abs() < 1e-9, "{set}, {huge:e}");
+            for (found, expected) in found.gradient(0).unwrap().iter().zip(&gradient) {
+                assert!(
+                    (found[0] - expected[0]).abs() < 1e-9,
+                    "{set}, {huge:e}: {found:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn weights_and_sums_that_are_not_finite_are_refused() {
+    let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean).unwrap();
+    let batch = SoftDtwBatch::build(&dtw, &[vec![[0.0], [3.0]], vec![[9.0], [1.0]]]).unwrap();
+    let sum = |weights: &[f64]| batch.weighted_sum(&[[5.0], [2.0]], weights);
+    assert!(sum(&[0.5, -2.0]).is_ok());
+    let error = sum(&[1.0, f64::NAN]).unwrap_err().to_string();
+    assert_eq!(error, "weight 1 is NaN: must be finite");
+    assert!(sum(&[1e308, 1e308]).is_err());
+}

@@ -8,6 +8,10 @@ use crate::range::Range;
 use crate::refine::{GAMMAS, WIDE_FLOOR, WIDE_GROUP, spread};
 use crate::value::SoftDtw;
 
+/// Largest difference of two components, in √γ, 2^20. The clamp on costs leaves up to 2^−57 of the alignment in a cell that
+/// no path should pass: the gradient counts that times the difference.
+const FARTHEST: f64 = 1_048_576.0;
+
 /// Evaluates one x against eight sequences at a time; the memory for it is kept.
 pub(super) struct WidePairs<const D: usize> {
     dtw: SoftDtw,
@@ -71,7 +75,8 @@ impl<const D: usize> WidePairs<D> {
         });
         let smallest = range.smallest_aligned_log2(n * m).exp2();
         for (lane, &member) in members.iter().enumerate() {
-            if scores[lane] < smallest {
+            let far = farthest(x, &sequences[member]) > FARTHEST * gamma.sqrt();
+            if far || scores[lane] < smallest {
                 beyond.push(member);
                 continue;
             }
@@ -85,6 +90,16 @@ impl<const D: usize> WidePairs<D> {
             visit(member, value, &self.single);
         }
     }
+}
+
+/// A bound on the differences of the components of any two steps.
+fn farthest<const D: usize>(x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
+    let spread = |d: usize| {
+        let components = || x.iter().chain(y).map(|step| step[d]);
+        let least = components().fold(f64::INFINITY, f64::min);
+        components().fold(f64::NEG_INFINITY, f64::max) - least
+    };
+    (0..D).map(spread).fold(0.0, f64::max)
 }
 
 /// The two recursions of [`super::forward_backward`] in `f64`.

@@ -24,7 +24,8 @@ pub(crate) fn augment(
     let options = (future.kind(), future.device());
     let uniform = || Tensor::rand(per_walker, options) * 2.0 - 1.0;
     let scale = (uniform() * training.scale).exp();
-    let mirror = uniform().sign();
+    // Not `sign`, which has a third value.
+    let mirror = uniform().ge(0.0).to_kind(options.0) * 2.0 - 1.0;
     let angle = Tensor::randn(per_walker, options) * training.turn;
     let (cos, sin) = (&scale * angle.cos(), &scale * angle.sin());
     // Row vectors: p' = p [[cos, sin], [-m sin, m cos]], a turn after a mirror image in the x axis.

@@ -76,7 +76,7 @@ mod tests {
     fn only_the_nearest_count_and_fewer_of_them_as_it_goes() {
         // One member, one walker that ends at (5, 0); ends at distances 1, 3 and 2.
         let future = Tensor::zeros([1, 1, 12, 2], (Kind::Double, Device::Cpu));
-        let _ = future.select(2, 11).copy_(&Tensor::from_slice(&[5.0, 0.0]));
+        future.select(2, 11).copy_(&Tensor::from_slice(&[5.0, 0.0]));
         let proposals = Proposals {
             ends: Tensor::from_slice(&[6.0, 0.0, 5.0, 3.0, 3.0, 0.0]).reshape([1, 1, 3, 2]),
             waypoints: Tensor::zeros([1, 1, 3, 3, 2], (Kind::Double, Device::Cpu)),
