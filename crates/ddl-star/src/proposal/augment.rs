@@ -1,7 +1,7 @@
 //! Changes to a batch that leave a plausible scene: mirrored, turned, enlarged, observed less well.
 //!
-//! A fold's windows overlap: some ten thousand of them show about a thousand different walkers. What
-//! identifies a walker must therefore change from visit to visit, or it is learned by heart.
+//! A fold's windows overlap: 15,000 to 38,000 of them show 900 to 1500 different walkers. What identifies
+//! a walker must therefore change from visit to visit, or it is learned by heart.
 
 use super::config::ProposalTraining;
 use super::data::Views;
