@@ -17,12 +17,11 @@ pub(crate) struct Narrowing<const D: usize> {
 }
 
 impl<const D: usize> Narrowing<D> {
-    /// What suits `sequences` and γ.
-    pub(crate) fn new(gamma: f64, sequences: &[&[[f64; D]]]) -> Self {
-        let steps = || sequences.iter().flat_map(|sequence| sequence.iter());
-        let count = steps().count() as f64;
+    /// What suits `steps` and γ.
+    pub(crate) fn new<'a>(gamma: f64, steps: impl Iterator<Item = &'a [f64; D]> + Clone) -> Self {
+        let count = steps.clone().count() as f64;
         let mut shift = [0.0; D];
-        for step in steps() {
+        for step in steps {
             for (sum, value) in shift.iter_mut().zip(step) {
                 *sum += value / count;
             }
@@ -46,7 +45,7 @@ impl<const D: usize> Narrowing<D> {
             .fold(0.0, f64::max)
     }
 
-    fn step(&self, step: &[f64; D]) -> [f32; D] {
+    pub(crate) fn step(&self, step: &[f64; D]) -> [f32; D] {
         std::array::from_fn(|d| ((step[d] - self.shift[d]) * self.scale) as f32)
     }
 }
@@ -89,10 +88,11 @@ pub(crate) struct Run {
 impl<const D: usize> Blocks<D> {
     /// Arranges sequences of at least one step each.
     pub(crate) fn new(gamma: f64, sequences: &[&[[f64; D]]]) -> Self {
-        let narrowing = Narrowing::new(gamma, sequences);
+        let steps = sequences.iter().flat_map(|sequence| sequence.iter());
+        let narrowing = Narrowing::new(gamma, steps.clone());
         let mut blocks = Self {
             narrowing,
-            largest: narrowing.largest(sequences.iter().flat_map(|sequence| sequence.iter())),
+            largest: narrowing.largest(steps),
             longest: sequences.iter().map(|s| s.len()).max().unwrap_or(0),
             runs: Vec::new(),
             members: Vec::new(),

@@ -5,6 +5,7 @@ mod band;
 mod batch;
 mod blocks;
 mod cost;
+mod decision;
 mod error;
 mod exp2;
 mod gradient;

@@ -2,11 +2,12 @@
 
 use rayon::prelude::*;
 
+use crate::decision::{Candidates, self_values};
 use crate::error::{SearchError, SequenceRole, SoftDtwError};
 use crate::lanes::{Dispatch, InstructionSet};
-use crate::refine::{PairValue, PairValues};
+use crate::refine::PairValues;
 use crate::sieve::Sieve;
-use crate::value::{SoftDtw, check, finite, normalise};
+use crate::value::{SoftDtw, check, finite};
 
 /// Queries that go through the candidates together.
 const TOGETHER: usize = 8;
@@ -199,44 +200,17 @@ impl<const D: usize> SearchIndex<D> {
         }
         let values = PairValues::new(self.dtw, self.dispatch);
         let self_query = values.all(&[(query, query)])[0];
-        let neighbour = |index: usize, value: f64| Neighbour {
-            index,
-            distance: normalise(value, self_query, self.self_values[index]),
+        let all = Candidates {
+            values,
+            sequence: |index| self.candidate(index),
+            self_values: &self.self_values,
         };
-        let pairs = candidates.iter().map(|&i| (query, self.candidate(i)));
-        let (mut found, mut beyond) = (Vec::with_capacity(candidates.len()), Vec::new());
-        for (&index, value) in candidates.iter().zip(values.of(pairs)) {
-            match value {
-                PairValue::Known(value) => found.push(neighbour(index, value)),
-                PairValue::AtLeast(bound) => beyond.push(neighbour(index, bound)),
-            }
-        }
-        nearest_first(&mut found, wanted);
-        if found.len() == wanted {
-            let last = found[wanted - 1].distance;
-            beyond.retain(|at_least| at_least.distance <= last);
-        }
-        if !beyond.is_empty() {
-            found.extend(beyond.iter().map(|&Neighbour { index, .. }| {
-                neighbour(index, values.beyond(query, self.candidate(index)))
-            }));
-            nearest_first(&mut found, wanted);
-        }
-        found
-            .iter()
-            .try_for_each(|neighbour| finite(neighbour.distance).map(|_| ()))?;
-        Ok(found)
+        all.nearest(query, self_query, candidates, wanted)
     }
 
-    /// D(y, y) of every candidate, computed as the values of the search are: the distance of equal sequences is 0.
     fn evaluate_self_values(&self) -> Result<Vec<f64>, SearchError> {
-        let indices: Vec<usize> = (0..self.len()).collect();
         let values = PairValues::new(self.dtw, self.dispatch);
-        let chunks = indices.par_chunks(1024).flat_map(|indices| {
-            let candidates = indices.iter().map(|&i| self.candidate(i));
-            values.all(&candidates.map(|y| (y, y)).collect::<Vec<_>>())
-        });
-        let evaluated: Vec<f64> = chunks.collect();
+        let evaluated = self_values(&values, self.len(), |index| self.candidate(index));
         for (index, &value) in evaluated.iter().enumerate() {
             finite(value).map_err(|source| SearchError::Candidate { index, source })?;
         }
@@ -246,18 +220,4 @@ impl<const D: usize> SearchIndex<D> {
     fn candidate(&self, index: usize) -> &[[f64; D]] {
         &self.steps[self.offsets[index]..self.offsets[index + 1]]
     }
-}
-
-/// Leaves the `wanted` nearest (all, if there are fewer), in order, ties by index.
-fn nearest_first(found: &mut Vec<Neighbour>, wanted: usize) {
-    let order = |a: &Neighbour, b: &Neighbour| {
-        a.distance
-            .total_cmp(&b.distance)
-            .then(a.index.cmp(&b.index))
-    };
-    if wanted < found.len() {
-        found.select_nth_unstable_by(wanted, order);
-        found.truncate(wanted);
-    }
-    found.sort_unstable_by(order);
 }

@@ -6,40 +6,26 @@ mod error;
 mod hits;
 mod kernel;
 mod layout;
-mod rank;
 mod sieve;
+mod window;
 
 use rayon::prelude::*;
 
+use crate::decision::{Candidates, self_values};
 use crate::error::{SequenceRole, SoftDtwError};
 use crate::lanes::{Dispatch, InstructionSet};
 use crate::refine::PairValues;
+use crate::search::Neighbour;
 use crate::value::{SoftDtw, check, finite};
 
 pub use error::SlidingError;
 use layout::Layout;
 use sieve::Sieve;
+pub use window::WindowNeighbour;
+use window::{Place, places_of, running_sums};
 
 /// Windows of a query that are searched for together; a longer query is cut.
 const QUERY_WINDOWS: usize = 64;
-
-/// A window of a track found by a search.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WindowNeighbour {
-    /// Position of the track in the list the index was built from, from 0.
-    pub track: usize,
-    /// First step of the window in its track, from 0.
-    pub offset: usize,
-    /// Normalised soft-DTW distance to the query, in the unit of the cost, evaluated in `f64`.
-    pub distance: f64,
-}
-
-/// Where a window is.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    track: usize,
-    offset: usize,
-}
 
 /// All windows of one length of many tracks, prepared for repeated search; `D` components a step.
 ///
@@ -280,10 +266,21 @@ impl<const D: usize> SlidingIndex<D> {
         };
         let pairs: Vec<_> = windows.iter().map(|&window| (window, window)).collect();
         let own = self.pair_values().all(&pairs);
+        let candidates = Candidates {
+            values: self.pair_values(),
+            sequence: |window| self.window(window),
+            self_values: &self.self_values,
+        };
         let mut found = Vec::with_capacity(windows.len());
         for ((window, survivors), own) in windows.into_iter().zip(survivors).zip(own) {
             let survivors = survivors.unwrap_or_else(|| (0..self.len()).collect());
-            found.push(self.decide(window, finite(own)?, &survivors, wanted)?);
+            let nearest = candidates.nearest(window, finite(own)?, &survivors, wanted)?;
+            found.push(
+                nearest
+                    .iter()
+                    .map(|found| self.window_neighbour(found))
+                    .collect(),
+            );
         }
         Ok(found)
     }
@@ -292,15 +289,10 @@ impl<const D: usize> SlidingIndex<D> {
         PairValues::new(self.dtw, self.dispatch)
     }
 
-    /// D(y, y) of every window.
     fn own_values(&self) -> Result<Vec<f64>, SlidingError> {
-        let windows: Vec<usize> = (0..self.len()).collect();
-        let own = windows.par_chunks(1024).flat_map(|windows| {
-            let windows = windows.iter().map(|&window| self.window(window));
-            let pairs: Vec<_> = windows.map(|window| (window, window)).collect();
-            self.pair_values().all(&pairs)
+        let values = self_values(&self.pair_values(), self.len(), |window| {
+            self.window(window)
         });
-        let values: Vec<f64> = own.collect();
         match values.iter().position(|value| !value.is_finite()) {
             None => Ok(values),
             Some(window) => Err(SlidingError::Track {
@@ -310,22 +302,18 @@ impl<const D: usize> SlidingIndex<D> {
         }
     }
 
+    /// A window that was found, by track and offset: windows are numbered by these, so ties were broken by them.
+    fn window_neighbour(&self, found: &Neighbour) -> WindowNeighbour {
+        let Place { track, offset } = self.places[found.index];
+        WindowNeighbour {
+            track,
+            offset,
+            distance: found.distance,
+        }
+    }
+
     fn window(&self, window: usize) -> &[[f64; D]] {
         let Place { track, offset } = self.places[window];
         &self.steps[self.first_steps[track] + offset..][..self.length]
     }
-}
-
-fn places_of((track, &windows): (usize, &usize)) -> impl Iterator<Item = Place> + use<> {
-    (0..windows).map(move |offset| Place { track, offset })
-}
-
-/// Sums of all numbers before each of `numbers`, and of all.
-fn running_sums(numbers: impl Iterator<Item = usize>) -> Vec<usize> {
-    let mut sums = vec![0];
-    sums.extend(numbers.scan(0, |sum, number| {
-        *sum += number;
-        Some(*sum)
-    }));
-    sums
 }

@@ -1,5 +1,6 @@
 //! Where the windows of all tracks lie: pieces of tracks, one to a lane, sixteen to a group.
 
+use crate::blocks::Narrowing;
 use crate::lanes::{LANES, Lanes};
 
 /// Most windows of a piece: longer tracks are cut, so that the similarities of a group stay in the cache.
@@ -8,10 +9,7 @@ const LONGEST_PIECE: usize = 64;
 /// The windows of all tracks in `f32`, scaled and shifted.
 #[derive(Clone, Debug)]
 pub(super) struct Layout<const D: usize> {
-    /// √(log2 e / γ): squared differences are then costs in log2 units.
-    scale: f64,
-    /// Mean of all steps, subtracted before rounding: differences do not notice, the rounding error does.
-    shift: [f64; D],
+    pub(super) narrowing: Narrowing<D>,
     /// Largest absolute value among the scaled and shifted components.
     largest: f64,
     /// Steps of a window.
@@ -64,26 +62,20 @@ impl<const D: usize> Layout<D> {
         length: usize,
         self_values: &[f64],
     ) -> Self {
-        let scale = (std::f64::consts::LOG2_E / gamma).sqrt();
-        let used = || {
-            let tracks = tracks
-                .iter()
-                .zip(windows)
-                .filter(|&(_, &windows)| windows > 0);
-            tracks.flat_map(|(track, windows)| &track[..windows + length - 1])
-        };
-        let count = used().count() as f64;
-        let shift = std::array::from_fn(|d| used().map(|step| step[d] / count).sum());
+        let used = tracks
+            .iter()
+            .zip(windows)
+            .filter(|&(_, &windows)| windows > 0)
+            .flat_map(|(track, windows)| &track[..windows + length - 1]);
+        let narrowing = Narrowing::new(gamma, used.clone());
         let mut layout = Self {
-            scale,
-            shift,
-            largest: 0.0,
+            narrowing,
+            largest: narrowing.largest(used),
             length,
             groups: Vec::new(),
             samples: Vec::new(),
             weights: Vec::new(),
         };
-        layout.largest = layout.largest_of(used());
         let mut pieces = pieces(windows);
         pieces.sort_by_key(|piece| std::cmp::Reverse(piece.windows));
         for members in pieces.chunks(LANES) {
@@ -98,11 +90,12 @@ impl<const D: usize> Layout<D> {
         let steps = windows + self.length - 1;
         self.samples.resize(first_sample + steps, [[0.0; LANES]; D]);
         self.weights.resize(first_weight + windows, [0.0; LANES]);
+        let scale = self.narrowing.scale;
         let mut first_windows = [0; LANES];
         for (lane, piece) in members.iter().enumerate() {
             first_windows[lane] = piece.first_window;
             let steps = &tracks[piece.track][piece.offset..][..piece.windows + self.length - 1];
-            let narrow: Vec<_> = steps.iter().map(|step| self.narrow(step)).collect();
+            let narrow = self.narrowing.narrow(steps);
             for (sample, step) in self.samples[first_sample..].iter_mut().zip(narrow) {
                 for (lanes, value) in sample.iter_mut().zip(step) {
                     lanes[lane] = value;
@@ -110,7 +103,7 @@ impl<const D: usize> Layout<D> {
             }
             let own = &self_values[piece.first_window..][..piece.windows];
             for (weight, own) in self.weights[first_weight..].iter_mut().zip(own) {
-                let half_log2 = own * self.scale * self.scale / 2.0;
+                let half_log2 = own * scale * scale / 2.0;
                 weight[lane] = half_log2.exp2() as f32;
             }
         }
@@ -135,21 +128,9 @@ impl<const D: usize> Layout<D> {
         })
     }
 
-    /// A step shifted, scaled and rounded to `f32`.
-    pub(super) fn narrow(&self, step: &[f64; D]) -> [f32; D] {
-        std::array::from_fn(|d| ((step[d] - self.shift[d]) * self.scale) as f32)
-    }
-
     /// Largest absolute value among the shifted and scaled components of the windows and of `query`.
     pub(super) fn largest_with(&self, query: &[[f64; D]]) -> f64 {
-        self.largest.max(self.largest_of(query.iter()))
-    }
-
-    fn largest_of<'a>(&self, steps: impl Iterator<Item = &'a [f64; D]>) -> f64 {
-        let components = steps.flat_map(|step| step.iter().zip(&self.shift));
-        components
-            .map(|(v, s)| ((v - s) * self.scale).abs())
-            .fold(0.0, f64::max)
+        self.largest.max(self.narrowing.largest(query.iter()))
     }
 }
 
@@ -219,7 +200,7 @@ mod tests {
                         track += 1;
                     }
                     for step in 0..3 {
-                        let narrow = layout.narrow(&tracks[track][offset + step]);
+                        let narrow = layout.narrowing.step(&tracks[track][offset + step]);
                         assert_eq!(
                             group.samples[w + step][0][lane].to_bits(),
                             narrow[0].to_bits()

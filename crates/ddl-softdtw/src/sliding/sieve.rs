@@ -60,7 +60,7 @@ impl<const D: usize> Sieve<D> {
     }
 
     fn sweep(&self, dispatch: Dispatch, query: &[[f64; D]], selections: &mut [Selection]) {
-        let query: Vec<_> = query.iter().map(|step| self.layout.narrow(step)).collect();
+        let query = self.layout.narrowing.narrow(query);
         match self.layout.length() {
             7 => self.sweep_of::<7, true>(dispatch, &query, selections),
             8 => self.sweep_of::<8, true>(dispatch, &query, selections),
