@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use crate::error::SoftDtwError;
+use crate::neighbour::Neighbour;
 use crate::refine::{PairValue, PairValues};
-use crate::search::Neighbour;
 use crate::value::{finite, normalise};
 
 /// Candidates with their values.

@@ -5,22 +5,13 @@ use rayon::prelude::*;
 use crate::decision::{Candidates, self_values};
 use crate::error::{SearchError, SequenceRole, SoftDtwError};
 use crate::lanes::{Dispatch, InstructionSet};
+use crate::neighbour::Neighbour;
 use crate::refine::PairValues;
 use crate::sieve::Sieve;
 use crate::value::{SoftDtw, check, finite};
 
 /// Queries that go through the candidates together.
 const TOGETHER: usize = 8;
-
-/// A candidate found by a search.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Neighbour {
-    /// Position of the candidate in the list the index was built from, from 0.
-    pub index: usize,
-    /// Normalised soft-DTW distance to the query, in the unit of the cost, evaluated in `f64`; exactly 0 for a candidate
-    /// that equals the query.
-    pub distance: f64,
-}
 
 /// Candidates prepared for repeated search; `D` components a step.
 ///

@@ -14,8 +14,8 @@ use rayon::prelude::*;
 use crate::decision::{Candidates, self_values};
 use crate::error::{SequenceRole, SoftDtwError};
 use crate::lanes::{Dispatch, InstructionSet};
+use crate::neighbour::Neighbour;
 use crate::refine::PairValues;
-use crate::search::Neighbour;
 use crate::value::{SoftDtw, check, finite};
 
 pub use error::SlidingError;

@@ -1,7 +1,6 @@
 //! The first stage of a training: what the goals come from.
 
-use crate::run_directory::RunDirectory;
-use crate::training::SAVE_EVERY;
+use crate::run_directory::{RunDirectory, SAVE_EVERY};
 use crate::{DdlError, ProposalRecipe, experts, views};
 use ddl_data::Window;
 use ddl_goal::GoalError;

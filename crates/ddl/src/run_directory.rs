@@ -21,7 +21,10 @@ use ddl_star::{EpochReport, StarConfig, TrainingConfig};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
+/// A run under way is saved at least this often.
+pub(crate) const SAVE_EVERY: Duration = Duration::from_secs(30);
 /// Version of the directory's layout.
 pub const FORMAT: u32 = 2;
 

@@ -1,6 +1,6 @@
 //! Training of one fold into a run directory, stopped and resumed at will.
 
-use crate::run_directory::{FORMAT, RunConfig, RunDirectory, TrainingData};
+use crate::run_directory::{FORMAT, RunConfig, RunDirectory, SAVE_EVERY, TrainingData};
 use crate::{DdlError, GoalRecipe, goal_training};
 use ddl_data::{Convention, Dataset, Window, WindowRule};
 use ddl_goal::RetrievalFrame;
@@ -11,10 +11,8 @@ use ddl_star::{
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-/// A run under way is saved at least this often.
-pub(crate) const SAVE_EVERY: Duration = Duration::from_secs(30);
 /// Weights of at most about this many epochs are kept.
 const KEPT_EPOCHS: usize = 20;
 

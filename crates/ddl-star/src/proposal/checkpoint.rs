@@ -1,6 +1,5 @@
 //! The state of a training under way, as one file.
 
-use super::trainer::Progress;
 use crate::StarError;
 use crate::checkpoint::{bad, find, plain, read, write};
 use crate::optimizer::Adam;
@@ -10,6 +9,13 @@ use tch::{Kind, Tensor};
 
 const TENSORS: [&str; 4] = ["parameters", "average", "first_moment", "second_moment"];
 const PROGRESS: &str = "progress";
+
+/// How far a training has come.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Progress {
+    pub(super) steps: u64,
+    pub(super) distance: f64,
+}
 
 pub(super) fn save(
     parameters: &Parameters,

@@ -1,7 +1,7 @@
 //! Training of the proposal network, one step at a time.
 
 use super::augment::augment;
-use super::checkpoint;
+use super::checkpoint::{self, Progress};
 use super::config::ProposalTraining;
 use super::data::{ProposalExample, Views, rows_of};
 use super::loss::{LossWeights, winner_takes_all};
@@ -27,13 +27,6 @@ pub struct ProposalStep {
     pub done: u64,
     /// Running mean of the training distance (metres): relaxed at first, of the nearest end at last.
     pub distance: f64,
-}
-
-/// How far a training has come.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Progress {
-    pub(super) steps: u64,
-    pub(super) distance: f64,
 }
 
 /// A proposal network in training. Every step draws from its own random stream, so that a run that
