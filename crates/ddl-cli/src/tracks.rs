@@ -13,10 +13,10 @@ pub(crate) struct Tracks {
     #[arg(value_name = "TRACKS")]
     file: PathBuf,
     /// Raw frames between two rows of a pedestrian [default: the most common difference]
-    #[arg(long)]
+    #[arg(long, requires = "file")]
     frame_step: Option<i64>,
     /// Only the last frame of the file, with those who are in it, instead of every frame with 8 observed ones behind it
-    #[arg(long)]
+    #[arg(long, requires = "file")]
     last: bool,
 }
 

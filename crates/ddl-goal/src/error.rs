@@ -36,7 +36,7 @@ pub enum ParamsError {
 #[non_exhaustive]
 pub enum TrackError {
     /// The track has too few positions.
-    #[error("it has {found} positions, {needed} are needed")]
+    #[error("the track has {found} positions, {needed} are needed")]
     TooShort {
         /// Number of positions in the track.
         found: usize,
@@ -44,7 +44,7 @@ pub enum TrackError {
         needed: usize,
     },
     /// A track of the library has the wrong number of positions.
-    #[error("it has {found} positions, a track of the library has exactly {needed}")]
+    #[error("the track has {found} positions, one of the library has exactly {needed}")]
     WrongLength {
         /// Number of positions in the track.
         found: usize,

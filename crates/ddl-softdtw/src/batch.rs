@@ -24,7 +24,7 @@ impl<const D: usize, F: FnMut(usize, f64, &[[f64; D]])> Visit<D> for F {}
 /// Sixteen pairs at once in `f32`, for γ > 0 and the squared cost. The proven error of a value is at most 1.4e-4 γ; for
 /// velocities of walkers (γ = 1 m²/s², eight steps) values and gradients are within 1e-5 of those of [`SoftDtw`]. What
 /// does not fit is evaluated in `f64`: values beyond about 57 γ (39 γ without fused multiplication), sequences of more than 32 steps or too large for the
-/// bound; and by [`SoftDtw`] itself what is beyond that: about 570 γ, 180 steps, the Euclidean cost, γ = 0.
+/// bound; and by [`SoftDtw`] itself what is beyond that: about 570 γ, 180 steps, a band, the Euclidean cost, γ = 0.
 ///
 /// Everything runs on the calling thread. The last bits of a pair depend on the instruction set and, because
 /// all sequences are shifted by their common mean, on the other sequences.

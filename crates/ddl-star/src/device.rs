@@ -75,6 +75,25 @@ pub fn set_threads(threads: usize) {
     tch::set_num_threads(i32::try_from(threads.max(1)).unwrap_or(i32::MAX));
 }
 
+/// One thread for tensor operations in this process until it is dropped: small tensors are not worth sharing, and on a busy
+/// machine the threads wait for each other most of the time.
+#[derive(Debug)]
+pub(crate) struct OneThread(i32);
+
+impl OneThread {
+    pub(crate) fn begin() -> Self {
+        let before = Self(tch::get_num_threads());
+        tch::set_num_threads(1);
+        before
+    }
+}
+
+impl Drop for OneThread {
+    fn drop(&mut self) {
+        tch::set_num_threads(self.0);
+    }
+}
+
 fn open_cuda() -> Result<(), StarError> {
     static OPENED: OnceLock<Result<(), String>> = OnceLock::new();
     OPENED

@@ -26,17 +26,27 @@ pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<Strin
                 .filter_map(|(i, set)| Walker::new(window, i, set))
         })
         .collect();
-    let errors: Vec<_> = walkers
-        .iter()
-        .map(|walker| (walker.kind, walker.error))
-        .collect();
-    let cases = figure::typical_walkers(&errors)
+    let mut shown: Vec<&Walker<'_>> = Vec::new();
+    for kind in MotionKind::ALL {
+        // one pedestrian once
+        let candidates: Vec<&Walker<'_>> = walkers
+            .iter()
+            .filter(|walker| walker.kind == kind && !shown.iter().any(|other| other.is(walker)))
+            .collect();
+        let errors: Vec<_> = candidates.iter().map(|w| (kind, w.error)).collect();
+        shown.extend(
+            figure::typical_walkers(&errors)
+                .into_iter()
+                .map(|i| candidates[i]),
+        );
+    }
+    let cases = shown
         .into_iter()
-        .map(|index| walkers[index].case(model))
+        .map(|walker| walker.case(model))
         .collect::<Result<Vec<_>, _>>()?;
     let evaluation = &measured.evaluation;
     let title = format!(
-        "Goals of typical walkers: fold {}, {}",
+        "Goals of walkers with the median error of their kind of motion: fold {}, {}",
         evaluation.fold, evaluation.windows
     );
     Ok(figure::goals(&title, &cases)?)
@@ -62,6 +72,11 @@ impl<'a> Walker<'a> {
             kind: MotionKind::of(window.track(index))?,
             error: (x - end[0]).hypot(y - end[1]),
         })
+    }
+
+    fn is(&self, other: &Self) -> bool {
+        self.window.recording() == other.window.recording()
+            && self.window.pedestrians()[self.index] == other.window.pedestrians()[other.index]
     }
 
     fn case(&self, model: &GoalModel) -> Result<GoalCase, DdlError> {

@@ -42,8 +42,13 @@ impl Ddl {
         let run = RunDirectory::new(path);
         let config = run.config()?;
         if !run.is_trained() {
-            let problem = "is not finished: it has no model.safetensors; run the same `ddl train` \
-                           command again to go on";
+            let problem = if run.has_goals(&config.goals) {
+                "is not finished: its goals are trained, its network is not (no model.safetensors); run \
+                 the same `ddl train` command again, without --only-goals, to go on"
+            } else {
+                "is not finished: it has no model.safetensors; run the same `ddl train` command again to \
+                 go on"
+            };
             return Err(DdlError::run(path, problem));
         }
         let device = ComputeDevice::open(device)?;

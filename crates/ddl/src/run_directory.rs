@@ -19,7 +19,7 @@ use crate::{DdlError, GoalRecipe};
 use ddl_data::{Convention, WindowRule};
 use ddl_star::{EpochReport, StarConfig, TrainingConfig};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
-use std::io::Write as _;
+use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -304,6 +304,10 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), DdlError> {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
+    if !folder.is_dir() {
+        let missing = std::io::Error::new(ErrorKind::NotFound, "there is no such folder");
+        return Err(DdlError::io(folder, missing));
+    }
     let mut builder = tempfile::Builder::new();
     let builder = builder.prefix(".writing-");
     // Temporary files are private by default; results are as readable as the user's other files.

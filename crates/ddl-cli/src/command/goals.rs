@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// Estimate where the people of your own tracks are going, as csv; or measure how good a run's goals are
 #[derive(Debug, Args)]
 #[command(
-    mut_arg("file", |file| file.required(false).required_unless_present("measure")),
+    mut_arg("file", |file| file.required(false)),
     after_help = "Examples:\n  ddl goals --model runs/eth tracks.csv\n  ddl goals --model runs/eth --measure test --svg goals.svg"
 )]
 pub(crate) struct Goals {
@@ -73,7 +73,7 @@ impl Goals {
                 let model = GoalModel::load(&self.model, self.machine.device)?;
                 csv(&windows, &model.goals(&windows)?)?
             }
-            (None, None) => bail!("give a file of tracks, or --measure test"),
+            (None, None) => bail!("give a file of TRACKS to estimate goals for, or --measure test"),
         };
         write_output(self.output.as_deref(), &text)
     }

@@ -1,7 +1,7 @@
 //! `ddl info`.
 
 use clap::Args;
-use ddl::{Ddl, DeviceChoice};
+use ddl::{Ddl, DeviceChoice, GoalModel};
 use serde_json::json;
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -25,13 +25,18 @@ impl Info {
                 "cuda": ddl::cuda_status(),
             }),
             Some(path) => {
-                let model = Ddl::load(path, DeviceChoice::Cpu)?;
+                let goals = GoalModel::load(path, DeviceChoice::Cpu)?;
+                let network = if goals.run().is_trained() {
+                    json!(Ddl::load(path, DeviceChoice::Cpu)?.parameter_count())
+                } else {
+                    json!("not trained yet")
+                };
                 json!({
-                    "config": model.config(),
-                    "parameters": model.parameter_count(),
-                    "goal_parameters": model.goal_model().parameter_count(),
-                    "experts": model.goal_model().estimator().library().len(),
-                    "epochs": model.run().metrics()?,
+                    "config": goals.config(),
+                    "parameters": network,
+                    "goal_parameters": goals.parameter_count(),
+                    "experts": goals.estimator().library().len(),
+                    "epochs": goals.run().metrics()?,
                 })
             }
         };

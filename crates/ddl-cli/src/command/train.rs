@@ -56,7 +56,7 @@ pub(crate) struct Train {
     goals: GoalsFrom,
     #[arg(long, help = format!("Batches that the proposal network is trained on [default: {}]", ProposalTraining::default().steps))]
     proposal_steps: Option<u64>,
-    /// JSON file with all of it: the part `goals` of a run's config.json
+    /// JSON file with all of it: a run's config.json, or its part `goals`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["goals", "proposal_steps"])]
     goal_recipe: Option<PathBuf>,
     /// Stop when the goals are trained; the same command without this goes on
@@ -107,16 +107,20 @@ impl Train {
             device: self.machine.device,
             commit: self.telling.commit,
         };
-        let goals = Progress::new("goals", self.telling.progress);
-        let network = Progress::new("train", self.telling.progress);
+        // Each stage has its bar, from its first step on.
+        let (mut goals, mut network) = (None, None);
+        let bar = |stage| move || Progress::new(stage, self.telling.progress);
         ddl::train(&request, &dataset, |now| {
             let (done, total) = now.steps;
             match &now.step {
                 TrainingStep::Goals(step) => {
+                    let goals = goals.get_or_insert_with(bar("goals"));
                     goals.tell(done, total, &format!("within {:.2} m", step.distance));
                 }
                 TrainingStep::Network(step) => {
                     let (epoch, loss) = (step.epoch, step.loss);
+                    goals = None;
+                    let network = network.get_or_insert_with(bar("train"));
                     network.tell(done, total, &format!("epoch {epoch} loss {loss:.4}"));
                 }
             }
@@ -129,8 +133,14 @@ impl Train {
         if let Some(path) = &self.goal_recipe {
             let text = std::fs::read_to_string(path)
                 .with_context(|| format!("cannot read {}", path.display()))?;
-            return serde_json::from_str(&text)
-                .with_context(|| format!("{} is no recipe for goals", path.display()));
+            let wrong = || format!("{} is no recipe for goals", path.display());
+            let mut recipe: serde_json::Value = serde_json::from_str(&text)
+                .with_context(|| format!("{} is not JSON", path.display()))?;
+            // the whole of a config.json will do
+            if let Some(goals) = recipe.get_mut("goals") {
+                recipe = goals.take();
+            }
+            return serde_json::from_value(recipe).with_context(wrong);
         }
         match (self.goals, self.proposal_steps) {
             (GoalsFrom::Retrieved, Some(_)) => {

@@ -7,6 +7,7 @@ use super::data::{ProposalExample, Views, rows_of};
 use super::loss::{LossWeights, winner_takes_all};
 use super::network::ProposalNetwork;
 use crate::StarError;
+use crate::device::OneThread;
 use crate::optimizer::Adam;
 use crate::seed::{GENERATOR, Stage, stream};
 use crate::training_config::LearningRateSchedule;
@@ -131,6 +132,7 @@ impl ProposalTrainer {
     /// [`StarError::ProposalNonFinite`] when loss or gradient is no longer a number; the weights are
     /// then those before the step.
     pub fn step(&mut self) -> Result<ProposalStep, StarError> {
+        let _one_thread = OneThread::begin();
         let step = self.progress.steps;
         let training = &self.training;
         let (rows, views, future) = self.batch(step);
