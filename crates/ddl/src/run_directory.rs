@@ -305,8 +305,8 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), DdlError> {
         _ => Path::new("."),
     };
     if !folder.is_dir() {
-        let missing = std::io::Error::new(ErrorKind::NotFound, "there is no such folder");
-        return Err(DdlError::io(folder, missing));
+        let problem = format!("there is no folder {}", folder.display());
+        return Err(io(std::io::Error::new(ErrorKind::NotFound, problem)));
     }
     let mut builder = tempfile::Builder::new();
     let builder = builder.prefix(".writing-");
