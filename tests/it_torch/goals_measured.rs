@@ -93,6 +93,11 @@ fn what_cannot_be_measured_is_said() {
         "cannot be used with",
     );
     fails("goals --model . tracks.csv --svg goals.svg", "--measure");
+    fails(
+        "goals --model . --measure test --last",
+        "cannot be used with",
+    );
+    fails("goals --model . --last", "TRACKS");
     std::fs::remove_file(folder.path().join("proposal.safetensors")).unwrap();
     fails("goals --model . --measure test", "has no goals yet");
     let config = folder.path().join("config.json");

@@ -23,7 +23,7 @@ pub(crate) struct Goals {
     #[command(flatten)]
     tracks: Option<Tracks>,
     /// Compare the goals with the true ends of the recordings the run was trained without
-    #[arg(long, value_enum, conflicts_with = "file")]
+    #[arg(long, value_enum, conflicts_with_all = ["file", "last", "frame_step"])]
     measure: Option<Measure>,
     /// Folder of the recordings to measure on [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
     #[arg(long)]
