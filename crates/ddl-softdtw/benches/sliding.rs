@@ -6,47 +6,29 @@
 
 #[path = "../tests/recorded/mod.rs"]
 mod recorded;
+mod synthetic;
 
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use ddl_softdtw::{Cost, InstructionSet, SlidingIndex, SoftDtw};
 
-type Track = Vec<[f64; 2]>;
-
 /// Velocities of a complete window of 20 positions.
 const COMPLETE: usize = 19;
 /// Query tracks of a measurement, evenly spread.
 const QUERIES: usize = 30;
 
-/// Velocities (m/s) of walkers who keep their headings with some sway for 2 to 24 seconds, one in ten of them standing.
-fn walkers(count: usize, seed: u64) -> Vec<Track> {
-    let mut state = seed;
-    let mut next = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    (0..count)
-        .map(|_| {
-            let stands = next() < 0.1;
-            let speed = if stands { 0.0 } else { 0.4 + 1.2 * next() };
-            let (sin, cos) = (std::f64::consts::TAU * next()).sin_cos();
-            let steps = 5 + (55.0 * next()) as usize;
-            let mut sway = || 0.1 * (speed + 0.1) * (next() - 0.5);
-            (0..steps)
-                .map(|_| [speed * cos + sway(), speed * sin + sway()])
-                .collect()
-        })
-        .collect()
-}
-
 fn sliding(criterion: &mut Criterion) {
     let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean).expect("valid gamma");
     let (source, (queries, tracks)) = match recorded::folder() {
         Some(folder) => ("real", recorded::split(&folder, "eth")),
-        None => ("synthetic", (walkers(400, 1), walkers(1_800, 2))),
+        None => (
+            "synthetic",
+            (
+                synthetic::walkers(400, 5..60, 1),
+                synthetic::walkers(1_800, 5..60, 2),
+            ),
+        ),
     };
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let one_thread = one_thread.expect("a thread");

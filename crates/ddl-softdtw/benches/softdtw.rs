@@ -10,7 +10,8 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use ddl_softdtw::{BatchGradients, Cost, InstructionSet, SearchIndex, SoftDtw, SoftDtwBatch};
-use recordings::{Windows, walkers};
+use recordings::Windows;
+use recordings::synthetic::walkers;
 
 fn dtw() -> SoftDtw {
     SoftDtw::new(1.0, Cost::SquaredEuclidean).expect("valid gamma")
@@ -38,7 +39,7 @@ fn pair<const D: usize>(criterion: &mut Criterion, x: &[[f64; D]], y: &[[f64; D]
 }
 
 fn pairs(criterion: &mut Criterion) {
-    let walks = walkers(2, 8, 1);
+    let walks = walkers(2, 8..9, 1);
     pair(criterion, &walks[0], &walks[1]);
     pair::<2>(criterion, &wave(64, 0.0), &wave(64, 0.3));
     pair::<8>(criterion, &wave(256, 0.0), &wave(256, 0.3));

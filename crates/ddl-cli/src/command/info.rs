@@ -1,7 +1,7 @@
 //! `ddl info`.
 
 use clap::Args;
-use ddl::{Ddl, DeviceChoice, GoalModel};
+use ddl::{Ddl, DeviceChoice, GoalModel, RunDirectory};
 use serde_json::json;
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -25,19 +25,13 @@ impl Info {
                 "cuda": ddl::cuda_status(),
             }),
             Some(path) => {
-                let goals = GoalModel::load(path, DeviceChoice::Cpu)?;
-                let network = if goals.run().is_trained() {
-                    json!(Ddl::load(path, DeviceChoice::Cpu)?.parameter_count())
+                if RunDirectory::new(path).is_trained() {
+                    let model = Ddl::load(path, DeviceChoice::Cpu)?;
+                    facts_of(model.goal_model(), &json!(model.parameter_count()))?
                 } else {
-                    json!("not trained yet")
-                };
-                json!({
-                    "config": goals.config(),
-                    "parameters": network,
-                    "goal_parameters": goals.parameter_count(),
-                    "experts": goals.estimator().library().len(),
-                    "epochs": goals.run().metrics()?,
-                })
+                    let goals = GoalModel::load(path, DeviceChoice::Cpu)?;
+                    facts_of(&goals, &json!("not trained yet"))?
+                }
             }
         };
         let mut out = std::io::stdout().lock();
@@ -48,6 +42,20 @@ impl Info {
         print_facts(&mut out, &facts, 0)?;
         Ok(())
     }
+}
+
+/// What a run was made with; `parameters` is what is known of its forecasting network.
+fn facts_of(
+    goals: &GoalModel,
+    parameters: &serde_json::Value,
+) -> anyhow::Result<serde_json::Value> {
+    Ok(json!({
+        "config": goals.config(),
+        "parameters": parameters,
+        "goal_parameters": goals.parameter_count(),
+        "experts": goals.estimator().library().len(),
+        "epochs": goals.run().metrics()?,
+    }))
 }
 
 /// Nested facts as indented lines.

@@ -2,6 +2,8 @@
 
 #[path = "../../tests/recorded/mod.rs"]
 mod recorded;
+#[path = "../synthetic/mod.rs"]
+pub(crate) mod synthetic;
 
 use std::path::Path;
 
@@ -35,8 +37,8 @@ impl Windows {
         let Some(folder) = recorded::folder() else {
             return Self {
                 source: "synthetic",
-                candidates: walkers(37_000, steps, 2),
-                queries: walkers(400, steps, 3),
+                candidates: synthetic::walkers(37_000, steps..steps + 1, 2),
+                queries: synthetic::walkers(400, steps..steps + 1, 3),
             };
         };
         let candidates = CANDIDATES
@@ -69,29 +71,4 @@ fn windows(folder: &Path, name: &str, steps: usize) -> Vec<Walk> {
         }
     }
     windows
-}
-
-/// Velocities (m/s) of walkers with constant headings and some sway, one in ten of them standing.
-pub(crate) fn walkers(count: usize, steps: usize, seed: u64) -> Vec<Walk> {
-    let mut state = seed;
-    let mut next = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    (0..count)
-        .map(|_| {
-            let speed = if next() < 0.1 {
-                0.0
-            } else {
-                0.4 + 1.2 * next()
-            };
-            let (sin, cos) = (std::f64::consts::TAU * next()).sin_cos();
-            let mut sway = || 0.1 * (speed + 0.1) * (next() - 0.5);
-            (0..steps)
-                .map(|_| [speed * cos + sway(), speed * sin + sway()])
-                .collect()
-        })
-        .collect()
 }
