@@ -1,4 +1,4 @@
-//! The attractor: the distance to the goal, and the direction away from it.
+//! The attractor: a potential that is least at the goal, and its slope.
 
 use nalgebra::SVector;
 
@@ -8,16 +8,21 @@ use crate::{
     real::Real,
 };
 
-/// The distance to a goal, `Phi(p) = |p - p*|`: the Lyapunov function of every flow in this crate.
+/// A potential with its only minimum at a goal `p*`: what every flow of this crate descends.
 ///
-/// `Phi` is zero at the goal, positive elsewhere and grows without bound, so a flow along which it
-/// falls can only settle at the goal.
+/// | | `Phi(p)` | `grad Phi` | a flow down it |
+/// |---|---|---|---|
+/// | [`new`](Self::new) | `\|e\|` | `u = e / \|e\|` | keeps its speed and arrives in finite time |
+/// | [`quadratic`](Self::quadratic) | `\|e\|^2 / 2` | `e` | slows down near the goal, which it nears exponentially |
+///
+/// with `e = p - p*`. Both grow with the distance alone, so one falls exactly when the other does, and
+/// a flow along which they fall can only settle at the goal.
 ///
 /// # Shapes
 /// `D` components, in metres.
 ///
 /// # References
-/// Equation (7) of the paper (the attractor); its gradient appears in equations (8) and (9).
+/// Equation (7) of the paper is the distance; its gradient appears in equations (8) and (9).
 ///
 /// # Examples
 /// ```
@@ -28,21 +33,48 @@ use crate::{
 /// assert_eq!(attractor.potential(&Vector2::new(4.0, 5.0)), 5.0);
 /// assert_eq!(attractor.gradient(&Vector2::new(1.0, 3.0)), Vector2::new(0.0, 1.0));
 /// assert_eq!(attractor.gradient(&Vector2::new(1.0, 1.0)), Vector2::zeros());
+///
+/// let bowl = Attractor::quadratic(Vector2::new(1.0, 1.0))?;
+/// assert_eq!(bowl.potential(&Vector2::new(4.0, 5.0)), 12.5);
+/// assert_eq!(bowl.gradient(&Vector2::new(1.0, 3.0)), Vector2::new(0.0, 2.0));
 /// # Ok::<(), ddl_dynamics::DynamicsError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Attractor<T, const D: usize> {
     goal: SVector<T, D>,
+    growth: Growth,
+}
+
+/// How the potential grows with the distance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Growth {
+    Linear,
+    Quadratic,
 }
 
 impl<T: Real, const D: usize> Attractor<T, D> {
-    /// The attractor of `goal` (metres).
+    /// The distance to `goal` (metres): `Phi(p) = |p - p*|`.
     ///
     /// # Errors
     /// [`DynamicsError::NonFinite`] when a component of the goal is NaN or infinite.
     pub fn new(goal: SVector<T, D>) -> Result<Self, DynamicsError> {
+        Self::growing(goal, Growth::Linear)
+    }
+
+    /// Half the squared distance to `goal` (metres): `Phi(p) = |p - p*|^2 / 2`.
+    ///
+    /// Its gradient is in metres, so a metric `P` is a matrix of rates (1/s): a walker at the distance
+    /// `|e|` moves with `|P e|`.
+    ///
+    /// # Errors
+    /// [`DynamicsError::NonFinite`] when a component of the goal is NaN or infinite.
+    pub fn quadratic(goal: SVector<T, D>) -> Result<Self, DynamicsError> {
+        Self::growing(goal, Growth::Quadratic)
+    }
+
+    fn growing(goal: SVector<T, D>, growth: Growth) -> Result<Self, DynamicsError> {
         ensure_finite("goal", &goal)?;
-        Ok(Self { goal })
+        Ok(Self { goal, growth })
     }
 
     /// The goal `p*` (metres).
@@ -55,17 +87,26 @@ impl<T: Real, const D: usize> Attractor<T, D> {
         position - self.goal
     }
 
-    /// The distance to the goal, `Phi(p) = |p - p*|` (metres).
+    /// The distance to the goal, `|p - p*|` (metres).
     ///
     /// # Numerics
     /// Zero only when `position` equals the goal component by component: neither underflow nor
     /// overflow of a square can fake it. A distance above the largest number of `T` is infinite.
+    pub fn distance(&self, position: &SVector<T, D>) -> T {
+        self.distance_and_direction(position).0
+    }
+
+    /// The potential `Phi(p)` (metres; square metres when quadratic).
+    ///
+    /// # Numerics
+    /// The distance is exact as said at [`distance`](Self::distance). Its square underflows to 0 within
+    /// 1e-162 m of the goal (1e-23 m in `f32`): compare distances, not squares, near it.
     pub fn potential(&self, position: &SVector<T, D>) -> T {
         self.potential_and_gradient(position).0
     }
 
     /// The gradient of the potential: the unit vector `u = e / |e|` that points away from the goal,
-    /// and 0 at the goal (no unit).
+    /// or the offset `e` when quadratic; 0 at the goal.
     ///
     /// # Numerics
     /// The norm of a gradient is not differentiable at the goal; 0 is the one choice among its
@@ -76,8 +117,18 @@ impl<T: Real, const D: usize> Attractor<T, D> {
         self.potential_and_gradient(position).1
     }
 
-    /// [`potential`](Self::potential) (metres) and [`gradient`](Self::gradient) at the cost of one.
+    /// [`potential`](Self::potential) and [`gradient`](Self::gradient) at the cost of one.
     pub fn potential_and_gradient(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
+        let (distance, away) = self.distance_and_direction(position);
+        match self.growth {
+            Growth::Linear => (distance, away),
+            Growth::Quadratic => (distance * distance * T::rounded(0.5), self.offset(position)),
+        }
+    }
+
+    /// The distance to the goal (metres) and the unit vector `u` away from it (0 at the goal), for
+    /// either kind of potential.
+    pub fn distance_and_direction(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
         let (distance, direction) = polar(&self.offset(position));
         if distance.is_finite() {
             return (distance, direction);
@@ -118,6 +169,22 @@ mod tests {
         let attractor = Attractor::new(Vector1::new(-f64::MAX)).unwrap();
         let (distance, direction) = attractor.potential_and_gradient(&Vector1::new(f64::MAX));
         assert_eq!((distance, direction), (f64::INFINITY, Vector1::new(1.0)));
+    }
+
+    #[test]
+    #[expect(clippy::float_cmp, reason = "small whole numbers are exact")]
+    fn the_quadratic_potential_is_half_the_square() {
+        let bowl = Attractor::quadratic(Vector2::new(1.0_f64, 1.0)).unwrap();
+        let position = Vector2::new(4.0, 5.0);
+        assert_eq!(
+            bowl.potential_and_gradient(&position),
+            (12.5, Vector2::new(3.0, 4.0))
+        );
+        assert_eq!(bowl.distance(&position), 5.0);
+        assert_eq!(bowl.gradient(bowl.goal()), Vector2::zeros());
+        // The square underflows, the distance does not.
+        let near = Vector2::new(1.0 + f64::EPSILON, 1.0);
+        assert_eq!(bowl.distance(&near), f64::EPSILON);
     }
 
     #[test]

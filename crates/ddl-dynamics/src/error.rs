@@ -53,9 +53,45 @@ pub enum DynamicsError {
     #[error("sigma is {0}: it must be positive and finite, or P is not positive definite")]
     InvalidSigma(f64),
 
+    /// A linear map cannot be inverted.
+    #[error("the map is not finite or has no inverse: P seen through it is not positive definite")]
+    SingularMap,
+
+    /// The share of a velocity that is to be left is not in (0, 1].
+    #[error("the share is {0}: it must be above 0, or P is not positive definite, and at most 1")]
+    InvalidShare(f64),
+
+    /// A direction is the zero vector.
+    #[error("the direction is the zero vector: it must have a length")]
+    NoDirection,
+
+    /// The radius of an obstacle is not a positive, finite number.
+    #[error("the radius of the obstacle is {0} m: it must be positive and finite")]
+    InvalidRadius(f64),
+
+    /// The distance within which obstacles are minded is not a positive, finite number.
+    #[error("the margin around obstacles is {0} m: it must be positive and finite")]
+    InvalidMargin(f64),
+
     /// The time step is not a positive, finite number of seconds.
     #[error("the time step is {0} s: it must be positive and finite")]
     InvalidTimeStep(f64),
+
+    /// The tolerance of an adaptive integrator is not a positive, finite number of metres.
+    #[error("the tolerance is {0} m: it must be positive and finite")]
+    InvalidTolerance(f64),
+
+    /// An adaptive integrator needs too many inner steps.
+    #[error(
+        "the flow is too stiff: {steps} inner steps were not enough for {covered} s of a time step; \
+         use StableEuler, a larger tolerance or a shorter time step"
+    )]
+    TooStiff {
+        /// Inner steps tried.
+        steps: usize,
+        /// How much of the time step they covered (seconds).
+        covered: f64,
+    },
 
     /// The distance to the goal does not fit into the number type.
     #[error("the distance from the position to the goal overflows; use smaller units or f64")]

@@ -1,5 +1,6 @@
 //! Integrators: from a velocity field to a sequence of positions.
 
+mod dormand_prince;
 mod euler;
 mod stable_euler;
 
@@ -7,6 +8,7 @@ use nalgebra::SVector;
 
 use crate::{error::DynamicsError, flow::Flow, real::Real, state::State};
 
+pub use dormand_prince::DormandPrince;
 pub use euler::Euler;
 pub use stable_euler::{StableEuler, StableStep, StepLimit};
 

@@ -1,12 +1,14 @@
 #![doc = include_str!("../README.md")]
 
 mod attractor;
+mod diffeomorphism;
 mod error;
 mod flow;
 mod integrate;
 mod lyapunov;
 mod metric;
 mod metric_source;
+mod obstacle;
 mod polar;
 mod real;
 mod rollout;
@@ -14,12 +16,14 @@ mod spectrum;
 mod state;
 
 pub use attractor::Attractor;
+pub use diffeomorphism::Diffeomorphism;
 pub use error::DynamicsError;
-pub use flow::{Flow, GradientFlow, NaturalGradientFlow};
-pub use integrate::{Euler, Integrator, StableEuler, StableStep, StepLimit};
+pub use flow::{AvoidingFlow, DiffeomorphicFlow, Flow, GradientFlow, NaturalGradientFlow};
+pub use integrate::{DormandPrince, Euler, Integrator, StableEuler, StableStep, StepLimit};
 pub use lyapunov::{CertifiedStep, LyapunovCertificate, Violation};
 pub use metric::{CholeskyMetric, PUBLISHED_SIGMA};
 pub use metric_source::{MetricSchedule, MetricSource};
+pub use obstacle::{Ball, ObstacleSchedule, ObstacleSource};
 pub use real::Real;
 pub use rollout::{rollout, rollout_into};
 pub use spectrum::EigenvalueRange;

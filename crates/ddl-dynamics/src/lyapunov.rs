@@ -8,9 +8,11 @@ use serde::{Deserialize, Serialize};
 use crate::{
     attractor::Attractor,
     error::{DynamicsError, ensure_finite, ensure_time_step},
+    flow::Flow,
     metric::CholeskyMetric,
     polar::polar,
     real::Real,
+    state::State,
 };
 
 pub use violation::Violation;
@@ -20,6 +22,9 @@ pub use violation::Violation;
 /// It is computed from the positions themselves, whatever integrator made them, so it also judges
 /// rollouts of other programs. [`holds`](Self::holds) gives the verdict. It does not check that the
 /// positions follow from the metrics; a limited step does not, by design.
+///
+/// `Phi` is the distance to the goal throughout, also for a quadratic attractor, whose potential falls
+/// exactly when the distance does.
 ///
 /// # Examples
 /// ```
@@ -32,7 +37,7 @@ pub use violation::Violation;
 /// let flow = NaturalGradientFlow::new(attractor, metric);
 /// // 1.25 m/s: the second step, from 0.5 m before the goal to 0.75 m behind it, breaks the guarantee.
 /// let path = rollout(&flow, &Euler, Vector2::new(-0.75, 0.0), 1.0, 2)?;
-/// let certificate = LyapunovCertificate::new(&path, &[metric; 2], &attractor, 1.0)?;
+/// let certificate = LyapunovCertificate::of_rollout(&flow, &path, 1.0)?;
 /// assert_eq!(
 ///     certificate.holds(),
 ///     Err(Violation::NotDecreasing { step: 1, before: 0.5, after: 0.75 }),
@@ -53,12 +58,13 @@ pub struct LyapunovCertificate<T> {
 pub struct CertifiedStep<T> {
     /// `Phi`: the distance to the goal at the start of the step (metres).
     pub potential: T,
-    /// `d Phi / dt = -u^T P u` at the start of the step (m/s); 0 at the goal.
+    /// `d Phi / dt = -u^T P grad Phi` at the start of the step (m/s): `-u^T P u` where the attractor is
+    /// the distance; 0 at the goal.
     pub rate: T,
     /// The smallest eigenvalue of the step's metric (m/s).
     pub min_eigenvalue: T,
-    /// `1 - dt / dt_max`, with `dt_max = 2 Phi u^T P u / |P u|^2` the bound below which a plain
-    /// Euler step lowers `Phi` (no unit): positive when `dt` is below its bound, 1 when infinitely
+    /// `1 - dt / dt_max`, with `dt_max = -2 Phi (d Phi / dt) / |v|^2` the bound below which a plain
+    /// Euler step lowers `Phi`: `2 Phi u^T P u / |P u|^2` for a distance (no unit): positive when `dt` is below its bound, 1 when infinitely
     /// far below. `None` at the goal, where every step is too long.
     pub step_margin: Option<T>,
     /// Angle between the move and the direction to the goal (radians, 0 to pi); 0 without a move.
@@ -107,8 +113,54 @@ impl<T: Real> LyapunovCertificate<T> {
             goal: attractor.goal().iter().copied().collect(),
             time_step: dt,
             steps,
-            final_potential: attractor.potential(last),
+            final_potential: attractor.distance(last),
         })
+    }
+
+    /// The certificate of a rollout of `flow` with steps of `dt` seconds.
+    ///
+    /// The metrics are asked of the flow at each position, with the history so far. With a
+    /// [`chart`](Flow::chart) everything is said in its coordinates, those in which `Phi` is a distance:
+    /// goal, potentials, eigenvalues and angles.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new), and, inside [`DynamicsError::Step`], those of the flow's metric.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_dynamics::{Attractor, GradientFlow, LyapunovCertificate, StableEuler, rollout};
+    /// use nalgebra::Vector3;
+    ///
+    /// let flow = GradientFlow::new(Attractor::new(Vector3::new(1.0, 2.0, 2.0))?);
+    /// let path = rollout(&flow, &StableEuler, Vector3::zeros(), 0.4, 12)?;
+    /// let certificate = LyapunovCertificate::of_rollout(&flow, &path, 0.4)?;
+    /// assert!(certificate.holds().is_ok());
+    /// assert_eq!(certificate.final_potential(), 0.0);
+    /// # Ok::<(), ddl_dynamics::DynamicsError>(())
+    /// ```
+    pub fn of_rollout<const D: usize, F: Flow<T, D> + ?Sized>(
+        flow: &F,
+        path: &[SVector<T, D>],
+        dt: T,
+    ) -> Result<Self, DynamicsError> {
+        let metrics = path.iter().take(path.len().saturating_sub(1)).enumerate();
+        let metrics = metrics
+            .map(|(step, position)| {
+                let time = dt * T::rounded(step as f64);
+                let state = State::new(*position, step, time, &path[..=step]);
+                flow.metric(&state).map_err(|cause| DynamicsError::Step {
+                    step,
+                    cause: Box::new(cause),
+                })
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        match flow.chart() {
+            None => Self::new(path, &metrics, flow.attractor(), dt),
+            Some(psi) => {
+                let images: Vec<_> = path.iter().map(|position| psi.apply(position)).collect();
+                Self::new(&images, &metrics, flow.attractor(), dt)
+            }
+        }
     }
 
     /// Whether the guarantee was kept: `P` positive definite and `d Phi / dt < 0` at every step
@@ -183,7 +235,7 @@ fn ensure_measurable<T: Real, const D: usize>(
     position: &SVector<T, D>,
 ) -> Result<(), DynamicsError> {
     ensure_finite("position", position)?;
-    if attractor.potential(position).is_finite() {
+    if attractor.distance(position).is_finite() {
         Ok(())
     } else {
         Err(DynamicsError::DistanceTooLarge)
@@ -198,9 +250,11 @@ impl<T: Real> CertifiedStep<T> {
         attractor: &Attractor<T, D>,
         dt: T,
     ) -> Self {
-        let (potential, away) = attractor.potential_and_gradient(from);
-        let descent = metric.quadratic_form(&away);
-        let (speed, _) = polar(&metric.apply(&away));
+        let (potential, away) = attractor.distance_and_direction(from);
+        // grad Phi is as long as the velocity would be with P = I: 1, or |e| when quadratic.
+        let (slope, _) = polar(&attractor.gradient(from));
+        let descent = metric.quadratic_form(&away) * slope;
+        let speed = polar(&metric.apply(&away)).0 * slope;
         // Divided twice: the square of the speed could leave the range of the numbers.
         let bound = potential * (descent / speed) / speed * T::rounded(2.0);
         let step_margin = Some(T::one() - dt / bound).filter(T::is_finite);

@@ -1,5 +1,7 @@
 //! The metric `P = L L^T + sigma I`, kept as its Cholesky factor.
 
+mod transform;
+
 use nalgebra::{SMatrix, SVector};
 
 use crate::{
@@ -86,6 +88,14 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
             return Err(DynamicsError::FactorTooLarge);
         }
         Ok(Self { factor, sigma })
+    }
+
+    /// The identity: `P u = u`, exactly.
+    pub fn identity() -> Self {
+        Self {
+            factor: SMatrix::zeros(),
+            sigma: T::one(),
+        }
     }
 
     /// The lower-triangular factor `L` ((m/s)^(1/2)).

@@ -116,76 +116,82 @@ impl StableEuler {
         velocity: &SVector<T, D>,
         dt: T,
     ) -> Result<StableStep<T, D>, DynamicsError> {
-        ensure_time_step(dt)?;
-        ensure_finite("position", position)?;
-        ensure_finite("velocity", velocity)?;
-        let (distance, away) = attractor.potential_and_gradient(position);
-        if !distance.is_finite() {
-            return Err(DynamicsError::DistanceTooLarge);
-        }
-        if distance.is_zero() {
-            return Ok(StableStep {
-                position: *position,
-                limit: StepLimit::AtGoal,
-            });
-        }
-        // Spacing of the numbers at the coarser of the two points; never 0, so that doubling works.
-        let resolution =
-            (T::EPSILON * position.amax().max(attractor.goal().amax())).max(T::MIN_POSITIVE);
-
-        let (speed, heading) = polar(velocity);
-        let cosine = -away.dot(&heading);
-        if cosine > T::zero() {
-            let reach = distance * cosine;
-            let (next, limit) = if dt * speed <= reach {
-                (position + velocity * dt, StepLimit::TimeStep)
-            } else {
-                (position + heading * reach, StepLimit::ClosestApproach)
-            };
-            let left = attractor.potential(&next);
-            if limit == StepLimit::ClosestApproach && left <= T::rounded(ARRIVAL) * resolution {
-                return Ok(StableStep {
-                    position: *attractor.goal(),
-                    limit,
-                });
-            }
-            if left < distance {
-                return Ok(StableStep {
-                    position: next,
-                    limit,
-                });
-            }
-        }
-        let position = smallest_visible_move(attractor, position, distance, &away, resolution);
-        Ok(StableStep {
-            position,
-            limit: StepLimit::Resolution,
-        })
+        descend(attractor, position, velocity, dt, |next| *next)
     }
 }
 
-/// The shortest of the moves `resolution * 2^k` straight to the goal that lowers the computed
-/// distance; the goal when none shorter than the distance does. Ends after `log2(1 / epsilon) + 3`
-/// or so doublings, because the distance is at most `2 sqrt(D) resolution / epsilon`.
-fn smallest_visible_move<T: Real, const D: usize>(
+/// [`StableEuler::advance`] where a position is `settled` before its distance is measured: put into
+/// the numbers of another space and back, so that the decrease holds for what will be seen there.
+fn descend<T: Real, const D: usize>(
     attractor: &Attractor<T, D>,
     position: &SVector<T, D>,
-    distance: T,
-    away: &SVector<T, D>,
-    resolution: T,
-) -> SVector<T, D> {
+    velocity: &SVector<T, D>,
+    dt: T,
+    settled: impl Fn(&SVector<T, D>) -> SVector<T, D>,
+) -> Result<StableStep<T, D>, DynamicsError> {
+    ensure_time_step(dt)?;
+    ensure_finite("position", position)?;
+    ensure_finite("velocity", velocity)?;
+    let (distance, away) = attractor.distance_and_direction(position);
+    if !distance.is_finite() {
+        return Err(DynamicsError::DistanceTooLarge);
+    }
+    if distance.is_zero() {
+        return Ok(StableStep {
+            position: *position,
+            limit: StepLimit::AtGoal,
+        });
+    }
+    // Spacing of the numbers at the coarser of the two points; never 0, so that doubling works.
+    let resolution =
+        (T::EPSILON * position.amax().max(attractor.goal().amax())).max(T::MIN_POSITIVE);
+
+    let (speed, heading) = polar(velocity);
+    let cosine = -away.dot(&heading);
+    if cosine > T::zero() {
+        let reach = distance * cosine;
+        let (next, limit) = if dt * speed <= reach {
+            (position + velocity * dt, StepLimit::TimeStep)
+        } else {
+            (position + heading * reach, StepLimit::ClosestApproach)
+        };
+        let left = attractor.distance(&settled(&next));
+        if limit == StepLimit::ClosestApproach && left <= T::rounded(ARRIVAL) * resolution {
+            return Ok(StableStep {
+                position: *attractor.goal(),
+                limit,
+            });
+        }
+        if left < distance {
+            return Ok(StableStep {
+                position: next,
+                limit,
+            });
+        }
+    }
+    // The shortest of the moves `resolution * 2^k` straight to the goal that lowers the computed
+    // distance; the goal when none shorter than the distance does. Ends after `log2(1 / epsilon) + 3` or
+    // so doublings, because the distance is at most `2 sqrt(D) resolution / epsilon`.
     let mut length = resolution;
-    while length < distance {
+    let next = loop {
+        if length >= distance {
+            break *attractor.goal();
+        }
         let next = position - away * length;
-        if attractor.potential(&next) < distance {
-            return next;
+        if attractor.distance(&settled(&next)) < distance {
+            break next;
         }
         length += length;
-    }
-    *attractor.goal()
+    };
+    Ok(StableStep {
+        position: next,
+        limit: StepLimit::Resolution,
+    })
 }
 
 impl<T: Real, const D: usize> Integrator<T, D> for StableEuler {
+    /// For a flow with a [`chart`](Flow::chart) the step is taken in its coordinates.
+    ///
     /// # Errors
     /// Those of the flow and of [`StableEuler::advance`].
     fn step<F: Flow<T, D> + ?Sized>(
@@ -194,7 +200,30 @@ impl<T: Real, const D: usize> Integrator<T, D> for StableEuler {
         state: &State<'_, T, D>,
         dt: T,
     ) -> Result<SVector<T, D>, DynamicsError> {
-        let velocity = flow.velocity(state)?;
-        Self::advance(flow.attractor(), &state.position, &velocity, dt).map(|step| step.position)
+        let Some(psi) = flow.chart() else {
+            let velocity = flow.velocity(state)?;
+            let dt = flow
+                .longest_step(state, &velocity)
+                .map_or(dt, |longest| longest.min(dt));
+            return Self::advance(flow.attractor(), &state.position, &velocity, dt)
+                .map(|step| step.position);
+        };
+        // In the coordinates of the chart the flow is a natural gradient: the same step, and back.
+        let image = psi.apply(&state.position);
+        let velocity = -flow
+            .metric(state)?
+            .apply(&flow.attractor().gradient(&image));
+        let attractor = flow.attractor();
+        let step = descend(attractor, &image, &velocity, dt, |next| {
+            psi.apply(&psi.inverse(next))
+        })?;
+        match step.limit {
+            StepLimit::AtGoal => Ok(state.position),
+            _ if step.position == *attractor.goal() => Ok(*flow.goal()),
+            _ => {
+                let next = psi.inverse(&step.position);
+                ensure_finite("next position", &next).copied()
+            }
+        }
     }
 }

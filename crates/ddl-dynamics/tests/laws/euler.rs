@@ -27,6 +27,27 @@ fn overshoot_is_bounded<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseR
 }
 for_every_space!(overshoot_is_bounded, any_scene);
 
+/// `|e'|^2 = |e|^2 - 2 dt |e| u^T P u + (dt |P u|)^2`: what the bound leaves out is exactly the descent.
+fn the_step_is_the_law_of_cosines<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let attractor = scene.attractor::<T, D>();
+    let (start, dt) = (scene.start::<T, D>(), scene.dt::<T>().as_f64());
+    let (before, away) = attractor.potential_and_gradient(&start);
+    let before = before.as_f64();
+    for metric in scene.metrics::<T, D>() {
+        let flow = NaturalGradientFlow::new(attractor, metric);
+        let next = Euler.step(&flow, &State::at(start), scene.dt()).unwrap();
+        let after = attractor.potential(&next).as_f64();
+        let length = dt * metric.apply(&away).map(Real::as_f64).norm();
+        let descent = 2.0 * dt * before * metric.quadratic_form(&away).as_f64();
+        let expected = before * before - descent + length * length;
+        let far = start.amax().max(attractor.goal().amax()).as_f64() + length;
+        let noise = 64.0 * T::EPSILON.as_f64() * far * far;
+        prop_assert!((after * after - expected).abs() <= noise);
+    }
+    Ok(())
+}
+for_every_space!(the_step_is_the_law_of_cosines, any_scene);
+
 #[test]
 fn the_overshoot_bound_is_attained() {
     // P = diag(1e6, 1e-8), u = (1e-7, 1): P u is almost at right angles to u. |e| = 1, dt |P u| = 0.1.

@@ -6,13 +6,17 @@
     reason = "numbers of steps are computed as positive floats"
 )]
 
+mod avoiding;
 mod certificate;
 mod convergence;
+mod dormand_prince;
 mod draw;
+mod equivariance;
 mod euler;
 mod goal;
 mod metric;
 mod stable_euler;
+mod transform;
 
 /// Runs a law, a function `fn law<T: Real, const D: usize>(draw) -> TestCaseResult`, on random
 /// draws of a strategy in every number type and dimension.

@@ -1,0 +1,164 @@
+//! Around obstacles and other walkers, without losing the goal.
+
+use nalgebra::SVector;
+
+use super::{Flow, NaturalGradientFlow};
+use crate::{
+    attractor::Attractor, error::DynamicsError, metric::CholeskyMetric,
+    metric_source::MetricSource, obstacle::ObstacleSource, real::Real, state::State,
+};
+
+/// A [`NaturalGradientFlow`] that slows its approach to obstacles and slides along them.
+///
+/// At the distance `gap` from the surface of a ball, with the unit vector `n` away from it, a walker that
+/// comes nearer has the share `gap / margin` of its speed along `n` left:
+///
+/// ```text
+/// P' = P - (1 - share) q q^T / (n^T q)     q = P n     share = min(1, gap / margin)    n^T v' = share n^T v
+/// ```
+///
+/// ([`slowed_along`](CholeskyMetric::slowed_along)), for one ball after the other. A walker who moves away
+/// is left alone; the velocity is continuous all the same, because `P' u = P u` where `n^T v = 0`.
+///
+/// # What is guaranteed
+/// For balls that stand still:
+/// - *The distance to the goal still falls* everywhere off the balls: `P' >= share P` is positive definite
+///   for `share > 0`. So this is a flow like every other, and a
+///   [`LyapunovCertificate`](crate::LyapunovCertificate) of it says so.
+/// - *No ball is entered*: `d gap / dt = n^T v' >= -(gap / margin) |P u|`, so the gap shrinks at most
+///   exponentially and stays positive.
+/// - *The goal is the only attractor*, if it is outside all balls and the balls do not touch. A
+///   walker can come to rest elsewhere only where `P' u = 0`: on a surface (`share = 0`), where the null
+///   space of `P'` is spanned by `n`, with the ball exactly between it and the goal (`u = n`): one point a
+///   ball. That point is a saddle: along the surface it is the farthest from the goal, and the distance
+///   to the goal falls.
+///
+/// In steps of finite length with [`StableEuler`](crate::StableEuler), the decrease at every step is kept
+/// as it is. And no ball is entered, because [`longest_step`](Flow::longest_step) ends a step where half of
+/// the gap is used up along `n`: the half space beyond the tangent plane does not meet the ball.
+///
+/// Balls that touch or overlap can form a dead end, where walkers come to rest. A walker who starts inside
+/// a ball is let out of it, not further in.
+///
+/// # Obstacles that move
+/// Positive definiteness, and with it the decrease of the distance in every step, does not depend on the
+/// obstacles. Keeping clear does: give each step the obstacles as they will be at its end
+/// ([`ObstacleSchedule`](crate::ObstacleSchedule)), and a walker who is clear of them there at the start
+/// of a step is clear of them at its end. One who is in the way of an obstacle is not moved aside: that
+/// could lead away from the goal.
+///
+/// # References
+/// In the spirit of Khansari-Zadeh and Billard, "A dynamical system approach to realtime obstacle
+/// avoidance" (Autonomous Robots 2012), who modulate the velocity by a matrix that is not symmetric.
+/// Applied to the metric, the modulation keeps the Lyapunov function as well.
+///
+/// # Examples
+/// ```
+/// use ddl_dynamics::{
+///     Attractor, AvoidingFlow, Ball, CholeskyMetric, LyapunovCertificate, NaturalGradientFlow,
+///     StableEuler, rollout,
+/// };
+/// use nalgebra::Vector2;
+///
+/// let attractor = Attractor::new(Vector2::new(6.0, 0.0))?;
+/// let metric = CholeskyMetric::planar(1.1, 0.0, 1.1, 1e-8)?;
+/// let pillar = Ball::new(Vector2::new(3.0, 0.2), 0.5)?;
+/// let flow = AvoidingFlow::new(NaturalGradientFlow::new(attractor, metric), [pillar], 1.0)?;
+///
+/// let path = rollout(&flow, &StableEuler, Vector2::zeros(), 0.4, 40)?;
+/// assert!(path.iter().all(|p| pillar.gap_and_normal(p).0 > 0.0));
+/// assert_eq!(path[40], *attractor.goal());
+/// assert!(LyapunovCertificate::of_rollout(&flow, &path, 0.4)?.holds().is_ok());
+/// # Ok::<(), ddl_dynamics::DynamicsError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AvoidingFlow<T, const D: usize, M, O> {
+    flow: NaturalGradientFlow<T, D, M>,
+    obstacles: O,
+    margin: T,
+}
+
+impl<T, const D: usize, M, O> AvoidingFlow<T, D, M, O>
+where
+    T: Real,
+    M: MetricSource<T, D>,
+    O: ObstacleSource<T, D>,
+{
+    /// `flow`, slowed within `margin` (metres) of the surfaces of `obstacles`.
+    ///
+    /// With a margin of twice the speed times the time step, or more, no step has to be cut short.
+    ///
+    /// # Errors
+    /// [`DynamicsError::InvalidMargin`] unless the margin is positive and finite.
+    pub fn new(
+        flow: NaturalGradientFlow<T, D, M>,
+        obstacles: O,
+        margin: T,
+    ) -> Result<Self, DynamicsError> {
+        if margin > T::zero() && margin.is_finite() {
+            Ok(Self {
+                flow,
+                obstacles,
+                margin,
+            })
+        } else {
+            Err(DynamicsError::InvalidMargin(margin.as_f64()))
+        }
+    }
+
+    /// The distance from the surface of each obstacle at `state`, and the normal there.
+    fn surfaces<'a>(
+        &'a self,
+        state: &'a State<'_, T, D>,
+    ) -> impl Iterator<Item = (T, SVector<T, D>)> + 'a {
+        let balls = self.obstacles.obstacles(state).iter();
+        balls.map(|ball| ball.gap_and_normal(&state.position))
+    }
+}
+
+impl<T, const D: usize, M, O> Flow<T, D> for AvoidingFlow<T, D, M, O>
+where
+    T: Real,
+    M: MetricSource<T, D>,
+    O: ObstacleSource<T, D>,
+{
+    fn attractor(&self) -> &Attractor<T, D> {
+        self.flow.attractor()
+    }
+
+    /// # Errors
+    /// Those of the metric source.
+    fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
+        let mut metric = self.flow.metric(state)?;
+        let gradient = self.attractor().gradient(&state.position);
+        for (gap, normal) in self.surfaces(state) {
+            if gap >= self.margin {
+                continue;
+            }
+            let leaves = normal.dot(&metric.apply(&gradient)) <= T::zero();
+            if !leaves {
+                // On the surface and inside, as little is left as keeps P positive definite.
+                let share = (gap / self.margin).max(T::EPSILON);
+                metric = metric.slowed_along(&normal, share)?;
+            }
+        }
+        Ok(metric)
+    }
+
+    fn velocity(&self, state: &State<'_, T, D>) -> Result<SVector<T, D>, DynamicsError> {
+        let metric = self.metric(state)?;
+        Ok(-metric.apply(&self.attractor().gradient(&state.position)))
+    }
+
+    /// Half of the time to the nearest tangent plane.
+    fn longest_step(&self, state: &State<'_, T, D>, velocity: &SVector<T, D>) -> Option<T> {
+        self.surfaces(state)
+            .filter_map(|(gap, normal)| {
+                let approach = -normal.dot(velocity);
+                let limits = gap > T::zero() && approach > T::zero();
+                limits.then(|| gap / approach * T::rounded(0.5))
+            })
+            .filter(|limit| *limit > T::zero())
+            .reduce(T::min)
+    }
+}

@@ -1,0 +1,66 @@
+//! To the goal along a path that a metric shapes.
+
+use nalgebra::SVector;
+
+use super::Flow;
+use crate::{
+    attractor::Attractor, error::DynamicsError, metric::CholeskyMetric,
+    metric_source::MetricSource, real::Real, state::State,
+};
+
+/// Natural gradient descent: `v = -P grad Phi`, `P = L L^T + sigma I`.
+///
+/// The distance falls at the rate `u^T P u`, at least the smallest eigenvalue of `P` and so at
+/// least `sigma`, whatever metric the source gives at whatever state: the goal is reached after at
+/// most `Phi(p(0)) / lambda_min` seconds, with `lambda_min` the smallest eigenvalue along the path. (On
+/// a quadratic attractor `|e|` falls at `|e| u^T P u` instead, so `|e(t)| <= |e(0)| exp(-lambda_min t)`.)
+/// The velocity is less than 90 degrees away from the direction to the goal.
+///
+/// # References
+/// Equation (9) of the paper, with `P` of equation (11).
+///
+/// # Examples
+/// ```
+/// use ddl_dynamics::{Attractor, CholeskyMetric, Flow, NaturalGradientFlow, State};
+/// use nalgebra::Vector2;
+///
+/// let metric = CholeskyMetric::planar(1.0, 0.5, 0.75, 0.25)?; // P = [1.25 0.5; 0.5 1.0625]
+/// let flow = NaturalGradientFlow::new(Attractor::new(Vector2::zeros())?, metric);
+/// let velocity = flow.velocity(&State::at(Vector2::new(2.0, 0.0)))?;
+/// assert_eq!(velocity, Vector2::new(-1.25, -0.5));
+/// # Ok::<(), ddl_dynamics::DynamicsError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NaturalGradientFlow<T, const D: usize, M> {
+    attractor: Attractor<T, D>,
+    source: M,
+}
+
+impl<T: Real, const D: usize, M: MetricSource<T, D>> NaturalGradientFlow<T, D, M> {
+    /// The flow to the goal of `attractor`, shaped by the metrics of `source`.
+    pub fn new(attractor: Attractor<T, D>, source: M) -> Self {
+        Self { attractor, source }
+    }
+
+    /// Where the metrics come from.
+    pub fn source(&self) -> &M {
+        &self.source
+    }
+}
+
+impl<T: Real, const D: usize, M: MetricSource<T, D>> Flow<T, D> for NaturalGradientFlow<T, D, M> {
+    fn attractor(&self) -> &Attractor<T, D> {
+        &self.attractor
+    }
+
+    /// # Errors
+    /// Those of the metric source.
+    fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
+        self.source.metric(state)
+    }
+
+    fn velocity(&self, state: &State<'_, T, D>) -> Result<SVector<T, D>, DynamicsError> {
+        let metric = self.source.metric(state)?;
+        Ok(-metric.apply(&self.attractor.gradient(&state.position)))
+    }
+}

@@ -1,0 +1,264 @@
+//! Steps as exact as one asks for: adaptive, of fifth order.
+
+use nalgebra::SVector;
+
+use super::{Integrator, StableEuler};
+use crate::{
+    error::{DynamicsError, ensure_finite, ensure_time_step},
+    flow::Flow,
+    polar::polar,
+    real::Real,
+    state::State,
+};
+
+/// The most by which a step grows or shrinks at a time.
+const GROWTH: f64 = 5.0;
+const SHRINKAGE: f64 = 0.2;
+/// Inner steps tried in one time step; smooth flows need tens.
+const INNER_STEPS: usize = 10_000;
+/// Part of the ideal length that is tried.
+const SAFETY: f64 = 0.9;
+
+/// The Dormand-Prince pair of orders 5 and 4 with adaptive steps inside each time step: the path of the
+/// continuous flow, for offline use.
+///
+/// Each time step is covered by inner steps. One is taken when its estimated error is at most the
+/// tolerance *and* the potential falls in it; otherwise a shorter one is tried.
+///
+/// # What is guaranteed
+/// - *Strict decrease* of the computed distance at every step, as for [`StableEuler`], whatever the flow:
+///   an inner step that does not come nearer is not taken.
+/// - *Error* estimated at no more than the tolerance in each inner step. This is an estimate of the local
+///   error, so the error of the whole path is of the order of the tolerance times the number of inner
+///   steps, for flows that depend smoothly on the state.
+/// - *At the goal*: the flow of a distance keeps its speed to the end, so no fixed step fits the last bit.
+///   A walker nearer to the goal than the tolerance is put on it, where it stays.
+/// - *Time to the goal*: that of the continuous flow, at most `Phi(0) / lambda_min`.
+///
+/// Where even a step as short as the tolerance is refused (a metric that jumps), a [`StableEuler`] step
+/// of that length is taken. Metrics may depend on the state's time; its `step` and `history` are those of
+/// the whole time step. An [`AvoidingFlow`](crate::AvoidingFlow) keeps clear of its obstacles up to the
+/// tolerance.
+///
+/// # References
+/// Dormand and Prince, "A family of embedded Runge-Kutta formulae" (J. Comp. Appl. Math. 1980).
+///
+/// # Examples
+/// ```
+/// use ddl_dynamics::{Attractor, DormandPrince, NaturalGradientFlow, CholeskyMetric, rollout};
+/// use nalgebra::Vector2;
+///
+/// // On a quadratic attractor with a constant metric the path is known: p(t) = exp(-P t) p(0).
+/// let metric = CholeskyMetric::planar(1.0, 0.0, 0.5_f64.sqrt(), 0.5)?; // P = diag(1.5, 1)
+/// let flow = NaturalGradientFlow::new(Attractor::quadratic(Vector2::zeros())?, metric);
+/// let precise = DormandPrince::new(1e-10)?;
+/// let path = rollout(&flow, &precise, Vector2::new(2.0, 1.0), 0.5, 4)?;
+/// let known = Vector2::new(2.0 * (-3.0_f64).exp(), (-2.0_f64).exp());
+/// assert!((path[4] - known).norm() < 1e-9);
+/// # Ok::<(), ddl_dynamics::DynamicsError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DormandPrince<T> {
+    tolerance: T,
+}
+
+impl<T: Real> DormandPrince<T> {
+    /// Inner steps with an estimated error of at most `tolerance` (metres, in each component).
+    ///
+    /// # Errors
+    /// [`DynamicsError::InvalidTolerance`] unless the tolerance is positive and finite.
+    pub fn new(tolerance: T) -> Result<Self, DynamicsError> {
+        if tolerance > T::zero() && tolerance.is_finite() {
+            Ok(Self { tolerance })
+        } else {
+            Err(DynamicsError::InvalidTolerance(tolerance.as_f64()))
+        }
+    }
+
+    /// The tolerance (metres).
+    pub fn tolerance(&self) -> T {
+        self.tolerance
+    }
+}
+
+impl<T: Real, const D: usize> Integrator<T, D> for DormandPrince<T> {
+    /// # Errors
+    /// Those of the flow and of [`StableEuler::advance`]; [`DynamicsError::TooStiff`] when the flow
+    /// changes so fast that ten thousand inner steps do not cover the time step.
+    fn step<F: Flow<T, D> + ?Sized>(
+        &self,
+        flow: &F,
+        state: &State<'_, T, D>,
+        dt: T,
+    ) -> Result<SVector<T, D>, DynamicsError> {
+        ensure_time_step(dt)?;
+        ensure_finite("position", &state.position)?;
+        let mut here = *state;
+        let (mut left, mut length) = (dt, dt);
+        for _ in 0..INNER_STEPS {
+            let distance = distance(flow, &here.position);
+            if !distance.is_finite() {
+                return Err(DynamicsError::DistanceTooLarge);
+            }
+            if distance <= self.tolerance {
+                return Ok(*flow.goal());
+            }
+            let velocity = flow.velocity(&here)?;
+            ensure_finite("velocity", &velocity)?;
+            // The potential has a kink at the goal, which error estimates do not see: stay before it.
+            length = length
+                .min(left)
+                .min(time_to_closest(flow, &here.position, &velocity) * T::rounded(SAFETY));
+            if let Some(longest) = flow.longest_step(&here, &velocity) {
+                length = length.min(longest);
+            }
+            let inner = inner_step(flow, &here, velocity, length)?;
+            let relative = inner.error / self.tolerance;
+            let precise = relative <= T::one();
+            let next = if precise && self::distance(flow, &inner.position) < distance {
+                inner.position
+            } else if velocity.amax() * length <= self.tolerance {
+                StableEuler.step(flow, &here, length)?
+            } else {
+                length *= growth(relative).min(T::rounded(0.5));
+                continue;
+            };
+            here.position = next;
+            here.time += length;
+            left -= length;
+            if left <= T::zero() {
+                return Ok(next);
+            }
+            length *= growth(relative);
+        }
+        Err(DynamicsError::TooStiff {
+            steps: INNER_STEPS,
+            covered: (dt - left).as_f64(),
+        })
+    }
+}
+
+/// Distance to the goal in the coordinates of the flow's chart.
+fn distance<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
+    flow: &F,
+    position: &SVector<T, D>,
+) -> T {
+    match flow.chart() {
+        None => flow.attractor().distance(position),
+        Some(psi) => flow.attractor().distance(&psi.apply(position)),
+    }
+}
+
+/// When a straight line along `velocity` is closest to the goal, in the coordinates of the flow's chart
+/// (seconds); the largest number where it does not come closer.
+fn time_to_closest<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
+    flow: &F,
+    position: &SVector<T, D>,
+    velocity: &SVector<T, D>,
+) -> T {
+    let (image, velocity) = match flow.chart() {
+        None => (*position, *velocity),
+        Some(psi) => {
+            let (image, jacobian) = psi.apply_with_jacobian(position);
+            (image, jacobian * velocity)
+        }
+    };
+    let (distance, away) = flow.attractor().distance_and_direction(&image);
+    let (speed, heading) = polar(&velocity);
+    let time = -away.dot(&heading) * distance / speed;
+    if time > T::zero() { time } else { T::MAX }
+}
+
+/// By how much the next step is longer (or shorter), given its error over the tolerance.
+fn growth<T: Real>(relative: T) -> T {
+    let (least, most) = (T::rounded(SHRINKAGE), T::rounded(GROWTH));
+    if relative.is_zero() {
+        return most;
+    }
+    let ideal = T::rounded(SAFETY) * relative.powf(T::rounded(-0.2));
+    // A stage that left the numbers gives NaN here: shrink.
+    if ideal >= least {
+        ideal.min(most)
+    } else {
+        least
+    }
+}
+
+struct InnerStep<T, const D: usize> {
+    position: SVector<T, D>,
+    /// Largest component of the difference of the two orders (metres).
+    error: T,
+}
+
+/// Times of stages 2 to 6, in steps.
+const NODES: [f64; 5] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
+/// Weights of the earlier velocities in stages 2 to 6, and in the result of order 5.
+const WEIGHTS: [[f64; 6]; 6] = [
+    [0.2, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
+    [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0, 0.0, 0.0, 0.0],
+    [
+        19372.0 / 6561.0,
+        -25360.0 / 2187.0,
+        64448.0 / 6561.0,
+        -212.0 / 729.0,
+        0.0,
+        0.0,
+    ],
+    [
+        9017.0 / 3168.0,
+        -355.0 / 33.0,
+        46732.0 / 5247.0,
+        49.0 / 176.0,
+        -5103.0 / 18656.0,
+        0.0,
+    ],
+    [
+        35.0 / 384.0,
+        0.0,
+        500.0 / 1113.0,
+        125.0 / 192.0,
+        -2187.0 / 6784.0,
+        11.0 / 84.0,
+    ],
+];
+/// Weights of the seven velocities in the difference of orders 5 and 4.
+const DIFFERENCE: [f64; 7] = [
+    71.0 / 57600.0,
+    0.0,
+    -71.0 / 16695.0,
+    71.0 / 1920.0,
+    -17253.0 / 339_200.0,
+    22.0 / 525.0,
+    -1.0 / 40.0,
+];
+
+fn inner_step<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
+    flow: &F,
+    state: &State<'_, T, D>,
+    first: SVector<T, D>,
+    length: T,
+) -> Result<InnerStep<T, D>, DynamicsError> {
+    let mut velocities = [first; 7];
+    let mut stage = *state;
+    for (k, weights) in WEIGHTS.iter().enumerate() {
+        stage.position = state.position + combined(weights, &velocities[..=k]) * length;
+        let node = NODES.get(k).copied().unwrap_or(1.0);
+        stage.time = state.time + T::rounded(node) * length;
+        velocities[k + 1] = flow.velocity(&stage)?;
+    }
+    Ok(InnerStep {
+        position: stage.position,
+        error: (combined(&DIFFERENCE, &velocities) * length).amax(),
+    })
+}
+
+fn combined<T: Real, const D: usize>(
+    weights: &[f64],
+    velocities: &[SVector<T, D>],
+) -> SVector<T, D> {
+    let terms = velocities.iter().zip(weights);
+    terms.fold(SVector::zeros(), |sum, (velocity, &weight)| {
+        sum + velocity * T::rounded(weight)
+    })
+}

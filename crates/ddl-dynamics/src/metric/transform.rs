@@ -1,0 +1,149 @@
+//! Metrics made from others: seen through a linear map, or slowed along one direction.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::CholeskyMetric;
+use crate::{
+    error::{DynamicsError, ensure_finite},
+    real::Real,
+};
+
+impl<T: Real, const D: usize> CholeskyMetric<T, D> {
+    /// `J P J^T`: what becomes of `P` when space is mapped by a matrix `J` that can be inverted.
+    ///
+    /// If `v = -P J^T u` is the velocity before the map, `J v = -(J P J^T) u` is the one after it.
+    /// The result is positive definite: its smallest eigenvalue is at least `lambda_min(P) s_min(J)^2`.
+    ///
+    /// # Errors
+    /// - [`DynamicsError::SingularMap`] when `J` is not finite or has no inverse in `T`.
+    /// - [`DynamicsError::FactorTooLarge`] as for [`CholeskyMetric::new`].
+    ///
+    /// # Numerics
+    /// `P` is not formed: the triangular factor of `[J L, sqrt(sigma) J]` is found by rotations. The
+    /// result is `J P J^T (1 + epsilon)`, the last term in place of a `sigma`.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_dynamics::CholeskyMetric;
+    /// use nalgebra::Matrix2;
+    ///
+    /// let metric = CholeskyMetric::planar(1.0, 0.5, 1.0, 0.1)?;
+    /// let map = Matrix2::new(0.0, -2.0, 1.0, 0.5);
+    /// let seen = metric.congruent(&map)?;
+    /// let formed = map * metric.to_matrix() * map.transpose();
+    /// assert!((seen.to_matrix() - formed).norm() < 1e-14);
+    /// # Ok::<(), ddl_dynamics::DynamicsError>(())
+    /// ```
+    pub fn congruent(&self, map: &SMatrix<T, D, D>) -> Result<Self, DynamicsError> {
+        // s_min(J)^2 >= 1 / |J^-1|^2 (Frobenius).
+        let inverse = map.try_inverse();
+        let shrinks = inverse
+            .map(|inverse| T::one() / inverse.norm_squared())
+            .filter(|&shrinks| shrinks.is_finite() && shrinks > T::zero());
+        let Some(shrinks) = shrinks else {
+            return Err(DynamicsError::SingularMap);
+        };
+        let root = self.sigma.sqrt();
+        let factor = lower_triangular(map * self.factor, map * root);
+        Self::new(factor, remainder(self.sigma * shrinks))
+    }
+
+    /// `P` with the velocity along `direction` scaled down to the part `share` of it, and the least
+    /// possible change otherwise.
+    ///
+    /// With `n` along `direction` and `q = P n`,
+    ///
+    /// ```text
+    /// P' = P - (1 - share) q q^T / (n^T q)        n^T P' u = share n^T P u   for every u
+    /// ```
+    ///
+    /// so a flow with `P'` instead of `P` moves along `n` with exactly this share of its speed. As
+    /// `q q^T / (n^T q) <= P` (Cauchy-Schwarz), `share P <= P' <= P`: the result is positive definite and
+    /// nowhere faster than `P`. It depends continuously on `share` and on `direction`, whose length and
+    /// sign do not matter.
+    ///
+    /// # Errors
+    /// - [`DynamicsError::InvalidShare`] unless `0 < share <= 1`.
+    /// - [`DynamicsError::NoDirection`] when `direction` is zero, [`DynamicsError::NonFinite`] when it is
+    ///   not finite.
+    ///
+    /// # Numerics
+    /// `P` is not formed: with `A = [L, sqrt(sigma) I]`, `P = A A^T` and `y = A^T n`,
+    /// `P' = A' A'^T` for `A' = A (I - b y y^T)`, `b = (1 - sqrt(share)) / |y|^2`, so that nothing
+    /// cancels; the triangular factor of `A'` is found by rotations. The result is `P' (1 + epsilon)`, the
+    /// last term in place of a `sigma`.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_dynamics::CholeskyMetric;
+    /// use nalgebra::Vector2;
+    ///
+    /// let metric = CholeskyMetric::planar(1.0, 0.5, 1.0, 0.1)?;
+    /// let (n, u) = (Vector2::new(0.0, 1.0), Vector2::new(0.6_f64, 0.8));
+    /// let slowed = metric.slowed_along(&n, 0.25)?;
+    /// assert!((n.dot(&slowed.apply(&u)) - 0.25 * n.dot(&metric.apply(&u))).abs() < 1e-15);
+    /// assert!(slowed.eigenvalue_range().smallest >= 0.25 * metric.eigenvalue_range().smallest);
+    /// # Ok::<(), ddl_dynamics::DynamicsError>(())
+    /// ```
+    pub fn slowed_along(&self, direction: &SVector<T, D>, share: T) -> Result<Self, DynamicsError> {
+        if !(share > T::zero() && share <= T::one()) {
+            return Err(DynamicsError::InvalidShare(share.as_f64()));
+        }
+        ensure_finite("direction", direction)?;
+        let (_, n) = crate::polar::polar(direction);
+        if n == SVector::<T, D>::zeros() {
+            return Err(DynamicsError::NoDirection);
+        }
+        let root = self.sigma.sqrt();
+        let projected = self.transposed_times(&n);
+        let through = self.apply(&n) * ((T::one() - share.sqrt()) / self.quadratic_form(&n));
+        let factor = lower_triangular(
+            self.factor - through * projected.transpose(),
+            SMatrix::identity() * root - through * (n * root).transpose(),
+        );
+        Self::new(factor, remainder(self.sigma * share))
+    }
+}
+
+/// A `sigma` that is a rounding of the smallest eigenvalue: the factor holds the whole of `P`, and what
+/// a [`CholeskyMetric`] is promised to have besides is too little to be seen.
+fn remainder<T: Real>(smallest: T) -> T {
+    (smallest * T::EPSILON).max(T::MIN_POSITIVE)
+}
+
+/// The lower-triangular `F` with `F F^T = left left^T + right right^T`, by Givens rotations of columns.
+fn lower_triangular<T: Real, const D: usize>(
+    mut left: SMatrix<T, D, D>,
+    mut right: SMatrix<T, D, D>,
+) -> SMatrix<T, D, D> {
+    for row in 0..D {
+        for column in row + 1..D {
+            let (cosine, sine) = rotation(left[(row, row)], left[(row, column)]);
+            for i in row..D {
+                let (a, b) = (left[(i, row)], left[(i, column)]);
+                left[(i, row)] = cosine * a + sine * b;
+                left[(i, column)] = cosine * b - sine * a;
+            }
+            left[(row, column)] = T::zero();
+        }
+        for column in 0..D {
+            let (cosine, sine) = rotation(left[(row, row)], right[(row, column)]);
+            for i in row..D {
+                let (a, b) = (left[(i, row)], right[(i, column)]);
+                left[(i, row)] = cosine * a + sine * b;
+                right[(i, column)] = cosine * b - sine * a;
+            }
+        }
+    }
+    left
+}
+
+/// Cosine and sine of the rotation that turns `(a, b)` onto the first axis.
+fn rotation<T: Real>(a: T, b: T) -> (T, T) {
+    let length = a.hypot(b);
+    if length.is_zero() {
+        (T::one(), T::zero())
+    } else {
+        (a / length, b / length)
+    }
+}

@@ -1,0 +1,109 @@
+//! What a walker keeps clear of: balls that stand still or move.
+
+use nalgebra::SVector;
+
+use crate::{
+    error::{DynamicsError, ensure_finite},
+    polar::polar,
+    real::Real,
+    state::State,
+};
+
+/// A ball that no walker enters: a pillar, or the disc of another walker.
+///
+/// # Shapes
+/// Centre with `D` components and radius, in metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ball<T, const D: usize> {
+    centre: SVector<T, D>,
+    radius: T,
+}
+
+impl<T: Real, const D: usize> Ball<T, D> {
+    /// The ball around `centre` with `radius` (metres).
+    ///
+    /// # Errors
+    /// [`DynamicsError::NonFinite`] for the centre, [`DynamicsError::InvalidRadius`] unless the radius is
+    /// positive and finite.
+    pub fn new(centre: SVector<T, D>, radius: T) -> Result<Self, DynamicsError> {
+        ensure_finite("centre of the obstacle", &centre)?;
+        if radius > T::zero() && radius.is_finite() {
+            Ok(Self { centre, radius })
+        } else {
+            Err(DynamicsError::InvalidRadius(radius.as_f64()))
+        }
+    }
+
+    /// The centre (metres).
+    pub fn centre(&self) -> &SVector<T, D> {
+        &self.centre
+    }
+
+    /// The radius (metres).
+    pub fn radius(&self) -> T {
+        self.radius
+    }
+
+    /// The distance from the surface (metres), negative inside, and the unit vector from the centre to
+    /// `position`, 0 at the centre.
+    pub fn gap_and_normal(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
+        let (distance, normal) = polar(&(position - self.centre));
+        (distance - self.radius, normal)
+    }
+}
+
+/// Which obstacles there are at a state.
+///
+/// Implemented by slices and vectors of balls (the same all the time) and by [`ObstacleSchedule`] (others
+/// in each step).
+pub trait ObstacleSource<T: Real, const D: usize> {
+    /// The obstacles at `state`.
+    fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>];
+}
+
+impl<T: Real, const D: usize> ObstacleSource<T, D> for [Ball<T, D>] {
+    fn obstacles(&self, _state: &State<'_, T, D>) -> &[Ball<T, D>] {
+        self
+    }
+}
+
+impl<T: Real, const D: usize> ObstacleSource<T, D> for Vec<Ball<T, D>> {
+    fn obstacles(&self, _state: &State<'_, T, D>) -> &[Ball<T, D>] {
+        self
+    }
+}
+
+impl<T: Real, const D: usize, const N: usize> ObstacleSource<T, D> for [Ball<T, D>; N] {
+    fn obstacles(&self, _state: &State<'_, T, D>) -> &[Ball<T, D>] {
+        self
+    }
+}
+
+impl<T: Real, const D: usize, O: ObstacleSource<T, D> + ?Sized> ObstacleSource<T, D> for &O {
+    fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>] {
+        (**self).obstacles(state)
+    }
+}
+
+/// Obstacles that move: those to keep clear of in each step, the last ones in all later steps.
+///
+/// Give each step the obstacles as they will be at its *end*; see
+/// [`AvoidingFlow`](crate::AvoidingFlow#obstacles-that-move).
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ObstacleSchedule<T, const D: usize> {
+    steps: Vec<Vec<Ball<T, D>>>,
+}
+
+impl<T: Real, const D: usize> ObstacleSchedule<T, D> {
+    /// The schedule with `steps[k]` in step `k`; empty for no obstacles at all.
+    pub fn new(steps: Vec<Vec<Ball<T, D>>>) -> Self {
+        Self { steps }
+    }
+}
+
+impl<T: Real, const D: usize> ObstacleSource<T, D> for ObstacleSchedule<T, D> {
+    fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>] {
+        let of_step = self.steps.get(state.step).or(self.steps.last());
+        of_step.map_or(&[], Vec::as_slice)
+    }
+}

@@ -1,0 +1,187 @@
+//! Obstacles bend the way and never lose the goal.
+
+use ddl_dynamics::{
+    Attractor, AvoidingFlow, Ball, CholeskyMetric, DormandPrince, DynamicsError, Flow,
+    LyapunovCertificate, MetricSchedule, NaturalGradientFlow, ObstacleSchedule, Real, StableEuler,
+    State, rollout,
+};
+use nalgebra::Vector2;
+use proptest::{collection::vec, prelude::*, test_runner::TestCaseResult};
+
+use crate::{draw::SceneDraw, for_every_space};
+
+/// Balls along the way of the scene: two that keep their place, one on the goal, one on the start.
+fn balls<T: Real, const D: usize>(scene: &SceneDraw) -> Vec<Ball<T, D>> {
+    let (start, goal) = (scene.start::<T, D>(), *scene.attractor::<T, D>().goal());
+    let (aside, span) = (scene.direction::<T, D>(), (start - goal).norm());
+    [(0.3, 0.1), (0.6, 0.2), (1.0, 0.05), (0.0, 0.05)]
+        .into_iter()
+        .map(|(along, radius)| {
+            let centre = start + (goal - start) * T::rounded(along) + aside;
+            Ball::new(centre, span * T::rounded(radius) + T::rounded(1e-3)).unwrap()
+        })
+        .collect()
+}
+
+/// Whatever the obstacles, wherever the walker starts, however long the step: the certificate holds.
+fn the_distance_falls_among_obstacles<T: Real, const D: usize>(
+    scene: &SceneDraw,
+) -> TestCaseResult {
+    let walker = NaturalGradientFlow::new(
+        scene.attractor::<T, D>(),
+        MetricSchedule::new(scene.metrics()).unwrap(),
+    );
+    let flow = AvoidingFlow::new(walker, balls(scene), T::rounded(0.5)).unwrap();
+    let path = rollout(&flow, &StableEuler, scene.start(), scene.dt(), 12).unwrap();
+    let certificate = LyapunovCertificate::of_rollout(&flow, &path, scene.dt()).unwrap();
+    prop_assert_eq!(certificate.holds(), Ok(()));
+    Ok(())
+}
+for_every_space!(the_distance_falls_among_obstacles, any_scene);
+
+/// A walker outside the balls stays outside, up to rounding.
+fn no_ball_is_entered<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let start = scene.start::<T, D>();
+    let mut balls = balls::<T, D>(scene);
+    balls.retain(|ball| ball.gap_and_normal(&start).0 > T::zero());
+    let walker = NaturalGradientFlow::new(
+        scene.attractor::<T, D>(),
+        MetricSchedule::new(scene.metrics()).unwrap(),
+    );
+    let margin = T::rounded(0.5);
+    let flow = AvoidingFlow::new(walker, balls.clone(), margin).unwrap();
+    let path = rollout(&flow, &StableEuler, start, scene.dt(), 12).unwrap();
+    let far = path
+        .iter()
+        .map(nalgebra::Matrix::amax)
+        .fold(T::zero(), T::max);
+    let noise = T::rounded(64.0) * T::EPSILON * far.max(T::one());
+    for position in &path {
+        for ball in &balls {
+            prop_assert!(ball.gap_and_normal(position).0 >= -noise);
+        }
+    }
+    Ok(())
+}
+for_every_space!(no_ball_is_entered, any_scene);
+
+/// Up to six pillars that do not touch, none on the goal at the origin, and a walker outside them.
+fn park() -> impl Strategy<Value = (Vec<Ball<f64, 2>>, Vector2<f64>, CholeskyMetric<f64, 2>)> {
+    let pillar = (0.5..8.0_f64, 0.0..std::f64::consts::TAU, 0.2..1.5_f64);
+    let start = (1.0..10.0_f64, 0.0..std::f64::consts::TAU);
+    let factor = (0.7..1.4_f64, -0.4..0.4_f64, 0.7..1.4_f64);
+    (vec(pillar, 0..7), start, factor).prop_map(|(pillars, start, (a, b, c))| {
+        let at = |distance: f64, angle: f64| Vector2::new(angle.cos(), angle.sin()) * distance;
+        let start = at(start.0, start.1);
+        let mut kept: Vec<Ball<f64, 2>> = Vec::new();
+        for (distance, angle, radius) in pillars {
+            let ball = Ball::new(at(distance, angle), radius).unwrap();
+            let clear = |point: &Vector2<f64>, gap| ball.gap_and_normal(point).0 > gap;
+            let apart = |other: &Ball<f64, 2>| clear(other.centre(), other.radius() + 0.1);
+            if clear(&start, 0.05) && clear(&Vector2::zeros(), 0.1) && kept.iter().all(apart) {
+                kept.push(ball);
+            }
+        }
+        let metric = CholeskyMetric::planar(a, b, c, 1e-8).unwrap();
+        (kept, start, metric)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// Among pillars that do not touch, everybody arrives, never entering one.
+    #[test]
+    fn everybody_arrives((pillars, start, metric) in park()) {
+        let attractor = Attractor::new(Vector2::zeros()).unwrap();
+        let walker = NaturalGradientFlow::new(attractor, metric);
+        let flow = AvoidingFlow::new(walker, pillars.clone(), 0.6).unwrap();
+        let path = rollout(&flow, &StableEuler, start, 0.1, 3000).unwrap();
+        for pillar in &pillars {
+            prop_assert!(path.iter().all(|p| pillar.gap_and_normal(p).0 > -1e-12));
+        }
+        prop_assert!(path[3000].norm() < 1e-9, "{} m off", path[3000].norm());
+    }
+}
+
+/// Where the velocity along the normal changes its sign, the slowed and the free velocity are one.
+#[test]
+fn the_velocity_is_continuous() {
+    let attractor = Attractor::new(Vector2::new(5.0, 0.0)).unwrap();
+    let metric = CholeskyMetric::planar(1.2, 0.7, 0.5, 1e-8).unwrap();
+    let walker = NaturalGradientFlow::new(attractor, metric);
+    let pillar = Ball::new(Vector2::new(0.0, 0.0), 1.0).unwrap();
+    let flow = AvoidingFlow::new(walker, [pillar], 1.0).unwrap();
+    // A circle around the pillar, in small steps: no jump anywhere, also not where share is small.
+    for gap in [1e-6, 0.3, 0.999] {
+        let velocity = |k: u32| {
+            let angle = f64::from(k) * std::f64::consts::TAU / 20_000.0;
+            let at = Vector2::new(angle.cos(), angle.sin()) * (1.0 + gap);
+            flow.velocity(&State::at(at)).unwrap()
+        };
+        let jump = (0..20_000).map(|k| (velocity(k + 1) - velocity(k)).norm());
+        assert!(jump.fold(0.0, f64::max) < 2e-3);
+    }
+}
+
+/// Exactly behind the pillar as seen from the goal: the saddle, where a walker comes to rest; a hair
+/// beside it, everybody gets around.
+#[test]
+fn the_saddle_is_the_only_other_rest() {
+    let attractor = Attractor::new(Vector2::new(4.0, 0.0)).unwrap();
+    let walker = NaturalGradientFlow::new(attractor, CholeskyMetric::identity());
+    let pillar = Ball::new(Vector2::new(2.0, 0.0), 0.5).unwrap();
+    let flow = AvoidingFlow::new(walker, [pillar], 0.5).unwrap();
+    let held = rollout(&flow, &StableEuler, Vector2::zeros(), 0.1, 400).unwrap();
+    assert!((held[400] - Vector2::new(1.5, 0.0)).norm() < 1e-6);
+    assert!(pillar.gap_and_normal(&held[400]).0 > -1e-12);
+    let free = rollout(&flow, &StableEuler, Vector2::new(0.0, 1e-6), 0.1, 400).unwrap();
+    assert_eq!(free[400], Vector2::new(4.0, 0.0));
+}
+
+/// A pillar that is there in the first steps only: the walker waits, then goes straight.
+#[test]
+fn obstacles_come_and_go_by_the_step() {
+    let attractor = Attractor::new(Vector2::new(4.0, 0.0)).unwrap();
+    let walker = NaturalGradientFlow::new(attractor, CholeskyMetric::identity());
+    let pillar = Ball::new(Vector2::new(1.5, 0.0), 0.5).unwrap();
+    let schedule = ObstacleSchedule::new([vec![vec![pillar]; 10], vec![vec![]]].concat());
+    let flow = AvoidingFlow::new(walker, schedule, 1.0).unwrap();
+    let path = rollout(&flow, &StableEuler, Vector2::zeros(), 0.4, 20).unwrap();
+    assert!(path[10].x < 1.0 && path[11].x > path[10].x + 0.39);
+    assert_eq!(path[20], Vector2::new(4.0, 0.0));
+}
+
+/// The continuous flow keeps clear too, up to the tolerance.
+#[test]
+fn the_adaptive_integrator_keeps_clear() {
+    let attractor = Attractor::new(Vector2::new(4.0, 0.0)).unwrap();
+    let walker = NaturalGradientFlow::new(attractor, CholeskyMetric::identity());
+    let pillar = Ball::new(Vector2::new(2.0, 0.1), 0.5).unwrap();
+    let flow = AvoidingFlow::new(walker, [pillar], 0.5).unwrap();
+    let precise = DormandPrince::new(1e-7).unwrap();
+    let path = rollout(&flow, &precise, Vector2::zeros(), 0.25, 80).unwrap();
+    assert!(path.iter().all(|p| pillar.gap_and_normal(p).0 > -1e-7));
+    assert_eq!(path[80], Vector2::new(4.0, 0.0));
+}
+
+#[test]
+fn what_cannot_be_an_obstacle_is_refused() {
+    let centre = Vector2::new(0.0, 0.0);
+    for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(
+            Ball::new(centre, radius),
+            Err(DynamicsError::InvalidRadius(_))
+        ));
+        let walker = NaturalGradientFlow::new(
+            Attractor::new(centre).unwrap(),
+            CholeskyMetric::<f64, 2>::identity(),
+        );
+        let none: [Ball<f64, 2>; 0] = [];
+        assert!(matches!(
+            AvoidingFlow::new(walker, none, radius),
+            Err(DynamicsError::InvalidMargin(_))
+        ));
+    }
+    assert!(Ball::new(Vector2::new(f64::NAN, 0.0), 1.0).is_err());
+}

@@ -1,0 +1,120 @@
+//! Metrics made from others stay positive definite and do what they say.
+
+use ddl_dynamics::{CholeskyMetric, DynamicsError, Real};
+use nalgebra::{DMatrix, Matrix2, SMatrix, Vector2};
+use proptest::{prelude::*, test_runner::TestCaseResult};
+
+use crate::{
+    draw::{SceneDraw, formed},
+    for_every_space,
+};
+
+fn smallest_eigenvalue<const D: usize>(matrix: &SMatrix<f64, D, D>) -> f64 {
+    DMatrix::from_fn(D, D, |row, column| matrix[(row, column)])
+        .symmetric_eigenvalues()
+        .min()
+}
+
+/// `n^T P' u = share n^T P u`, `share P <= P' <= P`, and `u^T P' u > 0` as computed.
+fn slowed_along_a_direction_and_no_more<T: Real, const D: usize>(
+    scene: &SceneDraw,
+) -> TestCaseResult {
+    let Some(n) = scene.unit::<T, D>() else {
+        return Ok(());
+    };
+    let u = scene.start::<T, D>().try_normalize(T::rounded(1e-30));
+    let share = (scene.dt::<T>() / T::rounded(100.0)).min(T::one());
+    for metric in scene.metrics::<T, D>() {
+        let slowed = metric.slowed_along(&n, share).unwrap();
+        let (before, after) = (formed(&metric), formed(&slowed));
+        let n = n.map(Real::as_f64);
+        let share = share.as_f64();
+        let tolerance = 64.0 * T::EPSILON.as_f64() * before.norm();
+        prop_assert!((after * n - before * n * share).norm() <= tolerance);
+        prop_assert!(smallest_eigenvalue(&(after - before * share)) >= -tolerance);
+        prop_assert!(smallest_eigenvalue(&(before - after)) >= -tolerance);
+        if let Some(u) = u {
+            prop_assert!(slowed.quadratic_form(&u) > T::zero());
+        }
+    }
+    Ok(())
+}
+for_every_space!(slowed_along_a_direction_and_no_more, any_scene);
+
+/// `J P J^T` as formed, for maps with a known range of singular values.
+fn seen_through_a_map<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let Some(u) = scene.unit::<T, D>() else {
+        return Ok(());
+    };
+    // A reflection, then a shear: singular values between 0.3 and 3.3 or so.
+    let mut map = SMatrix::identity() - u * u.transpose() * T::rounded(2.0);
+    map[(D - 1, 0)] += T::rounded(0.5);
+    let wide = map.map(Real::as_f64);
+    let inverse = wide.try_inverse();
+    prop_assume!(inverse.is_some_and(|inverse| inverse.norm() < 10.0));
+    for metric in scene.metrics::<T, D>() {
+        let seen = metric.congruent(&map).unwrap();
+        let expected = wide * formed(&metric) * wide.transpose();
+        let tolerance = 64.0 * T::EPSILON.as_f64() * expected.norm();
+        prop_assert!((formed(&seen) - expected).norm() <= tolerance);
+        prop_assert!(seen.quadratic_form(&u) > T::zero());
+    }
+    Ok(())
+}
+for_every_space!(seen_through_a_map, any_scene);
+
+/// Any finite direction, share and map: a metric that is positive definite as computed, or an error.
+fn no_finite_input_breaks_a_transform<T: Real, const D: usize>(
+    scene: &SceneDraw,
+) -> TestCaseResult {
+    let direction = scene.direction::<T, D>();
+    let map = SMatrix::<T, D, D>::from_fn(|row, column| {
+        if row == column {
+            scene.start::<T, D>()[row]
+        } else {
+            direction[row]
+        }
+    });
+    for metric in scene.metrics::<T, D>() {
+        for made in [
+            metric.slowed_along(&direction, scene.dt::<T>().min(T::one())),
+            metric.congruent(&map),
+        ]
+        .into_iter()
+        .flatten()
+        {
+            for axis in 0..D {
+                let mut u = nalgebra::SVector::<T, D>::zeros();
+                u[axis] = T::one();
+                prop_assert!(made.quadratic_form(&u) > T::zero());
+                prop_assert!(made.quadratic_form(&u).is_finite());
+            }
+        }
+    }
+    Ok(())
+}
+for_every_space!(no_finite_input_breaks_a_transform, wild_scene);
+
+#[test]
+fn what_cannot_be_done_is_an_error() {
+    let metric = CholeskyMetric::<f64, 2>::identity();
+    let axis = Vector2::new(1.0, 0.0);
+    for share in [0.0, -1.0, 1.5, f64::NAN] {
+        assert!(matches!(
+            metric.slowed_along(&axis, share),
+            Err(DynamicsError::InvalidShare(_))
+        ));
+    }
+    assert_eq!(
+        metric.slowed_along(&Vector2::zeros(), 0.5),
+        Err(DynamicsError::NoDirection)
+    );
+    assert_eq!(
+        metric.congruent(&Matrix2::new(1.0, 2.0, 2.0, 4.0)),
+        Err(DynamicsError::SingularMap)
+    );
+    assert_eq!(
+        metric.congruent(&Matrix2::new(1.0, f64::NAN, 0.0, 1.0)),
+        Err(DynamicsError::SingularMap)
+    );
+}
