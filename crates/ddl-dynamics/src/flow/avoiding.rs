@@ -25,8 +25,8 @@ use crate::{
 /// - *The distance to the goal still falls* everywhere off the balls: `P' >= share P` is positive definite
 ///   for `share > 0`. So this is a flow like every other, and a
 ///   [`LyapunovCertificate`](crate::LyapunovCertificate) of it says so.
-/// - *No ball is entered*: `d gap / dt = n^T v' >= -(gap / margin) |P u|`, so the gap shrinks at most
-///   exponentially and stays positive.
+/// - *No ball is entered*: `|n^T v'| <= sqrt(share) lambda_max`, also with the updates for other balls,
+///   each of which only lowers `P`; on the surface nothing is left of it.
 /// - *The goal is the only attractor*, if it is outside all balls and the balls do not touch. A
 ///   walker can come to rest elsewhere only where `P' u = 0`: on a surface (`share = 0`), where the null
 ///   space of `P'` is spanned by `n`, with the ball exactly between it and the goal (`u = n`): one point a
