@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod attractor;
+mod diffeomorphism;
 mod error;
 mod flow;
 mod integrate;
@@ -14,6 +15,9 @@ mod spectrum;
 mod state;
 
 pub use attractor::Attractor;
+pub use diffeomorphism::{
+    AffineCoupling, Chain, CouplingBump, Diffeomorphism, Layer, LocalTranslation, Straightening,
+};
 pub use error::DynamicsError;
 pub use flow::{Flow, GradientFlow, NaturalGradientFlow};
 pub use integrate::{Euler, Integrator, StableEuler, StableStep, StepLimit};

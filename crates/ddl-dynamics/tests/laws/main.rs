@@ -8,11 +8,14 @@
 
 mod certificate;
 mod convergence;
+mod diffeomorphism;
 mod draw;
 mod euler;
 mod goal;
+mod map_draw;
 mod metric;
 mod stable_euler;
+mod straightening;
 
 /// Runs a law, a function `fn law<T: Real, const D: usize>(draw) -> TestCaseResult`, on random
 /// draws of a strategy in every number type and dimension.
