@@ -125,8 +125,8 @@ impl<T: Real, const D: usize> AffineCoupling<T, D> {
     /// The largest value of `B` accepted: scales from `exp(-10)` to `exp(10)`, about 22,000.
     pub const MAX_LOG_SCALE: f64 = 10.0;
 
-    /// The map that moves coordinate `moved` (from 0), with `B = largest_log_scale` (no unit). It
-    /// is a scaling of nothing, the identity, without bumps.
+    /// The map that moves coordinate `moved` (from 0), with `B = largest_log_scale` (no unit).
+    /// Without bumps it is the identity.
     ///
     /// # Errors
     /// - [`DynamicsError::NoSuchCoordinate`]: `moved` is not below `D`.

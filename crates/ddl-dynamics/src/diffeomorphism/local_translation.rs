@@ -12,6 +12,9 @@ use crate::{
 /// Newton steps granted to the inverse before it turns to bisection; half a dozen is usual.
 const NEWTON_STEPS: usize = 24;
 
+/// Bisections that take a bracket from 1 down to the rounding of an `f64`.
+const BISECTIONS: usize = 53;
+
 /// A translation by `v` at the centre `c`, fading to nothing at a few times `1 / rho` from it.
 ///
 /// ```text
@@ -224,7 +227,7 @@ fn share<T: Real, const D: usize>(z: &SVector<T, D>, w: &SVector<T, D>, newton_s
     if s.is_zero() {
         return s;
     }
-    for step in 0.. {
+    for step in 0..newton_steps + BISECTIONS {
         let offset = z - w * s;
         let height = gaussian::height(&offset);
         let h = s - height;
@@ -246,7 +249,7 @@ fn share<T: Real, const D: usize>(z: &SVector<T, D>, w: &SVector<T, D>, newton_s
             (low + high) * half
         };
     }
-    unreachable!("the bracket halves with every step after the last of Newton's")
+    s
 }
 
 #[cfg(test)]

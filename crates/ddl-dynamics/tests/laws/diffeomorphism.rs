@@ -2,16 +2,12 @@
 
 use approx::assert_relative_eq;
 use ddl_dynamics::{
-    AffineCoupling, Chain, CouplingBump, Diffeomorphism, DynamicsError, Layer, LocalTranslation,
-    Real,
+    AffineCoupling, Chain, CouplingBump, Diffeomorphism, Layer, LocalTranslation, Real,
 };
-use nalgebra::{DMatrix, SMatrix, SVector, Vector1, Vector2};
+use nalgebra::{ComplexField, DMatrix, Matrix2, SMatrix, SVector, Vector1, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
 
-use crate::{
-    for_every_space,
-    map_draw::{MapDraw, STEEPEST},
-};
+use crate::{for_every_space, map_draw::MapDraw};
 
 fn double<T: Real, const D: usize>(vector: &SVector<T, D>) -> SVector<f64, D> {
     vector.map(Real::as_f64)
@@ -160,7 +156,7 @@ fn the_jacobian_of_the_inverse_is_its_inverse<T: Real, const D: usize>(
                 let behind = twin.inverse(&(image - to_side));
                 (ahead[row] - behind[row]) / (2.0 * step)
             });
-            let error = (jacobian * derivative - SMatrix::identity()).norm();
+            let error = (jacobian * derivative - SMatrix::<f64, D, D>::identity()).norm();
             prop_assert!(error <= 1e-4 * (1.0 + large) * (1.0 + small), "{error}");
         }
     }
@@ -221,7 +217,7 @@ fn far_away_nothing_moves<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseRe
             far[axis] += T::rounded(30.0) / map.rate();
             prop_assert_eq!(map.apply(&far), far);
             prop_assert_eq!(map.inverse(&far), far);
-            prop_assert_eq!(map.jacobian(&far), SMatrix::identity());
+            prop_assert_eq!(map.jacobian(&far), SMatrix::<T, D, D>::identity());
         }
     }
     Ok(())
@@ -234,7 +230,7 @@ fn no_finite_input_gives_nan<T: Real, const D: usize>(draw: &MapDraw) -> TestCas
     for position in draw.positions::<T, D>() {
         for map in draw.translations::<T, D>() {
             prop_assert!(number(map.apply(&position)) && number(map.inverse(&position)));
-            prop_assert!(map.jacobian(&position).iter().all(|x| x.is_finite()));
+            prop_assert!(map.jacobian(&position).iter().all(ComplexField::is_finite));
         }
         for map in draw.couplings::<T, D>().into_iter().flatten() {
             let (image, jacobian) = map.apply_with_jacobian(&position);
@@ -272,202 +268,6 @@ fn a_chain_survives_json<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseRes
 for_every_space!(a_chain_survives_json, wild_maps);
 
 #[test]
-fn what_cannot_be_inverted_is_refused() {
-    let new = |x: f64, rate: f64, v: f64| {
-        LocalTranslation::new(Vector2::new(0.0, x), rate, Vector2::new(v, 0.0))
-    };
-    let refused = |x, rate, v| new(x, rate, v).unwrap_err();
-    assert_eq!(refused(0.0, 0.0, 0.0), DynamicsError::InvalidRate(0.0));
-    assert_eq!(refused(0.0, -1.0, 0.0), DynamicsError::InvalidRate(-1.0));
-    assert!(matches!(
-        refused(0.0, f64::NAN, 0.0),
-        DynamicsError::InvalidRate(_)
-    ));
-    assert!(matches!(
-        refused(f64::NAN, 1.0, 0.0),
-        DynamicsError::NonFinite {
-            quantity: "centre",
-            component: 1,
-            ..
-        }
-    ));
-    assert!(matches!(
-        refused(0.0, 1.0, f64::INFINITY),
-        DynamicsError::NonFinite {
-            quantity: "translation",
-            component: 0,
-            ..
-        }
-    ));
-    // The limit itself is accepted, a little more is not.
-    let limit = 0.95 / STEEPEST;
-    assert!(new(0.0, 2.0, limit * 0.5 * (1.0 - 1e-14)).is_ok());
-    let DynamicsError::NotInvertible {
-        contraction,
-        largest,
-    } = refused(0.0, 2.0, limit * 0.501)
-    else {
-        panic!("not the expected error")
-    };
-    assert_relative_eq!(contraction, 0.95 * 1.002, epsilon = 1e-14);
-    assert_relative_eq!(largest, 0.95);
-    assert!(matches!(
-        refused(0.0, f64::MAX, f64::MAX),
-        DynamicsError::NotInvertible { .. }
-    ));
-    assert!(
-        refused(0.0, 1.0, 2.0)
-            .to_string()
-            .ends_with("lower the rate rho")
-    );
-}
-
-#[test]
-fn couplings_that_have_no_meaning_are_refused() {
-    let bump = CouplingBump {
-        centre: Vector2::new(0.0, 1.0),
-        rate: 1.0,
-        log_scale: 1.0,
-        shift: 1.0,
-    };
-    let refused = |moved, largest: f64, bump| {
-        AffineCoupling::<f64, 2>::new(moved, largest, vec![bump]).unwrap_err()
-    };
-    assert_eq!(
-        refused(2, 1.0, bump),
-        DynamicsError::NoSuchCoordinate {
-            coordinate: 2,
-            dimension: 2
-        }
-    );
-    for value in [-0.5, 10.5, f64::INFINITY] {
-        assert_eq!(
-            refused(0, value, bump),
-            DynamicsError::InvalidLogScale {
-                value,
-                largest: 10.0
-            }
-        );
-    }
-    assert!(matches!(
-        refused(0, f64::NAN, bump),
-        DynamicsError::InvalidLogScale { .. }
-    ));
-    assert_eq!(
-        refused(0, 1.0, CouplingBump { rate: -2.0, ..bump }),
-        DynamicsError::InvalidRate(-2.0)
-    );
-    for wrong in [
-        CouplingBump {
-            shift: f64::NAN,
-            ..bump
-        },
-        CouplingBump {
-            log_scale: f64::INFINITY,
-            ..bump
-        },
-        CouplingBump {
-            centre: Vector2::new(f64::NAN, 0.0),
-            ..bump
-        },
-    ] {
-        assert!(matches!(
-            refused(0, 1.0, wrong),
-            DynamicsError::NonFinite { .. }
-        ));
-    }
-    for large in [
-        CouplingBump {
-            shift: f64::MAX,
-            ..bump
-        },
-        CouplingBump {
-            shift: 1e200,
-            rate: 1e200,
-            ..bump
-        },
-    ] {
-        assert_eq!(refused(0, 1.0, large), DynamicsError::BumpsTooLarge);
-    }
-}
-
-#[test]
-fn forged_files_are_refused() {
-    let honest = serde_json::json!({"layers": [
-        {"local-translation": {"centre": [0.0, 1.0], "rate": 1.0, "translation": [0.5, 0.0]}},
-        {"affine-coupling": {"moved": 1, "largest_log_scale": 0.5, "bumps": [
-            {"centre": [0.0, 0.0], "rate": 2.0, "log_scale": 0.5, "shift": -1.0},
-        ]}},
-    ]});
-    let read = |value| serde_json::from_value::<Chain<f64, 2>>(value);
-    assert_eq!(read(honest.clone()).unwrap().layers().len(), 2);
-    let forged = |pointer: &str, value: serde_json::Value| {
-        let mut forged = honest.clone();
-        *forged.pointer_mut(pointer).unwrap() = value;
-        read(forged).unwrap_err().to_string()
-    };
-    let translation = "/layers/0/local-translation";
-    let coupling = "/layers/1/affine-coupling";
-    for (pointer, value, message) in [
-        (format!("{translation}/rate"), 4.0.into(), "not invertible"),
-        (
-            format!("{translation}/rate"),
-            (-1.0).into(),
-            "positive and finite",
-        ),
-        (
-            format!("{translation}/rate"),
-            serde_json::Value::Null,
-            "null",
-        ),
-        (
-            format!("{translation}/centre"),
-            vec![0.0].into(),
-            "a list of 2 components",
-        ),
-        (
-            format!("{translation}/translation"),
-            vec![0.1; 3].into(),
-            "a list of 2 components",
-        ),
-        (
-            translation.to_owned(),
-            serde_json::json!({}),
-            "missing field",
-        ),
-        (format!("{coupling}/moved"), 2.into(), "cannot be moved"),
-        (
-            format!("{coupling}/largest_log_scale"),
-            11.0.into(),
-            "between 0 and 10",
-        ),
-        (
-            format!("{coupling}/bumps/0/rate"),
-            0.0.into(),
-            "positive and finite",
-        ),
-        (
-            format!("{coupling}/bumps/0/shift"),
-            f64::MAX.into(),
-            "overflows",
-        ),
-        (
-            format!("{coupling}/bumps/0"),
-            serde_json::json!({"center": []}),
-            "unknown field",
-        ),
-        (
-            "/layers/0".to_owned(),
-            serde_json::json!({"rotation": {}}),
-            "unknown variant",
-        ),
-    ] {
-        let error = forged(&pointer, value);
-        assert!(error.contains(message), "{pointer}: {error}");
-    }
-}
-
-#[test]
 fn a_coupling_of_the_line_scales_and_shifts_it() {
     // One coordinate has no others: s = 2 tanh(0.25 + 0.5), t = 3 - 1, wherever the bumps are.
     let bump = |centre, log_scale, shift| CouplingBump {
@@ -495,6 +295,6 @@ fn no_layers_are_the_identity() {
     let chain = Chain::<f64, 2>::new(Vec::new());
     let x = Vector2::new(1.0, -2.0);
     assert_eq!((chain.apply(&x), chain.inverse(&x)), (x, x));
-    assert_eq!(chain.jacobian(&x), SMatrix::identity());
+    assert_eq!(chain.jacobian(&x), Matrix2::identity());
     assert_relative_eq!(chain.log_determinant_lower_bound(), 0.0);
 }

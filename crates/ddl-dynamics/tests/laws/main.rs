@@ -14,6 +14,7 @@ mod euler;
 mod goal;
 mod map_draw;
 mod metric;
+mod refused_maps;
 mod stable_euler;
 mod straightening;
 

@@ -101,14 +101,8 @@ impl MapDraw {
             let rate = positive::<T>(*rate);
             let mut unit = SVector::<f64, D>::from_fn(|i, _| direction[i]);
             unit = unit.try_normalize(1e-9).unwrap_or_else(SVector::zeros);
-            let length = contraction / STEEPEST / rate.as_f64();
-            let translation = unit.map(|x| {
-                if x == 0.0 {
-                    T::zero()
-                } else {
-                    clamped(x * length)
-                }
-            });
+            let length = (contraction / STEEPEST / rate.as_f64()).min(T::MAX.as_f64());
+            let translation = unit.map(|x| T::rounded(x * length));
             LocalTranslation::new(vector(centre), rate, translation).unwrap()
         };
         self.translations.iter().map(translation).collect()
