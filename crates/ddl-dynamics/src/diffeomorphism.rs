@@ -1,19 +1,89 @@
-//! Closed-form invertible maps of space.
+//! Diffeomorphisms: smooth, invertible maps of space, in closed form.
+
+mod affine_coupling;
+mod chain;
+mod components;
+mod gaussian;
+mod local_translation;
+mod straightening;
 
 use nalgebra::{SMatrix, SVector};
 
 use crate::real::Real;
 
-/// stub
+pub use affine_coupling::{AffineCoupling, CouplingBump};
+pub use chain::{Chain, Layer};
+pub use local_translation::LocalTranslation;
+pub use straightening::Straightening;
+
+/// A smooth map `y = psi(x)` of space onto itself with a smooth inverse.
+///
+/// Seen through it, a straight line may be a path around a corner. With `u` the unit vector from
+/// `psi(p*)` to `psi(x)`, the potential `V(x) = |psi(x) - psi(p*)|` is zero at the goal alone, and
+/// along `v = -P J^T u` it falls at the rate `u^T J P J^T u > 0`, because `J` is invertible.
+///
+/// # What is promised
+/// - `psi` is smooth (all derivatives exist), and one-to-one from the whole space onto the whole
+///   space, so `inverse` has an answer everywhere.
+/// - `det J > 0` everywhere, and above a positive number that each implementation states: the map
+///   neither folds space over nor turns it inside out.
+/// - No panic for any input; and what `apply` and `inverse` give for finite input is a number, or
+///   infinite where it is too large for `T`, never NaN.
+///
+/// # What is not
+/// - Lengths and angles: a determinant says nothing of the single directions, and a composition
+///   multiplies what its parts stretch and squeeze.
+/// - A Jacobian with an entry too large for `T` is not finite. That takes a coordinate that is
+///   close to the largest number of `T` itself, or hundreds of maps at their limit one after the
+///   other.
+///
+/// # Examples
+/// The trait is object-safe:
+/// ```
+/// use ddl_dynamics::{Chain, Diffeomorphism, LocalTranslation};
+/// use nalgebra::Vector2;
+///
+/// let push = LocalTranslation::new(Vector2::zeros(), 1.0, Vector2::new(0.0, 0.5))?;
+/// let twice = Chain::new(vec![push.into(), push.into()]);
+/// let maps: [&dyn Diffeomorphism<f64, 2>; 2] = [&push, &twice];
+/// for map in maps {
+///     let x = Vector2::new(0.25, -1.0);
+///     assert!((map.inverse(&map.apply(&x)) - x).norm() < 1e-14);
+///     assert!(map.jacobian(&x).determinant() > 0.0);
+/// }
+/// # Ok::<(), ddl_dynamics::DynamicsError>(())
+/// ```
 pub trait Diffeomorphism<T: Real, const D: usize> {
-    /// psi(x)
+    /// The image `psi(x)` of `position` (metres).
     fn apply(&self, position: &SVector<T, D>) -> SVector<T, D>;
-    /// inverse
+
+    /// The position `psi^-1(y)` whose image is `image` (metres).
     fn inverse(&self, image: &SVector<T, D>) -> SVector<T, D>;
-    /// jacobian
+
+    /// The Jacobian `J = d psi / d x` at `position`: row `i`, column `j` is `d y_i / d x_j` (no
+    /// unit).
     fn jacobian(&self, position: &SVector<T, D>) -> SMatrix<T, D, D>;
-    /// both
+
+    /// [`apply`](Self::apply) and [`jacobian`](Self::jacobian), where possible at the cost of one.
     fn apply_with_jacobian(&self, position: &SVector<T, D>) -> (SVector<T, D>, SMatrix<T, D, D>) {
         (self.apply(position), self.jacobian(position))
+    }
+}
+
+impl<T: Real, const D: usize, Psi: Diffeomorphism<T, D> + ?Sized> Diffeomorphism<T, D> for &Psi {
+    fn apply(&self, position: &SVector<T, D>) -> SVector<T, D> {
+        (**self).apply(position)
+    }
+
+    fn inverse(&self, image: &SVector<T, D>) -> SVector<T, D> {
+        (**self).inverse(image)
+    }
+
+    fn jacobian(&self, position: &SVector<T, D>) -> SMatrix<T, D, D> {
+        (**self).jacobian(position)
+    }
+
+    fn apply_with_jacobian(&self, position: &SVector<T, D>) -> (SVector<T, D>, SMatrix<T, D, D>) {
+        (**self).apply_with_jacobian(position)
     }
 }

@@ -97,6 +97,78 @@ pub enum DynamicsError {
     #[error("the distance from the position to the goal overflows; use smaller units or f64")]
     DistanceTooLarge,
 
+    /// The rate `rho` of a Gaussian bump is not a positive, finite number.
+    #[error("the rate of a Gaussian bump is {0} per metre: it must be positive and finite")]
+    InvalidRate(f64),
+
+    /// A local translation moves points further than its bump is wide.
+    #[error(
+        "the local translation is not invertible: sqrt(2/e) rho |v| is {contraction}, and must be at most {largest}; shorten the translation v or lower the rate rho"
+    )]
+    NotInvertible {
+        /// `sqrt(2/e) rho |v|`.
+        contraction: f64,
+        /// The largest value accepted.
+        largest: f64,
+    },
+
+    /// The largest log scale of an affine coupling is out of range.
+    #[error("the largest log scale is {value}: it must be between 0 and {largest}")]
+    InvalidLogScale {
+        /// The offending value.
+        value: f64,
+        /// The largest value accepted.
+        largest: f64,
+    },
+
+    /// An affine coupling is to move a coordinate that space does not have.
+    #[error("coordinate {coordinate} cannot be moved: there are {dimension}, counted from 0")]
+    NoSuchCoordinate {
+        /// The coordinate asked for, from 0.
+        coordinate: usize,
+        /// Number of dimensions.
+        dimension: usize,
+    },
+
+    /// The bumps of an affine coupling do not fit into the number type.
+    #[error(
+        "the bumps of the affine coupling are too large: the sum of their weights, or of weights times rates, overflows; scale them down or use f64"
+    )]
+    BumpsTooLarge,
+
+    /// A path to be straightened has a point that is NaN or infinite.
+    #[error(
+        "component {component} of point {point} of the path is {value}: it must be a finite number"
+    )]
+    NonFinitePath {
+        /// Index of the point, from 0.
+        point: usize,
+        /// Index of the component, from 0.
+        component: usize,
+        /// The offending value.
+        value: f64,
+    },
+
+    /// A path to be straightened leads nowhere.
+    #[error(
+        "a path of {points} points and {length} m cannot be straightened: it needs two different points at least, and a length that is a finite number"
+    )]
+    InvalidPathLength {
+        /// Number of points given.
+        points: usize,
+        /// Length of the path (metres).
+        length: f64,
+    },
+
+    /// A path to be straightened runs back along itself, which no invertible map can straighten.
+    #[error(
+        "the path turns back on itself {along} m after its start: straighten the parts before and after it, or round the turn"
+    )]
+    PathTurnsBack {
+        /// Where, along the path (metres).
+        along: f64,
+    },
+
     /// A schedule of metrics holds none.
     #[error("the metric schedule is empty: it needs the metric of at least one step")]
     EmptySchedule,

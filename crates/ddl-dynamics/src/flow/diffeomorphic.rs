@@ -4,8 +4,13 @@ use nalgebra::SVector;
 
 use super::Flow;
 use crate::{
-    attractor::Attractor, diffeomorphism::Diffeomorphism, error::DynamicsError,
-    metric::CholeskyMetric, metric_source::MetricSource, real::Real, state::State,
+    attractor::Attractor,
+    diffeomorphism::Diffeomorphism,
+    error::{DynamicsError, ensure_finite},
+    metric::CholeskyMetric,
+    metric_source::MetricSource,
+    real::Real,
+    state::State,
 };
 
 /// Natural gradient descent on a potential bent by a diffeomorphism `psi`:
@@ -19,6 +24,11 @@ use crate::{
 /// With a positive-definite matrix alone a walker never moves more than 90 degrees away from the
 /// straight line to its goal: `-e^T v = e^T P u > 0`. Here it may, because it is `V` that falls and not
 /// the distance: `psi` unbends space so that the way around the corner becomes a straight one.
+///
+/// The metric may be given in space, as here ([`new`](Self::new)), or in the coordinates of the chart
+/// ([`in_chart`](Self::in_chart)): `v = -J^-1 P u`, so `P = (J^T J)^-1` in space. With the identity for `P`
+/// the second goes along the lines that `psi` makes straight: along a path that was shown, if `psi` is its
+/// [straightening](crate::Chain::straightening).
 ///
 /// # What is guaranteed
 /// `dV/dt = -(J^T u)^T P (J^T u) <= -lambda_min(P) s_min(J)^2 < 0` away from the goal, as `J` is
@@ -42,7 +52,7 @@ use crate::{
 /// use nalgebra::Vector2;
 ///
 /// // Space is pushed up around (1, 0): the way from (2, 0) to the origin bends downwards there.
-/// let push = LocalTranslation::new(Vector2::new(1.0, 0.0), Vector2::new(0.0, 0.8), 1.0)?;
+/// let push = LocalTranslation::new(Vector2::new(1.0, 0.0), 1.0, Vector2::new(0.0, 0.8))?;
 /// let metric = CholeskyMetric::planar(1.0, 0.0, 1.0, 1e-8)?;
 /// let flow = DiffeomorphicFlow::new(Vector2::zeros(), push, metric)?;
 /// let path = rollout(&flow, &StableEuler, Vector2::new(2.0, 0.0), 0.1, 40)?;
@@ -56,6 +66,14 @@ pub struct DiffeomorphicFlow<T, const D: usize, Psi, M> {
     attractor: Attractor<T, D>,
     psi: Psi,
     source: M,
+    given: Given,
+}
+
+/// The coordinates that the metric is given in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Given {
+    InSpace,
+    InChart,
 }
 
 impl<T, const D: usize, Psi, M> DiffeomorphicFlow<T, D, Psi, M>
@@ -64,18 +82,58 @@ where
     Psi: Diffeomorphism<T, D>,
     M: MetricSource<T, D>,
 {
-    /// The flow to `goal` (metres) through `psi`, shaped by the metrics of `source`.
+    /// The flow to `goal` (metres) through `psi`, shaped by the metrics of `source`: `v = -P J^T u`.
     ///
     /// # Errors
     /// [`DynamicsError::NonFinite`] when the goal or its image is not finite.
     pub fn new(goal: SVector<T, D>, psi: Psi, source: M) -> Result<Self, DynamicsError> {
-        crate::error::ensure_finite("goal", &goal)?;
-        let attractor = Attractor::new(psi.apply(&goal))?;
+        Self::with_metric(goal, psi, source, Given::InSpace)
+    }
+
+    /// The same with metrics in the coordinates of the chart: `v = -J^-1 P u`.
+    ///
+    /// # Errors
+    /// [`DynamicsError::NonFinite`] when the goal or its image is not finite.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_dynamics::{
+    ///     Chain, CholeskyMetric, DiffeomorphicFlow, Flow, StableEuler, State, rollout,
+    /// };
+    /// use nalgebra::Vector2;
+    ///
+    /// // Shown once: out to the end of a wall, around it, and back on its other side.
+    /// let shown = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]].map(Vector2::from);
+    /// let psi = Chain::straightening(&shown, 150)?.chain;
+    /// let flow = DiffeomorphicFlow::in_chart(shown[3], psi, CholeskyMetric::identity())?;
+    ///
+    /// // The goal is 1 m to the left; the walker sets out straight ahead, and arrives.
+    /// let first = flow.velocity(&State::at(shown[0]))?;
+    /// assert!(first.normalize().x > 0.95);
+    /// let path = rollout(&flow, &StableEuler, shown[0], 0.4, 24)?;
+    /// assert!(path.iter().any(|p| p.x > 2.5));
+    /// assert_eq!(path[24], shown[3]);
+    /// # Ok::<(), ddl_dynamics::DynamicsError>(())
+    /// ```
+    pub fn in_chart(goal: SVector<T, D>, psi: Psi, source: M) -> Result<Self, DynamicsError> {
+        Self::with_metric(goal, psi, source, Given::InChart)
+    }
+
+    fn with_metric(
+        goal: SVector<T, D>,
+        psi: Psi,
+        source: M,
+        given: Given,
+    ) -> Result<Self, DynamicsError> {
+        ensure_finite("goal", &goal)?;
+        let image = psi.apply(&goal);
+        let attractor = Attractor::new(*ensure_finite("image of the goal", &image)?)?;
         Ok(Self {
             goal,
             attractor,
             psi,
             source,
+            given,
         })
     }
 
@@ -100,23 +158,34 @@ where
         &self.goal
     }
 
-    /// `J P J^T`, the metric in the coordinates of the chart.
+    /// The metric in the coordinates of the chart: `J P J^T` of a metric in space.
     ///
     /// # Errors
     /// Those of the metric source and of [`CholeskyMetric::congruent`].
     fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
         let metric = self.source.metric(state)?;
-        metric.congruent(&self.psi.jacobian(&state.position))
+        match self.given {
+            Given::InSpace => metric.congruent(&self.psi.jacobian(&state.position)),
+            Given::InChart => Ok(metric),
+        }
     }
 
-    /// `-P J^T u`, in space.
+    /// The velocity in space, `-P J^T u` or `-J^-1 P u`.
     ///
     /// # Errors
-    /// Those of the metric source.
+    /// Those of the metric source; [`DynamicsError::SingularMap`] where the Jacobian has no inverse in
+    /// `T`.
     fn velocity(&self, state: &State<'_, T, D>) -> Result<SVector<T, D>, DynamicsError> {
         let metric = self.source.metric(state)?;
         let (image, jacobian) = self.psi.apply_with_jacobian(&state.position);
-        Ok(-metric.apply(&jacobian.tr_mul(&self.attractor.gradient(&image))))
+        let away = self.attractor.gradient(&image);
+        match self.given {
+            Given::InSpace => Ok(-metric.apply(&jacobian.tr_mul(&away))),
+            Given::InChart => {
+                let back = jacobian.try_inverse().ok_or(DynamicsError::SingularMap)?;
+                Ok(-(back * metric.apply(&away)))
+            }
+        }
     }
 
     fn chart(&self) -> Option<&dyn Diffeomorphism<T, D>> {

@@ -4,6 +4,10 @@ use ddl_dynamics::{Attractor, CholeskyMetric, PUBLISHED_SIGMA, Real};
 use nalgebra::{SMatrix, SVector};
 use proptest::{array::uniform3, collection::vec, prelude::*};
 
+pub(crate) use crate::map_draw::{
+    any_bent_scene, any_maps, any_polygon, mild_bent_scene, wild_bent_scene, wild_maps,
+};
+
 /// Number of random metrics in a scene; a rollout uses one after the other.
 pub(crate) const METRICS: usize = 12;
 

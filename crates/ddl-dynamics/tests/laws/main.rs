@@ -9,13 +9,18 @@
 mod avoiding;
 mod certificate;
 mod convergence;
+mod diffeomorphic_flow;
+mod diffeomorphism;
 mod dormand_prince;
 mod draw;
 mod equivariance;
 mod euler;
 mod goal;
+mod map_draw;
 mod metric;
+mod refused_maps;
 mod stable_euler;
+mod straightening;
 mod transform;
 
 /// Runs a law, a function `fn law<T: Real, const D: usize>(draw) -> TestCaseResult`, on random

@@ -1,0 +1,287 @@
+//! A translation of the neighbourhood of one point.
+
+use nalgebra::{SMatrix, SVector};
+use serde::{Deserialize, Serialize};
+
+use super::{Diffeomorphism, components, gaussian};
+use crate::{
+    error::{DynamicsError, ensure_finite},
+    real::Real,
+};
+
+/// Newton steps granted to the inverse before it turns to bisection; half a dozen is usual.
+const NEWTON_STEPS: usize = 24;
+
+/// Bisections that take a bracket from 1 down to the rounding of an `f64`.
+const BISECTIONS: usize = 53;
+
+/// A translation by `v` at the centre `c`, fading to nothing at a few times `1 / rho` from it.
+///
+/// ```text
+/// psi(x) = x + k(x) v,     k(x) = exp(-rho^2 |x - c|^2)
+/// J(x) = I - 2 rho^2 k(x) v (x - c)^T,     det J = 1 - 2 rho^2 k(x) v^T (x - c)
+/// ```
+///
+/// # When it is invertible, and why
+/// Let `q = sqrt(2/e) rho |v|`, the [`contraction`](Self::contraction). With `r = |x - c|` the
+/// gradient of `k` has the length `2 rho^2 r exp(-rho^2 r^2)`, which is largest at
+/// `r = 1 / (sqrt(2) rho)` and is `sqrt(2/e) rho` there. So `psi - id` is Lipschitz with the
+/// constant `q`, and for `q < 1`
+///
+/// ```text
+/// (1 - q) |a - b| <= |psi(a) - psi(b)| <= (1 + q) |a - b|
+/// ```
+///
+/// Hence `psi` is one-to-one and onto; all singular values of `J` lie within `[1 - q, 1 + q]`, and
+/// `det J >= 1 - q`. The condition is exact: at `x = c + v / (sqrt(2) rho |v|)` the determinant is
+/// `1 - q`, so `q = 1` has a singular point and `q > 1` folds space over. Here `q` is at most
+/// [`MAX_CONTRACTION`](Self::MAX_CONTRACTION) = 0.95, so `det J >= 0.05`.
+///
+/// # The inverse
+/// `y = x + k(x) v` puts `x` on the line `x = y - s v` with `s = k(x)` in `[0, 1]`, so `s` is a root
+/// of `h(s) = s - k(y - s v)`. As `h'(s) = det J(y - s v) >= 1 - q > 0`, `h(0) = -k(y) <= 0` and
+/// `h(1) = 1 - k(y - v) >= 0`, there is exactly one. It is found by Newton's method, kept within
+/// the bracket of the signs seen so far (a step that would leave it becomes a bisection), and after
+/// 24 such steps by bisection alone, which needs no more than 53: the number of evaluations is
+/// bounded whatever the numbers are. Half a dozen is usual.
+///
+/// # Numerics
+/// The error of the inverse, carried back by `psi`, is `h(s) v` and the rounding of `y - s v`: a few
+/// `epsilon` times the largest of `|y|`, `|c|` and `|v|`. All is computed in the numbers
+/// `rho (x - c)` and `rho v`, which neither overflow nor underflow where it matters: Jacobians are
+/// finite for every finite position. An image is infinite only where `x + k v` itself is too large
+/// for `T`. Where `k` underflows, `psi` is the identity to the last bit.
+///
+/// # References
+/// N. Perrin, P. Schlehuber-Caissier, "Fast diffeomorphic matching to learn globally asymptotically
+/// stable nonlinear dynamical systems", Systems & Control Letters 96 (2016), where the condition
+/// reads `rho < sqrt(e / 2) / |v|`.
+///
+/// # Examples
+/// ```
+/// use ddl_dynamics::{Diffeomorphism, LocalTranslation};
+/// use nalgebra::Vector2;
+///
+/// // 1 m to the left at the origin, felt within a metre or two.
+/// let push = LocalTranslation::new(Vector2::zeros(), 0.75, Vector2::new(0.0, 1.0))?;
+/// assert_eq!(push.apply(&Vector2::zeros()), Vector2::new(0.0, 1.0));
+/// assert_eq!(push.apply(&Vector2::new(50.0, 0.0)), Vector2::new(50.0, 0.0));
+/// assert!((push.inverse(&Vector2::new(0.0, 1.0))).norm() < 1e-15);
+///
+/// // A shorter way to fade makes the same push fold space over.
+/// let error = LocalTranslation::new(Vector2::zeros(), 2.0, Vector2::new(0.0, 1.0)).unwrap_err();
+/// assert!(error.to_string().contains("not invertible"));
+/// # Ok::<(), ddl_dynamics::DynamicsError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(
+    try_from = "Unchecked<T, D>",
+    bound(
+        serialize = "T: Real + Serialize",
+        deserialize = "T: Real + Deserialize<'de>"
+    )
+)]
+pub struct LocalTranslation<T, const D: usize> {
+    #[serde(with = "components")]
+    centre: SVector<T, D>,
+    rate: T,
+    #[serde(with = "components")]
+    translation: SVector<T, D>,
+}
+
+/// What a file says, before the checks.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, bound(deserialize = "T: Real + Deserialize<'de>"))]
+struct Unchecked<T, const D: usize> {
+    #[serde(with = "components")]
+    centre: SVector<T, D>,
+    rate: T,
+    #[serde(with = "components")]
+    translation: SVector<T, D>,
+}
+
+impl<T: Real, const D: usize> TryFrom<Unchecked<T, D>> for LocalTranslation<T, D> {
+    type Error = DynamicsError;
+
+    fn try_from(unchecked: Unchecked<T, D>) -> Result<Self, DynamicsError> {
+        Self::new(unchecked.centre, unchecked.rate, unchecked.translation)
+    }
+}
+
+impl<T: Real, const D: usize> LocalTranslation<T, D> {
+    /// The largest [`contraction`](Self::contraction) accepted: `det J` is at least 1 minus it.
+    pub const MAX_CONTRACTION: f64 = 0.95;
+
+    /// The translation by `translation` (metres) at `centre` (metres), fading with the rate `rate`
+    /// (1/m).
+    ///
+    /// # Errors
+    /// - [`DynamicsError::NonFinite`]: a component of the centre or the translation.
+    /// - [`DynamicsError::InvalidRate`]: the rate is not positive and finite.
+    /// - [`DynamicsError::NotInvertible`]: the contraction is above
+    ///   [`MAX_CONTRACTION`](Self::MAX_CONTRACTION).
+    pub fn new(
+        centre: SVector<T, D>,
+        rate: T,
+        translation: SVector<T, D>,
+    ) -> Result<Self, DynamicsError> {
+        ensure_finite("centre", &centre)?;
+        ensure_finite("translation", &translation)?;
+        gaussian::ensure_rate(rate)?;
+        let checked = Self {
+            centre,
+            rate,
+            translation,
+        };
+        let contraction = checked.contraction();
+        // Written so that a contraction that overflowed is refused as well.
+        if contraction <= T::rounded(Self::MAX_CONTRACTION) {
+            Ok(checked)
+        } else {
+            Err(DynamicsError::NotInvertible {
+                contraction: contraction.as_f64(),
+                largest: Self::MAX_CONTRACTION,
+            })
+        }
+    }
+
+    /// The centre `c` (metres).
+    pub fn centre(&self) -> &SVector<T, D> {
+        &self.centre
+    }
+
+    /// The rate `rho` (1/m).
+    pub fn rate(&self) -> T {
+        self.rate
+    }
+
+    /// The translation `v` at the centre (metres).
+    pub fn translation(&self) -> &SVector<T, D> {
+        &self.translation
+    }
+
+    /// `q = sqrt(2/e) rho |v|`, from 0 to [`MAX_CONTRACTION`](Self::MAX_CONTRACTION) (no unit): the
+    /// singular values of `J` are within `[1 - q, 1 + q]` everywhere.
+    pub fn contraction(&self) -> T {
+        self.scaled_translation().norm() * T::rounded((2.0 / std::f64::consts::E).sqrt())
+    }
+
+    /// `1 - q`: `det J` comes down to it at one point and is above it everywhere else (no unit).
+    pub fn determinant_lower_bound(&self) -> T {
+        T::one() - self.contraction()
+    }
+
+    /// `w = rho v` (no unit); not longer than `0.95 sqrt(e / 2)`, about 1.11.
+    fn scaled_translation(&self) -> SVector<T, D> {
+        self.translation * self.rate
+    }
+
+    fn scaled_offset(&self, position: &SVector<T, D>) -> SVector<T, D> {
+        gaussian::scaled_offset(position, &self.centre, self.rate)
+    }
+
+    fn jacobian_at(&self, scaled_offset: &SVector<T, D>, height: T) -> SMatrix<T, D, D> {
+        if height.is_zero() {
+            // The offset may be infinite, and 0 times it NaN.
+            return SMatrix::identity();
+        }
+        let gradient = scaled_offset * (height + height);
+        SMatrix::identity() - self.scaled_translation() * gradient.transpose()
+    }
+}
+
+impl<T: Real, const D: usize> Diffeomorphism<T, D> for LocalTranslation<T, D> {
+    fn apply(&self, position: &SVector<T, D>) -> SVector<T, D> {
+        position + self.translation * gaussian::height(&self.scaled_offset(position))
+    }
+
+    fn inverse(&self, image: &SVector<T, D>) -> SVector<T, D> {
+        let share = share(
+            &self.scaled_offset(image),
+            &self.scaled_translation(),
+            NEWTON_STEPS,
+        );
+        image - self.translation * share
+    }
+
+    fn jacobian(&self, position: &SVector<T, D>) -> SMatrix<T, D, D> {
+        self.apply_with_jacobian(position).1
+    }
+
+    fn apply_with_jacobian(&self, position: &SVector<T, D>) -> (SVector<T, D>, SMatrix<T, D, D>) {
+        let scaled_offset = self.scaled_offset(position);
+        let height = gaussian::height(&scaled_offset);
+        (
+            position + self.translation * height,
+            self.jacobian_at(&scaled_offset, height),
+        )
+    }
+}
+
+/// The root `s` in `[0, 1]` of `h(s) = s - exp(-|z - s w|^2)`, with `z = rho (y - c)`, `w = rho v`.
+fn share<T: Real, const D: usize>(z: &SVector<T, D>, w: &SVector<T, D>, newton_steps: usize) -> T {
+    let half = T::rounded(0.5);
+    let (mut low, mut high) = (T::zero(), T::one());
+    // The first step of a fixed-point iteration: far from the centre there is no need for a second.
+    let mut s = gaussian::height(z);
+    if s.is_zero() {
+        return s;
+    }
+    for step in 0..newton_steps + BISECTIONS {
+        let offset = z - w * s;
+        let height = gaussian::height(&offset);
+        let h = s - height;
+        if h > T::zero() {
+            high = s;
+        } else {
+            low = s;
+        }
+        let slope = T::one() - (height + height) * offset.dot(w);
+        let newton = s - h / slope;
+        let inside = low <= newton && newton <= high;
+        // h v is the error in the image. Below the rounding of h, one last step is all there is.
+        if h.abs() <= T::rounded(4.0) * T::EPSILON || high - low <= T::EPSILON {
+            return if inside { newton } else { s };
+        }
+        s = if inside && step < newton_steps {
+            newton
+        } else {
+            (low + high) * half
+        };
+    }
+    s
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector2;
+
+    use super::*;
+
+    #[test]
+    fn newton_and_bisection_find_the_same_root() {
+        // The hardest case: as steep as allowed, all around the singular point.
+        let length = 0.95 / (2.0 / std::f64::consts::E).sqrt();
+        let w = Vector2::new(length, 0.0);
+        for i in -300..=300 {
+            for height in [0.0, 0.3, 1.5] {
+                let z = Vector2::new(f64::from(i) * 0.01, height);
+                let (newton, bisection) = (share(&z, &w, NEWTON_STEPS), share(&z, &w, 0));
+                assert!((newton - bisection).abs() < 1e-13, "{z}");
+                assert!((newton - gaussian::height(&(z - w * newton))).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn a_translation_by_hand() {
+        // rho = 1/2, x - c = (2, 0): k = 1/e; J = I - 2/4 k v (2, 0) = [1 - k/2, 0; -k, 1].
+        let map =
+            LocalTranslation::new(Vector2::new(1.0, 1.0), 0.5, Vector2::new(0.5, 1.0)).unwrap();
+        let k = (-1.0_f64).exp();
+        let (image, jacobian) = map.apply_with_jacobian(&Vector2::new(3.0, 1.0));
+        assert!((image - Vector2::new(3.0 + 0.5 * k, 1.0 + k)).norm() < 1e-15);
+        let expected = nalgebra::Matrix2::new(1.0 - 0.5 * k, 0.0, -k, 1.0);
+        assert!((jacobian - expected).norm() < 1e-15);
+    }
+}

@@ -1,0 +1,187 @@
+//! A curve that straightens little by little, without stretching.
+
+use nalgebra::{DMatrix, SMatrix, SVD, SVector};
+
+use crate::polar::polar;
+
+/// Two directions this close to opposite have no plane to turn in (radians, roughly).
+const OPPOSITE: f64 = 1e-6;
+
+/// Iterations of the singular value decomposition granted per dimension; a handful is usual.
+const ITERATIONS_PER_DIMENSION: usize = 1000;
+
+/// A polygon kept as what it is seen from within: the length of each side, and where the next side
+/// points in the frame carried along without twist (Bishop's frame).
+///
+/// With all turns scaled by the same factor it unbends like a wire, from the curve itself (1) to a
+/// straight line (0), and no side changes its length.
+pub(super) struct Unbending<const D: usize> {
+    lengths: Vec<f64>,
+    /// Direction of the first side, in the world and in the frame alike.
+    first: SVector<f64, D>,
+    /// Direction of each further side in the frame of the side before it.
+    turns: Vec<SVector<f64, D>>,
+}
+
+impl<const D: usize> Unbending<D> {
+    /// The sides and turns of the polygon through `points`.
+    ///
+    /// # Errors
+    /// The index of the first point at which the polygon turns by 180 degrees, or stays.
+    pub(super) fn new(points: &[SVector<f64, D>]) -> Result<Self, usize> {
+        let sides: Vec<_> = points
+            .windows(2)
+            .map(|pair| polar(&(pair[1] - pair[0])))
+            .collect();
+        if let Some(point) = sides.iter().position(|(length, _)| *length == 0.0) {
+            return Err(point);
+        }
+        let directions: Vec<_> = sides.iter().map(|(_, direction)| *direction).collect();
+        let mut frame = SMatrix::<f64, D, D>::identity();
+        let mut turns = Vec::with_capacity(directions.len());
+        for (index, pair) in directions.windows(2).enumerate() {
+            if (pair[0] + pair[1]).norm() < OPPOSITE {
+                return Err(index + 1);
+            }
+            turns.push(frame.transpose() * pair[1]);
+            frame = rotation(&pair[0], &pair[1], 1.0) * frame;
+        }
+        Ok(Self {
+            lengths: sides.iter().map(|(length, _)| *length).collect(),
+            first: directions[0],
+            turns,
+        })
+    }
+
+    /// The polygon with every turn scaled by `bend`, placed over `over` as closely as a rotation
+    /// and a translation can (in the sense of least squares).
+    pub(super) fn placed(&self, bend: f64, over: &[SVector<f64, D>]) -> Vec<SVector<f64, D>> {
+        let mut frame = SMatrix::<f64, D, D>::identity();
+        let mut end = self.first * self.lengths[0];
+        let mut points = vec![SVector::zeros(), end];
+        for (turn, length) in self.turns.iter().zip(&self.lengths[1..]) {
+            frame *= rotation(&self.first, turn, bend);
+            end += frame * self.first * *length;
+            points.push(end);
+        }
+        let (from, to) = (centroid(&points), centroid(over));
+        let mut covariance = SMatrix::<f64, D, D>::zeros();
+        for (point, place) in points.iter().zip(over) {
+            covariance += (place - to) * (point - from).transpose();
+        }
+        let turn = nearest_rotation(&covariance);
+        for point in &mut points {
+            *point = turn * (*point - from) + to;
+        }
+        points
+    }
+}
+
+fn centroid<const D: usize>(points: &[SVector<f64, D>]) -> SVector<f64, D> {
+    points.iter().sum::<SVector<f64, D>>() / points.len() as f64
+}
+
+/// The rotation, in the plane of two unit vectors, by `share` of the angle from one to the other.
+fn rotation<const D: usize>(
+    from: &SVector<f64, D>,
+    to: &SVector<f64, D>,
+    share: f64,
+) -> SMatrix<f64, D, D> {
+    let cosine = from.dot(to);
+    let (sine, across) = polar(&(to - from * cosine));
+    if sine == 0.0 {
+        return SMatrix::identity();
+    }
+    let (sine, cosine) = (sine.atan2(cosine) * share).sin_cos();
+    let plane = from * from.transpose() + across * across.transpose();
+    let quarter = across * from.transpose() - from * across.transpose();
+    SMatrix::identity() + plane * (cosine - 1.0) + quarter * sine
+}
+
+/// The rotation `R` that maximises `tr(R^T M)` (Kabsch): `U diag(1, .., 1, ±1) V^T` of the singular
+/// value decomposition of `M`, the sign such that `det R = 1`.
+fn nearest_rotation<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
+    let general = DMatrix::from_fn(D, D, |row, column| matrix[(row, column)]);
+    let decomposition = SVD::try_new(
+        general,
+        true,
+        true,
+        f64::EPSILON,
+        ITERATIONS_PER_DIMENSION * D,
+    );
+    // Never seen to fail. Unturned is a place as good as any, only further to go.
+    let Some((mut u, v_t)) = decomposition.and_then(|svd| svd.u.zip(svd.v_t)) else {
+        return SMatrix::identity();
+    };
+    if (&u * &v_t).determinant() < 0.0 {
+        // Ordered: the last one belongs to the smallest singular value.
+        u.column_mut(D - 1).neg_mut();
+    }
+    let product = u * v_t;
+    SMatrix::from_fn(|row, column| product[(row, column)])
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Vector2, Vector3};
+
+    use super::*;
+
+    fn helix() -> Vec<Vector3<f64>> {
+        (0..40)
+            .map(|i| {
+                let t = f64::from(i) * 0.2;
+                Vector3::new(t.cos(), t.sin(), 0.3 * t)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn fully_bent_is_the_curve_itself_wherever_it_starts_from() {
+        let points = helix();
+        let unbending = Unbending::new(&points).unwrap();
+        for (point, placed) in points.iter().zip(unbending.placed(1.0, &points)) {
+            assert!((point - placed).norm() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn unbent_is_straight_and_as_long() {
+        let points = helix();
+        let placed = Unbending::new(&points).unwrap().placed(0.0, &points);
+        let length: f64 = points
+            .windows(2)
+            .map(|pair| (pair[1] - pair[0]).norm())
+            .sum();
+        assert!(((placed[39] - placed[0]).norm() - length).abs() < 1e-12);
+    }
+
+    #[test]
+    fn half_a_right_angle() {
+        // Sides along x and y: half unbent, the angle between them is 45 degrees.
+        let corner = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]].map(Vector2::from);
+        let placed = Unbending::new(&corner).unwrap().placed(0.5, &corner);
+        let cosine = (placed[1] - placed[0]).dot(&(placed[2] - placed[1]));
+        assert!((cosine - 0.5_f64.sqrt()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn placing_never_mirrors() {
+        let corner = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]].map(Vector2::from);
+        let mirrored = corner.map(|p| Vector2::new(p.x, -p.y));
+        let placed = Unbending::new(&corner).unwrap().placed(1.0, &mirrored);
+        let (a, b) = (placed[1] - placed[0], placed[2] - placed[1]);
+        assert!((a.perp(&b) - 2.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn turning_back_and_staying_are_named() {
+        let at = |xs: &[f64]| {
+            let points: Vec<_> = xs.iter().map(|x| Vector2::new(*x, 0.0)).collect();
+            Unbending::new(&points).err()
+        };
+        assert_eq!(at(&[0.0, 1.0, 2.0]), None);
+        assert_eq!(at(&[0.0, 1.0, 2.0, 1.0]), Some(2));
+        assert_eq!(at(&[0.0, 1.0, 1.0]), Some(1));
+    }
+}

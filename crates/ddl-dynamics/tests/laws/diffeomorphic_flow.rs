@@ -1,0 +1,199 @@
+//! Flows seen through a diffeomorphism: around corners, and stable all the same.
+
+use ddl_dynamics::{
+    Chain, CholeskyMetric, DiffeomorphicFlow, DormandPrince, DynamicsError, Flow, Integrator,
+    LyapunovCertificate, MetricSchedule, Real, StableEuler, State, rollout,
+};
+use nalgebra::{ComplexField, SVector, Vector2};
+use proptest::{prelude::*, test_runner::TestCaseResult};
+
+use crate::{
+    draw::{METRICS, SceneDraw},
+    for_every_space,
+    map_draw::MapDraw,
+};
+
+type Bent<T, const D: usize> = DiffeomorphicFlow<T, D, Chain<T, D>, MetricSchedule<T, D>>;
+
+/// The flow of the scene's metrics to the first position of the maps, given in space and in the chart.
+fn flows<T: Real, const D: usize>((maps, scene): &(MapDraw, SceneDraw)) -> [Bent<T, D>; 2] {
+    let (goal, psi) = (maps.positions()[0], maps.chain());
+    let metrics = MetricSchedule::new(scene.metrics()).unwrap();
+    [
+        DiffeomorphicFlow::new(goal, psi.clone(), metrics.clone()).unwrap(),
+        DiffeomorphicFlow::in_chart(goal, psi, metrics).unwrap(),
+    ]
+}
+
+/// For every map, metric, start and time step: `V`, as computed, falls in every step, or the walker is
+/// on the goal.
+fn the_certificate_holds_in_the_chart<T: Real, const D: usize>(
+    draw: &(MapDraw, SceneDraw),
+) -> TestCaseResult {
+    let dt = draw.1.dt();
+    for flow in flows::<T, D>(draw) {
+        for start in draw.0.positions() {
+            let path = rollout(&flow, &StableEuler, start, dt, METRICS).unwrap();
+            let certificate = LyapunovCertificate::of_rollout(&flow, &path, dt).unwrap();
+            prop_assert_eq!(certificate.holds(), Ok(()));
+            let potentials = path.iter().map(|position| flow.potential(position));
+            prop_assert!(certificate.potentials().eq(potentials));
+            let arrived = certificate.final_potential().is_zero();
+            prop_assert!(!arrived || flow.potential(&path[METRICS]).is_zero());
+        }
+    }
+    Ok(())
+}
+for_every_space!(the_certificate_holds_in_the_chart, any_bent_scene);
+
+/// `J v = -P u` in the chart, with the metric that the flow says it has there, and `u^T P u > 0`.
+fn velocity_and_metric_agree<T: Real, const D: usize>(
+    draw: &(MapDraw, SceneDraw),
+) -> TestCaseResult {
+    for flow in flows::<T, D>(draw) {
+        let psi = flow.chart().unwrap();
+        for position in draw.0.positions() {
+            let state = State::at(position);
+            let (image, jacobian) = psi.apply_with_jacobian(&position);
+            let u = flow.attractor().gradient(&image);
+            let metric = flow.metric(&state).unwrap();
+            let seen = jacobian * flow.velocity(&state).unwrap();
+            // Neither way loses more digits than forming J P J^T and going through J^-1 and back.
+            let stretch = jacobian.norm() * (T::one() + jacobian.try_inverse().unwrap().norm());
+            let given = draw.1.metrics::<T, D>()[0].eigenvalue_range().largest;
+            let scale =
+                (given + metric.eigenvalue_range().largest) * (T::one() + stretch * stretch);
+            let difference = (seen + metric.apply(&u)).norm();
+            prop_assert!(difference <= T::rounded(256.0) * T::EPSILON * scale);
+            prop_assert!(u == SVector::<T, D>::zeros() || metric.quadratic_form(&u) > T::zero());
+        }
+    }
+    Ok(())
+}
+for_every_space!(velocity_and_metric_agree, any_bent_scene);
+
+/// From every start, after the number of steps of the theorem for a metric in the chart.
+fn converges_from_everywhere<T: Real, const D: usize>(
+    draw: &(MapDraw, SceneDraw),
+) -> TestCaseResult {
+    let metric = draw.1.metrics::<T, D>()[0];
+    let (goal, psi) = (draw.0.positions()[0], draw.0.chain());
+    let flow = DiffeomorphicFlow::in_chart(goal, psi, metric).unwrap();
+    let dt = draw.1.dt::<T>().max(T::one());
+    let range = metric.eigenvalue_range();
+    for start in draw.0.positions::<T, D>() {
+        let distance = flow.potential(&start).as_f64();
+        // Two ways through the chain round some dozen times, at coordinates of up to some hundred.
+        let tolerance = 1e5 * T::EPSILON.as_f64() * (1.0 + distance);
+        if distance <= tolerance {
+            continue;
+        }
+        let full = 2.0 * distance / (dt.as_f64() * range.smallest.as_f64());
+        let shrinking = -range.largest_deviation_sine().as_f64().max(1e-9).ln();
+        let steps =
+            full.ceil() as usize + ((distance / tolerance).ln() / shrinking).ceil() as usize;
+        let path = rollout(&flow, &StableEuler, start, dt, steps).unwrap();
+        let left = flow.potential(&path[steps]).as_f64();
+        prop_assert!(
+            left <= tolerance,
+            "{left} m left of {distance} m after {steps} steps"
+        );
+    }
+    Ok(())
+}
+for_every_space!(converges_from_everywhere, mild_bent_scene);
+
+/// Every finite number: a finite position that is not farther in the chart, or an error.
+fn no_finite_input_breaks_a_bent_flow<T: Real, const D: usize>(
+    draw: &(MapDraw, SceneDraw),
+) -> TestCaseResult {
+    let (maps, scene) = draw;
+    let psi = maps.chain::<T, D>();
+    let metric = scene.metrics::<T, D>()[0];
+    for goal in maps.positions().into_iter().take(2) {
+        let made = [
+            DiffeomorphicFlow::new(goal, psi.clone(), metric),
+            DiffeomorphicFlow::in_chart(goal, psi.clone(), metric),
+        ];
+        for flow in made.into_iter().flatten() {
+            for start in maps.positions() {
+                let before = flow.potential(&start);
+                let Ok(next) = StableEuler.step(&flow, &State::at(start), scene.dt()) else {
+                    continue;
+                };
+                prop_assert!(next.iter().all(ComplexField::is_finite));
+                prop_assert!(flow.potential(&next) < before || before.is_zero());
+            }
+        }
+    }
+    Ok(())
+}
+for_every_space!(no_finite_input_breaks_a_bent_flow, wild_bent_scene);
+
+/// The largest angle between a move and the straight direction to the goal (degrees).
+fn widest_turn(path: &[Vector2<f64>], goal: &Vector2<f64>) -> f64 {
+    path.windows(2)
+        .filter(|pair| pair[0] != pair[1] && pair[0] != *goal)
+        .map(|pair| (pair[1] - pair[0]).angle(&(goal - pair[0])).to_degrees())
+        .fold(0.0, f64::max)
+}
+
+/// Behind a wall from the goal: the walker sets out away from it, with any integrator, and arrives. A metric
+/// of its own bends the path and does not lose the goal.
+#[test]
+fn a_turn_of_more_than_120_degrees_converges() {
+    let shown = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]].map(Vector2::from);
+    let goal = shown[3];
+    let psi = Chain::straightening(&shown, 150).unwrap().chain;
+    let straight = DiffeomorphicFlow::in_chart(goal, &psi, CholeskyMetric::identity()).unwrap();
+    let leaning = CholeskyMetric::planar(1.1, 0.3, 0.9, 1e-8).unwrap();
+    let leaning = DiffeomorphicFlow::new(goal, &psi, leaning).unwrap();
+    let precise = DormandPrince::new(1e-6).unwrap();
+    let (slow, fast) = (0.05, 0.4);
+    let walk = |dt, steps| rollout(&straight, &StableEuler, shown[0], dt, steps);
+    for (name, path, least, end) in [
+        ("straight", walk(fast, 30), 120.0, 1e-12),
+        ("short steps", walk(slow, 240), 120.0, 1e-12),
+        (
+            "adaptive",
+            rollout(&straight, &precise, shown[0], fast, 30),
+            120.0,
+            1e-12,
+        ),
+        (
+            "leaning",
+            rollout(&leaning, &StableEuler, shown[0], slow, 4000),
+            100.0,
+            1e-6,
+        ),
+    ] {
+        let path = path.unwrap();
+        let turn = widest_turn(&path, &goal);
+        assert!(turn > least, "{name}: {turn} degrees");
+        let left = (path[path.len() - 1] - goal).norm();
+        assert!(left <= end, "{name}: {left} m left");
+    }
+    let path = rollout(&straight, &StableEuler, shown[0], fast, 30).unwrap();
+    let certificate = LyapunovCertificate::of_rollout(&straight, &path, fast).unwrap();
+    assert_eq!(certificate.holds(), Ok(()));
+    // In the chart the same path is straight.
+    assert!(certificate.largest_angle().to_degrees() < 1.0);
+}
+
+#[test]
+fn a_goal_without_an_image_is_refused() {
+    let psi = Chain::<f64, 2>::new(Vec::new());
+    let error = DiffeomorphicFlow::new(
+        Vector2::new(f64::NAN, 0.0),
+        psi,
+        CholeskyMetric::<f64, 2>::identity(),
+    )
+    .unwrap_err();
+    assert!(matches!(
+        error,
+        DynamicsError::NonFinite {
+            quantity: "goal",
+            ..
+        }
+    ));
+}

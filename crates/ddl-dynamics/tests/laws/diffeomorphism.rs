@@ -1,0 +1,300 @@
+//! Diffeomorphisms: one-to-one, onto, and as smooth as their Jacobians say.
+
+use approx::assert_relative_eq;
+use ddl_dynamics::{
+    AffineCoupling, Chain, CouplingBump, Diffeomorphism, Layer, LocalTranslation, Real,
+};
+use nalgebra::{ComplexField, DMatrix, Matrix2, SMatrix, SVector, Vector1, Vector2};
+use proptest::{prelude::*, test_runner::TestCaseResult};
+
+use crate::{for_every_space, map_draw::MapDraw};
+
+fn double<T: Real, const D: usize>(vector: &SVector<T, D>) -> SVector<f64, D> {
+    vector.map(Real::as_f64)
+}
+
+/// A matrix in `f64` and of dynamic size, which is what nalgebra decomposes in any dimension.
+fn general<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> DMatrix<f64> {
+    DMatrix::from_fn(D, D, |row, column| matrix[(row, column)].as_f64())
+}
+
+/// The same map in `f64`, with the very parameters of `T`.
+fn twin<T: Real, const D: usize>(chain: &Chain<T, D>) -> Chain<f64, D> {
+    let layer = |layer: &Layer<T, D>| match layer {
+        Layer::LocalTranslation(map) => LocalTranslation::new(
+            double(map.centre()),
+            map.rate().as_f64(),
+            double(map.translation()),
+        )
+        .unwrap()
+        .into(),
+        Layer::AffineCoupling(map) => {
+            let bump = |bump: &CouplingBump<T, D>| CouplingBump {
+                centre: double(&bump.centre),
+                rate: bump.rate.as_f64(),
+                log_scale: bump.log_scale.as_f64(),
+                shift: bump.shift.as_f64(),
+            };
+            let bumps = map.bumps().iter().map(bump).collect();
+            AffineCoupling::new(map.moved(), map.largest_log_scale().as_f64(), bumps)
+                .unwrap()
+                .into()
+        }
+        other => panic!("{other:?}"),
+    };
+    Chain::new(chain.layers().iter().map(layer).collect())
+}
+
+/// Every map of a draw as a chain: the translations and couplings alone, and all of them together.
+fn chains<T: Real, const D: usize>(draw: &MapDraw) -> Vec<Chain<T, D>> {
+    let all = draw.chain();
+    let alone = |layer: &Layer<T, D>| Chain::new(vec![layer.clone()]);
+    let mut chains: Vec<_> = all.layers().iter().map(alone).collect();
+    chains.push(all);
+    chains
+}
+
+/// Largest singular value of `J` and of its inverse at `position`.
+fn stretch<T: Real, const D: usize>(map: &Chain<T, D>, position: &SVector<T, D>) -> (f64, f64) {
+    let values = general(&map.jacobian(position)).singular_values();
+    (values.max(), 1.0 / values.min())
+}
+
+/// `psi^-1(psi(x)) = x` and `psi(psi^-1(y)) = y`, to 1e-9 m in `f64` (positions within 200 m), and
+/// in both types to some hundred roundings times what the map itself magnifies.
+fn the_inverse_undoes_the_map<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
+    for chain in chains::<T, D>(draw) {
+        for position in draw.positions::<T, D>() {
+            let image = chain.apply(&position);
+            let source = chain.inverse(&position);
+            let (large, small) = stretch(&chain, &position);
+            let (large_there, small_there) = stretch(&chain, &source);
+            let size =
+                40.0 + double(&position).norm() + double(&image).norm() + double(&source).norm();
+            let magnified = (1.0 + large.max(large_there)) * (1.0 + small.max(small_there));
+            let tolerance = 200.0 * T::EPSILON.as_f64() * size * magnified;
+            let back = (double(&chain.inverse(&image)) - double(&position)).norm();
+            let forth = (double(&chain.apply(&source)) - double(&position)).norm();
+            prop_assert!(back.max(forth) <= tolerance, "{back} {forth} {tolerance}");
+            if T::EPSILON.as_f64() < 1e-15 {
+                prop_assert!(back.max(forth) <= 1e-9, "{back} {forth}");
+            }
+        }
+    }
+    Ok(())
+}
+for_every_space!(the_inverse_undoes_the_map, any_maps);
+
+/// A single translation is undone to a few roundings, with no allowance for what it magnifies:
+/// every finite parameter and position.
+fn a_translation_is_undone_to_rounding<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
+    for map in draw.translations::<T, D>() {
+        for image in draw.positions::<T, D>() {
+            let back = map.apply(&map.inverse(&image));
+            let size =
+                image.amax().max(map.centre().amax()).as_f64() + map.translation().amax().as_f64();
+            // The smallest number is for what is lost below the normal ones.
+            let tolerance = 64.0 * T::EPSILON.as_f64() * size
+                + 8.0 * f64::MIN_POSITIVE.max((T::MIN_POSITIVE * T::EPSILON).as_f64());
+            if size < T::MAX.as_f64() / 16.0 {
+                let error = (double(&back) - double(&image)).amax();
+                prop_assert!(error <= tolerance, "{error:e} {tolerance:e}");
+            }
+        }
+    }
+    Ok(())
+}
+for_every_space!(a_translation_is_undone_to_rounding, wild_maps);
+
+/// The analytic Jacobian agrees with central differences (of the same map in `f64`), and the
+/// default of the trait with both.
+fn the_jacobian_is_the_derivative<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
+    for chain in chains::<T, D>(draw) {
+        let twin = twin(&chain);
+        for position in draw.positions::<T, D>() {
+            let (image, jacobian) = chain.apply_with_jacobian(&position);
+            prop_assert_eq!(image, chain.apply(&position));
+            prop_assert_eq!(jacobian, chain.jacobian(&position));
+            let jacobian = jacobian.map(Real::as_f64);
+            // Rates are up to 10 per metre; errors h^2 and epsilon / h.
+            let step = 2e-6;
+            let exact = twin.jacobian(&double(&position));
+            for column in 0..D {
+                let mut to_side = SVector::<f64, D>::zeros();
+                to_side[column] = step;
+                let ahead = twin.apply(&(double(&position) + to_side));
+                let behind = twin.apply(&(double(&position) - to_side));
+                let difference = (ahead - behind) / (2.0 * step);
+                let error = (difference - exact.column(column)).norm();
+                prop_assert!(error <= 1e-6 * (1.0 + exact.norm()), "{error}");
+            }
+            // In T, rounding of the positions between layers counts, times how fast J changes.
+            let rounding = 1e5 * T::EPSILON.as_f64() * (1.0 + exact.norm()).powi(2);
+            prop_assert!((jacobian - exact).norm() <= rounding);
+        }
+    }
+    Ok(())
+}
+for_every_space!(the_jacobian_is_the_derivative, any_maps);
+
+/// The derivative of the inverse (central differences) is the inverse of the derivative.
+fn the_jacobian_of_the_inverse_is_its_inverse<T: Real, const D: usize>(
+    draw: &MapDraw,
+) -> TestCaseResult {
+    for chain in chains::<T, D>(draw) {
+        let twin = twin(&chain);
+        for position in draw.positions::<T, D>() {
+            let position = double(&position);
+            let (image, jacobian) = twin.apply_with_jacobian(&position);
+            let (large, small) = stretch(&twin, &position);
+            // Small enough for the inverse to be smooth at, which bends as 1 / (1 - q)^3.
+            let step = 1e-5 / (1.0 + small).powi(2);
+            let derivative = SMatrix::<f64, D, D>::from_fn(|row, column| {
+                let mut to_side = SVector::<f64, D>::zeros();
+                to_side[column] = step;
+                let ahead = twin.inverse(&(image + to_side));
+                let behind = twin.inverse(&(image - to_side));
+                (ahead[row] - behind[row]) / (2.0 * step)
+            });
+            let error = (jacobian * derivative - SMatrix::<f64, D, D>::identity()).norm();
+            prop_assert!(error <= 1e-4 * (1.0 + large) * (1.0 + small), "{error}");
+        }
+    }
+    Ok(())
+}
+for_every_space!(the_jacobian_of_the_inverse_is_its_inverse, any_maps);
+
+/// `det J` is positive and not below the bound that each map states; the singular values of a
+/// translation are within `[1 - q, 1 + q]`.
+fn space_is_never_folded<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
+    for chain in chains::<T, D>(draw) {
+        for position in draw.positions::<T, D>() {
+            let jacobian = general(&chain.jacobian(&position));
+            let rounding = 64.0 * T::EPSILON.as_f64() * (1.0 + jacobian.norm()).powi(3);
+            let bound = chain.log_determinant_lower_bound().as_f64().exp();
+            prop_assert!(bound > 0.0);
+            prop_assert!(jacobian.determinant() >= bound - rounding);
+            if let [Layer::LocalTranslation(map)] = chain.layers() {
+                let q = map.contraction().as_f64();
+                prop_assert!(jacobian.determinant() >= 0.05);
+                let values = jacobian.singular_values();
+                prop_assert!(values.min() >= 1.0 - q - rounding);
+                prop_assert!(values.max() <= 1.0 + q + rounding);
+            }
+        }
+    }
+    Ok(())
+}
+for_every_space!(space_is_never_folded, any_maps);
+
+/// The bound is attained at `c + v / (sqrt(2) rho |v|)`, so no larger one would be true.
+fn the_bound_of_a_translation_is_attained<T: Real, const D: usize>(
+    draw: &MapDraw,
+) -> TestCaseResult {
+    for map in draw.translations::<T, D>() {
+        let length = map.translation().norm();
+        if length.as_f64() > 1e-3 {
+            let offset = map.translation() / (length * map.rate() * T::rounded(2_f64.sqrt()));
+            let determinant = general(&map.jacobian(&(map.centre() + offset))).determinant();
+            let bound = map.determinant_lower_bound().as_f64();
+            // The position is rounded at 10 m, and felt at up to 10 per metre.
+            let rounding = 2e3 * T::EPSILON.as_f64();
+            prop_assert!(
+                (determinant - bound).abs() <= rounding,
+                "{determinant} {bound}"
+            );
+        }
+    }
+    Ok(())
+}
+for_every_space!(the_bound_of_a_translation_is_attained, any_maps);
+
+/// Thirty times its width away, a translation is the identity to the last bit.
+fn far_away_nothing_moves<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
+    for map in draw.translations::<T, D>() {
+        for axis in 0..D {
+            let mut far = *map.centre();
+            far[axis] += T::rounded(30.0) / map.rate();
+            prop_assert_eq!(map.apply(&far), far);
+            prop_assert_eq!(map.inverse(&far), far);
+            prop_assert_eq!(map.jacobian(&far), SMatrix::<T, D, D>::identity());
+        }
+    }
+    Ok(())
+}
+for_every_space!(far_away_nothing_moves, any_maps);
+
+/// No finite position gives NaN, whatever the parameters; and a translation's Jacobian is finite.
+fn no_finite_input_gives_nan<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
+    let number = |vector: SVector<T, D>| vector.iter().all(|x| !x.as_f64().is_nan());
+    for position in draw.positions::<T, D>() {
+        for map in draw.translations::<T, D>() {
+            prop_assert!(number(map.apply(&position)) && number(map.inverse(&position)));
+            prop_assert!(map.jacobian(&position).iter().all(ComplexField::is_finite));
+        }
+        for map in draw.couplings::<T, D>().into_iter().flatten() {
+            let (image, jacobian) = map.apply_with_jacobian(&position);
+            prop_assert!(number(image) && number(map.inverse(&position)));
+            prop_assert!(jacobian.iter().all(|x| !x.as_f64().is_nan()));
+        }
+        let chain = draw.chain::<T, D>();
+        prop_assert!(number(chain.apply(&position)) && number(chain.inverse(&position)));
+        let _ = chain.jacobian(&position);
+    }
+    Ok(())
+}
+for_every_space!(no_finite_input_gives_nan, wild_maps);
+
+/// A chain comes back from JSON bit by bit, subnormal and huge parameters included.
+fn a_chain_survives_json<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
+    // Real is not a serde trait; both of its types are.
+    macro_rules! back_and_forth {
+        ($number:ty) => {{
+            let chain = draw.chain::<$number, D>();
+            let text = serde_json::to_string(&chain).unwrap();
+            let back: Chain<$number, D> = serde_json::from_str(&text).unwrap();
+            prop_assert_eq!(&back, &chain);
+            // Equality takes 0 and -0 for the same.
+            prop_assert_eq!(serde_json::to_string(&back).unwrap(), text);
+        }};
+    }
+    if T::EPSILON.as_f64() < 1e-15 {
+        back_and_forth!(f64);
+    } else {
+        back_and_forth!(f32);
+    }
+    Ok(())
+}
+for_every_space!(a_chain_survives_json, wild_maps);
+
+#[test]
+fn a_coupling_of_the_line_scales_and_shifts_it() {
+    // One coordinate has no others: s = 2 tanh(0.25 + 0.5), t = 3 - 1, wherever the bumps are.
+    let bump = |centre, log_scale, shift| CouplingBump {
+        centre: Vector1::new(centre),
+        rate: 5.0,
+        log_scale,
+        shift,
+    };
+    let bumps = vec![bump(-7.0, 0.25, 3.0), bump(1e9, 0.5, -1.0)];
+    let map = AffineCoupling::new(0, 2.0, bumps).unwrap();
+    // tanh(0.75) = 0.635148952387287
+    let scale = (2.0 * 0.635_148_952_387_287_3_f64).exp();
+    for x in [-2.0, 0.0, 11.0] {
+        assert_relative_eq!(
+            map.apply(&Vector1::new(x)).x,
+            x * scale + 2.0,
+            epsilon = 1e-13
+        );
+        assert_relative_eq!(map.jacobian(&Vector1::new(x)).x, scale, epsilon = 1e-14);
+    }
+}
+
+#[test]
+fn no_layers_are_the_identity() {
+    let chain = Chain::<f64, 2>::new(Vec::new());
+    let x = Vector2::new(1.0, -2.0);
+    assert_eq!((chain.apply(&x), chain.inverse(&x)), (x, x));
+    assert_eq!(chain.jacobian(&x), Matrix2::identity());
+    assert_relative_eq!(chain.log_determinant_lower_bound(), 0.0);
+}

@@ -1,0 +1,266 @@
+//! Straightening: paths with corners and turns become straight lines, and can be walked.
+
+use ddl_dynamics::{Chain, Diffeomorphism, DynamicsError, Real, Straightening};
+use nalgebra::{ComplexField, DMatrix, DVector, SVector, Vector1, Vector2, Vector3};
+use proptest::{prelude::*, test_runner::TestCaseResult};
+
+use crate::{for_every_space, map_draw::PolygonDraw};
+
+const LAYERS: usize = 150;
+
+fn curve<const D: usize>(point: impl Fn(f64) -> SVector<f64, D>) -> Vec<SVector<f64, D>> {
+    (0..=80).map(|i| point(f64::from(i) / 80.0)).collect()
+}
+
+fn corner() -> Vec<Vector2<f64>> {
+    [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]]
+        .map(Vector2::from)
+        .to_vec()
+}
+
+/// Out along a wall, around its end, and back on the other side.
+fn hairpin() -> Vec<Vector2<f64>> {
+    [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]]
+        .map(Vector2::from)
+        .to_vec()
+}
+
+fn s_curve() -> Vec<Vector2<f64>> {
+    curve(|t| Vector2::new(6.0 * t, 1.5 * (std::f64::consts::TAU * t).sin()))
+}
+
+/// An S that swings out further than it advances.
+fn wide_s_curve() -> Vec<Vector2<f64>> {
+    curve(|t| Vector2::new(3.0 * (std::f64::consts::TAU * t).sin(), 4.0 * t))
+}
+
+/// Three quarters of a turn of a helix.
+fn rising_arc() -> Vec<Vector3<f64>> {
+    curve(|t| {
+        let angle = 1.5 * std::f64::consts::PI * t;
+        Vector3::new(2.0 * angle.cos(), 2.0 * angle.sin(), 1.5 * t)
+    })
+}
+
+fn length<const D: usize>(path: &[SVector<f64, D>]) -> f64 {
+    path.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
+}
+
+/// Distance from a point to the nearest one of a polygon.
+fn distance<const D: usize>(point: &SVector<f64, D>, path: &[SVector<f64, D>]) -> f64 {
+    let to_side = |pair: &[SVector<f64, D>]| {
+        let side = pair[1] - pair[0];
+        let share = (point - pair[0]).dot(&side) / side.norm_squared();
+        (point - pair[0] - side * share.clamp(0.0, 1.0)).norm()
+    };
+    path.windows(2).map(to_side).fold(f64::INFINITY, f64::min)
+}
+
+/// A walk along `v = -(J^T J)^-1 J^T u`: straight to the goal as the map sees it.
+struct Walk<const D: usize> {
+    positions: Vec<SVector<f64, D>>,
+    /// Largest angle between the velocity and the straight direction to the goal (degrees).
+    widest: f64,
+    /// Whether `V` fell at each step.
+    falling: bool,
+}
+
+fn walk<const D: usize>(
+    psi: &Chain<f64, D>,
+    start: SVector<f64, D>,
+    goal: SVector<f64, D>,
+) -> Walk<D> {
+    let target = psi.apply(&goal);
+    let field = |position: &SVector<f64, D>| -> (f64, SVector<f64, D>) {
+        let (image, jacobian) = psi.apply_with_jacobian(position);
+        let potential = (image - target).norm();
+        let u = (image - target) / potential;
+        let j = DMatrix::from_fn(D, D, |row, column| jacobian[(row, column)]);
+        let pulled = j.transpose() * DVector::from_column_slice(u.as_slice());
+        let velocity = -(j.transpose() * &j).cholesky().unwrap().solve(&pulled);
+        (potential, SVector::from_column_slice(velocity.as_slice()))
+    };
+    let step = 0.01;
+    let mut walk = Walk {
+        positions: vec![start],
+        widest: 0.0_f64,
+        falling: true,
+    };
+    let mut position = start;
+    let (mut potential, mut velocity) = field(&position);
+    // V falls at the rate 1, so this many steps are enough.
+    for _ in 0..(potential / step).ceil() as usize {
+        if potential <= step {
+            break;
+        }
+        walk.widest = walk
+            .widest
+            .max(velocity.angle(&(goal - position)).to_degrees());
+        // The midpoint rule.
+        let halfway = field(&(position + velocity * (0.5 * step))).1;
+        position += halfway * step;
+        walk.positions.push(position);
+        let before = potential;
+        (potential, velocity) = field(&position);
+        walk.falling &= potential < before;
+    }
+    walk
+}
+
+/// The figures of a path: straightened to less than 1 % of its length on the mean and 3 % at the
+/// most, and walked within 3 % of its length to the goal.
+fn straightened_and_walked<const D: usize>(path: &[SVector<f64, D>]) -> Walk<D> {
+    let Straightening {
+        chain,
+        mean_residual,
+        largest_residual,
+        samples,
+        targets,
+        ..
+    } = Chain::straightening(path, LAYERS).unwrap();
+    let whole = length(path);
+    let (start, goal) = (path[0], path[path.len() - 1]);
+    let walk = walk(&chain, start, goal);
+    let astray = walk
+        .positions
+        .iter()
+        .map(|p| distance(p, path))
+        .fold(0.0, f64::max);
+    let missed = (walk.positions[walk.positions.len() - 1] - goal).norm();
+    assert!(chain.layers().len() <= LAYERS);
+    assert!(mean_residual < 0.01 * whole, "{mean_residual}");
+    assert!(largest_residual < 0.03 * whole, "{largest_residual}");
+    // The targets are a straight line, as long as the path up to the corners that the samples cut.
+    let line = targets[63] - targets[0];
+    assert!((line.norm() / whole - 1.0).abs() < 0.03);
+    for (sample, target) in samples.iter().zip(&targets) {
+        assert!(distance(target, &[targets[0], targets[63]]) < 1e-9 * whole);
+        assert!(distance(sample, path) < 1e-9 * whole);
+        assert!((chain.apply(sample) - target).norm() <= largest_residual);
+    }
+    assert!(astray < 0.03 * whole, "{astray}");
+    assert!(missed < 0.02, "{missed}");
+    assert!(walk.falling);
+    walk
+}
+
+#[test]
+fn corner_curves_and_arc_become_straight_and_are_walked() {
+    straightened_and_walked(&corner());
+    straightened_and_walked(&s_curve());
+    straightened_and_walked(&wide_s_curve());
+    straightened_and_walked(&rising_arc());
+}
+
+/// The goal is 1 m away behind a wall: the way to it begins, and goes on for metres, away from it.
+/// No positive-definite matrix alone turns a velocity by more than 90 degrees.
+#[test]
+fn around_the_end_of_a_wall_and_back() {
+    let path = hairpin();
+    let walk = straightened_and_walked(&path);
+    assert!(walk.widest > 120.0, "{}", walk.widest);
+    // Never through the wall, which is at y = 0.5 from far left to x = 2.8.
+    for pair in walk.positions.windows(2) {
+        if (pair[0].y < 0.5) != (pair[1].y < 0.5) {
+            assert!(pair[1].x > 2.8, "{}", pair[1]);
+        }
+    }
+    let farthest = walk.positions.iter().map(|p| p.x).fold(0.0, f64::max);
+    assert!(farthest > 2.8, "{farthest}");
+}
+
+#[test]
+fn from_beside_the_path_too_the_goal_is_reached() {
+    let path = hairpin();
+    let chain = Chain::straightening(&path, LAYERS).unwrap().chain;
+    for start in [[0.0, -0.4], [1.5, 0.2], [3.6, 0.5], [-1.0, 0.0], [1.0, 2.0]] {
+        let walk = walk(&chain, Vector2::from(start), path[3]);
+        assert!((walk.positions[walk.positions.len() - 1] - path[3]).norm() < 0.03);
+        assert!(walk.falling);
+    }
+}
+
+#[test]
+fn the_same_path_gives_the_same_chain_in_any_unit_and_place() {
+    let path = hairpin();
+    let first = Chain::straightening(&path, 60).unwrap();
+    assert_eq!(first, Chain::straightening(&path, 60).unwrap());
+    let elsewhere: Vec<_> = path
+        .iter()
+        .map(|p| p * 1024.0 + Vector2::new(-4096.0, 512.0))
+        .collect();
+    let second = Chain::straightening(&elsewhere, 60).unwrap();
+    assert!((second.mean_residual / first.mean_residual / 1024.0 - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn in_single_precision_as_well() {
+    let path: Vec<_> = hairpin().iter().map(|p| p.cast::<f32>()).collect();
+    let straightening = Chain::straightening(&path, LAYERS).unwrap();
+    assert!(straightening.mean_residual < 0.07);
+}
+
+#[test]
+fn a_straight_path_needs_no_layer() {
+    let path = [0.0, 1.0, 5.0, 5.0].map(|x| Vector3::new(x, -2.0 * x, 0.5));
+    let straightening = Chain::straightening(&path, LAYERS).unwrap();
+    assert_eq!(straightening.chain.layers(), []);
+    assert!(straightening.largest_residual < 1e-14);
+    let line = [1.0_f32, 0.5, -3.0].map(Vector1::new);
+    assert_eq!(Chain::straightening(&line, 10).unwrap().chain.layers(), []);
+}
+
+#[test]
+fn what_is_no_path_is_refused() {
+    let refused = |path: &[[f64; 2]]| {
+        let path: Vec<_> = path.iter().copied().map(Vector2::from).collect();
+        Chain::straightening(&path, 10).unwrap_err()
+    };
+    let length = |points, length| DynamicsError::InvalidPathLength { points, length };
+    assert_eq!(refused(&[]), length(0, 0.0));
+    assert_eq!(refused(&[[1.0, 2.0]]), length(1, 0.0));
+    assert_eq!(refused(&[[1.0, 2.0]; 3]), length(3, 0.0));
+    assert_eq!(
+        refused(&[[-f64::MAX, 0.0], [f64::MAX, 0.0]]),
+        length(2, f64::INFINITY)
+    );
+    assert_eq!(refused(&[[0.0, 0.0], [5e-324, 0.0]]), length(2, 5e-324));
+    assert!(matches!(
+        refused(&[[0.0, 0.0], [0.0, f64::INFINITY]]),
+        DynamicsError::NonFinitePath {
+            point: 1,
+            component: 1,
+            ..
+        }
+    ));
+    let DynamicsError::PathTurnsBack { along } =
+        refused(&[[0.0, 0.0], [0.0, 2.0], [0.0, 1.0], [3.0, 1.0]])
+    else {
+        panic!("not the expected error")
+    };
+    assert!((along - 2.0).abs() < 0.1, "{along}");
+}
+
+/// Whatever the polygon, the answer is a chain with finite figures, or a reason.
+fn no_polygon_breaks_it<T: Real, const D: usize>(draw: &PolygonDraw) -> TestCaseResult {
+    match Chain::straightening(&draw.points::<T, D>(), 3) {
+        Ok(straightening) => {
+            prop_assert!(straightening.largest_residual.is_finite());
+            prop_assert!(straightening.mean_residual <= straightening.largest_residual);
+            for point in straightening.samples.iter().chain(&straightening.targets) {
+                prop_assert!(point.iter().all(ComplexField::is_finite));
+                prop_assert!(
+                    straightening
+                        .chain
+                        .apply(point)
+                        .iter()
+                        .all(ComplexField::is_finite)
+                );
+            }
+        }
+        Err(DynamicsError::InvalidPathLength { .. } | DynamicsError::PathTurnsBack { .. }) => {}
+        Err(error) => prop_assert!(false, "{error}"),
+    }
+    Ok(())
+}
+for_every_space!(no_polygon_breaks_it, any_polygon);
