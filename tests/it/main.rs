@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 mod certified_flow;
+mod guarantee_on_real_people;
 mod leak_baselines;
 mod leak_goals;
 mod leak_is_caught;

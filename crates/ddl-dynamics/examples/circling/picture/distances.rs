@@ -1,0 +1,47 @@
+//! The distance to the goal over time.
+
+use super::{
+    DISTANCES, Walk, draw_heading, draw_walk,
+    sheet::{EULER, Pixel, Place, STABLE, Sheet, Stroke},
+    violation,
+};
+
+/// Height of a line of text, pixels.
+const LINE: f64 = 19.0;
+
+pub(super) fn draw(sheet: &mut Sheet, [euler, stable]: &[Walk; 2]) {
+    let heading = "Distance to the goal after each step";
+    draw_heading(sheet, DISTANCES.frame[0], heading);
+    DISTANCES.draw(sheet);
+    for (name, walk, is_stable) in [("stable", stable, true), ("euler", euler, false)] {
+        draw_walk(sheet, &format!("distance-{name}"), &pixels(walk), is_stable);
+    }
+    if let Some((step, before, after)) = violation(euler) {
+        let [x, y] = DISTANCES.pixel(step, before);
+        let lines = [
+            format!("step {step} is the first"),
+            "not to approach:".to_owned(),
+            format!("{before:.3} m to {after:.3} m"),
+        ];
+        let (left, top) = (x + 40.0, y + 24.0);
+        let leader = [[x + 7.0, y + 3.0], [left - 5.0, top - 3.0]];
+        sheet.line(&leader, Stroke(EULER, 1.0, "none"));
+        for (below, line) in lines.iter().enumerate() {
+            let at = [left, top + LINE * below as f64];
+            sheet.text(at, Place::RightOf, EULER, line);
+        }
+    }
+    let mut potentials = stable.certificate.potentials();
+    if let Some(step) = potentials.position(|potential| potential <= 0.0) {
+        let [x, floor] = DISTANCES.pixel(step, 0.0);
+        let note = format!("on the goal after {step} steps");
+        sheet.text([x - 12.0, floor - 13.0], Place::LeftOf, STABLE, &note);
+    }
+}
+
+fn pixels(walk: &Walk) -> Vec<Pixel> {
+    let distances = walk.certificate.potentials().enumerate();
+    distances
+        .map(|(step, distance)| DISTANCES.pixel(step, distance))
+        .collect()
+}

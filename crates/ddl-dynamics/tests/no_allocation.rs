@@ -1,0 +1,101 @@
+//! A rollout into a slice touches the heap not once, whatever integrator follows the flow.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+#![expect(
+    unsafe_code,
+    reason = "counting allocations takes a global allocator, whose trait is unsafe"
+)]
+
+#[path = "../benches/hypotheses/mod.rs"]
+mod hypotheses;
+
+use std::{
+    alloc::{GlobalAlloc, Layout, System},
+    cell::Cell,
+    hint::black_box,
+};
+
+use ddl_dynamics::{Euler, Integrator, Real, StableEuler, rollout, rollout_into};
+use hypotheses::{Hypothesis, STEPS, TIME_STEP, drawn};
+use nalgebra::SVector;
+
+thread_local! {
+    // Each thread counts its own: the tests of this file run side by side. A constant start and no destructor: reading
+    // it allocates nothing.
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// The system's allocator, counting.
+struct Counting;
+
+// SAFETY: every call is handed on to the system's allocator unchanged, which keeps the contract.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        // SAFETY: the caller's layout, as the contract of this method asks for.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the pointer came from `alloc` or `realloc` above, so from the system, with this layout.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        // SAFETY: as for `dealloc`, and the caller's size.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+/// Allocations that `run` makes on this thread.
+fn allocations(run: impl FnOnce()) -> u64 {
+    let before = ALLOCATIONS.get();
+    run();
+    ALLOCATIONS.get() - before
+}
+
+fn allocates_nothing<T: Real, const D: usize>(integrator: &impl Integrator<T, D>) {
+    let hypotheses: Vec<Hypothesis<T, D>> = drawn(300, 7);
+    let dt = T::rounded(TIME_STEP);
+    // 40 steps: all walkers come to their goals, so no branch of a step is left out.
+    let mut positions = [SVector::<T, D>::zeros(); 41];
+    let made = allocations(|| {
+        for Hypothesis { flow, start } in &hypotheses {
+            rollout_into(flow, integrator, *start, dt, &mut positions).unwrap();
+            black_box(&positions);
+        }
+    });
+    assert_eq!(made, 0);
+}
+
+#[test]
+fn stable_euler_in_the_plane() {
+    allocates_nothing::<f64, 2>(&StableEuler);
+    allocates_nothing::<f32, 2>(&StableEuler);
+}
+
+#[test]
+fn euler_in_the_plane() {
+    allocates_nothing::<f64, 2>(&Euler);
+    allocates_nothing::<f32, 2>(&Euler);
+}
+
+#[test]
+fn both_in_space() {
+    allocates_nothing::<f64, 3>(&StableEuler);
+    allocates_nothing::<f64, 3>(&Euler);
+}
+
+/// The counter counts: `rollout` makes one vector of positions, and nothing else.
+#[test]
+fn a_rollout_that_owns_its_positions_allocates_once() {
+    let hypotheses: Vec<Hypothesis<f64, 2>> = drawn(1, 7);
+    let Hypothesis { flow, start } = &hypotheses[0];
+    let made = allocations(|| {
+        black_box(rollout(flow, &StableEuler, *start, TIME_STEP, STEPS).unwrap());
+    });
+    assert_eq!(made, 1);
+}

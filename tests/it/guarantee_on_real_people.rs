@@ -1,0 +1,210 @@
+//! What the guarantee costs: how far real walkers would have to be moved for their distance to the place
+//! where they end to fall at every step.
+//!
+//! A walker here is a pedestrian of a test window: its last observed position and the 12 that follow, with
+//! the last of them as its end `p*`. `d_t = |p_t - p*|`, t = 0..12. The walker who keeps to the guarantee
+//! instead is at
+//!
+//! ```text
+//! p'_t = p* + (d'_t / d_t) (p_t - p*),     d'_t = min(d_0, ..., d_t)
+//! ```
+//!
+//! the largest distances that never grow and are nowhere above the true ones; the direction from the end is
+//! the true one.
+
+use ddl_data::{Convention, Dataset, HORIZON, OBSERVED, Position, TIME_STEP, WindowRule};
+use ddl_dynamics::{Attractor, CholeskyMetric, LyapunovCertificate, PUBLISHED_SIGMA};
+use ddl_eval::metric::stability::RolloutStability;
+use ddl_tests::recordings;
+use nalgebra::Vector2;
+
+/// Whoever gets no further than this in 4.8 s stands (m).
+const STANDING: f64 = 1.0;
+
+fn distance(a: Position, b: Position) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The path with every point moved straight towards the last one, onto the smallest distance to it so far.
+fn never_further_from_its_end(path: &[Position]) -> Vec<Position> {
+    let end = path[path.len() - 1];
+    let mut nearest = f64::INFINITY;
+    let moved = |&p: &Position| {
+        let found = distance(p, end);
+        if found <= nearest {
+            nearest = found;
+            return p;
+        }
+        let share = nearest / found;
+        [0, 1].map(|axis| end[axis] + share * (p[axis] - end[axis]))
+    };
+    path.iter().map(moved).collect()
+}
+
+/// Whether the distance to the end falls at every step until it is reached, and stays 0 from then on:
+/// what the certificate says of a path, whatever metric it is given.
+fn certified(path: &[Position]) -> bool {
+    let positions: Vec<_> = path.iter().map(|&p| Vector2::from(p)).collect();
+    let metrics = vec![CholeskyMetric::planar(1.0, 0.0, 1.0, PUBLISHED_SIGMA).unwrap(); HORIZON];
+    let end = Attractor::new(positions[HORIZON]).unwrap();
+    let certificate = LyapunovCertificate::new(&positions, &metrics, &end, TIME_STEP).unwrap();
+    certificate.holds().is_ok()
+}
+
+/// One walker against its own end.
+struct Walker {
+    /// Mean distance between where it was and where the guarantee would have had it, 12 frames (m).
+    displacement: f64,
+    /// Gets further than [`STANDING`].
+    walks: bool,
+    certified: bool,
+    /// Largest angle between a step and the direction to its end (degrees).
+    largest_turn: f64,
+}
+
+impl Walker {
+    fn of(path: &[Position]) -> Self {
+        let (start, end) = (path[0], path[HORIZON]);
+        let kept = never_further_from_its_end(path);
+        let moved = path.iter().zip(&kept).map(|(&a, &b)| distance(a, b));
+        Self {
+            displacement: moved.sum::<f64>() / HORIZON as f64,
+            walks: distance(start, end) > STANDING,
+            certified: certified(path),
+            largest_turn: RolloutStability::of(start, &path[1..], end).largest_turn,
+        }
+    }
+}
+
+/// What is known of the walkers of a fold.
+struct Expected {
+    fold: &'static str,
+    walkers: usize,
+    /// Mean over all walkers (mm).
+    displacement: f64,
+    /// Share of those who walk whose distance falls at every step (%).
+    certified: f64,
+    /// Share of those who walk with a step of more than 90 degrees away from their end (%).
+    turning_back: f64,
+}
+
+const EXPECTED: [Expected; 5] = [
+    expected("eth", 2_511, 2.0, 93.0, 1.7),
+    expected("hotel", 1_026, 9.0, 97.0, 1.7),
+    expected("univ", 24_254, 2.0, 98.0, 1.7),
+    expected("zara1", 2_324, 1.0, 99.0, 0.5),
+    expected("zara2", 5_900, 1.0, 98.0, 1.3),
+];
+
+const fn expected(
+    fold: &'static str,
+    walkers: usize,
+    displacement: f64,
+    certified: f64,
+    turning_back: f64,
+) -> Expected {
+    Expected {
+        fold,
+        walkers,
+        displacement,
+        certified,
+        turning_back,
+    }
+}
+
+/// Share of `walkers` with a property (%).
+fn percent(walkers: &[&Walker], has: impl Fn(&Walker) -> bool) -> f64 {
+    let count = walkers.iter().filter(|walker| has(walker)).count();
+    100.0 * count as f64 / walkers.len() as f64
+}
+
+/// Mean displacement (mm).
+fn displacement<'a>(walkers: impl ExactSizeIterator<Item = &'a Walker>) -> f64 {
+    let count = walkers.len() as f64;
+    1e3 * walkers.map(|walker| walker.displacement).sum::<f64>() / count
+}
+
+/// The `percent`-th of the largest turns, of 100 (degrees).
+fn turn_of(walkers: &[&Walker], percent: usize) -> f64 {
+    let mut turns: Vec<_> = walkers.iter().map(|walker| walker.largest_turn).collect();
+    turns.sort_by(f64::total_cmp);
+    turns[(turns.len() - 1) * percent / 100]
+}
+
+#[test]
+#[expect(
+    clippy::float_cmp,
+    reason = "both sides are rounded to the digits that are compared"
+)]
+fn the_guarantee_moves_real_walkers_by_millimetres() {
+    let Some(folder) = recordings::star_folder() else {
+        return;
+    };
+    let dataset = Dataset::load(Convention::Star, &folder).unwrap();
+    for expected in EXPECTED {
+        let fold = dataset.fold(expected.fold).unwrap();
+        let windows = fold.test_windows(WindowRule::Published);
+        let paths = windows
+            .iter()
+            .flat_map(|window| (0..window.len()).map(|i| &window.track(i)[OBSERVED - 1..]));
+        let all: Vec<_> = paths.map(Walker::of).collect();
+        let walking: Vec<_> = all.iter().filter(|walker| walker.walks).collect();
+
+        let moved = displacement(all.iter());
+        let certified = percent(&walking, |walker| walker.certified);
+        let turning_back = percent(&walking, |walker| walker.largest_turn > 90.0);
+        eprintln!(
+            "{}: {} walkers moved by {moved:.2} mm, the {} who walk by {:.2} mm; of these {certified:.1} % certified, \
+             largest turn from the end {:.0} degrees (median), {:.0} (95 of 100), above 90 {turning_back:.1} %",
+            expected.fold,
+            all.len(),
+            walking.len(),
+            displacement(walking.iter().copied()),
+            turn_of(&walking, 50),
+            turn_of(&walking, 95),
+        );
+        assert_eq!(all.len(), expected.walkers, "{}", expected.fold);
+        let found = [
+            moved.round(),
+            certified.round(),
+            (10.0 * turning_back).round() / 10.0,
+        ];
+        let expected_figures = [
+            expected.displacement,
+            expected.certified,
+            expected.turning_back,
+        ];
+        assert_eq!(found, expected_figures, "{}", expected.fold);
+    }
+}
+
+/// Along a line to the end at 0: two steps back are cut to the 3 m and the 1 m reached before them.
+#[test]
+fn steps_away_from_the_end_are_cut_to_the_nearest_so_far() {
+    let line = [5.0, 3.0, 4.0, 1.0, -2.0, 0.5, 0.0].map(|x| [x, 0.0]);
+    let kept = never_further_from_its_end(&line);
+    assert_eq!(kept, [5.0, 3.0, 3.0, 1.0, -1.0, 0.5, 0.0].map(|x| [x, 0.0]));
+}
+
+/// A quarter of a turn about the end at 2 m is kept; what follows at 4 m is brought to 2 m, where it is seen.
+#[test]
+fn the_direction_from_the_end_is_kept() {
+    let path = [[3.0, 1.0], [1.0, 3.0], [1.0, 5.0], [1.0, 1.0]];
+    let kept = never_further_from_its_end(&path);
+    assert_eq!(kept, [[3.0, 1.0], [1.0, 3.0], [1.0, 3.0], [1.0, 1.0]]);
+}
+
+#[test]
+fn who_comes_back_to_the_end_is_not_certified() {
+    let walk = |x: [f64; HORIZON + 1]| x.map(|x| [x, 0.0]);
+    let straight: [f64; HORIZON + 1] = std::array::from_fn(|t| (HORIZON - t) as f64);
+    assert!(certified(&walk(straight)));
+    let early = straight.map(|x| (x - 3.0).max(0.0));
+    assert!(certified(&walk(early)), "rests at its end");
+    let mut leaves = early;
+    leaves[HORIZON - 1] = 0.25;
+    assert!(!certified(&walk(leaves)));
+    let mut pauses = straight;
+    pauses[4] = pauses[3];
+    assert!(!certified(&walk(pauses)));
+}
