@@ -83,6 +83,7 @@ impl<T: Real, const D: usize> Attractor<T, D> {
     }
 
     /// The offset from the goal, `e = p - p*` (metres).
+    #[inline]
     pub fn offset(&self, position: &SVector<T, D>) -> SVector<T, D> {
         position - self.goal
     }
@@ -92,6 +93,7 @@ impl<T: Real, const D: usize> Attractor<T, D> {
     /// # Numerics
     /// Zero only when `position` equals the goal component by component: neither underflow nor
     /// overflow of a square can fake it. A distance above the largest number of `T` is infinite.
+    #[inline]
     pub fn distance(&self, position: &SVector<T, D>) -> T {
         self.distance_and_direction(position).0
     }
@@ -101,6 +103,7 @@ impl<T: Real, const D: usize> Attractor<T, D> {
     /// # Numerics
     /// The distance is exact as said at [`distance`](Self::distance). Its square underflows to 0 within
     /// 1e-162 m of the goal (1e-23 m in `f32`): compare distances, not squares, near it.
+    #[inline]
     pub fn potential(&self, position: &SVector<T, D>) -> T {
         self.potential_and_gradient(position).0
     }
@@ -113,11 +116,13 @@ impl<T: Real, const D: usize> Attractor<T, D> {
     /// subgradients that keeps a walker there at rest. The published program divides by
     /// `max(|e|, 1e-12)` instead, which shortens the gradient within 1e-12 m of the goal; here `u`
     /// has length 1 for every offset but zero, subnormal and huge ones included.
+    #[inline]
     pub fn gradient(&self, position: &SVector<T, D>) -> SVector<T, D> {
         self.potential_and_gradient(position).1
     }
 
     /// [`potential`](Self::potential) and [`gradient`](Self::gradient) at the cost of one.
+    #[inline]
     pub fn potential_and_gradient(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
         let (distance, away) = self.distance_and_direction(position);
         match self.growth {
@@ -128,6 +133,7 @@ impl<T: Real, const D: usize> Attractor<T, D> {
 
     /// The distance to the goal (metres) and the unit vector `u` away from it (0 at the goal), for
     /// either kind of potential.
+    #[inline]
     pub fn distance_and_direction(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
         let (distance, direction) = polar(&self.offset(position));
         if distance.is_finite() {

@@ -196,6 +196,7 @@ pub enum DynamicsError {
 }
 
 /// `vector` itself if every component is finite.
+#[inline]
 pub(crate) fn ensure_finite<'a, T: Real, const D: usize>(
     quantity: &'static str,
     vector: &'a nalgebra::SVector<T, D>,
@@ -211,6 +212,7 @@ pub(crate) fn ensure_finite<'a, T: Real, const D: usize>(
 }
 
 /// `dt` itself if it is a time step: positive and finite.
+#[inline]
 pub(crate) fn ensure_time_step<T: Real>(dt: T) -> Result<T, DynamicsError> {
     if dt > T::zero() && dt.is_finite() {
         Ok(dt)

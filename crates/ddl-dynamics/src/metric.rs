@@ -116,6 +116,7 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// `sigma u`: the computed `P u` then may fail to point away from the goal although
     /// [`quadratic_form`](Self::quadratic_form) is positive.
     /// [`StableEuler`](crate::StableEuler) does not rely on it.
+    #[inline]
     pub fn apply(&self, u: &SVector<T, D>) -> SVector<T, D> {
         let projected = self.transposed_times(u);
         SVector::from_fn(|row, _| {
@@ -133,6 +134,7 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// # Numerics
     /// A sum of squares, so never negative as computed, and at least `sigma |u|^2` rounded: for a
     /// unit vector it is positive in `f32` as in `f64`.
+    #[inline]
     pub fn quadratic_form(&self, u: &SVector<T, D>) -> T {
         self.transposed_times(u).norm_squared() + self.sigma * u.norm_squared()
     }
@@ -168,6 +170,7 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     }
 
     /// `L^T u`, reading the lower triangle only.
+    #[inline]
     fn transposed_times(&self, u: &SVector<T, D>) -> SVector<T, D> {
         SVector::from_fn(|column, _| {
             let mut sum = T::zero();

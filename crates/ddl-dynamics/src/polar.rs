@@ -12,6 +12,7 @@ use crate::real::Real;
 /// largest component first, so the direction is accurate down to subnormal components. The length
 /// itself may overflow to infinity when no finite number can hold it; the direction still is exact
 /// to rounding. A component that is not finite gives NaN.
+#[inline]
 pub(crate) fn polar<T: Real, const D: usize>(vector: &SVector<T, D>) -> (T, SVector<T, D>) {
     let square = vector.norm_squared();
     if square >= T::MIN_POSITIVE / T::EPSILON && square.is_finite() {

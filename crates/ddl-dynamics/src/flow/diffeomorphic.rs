@@ -109,7 +109,7 @@ where
     ///
     /// // The goal is 1 m to the left; the walker sets out straight ahead, and arrives.
     /// let first = flow.velocity(&State::at(shown[0]))?;
-    /// assert!(first.normalize().x > 0.95);
+    /// assert!(first.normalize().x > 0.9, "{first}");
     /// let path = rollout(&flow, &StableEuler, shown[0], 0.4, 24)?;
     /// assert!(path.iter().any(|p| p.x > 2.5));
     /// assert_eq!(path[24], shown[3]);

@@ -21,7 +21,7 @@ use crate::{
 ///
 /// so the distance to the goal falls in a step exactly when `dt < 2 |e| u^T P u / |P u|^2`. The
 /// speed does not fade near the goal, so this fails for every fixed `dt` once the walker is close:
-/// the walker jumps over the goal and goes on circling it. In any case
+/// the walker jumps over the goal and goes on hopping to and fro. In any case
 /// `|e'|^2 <= |e|^2 + (dt |P u|)^2`. Use [`StableEuler`](super::StableEuler) to keep the guarantee;
 /// a [`LyapunovCertificate`](crate::LyapunovCertificate) names the step that breaks it.
 ///

@@ -122,6 +122,7 @@ impl StableEuler {
 
 /// [`StableEuler::advance`] where a position is `settled` before its distance is measured: put into
 /// the numbers of another space and back, so that the decrease holds for what will be seen there.
+#[inline]
 fn descend<T: Real, const D: usize>(
     attractor: &Attractor<T, D>,
     position: &SVector<T, D>,
