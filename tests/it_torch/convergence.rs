@@ -3,7 +3,7 @@
 
 use ddl::data::{HORIZON, OBSERVED, PedestrianId, Position, TIME_STEP, Window};
 use ddl::eval::metric::stability::RolloutStability;
-use ddl::star::{ComputeDevice, Integrator, Noise, StarConfig, StarNetwork, load_parameters};
+use ddl::star::{ComputeDevice, Noise, StarConfig, StarNetwork, StepRule, load_parameters};
 use ddl::{DeviceChoice, Forecaster as _, Variant};
 use ddl_tests::{crowd, tiny_model};
 
@@ -84,7 +84,7 @@ fn strange_observations_are_forecast_as_stably() {
 }
 
 /// A walker alone with a goal close ahead: what the two integrators make of it.
-fn stable_share(network: &StarNetwork, integrator: Integrator) -> f64 {
+fn stable_share(network: &StarNetwork, integrator: StepRule) -> f64 {
     let walking = (0..OBSERVED).map(|t| [0.5 * t as f64, 0.0]).collect();
     let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![walking]).unwrap();
     let start = window.observed(0)[OBSERVED - 1];
@@ -116,9 +116,9 @@ fn plain_euler_steps_overshoot_where_stable_ones_do_not() {
     for seed in 0..4 {
         let config = StarConfig::published(Variant::Full);
         let network = StarNetwork::new(config, seed, device).unwrap();
-        let stable = stable_share(&network, Integrator::StableEuler);
+        let stable = stable_share(&network, StepRule::StableEuler);
         assert!((stable - 1.0).abs() < f64::EPSILON, "seed {seed}: {stable}");
-        overshooting += usize::from(stable_share(&network, Integrator::Euler) < 1.0);
+        overshooting += usize::from(stable_share(&network, StepRule::Euler) < 1.0);
     }
     assert!(
         overshooting > 0,
@@ -150,7 +150,7 @@ fn run_on_every_walker_arrives() {
                 std::slice::from_ref(&window),
                 std::slice::from_ref(&given),
                 Noise::Expected,
-                Integrator::StableEuler,
+                StepRule::StableEuler,
             )
             .unwrap()
             .remove(0);

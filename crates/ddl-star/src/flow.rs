@@ -11,10 +11,10 @@ const SMALLEST_NORM: f64 = 1e-18;
 /// |P u|^2 is at least sigma^2 away from the goal; this only guards the division at it.
 const SMALLEST_SPEED_SQUARED: f64 = 1e-36;
 
-/// How a velocity becomes the next position.
+/// How a velocity becomes the next position: which integrator of [`ddl_dynamics`] the tensors follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Integrator {
+pub enum StepRule {
     /// p + dt v, the published scheme. It may step past the goal and circle it.
     Euler,
     /// The Euler step, shortened where it would pass the point of the step nearest the goal: the
@@ -30,7 +30,7 @@ pub struct FlowConstants {
     /// Seconds a step.
     pub time_step: f64,
     /// How a velocity becomes the next position.
-    pub integrator: Integrator,
+    pub rule: StepRule,
 }
 
 /// Next positions under v = -(L L^T + sigma I) u, with u the unit vector away from the goal
@@ -64,9 +64,9 @@ pub fn natural_gradient_step(
     let pu1 = &a * &w1 + &u1 * constants.sigma;
     let pu2 = &b * &w1 + &c * &w2 + &u2 * constants.sigma;
     let pu = Tensor::cat(&[&pu1, &pu2], -1);
-    let step = match constants.integrator {
-        Integrator::Euler => pu * constants.time_step,
-        Integrator::StableEuler => {
+    let step = match constants.rule {
+        StepRule::Euler => pu * constants.time_step,
+        StepRule::StableEuler => {
             let decrease =
                 w1.square() + w2.square() + (u1.square() + u2.square()) * constants.sigma;
             let speed_squared = pu1.square() + pu2.square();

@@ -4,7 +4,7 @@
 
 use ddl_data::{Dataset, Position, Window, WindowRule};
 use ddl_star::{
-    ComputeDevice, DeviceChoice, Integrator, Noise, StarConfig, StarError, StarNetwork, Variant,
+    ComputeDevice, DeviceChoice, Noise, StarConfig, StarError, StarNetwork, StepRule, Variant,
 };
 
 fn network(variant: Variant) -> StarNetwork {
@@ -58,7 +58,7 @@ fn forecasts_move_with_the_scene_even_to_map_coordinates() {
         let network = network(variant);
         let forecast = |windows: &[Window], goals: &[Vec<Vec<Position>>]| {
             network
-                .forecast_windows(windows, goals, Noise::Expected, Integrator::StableEuler)
+                .forecast_windows(windows, goals, Noise::Expected, StepRule::StableEuler)
                 .unwrap()
         };
         for (near, far) in forecast(&windows, &goals)
@@ -81,7 +81,7 @@ fn goals_that_do_not_fit_the_windows_are_refused() {
     let network = network(Variant::Full);
     let refuse = |goals: &[Vec<Vec<Position>>], noise: Noise| {
         let error = network
-            .forecast_windows(&windows, goals, noise, Integrator::Euler)
+            .forecast_windows(&windows, goals, noise, StepRule::Euler)
             .unwrap_err();
         assert!(matches!(error, StarError::Shape { .. }), "{error}");
     };
