@@ -5,8 +5,8 @@
 use serde::{Deserialize, Serialize};
 use tch::Tensor;
 
-/// Distances below this count as this: no division by zero at the goal. Squares of smaller offsets
-/// underflow in f32, so that nothing below could be told from the goal anyway.
+/// Within this distance, in metres, a walker is at the goal. Squares of smaller offsets underflow in
+/// f32, so that nothing below could be told from the goal anyway.
 const SMALLEST_NORM: f64 = 1e-18;
 /// |P u|^2 is at least sigma^2 away from the goal; this only guards the division at it.
 const SMALLEST_SPEED_SQUARED: f64 = 1e-36;
@@ -51,7 +51,10 @@ pub fn natural_gradient_step(
 ) -> Tensor {
     let offset = positions - goals;
     let distance = offset.norm_scalaropt_dim(2, [-1i64].as_slice(), true);
-    let u = &offset / distance.clamp_min(SMALLEST_NORM);
+    // Divided by infinity at the goal: u and its derivative are 0 there. Divided by something small, the
+    // derivative would be huge, and that of a few steps at the goal no number.
+    let at_goal = distance.lt(SMALLEST_NORM);
+    let u = &offset / distance.masked_fill(&at_goal, f64::INFINITY);
     let (u1, u2) = (u.narrow(-1, 0, 1), u.narrow(-1, 1, 1));
     let (a, b, c) = (
         factors.narrow(-1, 0, 1),
