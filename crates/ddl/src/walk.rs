@@ -95,7 +95,8 @@ mod tests {
             let x = (0.5 * f64::from(t)).min(3.0);
             assert!((position[0] - x).abs() < 1e-7 && position[1].abs() < 1e-12);
         }
-        assert_eq!(walk.positions[HORIZON - 1], COURSE.goal);
+        let bits = |p: Position| p.map(f64::to_bits);
+        assert_eq!(bits(walk.positions[HORIZON - 1]), bits(COURSE.goal));
         assert_eq!(walk.certificate.holds(), Ok(()));
         let certified = COURSE
             .certify(&walk.positions, &[[1.0, 0.0, 1.0]; HORIZON])
