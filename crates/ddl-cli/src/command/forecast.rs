@@ -32,9 +32,9 @@ pub(crate) struct Forecast {
     ///
     /// A certificate holds when the distance to the goal falls at every one of the 12 steps, along a
     /// flow that descends everywhere, and a walker at its goal stays. It speaks of the very positions
-    /// printed. csv: the columns distance_to_goal (metres, at that frame) and certified; jsonl: the
-    /// verdict and its evidence, step by step. It says that the forecast is stable, not that people
-    /// will do as forecast. The variants star and no-dynamics have no certificates.
+    /// printed. csv: two columns, the distance to the goal at that frame (metres) and the verdict;
+    /// jsonl: the verdict and its evidence, step by step. It says that the forecast is stable, not
+    /// that people will do as forecast. The variants star and no-dynamics have no certificates.
     #[arg(long)]
     certificate: bool,
     #[command(flatten)]
