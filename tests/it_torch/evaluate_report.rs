@@ -131,7 +131,7 @@ fn check_conditions(row: &ResultRow) {
     assert!(!conditions.forecaster.is_empty());
     let subset = conditions.test_subset.as_deref().unwrap();
     assert!(subset.contains("60 walkers"), "{subset}");
-    if conditions.forecaster != "DDL" {
+    if !conditions.forecaster.starts_with("DDL") {
         return;
     }
     assert_eq!(conditions.variant.as_deref(), Some("full"));
@@ -141,6 +141,34 @@ fn check_conditions(row: &ResultRow) {
     let selection = conditions.selection.as_deref().unwrap();
     let on_test = conditions.protocol == Protocol::Published;
     assert_eq!(selection.contains("TEST"), on_test, "{selection}");
+}
+
+/// Stable steps are certified all; plain ones, published or not, are counted as they are.
+fn check_certificates(protocol: Protocol, rows: &[&ResultRow]) {
+    let stability = |forecaster: &str| {
+        let row = rows
+            .iter()
+            .find(|row| row.conditions.forecaster == forecaster);
+        row.map(|row| row.scores.stability.unwrap())
+    };
+    let model = stability("DDL").unwrap();
+    let share = model.certified.unwrap();
+    let plain = stability("DDL, plain Euler steps");
+    assert_eq!(plain.is_some(), protocol == Protocol::Fair);
+    if protocol.shows_future() {
+        assert!(share < 1.0, "{protocol}: {model:?}");
+    } else {
+        assert!(same(share, 1.0), "{protocol}: {model:?}");
+        assert!(same(model.decreasing, 1.0), "{protocol}: {model:?}");
+    }
+    if let Some(plain) = plain {
+        assert!(plain.certified.unwrap() < 1.0, "{plain:?}");
+        assert_eq!(plain.rollouts, model.rollouts);
+    }
+    let line = rows
+        .iter()
+        .find(|row| row.conditions.forecaster.starts_with("straight line to"));
+    assert_eq!(line.unwrap().scores.stability.unwrap().certified, None);
 }
 
 fn check_rows(rows: &[ResultRow]) {
@@ -174,10 +202,7 @@ fn check_rows(rows: &[ResultRow]) {
             assert!(row.scores.min_ade.is_finite() && row.scores.min_ade > 0.0);
             assert!(row.scores.min_fde <= row.scores.fde_at_min_ade);
         }
-        if !protocol.shows_future() {
-            let stability = model[0].scores.stability.unwrap();
-            assert!(stability.decreasing >= 1.0, "{protocol}: {stability:?}");
-        }
+        check_certificates(protocol, &of_protocol);
     }
 }
 
@@ -215,6 +240,8 @@ fn a_number_goes_from_the_recordings_to_the_page() {
         "`single`",
         "`published`",
         "0123abc",
+        "certified %",
+        "| DDL, plain Euler steps ",
         warning,
     ] {
         assert!(markdown.contains(text), "{text} is not on the page");

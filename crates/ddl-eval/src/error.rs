@@ -21,7 +21,7 @@ pub enum ForecastShapeError {
     /// A flat array has the wrong length.
     #[error("`{field}` must hold {expected} entries ({layout}), found {found}")]
     Length {
-        /// The array: `positions`, `weights` or `goals`.
+        /// The array: `positions`, `weights`, `goals` or `certified`.
         field: &'static str,
         /// What the entries are, in order.
         layout: &'static str,
@@ -185,6 +185,17 @@ pub enum EvaluationError {
         expected: usize,
         /// Hypotheses of this window.
         found: usize,
+    },
+    /// Only some of the forecasts have certificates.
+    #[error(
+        "window of `{recording}` starting at frame {start_frame}: either every forecast of a test \
+         set carries certificates or none does"
+    )]
+    CertificatesOfSome {
+        /// Name of the recording.
+        recording: String,
+        /// First frame of the window.
+        start_frame: i64,
     },
     /// Only some of the forecasts have goals.
     #[error(

@@ -14,7 +14,8 @@ pub(crate) const WEIGHT_TOLERANCE: f64 = 1e-6;
 ///
 /// # Shapes
 /// positions `[N][K][12]` in metres, weights `[N][K]` (sum 1 a pedestrian), goals `[N][K]` in metres:
-/// the point hypothesis `k` is meant to end at, when the model has such a notion.
+/// the point hypothesis `k` is meant to end at, when the model has such a notion; certified `[N][K]`:
+/// whether the model's proof that hypothesis `k` goes to its goal holds, when it gives one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
     pedestrians: usize,
@@ -22,6 +23,7 @@ pub struct Forecast {
     positions: Vec<Position>,
     weights: Vec<f64>,
     goals: Option<Vec<Position>>,
+    certified: Option<Vec<bool>>,
 }
 
 impl Forecast {
@@ -72,6 +74,7 @@ impl Forecast {
             positions,
             weights,
             goals,
+            certified: None,
         })
     }
 
@@ -86,6 +89,37 @@ impl Forecast {
     ) -> Result<Self, ForecastShapeError> {
         let weights = vec![1.0 / hypotheses.max(1) as f64; pedestrians * hypotheses];
         Self::new(pedestrians, hypotheses, positions, weights, None)
+    }
+
+    /// The same forecast, with the verdict of a certificate for each hypothesis: whether the evidence
+    /// that it goes to its goal holds. The evidence itself stays with the model.
+    ///
+    /// # Shapes
+    /// `[N][K]`.
+    ///
+    /// # Errors
+    /// The array has the wrong length.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_eval::Forecast;
+    /// let forecast = Forecast::equally_likely(1, 2, vec![[0.0, 0.0]; 2 * 12])?;
+    /// assert_eq!(forecast.certified(0, 1), None);
+    /// let forecast = forecast.with_certified(vec![true, false])?;
+    /// assert_eq!(forecast.certified(0, 1), Some(false));
+    /// # Ok::<(), ddl_eval::ForecastShapeError>(())
+    /// ```
+    pub fn with_certified(self, certified: Vec<bool>) -> Result<Self, ForecastShapeError> {
+        check_length(
+            "certified",
+            "pedestrian, hypothesis",
+            self.pedestrians * self.hypotheses,
+            certified.len(),
+        )?;
+        Ok(Self {
+            certified: Some(certified),
+            ..self
+        })
     }
 
     /// Number of pedestrians, N.
@@ -135,6 +169,23 @@ impl Forecast {
         self.goals.is_some()
     }
 
+    /// Whether the certificate of hypothesis `k` of pedestrian `i` holds; `None` for forecasts that
+    /// carry no certificates.
+    ///
+    /// # Panics
+    /// When `i` or `k` is out of range.
+    #[must_use]
+    pub fn certified(&self, i: usize, k: usize) -> Option<bool> {
+        let pair = self.pair(i, k);
+        self.certified.as_ref().map(|certified| certified[pair])
+    }
+
+    /// Whether every hypothesis has the verdict of a certificate.
+    #[must_use]
+    pub fn has_certificates(&self) -> bool {
+        self.certified.is_some()
+    }
+
     /// The hypothesis of greatest weight of pedestrian `i`; of equals, the first.
     ///
     /// # Panics
@@ -164,6 +215,7 @@ impl Forecast {
                 .collect(),
             weights: vec![1.0; self.pedestrians],
             goals: rows().map(|(i, &k)| self.goal(i, k)).collect(),
+            certified: rows().map(|(i, &k)| self.certified(i, k)).collect(),
         }
     }
 

@@ -67,13 +67,14 @@ fn moved(p: Position) -> Position {
     [17.0 - 3.0 * p[1], 5.0 + 2.0 * p[0]]
 }
 
-/// Every number of a forecast, bit by bit.
+/// Every number and every verdict of a forecast, bit by bit.
 fn bits(forecast: &Forecast) -> Vec<u64> {
     let mut bits = vec![forecast.pedestrians() as u64, forecast.hypotheses() as u64];
     for i in 0..forecast.pedestrians() {
         for k in 0..forecast.hypotheses() {
             bits.push(forecast.weight(i, k).to_bits());
             let goal = forecast.goal(i, k);
+            bits.push(forecast.certified(i, k).map_or(2, u64::from));
             for p in forecast.hypothesis(i, k).iter().chain(&goal) {
                 bits.extend(p.map(f64::to_bits));
             }

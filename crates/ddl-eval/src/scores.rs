@@ -59,7 +59,7 @@ impl Scores {
     ///
     /// # Errors
     /// There is no window, a window has no future, a forecast does not belong to its window, or the
-    /// forecasts differ in their number of hypotheses or in having goals.
+    /// forecasts differ in their number of hypotheses, in having goals or in having certificates.
     pub fn evaluate(windows: &[Window], forecasts: &[Forecast]) -> Result<Self, EvaluationError> {
         if windows.len() != forecasts.len() {
             let (windows, forecasts) = (windows.len(), forecasts.len());
@@ -119,6 +119,12 @@ fn check_alike(
     }
     if forecast.has_goals() != first.has_goals() {
         return Err(EvaluationError::GoalsOfSome {
+            recording,
+            start_frame,
+        });
+    }
+    if forecast.has_certificates() != first.has_certificates() {
+        return Err(EvaluationError::CertificatesOfSome {
             recording,
             start_frame,
         });

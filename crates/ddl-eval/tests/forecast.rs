@@ -85,3 +85,40 @@ fn wrong_shapes_and_weights_are_named() {
         ForecastShapeError::NotFinite { field: "goals", .. }
     ));
 }
+
+#[test]
+fn certificates_are_one_a_hypothesis_and_follow_it() {
+    let ends = [[0.0, 1.0], [0.0, 2.0], [0.0, 3.0], [0.0, 4.0]];
+    let weights = vec![0.25, 0.75, 0.5, 0.5];
+    let forecast = Forecast::new(2, 2, constant(&ends), weights, None).unwrap();
+    assert!(!forecast.has_certificates());
+    assert_eq!(forecast.certified(1, 1), None);
+    assert!(!forecast.single().has_certificates());
+    for wrong in [0, 3, 5] {
+        assert_eq!(
+            forecast
+                .clone()
+                .with_certified(vec![true; wrong])
+                .unwrap_err(),
+            ForecastShapeError::Length {
+                field: "certified",
+                layout: "pedestrian, hypothesis",
+                expected: 4,
+                found: wrong,
+            }
+        );
+    }
+    let forecast = forecast
+        .with_certified(vec![true, false, true, false])
+        .unwrap();
+    assert_eq!(
+        [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, k)| forecast.certified(i, k)),
+        [Some(true), Some(false), Some(true), Some(false)]
+    );
+    // the most likely are hypothesis 1 of the first pedestrian and 0 of the second
+    let single = forecast.single();
+    assert_eq!(
+        (single.certified(0, 0), single.certified(1, 0)),
+        (Some(false), Some(true))
+    );
+}

@@ -6,7 +6,7 @@
 )]
 
 use ddl_data::{HORIZON, PedestrianId, Position, Rotation, WINDOW, Window};
-use ddl_eval::{Forecast, ForecastShapeError, Protocol, Scene, Scores};
+use ddl_eval::{EvaluationError, Forecast, ForecastShapeError, Protocol, Scene, Scores};
 use proptest::{collection::vec, prelude::*};
 
 use ddl_eval::metric::{
@@ -99,6 +99,25 @@ proptest! {
             prop_assert!(all.joint_ade <= fewer.joint_ade && all.joint_fde <= fewer.joint_fde);
             prop_assert!(all.miss_rate <= fewer.miss_rate);
         }
+    }
+
+    #[test]
+    fn certificates_are_counted_and_change_nothing_else(
+        (window, forecast) in any_scene(),
+        verdicts in vec(any::<bool>(), 20),
+    ) {
+        let pairs = forecast.pedestrians() * forecast.hypotheses();
+        let verdicts = verdicts[..pairs].to_vec();
+        let held = verdicts.iter().filter(|&&held| held).count();
+        let certified = forecast.clone().with_certified(verdicts).unwrap();
+        let mut counted = scores(&window, &certified);
+        let stability = counted.stability.as_mut().unwrap();
+        let share = stability.certified.take().unwrap();
+        prop_assert!(agree(share * pairs as f64, held as f64));
+        prop_assert_eq!(counted, scores(&window, &forecast));
+        let mixed = Scores::evaluate(&[window.clone(), window], &[certified, forecast]);
+        let refused = matches!(mixed, Err(EvaluationError::CertificatesOfSome { .. }));
+        prop_assert!(refused);
     }
 
     #[test]

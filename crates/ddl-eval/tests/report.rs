@@ -28,6 +28,7 @@ fn scores(min_ade: f64) -> Scores {
             end_distance: 0.1,
             largest_turn: 30.0,
             reversing: 0.0,
+            certified: Some(0.875),
         }),
     }
 }
@@ -109,6 +110,29 @@ fn a_table_names_everything_it_must() {
     // The literature's DDL row stands in a table of its own, and the warning where it belongs.
     assert!(!page.contains("**Warning.**"));
     assert!(!page.contains("Table II"));
+}
+
+#[test]
+fn the_share_of_certified_rollouts_has_a_column() {
+    let mut rows = five_folds(Protocol::Fair, 1, 0.25);
+    let mut without = five_folds(Protocol::Fair, 1, 0.25);
+    for row in &mut without {
+        row.conditions.forecaster = "line".to_owned();
+        row.scores.stability.as_mut().unwrap().certified = None;
+    }
+    rows.extend(without);
+    let page = Report::new("Certified", rows).unwrap().to_markdown();
+    let header = page.lines().find(|line| line.contains("Phi falls %"));
+    let column = cells(header.unwrap())
+        .iter()
+        .position(|cell| *cell == "certified %")
+        .unwrap();
+    let shown = |start| {
+        let of_table = page.lines().filter(|line| line.starts_with(start)).nth(1);
+        cells(of_table.unwrap())[column]
+    };
+    assert_eq!((shown("| DDL "), shown("| line ")), ("87.5", "-"));
+    assert!(page.contains("certified: rollouts whose Lyapunov certificate"));
 }
 
 #[test]

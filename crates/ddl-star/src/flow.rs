@@ -5,16 +5,16 @@
 use serde::{Deserialize, Serialize};
 use tch::Tensor;
 
-/// Distances below this count as this: no division by zero at the goal. Squares of smaller offsets
-/// underflow in f32, so that nothing below could be told from the goal anyway.
+/// Within this distance, in metres, a walker is at the goal. Squares of smaller offsets underflow in
+/// f32, so that nothing below could be told from the goal anyway.
 const SMALLEST_NORM: f64 = 1e-18;
 /// |P u|^2 is at least sigma^2 away from the goal; this only guards the division at it.
 const SMALLEST_SPEED_SQUARED: f64 = 1e-36;
 
-/// How a velocity becomes the next position.
+/// How a velocity becomes the next position: which integrator of [`ddl_dynamics`] the tensors follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Integrator {
+pub enum StepRule {
     /// p + dt v, the published scheme. It may step past the goal and circle it.
     Euler,
     /// The Euler step, shortened where it would pass the point of the step nearest the goal: the
@@ -30,7 +30,7 @@ pub struct FlowConstants {
     /// Seconds a step.
     pub time_step: f64,
     /// How a velocity becomes the next position.
-    pub integrator: Integrator,
+    pub rule: StepRule,
 }
 
 /// Next positions under v = -(L L^T + sigma I) u, with u the unit vector away from the goal
@@ -51,7 +51,10 @@ pub fn natural_gradient_step(
 ) -> Tensor {
     let offset = positions - goals;
     let distance = offset.norm_scalaropt_dim(2, [-1i64].as_slice(), true);
-    let u = &offset / distance.clamp_min(SMALLEST_NORM);
+    // Divided by infinity at the goal: u and its derivative are 0 there. Divided by something small, the
+    // derivative would be huge, and that of a few steps at the goal no number.
+    let at_goal = distance.lt(SMALLEST_NORM);
+    let u = &offset / distance.masked_fill(&at_goal, f64::INFINITY);
     let (u1, u2) = (u.narrow(-1, 0, 1), u.narrow(-1, 1, 1));
     let (a, b, c) = (
         factors.narrow(-1, 0, 1),
@@ -64,9 +67,9 @@ pub fn natural_gradient_step(
     let pu1 = &a * &w1 + &u1 * constants.sigma;
     let pu2 = &b * &w1 + &c * &w2 + &u2 * constants.sigma;
     let pu = Tensor::cat(&[&pu1, &pu2], -1);
-    let step = match constants.integrator {
-        Integrator::Euler => pu * constants.time_step,
-        Integrator::StableEuler => {
+    let step = match constants.rule {
+        StepRule::Euler => pu * constants.time_step,
+        StepRule::StableEuler => {
             let decrease =
                 w1.square() + w2.square() + (u1.square() + u2.square()) * constants.sigma;
             let speed_squared = pu1.square() + pu2.square();

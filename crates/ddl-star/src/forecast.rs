@@ -2,7 +2,7 @@
 
 use crate::StarError;
 use crate::batch::SceneBatch;
-use crate::flow::Integrator;
+use crate::flow::StepRule;
 use crate::seed::{Stage, stream};
 use crate::star::{NoiseInput, StarNetwork};
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
@@ -31,6 +31,7 @@ pub enum Noise {
 
 /// Forecast positions of one window.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct WindowRollout {
     /// N, in the order of the window.
     pub pedestrians: usize,
@@ -38,6 +39,9 @@ pub struct WindowRollout {
     pub hypotheses: usize,
     /// `[N][H][12]`, metres.
     pub positions: Vec<Position>,
+    /// `[N][H][12]`: (a, b, c) of L = [[a, 0], [b, c]], in (m/s)^(1/2), with which each position was
+    /// reached from the one before; `None` for the variants without dynamics.
+    pub factors: Option<Vec<[f64; 3]>>,
 }
 
 impl StarNetwork {
@@ -55,7 +59,7 @@ impl StarNetwork {
         windows: &[Window],
         goals: &[Vec<Vec<Position>>],
         noise: Noise,
-        integrator: Integrator,
+        rule: StepRule,
     ) -> Result<Vec<WindowRollout>, StarError> {
         let goal_count = check_goals(windows, goals, noise)?;
         let _guard = tch::no_grad_guard();
@@ -77,7 +81,7 @@ impl StarNetwork {
                 &goals[range],
                 goal_count,
                 &noise,
-                integrator,
+                rule,
             )?);
             first = last;
         }
@@ -90,7 +94,7 @@ impl StarNetwork {
         goals: &[Vec<Vec<Position>>],
         goal_count: usize,
         noise: &NoiseInput,
-        integrator: Integrator,
+        rule: StepRule,
     ) -> Result<Vec<WindowRollout>, StarError> {
         // The network sees differences of positions only. They are taken in f64 here, from a point of
         // each scene, so that tracks in map coordinates lose nothing in f32.
@@ -122,29 +126,29 @@ impl StarNetwork {
             .f_reshape(shape)?
             .f_to_kind(self.kind())?
             .f_to_device(self.device())?;
-        let forecast = self.roll_out(&batch, &goals, noise, HORIZON, integrator);
-        let hypotheses = forecast.size()[1] as usize;
-        // [T, H, P, 2] -> [P, H, T, 2]
-        let ordered = forecast
-            .permute([2, 1, 0, 3])
-            .to_kind(tch::Kind::Double)
-            .contiguous();
-        let numbers: Vec<f64> = Vec::try_from(ordered.reshape([-1]))?;
-        let mut pairs = numbers.chunks_exact(2);
+        let rollout = self.roll_out(&batch, &goals, noise, HORIZON, rule);
+        let hypotheses = rollout.positions.size()[1] as usize;
+        let mut positions = ordered(&rollout.positions)?.into_iter();
+        let mut factors = match &rollout.factors {
+            None => None,
+            Some(factors) => Some(ordered(factors)?.into_iter()),
+        };
         Ok(windows
             .iter()
             .zip(origins)
             .map(|(window, [x, y])| {
                 let count = window.len() * hypotheses * HORIZON;
-                let positions = pairs
-                    .by_ref()
-                    .take(count)
-                    .map(|p| [p[0] + x, p[1] + y])
-                    .collect();
                 WindowRollout {
                     pedestrians: window.len(),
                     hypotheses,
-                    positions,
+                    positions: positions
+                        .by_ref()
+                        .take(count)
+                        .map(|p: Position| [p[0] + x, p[1] + y])
+                        .collect(),
+                    factors: factors
+                        .as_mut()
+                        .map(|factors| factors.by_ref().take(count).collect()),
                 }
             })
             .collect())
@@ -165,6 +169,20 @@ impl StarNetwork {
             .to_device(self.device());
         NoiseInput::Draws(draws)
     }
+}
+
+/// The numbers of a rollout, walker by walker.
+///
+/// # Shapes
+/// `[T, H, P, N]` -> `[P][H][T]` arrays of N.
+fn ordered<const N: usize>(rollout: &Tensor) -> Result<Vec<[f64; N]>, StarError> {
+    let ordered = rollout
+        .permute([2, 1, 0, 3])
+        .to_kind(tch::Kind::Double)
+        .contiguous();
+    let numbers: Vec<f64> = Vec::try_from(ordered.reshape([-1]))?;
+    let (groups, _) = numbers.as_chunks::<N>();
+    Ok(groups.to_vec())
 }
 
 /// A point of the scene: where the first pedestrian was last observed.

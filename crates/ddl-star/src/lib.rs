@@ -29,7 +29,7 @@ pub use checkpoint::{load_parameters, save_parameters};
 pub use config::{StarConfig, Variant};
 pub use device::{ComputeDevice, DeviceChoice, set_threads};
 pub use error::StarError;
-pub use flow::{FlowConstants, Integrator, natural_gradient_step};
+pub use flow::{FlowConstants, StepRule, natural_gradient_step};
 pub use forecast::{Noise, WindowRollout};
 pub use layers::Mode;
 pub use loss::mean_squared_distance;
@@ -38,6 +38,7 @@ pub use proposal::{
     ProposalConfig, ProposalExample, ProposalNetwork, ProposalStep, ProposalTrainer,
     ProposalTraining, ProposedEnds, WalkerView,
 };
+pub use rollout::Rollout;
 pub use star::{NoiseInput, StarNetwork};
 pub use train::{EpochReport, StepReport, Trainer};
 pub use training_config::{LearningRateSchedule, TrainingConfig};

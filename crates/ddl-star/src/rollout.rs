@@ -1,11 +1,22 @@
 //! From windows and goals to positions: teacher-forced for training, recurrent for forecasts.
 
 use crate::batch::SceneBatch;
-use crate::flow::{FlowConstants, Integrator, natural_gradient_step};
+use crate::flow::{FlowConstants, StepRule, natural_gradient_step};
 use crate::layers::Mode;
 use crate::star::{GraphMemory, NoiseInput, StarNetwork};
 use ddl_data::OBSERVED;
 use tch::{Kind, Tensor};
+
+/// What the network made of observed frames: where everybody goes, and what shaped the way.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Rollout {
+    /// `[horizon, H, P, 2]`, metres.
+    pub positions: Tensor,
+    /// `[horizon, H, P, 3]`: (a, b, c) of L = [[a, 0], [b, c]], in (m/s)^(1/2), with which each position
+    /// was reached; `None` for the variants without dynamics.
+    pub factors: Option<Tensor>,
+}
 
 impl StarNetwork {
     /// One-step-ahead positions: from the true positions up to each frame, the next one.
@@ -41,7 +52,7 @@ impl StarNetwork {
             })
             .collect();
         let emitted = self.emit(&Tensor::cat(&tokens, 0), noise);
-        self.next_positions(&positions, goals, &reference, &emitted, Integrator::Euler)
+        self.next_positions(&positions, goals, &reference, &emitted, StepRule::Euler)
     }
 
     /// Forecast positions: 8 frames observed, then every forecast is the input of the next step.
@@ -51,15 +62,15 @@ impl StarNetwork {
     ///
     /// # Shapes
     /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` 1 or H vectors, or none
-    /// -> `[horizon, H, P, 2]`.
+    /// -> positions `[horizon, H, P, 2]` and factors `[horizon, H, P, 3]`.
     pub fn roll_out(
         &self,
         batch: &SceneBatch,
         goals: &Tensor,
         noise: &NoiseInput,
         horizon: usize,
-        integrator: Integrator,
-    ) -> Tensor {
+        rule: StepRule,
+    ) -> Rollout {
         let mode = Mode::Evaluate;
         let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
         let last = OBSERVED as i64 - 1;
@@ -99,11 +110,13 @@ impl StarNetwork {
         let mut sum = observed
             .sum_dim_intlist([0i64].as_slice(), true, None::<Kind>)
             .expand([hypotheses, -1, -1], false);
-        let mut forecast = Vec::with_capacity(horizon);
+        let mut path = Vec::with_capacity(horizon);
+        let mut factors = Vec::with_capacity(horizon);
         for t in OBSERVED..OBSERVED + horizon {
             let emitted = self.emit(&token, noise);
-            position = self.next_positions(&position, goals, &reference, &emitted, integrator);
-            forecast.push(position.shallow_clone());
+            position = self.next_positions(&position, goals, &reference, &emitted, rule);
+            path.push(position.shallow_clone());
+            factors.push(emitted);
             if t + 1 < OBSERVED + horizon {
                 sum = &sum + &position;
                 let centred = &position - batch.scene_mean.matmul(&sum) / (t + 1) as f64;
@@ -112,7 +125,11 @@ impl StarNetwork {
                 token = self.step(&mut memory, &relative, &spatial, &mask, mode);
             }
         }
-        Tensor::stack(&forecast, 0)
+        let shaped = self.config().variant.dynamics();
+        Rollout {
+            positions: Tensor::stack(&path, 0),
+            factors: shaped.then(|| Tensor::stack(&factors, 0)),
+        }
     }
 
     /// What temporal positions are relative to: the goal, or the last observed position.
@@ -137,7 +154,7 @@ impl StarNetwork {
         goals: &Tensor,
         reference: &Tensor,
         emitted: &Tensor,
-        integrator: Integrator,
+        rule: StepRule,
     ) -> Tensor {
         if !self.config().variant.dynamics() {
             return reference + emitted;
@@ -146,7 +163,7 @@ impl StarNetwork {
         let constants = FlowConstants {
             sigma: config.sigma,
             time_step: config.time_step,
-            integrator,
+            rule,
         };
         natural_gradient_step(positions, goals, emitted, constants)
     }

@@ -2,9 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use ddl_data::{Dataset, Position, Window, WindowRule};
+use ddl_data::{Dataset, HORIZON, OBSERVED, Position, Window, WindowRule};
+use ddl_dynamics::{Attractor, CholeskyMetric, Euler, NaturalGradientFlow, StableEuler, rollout};
 use ddl_star::{
-    ComputeDevice, DeviceChoice, Integrator, Noise, StarConfig, StarError, StarNetwork, Variant,
+    ComputeDevice, DeviceChoice, Noise, StarConfig, StarError, StarNetwork, StepRule, Variant,
 };
 
 fn network(variant: Variant) -> StarNetwork {
@@ -58,7 +59,7 @@ fn forecasts_move_with_the_scene_even_to_map_coordinates() {
         let network = network(variant);
         let forecast = |windows: &[Window], goals: &[Vec<Vec<Position>>]| {
             network
-                .forecast_windows(windows, goals, Noise::Expected, Integrator::StableEuler)
+                .forecast_windows(windows, goals, Noise::Expected, StepRule::StableEuler)
                 .unwrap()
         };
         for (near, far) in forecast(&windows, &goals)
@@ -75,13 +76,77 @@ fn forecasts_move_with_the_scene_even_to_map_coordinates() {
     }
 }
 
+fn distance(a: Position, b: Position) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// One step of `ddl-dynamics` in f64, with an emitted factor.
+fn step(from: Position, goal: Position, [a, b, c]: [f64; 3], rule: StepRule) -> Position {
+    let config = StarConfig::published(Variant::Full);
+    let metric = CholeskyMetric::planar(a, b, c, config.sigma).unwrap();
+    let flow = NaturalGradientFlow::new(Attractor::new(goal.into()).unwrap(), metric);
+    let (start, dt) = (from.into(), config.time_step);
+    match rule {
+        StepRule::Euler => rollout(&flow, &Euler, start, dt, 1),
+        StepRule::StableEuler => rollout(&flow, &StableEuler, start, dt, 1),
+    }
+    .unwrap()[1]
+        .into()
+}
+
+/// Each position follows from the one before it by the factor that stands beside it.
+#[test]
+fn the_factors_are_those_of_the_steps() {
+    let (windows, goals) = scene();
+    for variant in [Variant::Full, Variant::NoGoalShift] {
+        for rule in [StepRule::Euler, StepRule::StableEuler] {
+            let mut compared = 0;
+            let rollouts = network(variant)
+                .forecast_windows(&windows, &goals, Noise::Expected, rule)
+                .unwrap();
+            for ((window, goals), rollout) in windows.iter().zip(&goals).zip(&rollouts) {
+                let factors = rollout.factors.as_ref().unwrap();
+                assert_eq!(factors.len(), rollout.positions.len());
+                assert_eq!(factors.len(), window.len() * 3 * HORIZON);
+                let paths = rollout.positions.chunks_exact(HORIZON);
+                let shaped = paths.zip(factors.chunks_exact(HORIZON));
+                for (pair, (path, factors)) in shaped.enumerate() {
+                    let (i, k) = (pair / 3, pair % 3);
+                    let mut here = window.observed(i)[OBSERVED - 1];
+                    for (&next, &factor) in path.iter().zip(factors) {
+                        let goal = goals[i][k];
+                        let expected = step(here, goal, factor, rule);
+                        let off = distance(next, expected);
+                        // next to the goal, rounding decides where a plain step leads to
+                        let undecided = rule == StepRule::Euler && distance(here, goal) < 1e-2;
+                        assert!(off < 1e-4 || undecided, "{variant}, {rule:?}: {off} m off");
+                        compared += usize::from(!undecided);
+                        here = next;
+                    }
+                }
+            }
+            let walkers: usize = windows.iter().map(Window::len).sum();
+            assert!(
+                compared > walkers * 3 * HORIZON / 2,
+                "{compared} steps compared"
+            );
+        }
+    }
+    for variant in [Variant::NoDynamics, Variant::Star] {
+        let rollouts = network(variant)
+            .forecast_windows(&windows, &goals, Noise::Expected, StepRule::StableEuler)
+            .unwrap();
+        assert!(rollouts.iter().all(|rollout| rollout.factors.is_none()));
+    }
+}
+
 #[test]
 fn goals_that_do_not_fit_the_windows_are_refused() {
     let (windows, goals) = scene();
     let network = network(Variant::Full);
     let refuse = |goals: &[Vec<Vec<Position>>], noise: Noise| {
         let error = network
-            .forecast_windows(&windows, goals, noise, Integrator::Euler)
+            .forecast_windows(&windows, goals, noise, StepRule::Euler)
             .unwrap_err();
         assert!(matches!(error, StarError::Shape { .. }), "{error}");
     };

@@ -5,7 +5,7 @@
 
 use ddl_data::{PedestrianId, Window};
 use ddl_star::{
-    ComputeDevice, DeviceChoice, Integrator, Mode, NoiseInput, SceneBatch, StarConfig, StarNetwork,
+    ComputeDevice, DeviceChoice, Mode, NoiseInput, SceneBatch, StarConfig, StarNetwork, StepRule,
     Variant, mean_squared_distance,
 };
 use serde_json::Value;
@@ -156,7 +156,8 @@ fn agrees(kind: Kind, tolerance: f64) {
     let goal = reference.tensor("/estimated_goal", &[1, walkers, 2], kind);
     let _guard = tch::no_grad_guard();
     let rolled = network
-        .roll_out(&batch, &goal, &noise, 12, Integrator::Euler)
+        .roll_out(&batch, &goal, &noise, 12, StepRule::Euler)
+        .positions
         .squeeze_dim(1);
     let expected = reference.tensor("/test_forward/positions", &[19, walkers, 2], kind);
     let difference = largest_difference(&rolled, &expected.narrow(0, 7, 12));

@@ -4,12 +4,13 @@ use crate::DdlError;
 use crate::goals;
 use crate::model::Ddl;
 use crate::published::Published;
+use crate::result_rows::{Forecasted, ResultRows};
 use crate::straight_lines::straight_lines;
 use crate::test_set::TestSet;
-use crate::training_words::{recipe, subset};
 use ddl_data::{Dataset, Window};
-use ddl_eval::baseline::{self, WeightedGoals};
-use ddl_eval::{Conditions, Forecast, ForecastError, Forecaster, Protocol, ResultRow, Scores};
+use ddl_eval::baseline::WeightedGoals;
+use ddl_eval::{Forecast, ForecastError, Forecaster as _, Protocol, ResultRow};
+use ddl_star::StepRule;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -17,8 +18,6 @@ use std::ops::ControlFlow;
 const WALKERS_A_REPORT: usize = 128;
 /// Walkers of the test set on which the published protocol chooses its epoch, at most.
 const SELECTION_WALKERS: usize = 250;
-/// Seed of constant velocity with angular noise: the same in every run, so that runs agree.
-const NOISE_SEED: u64 = 1;
 
 /// Which windows to measure on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -97,6 +96,8 @@ pub fn evaluate(
 #[derive(Default)]
 struct Forecasts {
     model: Vec<Forecast>,
+    /// The same network and goals, but plain Euler steps; empty where nobody asks.
+    plain_steps: Vec<Forecast>,
     lines: Vec<Forecast>,
 }
 
@@ -120,21 +121,38 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             return Ok(Vec::new());
         };
         let model = self.model;
+        // What the published steps would make of the same flow is told once, in the headline protocol.
+        let with_plain_steps = self.asked(Protocol::Fair) && model.config().star.variant.dynamics();
+        let goal = "the estimated goals";
         let forecasts = self.forecast(first, |windows| {
             let goals = model.goal_model().goals(windows)?;
-            let lines = straight_lines("the estimated goals", windows, &goals::weighted(&goals)?)?;
+            let lines = straight_lines(goal, windows, &goals::weighted(&goals)?)?;
+            let plain_steps = if with_plain_steps {
+                model.forecast_towards(windows, goals.clone(), StepRule::Euler)?
+            } else {
+                Vec::new()
+            };
             Ok(Forecasts {
-                model: model.forecast_towards(windows, goals)?,
+                model: model.forecast_towards(windows, goals, StepRule::StableEuler)?,
+                plain_steps,
                 lines,
             })
         })?;
         let mut rows = Vec::new();
         for protocol in protocols {
-            let of_protocol = Forecasts {
-                model: protocol.admit(forecasts.model.clone(), &model.name())?,
-                lines: protocol.admit(forecasts.lines.clone(), "straight line")?,
-            };
-            rows.extend(self.rows(protocol, "last epoch", "the estimated goals", &of_protocol)?);
+            let admit =
+                |forecasts: &[Forecast], name: &str| protocol.admit(forecasts.to_vec(), name);
+            let name = model.name();
+            let mut forecasted = vec![Forecasted::model(admit(&forecasts.model, &name)?)];
+            if protocol == Protocol::Fair && with_plain_steps {
+                let plain = admit(&forecasts.plain_steps, &name)?;
+                forecasted.push(Forecasted::model_with(plain, "plain Euler steps"));
+            }
+            forecasted.push(Forecasted::lines_to(
+                goal,
+                admit(&forecasts.lines, "straight line")?,
+            ));
+            rows.extend(self.rows(protocol, "last epoch").of(&forecasted)?);
         }
         Ok(rows)
     }
@@ -171,11 +189,15 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             let lines = straight_lines(goal, windows, &certain)?;
             Ok(Forecasts {
                 model: best.forecast_towards(windows, &goals)?,
+                plain_steps: Vec::new(),
                 lines,
             })
         })?;
         let selection = format!("best kept epoch on up to {SELECTION_WALKERS} TEST walkers");
-        self.rows(protocol, &selection, goal, &forecasts)
+        self.rows(protocol, &selection).of(&[
+            Forecasted::model(forecasts.model),
+            Forecasted::lines_to(goal, forecasts.lines),
+        ])
     }
 
     /// Forecasts all windows, some at a time, showing their futures only where the protocol does.
@@ -197,67 +219,21 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 .map_or(rest.len(), |last| last + 1);
             let some = of(&protocol.visible(&rest[..count]))?;
             all.model.extend(some.model);
+            all.plain_steps.extend(some.plain_steps);
             all.lines.extend(some.lines);
             self.report(rest[..count].iter().map(Window::len).sum(), protocol)?;
         }
         Ok(all)
     }
 
-    /// Rows of the model, the straight lines and the baselines, under each window rule.
-    fn rows(
-        &self,
-        protocol: Protocol,
-        selection: &str,
-        goal_name: &str,
-        forecasts: &Forecasts,
-    ) -> Result<Vec<ResultRow>, DdlError> {
-        let config = self.model.config();
-        let training = &config.training;
-        let mut rows = Vec::new();
-        for (rule, indices) in &self.test.rules {
-            // a small part may hold no window of one of the rules
-            if indices.is_empty() {
-                continue;
-            }
-            let windows: Vec<Window> = indices
-                .iter()
-                .map(|&index| self.test.windows[index].clone())
-                .collect();
-            let plain = Conditions {
-                device: "cpu".to_owned(),
-                commit: self.request.commit.clone(),
-                test_subset: self.test.subset.clone(),
-                ..Conditions::new(
-                    config.data.convention,
-                    *rule,
-                    protocol,
-                    &*config.data.fold,
-                    "",
-                )
-            };
-            let of_model = Conditions {
-                forecaster: self.model.name(),
-                variant: Some(config.star.variant.name().to_owned()),
-                seed: Some(training.seed),
-                epochs: Some(training.epochs),
-                selection: Some(selection.to_owned()),
-                device: self.model.device().name().to_owned(),
-                training_subset: subset(training),
-                recipe: Some(recipe(training, &config.goals)),
-                ..plain.clone()
-            };
-            let of_lines = Conditions {
-                forecaster: format!("straight line to {goal_name}"),
-                ..plain.clone()
-            };
-            for (conditions, all) in [(of_model, &forecasts.model), (of_lines, &forecasts.lines)] {
-                let of_rule: Vec<Forecast> = indices.iter().map(|&i| all[i].clone()).collect();
-                let scores = Scores::evaluate(&windows, &of_rule)?;
-                rows.push(ResultRow { conditions, scores });
-            }
-            rows.extend(baseline::measure(&plain, &windows, NOISE_SEED)?);
+    fn rows<'b>(&'b self, protocol: Protocol, selection: &'b str) -> ResultRows<'b> {
+        ResultRows {
+            model: self.model,
+            test: self.test,
+            protocol,
+            selection,
+            commit: &self.request.commit,
         }
-        Ok(rows)
     }
 
     fn asked(&self, protocol: Protocol) -> bool {

@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod certified_forecast;
 mod error;
 mod evaluation;
 mod evaluation_record;
@@ -13,12 +14,14 @@ mod goals;
 mod machine;
 mod model;
 mod published;
+mod result_rows;
 mod run_directory;
 mod straight_lines;
 mod test_set;
 mod training;
 mod training_words;
 mod views;
+mod walk;
 
 pub use ddl_data as data;
 pub use ddl_dynamics as dynamics;
@@ -27,6 +30,7 @@ pub use ddl_goal as goal;
 pub use ddl_softdtw as softdtw;
 pub use ddl_star as star;
 
+pub use certified_forecast::{CertificateError, CertifiedForecast};
 pub use ddl_eval::{Forecast, Forecaster, Protocol};
 pub use ddl_star::{DeviceChoice, Variant};
 pub use error::DdlError;

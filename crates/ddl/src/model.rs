@@ -1,12 +1,16 @@
 //! A trained model: the network, its goal estimator, and how the two make a forecast.
 
+use crate::certified_forecast::{self, CertifiedForecast, Walked};
 use crate::run_directory::{RunConfig, RunDirectory};
 use crate::{DdlError, GoalModel};
 use ddl_data::{Position, Window};
 use ddl_eval::{Forecast, ForecastError, Forecaster};
 use ddl_goal::GoalSet;
-use ddl_star::{ComputeDevice, Integrator, Noise, StarNetwork, WindowRollout, load_parameters};
+use ddl_star::{ComputeDevice, Noise, StarNetwork, StepRule, WindowRollout, load_parameters};
 use std::path::Path;
+
+/// The name of the model in tables.
+pub(crate) const NAME: &str = "DDL";
 
 /// Hypotheses of the variant without goals: as many noise vectors.
 const NOISE_HYPOTHESES: usize = 20;
@@ -16,6 +20,12 @@ const NOISE_HYPOTHESES: usize = 20;
 /// As a [`Forecaster`] it is the model of the protocols `fair` and `single`: one hypothesis for each
 /// of the K = 20 goals, weighted as the goals are, each rolled out along a flow whose distance to the
 /// goal falls at every step. It reads the 8 observed frames and nothing else.
+///
+/// # Numerics
+/// The network computes in `f32` and shapes the metric P of each step; the variants with dynamics then
+/// walk in `f64`, by [`StableEuler`](ddl_dynamics::StableEuler), whose guarantee holds for the computed
+/// numbers: what is forecast comes nearer to its goal at every step, exactly.
+/// [`forecast_certified`](Self::forecast_certified) hands out the evidence.
 ///
 /// # Examples
 /// ```no_run
@@ -90,33 +100,77 @@ impl Ddl {
         load_network(self.config(), self.device, &self.run().epoch(epoch))
     }
 
+    /// Forecasts the windows, with the evidence for every hypothesis that it goes to its goal.
+    ///
+    /// # Errors
+    /// As [`forecast_all`](Forecaster::forecast_all); for the variants without dynamics, `star` and
+    /// `no-dynamics`, [`CertificateError::NoFlow`](crate::CertificateError::NoFlow), and
+    /// [`CertificateError::Walk`](crate::CertificateError::Walk) where what the network emitted shapes
+    /// no flow, both inside [`ForecastError::Model`].
+    ///
+    /// # Examples
+    /// ```no_run
+    /// use ddl::{Ddl, DeviceChoice};
+    /// # fn example(window: ddl::data::Window) -> Result<(), Box<dyn std::error::Error>> {
+    /// let model = Ddl::load("runs/eth".as_ref(), DeviceChoice::Cpu)?;
+    /// let certified = model.forecast_certified(&[window])?.remove(0);
+    /// let certificate = certified.certificate(0, 0); // the first pedestrian to its likeliest goal
+    /// assert!(certificate.holds().is_ok());
+    /// let left: Vec<f64> = certificate.potentials().collect(); // 13 distances to the goal, metres
+    /// # Ok(()) }
+    /// ```
+    pub fn forecast_certified(
+        &self,
+        windows: &[Window],
+    ) -> Result<Vec<CertifiedForecast>, ForecastError> {
+        certified_forecast::ensure_flow(self.config().star.variant)?;
+        let goals = self.goals.goals(windows)?;
+        self.walked(windows, goals, StepRule::StableEuler)?
+            .map(Walked::certified)
+            .collect()
+    }
+
     /// One hypothesis a goal for every pedestrian, with the goal's weight; for the variant without
     /// goals, one a noise vector, all equally likely.
     pub(crate) fn forecast_towards(
         &self,
         windows: &[Window],
         sets: Vec<Vec<GoalSet>>,
+        rule: StepRule,
     ) -> Result<Vec<Forecast>, ForecastError> {
         if !self.config().star.variant.uses_goal() {
             return self.forecast_without_goals(windows);
         }
+        self.walked(windows, sets, rule)?
+            .map(Walked::forecast)
+            .collect()
+    }
+
+    /// The network's rollouts to all goals; each becomes a forecast when it is its turn, so that the
+    /// certificates of many windows need not be kept.
+    fn walked<'a>(
+        &'a self,
+        windows: &'a [Window],
+        sets: Vec<Vec<GoalSet>>,
+        rule: StepRule,
+    ) -> Result<impl Iterator<Item = Walked<'a>>, ForecastError> {
         let goals: Vec<Vec<Vec<Position>>> = sets
             .iter()
             .map(|sets| sets.iter().map(|set| set.goals().to_vec()).collect())
             .collect();
         let rollouts = self
             .network
-            .forecast_windows(windows, &goals, Noise::Expected, Integrator::StableEuler)
-            .map_err(|error| ForecastError::model(self.name(), error))?;
-        rollouts
-            .into_iter()
-            .zip(sets)
-            .map(|(rollout, sets)| {
-                let weights = sets.iter().flat_map(GoalSet::weights).copied().collect();
-                let goals = sets.iter().flat_map(GoalSet::goals).copied().collect();
-                forecast(rollout, Some(weights), Some(goals))
-            })
-            .collect()
+            .forecast_windows(windows, &goals, Noise::Expected, rule)
+            .map_err(|error| ForecastError::model(NAME, error))?;
+        let shaped = rollouts.into_iter().zip(windows).zip(sets);
+        Ok(shaped.map(move |((rollout, window), sets)| Walked {
+            config: &self.config().star,
+            rule,
+            window,
+            rollout,
+            weights: sets.iter().flat_map(GoalSet::weights).copied().collect(),
+            goals: sets.iter().flat_map(GoalSet::goals).copied().collect(),
+        }))
     }
 
     /// Plain STAR: noise samples, all equally likely.
@@ -130,18 +184,18 @@ impl Ddl {
                 windows,
                 &unused_goals(windows),
                 noise,
-                Integrator::StableEuler,
+                StepRule::StableEuler,
             )
-            .map_err(|error| ForecastError::model(self.name(), error))?
+            .map_err(|error| ForecastError::model(NAME, error))?
             .into_iter()
-            .map(|rollout| forecast(rollout, None, None))
+            .map(equally_likely)
             .collect()
     }
 }
 
 impl Forecaster for Ddl {
     fn name(&self) -> String {
-        "DDL".into()
+        NAME.into()
     }
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
@@ -152,25 +206,16 @@ impl Forecaster for Ddl {
 
     fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
         let goals = self.goals.goals(windows)?;
-        self.forecast_towards(windows, goals)
+        self.forecast_towards(windows, goals, StepRule::StableEuler)
     }
 }
 
-/// A rollout with its weights (equal when not given) and goals as a forecast.
-pub(crate) fn forecast(
-    rollout: WindowRollout,
-    weights: Option<Vec<f64>>,
-    goals: Option<Vec<Position>>,
-) -> Result<Forecast, ForecastError> {
-    let (pedestrians, hypotheses) = (rollout.pedestrians, rollout.hypotheses);
-    let weights =
-        weights.unwrap_or_else(|| vec![1.0 / hypotheses as f64; pedestrians * hypotheses]);
-    Ok(Forecast::new(
-        pedestrians,
-        hypotheses,
+/// A rollout without goals as a forecast.
+pub(crate) fn equally_likely(rollout: WindowRollout) -> Result<Forecast, ForecastError> {
+    Ok(Forecast::equally_likely(
+        rollout.pedestrians,
+        rollout.hypotheses,
         rollout.positions,
-        weights,
-        goals,
     )?)
 }
 

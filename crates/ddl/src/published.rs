@@ -1,12 +1,13 @@
 //! The model as the published protocol runs it, kept apart because it is chosen with the truth.
 
 use crate::DdlError;
+use crate::certified_forecast::Walked;
 use crate::goals;
-use crate::model::{Ddl, forecast};
+use crate::model::{self, Ddl};
 use ddl_data::{Position, Window};
 use ddl_eval::{Forecast, ForecastError, Scores};
 use ddl_goal::GoalEstimator;
-use ddl_star::{Integrator, Noise, StarNetwork};
+use ddl_star::{Noise, StarNetwork, StepRule};
 
 /// Noise samples on the one goal.
 const SAMPLES: usize = 20;
@@ -58,7 +59,7 @@ impl Published {
         windows: &[Window],
         goals: &[Vec<Position>],
     ) -> Result<Vec<Forecast>, ForecastError> {
-        let uses_goal = self.network.config().variant.uses_goal();
+        let config = self.network.config();
         let single: Vec<Vec<Vec<Position>>> = goals
             .iter()
             .map(|goals| goals.iter().map(|&goal| vec![goal]).collect())
@@ -69,14 +70,23 @@ impl Published {
         };
         let rollouts = self
             .network
-            .forecast_windows(windows, &single, noise, Integrator::Euler)
-            .map_err(|error| ForecastError::model("DDL", error))?;
-        rollouts
-            .into_iter()
-            .zip(goals)
-            .map(|(rollout, goals)| {
-                let repeated = goals.iter().flat_map(|&goal| [goal; SAMPLES]).collect();
-                forecast(rollout, None, uses_goal.then_some(repeated))
+            .forecast_windows(windows, &single, noise, StepRule::Euler)
+            .map_err(|error| ForecastError::model(model::NAME, error))?;
+        let rolled = rollouts.into_iter().zip(windows).zip(goals);
+        rolled
+            .map(|((rollout, window), goals)| {
+                if !config.variant.uses_goal() {
+                    return model::equally_likely(rollout);
+                }
+                let walked = Walked {
+                    config,
+                    rule: StepRule::Euler,
+                    window,
+                    rollout,
+                    weights: vec![1.0 / SAMPLES as f64; goals.len() * SAMPLES],
+                    goals: goals.iter().flat_map(|&goal| [goal; SAMPLES]).collect(),
+                };
+                walked.forecast()
             })
             .collect()
     }

@@ -8,11 +8,15 @@
 //! decreasing     Phi(t+1) < Phi(t) at every step t = 0..11, or both are at the goal (within 1 mm)
 //! end distance   Phi(12)                                                            metres
 //! largest turn   max_t angle between p(t+1) - p(t) and g - p(t)                     degrees, [0, 180]
+//! certified      the model's own certificate of the rollout holds, where it gives one
 //! ```
 //!
 //! Steps shorter than 1 mm, and steps that start within 1 mm of the goal, have no direction and count
 //! as no turn. A turn of more than 90 degrees is a step away from the goal, as an Euler step that
 //! overshoots the goal causes one frame later.
+//!
+//! `decreasing` judges any rollout from outside, with a tolerance; `certified` repeats the verdict of a
+//! model that has a theory of its rollouts and checks it without any.
 //!
 //! # References
 //! DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section II-E: v = -P grad Phi.
@@ -35,16 +39,20 @@ pub struct RolloutStability {
     pub end_distance: f64,
     /// Largest angle between a step and the direction to the goal, degrees.
     pub largest_turn: f64,
+    /// Whether the model's certificate of the rollout holds; `None` where there is none.
+    pub certified: Option<bool>,
 }
 
 impl RolloutStability {
-    /// Judges the rollout `path`, which starts from `start`, against `goal`; all in metres.
+    /// Judges the rollout `path`, which starts from `start`, against `goal`; all in metres. Nothing is
+    /// known of a certificate.
     #[must_use]
     pub fn of(start: Position, path: &[Position], goal: Position) -> Self {
         let mut result = Self {
             decreasing: true,
             end_distance: distance(start, goal),
             largest_turn: 0.0,
+            certified: None,
         };
         let mut here = start;
         for &next in path {
@@ -82,6 +90,9 @@ pub struct StabilityScores {
     pub largest_turn: f64,
     /// Share of rollouts with a turn of more than 90 degrees, a step away from the goal, in [0, 1].
     pub reversing: f64,
+    /// Share of rollouts whose certificate holds, in [0, 1]; `None` unless all have one.
+    #[serde(default)]
+    pub certified: Option<f64>,
 }
 
 impl StabilityScores {
@@ -93,12 +104,17 @@ impl StabilityScores {
         }
         let n = rollouts.len() as f64;
         let mean = |of: fn(&RolloutStability) -> f64| rollouts.iter().map(of).sum::<f64>() / n;
+        let share = |of: fn(&RolloutStability) -> bool| {
+            rollouts.iter().filter(|&r| of(r)).count() as f64 / n
+        };
+        let all_have_one = rollouts.iter().all(|r| r.certified.is_some());
         Some(Self {
             rollouts: rollouts.len(),
-            decreasing: mean(|r| f64::from(u8::from(r.decreasing))),
+            decreasing: share(|r| r.decreasing),
             end_distance: mean(|r| r.end_distance),
             largest_turn: mean(|r| r.largest_turn),
-            reversing: mean(|r| f64::from(u8::from(r.largest_turn > 90.0))),
+            reversing: share(|r| r.largest_turn > 90.0),
+            certified: all_have_one.then(|| share(|r| r.certified == Some(true))),
         })
     }
 }
@@ -111,11 +127,13 @@ pub fn rollouts(scene: &Scene<'_>) -> Vec<RolloutStability> {
         .flat_map(|i| (0..scene.hypotheses()).map(move |k| (i, k)))
         .filter_map(|(i, k)| {
             let goal = forecast.goal(i, k)?;
-            Some(RolloutStability::of(
-                scene.last_observed(i),
-                forecast.hypothesis(i, k),
-                goal,
-            ))
+            let judged =
+                RolloutStability::of(scene.last_observed(i), forecast.hypothesis(i, k), goal);
+            let certified = forecast.certified(i, k);
+            Some(RolloutStability {
+                certified,
+                ..judged
+            })
         })
         .collect()
 }
@@ -172,12 +190,37 @@ mod tests {
             decreasing,
             end_distance: largest_turn / 100.0,
             largest_turn,
+            certified: None,
         };
         let mean = StabilityScores::mean(&[rollout(true, 0.0), rollout(false, 120.0)]).unwrap();
         assert_relative_eq!(mean.decreasing, 0.5);
         assert_relative_eq!(mean.end_distance, 0.6);
         assert_relative_eq!(mean.largest_turn, 60.0);
         assert_relative_eq!(mean.reversing, 0.5);
+        assert_eq!(mean.certified, None);
         assert_eq!(StabilityScores::mean(&[]), None);
+    }
+
+    #[test]
+    fn the_share_of_certified_rollouts_needs_a_verdict_on_each() {
+        let judged = |certified| RolloutStability {
+            certified,
+            ..RolloutStability::of([0.0, 0.0], &[[0.5, 0.0]], [1.0, 0.0])
+        };
+        let share = |verdicts: &[Option<bool>]| {
+            let rollouts: Vec<_> = verdicts.iter().copied().map(judged).collect();
+            StabilityScores::mean(&rollouts).unwrap().certified
+        };
+        let (yes, no) = (Some(true), Some(false));
+        assert_eq!(share(&[yes, no, yes, yes]), Some(0.75));
+        assert_eq!(share(&[no, no]), Some(0.0));
+        assert_eq!(share(&[yes, None]), None);
+    }
+
+    #[test]
+    fn scores_written_before_there_were_certificates_still_load() {
+        let text = r#"{"rollouts":2,"decreasing":1.0,"end_distance":0.5,"largest_turn":9.0,"reversing":0.0}"#;
+        let scores: StabilityScores = serde_json::from_str(text).unwrap();
+        assert_eq!((scores.rollouts, scores.certified), (2, None));
     }
 }

@@ -189,11 +189,12 @@ const FURTHER_LEGEND: &str = "Further metrics, mean over the folds named. FDE@mi
     hypothesis of least ADE; JADE, JFDE: one hypothesis index for the whole scene; missed: every \
     hypothesis ends more than 0.5 m off; collide: discs of radius 0.2 m overlap between most likely \
     forecasts (in brackets: between true futures); goal FDE: nearest goal from the true end; Phi \
-    falls: rollouts that come nearer to their goal at every step; to goal: distance left at the end; \
+    falls: rollouts that come nearer to their goal at every step; certified: rollouts whose Lyapunov \
+    certificate, the model's evidence of it step by step, holds; to goal: distance left at the end; \
     turn: largest angle between a step and the goal direction; reverse: rollouts that turn by more \
     than 90 degrees; K: hypotheses a pedestrian.";
 
-const FURTHER: [Column; 12] = [
+const FURTHER: [Column; 13] = [
     ("FDE@minADE m", 3, |s| Some(s.fde_at_min_ade)),
     ("JADE m", 3, |s| Some(s.joint_ade)),
     ("JFDE m", 3, |s| Some(s.joint_fde)),
@@ -203,6 +204,9 @@ const FURTHER: [Column; 12] = [
     ("goal FDE m", 3, |s| s.goal_fde),
     ("Phi falls %", 1, |s| {
         s.stability.map(|st| 100.0 * st.decreasing)
+    }),
+    ("certified %", 1, |s| {
+        s.stability?.certified.map(|share| 100.0 * share)
     }),
     ("to goal m", 3, |s| s.stability.map(|st| st.end_distance)),
     ("turn deg", 1, |s| s.stability.map(|st| st.largest_turn)),

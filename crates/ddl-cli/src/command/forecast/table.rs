@@ -1,0 +1,63 @@
+//! Forecasts as csv: a row a position.
+
+use super::Moment;
+use anyhow::Context as _;
+use serde::Serialize;
+
+/// A forecast position.
+#[derive(Serialize)]
+struct Row {
+    observed_until: i64,
+    pedestrian: i64,
+    hypothesis: usize,
+    weight: f64,
+    frame: i64,
+    x: f64,
+    y: f64,
+}
+
+/// What its certificate says of a position: further columns of the row.
+#[derive(Serialize)]
+struct Certified {
+    distance_to_goal: f64,
+    certified: bool,
+}
+
+pub(super) fn csv(moments: &[Moment<'_>]) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for moment in moments {
+        let frames = moment.frames();
+        for (i, pedestrian) in moment.window.pedestrians().iter().enumerate() {
+            for hypothesis in 0..moment.forecast.hypotheses() {
+                let certificate = moment.certificate(i, hypothesis);
+                let holds = certificate.is_some_and(|certificate| certificate.holds().is_ok());
+                // the first distance is that of the last observed position
+                let mut distances = certificate.map(|certificate| certificate.potentials().skip(1));
+                let positions = moment.forecast.hypothesis(i, hypothesis);
+                for (position, &frame) in positions.iter().zip(&frames) {
+                    let row = Row {
+                        observed_until: moment.observed_until(),
+                        pedestrian: pedestrian.0,
+                        hypothesis,
+                        weight: moment.forecast.weight(i, hypothesis),
+                        frame,
+                        x: position[0],
+                        y: position[1],
+                    };
+                    match distances.as_mut().and_then(Iterator::next) {
+                        None => writer.serialize(row)?,
+                        Some(distance_to_goal) => writer.serialize((
+                            row,
+                            Certified {
+                                distance_to_goal,
+                                certified: holds,
+                            },
+                        ))?,
+                    }
+                }
+            }
+        }
+    }
+    let bytes = writer.into_inner().context("cannot finish the csv")?;
+    Ok(String::from_utf8(bytes)?)
+}

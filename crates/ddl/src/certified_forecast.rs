@@ -1,0 +1,185 @@
+//! A forecast with the evidence, for each of its hypotheses, that it goes to its goal.
+
+use crate::walk::Course;
+use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use ddl_dynamics::{DynamicsError, LyapunovCertificate, Violation};
+use ddl_eval::{Forecast, ForecastError};
+use ddl_star::{StarConfig, StepRule, Variant, WindowRollout};
+
+/// A forecast whose every hypothesis carries a Lyapunov certificate.
+///
+/// The certificate of a hypothesis speaks of exactly the positions that the forecast holds, from the
+/// last observed position on: the distance to the goal before each step and after the last, the
+/// smallest eigenvalue of the metric P, how far the time step is below the bound of a plain Euler
+/// step, and by how much the step turns from the goal. [`LyapunovCertificate::holds`] judges it anew
+/// from these numbers.
+///
+/// # Shapes
+/// One certificate for each pedestrian and hypothesis, `[N][K]`, of 12 steps each.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct CertifiedForecast {
+    /// The forecast; its [`certified`](Forecast::certified) repeats the verdicts.
+    pub forecast: Forecast,
+    /// `[N][K]`.
+    pub certificates: Vec<LyapunovCertificate<f64>>,
+}
+
+impl CertifiedForecast {
+    /// The certificate of hypothesis `k` of pedestrian `i`.
+    ///
+    /// # Panics
+    /// When `i` or `k` is out of range.
+    #[must_use]
+    pub fn certificate(&self, i: usize, k: usize) -> &LyapunovCertificate<f64> {
+        assert!(
+            k < self.forecast.hypotheses(),
+            "hypothesis {k} asked of {}",
+            self.forecast.hypotheses()
+        );
+        &self.certificates[i * self.forecast.hypotheses() + k]
+    }
+
+    /// Pedestrian, hypothesis and violation of the first certificate that does not hold; `None` when
+    /// all hold.
+    #[must_use]
+    pub fn first_violation(&self) -> Option<(usize, usize, Violation)> {
+        let hypotheses = self.forecast.hypotheses();
+        self.certificates
+            .iter()
+            .enumerate()
+            .find_map(|(pair, certificate)| {
+                let violation = certificate.holds().err()?;
+                Some((pair / hypotheses, pair % hypotheses, violation))
+            })
+    }
+}
+
+/// Why a forecast carries no certificates.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CertificateError {
+    /// The model has no dynamics, so that no theory speaks of where its walkers go.
+    #[error(
+        "the variant `{variant}` has no flow to certify: its network emits positions; use a model of the \
+         variant `full` or `no-goal-shift`, or forecast without certificates"
+    )]
+    NoFlow {
+        /// The variant of the model.
+        variant: Variant,
+    },
+    /// What the network emitted shapes no flow, or the walk leaves the range of the numbers.
+    #[error(
+        "window of `{recording}` starting at frame {start_frame}, pedestrian {pedestrian}, hypothesis \
+         {hypothesis}: {cause}; has the model diverged, or are the positions no metres?"
+    )]
+    Walk {
+        /// Name of the recording.
+        recording: String,
+        /// First frame of the window.
+        start_frame: i64,
+        /// The pedestrian, as the recording numbers it.
+        pedestrian: i64,
+        /// Index of the hypothesis.
+        hypothesis: usize,
+        /// What is wrong, and in which step.
+        cause: DynamicsError,
+    },
+}
+
+/// Where the walkers of a window were rolled out to, how likely, and by which rule.
+#[derive(Debug)]
+pub(crate) struct Walked<'a> {
+    pub(crate) config: &'a StarConfig,
+    pub(crate) rule: StepRule,
+    pub(crate) window: &'a Window,
+    pub(crate) rollout: WindowRollout,
+    /// `[N][K]`
+    pub(crate) weights: Vec<f64>,
+    /// `[N][K]`
+    pub(crate) goals: Vec<Position>,
+}
+
+impl Walked<'_> {
+    /// The forecast alone, with the verdicts where there is a flow to certify.
+    pub(crate) fn forecast(self) -> Result<Forecast, ForecastError> {
+        if self.rollout.factors.is_some() {
+            return Ok(self.certified()?.forecast);
+        }
+        let (pedestrians, hypotheses) = (self.rollout.pedestrians, self.rollout.hypotheses);
+        let (positions, goals) = (self.rollout.positions, Some(self.goals));
+        let forecast = Forecast::new(pedestrians, hypotheses, positions, self.weights, goals);
+        Ok(forecast?)
+    }
+
+    /// The forecast with a certificate for each hypothesis.
+    ///
+    /// `StableEuler`: the network shapes P, `ddl-dynamics` walks. `Euler`: the positions of the
+    /// network's own rollout, as they are.
+    pub(crate) fn certified(self) -> Result<CertifiedForecast, ForecastError> {
+        let (pedestrians, hypotheses) = (self.rollout.pedestrians, self.rollout.hypotheses);
+        let Some(factors) = &self.rollout.factors else {
+            return Err(no_flow(self.config.variant));
+        };
+        let mut positions = Vec::with_capacity(factors.len());
+        let mut certificates = Vec::with_capacity(self.goals.len());
+        let paths = self.rollout.positions.chunks_exact(HORIZON);
+        let shaped = paths.zip(factors.chunks_exact(HORIZON));
+        for (pair, ((path, factors), &goal)) in shaped.zip(&self.goals).enumerate() {
+            let (i, hypothesis) = (pair / hypotheses, pair % hypotheses);
+            let course = Course {
+                start: self.window.observed(i)[OBSERVED - 1],
+                goal,
+                sigma: self.config.sigma,
+                time_step: self.config.time_step,
+            };
+            let certificate = match self.rule {
+                StepRule::StableEuler => course.walk(factors).map(|walk| {
+                    positions.extend(walk.positions);
+                    walk.certificate
+                }),
+                StepRule::Euler => {
+                    positions.extend_from_slice(path);
+                    course.certify(path, factors)
+                }
+            };
+            certificates.push(certificate.map_err(|cause| {
+                failed(CertificateError::Walk {
+                    recording: self.window.recording().to_owned(),
+                    start_frame: self.window.start_frame(),
+                    pedestrian: self.window.pedestrians()[i].0,
+                    hypothesis,
+                    cause,
+                })
+            })?);
+        }
+        let held = certificates
+            .iter()
+            .map(|certificate| certificate.holds().is_ok())
+            .collect();
+        let goals = Some(self.goals);
+        let forecast = Forecast::new(pedestrians, hypotheses, positions, self.weights, goals)?
+            .with_certified(held)?;
+        Ok(CertifiedForecast {
+            forecast,
+            certificates,
+        })
+    }
+}
+
+/// Whether forecasts of the variant can be certified.
+pub(crate) fn ensure_flow(variant: Variant) -> Result<(), ForecastError> {
+    if variant.dynamics() {
+        Ok(())
+    } else {
+        Err(no_flow(variant))
+    }
+}
+
+fn no_flow(variant: Variant) -> ForecastError {
+    failed(CertificateError::NoFlow { variant })
+}
+
+fn failed(error: CertificateError) -> ForecastError {
+    ForecastError::model(crate::model::NAME, error)
+}

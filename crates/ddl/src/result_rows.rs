@@ -1,0 +1,117 @@
+//! From forecasts of a test set to rows of a report, each with the conditions of its numbers.
+
+use crate::DdlError;
+use crate::model::{self, Ddl};
+use crate::test_set::TestSet;
+use crate::training_words::{recipe, subset};
+use ddl_data::{Window, WindowRule};
+use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, Scores, baseline};
+
+/// Seed of constant velocity with angular noise: the same in every run, so that runs agree.
+const NOISE_SEED: u64 = 1;
+
+/// Forecasts of one forecaster, one a window of the test set.
+#[derive(Debug)]
+pub(crate) struct Forecasted {
+    forecaster: String,
+    /// Whether the conditions are those of a trained model.
+    trained: bool,
+    forecasts: Vec<Forecast>,
+}
+
+impl Forecasted {
+    /// What the model forecast.
+    pub(crate) fn model(forecasts: Vec<Forecast>) -> Self {
+        Self {
+            forecaster: model::NAME.to_owned(),
+            trained: true,
+            forecasts,
+        }
+    }
+
+    /// What the model forecast with something changed.
+    pub(crate) fn model_with(forecasts: Vec<Forecast>, change: &str) -> Self {
+        Self {
+            forecaster: format!("{}, {change}", model::NAME),
+            trained: true,
+            forecasts,
+        }
+    }
+
+    /// Straight lines to the goals of that name.
+    pub(crate) fn lines_to(goal: &str, forecasts: Vec<Forecast>) -> Self {
+        Self {
+            forecaster: format!("straight line to {goal}"),
+            trained: false,
+            forecasts,
+        }
+    }
+}
+
+/// What the conditions of all rows of a protocol have in common.
+#[derive(Debug)]
+pub(crate) struct ResultRows<'a> {
+    pub(crate) model: &'a Ddl,
+    pub(crate) test: &'a TestSet,
+    pub(crate) protocol: Protocol,
+    /// How the epoch of the model was chosen.
+    pub(crate) selection: &'a str,
+    pub(crate) commit: &'a str,
+}
+
+impl ResultRows<'_> {
+    /// Rows of the forecasts, in their order, then of the baselines, under each window rule.
+    pub(crate) fn of(&self, forecasted: &[Forecasted]) -> Result<Vec<ResultRow>, DdlError> {
+        let mut rows = Vec::new();
+        for (rule, indices) in &self.test.rules {
+            // a small part may hold no window of one of the rules
+            if indices.is_empty() {
+                continue;
+            }
+            let windows: Vec<Window> = indices
+                .iter()
+                .map(|&index| self.test.windows[index].clone())
+                .collect();
+            let plain = self.conditions(*rule);
+            for one in forecasted {
+                let of_rule: Vec<Forecast> =
+                    indices.iter().map(|&i| one.forecasts[i].clone()).collect();
+                let mut conditions = plain.clone();
+                if one.trained {
+                    conditions = self.of_the_model(conditions);
+                }
+                conditions.forecaster.clone_from(&one.forecaster);
+                let scores = Scores::evaluate(&windows, &of_rule)?;
+                rows.push(ResultRow { conditions, scores });
+            }
+            rows.extend(baseline::measure(&plain, &windows, NOISE_SEED)?);
+        }
+        Ok(rows)
+    }
+
+    /// Conditions of what is not trained.
+    fn conditions(&self, rule: WindowRule) -> Conditions {
+        let data = &self.model.config().data;
+        Conditions {
+            device: "cpu".to_owned(),
+            commit: self.commit.to_owned(),
+            test_subset: self.test.subset.clone(),
+            ..Conditions::new(data.convention, rule, self.protocol, &*data.fold, "")
+        }
+    }
+
+    fn of_the_model(&self, plain: Conditions) -> Conditions {
+        let config = self.model.config();
+        let training = &config.training;
+        Conditions {
+            variant: Some(config.star.variant.name().to_owned()),
+            seed: Some(training.seed),
+            epochs: Some(training.epochs),
+            selection: Some(self.selection.to_owned()),
+            device: self.model.device().name().to_owned(),
+            training_subset: subset(training),
+            recipe: Some(recipe(training, &config.goals)),
+            ..plain
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! `ddl forecast --certificate`: every hypothesis carries the evidence that it goes to its goal, and the
+//! evidence is about the positions printed.
+
+use ddl::data::{OBSERVED, Position};
+use ddl::dynamics::LyapunovCertificate;
+use ddl::star::{ComputeDevice, Noise, StarNetwork, StepRule, load_parameters};
+use ddl::{CertificateError, DeviceChoice, Forecaster as _, Variant};
+use ddl_tests::own_tracks::{self, Row};
+use ddl_tests::{bits, crowd, program, tiny_model};
+use serde::Deserialize;
+use std::path::Path;
+
+const FRAMES: usize = 12;
+const HYPOTHESES: usize = 20;
+
+/// A row of the csv.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CsvRow {
+    observed_until: i64,
+    pedestrian: i64,
+    hypothesis: usize,
+    weight: f64,
+    frame: i64,
+    x: f64,
+    y: f64,
+    distance_to_goal: f64,
+    certified: bool,
+}
+
+/// A line of the JSON lines.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct JsonLine {
+    observed_until: i64,
+    pedestrian: i64,
+    frames: Vec<i64>,
+    hypotheses: Vec<Hypothesis>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Hypothesis {
+    weight: f64,
+    goal: [f64; 2],
+    positions: Vec<[f64; 2]>,
+    certificate: serde_json::Value,
+}
+
+/// Forecasts rows with the tiny model, in the folder of its run.
+fn forecast_in(folder: &Path, rows: &[Row], options: &str) -> program::Finished {
+    std::fs::write(folder.join("tracks.csv"), own_tracks::csv(rows)).unwrap();
+    let command_line = format!("forecast --model . tracks.csv --threads 1 {options}");
+    program::run(folder, &command_line)
+}
+
+fn json_lines(text: &str) -> Vec<JsonLine> {
+    text.lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect()
+}
+
+fn csv_rows(text: &str) -> Vec<CsvRow> {
+    csv::Reader::from_reader(text.as_bytes())
+        .deserialize()
+        .collect::<Result<_, _>>()
+        .unwrap()
+}
+
+fn distance(a: Position, b: Position) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The certificate of a hypothesis, held against the positions printed beside it.
+fn check(start: Position, hypothesis: &Hypothesis) -> LyapunovCertificate<f64> {
+    let value = &hypothesis.certificate;
+    let certificate: LyapunovCertificate<f64> = serde_json::from_value(value.clone()).unwrap();
+    assert_eq!(certificate.holds(), Ok(()));
+    assert_eq!(value["holds"], true);
+    assert!(value["violation"].is_null());
+    assert_eq!(certificate.goal(), hypothesis.goal);
+    assert_eq!(certificate.steps().len(), FRAMES);
+    assert_eq!(
+        value["min_eigenvalue"].as_f64(),
+        certificate.min_eigenvalue()
+    );
+    assert!(certificate.min_eigenvalue().unwrap() > 0.0);
+    assert_eq!(
+        value["min_step_margin"].as_f64(),
+        certificate.min_step_margin()
+    );
+    assert_eq!(
+        value["largest_angle"].as_f64(),
+        Some(certificate.largest_angle())
+    );
+    let path = std::iter::once(&start).chain(&hypothesis.positions);
+    let potentials: Vec<f64> = certificate.potentials().collect();
+    assert_eq!(potentials.len(), FRAMES + 1);
+    for (position, potential) in path.zip(&potentials) {
+        let left = distance(*position, hypothesis.goal);
+        assert!(
+            (left - potential).abs() < 1e-12,
+            "{left} m, not {potential} m"
+        );
+    }
+    for step in potentials.windows(2) {
+        assert!(
+            step[1] < step[0] || (step[0] == 0.0 && step[1] == 0.0),
+            "{step:?}"
+        );
+    }
+    certificate
+}
+
+#[test]
+fn every_certificate_holds_and_speaks_of_the_positions_printed() {
+    let folder = tiny_model::folder(Variant::Full);
+    let rows = own_tracks::three_people(10);
+    let at = |frame, pedestrian| {
+        let row = rows
+            .iter()
+            .find(|row| (row.0, row.1) == (frame, pedestrian));
+        row.map(|&(_, _, x, y)| [x, y]).unwrap()
+    };
+    let json = forecast_in(folder.path(), &rows, "--format jsonl --certificate").succeeds();
+    let lines = json_lines(&json);
+    let table = forecast_in(folder.path(), &rows, "--certificate").succeeds();
+    let mut printed = csv_rows(&table).into_iter();
+    assert_eq!(lines.len(), 9);
+    for line in &lines {
+        assert_eq!(line.hypotheses.len(), HYPOTHESES);
+        for (k, hypothesis) in line.hypotheses.iter().enumerate() {
+            let start = at(line.observed_until, line.pedestrian);
+            let certificate = check(start, hypothesis);
+            let left = certificate.potentials().skip(1);
+            for ((position, &frame), left) in
+                hypothesis.positions.iter().zip(&line.frames).zip(left)
+            {
+                let row = printed.next().unwrap();
+                assert_eq!(
+                    (
+                        row.observed_until,
+                        row.pedestrian,
+                        row.hypothesis,
+                        row.frame
+                    ),
+                    (line.observed_until, line.pedestrian, k, frame)
+                );
+                assert_eq!([row.x, row.y].map(f64::to_bits), position.map(f64::to_bits));
+                assert_eq!(row.weight.to_bits(), hypothesis.weight.to_bits());
+                assert_eq!(row.distance_to_goal.to_bits(), left.to_bits());
+                assert!(row.certified);
+            }
+        }
+    }
+    assert!(printed.next().is_none());
+}
+
+/// Far from the origin numbers are coarse: in map coordinates they lie 1e-9 m apart.
+#[test]
+fn certificates_hold_in_map_coordinates() {
+    let folder = tiny_model::folder(Variant::NoGoalShift);
+    let moved: Vec<Row> = own_tracks::three_people(8)
+        .iter()
+        .map(|&(frame, id, x, y)| (frame, id, x + 500_000.0, y + 4_600_000.0))
+        .collect();
+    let table = forecast_in(folder.path(), &moved, "--certificate").succeeds();
+    let rows = csv_rows(&table);
+    assert_eq!(rows.len(), 3 * HYPOTHESES * FRAMES);
+    assert!(rows.iter().all(|row| row.certified));
+    for hypothesis in rows.chunks_exact(FRAMES) {
+        let falls = hypothesis.windows(2).all(|pair| {
+            pair[1].distance_to_goal < pair[0].distance_to_goal || pair[0].distance_to_goal == 0.0
+        });
+        assert!(falls, "{hypothesis:?}");
+    }
+}
+
+#[test]
+fn the_certificate_changes_no_other_number() {
+    let folder = tiny_model::folder(Variant::Full);
+    let rows = own_tracks::three_people(9);
+    let plain = forecast_in(folder.path(), &rows, "").succeeds();
+    let certified = forecast_in(folder.path(), &rows, "--certificate").succeeds();
+    let cut: Vec<String> = certified
+        .lines()
+        .map(|line| line.split(',').take(7).collect::<Vec<_>>().join(","))
+        .collect();
+    assert_eq!(plain.lines().collect::<Vec<_>>(), cut);
+    let header = certified.lines().next().unwrap();
+    assert!(
+        header.ends_with(",x,y,distance_to_goal,certified"),
+        "{header}"
+    );
+}
+
+#[test]
+fn a_variant_without_dynamics_has_nothing_to_certify() {
+    let rows = own_tracks::three_people(8);
+    for variant in [Variant::Star, Variant::NoDynamics] {
+        let folder = tiny_model::folder(variant);
+        let message = forecast_in(folder.path(), &rows, "--certificate").fails();
+        let name = format!("`{variant}`");
+        assert!(
+            message.contains(&name) && message.contains("no flow to certify"),
+            "{message}"
+        );
+    }
+}
+
+/// The forecast is the reference implementation's walk; the tensors walk the same way, up to `f32`.
+#[test]
+fn the_walk_agrees_with_the_tensors() {
+    let windows = crowd::windows(6, 24);
+    let device = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
+    for variant in [Variant::Full, Variant::NoGoalShift] {
+        let tiny = tiny_model::of(variant);
+        let config = tiny.model.config().star.clone();
+        let network = StarNetwork::new(config, 0, device).unwrap();
+        load_parameters(network.parameters(), &tiny.model.run().model()).unwrap();
+        let certified = tiny.model.forecast_certified(&windows).unwrap();
+        let goals: Vec<Vec<Vec<Position>>> = windows
+            .iter()
+            .zip(&certified)
+            .map(|(window, certified)| {
+                let goal = |i, k| certified.forecast.goal(i, k).unwrap();
+                let of_walker = |i| (0..HYPOTHESES).map(|k| goal(i, k)).collect();
+                (0..window.len()).map(of_walker).collect()
+            })
+            .collect();
+        let rollouts = network
+            .forecast_windows(&windows, &goals, Noise::Expected, StepRule::StableEuler)
+            .unwrap();
+        let mut largest = 0.0_f64;
+        for (certified, rollout) in certified.iter().zip(rollouts) {
+            let mut paths = rollout.positions.chunks_exact(FRAMES);
+            let forecast = &certified.forecast;
+            for (i, k) in
+                (0..forecast.pedestrians()).flat_map(|i| (0..HYPOTHESES).map(move |k| (i, k)))
+            {
+                assert_eq!(forecast.certified(i, k), Some(true));
+                let path = paths.next().unwrap();
+                for (&ours, &tensor) in forecast.hypothesis(i, k).iter().zip(path) {
+                    largest = largest.max(distance(ours, tensor));
+                }
+            }
+        }
+        // 3e-6 m and 4e-6 m as measured
+        assert!(largest < 1e-4, "{variant}: {largest} m apart");
+    }
+}
+
+#[test]
+fn the_certified_forecast_is_the_forecast() {
+    let windows = crowd::windows(3, 10);
+    let tiny = tiny_model::of(Variant::Full);
+    let certified = tiny.model.forecast_certified(&windows).unwrap();
+    let plain = tiny.model.forecast_all(&windows).unwrap();
+    for ((certified, plain), window) in certified.iter().zip(&plain).zip(&windows) {
+        assert_eq!(bits::of(&certified.forecast), bits::of(plain));
+        assert_eq!(certified.first_violation(), None);
+        assert_eq!(certified.certificates.len(), window.len() * HYPOTHESES);
+        for i in 0..window.len() {
+            let first = certified.certificate(i, 3).potentials().next().unwrap();
+            let goal = plain.goal(i, 3).unwrap();
+            let start = window.observed(i)[OBSERVED - 1];
+            assert!((first - distance(start, goal)).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn the_facade_says_why_it_has_no_certificate() {
+    let tiny = tiny_model::of(Variant::NoDynamics);
+    let error = tiny
+        .model
+        .forecast_certified(&crowd::windows(1, 2))
+        .unwrap_err();
+    let ddl::eval::ForecastError::Model { source, .. } = error else {
+        panic!("{error}")
+    };
+    assert_eq!(
+        source.downcast_ref::<CertificateError>(),
+        Some(&CertificateError::NoFlow {
+            variant: Variant::NoDynamics
+        })
+    );
+}
