@@ -11,7 +11,7 @@ use crate::progress::ProgressMode;
 use anyhow::Context as _;
 use clap::Args;
 use ddl::data::{Convention, Dataset, locate};
-use ddl::{DdlError, DeviceChoice};
+use ddl::{Clearance, Ddl, DdlError, DeviceChoice};
 use std::path::Path;
 
 /// Seed of the simulated crowds: one data set for everybody.
@@ -39,6 +39,35 @@ impl Machine {
     pub(crate) fn prepare_for_little(&self) -> Result<(), DdlError> {
         ddl::prepare(self.device, self.threads.or(Some(1)))
     }
+}
+
+/// Whether walkers mind each other.
+#[derive(Debug, Args)]
+pub(crate) struct KeepClear {
+    /// Keep walkers so many metres from each other, from centre to centre, such as 0.4
+    ///
+    /// Each hypothesis is walked again among the others, who follow their most likely ones: near
+    /// somebody it slows down and slides along. The distance to the goal still falls at every step.
+    /// People who walk into each other all the same are not moved aside.
+    #[arg(long, value_name = "METRES", value_parser = clearance)]
+    keep_clear: Option<Clearance>,
+}
+
+impl KeepClear {
+    /// The model, keeping clear where asked to.
+    pub(crate) fn of(&self, model: Ddl) -> Result<Ddl, DdlError> {
+        match self.keep_clear {
+            None => Ok(model),
+            Some(clearance) => model.keeping_clear(clearance),
+        }
+    }
+}
+
+fn clearance(text: &str) -> Result<Clearance, String> {
+    let metres: f64 = text
+        .parse()
+        .map_err(|error| format!("must be a number ({error})"))?;
+    Clearance::new(metres).map_err(|error| error.to_string())
 }
 
 /// How progress is told.

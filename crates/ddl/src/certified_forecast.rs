@@ -1,10 +1,11 @@
 //! A forecast with the evidence, for each of its hypotheses, that it goes to its goal.
 
-use crate::walk::Course;
+use crate::clearance::Clearance;
+use crate::walk::{Course, Gait, Walk};
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use ddl_dynamics::{DynamicsError, LyapunovCertificate, Violation};
 use ddl_eval::{Forecast, ForecastError};
-use ddl_star::{StarConfig, StepRule, Variant, WindowRollout};
+use ddl_star::{StarConfig, Variant, WindowRollout};
 
 /// A forecast whose every hypothesis carries a Lyapunov certificate.
 ///
@@ -87,11 +88,11 @@ pub enum CertificateError {
     },
 }
 
-/// Where the walkers of a window were rolled out to, how likely, and by which rule.
+/// Where the walkers of a window were rolled out to, how likely, and how they walk.
 #[derive(Debug)]
 pub(crate) struct Walked<'a> {
     pub(crate) config: &'a StarConfig,
-    pub(crate) rule: StepRule,
+    pub(crate) gait: Gait,
     pub(crate) window: &'a Window,
     pub(crate) rollout: WindowRollout,
     /// `[N][K]`
@@ -114,49 +115,22 @@ impl Walked<'_> {
 
     /// The forecast with a certificate for each hypothesis.
     ///
-    /// `StableEuler`: the network shapes P, `ddl-dynamics` walks. `Euler`: the positions of the
+    /// Stable steps: the network shapes P, `ddl-dynamics` walks. Plain Euler steps: the positions of the
     /// network's own rollout, as they are.
     pub(crate) fn certified(self) -> Result<CertifiedForecast, ForecastError> {
-        let (pedestrians, hypotheses) = (self.rollout.pedestrians, self.rollout.hypotheses);
         let Some(factors) = &self.rollout.factors else {
             return Err(no_flow(self.config.variant));
         };
-        let mut positions = Vec::with_capacity(factors.len());
-        let mut certificates = Vec::with_capacity(self.goals.len());
-        let paths = self.rollout.positions.chunks_exact(HORIZON);
-        let shaped = paths.zip(factors.chunks_exact(HORIZON));
-        for (pair, ((path, factors), &goal)) in shaped.zip(&self.goals).enumerate() {
-            let (i, hypothesis) = (pair / hypotheses, pair % hypotheses);
-            let course = Course {
-                start: self.window.observed(i)[OBSERVED - 1],
-                goal,
-                sigma: self.config.sigma,
-                time_step: self.config.time_step,
-            };
-            let certificate = match self.rule {
-                StepRule::StableEuler => course.walk(factors).map(|walk| {
-                    positions.extend(walk.positions);
-                    walk.certificate
-                }),
-                StepRule::Euler => {
-                    positions.extend_from_slice(path);
-                    course.certify(path, factors)
-                }
-            };
-            certificates.push(certificate.map_err(|cause| {
-                failed(CertificateError::Walk {
-                    recording: self.window.recording().to_owned(),
-                    start_frame: self.window.start_frame(),
-                    pedestrian: self.window.pedestrians()[i].0,
-                    hypothesis,
-                    cause,
-                })
-            })?);
-        }
+        let (positions, certificates) = match self.gait {
+            Gait::PlainEuler => self.as_rolled_out(factors)?,
+            Gait::Stable(None) => flat(self.alone(factors)?),
+            Gait::Stable(Some(clearance)) => flat(self.among_others(factors, clearance)?),
+        };
         let held = certificates
             .iter()
             .map(|certificate| certificate.holds().is_ok())
             .collect();
+        let (pedestrians, hypotheses) = (self.rollout.pedestrians, self.rollout.hypotheses);
         let goals = Some(self.goals);
         let forecast = Forecast::new(pedestrians, hypotheses, positions, self.weights, goals)?
             .with_certified(held)?;
@@ -165,6 +139,85 @@ impl Walked<'_> {
             certificates,
         })
     }
+
+    fn as_rolled_out(
+        &self,
+        factors: &[[f64; 3]],
+    ) -> Result<(Vec<Position>, Vec<LyapunovCertificate<f64>>), ForecastError> {
+        let mut paths = self.rollout.positions.chunks_exact(HORIZON);
+        let certificates = self.each(factors, |_, course, factors| {
+            course.certify(paths.next().unwrap_or_default(), factors)
+        })?;
+        Ok((self.rollout.positions.clone(), certificates))
+    }
+
+    /// Every hypothesis walked as if nobody else were there.
+    fn alone(&self, factors: &[[f64; 3]]) -> Result<Vec<Walk>, ForecastError> {
+        self.each(factors, |_, course, factors| course.walk(factors))
+    }
+
+    /// Every hypothesis walked again, keeping clear of where the others most likely go alone.
+    fn among_others(
+        &self,
+        factors: &[[f64; 3]],
+        clearance: Clearance,
+    ) -> Result<Vec<Walk>, ForecastError> {
+        let alone = self.alone(factors)?;
+        let hypotheses = self.rollout.hypotheses;
+        let likeliest: Vec<[Position; HORIZON]> = alone
+            .chunks_exact(hypotheses)
+            .zip(self.weights.chunks_exact(hypotheses))
+            .filter_map(|(walks, weights)| {
+                let heaviest = weights.iter().copied().fold(0.0, f64::max);
+                let first = weights.iter().position(|weight| *weight >= heaviest)?;
+                Some(walks[first].positions)
+            })
+            .collect();
+        let others = (0..self.rollout.pedestrians)
+            .map(|i| clearance.others(i, &likeliest))
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(|error| ForecastError::model(crate::model::NAME, error))?;
+        self.each(factors, |i, course, factors| {
+            course.walk_among(&others[i], factors)
+        })
+    }
+
+    /// What is made of each walker, hypothesis by hypothesis, in order; a failure is told with its place.
+    fn each<R>(
+        &self,
+        factors: &[[f64; 3]],
+        mut of: impl FnMut(usize, &Course, &[[f64; 3]]) -> Result<R, DynamicsError>,
+    ) -> Result<Vec<R>, ForecastError> {
+        let hypotheses = self.rollout.hypotheses;
+        let pairs = factors.chunks_exact(HORIZON).zip(&self.goals).enumerate();
+        pairs
+            .map(|(pair, (factors, &goal))| {
+                let (i, hypothesis) = (pair / hypotheses, pair % hypotheses);
+                let course = Course {
+                    start: self.window.observed(i)[OBSERVED - 1],
+                    goal,
+                    sigma: self.config.sigma,
+                    time_step: self.config.time_step,
+                };
+                of(i, &course, factors).map_err(|cause| {
+                    failed(CertificateError::Walk {
+                        recording: self.window.recording().to_owned(),
+                        start_frame: self.window.start_frame(),
+                        pedestrian: self.window.pedestrians()[i].0,
+                        hypothesis,
+                        cause,
+                    })
+                })
+            })
+            .collect()
+    }
+}
+
+/// Positions and certificates of walks, each in one list.
+fn flat(walks: Vec<Walk>) -> (Vec<Position>, Vec<LyapunovCertificate<f64>>) {
+    let positions = walks.iter().flat_map(|walk| walk.positions).collect();
+    let certificates = walks.into_iter().map(|walk| walk.certificate).collect();
+    (positions, certificates)
 }
 
 /// Whether forecasts of the variant can be certified.

@@ -41,6 +41,18 @@ pub enum DdlError {
     /// The share of the retrieved goals beside the proposed ones is no share.
     #[error("retrieved_share = {0} is not allowed: 0 to 1")]
     RetrievedShare(f64),
+    /// The distance to keep from others is no distance.
+    #[error("a clearance of {0} metres is not allowed: positive and finite, such as 0.4")]
+    Clearance(f64),
+    /// Something was asked of the flow of a model that has none.
+    #[error(
+        "the variant `{variant}` has no flow that could keep clear of others: its network emits \
+         positions; use a model of the variant `full` or `no-goal-shift`"
+    )]
+    NoFlow {
+        /// The variant of the model.
+        variant: ddl_star::Variant,
+    },
     /// The training set holds fewer tracks than the published goal estimator retrieves.
     #[error(
         "{tracks} tracks of 20 frames to train on, but the published goal estimator, which \

@@ -7,10 +7,10 @@ use crate::published::Published;
 use crate::result_rows::{Forecasted, ResultRows};
 use crate::straight_lines::straight_lines;
 use crate::test_set::TestSet;
+use crate::walk::Gait;
 use ddl_data::{Dataset, Window};
 use ddl_eval::baseline::WeightedGoals;
 use ddl_eval::{Forecast, ForecastError, Forecaster as _, Protocol, ResultRow};
-use ddl_star::StepRule;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -92,12 +92,18 @@ pub fn evaluate(
     Ok(rows)
 }
 
+/// A way in which the model's forecasts are walked, each a row of its own.
+struct Manner {
+    gait: Gait,
+    /// What is different from the model as it is; `None` for that one.
+    change: Option<String>,
+    protocols: &'static [Protocol],
+}
+
 /// Forecasts of the model and straight lines to the same goals, one each a window.
-#[derive(Default)]
 struct Forecasts {
-    model: Vec<Forecast>,
-    /// The same network and goals, but plain Euler steps; empty where nobody asks.
-    plain_steps: Vec<Forecast>,
+    /// One list a manner.
+    model: Vec<Vec<Forecast>>,
     lines: Vec<Forecast>,
 }
 
@@ -121,40 +127,58 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             return Ok(Vec::new());
         };
         let model = self.model;
-        // What the published steps would make of the same flow is told once, in the headline protocol.
-        let with_plain_steps = self.asked(Protocol::Fair) && model.config().star.variant.dynamics();
+        let manners = self.manners();
         let goal = "the estimated goals";
-        let forecasts = self.forecast(first, |windows| {
+        let forecasts = self.forecast(first, manners.len(), |windows| {
             let goals = model.goal_model().goals(windows)?;
-            let lines = straight_lines(goal, windows, &goals::weighted(&goals)?)?;
-            let plain_steps = if with_plain_steps {
-                model.forecast_towards(windows, goals.clone(), StepRule::Euler)?
-            } else {
-                Vec::new()
-            };
+            let towards =
+                |manner: &Manner| model.forecast_towards(windows, goals.clone(), manner.gait);
             Ok(Forecasts {
-                model: model.forecast_towards(windows, goals, StepRule::StableEuler)?,
-                plain_steps,
-                lines,
+                model: manners.iter().map(towards).collect::<Result<_, _>>()?,
+                lines: straight_lines(goal, windows, &goals::weighted(&goals)?)?,
             })
         })?;
         let mut rows = Vec::new();
         for protocol in protocols {
             let admit =
                 |forecasts: &[Forecast], name: &str| protocol.admit(forecasts.to_vec(), name);
-            let name = model.name();
-            let mut forecasted = vec![Forecasted::model(admit(&forecasts.model, &name)?)];
-            if protocol == Protocol::Fair && with_plain_steps {
-                let plain = admit(&forecasts.plain_steps, &name)?;
-                forecasted.push(Forecasted::model_with(plain, "plain Euler steps"));
+            let mut forecasted = Vec::new();
+            for (manner, forecasts) in manners.iter().zip(&forecasts.model) {
+                if manner.protocols.contains(&protocol) {
+                    let admitted = admit(forecasts, &model.name())?;
+                    forecasted.push(Forecasted::model(admitted, manner.change.as_deref()));
+                }
             }
-            forecasted.push(Forecasted::lines_to(
-                goal,
-                admit(&forecasts.lines, "straight line")?,
-            ));
+            let lines = admit(&forecasts.lines, "straight line")?;
+            forecasted.push(Forecasted::lines_to(goal, lines));
             rows.extend(self.rows(protocol, "last epoch").of(&forecasted)?);
         }
         Ok(rows)
+    }
+
+    /// The model as it is; what the published steps would make of the same flow, told once, in the
+    /// headline protocol; and, where asked for, keeping clear of others.
+    fn manners(&self) -> Vec<Manner> {
+        let mut manners = vec![Manner {
+            gait: Gait::Stable(None),
+            change: None,
+            protocols: &[Protocol::Fair, Protocol::Single],
+        }];
+        if self.asked(Protocol::Fair) && self.model.config().star.variant.dynamics() {
+            manners.push(Manner {
+                gait: Gait::PlainEuler,
+                change: Some("plain Euler steps".to_owned()),
+                protocols: &[Protocol::Fair],
+            });
+        }
+        if let Some(clearance) = self.model.clearance() {
+            manners.push(Manner {
+                gait: Gait::Stable(Some(clearance)),
+                change: Some(format!("keeping {} m from others", clearance.distance())),
+                protocols: &[Protocol::Fair, Protocol::Single],
+            });
+        }
+        manners
     }
 
     fn published(&mut self) -> Result<Vec<ResultRow>, DdlError> {
@@ -175,7 +199,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let tick = || self.report(0, protocol);
         let best = Published::best_on_test(model, &estimator, &windows, tick)?;
         let goal = "the estimated goal nearest the TRUE end";
-        let forecasts = self.forecast(protocol, |windows| {
+        let mut forecasts = self.forecast(protocol, 1, |windows| {
             let goals = goals::nearest_true_end(&estimator, windows)?;
             let certain: Vec<Vec<WeightedGoals>> = goals
                 .iter()
@@ -188,27 +212,31 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 .collect();
             let lines = straight_lines(goal, windows, &certain)?;
             Ok(Forecasts {
-                model: best.forecast_towards(windows, &goals)?,
-                plain_steps: Vec::new(),
+                model: vec![best.forecast_towards(windows, &goals)?],
                 lines,
             })
         })?;
         let selection = format!("best kept epoch on up to {SELECTION_WALKERS} TEST walkers");
         self.rows(protocol, &selection).of(&[
-            Forecasted::model(forecasts.model),
+            Forecasted::model(forecasts.model.remove(0), None),
             Forecasted::lines_to(goal, forecasts.lines),
         ])
     }
 
-    /// Forecasts all windows, some at a time, showing their futures only where the protocol does.
+    /// Forecasts all windows in a number of manners, some windows at a time, showing their futures only where
+    /// the protocol does.
     fn forecast(
         &mut self,
         protocol: Protocol,
+        manners: usize,
         of: impl Fn(&[Window]) -> Result<Forecasts, ForecastError>,
     ) -> Result<Forecasts, DdlError> {
-        let mut all = Forecasts::default();
-        while all.model.len() < self.test.windows.len() {
-            let rest = &self.test.windows[all.model.len()..];
+        let mut all = Forecasts {
+            model: vec![Vec::new(); manners],
+            lines: Vec::new(),
+        };
+        while all.lines.len() < self.test.windows.len() {
+            let rest = &self.test.windows[all.lines.len()..];
             let mut walkers = 0;
             let count = rest
                 .iter()
@@ -218,8 +246,9 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 })
                 .map_or(rest.len(), |last| last + 1);
             let some = of(&protocol.visible(&rest[..count]))?;
-            all.model.extend(some.model);
-            all.plain_steps.extend(some.plain_steps);
+            for (all, some) in all.model.iter_mut().zip(some.model) {
+                all.extend(some);
+            }
             all.lines.extend(some.lines);
             self.report(rest[..count].iter().map(Window::len).sum(), protocol)?;
         }

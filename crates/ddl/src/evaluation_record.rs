@@ -1,7 +1,7 @@
 //! Which evaluation a run's `report.json` holds, so that a repeated one can be skipped.
 
 use crate::run_directory::{read_json, write_json};
-use crate::{Ddl, DdlError, EvaluationRequest};
+use crate::{Clearance, Ddl, DdlError, EvaluationRequest};
 use ddl_eval::Report;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -12,6 +12,8 @@ use std::path::PathBuf;
 struct Record {
     request: EvaluationRequest,
     device: String,
+    #[serde(default)]
+    clearance: Option<Clearance>,
 }
 
 impl Record {
@@ -19,6 +21,7 @@ impl Record {
         Self {
             request: request.clone(),
             device: model.device().name().to_owned(),
+            clearance: model.clearance(),
         }
     }
 }

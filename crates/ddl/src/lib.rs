@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod certified_forecast;
+mod clearance;
 mod error;
 mod evaluation;
 mod evaluation_record;
@@ -31,6 +32,7 @@ pub use ddl_softdtw as softdtw;
 pub use ddl_star as star;
 
 pub use certified_forecast::{CertificateError, CertifiedForecast};
+pub use clearance::Clearance;
 pub use ddl_eval::{Forecast, Forecaster, Protocol};
 pub use ddl_star::{DeviceChoice, Variant};
 pub use error::DdlError;

@@ -1,7 +1,9 @@
 //! A trained model: the network, its goal estimator, and how the two make a forecast.
 
 use crate::certified_forecast::{self, CertifiedForecast, Walked};
+use crate::clearance::Clearance;
 use crate::run_directory::{RunConfig, RunDirectory};
+use crate::walk::Gait;
 use crate::{DdlError, GoalModel};
 use ddl_data::{Position, Window};
 use ddl_eval::{Forecast, ForecastError, Forecaster};
@@ -41,6 +43,7 @@ pub struct Ddl {
     goals: GoalModel,
     device: ComputeDevice,
     network: StarNetwork,
+    clearance: Option<Clearance>,
 }
 
 impl Ddl {
@@ -67,6 +70,22 @@ impl Ddl {
             goals: GoalModel::of_run(run, config, device)?,
             device,
             network,
+            clearance: None,
+        })
+    }
+
+    /// The same model, whose walkers keep clear of each other.
+    ///
+    /// # Errors
+    /// [`DdlError::NoFlow`] for the variants without dynamics.
+    pub fn keeping_clear(self, clearance: Clearance) -> Result<Self, DdlError> {
+        let variant = self.config().star.variant;
+        if !variant.dynamics() {
+            return Err(DdlError::NoFlow { variant });
+        }
+        Ok(Self {
+            clearance: Some(clearance),
+            ..self
         })
     }
 
@@ -83,6 +102,11 @@ impl Ddl {
     /// Where it computes.
     pub fn device(&self) -> ComputeDevice {
         self.device
+    }
+
+    /// How far its walkers keep from each other; `None` where each walks as if alone.
+    pub fn clearance(&self) -> Option<Clearance> {
+        self.clearance
     }
 
     /// Numbers learned by the forecasting network.
@@ -125,7 +149,7 @@ impl Ddl {
     ) -> Result<Vec<CertifiedForecast>, ForecastError> {
         certified_forecast::ensure_flow(self.config().star.variant)?;
         let goals = self.goals.goals(windows)?;
-        self.walked(windows, goals, StepRule::StableEuler)?
+        self.walked(windows, goals, Gait::Stable(self.clearance))?
             .map(Walked::certified)
             .collect()
     }
@@ -136,12 +160,12 @@ impl Ddl {
         &self,
         windows: &[Window],
         sets: Vec<Vec<GoalSet>>,
-        rule: StepRule,
+        gait: Gait,
     ) -> Result<Vec<Forecast>, ForecastError> {
         if !self.config().star.variant.uses_goal() {
             return self.forecast_without_goals(windows);
         }
-        self.walked(windows, sets, rule)?
+        self.walked(windows, sets, gait)?
             .map(Walked::forecast)
             .collect()
     }
@@ -152,7 +176,7 @@ impl Ddl {
         &'a self,
         windows: &'a [Window],
         sets: Vec<Vec<GoalSet>>,
-        rule: StepRule,
+        gait: Gait,
     ) -> Result<impl Iterator<Item = Walked<'a>>, ForecastError> {
         let goals: Vec<Vec<Vec<Position>>> = sets
             .iter()
@@ -160,12 +184,12 @@ impl Ddl {
             .collect();
         let rollouts = self
             .network
-            .forecast_windows(windows, &goals, Noise::Expected, rule)
+            .forecast_windows(windows, &goals, Noise::Expected, gait.rule())
             .map_err(|error| ForecastError::model(NAME, error))?;
         let shaped = rollouts.into_iter().zip(windows).zip(sets);
         Ok(shaped.map(move |((rollout, window), sets)| Walked {
             config: &self.config().star,
-            rule,
+            gait,
             window,
             rollout,
             weights: sets.iter().flat_map(GoalSet::weights).copied().collect(),
@@ -206,7 +230,7 @@ impl Forecaster for Ddl {
 
     fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
         let goals = self.goals.goals(windows)?;
-        self.forecast_towards(windows, goals, StepRule::StableEuler)
+        self.forecast_towards(windows, goals, Gait::Stable(self.clearance))
     }
 }
 

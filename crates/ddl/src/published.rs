@@ -4,10 +4,11 @@ use crate::DdlError;
 use crate::certified_forecast::Walked;
 use crate::goals;
 use crate::model::{self, Ddl};
+use crate::walk::Gait;
 use ddl_data::{Position, Window};
 use ddl_eval::{Forecast, ForecastError, Scores};
 use ddl_goal::GoalEstimator;
-use ddl_star::{Noise, StarNetwork, StepRule};
+use ddl_star::{Noise, StarNetwork};
 
 /// Noise samples on the one goal.
 const SAMPLES: usize = 20;
@@ -70,7 +71,7 @@ impl Published {
         };
         let rollouts = self
             .network
-            .forecast_windows(windows, &single, noise, StepRule::Euler)
+            .forecast_windows(windows, &single, noise, Gait::PlainEuler.rule())
             .map_err(|error| ForecastError::model(model::NAME, error))?;
         let rolled = rollouts.into_iter().zip(windows).zip(goals);
         rolled
@@ -80,7 +81,7 @@ impl Published {
                 }
                 let walked = Walked {
                     config,
-                    rule: StepRule::Euler,
+                    gait: Gait::PlainEuler,
                     window,
                     rollout,
                     weights: vec![1.0 / SAMPLES as f64; goals.len() * SAMPLES],

@@ -20,19 +20,13 @@ pub(crate) struct Forecasted {
 }
 
 impl Forecasted {
-    /// What the model forecast.
-    pub(crate) fn model(forecasts: Vec<Forecast>) -> Self {
+    /// What the model forecast, with something changed or as it is.
+    pub(crate) fn model(forecasts: Vec<Forecast>, change: Option<&str>) -> Self {
         Self {
-            forecaster: model::NAME.to_owned(),
-            trained: true,
-            forecasts,
-        }
-    }
-
-    /// What the model forecast with something changed.
-    pub(crate) fn model_with(forecasts: Vec<Forecast>, change: &str) -> Self {
-        Self {
-            forecaster: format!("{}, {change}", model::NAME),
+            forecaster: match change {
+                None => model::NAME.to_owned(),
+                Some(change) => format!("{}, {change}", model::NAME),
+            },
             trained: true,
             forecasts,
         }

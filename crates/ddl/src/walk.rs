@@ -3,12 +3,33 @@
 //! The network emits the factors of P; `ddl-dynamics` turns them into positions in `f64`, by the
 //! integrator whose guarantee holds for the computed numbers.
 
+use crate::clearance::Clearance;
 use ddl_data::{HORIZON, Position};
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, DynamicsError, LyapunovCertificate, MetricSchedule,
-    NaturalGradientFlow, StableEuler, rollout_into,
+    Attractor, AvoidingFlow, CholeskyMetric, DynamicsError, Flow, LyapunovCertificate,
+    MetricSchedule, NaturalGradientFlow, ObstacleSchedule, StableEuler, rollout_into,
 };
+use ddl_star::StepRule;
 use nalgebra::Vector2;
+
+/// How walkers walk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Gait {
+    /// The published steps, which may pass the goal.
+    PlainEuler,
+    /// `StableEuler`, everybody alone or keeping clear of the others.
+    Stable(Option<Clearance>),
+}
+
+impl Gait {
+    /// The steps of the network's own rollout.
+    pub(crate) fn rule(self) -> StepRule {
+        match self {
+            Self::PlainEuler => StepRule::Euler,
+            Self::Stable(_) => StepRule::StableEuler,
+        }
+    }
+}
 
 /// What a walk needs besides its shape.
 #[derive(Debug, Clone, Copy)]
@@ -31,18 +52,37 @@ pub(crate) struct Walk {
     pub(crate) certificate: LyapunovCertificate<f64>,
 }
 
+/// The flow to a goal, shaped by a metric a step.
+type ShapedFlow = NaturalGradientFlow<f64, 2, MetricSchedule<f64, 2>>;
+
 impl Course {
     /// Walks the course with `StableEuler` steps in `f64`, shaped by one factor (a, b, c) a step.
     pub(crate) fn walk(&self, factors: &[[f64; 3]]) -> Result<Walk, DynamicsError> {
+        self.follow(&self.flow(factors)?)
+    }
+
+    /// The same, keeping clear of others.
+    pub(crate) fn walk_among(
+        &self,
+        others: &ObstacleSchedule<f64, 2>,
+        factors: &[[f64; 3]],
+    ) -> Result<Walk, DynamicsError> {
+        let flow = AvoidingFlow::new(self.flow(factors)?, others, Clearance::MARGIN)?;
+        self.follow(&flow)
+    }
+
+    fn flow(&self, factors: &[[f64; 3]]) -> Result<ShapedFlow, DynamicsError> {
         let attractor = Attractor::new(Vector2::from(self.goal))?;
         let metrics = MetricSchedule::new(self.metrics(factors)?)?;
-        let flow = NaturalGradientFlow::new(attractor, metrics);
+        Ok(NaturalGradientFlow::new(attractor, metrics))
+    }
+
+    fn follow(&self, flow: &impl Flow<f64, 2>) -> Result<Walk, DynamicsError> {
         let mut path = [Vector2::zeros(); HORIZON + 1];
         let start = Vector2::from(self.start);
-        rollout_into(&flow, &StableEuler, start, self.time_step, &mut path)?;
-        let metrics = flow.source().metrics();
+        rollout_into(flow, &StableEuler, start, self.time_step, &mut path)?;
         Ok(Walk {
-            certificate: LyapunovCertificate::new(&path, metrics, &attractor, self.time_step)?,
+            certificate: LyapunovCertificate::of_rollout(flow, &path, self.time_step)?,
             positions: std::array::from_fn(|t| path[t + 1].into()),
         })
     }
@@ -102,6 +142,29 @@ mod tests {
             .certify(&walk.positions, &[[1.0, 0.0, 1.0]; HORIZON])
             .unwrap();
         assert_eq!(certified, walk.certificate);
+    }
+
+    /// Somebody stands in the way: passed at the distance asked for, and the goal is still neared at every
+    /// step.
+    #[test]
+    fn somebody_in_the_way_is_passed() {
+        let factors = [[1.0, 0.0, 1.0]; HORIZON];
+        let clearance = Clearance::new(0.5).unwrap();
+        let stands = [[1.5, 0.1]; HORIZON];
+        let others = clearance
+            .others(0, &[[[9.0, 9.0]; HORIZON], stands])
+            .unwrap();
+        let apart = |walk: &Walk| {
+            let distances = walk.positions.map(|[x, y]| (x - 1.5).hypot(y - 0.1));
+            distances.into_iter().fold(f64::INFINITY, f64::min)
+        };
+        assert!(apart(&COURSE.walk(&factors).unwrap()) < 0.15);
+        let walk = COURSE.walk_among(&others, &factors).unwrap();
+        assert!(apart(&walk) > 0.5);
+        assert_eq!(walk.certificate.holds(), Ok(()));
+        let nobody = clearance.others(0, &[stands]).unwrap();
+        let alone = COURSE.walk_among(&nobody, &factors).unwrap();
+        assert_eq!(alone.positions, COURSE.walk(&factors).unwrap().positions);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! `ddl evaluate`.
 
-use super::{Machine, Telling, at_least_one, dataset};
+use super::{KeepClear, Machine, Telling, at_least_one, dataset};
 use crate::interrupt::Interrupt;
 use crate::progress::{Progress, ProgressMode};
 use clap::Args;
@@ -31,6 +31,8 @@ pub(crate) struct Evaluate {
     #[arg(long, value_parser = at_least_one)]
     test_walkers: Option<usize>,
     #[command(flatten)]
+    clear: KeepClear,
+    #[command(flatten)]
     machine: Machine,
     #[command(flatten)]
     telling: Telling,
@@ -40,7 +42,9 @@ impl Evaluate {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         self.machine.prepare()?;
         let interrupt = Interrupt::catch()?;
-        let model = Ddl::load(&self.model, self.machine.device)?;
+        let model = self
+            .clear
+            .of(Ddl::load(&self.model, self.machine.device)?)?;
         let request = EvaluationRequest {
             protocols: self.protocols.clone(),
             on: if self.validation {

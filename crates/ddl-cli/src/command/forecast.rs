@@ -3,7 +3,7 @@
 mod json_lines;
 mod table;
 
-use super::Machine;
+use super::{KeepClear, Machine};
 use crate::tracks::{Tracks, write_output};
 use clap::{Args, ValueEnum};
 use ddl::data::{HORIZON, OBSERVED, Window};
@@ -38,6 +38,8 @@ pub(crate) struct Forecast {
     #[arg(long)]
     certificate: bool,
     #[command(flatten)]
+    clear: KeepClear,
+    #[command(flatten)]
     machine: Machine,
 }
 
@@ -58,7 +60,9 @@ impl Forecast {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         self.machine.prepare_for_little()?;
         let windows = self.tracks.windows()?;
-        let model = Ddl::load(&self.model, self.machine.device)?;
+        let model = self
+            .clear
+            .of(Ddl::load(&self.model, self.machine.device)?)?;
         let text = if self.certificate {
             let certified = model.forecast_certified(&windows)?;
             let pairs = windows.iter().zip(&certified);
