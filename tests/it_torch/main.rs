@@ -9,6 +9,7 @@ mod evaluate_report;
 mod forecast_own_tracks;
 mod goals_and_info;
 mod goals_measured;
+mod keep_clear;
 mod leak;
 mod leak_in_reports;
 mod prepare;
