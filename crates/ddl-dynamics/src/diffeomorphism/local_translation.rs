@@ -274,6 +274,19 @@ mod tests {
     }
 
     #[test]
+    fn an_offset_that_overflows_is_felt_all_the_same() {
+        // rho (x - c) = 5e-309 * 2 * 1.797...e308, although x - c alone is infinite.
+        let (far, rate) = (f64::MAX, 5e-309);
+        let map = LocalTranslation::new(Vector2::new(-far, 0.0), rate, Vector2::new(-1e308, 0.0))
+            .unwrap();
+        let image = map.apply(&Vector2::new(far, 0.0));
+        let k = (-(2.0 * (far * rate)).powi(2)).exp();
+        assert!(k > 0.03);
+        assert!((image.x - (far - 1e308 * k)).abs() <= 1e-14 * far);
+        assert!((map.inverse(&image).x - far).abs() <= 1e-14 * far);
+    }
+
+    #[test]
     fn a_translation_by_hand() {
         // rho = 1/2, x - c = (2, 0): k = 1/e; J = I - 2/4 k v (2, 0) = [1 - k/2, 0; -k, 1].
         let map =
