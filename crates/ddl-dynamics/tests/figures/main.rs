@@ -1,0 +1,6 @@
+//! The pictures of `docs/stability.md` are those that the examples draw, and show what the rollouts do.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod around;
+mod circling;
+mod svg;
