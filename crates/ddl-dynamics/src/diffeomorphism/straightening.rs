@@ -1,20 +1,17 @@
 //! A chain of local translations that straightens a demonstrated path.
 
+mod fit;
 mod unbending;
 
 use nalgebra::SVector;
 
 use super::{Chain, Diffeomorphism, Layer, LocalTranslation};
 use crate::{error::DynamicsError, polar::polar, real::Real};
+use fit::{FASTEST_RATE, Fit};
 use unbending::Unbending;
 
 /// Points by which a path is known, evenly spaced along it.
 const SAMPLES: usize = 64;
-
-/// Rates tried for each layer, from the slowest to the fastest, in units of 1 / length of the path.
-const RATES: usize = 26;
-const SLOWEST_RATE: f64 = 0.3;
-const FASTEST_RATE: f64 = 40.0;
 
 /// Points, spaced as the samples are, by which a path is continued straight at each of its ends: an
 /// end that is fitted from one side only is left with a wrong direction, and walks begin at an end.
@@ -24,14 +21,8 @@ const CONTINUATION: usize = 6;
 /// distance of the samples. Two lines that cross have points within 0.71 of each other.
 const CLEARANCE: f64 = 1.25;
 
-/// No layer squeezes space by more than half, although the map would allow for more.
-const CONTRACTION: f64 = 0.5;
-
 /// The share of the layers that follow the path while it unbends; the others remove what is left.
 const FOLLOWING: f64 = 0.75;
-
-/// A translation shorter than this share of the length of the path is not worth a layer.
-const NEGLIGIBLE: f64 = 1e-12;
 
 /// A chain that straightens a path, and how well: what [`Chain::straightening`] gives.
 #[derive(Debug, Clone, PartialEq)]
@@ -271,75 +262,4 @@ fn continued<const D: usize>(samples: &[SVector<f64, D>]) -> (Vec<SVector<f64, D
         }
     }
     (points, lengths[0])
-}
-
-/// A local translation in units of the length of the path.
-struct Bump<const D: usize> {
-    centre: SVector<f64, D>,
-    rate: f64,
-    translation: SVector<f64, D>,
-}
-
-/// The images of the samples under the layers found so far.
-struct Fit<const D: usize> {
-    images: Vec<SVector<f64, D>>,
-}
-
-impl<const D: usize> Fit<D> {
-    /// The translation that lowers the sum of squared distances from images to `targets` most.
-    fn best(&self, targets: &[SVector<f64, D>]) -> Option<Bump<D>> {
-        let residuals: Vec<_> = targets
-            .iter()
-            .zip(&self.images)
-            .map(|(y, x)| y - x)
-            .collect();
-        let steepest = (2.0 / std::f64::consts::E).sqrt();
-        let mut most = 0.0;
-        let mut best = None;
-        for step in 0..RATES {
-            let exponent = step as f64 / (RATES - 1) as f64;
-            let rate = SLOWEST_RATE * (FASTEST_RATE / SLOWEST_RATE).powf(exponent);
-            let longest = CONTRACTION / (steepest * rate);
-            for (centre, (sum, squares)) in self.images.iter().zip(self.sums(rate, &residuals)) {
-                let (unlimited, direction) = polar(&(sum / squares));
-                let length = unlimited.min(longest);
-                // |r|^2 - |r - k v|^2, summed over the samples.
-                let gain = length * (2.0 * direction.dot(&sum) - length * squares);
-                if length > NEGLIGIBLE && gain > most {
-                    most = gain;
-                    best = Some(Bump {
-                        centre: *centre,
-                        rate,
-                        translation: direction * length,
-                    });
-                }
-            }
-        }
-        best
-    }
-
-    /// `sum k_i r_i` and `sum k_i^2` for bumps centred at each of the images.
-    fn sums(&self, rate: f64, residuals: &[SVector<f64, D>]) -> Vec<(SVector<f64, D>, f64)> {
-        // At its own centre a bump is 1.
-        let mut sums: Vec<_> = residuals.iter().map(|r| (*r, 1.0)).collect();
-        for i in 0..sums.len() {
-            for j in 0..i {
-                let offset = self.images[i] - self.images[j];
-                let height = (-rate * rate * offset.norm_squared()).exp();
-                sums[i].0 += residuals[j] * height;
-                sums[j].0 += residuals[i] * height;
-                sums[i].1 += height * height;
-                sums[j].1 += height * height;
-            }
-        }
-        sums
-    }
-
-    fn push(&mut self, bump: &Bump<D>) {
-        for image in &mut self.images {
-            let offset = *image - bump.centre;
-            let height = (-bump.rate * bump.rate * offset.norm_squared()).exp();
-            *image += bump.translation * height;
-        }
-    }
 }
