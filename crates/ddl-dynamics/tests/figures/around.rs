@@ -5,6 +5,7 @@ mod charts;
 mod picture;
 
 use super::svg::{PIXEL, attributes, circles, group, lines};
+use crate::drawing::axes::Plane;
 use ddl_dynamics::{
     Attractor, AvoidingFlow, Ball, Chain, CholeskyMetric, DiffeomorphicFlow, Flow,
     LyapunovCertificate, NaturalGradientFlow, StableEuler, rollout,
@@ -12,7 +13,6 @@ use ddl_dynamics::{
 use nalgebra::Vector2;
 use picture::{
     PILLARS, Scene, WALL, among_pillars, behind_a_wall,
-    drawing::axes::Plane,
     scene::{PillarFlow, WallFlow},
 };
 

@@ -3,4 +3,6 @@
 
 mod around;
 mod circling;
+#[path = "../../examples/drawing/mod.rs"]
+mod drawing;
 mod svg;

@@ -1,15 +1,14 @@
 //! What falls in each step of a walk, and what does not.
 
 use super::{
-    Scene,
-    drawing::{
-        axes::Lengths,
-        marks::{draw_heading, draw_stable},
-        sheet::{INK, Pixel, Place, STABLE, Sheet, Stroke},
-    },
-    falls, pillar_chart,
+    Scene, falls, pillar_chart,
     scene::{PillarFlow, WallFlow},
     wall_chart,
+};
+use crate::drawing::{
+    axes::Lengths,
+    marks::{draw_heading, draw_stable},
+    sheet::{INK, Pixel, Place, STABLE, Sheet, Stroke},
 };
 
 /// A distance that rises before it falls.

@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use ddl_dynamics::{Diffeomorphism, Flow};
 use nalgebra::Vector2;
 
-use super::{LEVEL, Scene, WALL, drawing::sheet::Sheet, scene::WallFlow};
+use super::{LEVEL, Scene, WALL, scene::WallFlow};
+use crate::drawing::sheet::Sheet;
 
 /// Metres between two levels.
 const BETWEEN: f64 = 1.0;

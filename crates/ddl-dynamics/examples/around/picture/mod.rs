@@ -3,16 +3,13 @@
 //! Above, a walk around the end of a wall: what falls is the distance in the chart, not the distance.
 //! Below, walks among pillars: what falls is the distance.
 
-#[allow(dead_code, reason = "other pictures need the rest of it")]
-#[path = "../../drawing/mod.rs"]
-pub(crate) mod drawing;
 mod falling;
 mod levels;
 mod paths;
 pub(crate) mod scene;
 pub(crate) mod walk;
 
-use drawing::{
+use crate::drawing::{
     axes::{Lengths, Plane},
     marks::{draw_goal, draw_stable},
     sheet::{INK, Pixel, Place, REGION, STABLE, Sheet, Stroke},

@@ -3,15 +3,14 @@
 use nalgebra::Vector2;
 
 use super::{
-    OTHER, PILLARS, SHOWN, SOLID, Scene, WALL,
-    drawing::{
-        axes::Plane,
-        marks::{draw_goal, draw_heading, draw_stable},
-        sheet::{INK, PAPER, Pixel, Place, REGION, STABLE, Sheet, Stroke},
-    },
-    levels,
+    OTHER, PILLARS, SHOWN, SOLID, Scene, WALL, levels,
     scene::{self, MARGIN, PillarFlow, WallFlow},
     walk::Walk,
+};
+use crate::drawing::{
+    axes::Plane,
+    marks::{draw_goal, draw_heading, draw_stable},
+    sheet::{INK, PAPER, Pixel, Place, REGION, STABLE, Sheet, Stroke},
 };
 
 /// Radius of the ring around a goal, and of the dot at the start of another walker, pixels.

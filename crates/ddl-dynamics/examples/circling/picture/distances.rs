@@ -1,12 +1,9 @@
 //! The distance to the goal over time.
 
-use super::{
-    DISTANCES, Walk,
-    drawing::{
-        marks::{LINE, draw_euler, draw_heading, draw_stable},
-        sheet::{EULER, Pixel, Place, STABLE, Sheet, Stroke},
-    },
-    violation,
+use super::{DISTANCES, Walk, violation};
+use crate::drawing::{
+    marks::{LINE, draw_euler, draw_heading, draw_stable},
+    sheet::{EULER, Pixel, Place, STABLE, Sheet, Stroke},
 };
 
 pub(super) fn draw(sheet: &mut Sheet, [euler, stable]: &[Walk; 2]) {

@@ -4,9 +4,6 @@
 //! plain Euler step does not approach it. On the right the distance to the goal over time.
 
 mod distances;
-#[allow(dead_code, reason = "other pictures need the rest of it")]
-#[path = "../../drawing/mod.rs"]
-mod drawing;
 mod paths;
 pub(crate) mod scene;
 
@@ -14,7 +11,7 @@ use ddl_dynamics::{DynamicsError, Euler, StableEuler, Violation};
 
 pub(crate) use scene::{STEPS, Scene, TIME_STEP, Walk};
 
-use drawing::{
+use crate::drawing::{
     axes::{Decades, Plane},
     marks::{draw_euler, draw_goal, draw_stable},
     sheet::{INK, Pixel, Place, REGION, REGION_EDGE, Sheet, Stroke},

@@ -2,13 +2,11 @@
 
 use nalgebra::Vector2;
 
-use super::{
-    NEAR, Scene, TIME_STEP, WHOLE, Walk,
-    drawing::{
-        axes::Plane,
-        marks::{draw_euler, draw_goal, draw_heading, draw_stable},
-        sheet::{EULER, INK, Place, REGION, REGION_EDGE, Sheet, Stroke},
-    },
+use super::{NEAR, Scene, TIME_STEP, WHOLE, Walk};
+use crate::drawing::{
+    axes::Plane,
+    marks::{draw_euler, draw_goal, draw_heading, draw_stable},
+    sheet::{EULER, INK, Place, REGION, REGION_EDGE, Sheet, Stroke},
 };
 
 /// Corners of the outline of the region.
