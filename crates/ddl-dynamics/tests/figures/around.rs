@@ -205,6 +205,10 @@ fn the_angle_written_is_the_largest_of_the_steps_drawn() {
     let written: f64 = written.parse().unwrap();
     assert!((written - largest).abs() < 0.6, "{written} for {largest}");
     assert!(written > 120.0, "{written}");
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/stability.md");
+    let caption = format!("at up to {written}\u{B0} from the direction");
+    let page = std::fs::read_to_string(page).unwrap();
+    assert!(page.contains(&caption), "the caption is to say: {caption}");
 }
 
 /// On every line V is the same whole number of metres, to the hundredth of a pixel.
