@@ -4,6 +4,9 @@
 //! cargo run -p ddl-dynamics --example circling -- docs/stability.svg
 //! ```
 
+#[allow(dead_code, reason = "other pictures need the rest of it")]
+#[path = "../drawing/mod.rs"]
+mod drawing;
 mod picture;
 
 use std::{env, error::Error, fs};

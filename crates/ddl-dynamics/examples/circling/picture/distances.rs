@@ -1,21 +1,17 @@
 //! The distance to the goal over time.
 
-use super::{
-    DISTANCES, Walk, draw_heading, draw_walk,
+use super::{DISTANCES, Walk, violation};
+use crate::drawing::{
+    marks::{LINE, draw_euler, draw_heading, draw_stable},
     sheet::{EULER, Pixel, Place, STABLE, Sheet, Stroke},
-    violation,
 };
-
-/// Height of a line of text, pixels.
-const LINE: f64 = 19.0;
 
 pub(super) fn draw(sheet: &mut Sheet, [euler, stable]: &[Walk; 2]) {
     let heading = "Distance to the goal after each step";
     draw_heading(sheet, DISTANCES.frame[0], heading);
     DISTANCES.draw(sheet);
-    for (name, walk, is_stable) in [("stable", stable, true), ("euler", euler, false)] {
-        draw_walk(sheet, &format!("distance-{name}"), &pixels(walk), is_stable);
-    }
+    draw_stable(sheet, "distance-stable", &pixels(stable));
+    draw_euler(sheet, "distance-euler", &pixels(euler));
     if let Some((step, before, after)) = violation(euler) {
         let [x, y] = DISTANCES.pixel(step, before);
         let lines = [

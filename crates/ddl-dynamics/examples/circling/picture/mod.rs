@@ -3,24 +3,23 @@
 //! On the left the plane: the whole way, and the neighbourhood of the goal with the region in which a
 //! plain Euler step does not approach it. On the right the distance to the goal over time.
 
-pub(crate) mod axes;
 mod distances;
 mod paths;
 pub(crate) mod scene;
-mod sheet;
 
 use ddl_dynamics::{DynamicsError, Euler, StableEuler, Violation};
 
 pub(crate) use scene::{STEPS, Scene, TIME_STEP, Walk};
 
-use axes::{Decades, Plane};
-use sheet::{EULER, GOAL, INK, OVERSHOOT, OVERSHOOT_EDGE, Pixel, Place, STABLE, Sheet, Stroke};
+use crate::drawing::{
+    axes::{Decades, Plane},
+    marks::{draw_euler, draw_goal, draw_stable},
+    sheet::{INK, Pixel, Place, REGION, REGION_EDGE, Sheet, Stroke},
+};
 
 const SIZE: Pixel = [900.0, 604.0];
 /// Where the legend stands, pixels from the top.
 const LEGEND: f64 = 27.0;
-/// Space between a plot and its heading, pixels.
-const HEADING: f64 = 15.0;
 
 /// The whole way.
 pub(crate) const WHOLE: Plane = Plane {
@@ -86,47 +85,20 @@ pub(crate) fn violation(walk: &Walk) -> Option<(usize, f64, f64)> {
     }
 }
 
-/// How a walk is drawn wherever it appears: Euler as a thin line through rings, `StableEuler` as a strong
-/// line through dots, so that both are seen where they coincide.
-fn draw_walk(sheet: &mut Sheet, id: &str, points: &[Pixel], is_stable: bool) {
-    sheet.group(id, |sheet| {
-        if is_stable {
-            sheet.line(points, Stroke(STABLE, 2.6, "none"));
-            for &at in points {
-                sheet.dot(at, 3.4, STABLE);
-            }
-        } else {
-            sheet.line(points, Stroke(EULER, 1.2, "none"));
-            let ring = Stroke(EULER, 1.7, "none");
-            for &at in points {
-                sheet.ring(at, 5.4, ring);
-            }
-        }
-    });
-}
-
-fn draw_goal(sheet: &mut Sheet, at: Pixel, radius: f64) {
-    sheet.ring(at, radius, Stroke(GOAL, 3.0, "none"));
-}
-
 fn draw_legend(sheet: &mut Sheet) {
     let sample = |left: f64| [0.0, 18.0, 36.0].map(|x| [left + x, LEGEND]);
     let name = |sheet: &mut Sheet, left, text: &str| {
         sheet.text([left, LEGEND], Place::RightOf, INK, text);
     };
-    draw_walk(sheet, "legend-euler", &sample(64.0), false);
+    draw_euler(sheet, "legend-euler", &sample(64.0));
     name(sheet, 112.0, "Euler");
-    draw_walk(sheet, "legend-stable", &sample(184.0), true);
+    draw_stable(sheet, "legend-stable", &sample(184.0));
     name(sheet, 230.0, "StableEuler");
     draw_goal(sheet, [353.0, LEGEND], 8.0);
     name(sheet, 369.0, "goal");
     let swatch = [(-14.0, -9.0), (14.0, -9.0), (14.0, 9.0), (-14.0, 9.0)];
     let swatch = swatch.map(|(x, y)| [452.0 + x, LEGEND + y]);
-    sheet.area(&swatch, OVERSHOOT, Stroke(OVERSHOOT_EDGE, 1.0, "none"));
+    sheet.area(&swatch, REGION, Stroke(REGION_EDGE, 1.0, "none"));
     let region = format!("where no Euler step of {TIME_STEP} s approaches the goal");
     name(sheet, 476.0, &region);
-}
-
-fn draw_heading(sheet: &mut Sheet, [left, top]: Pixel, text: &str) {
-    sheet.heading([left, top - HEADING], text);
 }

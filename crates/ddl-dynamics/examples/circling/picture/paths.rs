@@ -2,9 +2,11 @@
 
 use nalgebra::Vector2;
 
-use super::{
-    NEAR, Plane, Scene, TIME_STEP, WHOLE, Walk, draw_goal, draw_heading, draw_walk,
-    sheet::{EULER, INK, OVERSHOOT, OVERSHOOT_EDGE, Place, Sheet, Stroke},
+use super::{NEAR, Scene, TIME_STEP, WHOLE, Walk};
+use crate::drawing::{
+    axes::Plane,
+    marks::{draw_euler, draw_goal, draw_heading, draw_stable},
+    sheet::{EULER, INK, Place, REGION, REGION_EDGE, Sheet, Stroke},
 };
 
 /// Corners of the outline of the region.
@@ -34,10 +36,8 @@ pub(super) fn draw(sheet: &mut Sheet, scene: &Scene, [euler, stable]: &[Walk; 2]
         });
         plane.draw(sheet);
         sheet.clipped(&format!("{id}-paths"), plane.frame(), |sheet| {
-            for (name, walk, is_stable) in [("stable", stable, true), ("euler", euler, false)] {
-                let points: Vec<_> = walk.path.iter().map(|p| plane.pixel(p)).collect();
-                draw_walk(sheet, &format!("{id}-{name}"), &points, is_stable);
-            }
+            draw_stable(sheet, &format!("{id}-stable"), &plane.pixels(&stable.path));
+            draw_euler(sheet, &format!("{id}-euler"), &plane.pixels(&euler.path));
             draw_goal(sheet, plane.pixel(scene.attractor.goal()), goal_radius);
         });
     }
@@ -70,5 +70,5 @@ fn draw_region(sheet: &mut Sheet, scene: &Scene, plane: &Plane) {
         plane.pixel(&(scene.attractor.goal() + away * scene.overshoot_radius(&away)))
     };
     let outline: Vec<_> = (0..CORNERS).map(corner).collect();
-    sheet.area(&outline, OVERSHOOT, Stroke(OVERSHOOT_EDGE, 1.0, "none"));
+    sheet.area(&outline, REGION, Stroke(REGION_EDGE, 1.0, "none"));
 }

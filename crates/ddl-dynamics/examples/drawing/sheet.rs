@@ -1,4 +1,4 @@
-//! The shapes that the picture is made of, as the text of an SVG file.
+//! The shapes that a picture is made of, as the text of an SVG file.
 
 use std::fmt::Write as _;
 
@@ -11,10 +11,10 @@ pub(crate) const EULER: &str = "#D55E00";
 pub(crate) const STABLE: &str = "#0072B2";
 /// Bluish green of Okabe and Ito.
 pub(crate) const GOAL: &str = "#009E73";
-/// Orange of Okabe and Ito, on paper.
-pub(crate) const OVERSHOOT: &str = "#FBEBCB";
+/// A region in which something else holds than outside: orange of Okabe and Ito, on paper.
+pub(crate) const REGION: &str = "#FBEBCB";
 /// Its edge.
-pub(crate) const OVERSHOOT_EDGE: &str = "#E69F00";
+pub(crate) const REGION_EDGE: &str = "#E69F00";
 pub(crate) const PAPER: &str = "#FFFFFF";
 pub(crate) const GRID: &str = "#E4E4E4";
 pub(crate) const INK: &str = "#444444";
@@ -129,6 +129,16 @@ impl Sheet {
         self.push(format_args!(
             "<text x=\"{x:.2}\" y=\"{y:.2}\" dy=\"0.35em\" text-anchor=\"{anchor}\" fill=\"{colour}\">{text}</text>"
         ));
+    }
+
+    /// A text on a rim of paper, which keeps it clear of the lines below.
+    pub(crate) fn text_over_lines(&mut self, at: Pixel, place: Place, colour: &str, text: &str) {
+        let ([x, y], anchor) = (at, place.anchor());
+        self.push(format_args!(
+            "<text x=\"{x:.2}\" y=\"{y:.2}\" dy=\"0.35em\" text-anchor=\"{anchor}\" stroke=\"{PAPER}\" \
+             stroke-width=\"5\" stroke-linejoin=\"round\">{text}</text>"
+        ));
+        self.text(at, place, colour, text);
     }
 
     /// A text in bold letters that begins there.

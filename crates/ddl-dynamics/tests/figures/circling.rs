@@ -1,32 +1,15 @@
 //! The picture of `docs/stability.md` is the one that the example draws, and shows what the rollouts do.
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-#[path = "../examples/circling/picture/mod.rs"]
+#[path = "../../examples/circling/picture/mod.rs"]
 mod picture;
 
+use super::svg::{PIXEL, circles};
 use ddl_dynamics::{Euler, Integrator, StableEuler, State};
 use nalgebra::{Matrix2, Vector2};
 use picture::{DISTANCES, NEAR, STEPS, Scene, TIME_STEP, WHOLE};
 
-/// Coordinates are written to a hundredth of a pixel.
-const PIXEL: f64 = 0.006;
-
 fn drawn() -> String {
     picture::draw(&Scene::new().unwrap()).unwrap()
-}
-
-/// Centres of the circles of a group (pixels).
-fn circles(svg: &str, group: &str) -> Vec<[f64; 2]> {
-    let start = svg.find(&format!("<g id=\"{group}\">")).unwrap();
-    let group = &svg[start..start + svg[start..].find("</g>").unwrap()];
-    let attribute = |element: &str, name: &str| -> f64 {
-        let value = &element[element.find(&format!(" {name}=\"")).unwrap() + name.len() + 3..];
-        value[..value.find('"').unwrap()].parse().unwrap()
-    };
-    let circles = group.split("<circle").skip(1);
-    circles
-        .map(|circle| ["cx", "cy"].map(|name| attribute(circle, name)))
-        .collect()
 }
 
 /// The walk worked out again with `P` multiplied out by hand: L = [1.1 0; 0.4 1.1].

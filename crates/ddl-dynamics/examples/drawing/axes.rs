@@ -1,4 +1,4 @@
-//! Metres to pixels: the plane at one scale for both axes, and distances in decades.
+//! Metres to pixels: the plane at one scale for both axes, and distances over steps, in metres or decades.
 
 use nalgebra::Vector2;
 
@@ -10,6 +10,7 @@ const FINE: Stroke = Stroke(GRID, 1.0, "none");
 const FRAME: Stroke = Stroke(INK, 1.2, "none");
 /// Space between a frame and its numbers, pixels.
 const GAP: f64 = 8.0;
+const MINUS: &str = "\u{2212}";
 
 /// A part of the plane.
 #[derive(Clone, Copy)]
@@ -33,6 +34,10 @@ impl Plane {
         ]
     }
 
+    pub(crate) fn pixels(&self, path: &[Vector2<f64>]) -> Vec<Pixel> {
+        path.iter().map(|p| self.pixel(p)).collect()
+    }
+
     /// Upper left and lower right corner, pixels.
     pub(crate) fn frame(&self) -> [Pixel; 2] {
         let [x, y] = self.origin;
@@ -54,16 +59,49 @@ impl Plane {
         for tick in ticks(x, x + self.size[0], step) {
             let [at, _] = self.pixel(&Vector2::new(tick, y));
             sheet.line(&[[at, top], [at, bottom]], FINE);
-            let number = format!("{tick:.digits$}");
+            let number = format!("{tick:.digits$}").replace('-', MINUS);
             sheet.text([at, bottom + 2.0 * GAP], Place::Centred, INK, &number);
         }
         for tick in ticks(y - self.size[1], y, step) {
             let [_, at] = self.pixel(&Vector2::new(x, tick));
             sheet.line(&[[left, at], [right, at]], FINE);
-            let number = format!("{tick:.digits$}").replace('-', "\u{2212}");
+            let number = format!("{tick:.digits$}").replace('-', MINUS);
             sheet.text([left - GAP, at], Place::LeftOf, INK, &number);
         }
         sheet.frame(self.frame(), FRAME);
+    }
+}
+
+/// Steps across; metres upwards from 0.
+#[derive(Clone, Copy)]
+pub(crate) struct Lengths {
+    pub(crate) frame: [Pixel; 2],
+    pub(crate) steps: usize,
+    /// The top of the frame, metres.
+    pub(crate) longest: f64,
+}
+
+impl Lengths {
+    /// Pixels below 0, so that a dot there is seen whole.
+    const FLOOR: f64 = 12.0;
+
+    pub(crate) fn pixel(&self, step: usize, length: f64) -> Pixel {
+        let [[_, top], [_, bottom]] = self.frame;
+        let zero = bottom - Self::FLOOR;
+        let y = zero - (zero - top) * length / self.longest;
+        [across(self.frame, self.steps, step), y]
+    }
+
+    pub(crate) fn draw(&self, sheet: &mut Sheet) {
+        let [[left, _], [right, _]] = self.frame;
+        for length in ticks(0.0, self.longest, 1.0) {
+            let [_, at] = self.pixel(0, length);
+            sheet.line(&[[left, at], [right, at]], FINE);
+            let number = format!("{length} m");
+            sheet.text([left - GAP, at], Place::LeftOf, INK, &number);
+        }
+        number_steps(sheet, self.frame, self.steps);
+        sheet.frame(self.frame, FRAME);
     }
 }
 
@@ -85,8 +123,8 @@ impl Decades {
     }
 
     pub(crate) fn pixel(&self, step: usize, distance: f64) -> Pixel {
-        let [[left, _], [right, bottom]] = self.frame;
-        let x = left + (right - left) * (step as f64 + 0.5) / (self.steps as f64 + 1.0);
+        let [_, [_, bottom]] = self.frame;
+        let x = across(self.frame, self.steps, step);
         let above = |decades: f64| bottom - self.height() * decades;
         if distance > 0.0 {
             [
@@ -99,7 +137,7 @@ impl Decades {
     }
 
     pub(crate) fn draw(&self, sheet: &mut Sheet) {
-        let [[left, top], [right, bottom]] = self.frame;
+        let [[left, _], [right, _]] = self.frame;
         let [high, low] = self.exponents;
         for exponent in (low..=high).filter(|exponent| exponent % 3 == 0) {
             let [_, at] = self.pixel(0, 10_f64.powi(exponent));
@@ -114,13 +152,24 @@ impl Decades {
         let [_, floor] = self.pixel(0, 0.0);
         sheet.line(&[[left, floor], [right, floor]], FINE);
         sheet.text([left - GAP, floor], Place::LeftOf, INK, "0");
-        for step in (0..=self.steps).step_by(5) {
-            let [at, _] = self.pixel(step, 1.0);
-            sheet.line(&[[at, top], [at, bottom]], FINE);
-            let number = step.to_string();
-            sheet.text([at, bottom + 2.0 * GAP], Place::Centred, INK, &number);
-        }
+        number_steps(sheet, self.frame, self.steps);
         sheet.frame(self.frame, FRAME);
+    }
+}
+
+/// Where a step of `steps` lies, with half a step left free on both sides.
+fn across([[left, _], [right, _]]: [Pixel; 2], steps: usize, step: usize) -> f64 {
+    left + (right - left) * (step as f64 + 0.5) / (steps as f64 + 1.0)
+}
+
+/// Every fifth step: its line and its number.
+fn number_steps(sheet: &mut Sheet, frame: [Pixel; 2], steps: usize) {
+    let [[_, top], [_, bottom]] = frame;
+    for step in (0..=steps).step_by(5) {
+        let at = across(frame, steps, step);
+        sheet.line(&[[at, top], [at, bottom]], FINE);
+        let number = step.to_string();
+        sheet.text([at, bottom + 2.0 * GAP], Place::Centred, INK, &number);
     }
 }
 
