@@ -55,11 +55,21 @@ fn fewer_come_near_and_all_still_arrive() {
 /// Somebody alone in the window walks as before, to the last bit.
 #[test]
 fn nobody_near_changes_nothing() {
-    let windows: Vec<Window> = crowd::windows(40, 40)
-        .into_iter()
-        .filter(|window| window.len() == 1)
+    let alone_in = |window: &Window| {
+        let track = window.track(0).to_vec();
+        let id = vec![window.pedestrians()[0]];
+        Window::new(
+            window.recording(),
+            window.start_frame(),
+            window.frame_step(),
+            id,
+            vec![track],
+        )
+    };
+    let windows: Vec<Window> = crowd::windows(6, 12)
+        .iter()
+        .map(|window| alone_in(window).unwrap())
         .collect();
-    assert!(!windows.is_empty());
     let alone = tiny_model::of(Variant::Full).model;
     let free = alone.forecast_all(&windows).unwrap();
     let careful = alone.keeping_clear(Clearance::new(0.5).unwrap()).unwrap();
@@ -84,7 +94,7 @@ fn the_program_keeps_clear_and_says_so() {
     assert!(clear.lines().skip(1).all(|row| row.ends_with(",true")));
 
     let evaluate = "evaluate --model . --threads 1 --test-walkers 40 --protocol fair";
-    program::run(folder.path(), &format!("{evaluate} --keep-clear 0.4")).succeeds();
+    let _ = program::run(folder.path(), &format!("{evaluate} --keep-clear 0.4")).succeeds();
     let report = Report::load(&folder.path().join("report.json")).unwrap();
     let row = report
         .rows()
@@ -94,7 +104,7 @@ fn the_program_keeps_clear_and_says_so() {
     let certified = row.scores.stability.unwrap().certified.unwrap();
     assert!((certified - 1.0).abs() < 1e-15);
     // Without the option it is another evaluation, not the one that is there.
-    program::run(folder.path(), evaluate).succeeds();
+    let _ = program::run(folder.path(), evaluate).succeeds();
     let report = Report::load(&folder.path().join("report.json")).unwrap();
     let names = |row: &ddl::eval::ResultRow| row.conditions.forecaster.contains("keeping");
     assert!(!report.rows().iter().any(names));
@@ -105,15 +115,21 @@ fn what_cannot_keep_clear_is_refused() {
     let folder = tiny_model::folder(Variant::Star);
     let rows = own_tracks::three_people(8);
     std::fs::write(folder.path().join("tracks.csv"), own_tracks::csv(&rows)).unwrap();
-    let fails = |distance: &str| {
+    let run = |distance: &str| {
         let line = format!("forecast --model . tracks.csv --threads 1 --keep-clear={distance}");
-        program::run(folder.path(), &line).fails()
+        program::run(folder.path(), &line)
     };
-    assert!(fails("0.4").contains("`star` has no flow"));
-    for distance in ["0", "-1", "inf"] {
-        assert!(fails(distance).contains("is not allowed"), "{distance}");
+    assert!(run("0.4").fails().contains("`star` has no flow"));
+    for (distance, problem) in [
+        ("0", "is not allowed"),
+        ("-1", "is not allowed"),
+        ("inf", "is not allowed"),
+        ("wide", "must be a number"),
+    ] {
+        let finished = run(distance);
+        assert_eq!(finished.code, Some(2));
+        assert!(finished.stderr.contains(problem), "{finished:?}");
     }
-    assert!(fails("wide").contains("must be a number"));
     let error = tiny_model::of(Variant::NoDynamics)
         .model
         .keeping_clear(Clearance::new(0.4).unwrap())

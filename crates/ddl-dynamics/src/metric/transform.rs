@@ -1,10 +1,11 @@
 //! Metrics made from others: seen through a linear map, or slowed along one direction.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{SMatrix, SVector, Vector2};
 
 use super::CholeskyMetric;
 use crate::{
     error::{DynamicsError, ensure_finite},
+    polar::polar,
     real::Real,
 };
 
@@ -90,7 +91,7 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
             return Err(DynamicsError::InvalidShare(share.as_f64()));
         }
         ensure_finite("direction", direction)?;
-        let (_, n) = crate::polar::polar(direction);
+        let (_, n) = polar(direction);
         if n == SVector::<T, D>::zeros() {
             return Err(DynamicsError::NoDirection);
         }
@@ -138,12 +139,31 @@ fn lower_triangular<T: Real, const D: usize>(
     left
 }
 
-/// Cosine and sine of the rotation that turns `(a, b)` onto the first axis.
+/// Cosine and sine of the rotation that turns `(a, b)` onto the first axis; also where both are subnormal.
 fn rotation<T: Real>(a: T, b: T) -> (T, T) {
-    let length = a.hypot(b);
+    let (length, direction) = polar(&Vector2::new(a, b));
     if length.is_zero() {
         (T::one(), T::zero())
     } else {
-        (a / length, b / length)
+        (direction.x, direction.y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Matrix2;
+
+    use super::*;
+
+    #[test]
+    fn a_rotation_by_subnormal_numbers_is_a_rotation() {
+        // A row of a few units of the smallest number there is: their hypotenuse has hardly a digit.
+        let tiny = f64::from_bits(3);
+        let left = Matrix2::new(tiny, tiny, 3.0, 4.0);
+        let right = Matrix2::new(f64::from_bits(65), 0.0, 12.0, 84.0);
+        let factor = lower_triangular(left, right);
+        let expected = 9.0 + 16.0 + 144.0 + 7056.0;
+        let second = factor.row(1).norm_squared();
+        assert!((second / expected - 1.0).abs() < 1e-14, "{second}");
     }
 }
