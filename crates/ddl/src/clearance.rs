@@ -21,8 +21,9 @@ use serde::{Deserialize, Serialize};
 pub struct Clearance(f64);
 
 impl Clearance {
-    /// Within this distance of another's disc walkers mind it (metres): what two of them cover in a step.
-    pub const MARGIN: f64 = 1.0;
+    /// Within this distance of another's disc walkers mind it (metres). Chosen on validation recordings,
+    /// see docs/stability.md.
+    pub const MARGIN: f64 = 0.4;
 
     /// Keep `distance` metres from centre to centre; two walkers touch at 0.4 m.
     ///
