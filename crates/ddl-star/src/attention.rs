@@ -2,8 +2,9 @@
 //! every walker over its neighbours, and the newest token over all earlier ones.
 
 use crate::dropout::dropout;
-use crate::layers::{Linear, Mode};
+use crate::layers::Linear;
 use crate::parameters::Initializer;
+use crate::pass::Pass;
 use tch::Tensor;
 
 /// Multi-head attention with one joint projection for query, key and value.
@@ -75,7 +76,7 @@ impl MultiHeadAttention {
     /// # Shapes
     /// `x` `[B, P, width]`; `mask` `[1 or B, 1, P, P]`, 0 where seen, -inf where not
     /// -> `[B, P, width]`.
-    pub(crate) fn among_walkers(&self, x: &Tensor, mask: &Tensor, mode: Mode) -> Tensor {
+    pub(crate) fn among_walkers(&self, x: &Tensor, mask: &Tensor, pass: &Pass) -> Tensor {
         let (batch, walkers) = (x.size()[0], x.size()[1]);
         let qkv = x
             .linear(&self.in_proj_weight, Some(&self.in_proj_bias))
@@ -83,7 +84,7 @@ impl MultiHeadAttention {
             .permute([2, 0, 3, 1, 4]);
         let (query, key, value) = (qkv.get(0), qkv.get(1), qkv.get(2));
         let scores = (query * self.scale()).matmul(&key.transpose(-1, -2)) + mask;
-        let weights = dropout(scores.softmax(-1, scores.kind()), self.dropout, mode);
+        let weights = dropout(scores.softmax(-1, scores.kind()), self.dropout, pass.mode());
         let mixed = weights
             .matmul(&value)
             .transpose(1, 2)
@@ -122,7 +123,7 @@ impl MultiHeadAttention {
     ///
     /// # Shapes
     /// `token` `[B, P, width]`.
-    pub(crate) fn remember(&self, token: &Tensor) -> KeyValue {
+    pub(crate) fn remember(&self, token: &Tensor, pass: &Pass) -> KeyValue {
         let (batch, walkers) = (token.size()[0], token.size()[1]);
         let rows = 2 * self.width;
         let key_value = token
@@ -131,6 +132,7 @@ impl MultiHeadAttention {
                 Some(&self.in_proj_bias.narrow(0, self.width, rows)),
             )
             .view([batch, walkers, 2, self.heads, self.width / self.heads]);
+        let key_value = pass.junction(&key_value);
         KeyValue {
             key: key_value.select(2, 0),
             value: key_value.select(2, 1),

@@ -4,12 +4,15 @@
 use crate::attention::{KeyValue, MultiHeadAttention};
 use crate::config::StarConfig;
 use crate::dropout::dropout;
-use crate::layers::{LayerNorm, Linear, Mode};
+use crate::kernel::{FeedForward, Gradients};
+use crate::layers::{LayerNorm, Linear};
 use crate::parameters::Initializer;
+use crate::pass::Pass;
 use tch::Tensor;
 
 #[derive(Debug)]
 pub(crate) struct EncoderLayer {
+    name: String,
     attention: MultiHeadAttention,
     linear1: Linear,
     linear2: Linear,
@@ -28,6 +31,7 @@ impl EncoderLayer {
         let (width, hidden) = (config.model_width, config.feed_forward_width);
         let attention = format!("{name}.self_attn");
         Self {
+            name: name.to_owned(),
             attention: MultiHeadAttention::new(init, &attention, width, config.heads, dropout),
             linear1: Linear::new(init, &format!("{name}.linear1"), width, hidden),
             linear2: Linear::new(init, &format!("{name}.linear2"), hidden, width),
@@ -38,28 +42,86 @@ impl EncoderLayer {
     }
 
     /// Every walker looks at its neighbours. Shapes as in [`MultiHeadAttention::among_walkers`].
-    pub(crate) fn among_walkers(&self, x: &Tensor, mask: &Tensor, mode: Mode) -> Tensor {
-        let attended = self.attention.among_walkers(x, mask, mode);
-        self.after_attention(x, attended, mode)
+    pub(crate) fn among_walkers(&self, x: &Tensor, mask: &Tensor, pass: &Pass) -> Tensor {
+        let x = pass.junction(x);
+        let attended = self.attention.among_walkers(&x, mask, pass);
+        self.after_attention(&x, attended, pass)
     }
 
     /// The newest token looks at the remembered ones and itself.
     /// Shapes as in [`MultiHeadAttention::over_memory`].
-    pub(crate) fn over_memory(&self, newest: &Tensor, memory: &[KeyValue], mode: Mode) -> Tensor {
-        let attended = self.attention.over_memory(newest, memory);
-        self.after_attention(newest, attended, mode)
+    pub(crate) fn over_memory(&self, newest: &Tensor, memory: &[KeyValue], pass: &Pass) -> Tensor {
+        let newest = pass.junction(newest);
+        let attended = self.attention.over_memory(&newest, memory);
+        self.after_attention(&newest, attended, pass)
     }
 
-    pub(crate) fn remember(&self, token: &Tensor) -> KeyValue {
-        self.attention.remember(token)
+    pub(crate) fn remember(&self, token: &Tensor, pass: &Pass) -> KeyValue {
+        self.attention.remember(token, pass)
     }
 
-    fn after_attention(&self, x: &Tensor, attended: Tensor, mode: Mode) -> Tensor {
-        let x = self
-            .norm1
-            .forward(&(x + dropout(attended, self.dropout, mode)));
-        let hidden = dropout(self.linear1.forward(&x).relu(), self.dropout, mode);
-        let fed = dropout(self.linear2.forward(&hidden), self.dropout, mode);
+    fn after_attention(&self, x: &Tensor, attended: Tensor, pass: &Pass) -> Tensor {
+        let attended = dropout(attended, self.dropout, pass.mode());
+        let x = pass.junction(&self.norm1.forward(&(x + attended)));
+        let fed = if self.fits_the_kernel() && pass.kernels_may_take(&x) {
+            self.feed_forward_by_kernel(&x, pass)
+        } else {
+            let hidden = self.linear1.forward(&x).relu();
+            let hidden = dropout(hidden, self.dropout, pass.mode());
+            self.linear2.forward(&hidden)
+        };
+        let fed = dropout(fed, self.dropout, pass.mode());
         self.norm2.forward(&(x + fed))
     }
+
+    fn fits_the_kernel(&self) -> bool {
+        let size = self.linear1.weight.size();
+        size[0] % 16 == 0 && size[1] % 16 == 0
+    }
+
+    /// The feed-forward block by [`FeedForward`], whose hidden numbers never leave the cache.
+    fn feed_forward_by_kernel(&self, x: &Tensor, pass: &Pass) -> Tensor {
+        let (hidden, width) = self.linear1.weight.size2().unwrap_or_default();
+        let (hidden, width) = (hidden as usize, width as usize);
+        let kernel = pass.packed(&self.name, || {
+            FeedForward::pack(
+                &numbers(&self.linear1.weight),
+                &numbers(&self.linear1.bias),
+                &numbers(&self.linear2.weight),
+                &numbers(&self.linear2.bias),
+                width,
+                hidden,
+            )
+        });
+        let dropout = pass.dropout(self.dropout);
+        let input = numbers(x);
+        let mut output = vec![0.0; input.len()];
+        kernel.forward(&input, dropout, &mut output);
+        let shape = x.size();
+        let (name, gradients) = (self.name.clone(), pass.weight_gradients());
+        let output = Tensor::from_slice(&output).reshape(&shape);
+        pass.made_of(&[x], output, move |gradient| {
+            let mut of_input = vec![0.0; input.len()];
+            let mut gradients = gradients.borrow_mut();
+            let of_weights = gradients
+                .entry(name)
+                .or_insert_with(|| Gradients::zeros(width, hidden));
+            kernel.backward(
+                &input,
+                &numbers(gradient),
+                dropout,
+                &mut of_input,
+                of_weights,
+            );
+            Ok(vec![Tensor::from_slice(&of_input).reshape(&shape)])
+        })
+    }
+}
+
+/// The numbers of a tensor, row by row.
+fn numbers(tensor: &Tensor) -> Vec<f32> {
+    let mut numbers = vec![0.0; tensor.numel()];
+    let plain = tensor.detach().contiguous();
+    plain.copy_data(&mut numbers, tensor.numel());
+    numbers
 }

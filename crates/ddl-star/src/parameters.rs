@@ -1,7 +1,9 @@
 //! The learned tensors, by name and in order, and their seeded initial values.
 
+use crate::kernel::Gradients;
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
+use std::collections::BTreeMap;
 use tch::{Device, Kind, Tensor};
 
 /// The learned tensors of a network, in the order in which its layers were made.
@@ -49,10 +51,38 @@ impl Parameters {
         &self.flat
     }
 
-    /// Gradient of a scalar with respect to every tensor, in order.
-    pub(crate) fn gradients(&self, loss: &Tensor) -> Result<Vec<Tensor>, tch::TchError> {
-        let tensors: Vec<&Tensor> = self.entries.iter().map(|(_, tensor)| tensor).collect();
-        Tensor::f_run_backward(&[loss], &tensors, false, false)
+    /// Forgets the gradients of an earlier pass.
+    pub(crate) fn zero_gradients(&self) {
+        for (_, tensor) in &self.entries {
+            tensor.shallow_clone().zero_grad();
+        }
+    }
+
+    /// The gradients that libtorch has added up, and those of kernels, as one vector like [`flat`](Self::flat).
+    pub(crate) fn flat_gradient(
+        &self,
+        kernels: &BTreeMap<String, Gradients>,
+    ) -> Result<Tensor, tch::TchError> {
+        let rows = self
+            .entries
+            .iter()
+            .map(|(name, tensor)| {
+                let gradient = tensor.f_grad()?;
+                let gradient = if gradient.defined() {
+                    gradient.f_reshape([-1])?
+                } else {
+                    tensor.f_zeros_like()?.f_reshape([-1])?
+                };
+                match kernels
+                    .iter()
+                    .find_map(|(layer, of)| of.named(name.strip_prefix(layer)?))
+                {
+                    Some(kernel) => gradient.f_add(&Tensor::from_slice(kernel)),
+                    None => Ok(gradient),
+                }
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        Tensor::f_cat(&rows, 0)
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::batch::SceneBatch;
 use crate::flow::{FlowConstants, StepRule, natural_gradient_step};
 use crate::layers::Mode;
+use crate::pass::Pass;
 use crate::star::{GraphMemory, NoiseInput, StarNetwork};
 use ddl_data::OBSERVED;
 use tch::{Kind, Tensor};
@@ -31,11 +32,23 @@ impl StarNetwork {
         noise: &NoiseInput,
         mode: Mode,
     ) -> Tensor {
+        self.teacher_forced_in(batch, goals, noise, &Pass::plain(mode))
+    }
+
+    /// [`teacher_forced`](Self::teacher_forced) in a pass of its own.
+    pub(crate) fn teacher_forced_in(
+        &self,
+        batch: &SceneBatch,
+        goals: &Tensor,
+        noise: &NoiseInput,
+        pass: &Pass,
+    ) -> Tensor {
         let steps = batch.positions.size()[0] - 1;
         let positions = batch.positions.narrow(0, 0, steps);
         let mask = batch.neighbour_mask.narrow(0, 0, steps);
         // The frames are known, so all of them pass the first spatial encoder at once.
-        let spatial = self.spatial_tokens(&centre(batch, &positions), &mask, mode);
+        let spatial = self.spatial_tokens(&centre(batch, &positions), &mask, pass);
+        let spatial = pass.junction(&spatial);
         let reference = self.reference(batch, goals);
         let relative = &positions - &reference;
         let mut memory = GraphMemory::default();
@@ -47,7 +60,7 @@ impl StarNetwork {
                     &frame(&relative),
                     &frame(&spatial),
                     &frame(&mask),
-                    mode,
+                    pass,
                 )
             })
             .collect();
@@ -71,7 +84,7 @@ impl StarNetwork {
         horizon: usize,
         rule: StepRule,
     ) -> Rollout {
-        let mode = Mode::Evaluate;
+        let pass = &Pass::plain(Mode::Evaluate);
         let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
         let last = OBSERVED as i64 - 1;
         let hypotheses = goals.size()[0].max(noise.count());
@@ -79,7 +92,7 @@ impl StarNetwork {
         let spatial = self.spatial_tokens(
             &centre(batch, &observed),
             &batch.neighbour_mask.narrow(0, 0, last + 1),
-            mode,
+            pass,
         );
         // The observed frames differ between hypotheses only through the goal they are shifted by:
         // `relative` has one batch entry a distinct reference.
@@ -92,7 +105,7 @@ impl StarNetwork {
                 &relative,
                 &spatial.narrow(0, t, 1),
                 &mask,
-                mode,
+                pass,
             )
         };
         let mut token = observe(0);
@@ -120,9 +133,9 @@ impl StarNetwork {
             if t + 1 < OBSERVED + horizon {
                 sum = &sum + &position;
                 let centred = &position - batch.scene_mean.matmul(&sum) / (t + 1) as f64;
-                let spatial = self.spatial_tokens(&centred, &mask, mode);
+                let spatial = self.spatial_tokens(&centred, &mask, pass);
                 let relative = &position - &reference;
-                token = self.step(&mut memory, &relative, &spatial, &mask, mode);
+                token = self.step(&mut memory, &relative, &spatial, &mask, pass);
             }
         }
         let shaped = self.config().variant.dynamics();

@@ -2,8 +2,8 @@
 
 use crate::config::StarConfig;
 use crate::encoder_layer::EncoderLayer;
-use crate::layers::Mode;
 use crate::parameters::Initializer;
+use crate::pass::Pass;
 use tch::Tensor;
 
 #[derive(Debug)]
@@ -22,9 +22,9 @@ impl SpatialEncoder {
 
     /// # Shapes
     /// `x` `[B, P, width]`; `mask` `[1 or B, 1, P, P]` -> `[B, P, width]`.
-    pub(crate) fn forward(&self, x: &Tensor, mask: &Tensor, mode: Mode) -> Tensor {
+    pub(crate) fn forward(&self, x: &Tensor, mask: &Tensor, pass: &Pass) -> Tensor {
         self.layers.iter().fold(x.shallow_clone(), |x, layer| {
-            layer.among_walkers(&x, mask, mode)
+            layer.among_walkers(&x, mask, pass)
         })
     }
 }

@@ -8,8 +8,9 @@
 use crate::StarError;
 use crate::config::StarConfig;
 use crate::device::ComputeDevice;
-use crate::layers::{Linear, Mode};
+use crate::layers::Linear;
 use crate::parameters::{Initializer, Parameters};
+use crate::pass::Pass;
 use crate::seed::{Stage, stream};
 use crate::spatial::SpatialEncoder;
 use crate::temporal::{TemporalEncoder, TemporalMemory};
@@ -125,9 +126,9 @@ impl StarNetwork {
     /// # Shapes
     /// `centred` `[F, P, 2]`, positions relative to the scene's mean so far; `mask`
     /// `[1 or F, 1, P, P]` -> `[F, P, width]`.
-    pub(crate) fn spatial_tokens(&self, centred: &Tensor, mask: &Tensor, mode: Mode) -> Tensor {
+    pub(crate) fn spatial_tokens(&self, centred: &Tensor, mask: &Tensor, pass: &Pass) -> Tensor {
         let embedded = self.spatial_embedding.forward(centred).relu();
-        self.spatial_encoder_1.forward(&embedded, mask, mode)
+        self.spatial_encoder_1.forward(&embedded, mask, pass)
     }
 
     /// One frame: the walkers' new tokens, which are also remembered.
@@ -141,22 +142,27 @@ impl StarNetwork {
         relative: &Tensor,
         spatial: &Tensor,
         mask: &Tensor,
-        mode: Mode,
+        pass: &Pass,
     ) -> Tensor {
         let newest = self.temporal_embedding.forward(relative).relu();
         let temporal = self
             .temporal_encoder_1
-            .forward(&newest, &memory.first, mode);
+            .forward(&newest, &memory.first, pass);
         let spatial = spatial.expand_as(&temporal);
         let fused = self
             .fusion
             .forward(&Tensor::cat(&[&temporal, &spatial], -1));
-        let among = self.spatial_encoder_2.forward(&fused, mask, mode);
+        let among = self.spatial_encoder_2.forward(&fused, mask, pass);
         let token = self
             .temporal_encoder_2
-            .forward(&among, &memory.second, mode);
-        memory.first.push(self.temporal_encoder_1.remember(&token));
-        memory.second.push(self.temporal_encoder_2.remember(&token));
+            .forward(&among, &memory.second, pass);
+        let token = pass.junction(&token);
+        memory
+            .first
+            .push(self.temporal_encoder_1.remember(&token, pass));
+        memory
+            .second
+            .push(self.temporal_encoder_2.remember(&token, pass));
         token
     }
 

@@ -6,8 +6,8 @@
 use crate::attention::KeyValue;
 use crate::config::StarConfig;
 use crate::encoder_layer::EncoderLayer;
-use crate::layers::Mode;
 use crate::parameters::Initializer;
+use crate::pass::Pass;
 use tch::Tensor;
 
 #[derive(Debug)]
@@ -47,11 +47,11 @@ impl TemporalEncoder {
 
     /// # Shapes
     /// `newest` `[B, P, width]` -> the same.
-    pub(crate) fn forward(&self, newest: &Tensor, memory: &TemporalMemory, mode: Mode) -> Tensor {
-        self.layer.over_memory(newest, &memory.tokens, mode)
+    pub(crate) fn forward(&self, newest: &Tensor, memory: &TemporalMemory, pass: &Pass) -> Tensor {
+        self.layer.over_memory(newest, &memory.tokens, pass)
     }
 
-    pub(crate) fn remember(&self, token: &Tensor) -> KeyValue {
-        self.layer.remember(token)
+    pub(crate) fn remember(&self, token: &Tensor, pass: &Pass) -> KeyValue {
+        self.layer.remember(token, pass)
     }
 }

@@ -6,6 +6,7 @@ use crate::checkpoint::{self, Progress};
 use crate::layers::Mode;
 use crate::loss::mean_squared_distance;
 use crate::optimizer::Adam;
+use crate::pass::Pass;
 use crate::schedule::Schedule;
 use crate::seed::{GENERATOR, Stage, stream};
 use crate::star::{NoiseInput, StarNetwork};
@@ -140,20 +141,16 @@ impl Trainer {
         let started = Instant::now();
         let step = self.progress.steps;
         let batch = self.batch(step)?;
-        let loss = {
+        let (loss, pass) = {
             // Held from seeding to the last draw of dropout.
             let _generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
-            let noise = self.draw(step);
-            self.loss(&batch, &noise)?
+            let (noise, seed) = self.draw(step);
+            let pass = Pass::taped(Mode::Train, seed);
+            (self.loss(&batch, &noise, &pass)?, pass)
         };
         let value = loss.double_value(&[]);
         self.require_finite("loss", value)?;
-        let gradients = self.network.parameters().gradients(&loss)?;
-        let rows: Vec<Tensor> = gradients
-            .iter()
-            .map(|gradient| gradient.reshape([-1]))
-            .collect();
-        let gradient = Tensor::cat(&rows, 0);
+        let gradient = pass.gradient(&loss, self.network.parameters())?;
         let norm = gradient.norm();
         self.require_finite("gradient norm", norm.double_value(&[]))?;
         let (_, total) = self.steps();
@@ -173,11 +170,14 @@ impl Trainer {
     }
 
     /// Loss of a batch with the true ends as goals (the goal estimator is never used in training).
-    fn loss(&self, batch: &SceneBatch, noise: &NoiseInput) -> Result<Tensor, StarError> {
+    fn loss(
+        &self,
+        batch: &SceneBatch,
+        noise: &NoiseInput,
+        pass: &Pass,
+    ) -> Result<Tensor, StarError> {
         let goals = batch.positions().f_get(WINDOW as i64 - 1)?;
-        let forecast = self
-            .network
-            .teacher_forced(batch, &goals, noise, Mode::Train);
+        let forecast = self.network.teacher_forced_in(batch, &goals, noise, pass);
         let truth = batch.positions().f_narrow(0, 1, WINDOW as i64 - 1)?;
         Ok(mean_squared_distance(&forecast, &truth))
     }
@@ -202,7 +202,7 @@ impl Trainer {
     }
 
     /// The step's noise vector, shared by all walkers and frames; also seeds its dropout.
-    fn draw(&self, step: u64) -> NoiseInput {
+    fn draw(&self, step: u64) -> (NoiseInput, u64) {
         let mut rng = stream(self.config.seed, Stage::Step, step);
         tch::manual_seed((rng.next_u64() >> 1).cast_signed());
         let width = self.network.config().noise_width as usize;
@@ -211,7 +211,7 @@ impl Trainer {
             .unsqueeze(0)
             .to_kind(self.network.kind())
             .to_device(self.network.device());
-        NoiseInput::Draws(noise)
+        (NoiseInput::Draws(noise), rng.next_u64())
     }
 
     fn require_finite(&self, quantity: &'static str, value: f64) -> Result<(), StarError> {

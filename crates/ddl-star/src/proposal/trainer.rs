@@ -8,7 +8,9 @@ use super::loss::{LossWeights, winner_takes_all};
 use super::network::ProposalNetwork;
 use crate::StarError;
 use crate::device::OneThread;
+use crate::layers::Mode;
 use crate::optimizer::Adam;
+use crate::pass::Pass;
 use crate::seed::{GENERATOR, Stage, stream};
 use crate::training_config::LearningRateSchedule;
 use rand::{Rng as _, RngExt as _};
@@ -144,9 +146,7 @@ impl ProposalTrainer {
         let proposals = self.network.forward(&views);
         let (loss, distance) = winner_takes_all(&proposals, &future, weights);
         let parameters = self.network.parameters();
-        let gradients = parameters.gradients(&loss)?;
-        let flat: Vec<Tensor> = gradients.iter().map(|g| g.reshape([-1])).collect();
-        let gradient = Tensor::cat(&flat, 0);
+        let gradient = Pass::plain(Mode::Train).gradient(&loss, parameters)?;
         let norm = gradient.norm();
         let (distance, norm_value) = (distance.double_value(&[]), norm.double_value(&[]));
         for (quantity, value) in [("loss", distance), ("gradient norm", norm_value)] {
