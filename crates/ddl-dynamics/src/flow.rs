@@ -56,7 +56,8 @@ pub trait Flow<T: Real, const D: usize> {
     }
 
     /// How long `velocity` (m/s) may be followed from `state` at most (seconds, positive); `None` where
-    /// the flow sets no limit.
+    /// the flow sets no limit. A flow with a [`chart`](Self::chart) is not asked by
+    /// [`StableEuler`](crate::StableEuler), whose steps are straight in the chart.
     fn longest_step(&self, state: &State<'_, T, D>, velocity: &SVector<T, D>) -> Option<T> {
         let _ = (state, velocity);
         None
