@@ -24,6 +24,14 @@ pub use violation::Violation;
 /// rollouts of other programs. [`holds`](Self::holds) gives the verdict. It does not check that the
 /// positions follow from the metrics; a limited step does not, by design.
 ///
+/// It does not say that the walker arrived ([`final_potential`](Self::final_potential) does), nor that
+/// obstacles were kept clear of. With a [chart](Flow::chart) goal, potentials, eigenvalues and angles are
+/// those of the chart, not of space.
+///
+/// To write it as JSON and read it back bit by bit, turn on the feature `float_roundtrip` of `serde_json`:
+/// without it numbers come back off by a rounding, which can change the strict verdict on a walker who
+/// hardly moves.
+///
 /// `Phi` is the distance to the goal throughout, also for a quadratic attractor, whose potential falls
 /// exactly when the distance does.
 ///
