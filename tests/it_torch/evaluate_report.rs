@@ -153,7 +153,7 @@ fn check_certificates(protocol: Protocol, rows: &[&ResultRow]) {
     };
     let model = stability("DDL").unwrap();
     let share = model.certified.unwrap();
-    let plain = stability("DDL, plain Euler steps");
+    let plain = stability("DDL with plain Euler steps");
     assert_eq!(plain.is_some(), protocol == Protocol::Fair);
     if protocol.shows_future() {
         assert!(share < 1.0, "{protocol}: {model:?}");
@@ -241,7 +241,7 @@ fn a_number_goes_from_the_recordings_to_the_page() {
         "`published`",
         "0123abc",
         "certified %",
-        "| DDL, plain Euler steps ",
+        "| DDL with plain Euler steps ",
         warning,
     ] {
         assert!(markdown.contains(text), "{text} is not on the page");

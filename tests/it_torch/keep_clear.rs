@@ -99,14 +99,14 @@ fn the_program_keeps_clear_and_says_so() {
     let row = report
         .rows()
         .iter()
-        .find(|row| row.conditions.forecaster == "DDL, keeping 0.4 m from others")
+        .find(|row| row.conditions.forecaster == "DDL minding others within 0.4 m")
         .unwrap();
     let certified = row.scores.stability.unwrap().certified.unwrap();
     assert!((certified - 1.0).abs() < 1e-15);
     // Without the option it is another evaluation, not the one that is there.
     let _ = program::run(folder.path(), evaluate).succeeds();
     let report = Report::load(&folder.path().join("report.json")).unwrap();
-    let names = |row: &ddl::eval::ResultRow| row.conditions.forecaster.contains("keeping");
+    let names = |row: &ddl::eval::ResultRow| row.conditions.forecaster.contains("minding");
     assert!(!report.rows().iter().any(names));
 }
 

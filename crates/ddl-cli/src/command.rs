@@ -44,12 +44,17 @@ impl Machine {
 /// Whether walkers mind each other.
 #[derive(Debug, Args)]
 pub(crate) struct KeepClear {
-    /// Keep walkers so many metres from each other, from centre to centre, such as 0.4
+    /// Let walkers mind each other within so many metres, from centre to centre, such as 0.4
     ///
-    /// Each hypothesis is walked again among the others, who follow their most likely ones: near
-    /// somebody it slows down and slides along. The distance to the goal still falls at every step.
-    /// People who walk into each other all the same are not moved aside.
-    #[arg(long, value_name = "METRES", value_parser = clearance)]
+    /// Each hypothesis is walked again among the others, who go as they would most likely go alone:
+    /// near somebody it slows down and slides along. The distance to the goal still falls at every
+    /// step. The distance from each other is not guaranteed: both move, and nobody is moved aside.
+    #[arg(
+        long,
+        value_name = "METRES",
+        value_parser = clearance,
+        allow_negative_numbers = true
+    )]
     keep_clear: Option<Clearance>,
 }
 

@@ -162,7 +162,7 @@ pub enum DynamicsError {
 
     /// A path to be straightened runs back along itself, which no invertible map can straighten.
     #[error(
-        "the path turns back on itself {along} m after its start: straighten the parts before and after it, or round the turn"
+        "the path turns back on itself {along:.2} m after its start: straighten the parts before and after it, or round the turn"
     )]
     PathTurnsBack {
         /// Where, along the path (metres).

@@ -44,7 +44,8 @@ pub trait Flow<T: Real, const D: usize> {
     /// Whatever keeps the flow from giving a metric, see the implementation.
     fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError>;
 
-    /// The velocity of the walker at `state` (m/s); zero at the goal.
+    /// The velocity of the walker at `state` (m/s), zero at the goal: `-P grad Phi`, or what becomes of it in
+    /// space where there is a chart. It must agree with [`metric`](Self::metric): integrators use either.
     ///
     /// # Errors
     /// Those of [`metric`](Self::metric).
@@ -56,7 +57,8 @@ pub trait Flow<T: Real, const D: usize> {
     }
 
     /// How long `velocity` (m/s) may be followed from `state` at most (seconds, positive); `None` where
-    /// the flow sets no limit.
+    /// the flow sets no limit. A flow with a [`chart`](Self::chart) is not asked by
+    /// [`StableEuler`](crate::StableEuler), whose steps are straight in the chart.
     fn longest_step(&self, state: &State<'_, T, D>, velocity: &SVector<T, D>) -> Option<T> {
         let _ = (state, velocity);
         None

@@ -1,5 +1,6 @@
 //! Lyapunov certificates: the evidence that a rollout kept the guarantee.
 
+mod certified_step;
 mod violation;
 
 use nalgebra::SVector;
@@ -10,11 +11,11 @@ use crate::{
     error::{DynamicsError, ensure_finite, ensure_time_step},
     flow::Flow,
     metric::CholeskyMetric,
-    polar::polar,
     real::Real,
     state::State,
 };
 
+pub use certified_step::CertifiedStep;
 pub use violation::Violation;
 
 /// The evidence that a rollout went to its goal: for every step what the theory speaks about.
@@ -22,6 +23,14 @@ pub use violation::Violation;
 /// It is computed from the positions themselves, whatever integrator made them, so it also judges
 /// rollouts of other programs. [`holds`](Self::holds) gives the verdict. It does not check that the
 /// positions follow from the metrics; a limited step does not, by design.
+///
+/// It does not say that the walker arrived ([`final_potential`](Self::final_potential) does), nor that
+/// obstacles were kept clear of. With a [chart](Flow::chart) goal, potentials, eigenvalues and angles are
+/// those of the chart, not of space.
+///
+/// To write it as JSON and read it back bit by bit, turn on the feature `float_roundtrip` of `serde_json`:
+/// without it numbers come back off by a rounding, which can change the strict verdict on a walker who
+/// hardly moves.
 ///
 /// `Phi` is the distance to the goal throughout, also for a quadratic attractor, whose potential falls
 /// exactly when the distance does.
@@ -50,25 +59,6 @@ pub struct LyapunovCertificate<T> {
     time_step: T,
     steps: Vec<CertifiedStep<T>>,
     final_potential: T,
-}
-
-/// The evidence of one step, from position `k` to position `k + 1`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
-pub struct CertifiedStep<T> {
-    /// `Phi`: the distance to the goal at the start of the step (metres).
-    pub potential: T,
-    /// `d Phi / dt = -u^T P grad Phi` at the start of the step (m/s): `-u^T P u` where the attractor is
-    /// the distance; 0 at the goal.
-    pub rate: T,
-    /// The smallest eigenvalue of the step's metric (m/s).
-    pub min_eigenvalue: T,
-    /// `1 - dt / dt_max`, with `dt_max = -2 Phi (d Phi / dt) / |v|^2` the bound below which a plain
-    /// Euler step lowers `Phi`: `2 Phi u^T P u / |P u|^2` for a distance (no unit): positive when `dt` is below its bound, 1 when infinitely
-    /// far below. `None` at the goal, where every step is too long.
-    pub step_margin: Option<T>,
-    /// Angle between the move and the direction to the goal (radians, 0 to pi); 0 without a move.
-    pub angle: T,
 }
 
 impl<T: Real> LyapunovCertificate<T> {
@@ -240,81 +230,4 @@ fn ensure_measurable<T: Real, const D: usize>(
     } else {
         Err(DynamicsError::DistanceTooLarge)
     }
-}
-
-impl<T: Real> CertifiedStep<T> {
-    fn new<const D: usize>(
-        from: &SVector<T, D>,
-        to: &SVector<T, D>,
-        metric: &CholeskyMetric<T, D>,
-        attractor: &Attractor<T, D>,
-        dt: T,
-    ) -> Self {
-        let (potential, away) = attractor.distance_and_direction(from);
-        // grad Phi is as long as the velocity would be with P = I: 1, or |e| when quadratic.
-        let (slope, _) = polar(&attractor.gradient(from));
-        let descent = metric.quadratic_form(&away) * slope;
-        let speed = polar(&metric.apply(&away)).0 * slope;
-        // Divided twice: the square of the speed could leave the range of the numbers.
-        let bound = potential * (descent / speed) / speed * T::rounded(2.0);
-        let step_margin = Some(T::one() - dt / bound).filter(T::is_finite);
-        let (_, heading) = polar(&(to - from));
-        Self {
-            potential,
-            rate: -descent,
-            min_eigenvalue: metric.eigenvalue_range().smallest,
-            step_margin,
-            angle: angle_between(&heading, &-away),
-        }
-    }
-
-    fn check(&self, step: usize, after: T) -> Result<(), Violation> {
-        // Written so that a NaN, which no certificate made here holds, breaks the guarantee too.
-        let positive_definite = self.min_eigenvalue > T::zero();
-        if !positive_definite {
-            let min_eigenvalue = self.min_eigenvalue.as_f64();
-            return Err(Violation::NotPositiveDefinite {
-                step,
-                min_eigenvalue,
-            });
-        }
-        if self.potential.is_zero() {
-            return if after.is_zero() {
-                Ok(())
-            } else {
-                Err(Violation::LeftGoal {
-                    step,
-                    after: after.as_f64(),
-                })
-            };
-        }
-        let descending = self.rate < T::zero();
-        if !descending {
-            return Err(Violation::NotDescending {
-                step,
-                rate: self.rate.as_f64(),
-            });
-        }
-        if after < self.potential {
-            Ok(())
-        } else {
-            let (before, after) = (self.potential.as_f64(), after.as_f64());
-            Err(Violation::NotDecreasing {
-                step,
-                before,
-                after,
-            })
-        }
-    }
-}
-
-/// Angle between two unit vectors (radians); 0 when one of them is the zero vector.
-///
-/// Kahan's form, accurate for small and for straight angles, where the arc cosine is not.
-fn angle_between<T: Real, const D: usize>(a: &SVector<T, D>, b: &SVector<T, D>) -> T {
-    let zero = SVector::<T, D>::zeros();
-    if *a == zero || *b == zero {
-        return T::zero();
-    }
-    (a - b).norm().atan2((a + b).norm()) * T::rounded(2.0)
 }

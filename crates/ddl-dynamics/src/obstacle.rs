@@ -45,10 +45,17 @@ impl<T: Real, const D: usize> Ball<T, D> {
     }
 
     /// The distance from the surface (metres), negative inside, and the unit vector from the centre to
-    /// `position`, 0 at the centre.
+    /// `position`, 0 at the centre. A distance too large for `T` is infinite.
+    #[must_use]
     pub fn gap_and_normal(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
         let (distance, normal) = polar(&(position - self.centre));
-        (distance - self.radius, normal)
+        if distance.is_finite() {
+            return (distance - self.radius, normal);
+        }
+        // The offset of two finite points can overflow; half of it cannot.
+        let half = T::rounded(0.5);
+        let (half_gap, normal) = polar(&(position * half - self.centre * half));
+        (half_gap + half_gap - self.radius, normal)
     }
 }
 

@@ -14,7 +14,9 @@ use std::{
     hint::black_box,
 };
 
-use ddl_dynamics::{Euler, Integrator, Real, StableEuler, rollout, rollout_into};
+use ddl_dynamics::{
+    AvoidingFlow, Ball, Euler, Flow, Integrator, Real, StableEuler, rollout, rollout_into,
+};
 use hypotheses::{Hypothesis, STEPS, TIME_STEP, drawn};
 use nalgebra::SVector;
 
@@ -87,6 +89,28 @@ fn euler_in_the_plane() {
 fn both_in_space() {
     allocates_nothing::<f64, 3>(&StableEuler);
     allocates_nothing::<f64, 3>(&Euler);
+}
+
+/// Among obstacles, several of them near at once.
+#[test]
+fn around_obstacles() {
+    let hypotheses: Vec<Hypothesis<f64, 2>> = drawn(300, 7);
+    let mut positions = [SVector::<f64, 2>::zeros(); 41];
+    for Hypothesis { flow, start } in &hypotheses {
+        let goal = flow.attractor().goal();
+        let ball = |along: f64, aside: f64| {
+            let way = goal - start;
+            let beside = SVector::<f64, 2>::new(-way.y, way.x);
+            Ball::new(start + way * along + beside * aside, 0.3).unwrap()
+        };
+        let balls = [ball(0.4, 0.1), ball(0.5, -0.1), ball(0.7, 0.05)];
+        let flow = AvoidingFlow::new(flow.clone(), balls, 1.0).unwrap();
+        let made = allocations(|| {
+            rollout_into(&flow, &StableEuler, *start, TIME_STEP, &mut positions).unwrap();
+            black_box(&positions);
+        });
+        assert_eq!(made, 0);
+    }
 }
 
 /// The counter counts: `rollout` makes one vector of positions, and nothing else.

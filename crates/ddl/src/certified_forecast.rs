@@ -167,10 +167,10 @@ impl Walked<'_> {
         let likeliest: Vec<[Position; HORIZON]> = alone
             .chunks_exact(hypotheses)
             .zip(self.weights.chunks_exact(hypotheses))
-            .filter_map(|(walks, weights)| {
+            .map(|(walks, weights)| {
                 let heaviest = weights.iter().copied().fold(0.0, f64::max);
-                let first = weights.iter().position(|weight| *weight >= heaviest)?;
-                Some(walks[first].positions)
+                let first = weights.iter().position(|weight| *weight >= heaviest);
+                walks[first.unwrap_or(0)].positions
             })
             .collect();
         let others = (0..self.rollout.pedestrians)

@@ -6,10 +6,10 @@ use ddl_dynamics::{Ball, DynamicsError, ObstacleSchedule};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
-/// How far a walker keeps its centre from those of the others (metres).
+/// Within which distance of others, from centre to centre, walkers mind them (metres).
 ///
 /// Every hypothesis of a walker is walked again among the others, each of whom is a disc that follows
-/// its most likely hypothesis: within [`MARGIN`](Self::MARGIN) of a disc the approach to it is slowed and
+/// the path it would most likely take alone: within [`MARGIN`](Self::MARGIN) of a disc the approach to it is slowed and
 /// the walker slides along ([`AvoidingFlow`](ddl_dynamics::AvoidingFlow)).
 ///
 /// # What is guaranteed
@@ -20,6 +20,9 @@ use serde::{Deserialize, Serialize};
 #[serde(transparent)]
 pub struct Clearance(f64);
 
+/// Nobody keeps farther from others than this (metres): more is a slip of the hand.
+const MOST: f64 = 10.0;
+
 impl Clearance {
     /// Within this distance of another's disc walkers mind it (metres). Chosen on validation recordings,
     /// see docs/stability.md.
@@ -28,9 +31,9 @@ impl Clearance {
     /// Keep `distance` metres from centre to centre; two walkers touch at 0.4 m.
     ///
     /// # Errors
-    /// [`DdlError::Clearance`] unless the distance is positive and finite.
+    /// [`DdlError::Clearance`] unless the distance is positive and at most 10 m.
     pub fn new(distance: f64) -> Result<Self, DdlError> {
-        if distance > 0.0 && distance.is_finite() {
+        if distance > 0.0 && distance <= MOST {
             Ok(Self(distance))
         } else {
             Err(DdlError::Clearance(distance))
@@ -80,7 +83,7 @@ mod tests {
 
     #[test]
     fn a_clearance_has_to_be_one() {
-        for distance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        for distance in [0.0, -1.0, 11.0, f64::NAN, f64::INFINITY] {
             let error = Clearance::new(distance).unwrap_err();
             assert!(error.to_string().contains("metres"), "{error}");
         }

@@ -42,11 +42,11 @@ pub enum DdlError {
     #[error("retrieved_share = {0} is not allowed: 0 to 1")]
     RetrievedShare(f64),
     /// The distance to keep from others is no distance.
-    #[error("a clearance of {0} metres is not allowed: positive and finite, such as 0.4")]
+    #[error("a clearance of {0} metres is not allowed: above 0 and at most 10, such as 0.4")]
     Clearance(f64),
     /// Something was asked of the flow of a model that has none.
     #[error(
-        "the variant `{variant}` has no flow that could keep clear of others: its network emits \
+        "the variant `{variant}` has no flow that could mind others: its network emits \
          positions; use a model of the variant `full` or `no-goal-shift`"
     )]
     NoFlow {

@@ -167,14 +167,14 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         if self.asked(Protocol::Fair) && self.model.config().star.variant.dynamics() {
             manners.push(Manner {
                 gait: Gait::PlainEuler,
-                change: Some("plain Euler steps".to_owned()),
+                change: Some("with plain Euler steps".to_owned()),
                 protocols: &[Protocol::Fair],
             });
         }
         if let Some(clearance) = self.model.clearance() {
             manners.push(Manner {
                 gait: Gait::Stable(Some(clearance)),
-                change: Some(format!("keeping {} m from others", clearance.distance())),
+                change: Some(format!("minding others within {} m", clearance.distance())),
                 protocols: &[Protocol::Fair, Protocol::Single],
             });
         }

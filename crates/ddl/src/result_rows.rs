@@ -25,7 +25,7 @@ impl Forecasted {
         Self {
             forecaster: match change {
                 None => model::NAME.to_owned(),
-                Some(change) => format!("{}, {change}", model::NAME),
+                Some(change) => format!("{} {change}", model::NAME),
             },
             trained: true,
             forecasts,

@@ -28,7 +28,7 @@ pub(crate) struct Forecast {
     /// csv: a row a position; jsonl: a JSON object a pedestrian
     #[arg(long, value_enum, default_value = "csv")]
     format: OutputFormat,
-    /// Attach to every hypothesis the evidence that it goes to its goal
+    /// Attach to every hypothesis the evidence that it comes nearer to its goal at every step
     ///
     /// A certificate holds when the distance to the goal falls at every one of the 12 steps, along a
     /// flow that descends everywhere, and a walker at its goal stays. It speaks of the very positions

@@ -203,7 +203,7 @@ fn ensure_finite_path<T: Real, const D: usize>(
 /// Length of a path; infinite where it, or a difference of coordinates, is too large for `f64`.
 fn length<const D: usize>(path: &[SVector<f64, D>]) -> f64 {
     let sides = path.windows(2).map(|pair| polar(&(pair[1] - pair[0])).0);
-    let length: f64 = sides.sum();
+    let length = sides.fold(0.0, |sum: f64, side| sum + side);
     if length.is_nan() {
         f64::INFINITY
     } else {

@@ -18,24 +18,31 @@ use crate::{
 /// ```
 ///
 /// ([`slowed_along`](CholeskyMetric::slowed_along)), for one ball after the other. A walker who moves away
-/// is left alone; the velocity is continuous all the same, because `P' u = P u` where `n^T v = 0`.
+/// from a ball is not slowed by it; one whom another ball turns back to it is. With one ball near, the
+/// velocity is continuous, because `P' u = P u` where `n^T v = 0`.
 ///
 /// # What is guaranteed
 /// For balls that stand still:
 /// - *The distance to the goal still falls* everywhere off the balls: `P' >= share P` is positive definite
 ///   for `share > 0`. So this is a flow like every other, and a
 ///   [`LyapunovCertificate`](crate::LyapunovCertificate) of it says so.
-/// - *No ball is entered*: `|n^T v'| <= sqrt(share) lambda_max`, also with the updates for other balls,
-///   each of which only lowers `P`; on the surface nothing is left of it.
-/// - *The goal is the only attractor*, if it is outside all balls and the balls do not touch. A
-///   walker can come to rest elsewhere only where `P' u = 0`: on a surface (`share = 0`), where the null
-///   space of `P'` is spanned by `n`, with the ball exactly between it and the goal (`u = n`): one point a
-///   ball. That point is a saddle: along the surface it is the farthest from the goal, and the distance
-///   to the goal falls.
+/// - *No ball is entered*: each is either left or slowed, `|n^T v'| <= sqrt(2 share) lambda_max`, also with
+///   the updates for other balls, each of which only lowers `P`; on the surface nothing is left of it.
+/// - *The goal is the only attractor*, if it is outside all balls, the balls do not touch, and the
+///   eigenvalues of `P` stay within `[m, M]`, `m > 0`. A walker can come to rest elsewhere only where
+///   `P' u = 0`: on a surface (`share = 0`), where the null space of `P'` is spanned by `n`, with the ball
+///   exactly between it and the goal (`u = n`): one point a ball. That point is a saddle: along the surface
+///   it is the farthest from the goal, and the distance to the goal falls.
 ///
 /// In steps of finite length with [`StableEuler`](crate::StableEuler), the decrease at every step is kept
 /// as it is. And no ball is entered, because [`longest_step`](Flow::longest_step) ends a step where half of
 /// the gap is used up along `n`: the half space beyond the tangent plane does not meet the ball.
+///
+/// # Numerics
+/// The decrease goes first. A walker held up at a saddle still makes the smallest move to the goal that
+/// shows, a rounding a step, and so gets into the ball: 0.7 mm after 1000 steps in `f32`. And on a surface,
+/// where rounding has used up the gap, up to `sqrt(2 epsilon) lambda_max` of the approach may be left between several
+/// balls. In `f64` neither shows; in `f32` allow some millimetres.
 ///
 /// Balls that touch or overlap can form a dead end, where walkers come to rest. A walker who starts inside
 /// a ball is let out of it, not further in.
@@ -86,7 +93,8 @@ where
 {
     /// `flow`, slowed within `margin` (metres) of the surfaces of `obstacles`.
     ///
-    /// With a margin of twice the speed times the time step, or more, no step has to be cut short.
+    /// With a margin of twice the speed times the time step, or more, no step has to be cut short where
+    /// one obstacle is near.
     ///
     /// # Errors
     /// [`DynamicsError::InvalidMargin`] unless the margin is positive and finite.
@@ -129,17 +137,29 @@ where
     /// # Errors
     /// Those of the metric source.
     fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
-        let mut metric = self.flow.metric(state)?;
+        let free = self.flow.metric(state)?;
         let gradient = self.attractor().gradient(&state.position);
-        for (gap, normal) in self.surfaces(state) {
-            if gap >= self.margin {
-                continue;
-            }
-            let leaves = normal.dot(&metric.apply(&gradient)) <= T::zero();
-            if !leaves {
+        let mut metric = free;
+        let near = || {
+            self.surfaces(state)
+                .filter(|(gap, _)| *gap < self.margin)
                 // On the surface and inside, as little is left as keeps P positive definite.
-                let share = (gap / self.margin).max(T::EPSILON);
-                metric = metric.slowed_along(&normal, share)?;
+                .map(|(gap, normal)| ((gap / self.margin).max(T::EPSILON), normal))
+        };
+        // Sliding along one ball may turn the walker to another that it was leaving. Each round slows
+        // the approach to one more ball, or is the last.
+        for round in 0..near().count() {
+            let mut slowed = false;
+            for (share, normal) in near() {
+                let left = metric.quadratic_form(&normal);
+                let slow = round > 0 && left <= free.quadratic_form(&normal) * (share + share);
+                if !slow && normal.dot(&metric.apply(&gradient)) > T::zero() {
+                    metric = metric.slowed_along(&normal, share)?;
+                    slowed = true;
+                }
+            }
+            if !slowed {
+                break;
             }
         }
         Ok(metric)
@@ -156,9 +176,9 @@ where
             .filter_map(|(gap, normal)| {
                 let approach = -normal.dot(velocity);
                 let limits = gap > T::zero() && approach > T::zero();
-                limits.then(|| gap / approach * T::rounded(0.5))
+                // Too short for T is still a limit, and a time step is positive.
+                limits.then(|| (gap / approach * T::rounded(0.5)).max(T::MIN_POSITIVE))
             })
-            .filter(|limit| *limit > T::zero())
             .reduce(T::min)
     }
 }

@@ -32,13 +32,14 @@ const SAFETY: f64 = 0.9;
 ///   error, so the error of the whole path is of the order of the tolerance times the number of inner
 ///   steps, for flows that depend smoothly on the state.
 /// - *At the goal*: the flow of a distance keeps its speed to the end, so no fixed step fits the last bit.
-///   A walker nearer to the goal than the tolerance is put on it, where it stays.
-/// - *Time to the goal*: that of the continuous flow, at most `Phi(0) / lambda_min`.
+///   A walker nearer to the goal than the tolerance (in the [`chart`](Flow::chart), if there is one) is put
+///   on it, where it stays.
+/// - *Time to the goal*: that of the continuous flow, for a distance at most `Phi(0) / lambda_min`.
 ///
 /// Where even a step as short as the tolerance is refused (a metric that jumps), a [`StableEuler`] step
 /// of that length is taken. Metrics may depend on the state's time; its `step` and `history` are those of
 /// the whole time step. An [`AvoidingFlow`](crate::AvoidingFlow) keeps clear of its obstacles up to the
-/// tolerance.
+/// error of the path.
 ///
 /// # References
 /// Dormand and Prince, "A family of embedded Runge-Kutta formulae" (J. Comp. Appl. Math. 1980).
@@ -84,7 +85,8 @@ impl<T: Real> DormandPrince<T> {
 impl<T: Real, const D: usize> Integrator<T, D> for DormandPrince<T> {
     /// # Errors
     /// Those of the flow and of [`StableEuler::advance`]; [`DynamicsError::TooStiff`] when the flow
-    /// changes so fast that ten thousand inner steps do not cover the time step.
+    /// changes so fast that ten thousand inner steps do not cover the time step, or an inner step would have to
+    /// be shorter than any number of `T`.
     fn step<F: Flow<T, D> + ?Sized>(
         &self,
         flow: &F,
@@ -95,7 +97,9 @@ impl<T: Real, const D: usize> Integrator<T, D> for DormandPrince<T> {
         ensure_finite("position", &state.position)?;
         let mut here = *state;
         let (mut left, mut length) = (dt, dt);
-        for _ in 0..INNER_STEPS {
+        let mut steps = 0;
+        while steps < INNER_STEPS {
+            steps += 1;
             let distance = distance(flow, &here.position);
             if !distance.is_finite() {
                 return Err(DynamicsError::DistanceTooLarge);
@@ -111,6 +115,9 @@ impl<T: Real, const D: usize> Integrator<T, D> for DormandPrince<T> {
                 .min(time_to_closest(flow, &here.position, &velocity) * T::rounded(SAFETY));
             if let Some(longest) = flow.longest_step(&here, &velocity) {
                 length = length.min(longest);
+            }
+            if length.is_zero() {
+                break;
             }
             let inner = inner_step(flow, &here, velocity, length)?;
             let relative = inner.error / self.tolerance;
@@ -132,7 +139,7 @@ impl<T: Real, const D: usize> Integrator<T, D> for DormandPrince<T> {
             length *= growth(relative);
         }
         Err(DynamicsError::TooStiff {
-            steps: INNER_STEPS,
+            steps,
             covered: (dt - left).as_f64(),
         })
     }

@@ -19,10 +19,10 @@ use crate::{
 /// |e'|^2 = |e|^2 - 2 dt |e| u^T P u + dt^2 |P u|^2
 /// ```
 ///
-/// so the distance to the goal falls in a step exactly when `dt < 2 |e| u^T P u / |P u|^2`. The
-/// speed does not fade near the goal, so this fails for every fixed `dt` once the walker is close:
-/// the walker jumps over the goal and goes on hopping to and fro. In any case
-/// `|e'|^2 <= |e|^2 + (dt |P u|)^2`. Use [`StableEuler`](super::StableEuler) to keep the guarantee;
+/// so the distance to the goal falls in a step exactly when `dt < 2 |e| u^T P u / |P u|^2`. On an
+/// attractor that is a distance the speed does not fade near the goal, so this fails for every fixed
+/// `dt` once the walker is close: the walker jumps over the goal and goes on hopping to and fro. In any
+/// case `|e'|^2 <= |e|^2 + (dt |P u|)^2`. Use [`StableEuler`](super::StableEuler) to keep the guarantee;
 /// a [`LyapunovCertificate`](crate::LyapunovCertificate) names the step that breaks it.
 ///
 /// # References

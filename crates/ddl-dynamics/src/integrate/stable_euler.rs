@@ -23,7 +23,8 @@ const ARRIVAL: f64 = 8.0;
 /// p' = p + min(dt, dt*) v        dt* = |e| u^T P u / |P u|^2
 /// ```
 ///
-/// with `e = p - p*`, `u = e / |e|`, `v = -P u`. While `dt <= dt*` this is the plain Euler step, to
+/// with `e = p - p*`, `u = e / |e|`, `v = -P u` (on a quadratic attractor `v = -P e`: read `|e| P` for `P` in
+/// what follows). While `dt <= dt*` this is the plain Euler step, to
 /// the last bit; at the goal the walker stays.
 ///
 /// # What is guaranteed, and why
@@ -36,8 +37,8 @@ const ARRIVAL: f64 = 8.0;
 /// |e'|^2 <= |e|^2 - h |e| u^T P u,     so     Phi' <= Phi - h u^T P u / 2 < Phi
 /// ```
 ///
-/// *Convergence in a bounded number of steps*, if the eigenvalues of the metrics stay in `[m, M]`,
-/// `m > 0`. A step that is not limited lowers `Phi` by at least `dt m / 2`. A limited step ends at
+/// *Convergence in a bounded number of steps* on a distance, if the eigenvalues of the metrics stay in
+/// `[m, M]`, `m > 0`. A step that is not limited lowers `Phi` by at least `dt m / 2`. A limited step ends at
 /// the foot of the perpendicular from the goal, so `Phi' = Phi sin(angle(v, -e))`, and by the
 /// Kantorovich inequality the sine is at most `r = (M - m) / (M + m)`. So `Phi <= tolerance` after
 /// at most `2 Phi(0) / (dt m) + ln(Phi(0) / tolerance) / ln(1 / r)` steps, rounded up one by one.
@@ -191,7 +192,8 @@ fn descend<T: Real, const D: usize>(
 }
 
 impl<T: Real, const D: usize> Integrator<T, D> for StableEuler {
-    /// For a flow with a [`chart`](Flow::chart) the step is taken in its coordinates.
+    /// For a flow with a [`chart`](Flow::chart) the step is taken in its coordinates, and is not limited by
+    /// [`longest_step`](Flow::longest_step).
     ///
     /// # Errors
     /// Those of the flow and of [`StableEuler::advance`].

@@ -59,8 +59,8 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// ```
     ///
     /// so a flow with `P'` instead of `P` moves along `n` with exactly this share of its speed. As
-    /// `q q^T / (n^T q) <= P` (Cauchy-Schwarz), `share P <= P' <= P`: the result is positive definite and
-    /// nowhere faster than `P`. It depends continuously on `share` and on `direction`, whose length and
+    /// `q q^T / (n^T q) <= P` (Cauchy-Schwarz), `share P <= P' <= P`: the result is positive definite, and
+    /// with it the distance to a goal falls no faster than with `P`. It depends continuously on `share` and on `direction`, whose length and
     /// sign do not matter.
     ///
     /// # Errors
@@ -70,8 +70,9 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     ///
     /// # Numerics
     /// `P` is not formed: with `A = [L, sqrt(sigma) I]`, `P = A A^T` and `y = A^T n`,
-    /// `P' = A' A'^T` for `A' = A (I - b y y^T)`, `b = (1 - sqrt(share)) / |y|^2`, so that nothing
-    /// cancels; the triangular factor of `A'` is found by rotations. The result is `P' (1 + epsilon)`, the
+    /// `P' = A' A'^T` for `A' = A (I - b y y^T)`, `b = (1 - sqrt(share)) / |y|^2`, so that the result is
+    /// positive definite whatever cancels in `A'`; its error is that of a few roundings of `A`, so a share
+    /// below `epsilon^2` times the condition number of `P` is not resolved. The triangular factor of `A'` is found by rotations. The result is `P' (1 + epsilon)`, the
     /// last term in place of a `sigma`.
     ///
     /// # Examples
@@ -97,7 +98,8 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
         }
         let root = self.sigma.sqrt();
         let projected = self.transposed_times(&n);
-        let through = self.apply(&n) * ((T::one() - share.sqrt()) / self.quadratic_form(&n));
+        // Divided first: the reciprocal of a subnormal number overflows.
+        let through = self.apply(&n) / self.quadratic_form(&n) * (T::one() - share.sqrt());
         let factor = lower_triangular(
             self.factor - through * projected.transpose(),
             SMatrix::identity() * root - through * (n * root).transpose(),

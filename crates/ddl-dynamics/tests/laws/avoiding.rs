@@ -5,7 +5,7 @@ use ddl_dynamics::{
     LyapunovCertificate, MetricSchedule, NaturalGradientFlow, ObstacleSchedule, Real, StableEuler,
     State, rollout,
 };
-use nalgebra::Vector2;
+use nalgebra::{Rotation2, Vector2};
 use proptest::{collection::vec, prelude::*, test_runner::TestCaseResult};
 
 use crate::{draw::SceneDraw, for_every_space};
@@ -65,26 +65,36 @@ fn no_ball_is_entered<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseRes
 }
 for_every_space!(no_ball_is_entered, any_scene);
 
-/// Up to six pillars that do not touch, none on the goal at the origin, and a walker outside them.
-fn park() -> impl Strategy<Value = (Vec<Ball<f64, 2>>, Vector2<f64>, CholeskyMetric<f64, 2>)> {
-    let pillar = (0.5..8.0_f64, 0.0..std::f64::consts::TAU, 0.2..1.5_f64);
-    let start = (1.0..10.0_f64, 0.0..std::f64::consts::TAU);
-    let factor = (0.7..1.4_f64, -0.4..0.4_f64, 0.7..1.4_f64);
-    (vec(pillar, 0..7), start, factor).prop_map(|(pillars, start, (a, b, c))| {
-        let at = |distance: f64, angle: f64| Vector2::new(angle.cos(), angle.sin()) * distance;
-        let start = at(start.0, start.1);
-        let mut kept: Vec<Ball<f64, 2>> = Vec::new();
-        for (distance, angle, radius) in pillars {
-            let ball = Ball::new(at(distance, angle), radius).unwrap();
-            let clear = |point: &Vector2<f64>, gap| ball.gap_and_normal(point).0 > gap;
-            let apart = |other: &Ball<f64, 2>| clear(other.centre(), other.radius() + 0.1);
-            if clear(&start, 0.05) && clear(&Vector2::zeros(), 0.1) && kept.iter().all(apart) {
-                kept.push(ball);
+/// Pillars 2 cm apart at the least, none on the goal at the origin, a walker outside them, a metric of a
+/// condition up to 20 and a margin.
+fn park() -> impl Strategy<Value = (Vec<Ball<f64, 2>>, Vector2<f64>, CholeskyMetric<f64, 2>, f64)> {
+    let place = || (-6.0..6.0_f64, -6.0..6.0_f64).prop_map(|(x, y)| Vector2::new(x, y));
+    let factor = (-0.7..0.0_f64, 0.0..std::f64::consts::PI);
+    (
+        vec((place(), 0.2..1.5_f64), 0..14),
+        place(),
+        factor,
+        0.3..3.0_f64,
+    )
+        .prop_map(|(pillars, start, (slow, turn), margin)| {
+            let mut kept: Vec<Ball<f64, 2>> = Vec::new();
+            for (centre, radius) in pillars {
+                let ball = Ball::new(centre, radius).unwrap();
+                let clear = |point: &Vector2<f64>, gap| ball.gap_and_normal(point).0 > gap;
+                let apart = |other: &Ball<f64, 2>| clear(other.centre(), other.radius() + 0.02);
+                if clear(&start, 0.02) && clear(&Vector2::zeros(), 0.05) && kept.iter().all(apart) {
+                    kept.push(ball);
+                }
             }
-        }
-        let metric = CholeskyMetric::planar(a, b, c, 1e-8).unwrap();
-        (kept, start, metric)
-    })
+            let turn = Rotation2::new(turn);
+            let metric = CholeskyMetric::planar(1.0, 0.0, 10_f64.powf(slow), 1e-8).unwrap();
+            (
+                kept,
+                start,
+                metric.congruent(turn.matrix()).unwrap(),
+                margin,
+            )
+        })
 }
 
 proptest! {
@@ -92,16 +102,78 @@ proptest! {
 
     /// Among pillars that do not touch, everybody arrives, never entering one.
     #[test]
-    fn everybody_arrives((pillars, start, metric) in park()) {
+    fn everybody_arrives((pillars, start, metric, margin) in park()) {
         let attractor = Attractor::new(Vector2::zeros()).unwrap();
         let walker = NaturalGradientFlow::new(attractor, metric);
-        let flow = AvoidingFlow::new(walker, pillars.clone(), 0.6).unwrap();
-        let path = rollout(&flow, &StableEuler, start, 0.1, 3000).unwrap();
+        let flow = AvoidingFlow::new(walker, pillars.clone(), margin).unwrap();
+        let path = rollout(&flow, &StableEuler, start, 0.4, 20_000).unwrap();
         for pillar in &pillars {
             prop_assert!(path.iter().all(|p| pillar.gap_and_normal(p).0 > -1e-12));
         }
-        prop_assert!(path[3000].norm() < 1e-9, "{} m off", path[3000].norm());
+        prop_assert!(path[20_000].norm() < 1e-9, "{} m off", path[20_000].norm());
     }
+
+    /// However many pillars are near, beside any of them: each is left, or approached at
+    /// `sqrt(2 share) lambda_max` at most.
+    #[test]
+    fn each_approach_is_slowed(
+        (pillars, _, metric, margin) in park(),
+        (exponent, angle) in (-9.0..-1.0_f64, 0.0..std::f64::consts::TAU),
+    ) {
+        let attractor = Attractor::new(Vector2::zeros()).unwrap();
+        let walker = NaturalGradientFlow::new(attractor, metric);
+        let flow = AvoidingFlow::new(walker, pillars.clone(), margin).unwrap();
+        let outwards = Vector2::new(angle.cos(), angle.sin());
+        for beside in &pillars {
+            let at = beside.centre() + outwards * (beside.radius() + 10_f64.powf(exponent));
+            let velocity = flow.velocity(&State::at(at)).unwrap();
+            for pillar in &pillars {
+                let (gap, normal) = pillar.gap_and_normal(&at);
+                let share = (gap / margin).max(f64::EPSILON);
+                let largest = (2.0 * share).sqrt() * metric.eigenvalue_range().largest;
+                prop_assert!(-normal.dot(&velocity) <= largest * (1.0 + 1e-6));
+            }
+        }
+    }
+}
+
+/// A walker leaves the first of two pillars, and sliding along the second would turn it back to the first:
+/// it keeps out of both, in whichever order they are named.
+#[test]
+fn one_pillar_does_not_turn_a_walker_into_another() {
+    let attractor = Attractor::new(Vector2::new(-5.0, 0.0)).unwrap();
+    let at = |degrees: f64, gap: f64| {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        Ball::new(Vector2::new(cosine, sine) * -(0.25 + gap), 0.25).unwrap()
+    };
+    // Their normals point at these angles; the walker at the origin is drawn along -x.
+    let (left, met) = (at(91.0, 1e-9), at(-31.0, 0.1));
+    for pillars in [[left, met], [met, left]] {
+        let walker = NaturalGradientFlow::new(attractor, CholeskyMetric::identity());
+        let flow = AvoidingFlow::new(walker, pillars, 1.0).unwrap();
+        let velocity = flow.velocity(&State::at(Vector2::zeros())).unwrap();
+        let normal = left.gap_and_normal(&Vector2::zeros()).1;
+        assert!(normal.dot(&Vector2::new(-1.0, 0.0)) > 0.0, "left at first");
+        assert!(normal.dot(&velocity) > -1e-4, "{velocity}");
+        let path = rollout(&flow, &StableEuler, Vector2::zeros(), 0.4, 100).unwrap();
+        for pillar in &pillars {
+            assert!(path.iter().all(|p| pillar.gap_and_normal(p).0 > -1e-12));
+        }
+        assert_eq!(path[100], *attractor.goal());
+    }
+}
+
+/// An obstacle that is farther away than the largest number is far away.
+#[test]
+fn an_offset_that_overflows_is_no_obstacle() {
+    let far = Ball::new(Vector2::new(-f64::MAX, 0.0), 1.0).unwrap();
+    let attractor = Attractor::new(Vector2::new(0.9 * f64::MAX, 0.0)).unwrap();
+    let walker = NaturalGradientFlow::new(attractor, CholeskyMetric::identity());
+    let flow = AvoidingFlow::new(walker, [far], 1.0).unwrap();
+    let start = Vector2::new(0.99 * f64::MAX, 0.0);
+    let (gap, normal) = far.gap_and_normal(&start);
+    assert_eq!((gap, normal), (f64::INFINITY, Vector2::new(1.0, 0.0)));
+    assert!(rollout(&flow, &StableEuler, start, 0.4, 3).is_ok());
 }
 
 /// Where the velocity along the normal changes its sign, the slowed and the free velocity are one.

@@ -73,6 +73,32 @@ fn names_a_planted_violation<T: Real, const D: usize>(scene: &SceneDraw) -> Test
 }
 for_every_space!(names_a_planted_violation, any_scene);
 
+/// The same on a quadratic attractor, whose velocities fade near the goal.
+fn holds_on_a_quadratic_attractor<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+    let attractor = Attractor::quadratic(*scene.attractor::<T, D>().goal()).unwrap();
+    let metrics = MetricSchedule::new(scene.metrics()).unwrap();
+    let flow = NaturalGradientFlow::new(attractor, metrics);
+    let path = rollout(&flow, &StableEuler, scene.start(), scene.dt(), 3 * METRICS).unwrap();
+    let certificate = LyapunovCertificate::of_rollout(&flow, &path, scene.dt()).unwrap();
+    prop_assert_eq!(certificate.holds(), Ok(()));
+    Ok(())
+}
+for_every_space!(holds_on_a_quadratic_attractor, any_scene);
+
+/// Down to the last subnormal distance, where the rate itself is too small for a number.
+#[test]
+fn holds_until_a_quadratic_attractor_is_reached() {
+    let attractor = Attractor::quadratic(Vector2::<f64>::zeros()).unwrap();
+    let flow = NaturalGradientFlow::new(
+        attractor,
+        CholeskyMetric::planar(0.3, 0.06, 0.3, 0.1).unwrap(),
+    );
+    let path = rollout(&flow, &StableEuler, Vector2::new(3.0, 1.0), 5.0, 1000).unwrap();
+    assert_eq!(path[1000], Vector2::zeros());
+    let certificate = LyapunovCertificate::of_rollout(&flow, &path, 5.0).unwrap();
+    assert_eq!(certificate.holds(), Ok(()));
+}
+
 /// P = [1 1; 1 2] and e = (0.3, -0.4): the figures of a step, worked out by hand.
 fn by_hand() -> LyapunovCertificate<f64> {
     let attractor = Attractor::new(Vector2::new(10.0, 20.0)).unwrap();

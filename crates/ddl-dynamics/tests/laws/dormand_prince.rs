@@ -106,6 +106,19 @@ fn agrees_with_ten_thousand_stable_steps() {
     assert!((one - other).norm() < 1e-4, "{one} {other}");
 }
 
+/// An inner step shorter than any number: said to be what it is, and not blamed on the time step.
+#[test]
+fn a_step_too_short_for_a_number_is_too_stiff() {
+    let attractor = Attractor::quadratic(Vector2::zeros()).unwrap();
+    let flow = NaturalGradientFlow::new(attractor, CholeskyMetric::identity());
+    let fine = DormandPrince::new(1e-238).unwrap();
+    let error = rollout(&flow, &fine, Vector2::new(1e189, 1e189), 1e129, 1).unwrap_err();
+    let DynamicsError::Step { cause, .. } = error else {
+        panic!("{error}")
+    };
+    assert!(matches!(*cause, DynamicsError::TooStiff { .. }), "{cause}");
+}
+
 #[test]
 fn a_tolerance_has_to_be_one() {
     for tolerance in [0.0, -1e-9, f64::NAN, f64::INFINITY] {

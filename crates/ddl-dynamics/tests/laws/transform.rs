@@ -118,3 +118,11 @@ fn what_cannot_be_done_is_an_error() {
         Err(DynamicsError::SingularMap)
     );
 }
+
+#[test]
+fn the_smallest_metric_there_is_can_be_slowed() {
+    // The reciprocal of sigma is not a number of f32.
+    let metric = CholeskyMetric::planar(0.0, 0.0, 0.0, 1e-40_f32).unwrap();
+    let slowed = metric.slowed_along(&Vector2::new(1.0, 0.0), 0.5).unwrap();
+    assert!(slowed.eigenvalue_range().smallest > 0.0);
+}

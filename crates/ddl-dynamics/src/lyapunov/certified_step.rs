@@ -1,0 +1,107 @@
+//! One step of a certificate: its figures, and whether they keep the guarantee.
+
+use nalgebra::SVector;
+use serde::{Deserialize, Serialize};
+
+use super::Violation;
+use crate::{attractor::Attractor, metric::CholeskyMetric, polar::polar, real::Real};
+
+/// The evidence of one step, from position `k` to position `k + 1`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct CertifiedStep<T> {
+    /// `Phi`: the distance to the goal at the start of the step (metres).
+    pub potential: T,
+    /// `d Phi / dt = -u^T P grad Phi` at the start of the step (m/s): `-u^T P u` where the attractor is
+    /// the distance; 0 at the goal alone, where it is too small for `T` the smallest normal number.
+    pub rate: T,
+    /// The smallest eigenvalue of the step's metric (m/s; 1/s on a quadratic attractor).
+    pub min_eigenvalue: T,
+    /// `1 - dt / dt_max`, with `dt_max = -2 Phi (d Phi / dt) / |v|^2` the bound below which a plain
+    /// Euler step lowers `Phi`, for a distance `2 Phi u^T P u / |P u|^2` (no unit): positive when `dt` is
+    /// below its bound, 1 when infinitely far below. `None` at the goal, where every step is too long.
+    pub step_margin: Option<T>,
+    /// Angle between the move and the direction to the goal (radians, 0 to pi); 0 without a move.
+    pub angle: T,
+}
+
+impl<T: Real> CertifiedStep<T> {
+    pub(super) fn new<const D: usize>(
+        from: &SVector<T, D>,
+        to: &SVector<T, D>,
+        metric: &CholeskyMetric<T, D>,
+        attractor: &Attractor<T, D>,
+        dt: T,
+    ) -> Self {
+        let (potential, away) = attractor.distance_and_direction(from);
+        // grad Phi is as long as the velocity would be with P = I: 1, or |e| when quadratic.
+        let (slope, _) = polar(&attractor.gradient(from));
+        let mut descent = metric.quadratic_form(&away) * slope;
+        if descent.is_zero() && !slope.is_zero() {
+            // Both factors are positive: their product is too small for T, and not 0.
+            descent = T::MIN_POSITIVE;
+        }
+        let speed = polar(&metric.apply(&away)).0 * slope;
+        // Divided twice: the square of the speed could leave the range of the numbers.
+        let bound = potential * (descent / speed) / speed * T::rounded(2.0);
+        let step_margin = Some(T::one() - dt / bound).filter(T::is_finite);
+        let (_, heading) = polar(&(to - from));
+        Self {
+            potential,
+            rate: -descent,
+            min_eigenvalue: metric.eigenvalue_range().smallest,
+            step_margin,
+            angle: angle_between(&heading, &-away),
+        }
+    }
+
+    pub(super) fn check(&self, step: usize, after: T) -> Result<(), Violation> {
+        // Written so that a NaN, which no certificate made here holds, breaks the guarantee too.
+        let positive_definite = self.min_eigenvalue > T::zero();
+        if !positive_definite {
+            let min_eigenvalue = self.min_eigenvalue.as_f64();
+            return Err(Violation::NotPositiveDefinite {
+                step,
+                min_eigenvalue,
+            });
+        }
+        if self.potential.is_zero() {
+            return if after.is_zero() {
+                Ok(())
+            } else {
+                Err(Violation::LeftGoal {
+                    step,
+                    after: after.as_f64(),
+                })
+            };
+        }
+        let descending = self.rate < T::zero();
+        if !descending {
+            return Err(Violation::NotDescending {
+                step,
+                rate: self.rate.as_f64(),
+            });
+        }
+        if after < self.potential {
+            Ok(())
+        } else {
+            let (before, after) = (self.potential.as_f64(), after.as_f64());
+            Err(Violation::NotDecreasing {
+                step,
+                before,
+                after,
+            })
+        }
+    }
+}
+
+/// Angle between two unit vectors (radians); 0 when one of them is the zero vector.
+///
+/// Kahan's form, accurate for small and for straight angles, where the arc cosine is not.
+fn angle_between<T: Real, const D: usize>(a: &SVector<T, D>, b: &SVector<T, D>) -> T {
+    let zero = SVector::<T, D>::zeros();
+    if *a == zero || *b == zero {
+        return T::zero();
+    }
+    (a - b).norm().atan2((a + b).norm()) * T::rounded(2.0)
+}
