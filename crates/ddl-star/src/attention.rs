@@ -2,7 +2,10 @@
 //! every walker over its neighbours, and the newest token over all earlier ones.
 
 use crate::dropout::dropout;
+use crate::kernel::attention::{AmongWalkers, Attended, Dropout};
 use crate::layers::Linear;
+use crate::neighbours::Seen;
+use crate::numbers::{numbers, tensor};
 use crate::parameters::Initializer;
 use crate::pass::Pass;
 use tch::Tensor;
@@ -71,25 +74,57 @@ impl MultiHeadAttention {
         }
     }
 
-    /// Attention of every walker over the walkers that `mask` lets it see.
+    /// Attention of every walker over the walkers that it sees.
     ///
     /// # Shapes
-    /// `x` `[B, P, width]`; `mask` `[1 or B, 1, P, P]`, 0 where seen, -inf where not
-    /// -> `[B, P, width]`.
-    pub(crate) fn among_walkers(&self, x: &Tensor, mask: &Tensor, pass: &Pass) -> Tensor {
+    /// `x` `[B, P, width]`; `seen` during one frame or B -> `[B, P, width]`.
+    pub(crate) fn among_walkers(&self, x: &Tensor, seen: &Seen<'_>, pass: &Pass) -> Tensor {
         let (batch, walkers) = (x.size()[0], x.size()[1]);
-        let qkv = x
-            .linear(&self.in_proj_weight, Some(&self.in_proj_bias))
-            .view([batch, walkers, 3, self.heads, self.width / self.heads])
-            .permute([2, 0, 3, 1, 4]);
-        let (query, key, value) = (qkv.get(0), qkv.get(1), qkv.get(2));
-        let scores = (query * self.scale()).matmul(&key.transpose(-1, -2)) + mask;
-        let weights = dropout(scores.softmax(-1, scores.kind()), self.dropout, pass.mode());
-        let mixed = weights
-            .matmul(&value)
-            .transpose(1, 2)
-            .reshape([batch, walkers, self.width]);
+        let qkv = x.linear(&self.in_proj_weight, Some(&self.in_proj_bias));
+        let mixed = if pass.kernels_may_take(&qkv) {
+            self.among_walkers_by_kernel(&qkv, seen, pass)
+        } else {
+            let qkv = qkv
+                .view([batch, walkers, 3, self.heads, self.width / self.heads])
+                .permute([2, 0, 3, 1, 4]);
+            let (query, key, value) = (qkv.get(0), qkv.get(1), qkv.get(2));
+            let scores = (query * self.scale()).matmul(&key.transpose(-1, -2)) + seen.mask();
+            let weights = scores.softmax(-1, scores.kind());
+            dropout(weights, self.dropout, pass.mode())
+                .matmul(&value)
+                .transpose(1, 2)
+                .reshape([batch, walkers, self.width])
+        };
         self.out_proj.forward(&mixed)
+    }
+
+    /// The same between the projections by [`AmongWalkers`], scene by scene.
+    ///
+    /// # Shapes
+    /// `qkv` `[B, P, 3 * width]` -> `[B, P, width]`.
+    fn among_walkers_by_kernel(&self, qkv: &Tensor, seen: &Seen<'_>, pass: &Pass) -> Tensor {
+        let (shape, heads) = (qkv.size(), self.heads as usize);
+        let kernel = AmongWalkers::new(heads, self.width as usize / heads);
+        let dropout = pass
+            .dropout(self.dropout)
+            .map(|(p, seed)| Dropout { p, seed });
+        let (input, scenes) = (numbers(qkv), seen.scenes());
+        let mut attended = Attended::default();
+        kernel.forward(&input, scenes.frames(), dropout, &mut attended);
+        let output = tensor(attended.mixed(), &[shape[0], shape[1], self.width]);
+        pass.made_of(&[qkv], output, move |gradient| {
+            let mut of_input = vec![0.0; input.len()];
+            let gradient = numbers(gradient);
+            kernel.backward(
+                &input,
+                scenes.frames(),
+                dropout,
+                &attended,
+                &gradient,
+                &mut of_input,
+            );
+            Ok(vec![tensor(&of_input, &shape)])
+        })
     }
 
     /// Attention of the newest token over itself and the remembered ones.

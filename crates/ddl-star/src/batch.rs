@@ -1,19 +1,19 @@
 //! Several windows side by side as tensors.
 
 use crate::StarError;
+use crate::neighbours::Neighbours;
 use ddl_data::{Rotation, Window};
 use tch::{Device, Kind, Tensor};
 
 /// The walkers of several windows, one after the other, with who sees whom.
 ///
 /// # Shapes
-/// T frames, P walkers in all: positions `[T, P, 2]` in metres; neighbour mask `[M, 1, P, P]` for
-/// the first M frames, 0 where a walker sees another (or itself), -inf elsewhere; scene mean
-/// `[P, P]`, the matrix that averages over the walkers of a scene.
+/// T frames, P walkers in all: positions `[T, P, 2]` in metres; who sees whom in the first M frames;
+/// scene mean `[P, P]`, the matrix that averages over the walkers of a scene.
 #[derive(Debug)]
 pub struct SceneBatch {
     pub(crate) positions: Tensor,
-    pub(crate) neighbour_mask: Tensor,
+    pub(crate) neighbours: Neighbours,
     pub(crate) scene_mean: Tensor,
 }
 
@@ -39,7 +39,6 @@ impl SceneBatch {
             });
         }
         let mut positions = vec![0.0; frames * walkers * 2];
-        let mut mask = vec![f32::NEG_INFINITY; mask_frames * walkers * walkers];
         let mut mean = vec![0.0; walkers * walkers];
         let mut first = 0;
         for window in windows {
@@ -54,20 +53,9 @@ impl SceneBatch {
                 let row = (first + i) * walkers + first;
                 mean[row..row + window.len()].fill(share);
             }
-            for t in 0..mask_frames {
-                let neighbours = window.neighbours(t, neighbour_box);
-                for i in 0..window.len() {
-                    let row = (t * walkers + first + i) * walkers + first;
-                    for j in 0..window.len() {
-                        if i == j || neighbours.is_neighbour(i, j) {
-                            mask[row + j] = 0.0;
-                        }
-                    }
-                }
-            }
             first += window.len();
         }
-        let (t, m, p) = (frames as i64, mask_frames as i64, walkers as i64);
+        let (t, p) = (frames as i64, walkers as i64);
         let tensor = |values: &[f64], shape: &[i64]| -> Result<Tensor, tch::TchError> {
             Tensor::from_slice(values)
                 .f_to_kind(kind)?
@@ -76,10 +64,7 @@ impl SceneBatch {
         };
         Ok(Self {
             positions: tensor(&positions, &[t, p, 2])?,
-            neighbour_mask: Tensor::from_slice(&mask)
-                .f_to_kind(kind)?
-                .f_reshape([m, 1, p, p])?
-                .f_to_device(device)?,
+            neighbours: neighbours(windows, mask_frames, neighbour_box, device, kind),
             scene_mean: tensor(&mean, &[p, p])?,
         })
     }
@@ -94,7 +79,7 @@ impl SceneBatch {
             .to_device(self.positions.device());
         Self {
             positions: self.positions.matmul(&images),
-            neighbour_mask: self.neighbour_mask.shallow_clone(),
+            neighbours: self.neighbours.shared(),
             scene_mean: self.scene_mean.shallow_clone(),
         }
     }
@@ -108,6 +93,28 @@ impl SceneBatch {
     pub fn positions(&self) -> &Tensor {
         &self.positions
     }
+}
+
+/// Who sees whom in the first `frames` of the windows.
+fn neighbours(
+    windows: &[&Window],
+    frames: usize,
+    half_box: f64,
+    device: Device,
+    kind: Kind,
+) -> Neighbours {
+    let sizes: Vec<usize> = windows.iter().map(|window| window.len()).collect();
+    let mut visible =
+        Vec::with_capacity(frames * sizes.iter().map(|size| size * size).sum::<usize>());
+    for t in 0..frames {
+        for window in windows {
+            let seen = window.neighbours(t, half_box);
+            for i in 0..window.len() {
+                visible.extend((0..window.len()).map(|j| i == j || seen.is_neighbour(i, j)));
+            }
+        }
+    }
+    Neighbours::new(&sizes, &visible, device, kind)
 }
 
 fn check_length(window: &Window, frames: usize) -> Result<(), StarError> {

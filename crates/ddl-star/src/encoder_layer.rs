@@ -4,8 +4,10 @@
 use crate::attention::{KeyValue, MultiHeadAttention};
 use crate::config::StarConfig;
 use crate::dropout::dropout;
-use crate::kernel::{FeedForward, Gradients};
+use crate::kernel::feed_forward::{Dropout, FeedForward, Gradients};
 use crate::layers::{LayerNorm, Linear};
+use crate::neighbours::Seen;
+use crate::numbers::{numbers, tensor};
 use crate::parameters::Initializer;
 use crate::pass::Pass;
 use tch::Tensor;
@@ -42,9 +44,9 @@ impl EncoderLayer {
     }
 
     /// Every walker looks at its neighbours. Shapes as in [`MultiHeadAttention::among_walkers`].
-    pub(crate) fn among_walkers(&self, x: &Tensor, mask: &Tensor, pass: &Pass) -> Tensor {
+    pub(crate) fn among_walkers(&self, x: &Tensor, seen: &Seen<'_>, pass: &Pass) -> Tensor {
         let x = pass.junction(x);
-        let attended = self.attention.among_walkers(&x, mask, pass);
+        let attended = self.attention.among_walkers(&x, seen, pass);
         self.after_attention(&x, attended, pass)
     }
 
@@ -63,7 +65,7 @@ impl EncoderLayer {
     fn after_attention(&self, x: &Tensor, attended: Tensor, pass: &Pass) -> Tensor {
         let attended = dropout(attended, self.dropout, pass.mode());
         let x = pass.junction(&self.norm1.forward(&(x + attended)));
-        let fed = if self.fits_the_kernel() && pass.kernels_may_take(&x) {
+        let fed = if pass.kernels_may_take(&x) {
             self.feed_forward_by_kernel(&x, pass)
         } else {
             let hidden = self.linear1.forward(&x).relu();
@@ -72,11 +74,6 @@ impl EncoderLayer {
         };
         let fed = dropout(fed, self.dropout, pass.mode());
         self.norm2.forward(&(x + fed))
-    }
-
-    fn fits_the_kernel(&self) -> bool {
-        let size = self.linear1.weight.size();
-        size[0] % 16 == 0 && size[1] % 16 == 0
     }
 
     /// The feed-forward block by [`FeedForward`], whose hidden numbers never leave the cache.
@@ -93,13 +90,15 @@ impl EncoderLayer {
                 hidden,
             )
         });
-        let dropout = pass.dropout(self.dropout);
+        let dropout = pass
+            .dropout(self.dropout)
+            .map(|(p, seed)| Dropout { p, seed });
         let input = numbers(x);
         let mut output = vec![0.0; input.len()];
         kernel.forward(&input, dropout, &mut output);
         let shape = x.size();
         let (name, gradients) = (self.name.clone(), pass.weight_gradients());
-        let output = Tensor::from_slice(&output).reshape(&shape);
+        let output = tensor(&output, &shape);
         pass.made_of(&[x], output, move |gradient| {
             let mut of_input = vec![0.0; input.len()];
             let mut gradients = gradients.borrow_mut();
@@ -113,15 +112,7 @@ impl EncoderLayer {
                 &mut of_input,
                 of_weights,
             );
-            Ok(vec![Tensor::from_slice(&of_input).reshape(&shape)])
+            Ok(vec![tensor(&of_input, &shape)])
         })
     }
-}
-
-/// The numbers of a tensor, row by row.
-fn numbers(tensor: &Tensor) -> Vec<f32> {
-    let mut numbers = vec![0.0; tensor.numel()];
-    let plain = tensor.detach().contiguous();
-    plain.copy_data(&mut numbers, tensor.numel());
-    numbers
 }

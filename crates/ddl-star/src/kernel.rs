@@ -1,5 +1,4 @@
 //! The heavy parts of the network, computed by ourselves on the CPU.
 
-mod feed_forward;
-
-pub(crate) use feed_forward::{Dropout, FeedForward, Gradients};
+pub(crate) mod attention;
+pub(crate) mod feed_forward;

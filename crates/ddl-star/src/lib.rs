@@ -13,6 +13,8 @@ mod forecast;
 mod kernel;
 mod layers;
 mod loss;
+mod neighbours;
+mod numbers;
 mod optimizer;
 mod parameters;
 mod pass;

@@ -1,6 +1,6 @@
 //! The learned tensors, by name and in order, and their seeded initial values.
 
-use crate::kernel::Gradients;
+use crate::kernel::feed_forward::Gradients;
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -75,7 +75,7 @@ impl Parameters {
                 };
                 match kernels
                     .iter()
-                    .find_map(|(layer, of)| of.named(name.strip_prefix(layer)?))
+                    .find_map(|(layer, of)| named(of, name.strip_prefix(layer)?))
                 {
                     Some(kernel) => gradient.f_add(&Tensor::from_slice(kernel)),
                     None => Ok(gradient),
@@ -83,6 +83,17 @@ impl Parameters {
             })
             .collect::<Result<Vec<_>, _>>()?;
         Tensor::f_cat(&rows, 0)
+    }
+}
+
+/// The gradient of a weight of a feed-forward block, by its name within the layer.
+fn named<'a>(gradients: &'a Gradients, name: &str) -> Option<&'a [f32]> {
+    match name {
+        ".linear1.weight" => Some(&gradients.w1),
+        ".linear1.bias" => Some(&gradients.b1),
+        ".linear2.weight" => Some(&gradients.w2),
+        ".linear2.bias" => Some(&gradients.b2),
+        _ => None,
     }
 }
 

@@ -6,6 +6,7 @@ use crate::layers::Mode;
 use crate::pass::Pass;
 use crate::star::{GraphMemory, NoiseInput, StarNetwork};
 use ddl_data::OBSERVED;
+use std::ops::Range;
 use tch::{Kind, Tensor};
 
 /// What the network made of observed frames: where everybody goes, and what shaped the way.
@@ -45,9 +46,10 @@ impl StarNetwork {
     ) -> Tensor {
         let steps = batch.positions.size()[0] - 1;
         let positions = batch.positions.narrow(0, 0, steps);
-        let mask = batch.neighbour_mask.narrow(0, 0, steps);
+        let seen = |frames: Range<usize>| batch.neighbours.during(frames);
         // The frames are known, so all of them pass the first spatial encoder at once.
-        let spatial = self.spatial_tokens(&centre(batch, &positions), &mask, pass);
+        let spatial =
+            self.spatial_tokens(&centre(batch, &positions), &seen(0..steps as usize), pass);
         let spatial = pass.junction(&spatial);
         let reference = self.reference(batch, goals);
         let relative = &positions - &reference;
@@ -59,7 +61,7 @@ impl StarNetwork {
                     &mut memory,
                     &frame(&relative),
                     &frame(&spatial),
-                    &frame(&mask),
+                    &seen(t as usize..t as usize + 1),
                     pass,
                 )
             })
@@ -91,7 +93,7 @@ impl StarNetwork {
         let reference = self.reference(batch, goals);
         let spatial = self.spatial_tokens(
             &centre(batch, &observed),
-            &batch.neighbour_mask.narrow(0, 0, last + 1),
+            &batch.neighbours.during(0..OBSERVED),
             pass,
         );
         // The observed frames differ between hypotheses only through the goal they are shifted by:
@@ -99,12 +101,12 @@ impl StarNetwork {
         let mut memory = GraphMemory::default();
         let mut observe = |t: i64| {
             let relative = observed.get(t) - &reference;
-            let mask = batch.neighbour_mask.narrow(0, t, 1);
+            let seen = batch.neighbours.during(t as usize..t as usize + 1);
             self.step(
                 &mut memory,
                 &relative,
                 &spatial.narrow(0, t, 1),
-                &mask,
+                &seen,
                 pass,
             )
         };
@@ -116,7 +118,7 @@ impl StarNetwork {
             token = token.expand([hypotheses, -1, -1], false);
             memory = memory.expand_batch(hypotheses);
         }
-        let mask = batch.neighbour_mask.narrow(0, last, 1);
+        let seen = batch.neighbours.during(OBSERVED - 1..OBSERVED);
         let mut position = observed
             .narrow(0, last, 1)
             .expand([hypotheses, -1, -1], false);
@@ -133,9 +135,9 @@ impl StarNetwork {
             if t + 1 < OBSERVED + horizon {
                 sum = &sum + &position;
                 let centred = &position - batch.scene_mean.matmul(&sum) / (t + 1) as f64;
-                let spatial = self.spatial_tokens(&centred, &mask, pass);
+                let spatial = self.spatial_tokens(&centred, &seen, pass);
                 let relative = &position - &reference;
-                token = self.step(&mut memory, &relative, &spatial, &mask, pass);
+                token = self.step(&mut memory, &relative, &spatial, &seen, pass);
             }
         }
         let shaped = self.config().variant.dynamics();

@@ -2,6 +2,7 @@
 
 use crate::config::StarConfig;
 use crate::encoder_layer::EncoderLayer;
+use crate::neighbours::Seen;
 use crate::parameters::Initializer;
 use crate::pass::Pass;
 use tch::Tensor;
@@ -21,10 +22,10 @@ impl SpatialEncoder {
     }
 
     /// # Shapes
-    /// `x` `[B, P, width]`; `mask` `[1 or B, 1, P, P]` -> `[B, P, width]`.
-    pub(crate) fn forward(&self, x: &Tensor, mask: &Tensor, pass: &Pass) -> Tensor {
+    /// `x` `[B, P, width]`; `seen` during one frame or B -> `[B, P, width]`.
+    pub(crate) fn forward(&self, x: &Tensor, seen: &Seen<'_>, pass: &Pass) -> Tensor {
         self.layers.iter().fold(x.shallow_clone(), |x, layer| {
-            layer.among_walkers(&x, mask, pass)
+            layer.among_walkers(&x, seen, pass)
         })
     }
 }

@@ -9,6 +9,7 @@ use crate::StarError;
 use crate::config::StarConfig;
 use crate::device::ComputeDevice;
 use crate::layers::Linear;
+use crate::neighbours::Seen;
 use crate::parameters::{Initializer, Parameters};
 use crate::pass::Pass;
 use crate::seed::{Stage, stream};
@@ -124,24 +125,24 @@ impl StarNetwork {
     /// Spatial tokens of whole frames: embedding and first spatial encoder.
     ///
     /// # Shapes
-    /// `centred` `[F, P, 2]`, positions relative to the scene's mean so far; `mask`
-    /// `[1 or F, 1, P, P]` -> `[F, P, width]`.
-    pub(crate) fn spatial_tokens(&self, centred: &Tensor, mask: &Tensor, pass: &Pass) -> Tensor {
+    /// `centred` `[F, P, 2]`, positions relative to the scene's mean so far; `seen`
+    /// during one frame or F -> `[F, P, width]`.
+    pub(crate) fn spatial_tokens(&self, centred: &Tensor, seen: &Seen<'_>, pass: &Pass) -> Tensor {
         let embedded = self.spatial_embedding.forward(centred).relu();
-        self.spatial_encoder_1.forward(&embedded, mask, pass)
+        self.spatial_encoder_1.forward(&embedded, seen, pass)
     }
 
     /// One frame: the walkers' new tokens, which are also remembered.
     ///
     /// # Shapes
     /// `relative` `[B, P, 2]`, positions relative to the goal (or to the last observed position);
-    /// `spatial` `[1 or B, P, width]`; `mask` `[1, 1, P, P]` -> `[B, P, width]`.
+    /// `spatial` `[1 or B, P, width]`; `seen` during one frame -> `[B, P, width]`.
     pub(crate) fn step(
         &self,
         memory: &mut GraphMemory,
         relative: &Tensor,
         spatial: &Tensor,
-        mask: &Tensor,
+        seen: &Seen<'_>,
         pass: &Pass,
     ) -> Tensor {
         let newest = self.temporal_embedding.forward(relative).relu();
@@ -152,7 +153,7 @@ impl StarNetwork {
         let fused = self
             .fusion
             .forward(&Tensor::cat(&[&temporal, &spatial], -1));
-        let among = self.spatial_encoder_2.forward(&fused, mask, pass);
+        let among = self.spatial_encoder_2.forward(&fused, seen, pass);
         let token = self
             .temporal_encoder_2
             .forward(&among, &memory.second, pass);

@@ -1,0 +1,238 @@
+//! Attention of every walker over the walkers of its scene that it sees (Vaswani et al. 2017, section 3.2).
+
+mod backward;
+mod forward;
+mod queries;
+
+use rayon::prelude::*;
+
+use super::dropout::{Decisions, Dropout};
+use super::heads::{GROUP, Heads};
+use super::instruction_set::{Dispatch, InstructionSet};
+use super::scenes::{Frames, Scene};
+use backward::Backward;
+use forward::Forward;
+use queries::Buffers;
+
+/// Pairs of a query and a key below which other threads are not worth waking.
+const PAIRS_FOR_THREADS: usize = 20_000;
+
+/// Multi-head attention within scenes.
+///
+/// mixed_i = Σ_j d_ij softmax_j(q_i · k_j / √head width) v_j over the j that i sees, for each head alone, where d_ij is
+/// 1 or what [`Dropout`] makes of it.
+///
+/// # Numerics
+/// Every number is computed by one thread in a fixed order: results do not depend on the number of threads. The
+/// instruction sets agree to rounding.
+///
+/// # Examples
+/// ```
+/// use att::kernel::{AmongWalkers, Attended, Scenes};
+/// let attention = AmongWalkers::new(8, 4);
+/// let scenes = Scenes::all_visible(&[1, 2]);
+/// let qkv = vec![0.5; 3 * 96];
+/// let mut attended = Attended::default();
+/// attention.forward(&qkv, scenes.throughout(), None, &mut attended);
+/// assert!(attended.mixed().iter().all(|&value| value == 0.5));
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct AmongWalkers {
+    heads: Heads,
+    dispatch: Dispatch,
+}
+
+/// What came out of [`AmongWalkers::forward`], and what its gradient needs.
+#[derive(Clone, Debug, Default)]
+pub struct Attended {
+    mixed: Vec<f32>,
+    /// For each row and group of heads: the largest score of each head (log2 units), and 1 / Σ 2^(score − largest).
+    normalisers: Vec<f32>,
+}
+
+impl Attended {
+    /// Mixed values, `[B, P, heads, head width]`.
+    pub fn mixed(&self) -> &[f32] {
+        &self.mixed
+    }
+}
+
+/// One scene in one batch entry.
+#[derive(Clone, Copy, Debug)]
+struct Task<'a> {
+    scene: Scene<'a>,
+    entry: usize,
+    decisions: Option<Decisions>,
+    heads: Heads,
+}
+
+impl AmongWalkers {
+    /// Attention with the fastest instructions of this machine.
+    ///
+    /// # Panics
+    /// When there are no heads or more than 256, or they have no width.
+    pub fn new(heads: usize, head_width: usize) -> Self {
+        Self {
+            heads: Heads::new(heads, head_width),
+            dispatch: Dispatch::detect(),
+        }
+    }
+
+    /// The same with chosen instructions; `None` when the machine lacks them.
+    pub fn with_instructions(self, set: InstructionSet) -> Option<Self> {
+        let dispatch = Dispatch::new(set)?;
+        Some(Self { dispatch, ..self })
+    }
+
+    /// Mixes the values of what each walker sees.
+    ///
+    /// # Shapes
+    /// `qkv` `[B, P, 3, heads, head width]`, with the walkers P of the scenes; `frames` one or B -> `attended`, whose
+    /// buffers are used again.
+    ///
+    /// # Panics
+    /// When a shape does not fit, or the probability of `dropout` does not lie in [0, 1).
+    pub fn forward(
+        &self,
+        qkv: &[f32],
+        frames: Frames<'_>,
+        dropout: Option<Dropout>,
+        attended: &mut Attended,
+    ) {
+        let entries = self.check(qkv, frames);
+        let rows = entries * frames.scenes().walkers();
+        let (row, normaliser) = (self.heads.row(), self.heads.groups() * 2 * GROUP);
+        attended.mixed.resize(rows * row, 0.0);
+        attended.normalisers.resize(rows * normaliser, 0.0);
+        let (mut mixed, mut normalisers) = (&mut attended.mixed[..], &mut attended.normalisers[..]);
+        let mut jobs = Vec::new();
+        for (qkv, task) in self.tasks(qkv, frames, dropout) {
+            jobs.push(Forward {
+                qkv,
+                mixed: split(&mut mixed, task.scene.walkers * row),
+                normalisers: split(&mut normalisers, task.scene.walkers * normaliser),
+                task,
+            });
+        }
+        self.each(jobs, frames.pairs(entries), |job, buffers| {
+            self.dispatch.run(forward::Run { job, buffers });
+        });
+    }
+
+    /// The gradient of the inputs of [`AmongWalkers::forward`] from that of its output.
+    ///
+    /// # Shapes
+    /// `mixed_gradient` `[B, P, heads, head width]` -> `qkv_gradient` `[B, P, 3, heads, head width]`, all of which is
+    /// overwritten.
+    ///
+    /// # Panics
+    /// When a shape does not fit. The first four arguments must be those of the forward pass.
+    pub fn backward(
+        &self,
+        qkv: &[f32],
+        frames: Frames<'_>,
+        dropout: Option<Dropout>,
+        attended: &Attended,
+        mixed_gradient: &[f32],
+        qkv_gradient: &mut [f32],
+    ) {
+        let entries = self.check(qkv, frames);
+        let rows = entries * frames.scenes().walkers();
+        let (row, normaliser) = (self.heads.row(), self.heads.groups() * 2 * GROUP);
+        assert!(
+            attended.mixed.len() == rows * row,
+            "attended holds {} numbers of {rows} rows of {row}",
+            attended.mixed.len()
+        );
+        assert!(
+            mixed_gradient.len() == rows * row,
+            "the gradient of mixed has {} numbers, not {rows} rows of {row}",
+            mixed_gradient.len()
+        );
+        assert!(
+            qkv_gradient.len() == qkv.len(),
+            "the gradient of qkv has {} numbers, qkv {}",
+            qkv_gradient.len(),
+            qkv.len()
+        );
+        let (mut mixed, mut normalisers) = (&attended.mixed[..], &attended.normalisers[..]);
+        let (mut mixed_gradient, mut qkv_gradient) = (mixed_gradient, qkv_gradient);
+        let mut jobs = Vec::new();
+        for (qkv, task) in self.tasks(qkv, frames, dropout) {
+            let walkers = task.scene.walkers;
+            jobs.push(Backward {
+                qkv,
+                mixed: mixed.split_off(..walkers * row).unwrap_or_default(),
+                normalisers: normalisers
+                    .split_off(..walkers * normaliser)
+                    .unwrap_or_default(),
+                mixed_gradient: mixed_gradient
+                    .split_off(..walkers * row)
+                    .unwrap_or_default(),
+                qkv_gradient: split(&mut qkv_gradient, qkv.len()),
+                task,
+            });
+        }
+        self.each(jobs, frames.pairs(entries), |job, buffers| {
+            self.dispatch.run(backward::Run { job, buffers });
+        });
+    }
+
+    /// Batch entries.
+    fn check(&self, qkv: &[f32], frames: Frames<'_>) -> usize {
+        let entry = frames.scenes().walkers() * 3 * self.heads.row();
+        assert!(
+            !qkv.is_empty() && qkv.len().is_multiple_of(entry),
+            "qkv has {} numbers, not a multiple of {entry}: {} walkers, 3 x {} x {}",
+            qkv.len(),
+            frames.scenes().walkers(),
+            self.heads.count,
+            self.heads.width
+        );
+        let entries = qkv.len() / entry;
+        frames.check(entries);
+        entries
+    }
+
+    /// Every scene of every entry, with its part of `qkv`, in the order of the rows.
+    fn tasks<'a>(
+        &self,
+        qkv: &'a [f32],
+        frames: Frames<'a>,
+        dropout: Option<Dropout>,
+    ) -> impl Iterator<Item = (&'a [f32], Task<'a>)> {
+        let (heads, decisions) = (self.heads, dropout.and_then(Decisions::new));
+        let row = 3 * heads.row();
+        let entries = qkv.chunks_exact(frames.scenes().walkers() * row);
+        entries.enumerate().flat_map(move |(entry, qkv)| {
+            frames.of_entry(entry).map(move |scene| {
+                let task = Task {
+                    scene,
+                    entry,
+                    decisions,
+                    heads,
+                };
+                (&qkv[scene.first * row..][..scene.walkers * row], task)
+            })
+        })
+    }
+
+    /// Does all jobs, on all threads when there are many `pairs`.
+    fn each<J: Send>(&self, jobs: Vec<J>, pairs: usize, run: impl Fn(J, &mut Buffers) + Sync) {
+        let pairs = pairs * self.heads.groups() * self.heads.blocks();
+        if pairs < PAIRS_FOR_THREADS {
+            let mut buffers = Buffers::default();
+            for job in jobs {
+                run(job, &mut buffers);
+            }
+        } else {
+            jobs.into_par_iter()
+                .for_each_init(Buffers::default, |buffers, job| run(job, buffers));
+        }
+    }
+}
+
+/// Takes `count` numbers off the front.
+fn split<'a>(rest: &mut &'a mut [f32], count: usize) -> &'a mut [f32] {
+    rest.split_off_mut(..count).unwrap_or_default()
+}

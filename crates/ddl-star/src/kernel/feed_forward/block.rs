@@ -1,0 +1,55 @@
+//! Thirty-two numbers, the unit that matrices are cut into.
+
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+
+/// Numbers in a [`Block`].
+pub(crate) const BLOCK: usize = 32;
+
+/// A piece of a row of a matrix. Aligned, because a register's load that crosses a cache line costs two.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Block(pub(crate) [f32; BLOCK]);
+
+impl Block {
+    pub(crate) const ZERO: Self = Self([0.0; BLOCK]);
+
+    /// Up to 32 numbers, the others 0.
+    pub(crate) fn padded(from: &[f32]) -> Self {
+        let mut block = Self::ZERO;
+        block.0[..from.len()].copy_from_slice(from);
+        block
+    }
+
+    /// Adds as many of the numbers as there are sums.
+    #[inline(always)]
+    pub(crate) fn add_to(&self, sums: &mut [f32]) {
+        for (sum, term) in sums.iter_mut().zip(&self.0) {
+            *sum += term;
+        }
+    }
+}
+
+/// 32 rows of a block each.
+pub(crate) type Panel = [Block; BLOCK];
+
+/// Writes the transposed panel.
+pub(crate) fn transpose(panel: &Panel, into: &mut Panel) {
+    for (i, row) in into.iter_mut().enumerate() {
+        for (j, value) in row.0.iter_mut().enumerate() {
+            *value = panel[j].0[i];
+        }
+    }
+}
+
+/// R rows from `first`.
+#[inline]
+pub(crate) fn tile<const R: usize>(rows: &[Block], first: usize) -> &[Block; R] {
+    rows[first..].first_chunk().expect("rows in whole tiles")
+}
+
+#[inline]
+pub(crate) fn tile_mut<const R: usize>(rows: &mut [Block], first: usize) -> &mut [Block; R] {
+    rows[first..]
+        .first_chunk_mut()
+        .expect("rows in whole tiles")
+}

@@ -1,0 +1,68 @@
+//! One block of hidden units of a few rows.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use super::weights::Weights;
+use crate::kernel::feed_forward::block::{BLOCK, Block, tile};
+use crate::kernel::feed_forward::block_rows::BlockRows;
+use crate::kernel::feed_forward::product::{multiply, store_tile};
+use crate::kernel::feed_forward::simd::Simd;
+
+/// relu(W1 x + b1) of the units of block `unit`, for R rows from `row`.
+#[inline(always)]
+pub(super) fn activate<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    weights: &Weights,
+    unit: usize,
+    x: &BlockRows,
+    row: usize,
+    hidden: &mut [Block; R],
+) {
+    for part in (0..BLOCK / S::WIDTH).step_by(V) {
+        let mut sum = [[simd.splat(0.0); V]; R];
+        for r in 0..R {
+            for v in 0..V {
+                sum[r][v] = simd.load(&weights.b1[unit], part + v);
+            }
+        }
+        for column in 0..weights.columns {
+            let x = tile(x.column(column), row);
+            sum = multiply(simd, sum, x, weights.w1_transposed(unit, column), part);
+        }
+        for r in 0..R {
+            for v in 0..V {
+                sum[r][v] = simd.relu(sum[r][v]);
+            }
+        }
+        store_tile(simd, &sum, hidden, part);
+    }
+}
+
+/// Derivative with respect to what ReLU is applied to: W2^T gy times `scale`, 0 where `hidden` is 0.
+#[inline(always)]
+pub(super) fn deactivate<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    weights: &Weights,
+    unit: usize,
+    gy: &BlockRows,
+    row: usize,
+    scale: f32,
+    hidden: &[Block; R],
+    gradient: &mut [Block; R],
+) {
+    for part in (0..BLOCK / S::WIDTH).step_by(V) {
+        let mut sum = [[simd.splat(0.0); V]; R];
+        for column in 0..weights.columns {
+            let gy = tile(gy.column(column), row);
+            sum = multiply(simd, sum, gy, weights.w2(unit, column), part);
+        }
+        for r in 0..R {
+            for v in 0..V {
+                let scaled = simd.mul(sum[r][v], simd.splat(scale));
+                let hidden = simd.load(&hidden[r], part + v);
+                sum[r][v] = simd.zero_unless_positive(hidden, scaled);
+            }
+        }
+        store_tile(simd, &sum, gradient, part);
+    }
+}
