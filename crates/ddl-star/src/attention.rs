@@ -8,6 +8,7 @@ use crate::neighbours::Seen;
 use crate::numbers::{numbers, tensor};
 use crate::parameters::Initializer;
 use crate::pass::Pass;
+use crate::remembered::{self, KeyValue};
 use tch::Tensor;
 
 /// Multi-head attention with one joint projection for query, key and value.
@@ -19,27 +20,6 @@ pub(crate) struct MultiHeadAttention {
     heads: i64,
     width: i64,
     dropout: f64,
-}
-
-/// Key and value of one token a walker: what later queries need of it.
-///
-/// # Shapes
-/// Both `[B, P, heads, width / heads]`.
-#[derive(Debug)]
-pub(crate) struct KeyValue {
-    key: Tensor,
-    value: Tensor,
-}
-
-impl KeyValue {
-    /// Repeats a single batch entry `batch` times, without copying.
-    pub(crate) fn expand_batch(&self, batch: i64) -> Self {
-        let expand = |tensor: &Tensor| tensor.expand([batch, -1, -1, -1], false);
-        Self {
-            key: expand(&self.key),
-            value: expand(&self.value),
-        }
-    }
 }
 
 impl MultiHeadAttention {
@@ -131,16 +111,24 @@ impl MultiHeadAttention {
     ///
     /// # Shapes
     /// `newest` `[B, P, width]`; each memory as [`KeyValue`] -> `[B, P, width]`.
-    pub(crate) fn over_memory(&self, newest: &Tensor, memory: &[KeyValue]) -> Tensor {
+    pub(crate) fn over_memory(&self, newest: &Tensor, memory: &[KeyValue], pass: &Pass) -> Tensor {
         let (batch, walkers) = (newest.size()[0], newest.size()[1]);
-        let qkv = newest
-            .linear(&self.in_proj_weight, Some(&self.in_proj_bias))
-            .view([batch, walkers, 3, self.heads, self.width / self.heads]);
+        let qkv = newest.linear(&self.in_proj_weight, Some(&self.in_proj_bias));
+        let plain: Option<Vec<_>> = memory.iter().map(KeyValue::plain).collect();
+        if let Some(plain) = plain.filter(|_| pass.kernels_may_take(&qkv)) {
+            let mixed = remembered::over_memory(&qkv, plain, self.heads, pass);
+            return self.out_proj.forward(&mixed);
+        }
+        let qkv = qkv.view([batch, walkers, 3, self.heads, self.width / self.heads]);
         let (query, key, value) = (qkv.select(2, 0), qkv.select(2, 1), qkv.select(2, 2));
-        let mut keys: Vec<&Tensor> = memory.iter().map(|token| &token.key).collect();
-        let mut values: Vec<&Tensor> = memory.iter().map(|token| &token.value).collect();
-        keys.push(&key);
-        values.push(&value);
+        let mut keys = vec![&key];
+        let mut values = vec![&value];
+        for token in memory {
+            if let KeyValue::Tensors { key, value } = token {
+                keys.push(key);
+                values.push(value);
+            }
+        }
         // One query a walker and head: products and sums beat a batch of 1 x t matrix products.
         let scores = (Tensor::stack(&keys, 0) * (query * self.scale())).sum_dim_intlist(
             [-1i64].as_slice(),
@@ -159,19 +147,12 @@ impl MultiHeadAttention {
     /// # Shapes
     /// `token` `[B, P, width]`.
     pub(crate) fn remember(&self, token: &Tensor, pass: &Pass) -> KeyValue {
-        let (batch, walkers) = (token.size()[0], token.size()[1]);
         let rows = 2 * self.width;
-        let key_value = token
-            .linear(
-                &self.in_proj_weight.narrow(0, self.width, rows),
-                Some(&self.in_proj_bias.narrow(0, self.width, rows)),
-            )
-            .view([batch, walkers, 2, self.heads, self.width / self.heads]);
-        let key_value = pass.junction(&key_value);
-        KeyValue {
-            key: key_value.select(2, 0),
-            value: key_value.select(2, 1),
-        }
+        let key_value = token.linear(
+            &self.in_proj_weight.narrow(0, self.width, rows),
+            Some(&self.in_proj_bias.narrow(0, self.width, rows)),
+        );
+        KeyValue::of(&key_value, self.heads, pass)
     }
 
     fn scale(&self) -> f64 {

@@ -1,7 +1,7 @@
 //! One Transformer encoder layer: attention, then a feed-forward block, each with a residual
 //! connection and normalised afterwards (post-norm, `ReLU`).
 
-use crate::attention::{KeyValue, MultiHeadAttention};
+use crate::attention::MultiHeadAttention;
 use crate::config::StarConfig;
 use crate::dropout::dropout;
 use crate::kernel::feed_forward::{Dropout, FeedForward, Gradients};
@@ -10,6 +10,7 @@ use crate::neighbours::Seen;
 use crate::numbers::{numbers, tensor};
 use crate::parameters::Initializer;
 use crate::pass::Pass;
+use crate::remembered::KeyValue;
 use tch::Tensor;
 
 #[derive(Debug)]
@@ -54,7 +55,7 @@ impl EncoderLayer {
     /// Shapes as in [`MultiHeadAttention::over_memory`].
     pub(crate) fn over_memory(&self, newest: &Tensor, memory: &[KeyValue], pass: &Pass) -> Tensor {
         let newest = pass.junction(newest);
-        let attended = self.attention.over_memory(&newest, memory);
+        let attended = self.attention.over_memory(&newest, memory, pass);
         self.after_attention(&newest, attended, pass)
     }
 

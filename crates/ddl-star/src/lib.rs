@@ -19,6 +19,7 @@ mod optimizer;
 mod parameters;
 mod pass;
 mod proposal;
+mod remembered;
 mod rollout;
 mod schedule;
 mod seed;

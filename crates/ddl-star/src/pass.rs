@@ -85,6 +85,14 @@ impl Pass {
         }
     }
 
+    /// Ends the graph at `x`, from which kernels go on in ways of their own; `gradient` gives what came back to it
+    /// from all of them, if anything did.
+    pub(crate) fn joined(&self, x: &Tensor, gradient: impl FnOnce() -> Option<Tensor> + 'static) {
+        if let Some(tape) = &self.tape {
+            tape.end(x, gradient);
+        }
+    }
+
     /// Probability and seed of a kernel's dropout, each with a seed of its own; none outside training.
     pub(crate) fn dropout(&self, p: f64) -> Option<(f64, u64)> {
         if self.mode == Mode::Evaluate || p == 0.0 {

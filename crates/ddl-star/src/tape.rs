@@ -9,12 +9,11 @@ use std::cell::RefCell;
 
 use tch::{Kind, TchError, Tensor};
 
-/// Gradients of the inputs of a cut, given that of its output.
-type Backward = Box<dyn FnOnce(&Tensor) -> Result<Vec<Tensor>, TchError>>;
+/// Gradients of the inputs of a cut; `None` when nothing of the loss depends on what was made of them.
+type Backward = Box<dyn FnOnce() -> Result<Option<Vec<Tensor>>, TchError>>;
 
 struct Cut {
     inputs: Vec<Tensor>,
-    output: Tensor,
     backward: Backward,
 }
 
@@ -39,24 +38,43 @@ impl Tape {
         backward: impl FnOnce(&Tensor) -> Result<Vec<Tensor>, TchError> + 'static,
     ) -> Tensor {
         let output = output.set_requires_grad(true);
-        self.cuts.borrow_mut().push(Cut {
-            inputs: inputs.iter().map(|input| input.shallow_clone()).collect(),
-            output: output.shallow_clone(),
-            backward: Box::new(backward),
+        let leaf = output.shallow_clone();
+        self.push(inputs, move || {
+            let gradient = leaf.f_grad()?;
+            if gradient.defined() {
+                backward(&gradient).map(Some)
+            } else {
+                Ok(None)
+            }
         });
         output
+    }
+
+    /// The end of libtorch's graph at `input`: what is made of it is no tensor. `gradient` gives what came back.
+    pub(crate) fn end(&self, input: &Tensor, gradient: impl FnOnce() -> Option<Tensor> + 'static) {
+        self.push(&[input], move || {
+            Ok(gradient().map(|gradient| vec![gradient]))
+        });
+    }
+
+    fn push(
+        &self,
+        inputs: &[&Tensor],
+        backward: impl FnOnce() -> Result<Option<Vec<Tensor>>, TchError> + 'static,
+    ) {
+        self.cuts.borrow_mut().push(Cut {
+            inputs: inputs.iter().map(|input| input.shallow_clone()).collect(),
+            backward: Box::new(backward),
+        });
     }
 
     /// Adds the gradient of `loss` to every leaf that it depends on, through all cuts. The tape is empty then.
     pub(crate) fn backward(&self, loss: &Tensor) -> Result<(), TchError> {
         loss.f_backward()?;
         for cut in self.cuts.take().into_iter().rev() {
-            let gradient = cut.output.f_grad()?;
-            if !gradient.defined() {
-                // nothing of the loss depends on it
+            let Some(gradients) = (cut.backward)()? else {
                 continue;
-            }
-            let gradients = (cut.backward)(&gradient)?;
+            };
             let mut parts = Vec::new();
             for (input, gradient) in cut.inputs.iter().zip(gradients) {
                 if input.requires_grad() {

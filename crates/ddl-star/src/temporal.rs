@@ -3,11 +3,11 @@
 //! Only the newest token's output is used, and earlier tokens never change: so one query a step is
 //! computed, and keys and values of the past are remembered. Same function, less work.
 
-use crate::attention::KeyValue;
 use crate::config::StarConfig;
 use crate::encoder_layer::EncoderLayer;
 use crate::parameters::Initializer;
 use crate::pass::Pass;
+use crate::remembered::KeyValue;
 use tch::Tensor;
 
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! Parts of the network computed without libtorch, so that what passes between two products stays in the cache.
 //!
-//! Matrices are cut into [`Block`]s of [`BLOCK`] numbers, padded with zeros. A computation is written once, as a
-//! [`Kernel`](simd::Kernel), for any [`Simd`](simd::Simd); [`Dispatch::run`](instruction_set::Dispatch::run) compiles it
+//! Matrices are cut into blocks of 32 numbers, padded with zeros. A computation is written once, as a
+//! `Kernel`, for any `Simd`; `Dispatch::run` compiles it
 //! for each instruction set and picks the one that was chosen. What is `unsafe` lies in one module.
 
 mod block;

@@ -7,8 +7,9 @@ mod queries;
 use rayon::prelude::*;
 
 use super::dropout::{Decisions, Dropout};
-use super::heads::{GROUP, Heads};
+use super::heads::Heads;
 use super::instruction_set::{Dispatch, InstructionSet};
+use super::lanes::Lanes;
 use super::scenes::{Frames, Scene};
 use backward::Backward;
 use forward::Forward;
@@ -19,8 +20,8 @@ const PAIRS_FOR_THREADS: usize = 20_000;
 
 /// Multi-head attention within scenes.
 ///
-/// mixed_i = Σ_j d_ij softmax_j(q_i · k_j / √head width) v_j over the j that i sees, for each head alone, where d_ij is
-/// 1 or what [`Dropout`] makes of it.
+/// `mixed_i = Σ_j d_ij softmax_j(q_i · k_j / √head width) v_j` over the j that i sees, for each head alone, where `d_ij`
+/// is 1 or what [`Dropout`] makes of it.
 ///
 /// # Numerics
 /// Every number is computed by one thread in a fixed order: results do not depend on the number of threads. The
@@ -46,8 +47,8 @@ pub struct AmongWalkers {
 #[derive(Clone, Debug, Default)]
 pub struct Attended {
     mixed: Vec<f32>,
-    /// For each row and group of heads: the largest score of each head (log2 units), and 1 / Σ 2^(score − largest).
-    normalisers: Vec<f32>,
+    /// By entry, scene, group of heads and two queries: the largest score (log2 units), and 1 / Σ 2^(score − largest).
+    normalisers: Vec<[Lanes; 2]>,
 }
 
 impl Attended {
@@ -64,6 +65,13 @@ struct Task<'a> {
     entry: usize,
     decisions: Option<Decisions>,
     heads: Heads,
+}
+
+impl Task<'_> {
+    /// Groups of heads times pairs of queries.
+    fn normalisers(&self) -> usize {
+        self.heads.groups() * self.scene.walkers.div_ceil(2)
+    }
 }
 
 impl AmongWalkers {
@@ -101,16 +109,21 @@ impl AmongWalkers {
     ) {
         let entries = self.check(qkv, frames);
         let rows = entries * frames.scenes().walkers();
-        let (row, normaliser) = (self.heads.row(), self.heads.groups() * 2 * GROUP);
+        let row = self.heads.row();
         attended.mixed.resize(rows * row, 0.0);
-        attended.normalisers.resize(rows * normaliser, 0.0);
+        let normalisers = entries * self.normalisers(frames);
+        attended.normalisers.resize(normalisers, [Lanes::ZERO; 2]);
         let (mut mixed, mut normalisers) = (&mut attended.mixed[..], &mut attended.normalisers[..]);
         let mut jobs = Vec::new();
         for (qkv, task) in self.tasks(qkv, frames, dropout) {
             jobs.push(Forward {
                 qkv,
-                mixed: split(&mut mixed, task.scene.walkers * row),
-                normalisers: split(&mut normalisers, task.scene.walkers * normaliser),
+                mixed: mixed
+                    .split_off_mut(..task.scene.walkers * row)
+                    .unwrap_or_default(),
+                normalisers: normalisers
+                    .split_off_mut(..task.normalisers())
+                    .unwrap_or_default(),
                 task,
             });
         }
@@ -138,9 +151,10 @@ impl AmongWalkers {
     ) {
         let entries = self.check(qkv, frames);
         let rows = entries * frames.scenes().walkers();
-        let (row, normaliser) = (self.heads.row(), self.heads.groups() * 2 * GROUP);
+        let row = self.heads.row();
         assert!(
-            attended.mixed.len() == rows * row,
+            attended.mixed.len() == rows * row
+                && attended.normalisers.len() == entries * self.normalisers(frames),
             "attended holds {} numbers of {rows} rows of {row}",
             attended.mixed.len()
         );
@@ -164,18 +178,24 @@ impl AmongWalkers {
                 qkv,
                 mixed: mixed.split_off(..walkers * row).unwrap_or_default(),
                 normalisers: normalisers
-                    .split_off(..walkers * normaliser)
+                    .split_off(..task.normalisers())
                     .unwrap_or_default(),
                 mixed_gradient: mixed_gradient
                     .split_off(..walkers * row)
                     .unwrap_or_default(),
-                qkv_gradient: split(&mut qkv_gradient, qkv.len()),
+                qkv_gradient: qkv_gradient.split_off_mut(..qkv.len()).unwrap_or_default(),
                 task,
             });
         }
         self.each(jobs, frames.pairs(entries), |job, buffers| {
             self.dispatch.run(backward::Run { job, buffers });
         });
+    }
+
+    /// [`Task::normalisers`] of all scenes of an entry.
+    fn normalisers(&self, frames: Frames<'_>) -> usize {
+        let ranges = frames.scenes().ranges().iter();
+        self.heads.groups() * ranges.map(|range| range.len().div_ceil(2)).sum::<usize>()
     }
 
     /// Batch entries.
@@ -230,9 +250,4 @@ impl AmongWalkers {
                 .for_each_init(Buffers::default, |buffers, job| run(job, buffers));
         }
     }
-}
-
-/// Takes `count` numbers off the front.
-fn split<'a>(rest: &mut &'a mut [f32], count: usize) -> &'a mut [f32] {
-    rest.split_off_mut(..count).unwrap_or_default()
 }

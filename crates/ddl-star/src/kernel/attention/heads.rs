@@ -2,7 +2,8 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use super::lanes::{DEPTH, LANES, Lanes, Vectors};
+use super::lanes::{DEPTH, LANES};
+use super::simd::{Simd, Vectors};
 
 /// Heads of a walker that are computed together.
 pub(crate) const GROUP: usize = LANES / 2;
@@ -66,59 +67,73 @@ impl Part {
         }
     }
 
-    /// Heads of two rows side by side; a missing row counts as zeros.
+    /// Heads of two rows side by side; a missing row counts as zeros. Vector d holds the d-th numbers.
+    ///
+    /// Lane l is head l / 4 + 4 (l mod 2) of row (l mod 4) / 2, for which rows need only be transposed within pieces of
+    /// four lanes.
     #[inline(always)]
-    pub(crate) fn load(self, first: &[f32], second: Option<&[f32]>) -> Vectors {
-        let mut block = [Lanes::ZERO; DEPTH];
-        self.load_half::<0>(first, &mut block);
+    pub(crate) fn load<S: Simd>(
+        self,
+        simd: S,
+        first: &[f32],
+        second: Option<&[f32]>,
+    ) -> Vectors<S> {
+        let [a, b] = self.row(simd, first);
+        let [c, d] = match second {
+            Some(second) => self.row(simd, second),
+            None => [simd.splat(0.0); 2],
+        };
+        simd.transpose([a, b, c, d])
+    }
+
+    /// The inverse of [`Part::load`].
+    #[inline(always)]
+    pub(crate) fn store<S: Simd>(
+        self,
+        simd: S,
+        vectors: Vectors<S>,
+        first: &mut [f32],
+        second: Option<&mut [f32]>,
+    ) {
+        let [a, b, c, d] = simd.transpose(vectors);
+        self.store_row(simd, [a, b], first);
         if let Some(second) = second {
-            self.load_half::<GROUP>(second, &mut block);
-        }
-        block
-    }
-
-    #[inline(always)]
-    fn load_half<const OFFSET: usize>(self, row: &[f32], into: &mut Vectors) {
-        if let Some(numbers) = self.whole(row) {
-            for d in 0..DEPTH {
-                for head in 0..GROUP {
-                    into[d].0[OFFSET + head] = numbers[head * DEPTH + d];
-                }
-            }
-        } else {
-            self.each(|head, d, at| into[d].0[OFFSET + head] = row[at]);
+            self.store_row(simd, [c, d], second);
         }
     }
 
-    /// Sets the numbers of a row to `factor` times those of lanes `OFFSET ..`.
+    /// Stores the sum of what belongs to the two rows.
     #[inline(always)]
-    pub(crate) fn store<const OFFSET: usize>(self, from: &Vectors, row: &mut [f32]) {
-        if let Some(numbers) = self.whole_mut(row) {
-            for head in 0..GROUP {
-                for d in 0..DEPTH {
-                    numbers[head * DEPTH + d] = from[d].0[OFFSET + head];
-                }
-            }
-        } else {
-            self.each(|head, d, at| row[at] = from[d].0[OFFSET + head]);
-        }
+    pub(crate) fn store_sum<S: Simd>(self, simd: S, vectors: Vectors<S>, row: &mut [f32]) {
+        let [a, b, c, d] = simd.transpose(vectors);
+        self.store_row(simd, [simd.add(a, c), simd.add(b, d)], row);
     }
 
-    /// Sums over the numbers of each head of a · b, added to `sums`.
     #[inline(always)]
-    pub(crate) fn dot_half<const OFFSET: usize>(self, a: &[f32], b: &[f32], sums: &mut Lanes) {
-        if let (Some(a), Some(b)) = (self.whole(a), self.whole(b)) {
-            let mut products = [0.0; GROUP * DEPTH];
-            for i in 0..GROUP * DEPTH {
-                products[i] = a[i] * b[i];
-            }
-            for head in 0..GROUP {
-                let at = head * DEPTH;
-                sums.0[OFFSET + head] +=
-                    (products[at] + products[at + 1]) + (products[at + 2] + products[at + 3]);
-            }
+    fn row<S: Simd>(self, simd: S, row: &[f32]) -> [S::Wide; 2] {
+        let mut gathered = [0.0; GROUP * DEPTH];
+        let numbers = if let Some(whole) = self.whole(row) {
+            whole
         } else {
-            self.each(|head, _, at| sums.0[OFFSET + head] += a[at] * b[at]);
+            self.each(|place, at| gathered[place] = row[at]);
+            &gathered
+        };
+        let halves = numbers.as_chunks().0;
+        [simd.load(&halves[0]), simd.load(&halves[1])]
+    }
+
+    #[inline(always)]
+    fn store_row<S: Simd>(self, simd: S, values: [S::Wide; 2], row: &mut [f32]) {
+        if let Some(whole) = self.whole_mut(row) {
+            let halves = whole.as_chunks_mut().0;
+            simd.store(values[0], &mut halves[0]);
+            simd.store(values[1], &mut halves[1]);
+        } else {
+            let mut numbers = [0.0; GROUP * DEPTH];
+            let halves = numbers.as_chunks_mut().0;
+            simd.store(values[0], &mut halves[0]);
+            simd.store(values[1], &mut halves[1]);
+            self.each(|place, at| row[at] = numbers[place]);
         }
     }
 
@@ -139,16 +154,26 @@ impl Part {
         row.get_mut(self.group * GROUP * DEPTH..)?.first_chunk_mut()
     }
 
-    /// Head within the group, number within the block, and the place of the number in the row.
+    /// The place of each number within the part, and in the row.
     #[inline(always)]
-    fn each(self, mut f: impl FnMut(usize, usize, usize)) {
+    fn each(self, mut f: impl FnMut(usize, usize)) {
         let first = self.group * GROUP;
         let numbers = self.block * DEPTH..self.heads.width.min((self.block + 1) * DEPTH);
         for head in first..self.heads.count.min(first + GROUP) {
             for number in numbers.clone() {
-                let at = head * self.heads.width + number;
-                f(head - first, number - self.block * DEPTH, at);
+                let place = (head - first) * DEPTH + number - self.block * DEPTH;
+                f(place, head * self.heads.width + number);
             }
         }
     }
+}
+
+/// Which of two rows is in a lane.
+pub(crate) const fn row_of(lane: usize) -> usize {
+    lane % 4 / 2
+}
+
+/// Which head of a group is in a lane.
+pub(crate) const fn head_of(lane: usize) -> usize {
+    lane / 4 + 4 * (lane % 2)
 }

@@ -2,6 +2,11 @@
 
 use std::fmt;
 
+use super::portable::Portable;
+use super::simd::{Kernel, Simd};
+#[cfg(target_arch = "x86_64")]
+use super::x86::{Avx2, Avx512};
+
 /// Vector instructions that the kernels can be run with.
 ///
 /// The choice changes the speed, and results in the last bits: AVX2 and AVX-512 round a product and its sum once, the
@@ -13,7 +18,7 @@ pub enum InstructionSet {
     Portable,
     /// 256-bit vectors with fused multiplication (x86-64-v3).
     Avx2,
-    /// 512-bit vectors (x86-64-v4).
+    /// 512-bit vectors (AVX-512 F).
     Avx512,
 }
 
@@ -34,27 +39,13 @@ impl InstructionSet {
 
     /// Whether this machine has it.
     pub fn is_available(self) -> bool {
-        match self {
-            Self::Portable => true,
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => {
-                Self::Avx2.is_available()
-                    && is_x86_feature_detected!("avx512f")
-                    && is_x86_feature_detected!("avx512bw")
-                    && is_x86_feature_detected!("avx512dq")
-                    && is_x86_feature_detected!("avx512vl")
-            }
-            #[cfg(not(target_arch = "x86_64"))]
-            Self::Avx2 | Self::Avx512 => false,
-        }
+        Dispatch::new(self).is_some()
     }
 }
 
 impl fmt::Display for InstructionSet {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+        f.pad(match self {
             Self::Portable => "portable",
             Self::Avx2 => "AVX2",
             Self::Avx512 => "AVX-512",
@@ -62,57 +53,44 @@ impl fmt::Display for InstructionSet {
     }
 }
 
-/// A computation that is compiled once for each instruction set.
-///
-/// `run` must be `#[inline(always)]`, and so must everything it calls with lanes: code that is not inlined is not
-/// compiled for the instruction set. `FUSED` says that the set has a fused multiplication.
-pub(crate) trait Kernel {
-    fn run<const FUSED: bool>(self);
-}
-
 /// An instruction set that the machine has been seen to have.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Dispatch(InstructionSet);
+pub(crate) enum Dispatch {
+    Portable(Portable),
+    #[cfg(target_arch = "x86_64")]
+    Avx2(Avx2),
+    #[cfg(target_arch = "x86_64")]
+    Avx512(Avx512),
+}
 
 impl Dispatch {
     /// `None` when the machine lacks `set`.
     pub(crate) fn new(set: InstructionSet) -> Option<Self> {
-        set.is_available().then_some(Self(set))
+        match set {
+            InstructionSet::Portable => Some(Self::Portable(Portable)),
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 => Avx2::detect().map(Self::Avx2),
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => Avx512::detect().map(Self::Avx512),
+            #[cfg(not(target_arch = "x86_64"))]
+            InstructionSet::Avx2 | InstructionSet::Avx512 => None,
+        }
     }
 
     /// The fastest of this machine.
     pub(crate) fn detect() -> Self {
-        Self(InstructionSet::detect())
+        Self::new(InstructionSet::detect()).unwrap_or(Self::Portable(Portable))
     }
 
     /// Runs `kernel` with the instruction set.
-    #[cfg_attr(
-        target_arch = "x86_64",
-        expect(unsafe_code, reason = "calls of functions for more instructions")
-    )]
+    #[inline]
     pub(crate) fn run<K: Kernel>(self, kernel: K) {
-        match self.0 {
-            InstructionSet::Portable => kernel.run::<false>(),
+        match self {
+            Self::Portable(simd) => simd.run(kernel),
             #[cfg(target_arch = "x86_64")]
-            // SAFETY: a `Dispatch` is made only for instructions that the machine has.
-            InstructionSet::Avx2 => unsafe { with_avx2(kernel) },
+            Self::Avx2(simd) => simd.run(kernel),
             #[cfg(target_arch = "x86_64")]
-            // SAFETY: as above.
-            InstructionSet::Avx512 => unsafe { with_avx512(kernel) },
-            #[cfg(not(target_arch = "x86_64"))]
-            InstructionSet::Avx2 | InstructionSet::Avx512 => kernel.run::<false>(),
+            Self::Avx512(simd) => simd.run(kernel),
         }
     }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn with_avx2<K: Kernel>(kernel: K) {
-    kernel.run::<true>();
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl")]
-fn with_avx512<K: Kernel>(kernel: K) {
-    kernel.run::<true>();
 }

@@ -20,7 +20,7 @@ const TOKENS_FOR_THREADS: usize = 4_000;
 
 /// Multi-head attention of one query a row over t remembered tokens and its own.
 ///
-/// mixed = Σ_e softmax_e(q · k_e / √head width) v_e over the t + 1 tokens e, for each row and head alone.
+/// `mixed = Σ_e softmax_e(q · k_e / √head width) v_e` over the t + 1 tokens e, for each row and head alone.
 ///
 /// # Numerics
 /// Every number is computed by one thread in a fixed order: results do not depend on the number of threads. The
@@ -133,7 +133,7 @@ impl OverMemory {
                 mixed,
             })
             .collect();
-        self.each(jobs, query.len(), memory.len(), |job, buffers| {
+        each(jobs, query.len(), memory.len(), |job, buffers| {
             self.dispatch.run(forward::Run { job, buffers });
         });
     }
@@ -203,7 +203,7 @@ impl OverMemory {
                 token_gradients: tokens.map(|token| token.split_off(count)).collect(),
             });
         }
-        self.each(jobs, query.len(), memory.len(), |job, buffers| {
+        each(jobs, query.len(), memory.len(), |job, buffers| {
             self.dispatch.run(backward::Run { job, buffers });
         });
     }
@@ -224,26 +224,6 @@ impl OverMemory {
             );
         }
     }
-
-    /// Does all jobs, on all threads when there are many.
-    fn each<J: Send>(
-        &self,
-        jobs: Vec<J>,
-        numbers: usize,
-        remembered: usize,
-        run: impl Fn(J, &mut Buffers) + Sync,
-    ) {
-        // Counted in tokens of the usual width of 32.
-        if numbers * (remembered + 1) < 32 * TOKENS_FOR_THREADS {
-            let mut buffers = Buffers::default();
-            for job in jobs {
-                run(job, &mut buffers);
-            }
-        } else {
-            jobs.into_par_iter()
-                .for_each_init(Buffers::default, |buffers, job| run(job, buffers));
-        }
-    }
 }
 
 impl KeyValueMut<'_> {
@@ -262,5 +242,24 @@ impl<'a> KeyValueMut<'a> {
             key: self.key.split_off_mut(..count).unwrap_or_default(),
             value: self.value.split_off_mut(..count).unwrap_or_default(),
         }
+    }
+}
+
+/// Does all jobs, on all threads when there are many.
+fn each<J: Send>(
+    jobs: Vec<J>,
+    numbers: usize,
+    remembered: usize,
+    run: impl Fn(J, &mut Buffers) + Sync,
+) {
+    // Counted in tokens of the usual width of 32.
+    if numbers * (remembered + 1) < 32 * TOKENS_FOR_THREADS {
+        let mut buffers = Buffers::default();
+        for job in jobs {
+            run(job, &mut buffers);
+        }
+    } else {
+        jobs.into_par_iter()
+            .for_each_init(Buffers::default, |buffers, job| run(job, buffers));
     }
 }

@@ -87,7 +87,7 @@ impl Decisions {
     }
 }
 
-/// The finaliser of SplitMix64 (Steele et al. 2014) after a step of its counter.
+/// The finaliser of `SplitMix64` (Steele et al. 2014) after a step of its counter.
 fn mixed(word: u64) -> u64 {
     let word = word
         .wrapping_mul(0x9e37_79b9_7f4a_7c15)
@@ -96,3 +96,8 @@ fn mixed(word: u64) -> u64 {
     let word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     word ^ (word >> 31)
 }
+
+#[cfg(test)]
+pub(crate) mod reference;
+#[cfg(test)]
+mod tests;

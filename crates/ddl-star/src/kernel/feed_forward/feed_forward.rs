@@ -1,4 +1,4 @@
-//! The feed-forward block of an encoder layer: two affine maps, ReLU and dropout between them.
+//! The feed-forward block of an encoder layer: two affine maps, `ReLU` and dropout between them.
 
 mod backward;
 mod forward;
@@ -73,7 +73,7 @@ impl FeedForward {
     ///
     /// # Numerics
     /// For finite sums, an entry differs from the exact one by at most (width + hidden + 8) 2^-24 times the same formula
-    /// with the absolute values of all its terms and without ReLU. It does not depend on the number of threads nor on the other rows.
+    /// with the absolute values of all its terms and without `ReLU`. It does not depend on the number of threads nor on the other rows.
     pub fn forward(&self, x: &[f32], dropout: Option<Dropout>, y: &mut [f32]) {
         forward::run(self, x, dropout, y);
     }
@@ -91,7 +91,7 @@ impl FeedForward {
     /// # Numerics
     /// An entry differs from the exact one by at most (width + hidden + 16) 2^-24 (for gx), (width + rows + 16) 2^-24 (for
     /// the others) times the formula with the absolute values of all its terms; where W1 x + b1 is 0 to rounding the
-    /// derivative of ReLU may be taken as 0 or 1. Nothing depends on the number of threads.
+    /// derivative of `ReLU` may be taken as 0 or 1. Nothing depends on the number of threads.
     pub fn backward(
         &self,
         x: &[f32],

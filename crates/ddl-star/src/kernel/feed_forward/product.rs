@@ -1,6 +1,10 @@
 //! Products of small matrices whose result stays in registers.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+#![expect(
+    clippy::needless_range_loop,
+    reason = "loops of a known count over registers, written as the matrices are"
+)]
 
 use super::block::{BLOCK, Block, Panel, tile_mut};
 use super::simd::{Simd, Tile};
@@ -134,4 +138,21 @@ pub(crate) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
             store_tile(simd, &tile, sum, part);
         }
     }
+}
+
+#[inline(always)]
+pub(crate) fn sum_of_rows<S: Simd, const V: usize>(simd: S, rows: &[Block]) -> Block {
+    let mut result = Block::ZERO;
+    for part in (0..BLOCK / S::WIDTH).step_by(V) {
+        let mut sum = [simd.splat(0.0); V];
+        for row in rows {
+            for v in 0..V {
+                sum[v] = simd.add(sum[v], simd.load(row, part + v));
+            }
+        }
+        for v in 0..V {
+            simd.store(sum[v], &mut result, part + v);
+        }
+    }
+    result
 }

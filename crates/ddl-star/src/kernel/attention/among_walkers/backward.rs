@@ -1,18 +1,18 @@
 //! From the gradient of mixed values to that of queries, keys and values.
 //!
-//! With weights w_ij = e_ij s_i, where s_i is 1 over the sum of the powers e_ij, gradients g_i of mixed values and drop
-//! factors d_ij:
-//! dv_j = Σ_i d_ij w_ij g_i, and the gradient of the score (i, j) is w_ij (d_ij g_i · v_j − g_i · mixed_i).
+//! With weights `w_ij = e_ij s_i`, where `s_i` is 1 over the sum of the powers `e_ij`, gradients `g_i` of mixed values and
+//! drop factors `d_ij`: `dv_j = Σ_i d_ij w_ij g_i`, and the gradient of the score of (i, j) is
+//! `w_ij (d_ij g_i · v_j − g_i · mixed_i)`.
 //! The powers are made anew from the scores: that is faster than to fetch them from where they would have to be kept.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
 use super::Task;
-use super::queries::{Buffers, UNSEEN};
+use super::queries::{Buffers, UNSEEN, dot};
 use crate::kernel::attention::exp2::exp2;
-use crate::kernel::attention::heads::{GROUP, Part};
-use crate::kernel::attention::instruction_set::Kernel;
-use crate::kernel::attention::lanes::{DEPTH, Lanes, Vectors, accumulate, dot, scaled};
+use crate::kernel::attention::heads::Part;
+use crate::kernel::attention::lanes::{DEPTH, Lanes, ZEROS};
+use crate::kernel::attention::simd::{Kernel, Simd, Vectors};
 
 /// The rows of one scene.
 #[derive(Debug)]
@@ -20,7 +20,8 @@ pub(super) struct Backward<'a> {
     pub(super) task: Task<'a>,
     pub(super) qkv: &'a [f32],
     pub(super) mixed: &'a [f32],
-    pub(super) normalisers: &'a [f32],
+    /// By group of heads and two queries.
+    pub(super) normalisers: &'a [[Lanes; 2]],
     pub(super) mixed_gradient: &'a [f32],
     pub(super) qkv_gradient: &'a mut [f32],
 }
@@ -33,17 +34,17 @@ pub(super) struct Run<'a, 'b> {
 
 impl Kernel for Run<'_, '_> {
     #[inline(always)]
-    fn run<const FUSED: bool>(mut self) {
+    fn run<S: Simd>(mut self, simd: S) {
         for group in 0..self.job.task.heads.groups() {
             // The number of blocks is spelled out for the usual one, which takes the loops over blocks away.
             match (
                 self.job.task.heads.blocks(),
                 self.job.task.decisions.is_some(),
             ) {
-                (1, false) => self.group::<FUSED, false>(group, 1),
-                (1, true) => self.group::<FUSED, true>(group, 1),
-                (blocks, false) => self.group::<FUSED, false>(group, blocks),
-                (blocks, true) => self.group::<FUSED, true>(group, blocks),
+                (1, false) => self.group::<S, false>(simd, group, 1),
+                (1, true) => self.group::<S, true>(simd, group, 1),
+                (blocks, false) => self.group::<S, false>(simd, group, blocks),
+                (blocks, true) => self.group::<S, true>(simd, group, blocks),
             }
         }
     }
@@ -51,152 +52,141 @@ impl Kernel for Run<'_, '_> {
 
 impl Run<'_, '_> {
     #[inline(always)]
-    fn group<const FUSED: bool, const DROP: bool>(&mut self, group: usize, blocks: usize) {
+    fn group<S: Simd, const DROP: bool>(&mut self, simd: S, group: usize, blocks: usize) {
         let task = self.job.task;
         let row = task.heads.row();
-        self.buffers.load(&task, self.job.qkv, group, blocks);
-        self.load_gradients(group, blocks);
+        self.buffers.load(simd, &task, self.job.qkv, group, blocks);
+        self.load_gradients(simd, group, blocks);
         let buffers = &mut *self.buffers;
-        let twos = buffers.normalisers.len();
-        buffers.query_gradients.clear();
-        buffers
-            .query_gradients
-            .resize(twos * blocks, [Lanes::ZERO; DEPTH]);
-        buffers.weights.resize(twos, Lanes::ZERO);
-        buffers.score_gradients.resize(twos, Lanes::ZERO);
         let rows = self.job.qkv_gradient.chunks_exact_mut(3 * row);
         for (key, gradient) in rows.enumerate() {
-            weigh::<FUSED, DROP>(buffers, &task, key, blocks);
+            weigh::<S, DROP>(simd, buffers, &task, key, blocks);
+            let (key_gradient, value_gradient) = gradient[row..].split_at_mut(row);
             for block in 0..blocks {
-                let (of_key, of_value) = spread::<FUSED>(buffers, key, block, blocks);
+                let (of_key, of_value) = spread(simd, buffers, key, block, blocks);
                 let part = Part::new(task.heads, group, block);
-                let (key_gradient, value_gradient) = gradient[row..].split_at_mut(row);
                 // Queries were scaled to scores that are powers of two.
-                let of_key = folded(&of_key, std::f32::consts::LN_2);
-                part.store::<0>(&of_key, key_gradient);
-                part.store::<0>(&folded(&of_value, 1.0), value_gradient);
+                let of_key = simd.scaled(of_key, simd.splat(std::f32::consts::LN_2));
+                part.store_sum(simd, of_key, key_gradient);
+                part.store_sum(simd, of_value, value_gradient);
             }
         }
-        let scale = Lanes::splat(task.heads.scale());
+        let scale = simd.splat(task.heads.scale());
         let gradients = buffers.query_gradients.chunks_exact(blocks);
         for (two, gradients) in self.job.qkv_gradient.chunks_mut(6 * row).zip(gradients) {
             let (first, second) = two.split_at_mut(3 * row);
+            let mut second = second.get_mut(..row);
             for (block, gradient) in gradients.iter().enumerate() {
                 let part = Part::new(task.heads, group, block);
-                let gradient = scaled(gradient, scale);
-                part.store::<0>(&gradient, &mut first[..row]);
-                if !second.is_empty() {
-                    part.store::<GROUP>(&gradient, &mut second[..row]);
-                }
+                let gradient = simd.scaled(simd.read(gradient), scale);
+                part.store(simd, gradient, &mut first[..row], second.as_deref_mut());
             }
         }
     }
 
-    /// Gradients of mixed values into lanes, with what normalises the weights.
+    /// Gradients of mixed values into lanes, with what normalises the weights; no gradients of queries yet.
     #[inline(always)]
-    fn load_gradients(&mut self, group: usize, blocks: usize) {
-        let heads = self.job.task.heads;
-        let (row, normaliser) = (heads.row(), heads.groups() * 2 * GROUP);
-        let buffers = &mut *self.buffers;
-        buffers.mixed_gradients.clear();
-        buffers.normalisers.clear();
-        let rows = self.job.mixed_gradient.chunks(2 * row);
-        let rows = rows.zip(self.job.mixed.chunks(2 * row));
-        let rows = rows.zip(self.job.normalisers.chunks(2 * normaliser));
-        for ((gradient, mixed), normalisers) in rows {
-            let (mut largest, mut share, mut inner) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
-            for (walker, normaliser) in normalisers.chunks_exact(normaliser).enumerate() {
-                let lanes = walker * GROUP..(walker + 1) * GROUP;
-                let (largest_of, share_of) =
-                    normaliser[group * 2 * GROUP..][..2 * GROUP].split_at(GROUP);
-                largest.0[lanes.clone()].copy_from_slice(largest_of);
-                share.0[lanes].copy_from_slice(share_of);
-            }
-            let (first, second) = gradient.split_at(row);
-            let (first_mixed, second_mixed) = mixed.split_at(row);
-            for block in 0..blocks {
+    fn load_gradients<S: Simd>(&mut self, simd: S, group: usize, blocks: usize) {
+        let (job, buffers) = (&self.job, &mut *self.buffers);
+        let (heads, row) = (job.task.heads, job.task.heads.row());
+        let twos = job.task.scene.walkers.div_ceil(2);
+        buffers.weights.resize(twos, Lanes::ZERO);
+        buffers.score_gradients.resize(twos, Lanes::ZERO);
+        buffers.inner.resize(twos, [Lanes::ZERO; 2]);
+        buffers.mixed_gradients.resize(twos * blocks, ZEROS);
+        buffers.query_gradients.clear();
+        buffers.query_gradients.resize(twos * blocks, ZEROS);
+        let rows = job
+            .mixed_gradient
+            .chunks(2 * row)
+            .zip(job.mixed.chunks(2 * row));
+        let rows = rows.zip(&job.normalisers[group * twos..]);
+        let results = buffers.mixed_gradients.chunks_exact_mut(blocks);
+        let results = results.zip(&mut buffers.inner);
+        for (((gradient, mixed), [largest, share]), (gradients, inner)) in rows.zip(results) {
+            let share = simd.load(&share.0);
+            let mut product = simd.splat(0.0);
+            let (first, first_mixed) = (&gradient[..row], &mixed[..row]);
+            let (second, second_mixed) = (gradient.get(row..2 * row), mixed.get(row..2 * row));
+            for (block, result) in gradients.iter_mut().enumerate() {
                 let part = Part::new(heads, group, block);
-                part.dot_half::<0>(first, first_mixed, &mut inner);
-                let vectors = if second.is_empty() {
-                    part.load(first, None)
-                } else {
-                    part.dot_half::<GROUP>(second, second_mixed, &mut inner);
-                    part.load(first, Some(second))
-                };
-                buffers.mixed_gradients.push(scaled(&vectors, share));
+                let gradient = simd.scaled(part.load(simd, first, second), share);
+                let mixed = part.load(simd, first_mixed, second_mixed);
+                product = simd.dot(gradient, mixed, product);
+                simd.write(gradient, result);
             }
-            buffers.normalisers.push([largest, inner.mul(share)]);
+            inner[0] = *largest;
+            simd.store(product, &mut inner[1].0);
         }
     }
 }
 
 /// Weights with which the queries took a key's value, times their sum, and gradients of their scores.
 #[inline(always)]
-fn weigh<const FUSED: bool, const DROP: bool>(
+fn weigh<S: Simd, const DROP: bool>(
+    simd: S,
     buffers: &mut Buffers,
     task: &Task<'_>,
     key: usize,
     blocks: usize,
 ) {
-    let codes = task.scene.codes[key..].iter().step_by(task.scene.walkers);
-    let (vectors, value) = (key * blocks..(key + 1) * blocks, key * blocks);
-    let (key_vectors, value_vectors) = (&buffers.keys[vectors], &buffers.values[value..][..blocks]);
+    let at = key * blocks;
+    let (keys, values) = (
+        &buffers.keys[at..][..blocks],
+        &buffers.values[at..][..blocks],
+    );
+    let codes = task.scene.codes.chunks_exact(task.scene.walkers);
     let queries = buffers.queries.chunks_exact(blocks);
-    let gradients = buffers.mixed_gradients.chunks_exact(blocks);
-    let queries = queries.zip(gradients).zip(&buffers.normalisers).zip(codes);
+    let queries = queries.zip(buffers.mixed_gradients.chunks_exact(blocks));
+    let queries = queries.zip(buffers.inner.iter().zip(codes));
     let results = buffers.weights.iter_mut().zip(&mut buffers.score_gradients);
-    for (i, ((((query, gradient), [largest, inner]), code), (weight, score_gradient))) in
+    for (two, (((query, gradient), ([largest, inner], codes)), (weight, score_gradient))) in
         queries.zip(results).enumerate()
     {
-        let score = dot::<FUSED>(query, key_vectors, UNSEEN[usize::from(code & 3)]);
-        let power = exp2::<FUSED>(score.sub(*largest));
-        let taken = dot::<FUSED>(gradient, value_vectors, Lanes::ZERO);
-        match task.decisions {
+        let unseen = simd.load(&UNSEEN[usize::from(codes[key] & 3)].0);
+        let score = dot(simd, query, keys, unseen);
+        let power = exp2(simd, simd.sub(score, simd.load(&largest.0)));
+        let taken = dot(simd, gradient, values, simd.splat(0.0));
+        let inner = simd.load(&inner.0);
+        let (taking, change) = match task.decisions {
             Some(decisions) if DROP => {
-                let factor = decisions.factors(&buffers.bits[i], task.scene.first + key);
-                *weight = power.mul(factor);
-                *score_gradient = power.mul(factor.mul(taken).sub(*inner));
+                let factors = decisions.factors(&buffers.bits[two], task.scene.first + key);
+                let factors = simd.load(&factors.0);
+                let change = simd.sub(simd.mul(factors, taken), inner);
+                (simd.mul(power, factors), change)
             }
-            _ => {
-                *weight = power;
-                *score_gradient = power.mul(taken.sub(*inner));
-            }
-        }
+            _ => (power, simd.sub(taken, inner)),
+        };
+        simd.store(taking, &mut weight.0);
+        simd.store(simd.mul(power, change), &mut score_gradient.0);
     }
 }
 
 /// Adds to the gradients of all queries; gives those of a key and its value, still apart for even and odd queries.
 #[inline(always)]
-fn spread<const FUSED: bool>(
+fn spread<S: Simd>(
+    simd: S,
     buffers: &mut Buffers,
     key: usize,
     block: usize,
     blocks: usize,
-) -> (Vectors, Vectors) {
-    let (mut of_key, mut of_value) = ([Lanes::ZERO; DEPTH], [Lanes::ZERO; DEPTH]);
-    let key = buffers.keys[key * blocks + block];
+) -> (Vectors<S>, Vectors<S>) {
+    let (mut of_key, mut of_value) = ([simd.splat(0.0); DEPTH], [simd.splat(0.0); DEPTH]);
+    let key = simd.read(&buffers.keys[key * blocks + block]);
     let queries = buffers.queries.chunks_exact(blocks);
-    let gradients = buffers.mixed_gradients.chunks_exact(blocks);
+    let queries = queries.zip(buffers.mixed_gradients.chunks_exact(blocks));
     let results = buffers.query_gradients.chunks_exact_mut(blocks);
     let weights = buffers.weights.iter().zip(&buffers.score_gradients);
     for (((query, gradient), of_query), (weight, score_gradient)) in
-        queries.zip(gradients).zip(results).zip(weights)
+        queries.zip(results).zip(weights)
     {
-        accumulate::<FUSED>(&mut of_key, *score_gradient, &query[block]);
-        accumulate::<FUSED>(&mut of_value, *weight, &gradient[block]);
-        accumulate::<FUSED>(&mut of_query[block], *score_gradient, &key);
+        let score_gradient = simd.load(&score_gradient.0);
+        let (query, gradient) = (simd.read(&query[block]), simd.read(&gradient[block]));
+        of_key = simd.accumulate(of_key, score_gradient, query);
+        of_value = simd.accumulate(of_value, simd.load(&weight.0), gradient);
+        let of_query = &mut of_query[block];
+        let sum = simd.accumulate(simd.read(of_query), score_gradient, key);
+        simd.write(sum, of_query);
     }
     (of_key, of_value)
-}
-
-/// `factor` times the sum of both halves of the lanes, in the lower half.
-#[inline(always)]
-fn folded(vectors: &Vectors, factor: f32) -> Vectors {
-    let mut result = [Lanes::ZERO; DEPTH];
-    for d in 0..DEPTH {
-        for lane in 0..GROUP {
-            result[d].0[lane] = factor * (vectors[d].0[lane] + vectors[d].0[GROUP + lane]);
-        }
-    }
-    result
 }

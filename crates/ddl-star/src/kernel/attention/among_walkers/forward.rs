@@ -3,11 +3,11 @@
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
 use super::Task;
-use super::queries::{Buffers, UNSEEN};
+use super::queries::{Buffers, UNSEEN, dot};
 use crate::kernel::attention::exp2::exp2;
-use crate::kernel::attention::heads::{GROUP, Part};
-use crate::kernel::attention::instruction_set::Kernel;
-use crate::kernel::attention::lanes::{DEPTH, Lanes, Vectors, accumulate, dot, scaled};
+use crate::kernel::attention::heads::Part;
+use crate::kernel::attention::lanes::{Block, DEPTH, Lanes};
+use crate::kernel::attention::simd::{Kernel, Simd};
 
 /// The rows of one scene.
 #[derive(Debug)]
@@ -15,7 +15,8 @@ pub(super) struct Forward<'a> {
     pub(super) task: Task<'a>,
     pub(super) qkv: &'a [f32],
     pub(super) mixed: &'a mut [f32],
-    pub(super) normalisers: &'a mut [f32],
+    /// By group of heads and two queries.
+    pub(super) normalisers: &'a mut [[Lanes; 2]],
 }
 
 #[derive(Debug)]
@@ -26,17 +27,17 @@ pub(super) struct Run<'a, 'b> {
 
 impl Kernel for Run<'_, '_> {
     #[inline(always)]
-    fn run<const FUSED: bool>(mut self) {
+    fn run<S: Simd>(mut self, simd: S) {
         for group in 0..self.job.task.heads.groups() {
             // The number of blocks is spelled out for the usual one, which takes the loops over blocks away.
             match (
                 self.job.task.heads.blocks(),
                 self.job.task.decisions.is_some(),
             ) {
-                (1, false) => self.group::<FUSED, false>(group, 1),
-                (1, true) => self.group::<FUSED, true>(group, 1),
-                (blocks, false) => self.group::<FUSED, false>(group, blocks),
-                (blocks, true) => self.group::<FUSED, true>(group, blocks),
+                (1, false) => self.group::<S, false>(simd, group, 1),
+                (1, true) => self.group::<S, true>(simd, group, 1),
+                (blocks, false) => self.group::<S, false>(simd, group, blocks),
+                (blocks, true) => self.group::<S, true>(simd, group, blocks),
             }
         }
     }
@@ -44,71 +45,67 @@ impl Kernel for Run<'_, '_> {
 
 impl Run<'_, '_> {
     #[inline(always)]
-    fn group<const FUSED: bool, const DROP: bool>(&mut self, group: usize, blocks: usize) {
+    fn group<S: Simd, const DROP: bool>(&mut self, simd: S, group: usize, blocks: usize) {
         let task = self.job.task;
         let (row, walkers) = (task.heads.row(), task.scene.walkers);
-        self.buffers.load(&task, self.job.qkv, group, blocks);
+        self.buffers.load(simd, &task, self.job.qkv, group, blocks);
         let buffers = &mut *self.buffers;
         buffers.weights.resize(walkers, Lanes::ZERO);
-        let normaliser = task.heads.groups() * 2 * GROUP;
-        let rows = self.job.mixed.chunks_mut(2 * row);
-        let rows = rows.zip(self.job.normalisers.chunks_mut(2 * normaliser));
+        let normalisers = &mut self.job.normalisers[group * walkers.div_ceil(2)..];
+        let rows = self.job.mixed.chunks_mut(2 * row).zip(normalisers);
         let queries = buffers.queries.chunks_exact(blocks);
-        let codes = task.scene.codes.chunks_exact(walkers);
-        for (i, (((mixed, normalisers), query), codes)) in rows.zip(queries).zip(codes).enumerate()
-        {
+        let queries = queries.zip(task.scene.codes.chunks_exact(walkers));
+        for (two, ((mixed, normaliser), (query, codes))) in rows.zip(queries).enumerate() {
             let weights = &mut buffers.weights[..];
-            let largest = scores::<FUSED>(query, &buffers.keys, codes, weights);
-            let mut sum = Lanes::ZERO;
+            let largest = scores(simd, query, &buffers.keys, codes, weights);
+            let mut sum = simd.splat(0.0);
             for (key, weight) in weights.iter_mut().enumerate() {
-                let power = exp2::<FUSED>(weight.sub(largest));
-                sum = sum.add(power);
-                *weight = match task.decisions {
+                let power = exp2(simd, simd.sub(simd.load(&weight.0), largest));
+                sum = simd.add(sum, power);
+                let taken = match task.decisions {
                     Some(decisions) if DROP => {
-                        let key = task.scene.first + key;
-                        power.mul(decisions.factors(&buffers.bits[i], key))
+                        let factors = decisions.factors(&buffers.bits[two], task.scene.first + key);
+                        simd.mul(power, simd.load(&factors.0))
                     }
                     _ => power,
                 };
+                simd.store(taken, &mut weight.0);
             }
-            let share = sum.reciprocal();
+            let share = simd.div(simd.splat(1.0), sum);
+            let (first, second) = mixed.split_at_mut(row);
+            let mut second = (!second.is_empty()).then_some(second);
             for block in 0..blocks {
-                let mut sum = [Lanes::ZERO; DEPTH];
+                let mut sum = [simd.splat(0.0); DEPTH];
                 let values = buffers.values.chunks_exact(blocks);
                 for (weight, value) in weights.iter().zip(values) {
-                    accumulate::<FUSED>(&mut sum, *weight, &value[block]);
+                    let value = simd.read(&value[block]);
+                    sum = simd.accumulate(sum, simd.load(&weight.0), value);
                 }
-                let sum = scaled(&sum, share);
                 let part = Part::new(task.heads, group, block);
-                let (first, second) = mixed.split_at_mut(row);
-                part.store::<0>(&sum, first);
-                if !second.is_empty() {
-                    part.store::<GROUP>(&sum, second);
-                }
+                part.store(simd, simd.scaled(sum, share), first, second.as_deref_mut());
             }
-            for (walker, normaliser) in normalisers.chunks_exact_mut(normaliser).enumerate() {
-                let (largest_of, share_of) =
-                    normaliser[group * 2 * GROUP..][..2 * GROUP].split_at_mut(GROUP);
-                largest_of.copy_from_slice(&largest.0[walker * GROUP..][..GROUP]);
-                share_of.copy_from_slice(&share.0[walker * GROUP..][..GROUP]);
-            }
+            simd.store(largest, &mut normaliser[0].0);
+            simd.store(share, &mut normaliser[1].0);
         }
     }
 }
 
 /// Scores of two queries with every key, and the largest.
 #[inline(always)]
-fn scores<const FUSED: bool>(
-    query: &[Vectors],
-    keys: &[Vectors],
+fn scores<S: Simd>(
+    simd: S,
+    query: &[Block],
+    keys: &[Block],
     codes: &[u8],
     scores: &mut [Lanes],
-) -> Lanes {
-    let mut largest = Lanes::splat(f32::NEG_INFINITY);
+) -> S::Wide {
+    let mut largest = simd.splat(f32::NEG_INFINITY);
     let keys = keys.chunks_exact(query.len());
     for ((key, code), score) in keys.zip(codes).zip(scores) {
-        *score = dot::<FUSED>(query, key, UNSEEN[usize::from(code & 3)]);
-        largest = largest.max(*score);
+        let unseen = simd.load(&UNSEEN[usize::from(code & 3)].0);
+        let value = dot(simd, query, key, unseen);
+        simd.store(value, &mut score.0);
+        largest = simd.max(largest, value);
     }
     largest
 }

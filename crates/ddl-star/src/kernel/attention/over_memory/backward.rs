@@ -1,15 +1,15 @@
 //! From the gradient of mixed values to that of queries, keys and values.
 //!
-//! With weights w_e and the gradient g of mixed values: dv_e = w_e g, and the gradient of score e is
-//! w_e (g · v_e − Σ_f w_f g · v_f).
+//! With weights `w_e` and the gradient g of mixed values: `dv_e = w_e g`, and the gradient of score e is
+//! `w_e (g · v_e − Σ_f w_f g · v_f)`.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
 use super::tokens::{Buffers, Place, accumulate, dot, soften, weighted};
 use super::{KeyValue, KeyValueMut};
 use crate::kernel::attention::heads::Heads;
-use crate::kernel::attention::instruction_set::Kernel;
-use crate::kernel::attention::lanes::{DEPTH, LANES, Lanes, scaled};
+use crate::kernel::attention::lanes::{DEPTH, LANES, Lanes, ZEROS};
+use crate::kernel::attention::simd::{Kernel, Simd};
 
 /// Some of the rows.
 #[derive(Debug)]
@@ -35,13 +35,13 @@ pub(super) struct Run<'a, 'b> {
 
 impl Kernel for Run<'_, '_> {
     #[inline(always)]
-    fn run<const FUSED: bool>(self) {
+    fn run<S: Simd>(self, simd: S) {
         // The usual width is spelled out, which takes the loops over blocks away.
         match self.job.heads.width {
-            DEPTH => self.rows::<FUSED>(DEPTH, 1),
+            DEPTH => self.rows(simd, DEPTH, 1),
             width => {
                 let blocks = self.job.heads.blocks();
-                self.rows::<FUSED>(width, blocks);
+                self.rows(simd, width, blocks);
             }
         }
     }
@@ -49,61 +49,72 @@ impl Kernel for Run<'_, '_> {
 
 impl Run<'_, '_> {
     #[inline(always)]
-    fn rows<const FUSED: bool>(mut self, width: usize, blocks: usize) {
+    fn rows<S: Simd>(mut self, simd: S, width: usize, blocks: usize) {
         let length = self.job.query_gradient.len();
+        self.buffers.query.resize(blocks, ZEROS);
+        self.buffers.mixed_gradient.resize(blocks, ZEROS);
+        self.buffers.query_gradient.resize(blocks, ZEROS);
+        let tokens = self.job.memory.len() + 1;
+        self.buffers.taken.resize(tokens, Lanes::ZERO);
         for at in (0..length).step_by(LANES * width) {
             let place = Place::new(self.job.first, at, length, width);
-            self.group::<FUSED>(place, at, blocks);
+            self.group(simd, place, at, blocks);
         }
     }
 
     #[inline(always)]
-    fn group<const FUSED: bool>(&mut self, place: Place, at: usize, blocks: usize) {
+    fn group<S: Simd>(&mut self, simd: S, place: Place, at: usize, blocks: usize) {
         let (job, buffers) = (&mut self.job, &mut *self.buffers);
         let scale = job.heads.scale();
-        let to_scores = Lanes::splat(scale * std::f32::consts::LOG2_E);
-        buffers.query.clear();
-        buffers.mixed_gradient.clear();
-        buffers.query_gradient.clear();
+        let to_scores = simd.splat(scale * std::f32::consts::LOG2_E);
+        let query = &mut buffers.query[..blocks];
+        let mixed_gradient = &mut buffers.mixed_gradient[..blocks];
+        let query_gradient = &mut buffers.query_gradient[..blocks];
         for block in 0..blocks {
-            let query = place.load(job.query, block);
-            buffers.query.push(scaled(&query, to_scores));
-            let gradient = place.load(job.mixed_gradient, block);
-            buffers.mixed_gradient.push(gradient);
-            buffers.query_gradient.push([Lanes::ZERO; DEPTH]);
+            let loaded = place.load(simd, job.query, block);
+            simd.write(simd.scaled(loaded, to_scores), &mut query[block]);
+            let gradient = place.load(simd, job.mixed_gradient, block);
+            simd.write(gradient, &mut mixed_gradient[block]);
+            query_gradient[block] = ZEROS;
         }
         let powers = &mut buffers.powers;
-        let share = soften::<FUSED>(place, &buffers.query, job.memory, job.own, powers);
-        buffers.taken.clear();
-        let mut mean = Lanes::ZERO;
-        for (power, token) in powers.iter_mut().zip(job.memory.iter().chain([&job.own])) {
-            let mut taken = Lanes::ZERO;
-            for (block, gradient) in buffers.mixed_gradient.iter().enumerate() {
-                taken = dot(gradient, &place.load(token.value, block), taken);
+        let share = soften(simd, place, query, job.memory, job.own, powers);
+        let mut mean = simd.splat(0.0);
+        let tokens = job.memory.iter().chain([&job.own]);
+        let weights = powers.iter_mut().zip(&mut buffers.taken);
+        for ((power, taken), token) in weights.zip(tokens) {
+            let mut product = simd.splat(0.0);
+            for (block, gradient) in mixed_gradient.iter().enumerate() {
+                let value = place.load(simd, token.value, block);
+                product = dot(simd, simd.read(gradient), value, product);
             }
-            *power = power.mul(share);
-            mean = power.mul_add::<FUSED>(taken, mean);
-            buffers.taken.push(taken);
+            let weight = simd.mul(simd.load(&power.0), share);
+            mean = simd.mul_add(weight, product, mean);
+            simd.store(weight, &mut power.0);
+            simd.store(product, &mut taken.0);
         }
         let tokens = job.memory.iter().chain([&job.own]);
         let tokens = tokens.zip(&mut job.token_gradients);
         let weights = powers.iter().zip(&buffers.taken);
         for ((weight, taken), (token, gradients)) in weights.zip(tokens) {
-            let score_gradient = weight.mul(taken.sub(mean));
+            let weight = simd.load(&weight.0);
+            let score_gradient = simd.mul(weight, simd.sub(simd.load(&taken.0), mean));
             // Queries were scaled to scores that are powers of two.
-            let key_weight = score_gradient.mul(Lanes::splat(std::f32::consts::LN_2));
+            let key_weight = simd.mul(score_gradient, simd.splat(std::f32::consts::LN_2));
             for block in 0..blocks {
-                let of_key = weighted(key_weight, &buffers.query[block]);
-                place.add(&of_key, &mut gradients.key[at..], block);
-                let of_value = weighted(*weight, &buffers.mixed_gradient[block]);
-                place.add(&of_value, &mut gradients.value[at..], block);
-                let of_query = &mut buffers.query_gradient[block];
-                accumulate::<FUSED>(of_query, score_gradient, &place.load(token.key, block));
+                let of_key = weighted(simd, key_weight, simd.read(&query[block]));
+                place.add(simd, of_key, &mut gradients.key[at..], block);
+                let of_value = weighted(simd, weight, simd.read(&mixed_gradient[block]));
+                place.add(simd, of_value, &mut gradients.value[at..], block);
+                let key = place.load(simd, token.key, block);
+                let sum = simd.read(&query_gradient[block]);
+                let sum = accumulate(simd, sum, score_gradient, key);
+                simd.write(sum, &mut query_gradient[block]);
             }
         }
-        for (block, gradient) in buffers.query_gradient.iter().enumerate() {
-            let gradient = scaled(gradient, Lanes::splat(scale));
-            place.add(&gradient, &mut job.query_gradient[at..], block);
+        for (block, gradient) in query_gradient.iter().enumerate() {
+            let gradient = simd.scaled(simd.read(gradient), simd.splat(scale));
+            place.add(simd, gradient, &mut job.query_gradient[at..], block);
         }
     }
 }

@@ -5,8 +5,8 @@
 use super::KeyValue;
 use super::tokens::{Buffers, Place, accumulate, soften, weighted};
 use crate::kernel::attention::heads::Heads;
-use crate::kernel::attention::instruction_set::Kernel;
-use crate::kernel::attention::lanes::{DEPTH, LANES, Lanes, scaled};
+use crate::kernel::attention::lanes::{DEPTH, LANES, ZEROS};
+use crate::kernel::attention::simd::{Kernel, Simd};
 
 /// Some of the rows.
 #[derive(Debug)]
@@ -29,13 +29,13 @@ pub(super) struct Run<'a, 'b> {
 
 impl Kernel for Run<'_, '_> {
     #[inline(always)]
-    fn run<const FUSED: bool>(self) {
+    fn run<S: Simd>(self, simd: S) {
         // The usual width is spelled out, which takes the loops over blocks away.
         match self.job.heads.width {
-            DEPTH => self.rows::<FUSED>(DEPTH, 1),
+            DEPTH => self.rows(simd, DEPTH, 1),
             width => {
                 let blocks = self.job.heads.blocks();
-                self.rows::<FUSED>(width, blocks);
+                self.rows(simd, width, blocks);
             }
         }
     }
@@ -43,27 +43,28 @@ impl Kernel for Run<'_, '_> {
 
 impl Run<'_, '_> {
     #[inline(always)]
-    fn rows<const FUSED: bool>(self, width: usize, blocks: usize) {
+    fn rows<S: Simd>(self, simd: S, width: usize, blocks: usize) {
         let Self { job, buffers } = self;
-        let scale = Lanes::splat(job.heads.scale() * std::f32::consts::LOG2_E);
+        let scale = simd.splat(job.heads.scale() * std::f32::consts::LOG2_E);
         let length = job.mixed.len();
-        let groups = job.mixed.chunks_mut(LANES * width).enumerate();
-        for (group, mixed) in groups {
+        buffers.query.resize(blocks, ZEROS);
+        let query = &mut buffers.query[..blocks];
+        for (group, mixed) in job.mixed.chunks_mut(LANES * width).enumerate() {
             let place = Place::new(job.first, group * LANES * width, length, width);
-            buffers.query.clear();
-            for block in 0..blocks {
-                let query = place.load(job.query, block);
-                buffers.query.push(scaled(&query, scale));
+            for (block, query) in query.iter_mut().enumerate() {
+                let loaded = place.load(simd, job.query, block);
+                simd.write(simd.scaled(loaded, scale), query);
             }
             let powers = &mut buffers.powers;
-            let share = soften::<FUSED>(place, &buffers.query, job.memory, job.own, powers);
+            let share = soften(simd, place, query, job.memory, job.own, powers);
             for block in 0..blocks {
-                let mut sum = [Lanes::ZERO; DEPTH];
+                let mut sum = [simd.splat(0.0); DEPTH];
                 let tokens = job.memory.iter().chain([&job.own]);
                 for (power, token) in powers.iter().zip(tokens) {
-                    accumulate::<FUSED>(&mut sum, *power, &place.load(token.value, block));
+                    let value = place.load(simd, token.value, block);
+                    sum = accumulate(simd, sum, simd.load(&power.0), value);
                 }
-                place.store(&weighted(share, &sum), mixed, block);
+                place.store(simd, weighted(simd, share, sum), mixed, block);
             }
         }
     }

@@ -1,25 +1,24 @@
 //! Sixteen heads, one after the other across rows, in blocks of four of their numbers as they lie in memory.
 //!
-//! Rows and heads make one index here, since every row has a memory of its own.
+//! Rows and heads make one index here, since every row has a memory of its own. What there is one of for each head (a
+//! score, a weight) lies where transposing pieces of four lanes brings it: head 4 k + i in lane 4 i + k.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
 use super::KeyValue;
 use crate::kernel::attention::exp2::exp2;
-use crate::kernel::attention::lanes::{DEPTH, LANES, Lanes};
-
-/// Sixteen heads' numbers of a block, head after head.
-pub(super) type Natural = [Lanes; DEPTH];
+use crate::kernel::attention::lanes::{Block, DEPTH, LANES, Lanes, ZEROS};
+use crate::kernel::attention::simd::{Simd, Vectors};
 
 /// Room for sixteen heads, kept from group to group.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Buffers {
     /// By block, scaled so that scores are powers of two.
-    pub(super) query: Vec<Natural>,
+    pub(super) query: Vec<Block>,
     /// By block.
-    pub(super) mixed_gradient: Vec<Natural>,
+    pub(super) mixed_gradient: Vec<Block>,
     /// By block.
-    pub(super) query_gradient: Vec<Natural>,
+    pub(super) query_gradient: Vec<Block>,
     /// By token: scores, then powers.
     pub(super) powers: Vec<Lanes>,
     /// By token: the value's product with the gradient of what was mixed.
@@ -47,56 +46,75 @@ impl Place {
 
     /// The numbers of a block; those that lack are 0. A slice that is too short is repeated.
     #[inline(always)]
-    pub(super) fn load(self, from: &[f32], block: usize) -> Natural {
+    pub(super) fn load<S: Simd>(self, simd: S, from: &[f32], block: usize) -> Vectors<S> {
         let first = if self.first < from.len() {
             self.first
         } else {
             self.first % from.len()
         };
-        let mut result = [Lanes::ZERO; DEPTH];
-        if self.width == DEPTH
-            && let Some(whole) = from[first..].first_chunk::<{ LANES * DEPTH }>()
-            && self.numbers == LANES * DEPTH
+        if self.whole()
+            && let Some(numbers) = from[first..].first_chunk::<{ LANES * DEPTH }>()
         {
-            for (lanes, numbers) in result.iter_mut().zip(whole.as_chunks().0) {
-                lanes.0 = *numbers;
+            let parts = numbers.as_chunks().0;
+            let mut result = [simd.splat(0.0); DEPTH];
+            for part in 0..DEPTH {
+                result[part] = simd.load(&parts[part]);
             }
+            result
         } else {
+            let mut gathered = ZEROS;
             self.each(block, |at, part, lane| {
-                result[part].0[lane] = from[(self.first + at) % from.len()];
+                gathered[part].0[lane] = from[(self.first + at) % from.len()];
             });
+            simd.read(&gathered)
         }
-        result
     }
 
     /// Adds to the numbers of a block. The slice starts with the group.
     #[inline(always)]
-    pub(super) fn add(self, sum: &Natural, into: &mut [f32], block: usize) {
-        if self.width == DEPTH
-            && self.numbers == LANES * DEPTH
-            && let Some(whole) = into.first_chunk_mut::<{ LANES * DEPTH }>()
+    pub(super) fn add<S: Simd>(self, simd: S, sum: Vectors<S>, into: &mut [f32], block: usize) {
+        if self.whole()
+            && let Some(numbers) = into.first_chunk_mut::<{ LANES * DEPTH }>()
         {
-            for (lanes, numbers) in sum.iter().zip(whole.as_chunks_mut().0) {
-                *numbers = lanes.add(Lanes(*numbers)).0;
+            let numbers = numbers.as_chunks_mut().0;
+            for part in 0..DEPTH {
+                let before = simd.load(&numbers[part]);
+                simd.store(simd.add(before, sum[part]), &mut numbers[part]);
             }
         } else {
-            self.each(block, |at, part, lane| into[at] += sum[part].0[lane]);
+            let mut numbers = ZEROS;
+            simd.write(sum, &mut numbers);
+            self.each(block, |at, part, lane| into[at] += numbers[part].0[lane]);
         }
     }
 
     /// Sets the numbers of a block. The slice starts with the group.
     #[inline(always)]
-    pub(super) fn store(self, values: &Natural, into: &mut [f32], block: usize) {
-        if self.width == DEPTH
-            && self.numbers == LANES * DEPTH
-            && let Some(whole) = into.first_chunk_mut::<{ LANES * DEPTH }>()
+    pub(super) fn store<S: Simd>(
+        self,
+        simd: S,
+        values: Vectors<S>,
+        into: &mut [f32],
+        block: usize,
+    ) {
+        if self.whole()
+            && let Some(numbers) = into.first_chunk_mut::<{ LANES * DEPTH }>()
         {
-            for (lanes, numbers) in values.iter().zip(whole.as_chunks_mut().0) {
-                *numbers = lanes.0;
+            let numbers = numbers.as_chunks_mut().0;
+            for part in 0..DEPTH {
+                simd.store(values[part], &mut numbers[part]);
             }
         } else {
-            self.each(block, |at, part, lane| into[at] = values[part].0[lane]);
+            let mut numbers = ZEROS;
+            simd.write(values, &mut numbers);
+            self.each(block, |at, part, lane| into[at] = numbers[part].0[lane]);
         }
+    }
+
+    /// Whether the numbers of the sixteen heads lie as those of a block.
+    #[inline(always)]
+    fn whole(self) -> bool {
+        self.width == DEPTH && self.numbers == LANES * DEPTH
     }
 
     /// The place of a number after the first, and where it stands in a block.
@@ -112,75 +130,83 @@ impl Place {
     }
 }
 
-/// Σ a b over the numbers of each head, added to `sums`.
+/// Σ a b over the numbers of each head, added to `start`.
 #[inline(always)]
-pub(super) fn dot(a: &Natural, b: &Natural, sums: Lanes) -> Lanes {
-    let mut result = [0.0; LANES];
+pub(super) fn dot<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>, start: S::Wide) -> S::Wide {
+    let mut products = a;
     for part in 0..DEPTH {
-        let products = a[part].mul(b[part]).0;
-        for head in 0..LANES / DEPTH {
-            let at = head * DEPTH;
-            result[part * (LANES / DEPTH) + head] =
-                (products[at] + products[at + 1]) + (products[at + 2] + products[at + 3]);
-        }
+        products[part] = simd.mul(a[part], b[part]);
     }
-    sums.add(Lanes(result))
+    let [a, b, c, d] = simd.transpose(products);
+    simd.add(start, simd.add(simd.add(a, b), simd.add(c, d)))
+}
+
+/// `weight` of each head at each of its numbers.
+#[inline(always)]
+fn spread<S: Simd>(simd: S, weight: S::Wide) -> Vectors<S> {
+    [
+        simd.spread::<0x00>(weight),
+        simd.spread::<0x55>(weight),
+        simd.spread::<0xaa>(weight),
+        simd.spread::<0xff>(weight),
+    ]
 }
 
 /// `sum` + `weight` of each head · its numbers.
 #[inline(always)]
-pub(super) fn accumulate<const FUSED: bool>(sum: &mut Natural, weight: Lanes, numbers: &Natural) {
+pub(super) fn accumulate<S: Simd>(
+    simd: S,
+    sum: Vectors<S>,
+    weight: S::Wide,
+    numbers: Vectors<S>,
+) -> Vectors<S> {
+    let (mut sum, weights) = (sum, spread(simd, weight));
     for part in 0..DEPTH {
-        sum[part] = spread(weight, part).mul_add::<FUSED>(numbers[part], sum[part]);
+        sum[part] = simd.mul_add(weights[part], numbers[part], sum[part]);
     }
+    sum
 }
 
 /// `weight` of each head · its numbers.
 #[inline(always)]
-pub(super) fn weighted(weight: Lanes, numbers: &Natural) -> Natural {
-    let mut result = [Lanes::ZERO; DEPTH];
+pub(super) fn weighted<S: Simd>(simd: S, weight: S::Wide, numbers: Vectors<S>) -> Vectors<S> {
+    let (mut result, weights) = (numbers, spread(simd, weight));
     for part in 0..DEPTH {
-        result[part] = spread(weight, part).mul(numbers[part]);
-    }
-    result
-}
-
-/// A number for each head, at each of the numbers of the heads in `part`.
-#[inline(always)]
-fn spread(weight: Lanes, part: usize) -> Lanes {
-    let mut result = Lanes::ZERO;
-    for head in 0..LANES / DEPTH {
-        let value = weight.0[part * (LANES / DEPTH) + head];
-        for number in 0..DEPTH {
-            result.0[head * DEPTH + number] = value;
-        }
+        result[part] = simd.mul(weights[part], numbers[part]);
     }
     result
 }
 
 /// Into `powers` 2^(score − largest score) for every token, the own one last; 1 over their sum.
 #[inline(always)]
-pub(super) fn soften<const FUSED: bool>(
+pub(super) fn soften<S: Simd>(
+    simd: S,
     place: Place,
-    query: &[Natural],
+    query: &[Block],
     memory: &[KeyValue<'_>],
     own: KeyValue<'_>,
     powers: &mut Vec<Lanes>,
-) -> Lanes {
-    powers.clear();
-    let mut largest = Lanes::splat(f32::NEG_INFINITY);
-    for token in memory.iter().chain([&own]) {
-        let mut score = Lanes::ZERO;
+) -> S::Wide {
+    powers.resize(memory.len() + 1, Lanes::ZERO);
+    let mut largest = simd.splat(f32::NEG_INFINITY);
+    for (token, power) in memory.iter().chain([&own]).zip(powers.iter_mut()) {
+        let mut score = simd.splat(0.0);
         for (block, query) in query.iter().enumerate() {
-            score = dot(query, &place.load(token.key, block), score);
+            score = dot(
+                simd,
+                simd.read(query),
+                place.load(simd, token.key, block),
+                score,
+            );
         }
-        largest = largest.max(score);
-        powers.push(score);
+        largest = simd.max(largest, score);
+        simd.store(score, &mut power.0);
     }
-    let mut sum = Lanes::ZERO;
-    for power in powers.iter_mut() {
-        *power = exp2::<FUSED>(power.sub(largest));
-        sum = sum.add(*power);
+    let mut sum = simd.splat(0.0);
+    for power in powers {
+        let value = exp2(simd, simd.sub(simd.load(&power.0), largest));
+        sum = simd.add(sum, value);
+        simd.store(value, &mut power.0);
     }
-    sum.reciprocal()
+    simd.div(simd.splat(1.0), sum)
 }

@@ -1,7 +1,7 @@
 //! Attention among walkers against the formula.
 
 use super::numbers::{Numbers, assert_close, wide};
-use super::reference::Query;
+use super::reference::Attention;
 use crate::kernel::attention::dropout::Decisions;
 use crate::kernel::attention::{AmongWalkers, Attended, Dropout, InstructionSet, Scenes};
 
@@ -88,7 +88,7 @@ impl Case {
                             Some(decisions) => f64::from(decisions.factor(entry, i, j, head)),
                             None => 1.0,
                         };
-                        let query = Query {
+                        let query = Attention {
                             query: vector(i, 0),
                             keys: &keys,
                             values: &values,

@@ -1,6 +1,6 @@
 //! Numbers to test with, and how far results are apart.
 
-/// A generator of reproducible numbers (SplitMix64).
+/// A generator of reproducible numbers (`SplitMix64`).
 pub(super) struct Numbers(pub(super) u64);
 
 impl Numbers {
@@ -22,7 +22,7 @@ impl Numbers {
         let mut visible = Vec::new();
         for size in sizes.repeat(frames) {
             for i in 0..size {
-                visible.extend((0..size).map(|j| i == j || self.word() % 4 > 0));
+                visible.extend((0..size).map(|j| i == j || !self.word().is_multiple_of(4)));
             }
         }
         visible

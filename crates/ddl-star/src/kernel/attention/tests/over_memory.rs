@@ -1,7 +1,7 @@
 //! Attention over the memory against the formula.
 
 use super::numbers::{Numbers, assert_close, bits, wide};
-use super::reference::Query;
+use super::reference::Attention;
 use crate::kernel::attention::{
     InstructionSet, KeyValue, KeyValueMut, OverMemory, OverMemoryGradients,
 };
@@ -92,7 +92,7 @@ impl Case {
                     .map(move |token| part_of(token, part, at, width))
             };
             let (keys, values): (Vec<_>, Vec<_>) = (of(0).collect(), of(1).collect());
-            let query = Query {
+            let query = Attention {
                 query: &all[here.clone()],
                 keys: &keys,
                 values: &values,

@@ -2,7 +2,7 @@
 
 /// One query over `keys` and `values`, whose weights are multiplied by `factors`, with the gradients of
 /// Σ `gradient` · mixed.
-pub(super) struct Query<'a> {
+pub(super) struct Attention<'a> {
     pub(super) query: &'a [f64],
     pub(super) keys: &'a [&'a [f64]],
     pub(super) values: &'a [&'a [f64]],
@@ -19,7 +19,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-impl Query<'_> {
+impl Attention<'_> {
     fn weights(&self) -> Vec<f64> {
         let scale = 1.0 / (self.query.len() as f64).sqrt();
         let scores = self.keys.iter().map(|key| scale * dot(self.query, key));

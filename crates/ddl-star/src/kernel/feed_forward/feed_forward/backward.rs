@@ -14,7 +14,7 @@ use super::weights::Weights;
 use crate::kernel::feed_forward::block::{BLOCK, Block, Panel, tile_mut};
 use crate::kernel::feed_forward::block_rows::BlockRows;
 use crate::kernel::feed_forward::dropout::{Decisions, Dropout};
-use crate::kernel::feed_forward::product::{add_product, add_transposed_product};
+use crate::kernel::feed_forward::product::{add_product, add_transposed_product, sum_of_rows};
 use crate::kernel::feed_forward::simd::{Kernel, ROWS, Simd};
 
 /// Groups of hidden units at most.
@@ -157,6 +157,7 @@ impl Kernel for Backward<'_, '_> {
         }
         for (u, b1) in part.b1.chunks_mut(BLOCK).enumerate() {
             let unit = units + u;
+            let of_unit = weights.unit(unit);
             w1.fill([Block::ZERO; BLOCK]);
             w2.fill([Block::ZERO; BLOCK]);
             for start in (0..x.rows()).step_by(KEPT) {
@@ -165,20 +166,18 @@ impl Kernel for Backward<'_, '_> {
                     let row = start + r;
                     let hidden = tile_mut::<R>(hidden, r);
                     let gradient = tile_mut::<R>(gradient, r);
-                    activate::<S, R, V>(simd, weights, unit, x, row, hidden);
+                    activate::<S, R, V>(simd, of_unit, x, row, hidden);
                     if let Some(decisions) = decisions {
                         decisions.apply(simd, hidden, first + row, unit);
                     }
-                    deactivate::<S, R, V>(simd, weights, unit, gy, row, scale, hidden, gradient);
+                    deactivate::<S, R, V>(simd, of_unit, gy, row, scale, hidden, gradient);
                     for column in 0..weights.columns {
                         let gx = tile_mut(gx.column_mut(column), row);
-                        add_product::<S, R, V>(simd, gx, gradient, weights.w1(unit, column));
+                        add_product::<S, R, V>(simd, gx, gradient, of_unit.w1(column));
                     }
                 }
                 let (hidden, gradient) = (&hidden[..count], &gradient[..count]);
-                for gradient in gradient {
-                    gradient.add_to(b1);
-                }
+                sum_of_rows::<S, V>(simd, gradient).add_to(b1);
                 for column in 0..weights.columns {
                     let x = &x.column(column)[start..][..count];
                     let gy = &gy.column(column)[start..][..count];

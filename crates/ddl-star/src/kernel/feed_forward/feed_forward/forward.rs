@@ -76,14 +76,15 @@ impl Kernel for Forward<'_> {
         }
         let mut hidden = [Block::ZERO; R];
         for unit in 0..weights.units {
+            let of_unit = weights.unit(unit);
             for row in (0..x.rows()).step_by(R) {
-                activate::<S, R, V>(simd, weights, unit, x, row, &mut hidden);
+                activate::<S, R, V>(simd, of_unit, x, row, &mut hidden);
                 if let Some(decisions) = decisions {
                     decisions.apply(simd, &mut hidden, first + row, unit);
                 }
                 for column in 0..weights.columns {
                     let y = tile_mut(y.column_mut(column), row);
-                    add_product::<S, R, V>(simd, y, &hidden, weights.w2_transposed(unit, column));
+                    add_product::<S, R, V>(simd, y, &hidden, of_unit.w2_transposed(column));
                 }
             }
         }

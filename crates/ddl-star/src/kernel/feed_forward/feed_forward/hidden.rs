@@ -1,19 +1,22 @@
 //! One block of hidden units of a few rows.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+#![expect(
+    clippy::needless_range_loop,
+    reason = "loops of a known count over registers"
+)]
 
-use super::weights::Weights;
+use super::weights::Unit;
 use crate::kernel::feed_forward::block::{BLOCK, Block, tile};
 use crate::kernel::feed_forward::block_rows::BlockRows;
 use crate::kernel::feed_forward::product::{multiply, store_tile};
 use crate::kernel::feed_forward::simd::Simd;
 
-/// relu(W1 x + b1) of the units of block `unit`, for R rows from `row`.
+/// relu(W1 x + b1) of a block of units, for R rows from `row`.
 #[inline(always)]
 pub(super) fn activate<S: Simd, const R: usize, const V: usize>(
     simd: S,
-    weights: &Weights,
-    unit: usize,
+    unit: Unit<'_>,
     x: &BlockRows,
     row: usize,
     hidden: &mut [Block; R],
@@ -22,12 +25,12 @@ pub(super) fn activate<S: Simd, const R: usize, const V: usize>(
         let mut sum = [[simd.splat(0.0); V]; R];
         for r in 0..R {
             for v in 0..V {
-                sum[r][v] = simd.load(&weights.b1[unit], part + v);
+                sum[r][v] = simd.load(unit.b1(), part + v);
             }
         }
-        for column in 0..weights.columns {
+        for column in 0..unit.columns() {
             let x = tile(x.column(column), row);
-            sum = multiply(simd, sum, x, weights.w1_transposed(unit, column), part);
+            sum = multiply(simd, sum, x, unit.w1_transposed(column), part);
         }
         for r in 0..R {
             for v in 0..V {
@@ -38,12 +41,12 @@ pub(super) fn activate<S: Simd, const R: usize, const V: usize>(
     }
 }
 
-/// Derivative with respect to what ReLU is applied to: W2^T gy times `scale`, 0 where `hidden` is 0.
+/// From activations to the derivatives with respect to what `ReLU` is applied to: W2^T gy times `scale`, 0 where an
+/// activation is 0.
 #[inline(always)]
 pub(super) fn deactivate<S: Simd, const R: usize, const V: usize>(
     simd: S,
-    weights: &Weights,
-    unit: usize,
+    unit: Unit<'_>,
     gy: &BlockRows,
     row: usize,
     scale: f32,
@@ -52,9 +55,9 @@ pub(super) fn deactivate<S: Simd, const R: usize, const V: usize>(
 ) {
     for part in (0..BLOCK / S::WIDTH).step_by(V) {
         let mut sum = [[simd.splat(0.0); V]; R];
-        for column in 0..weights.columns {
+        for column in 0..unit.columns() {
             let gy = tile(gy.column(column), row);
-            sum = multiply(simd, sum, gy, weights.w2(unit, column), part);
+            sum = multiply(simd, sum, gy, unit.w2(column), part);
         }
         for r in 0..R {
             for v in 0..V {

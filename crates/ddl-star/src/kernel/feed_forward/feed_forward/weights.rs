@@ -16,7 +16,7 @@ pub(super) struct Weights {
     w1_transposed: Vec<Panel>,
     w2: Vec<Panel>,
     w2_transposed: Vec<Panel>,
-    pub(super) b1: Vec<Block>,
+    b1: Vec<Block>,
     pub(super) b2: Vec<Block>,
 }
 
@@ -63,24 +63,57 @@ impl Weights {
         }
     }
 
+    /// Those of one block of hidden units.
+    #[inline]
+    pub(super) fn unit(&self, unit: usize) -> Unit<'_> {
+        Unit {
+            weights: self,
+            unit,
+        }
+    }
+}
+
+/// The weights of a block of hidden units.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Unit<'a> {
+    weights: &'a Weights,
+    unit: usize,
+}
+
+impl<'a> Unit<'a> {
     /// W1, rows hidden units.
-    pub(super) fn w1(&self, unit: usize, column: usize) -> &Panel {
-        &self.w1[unit * self.columns + column]
+    #[inline]
+    pub(super) fn w1(self, column: usize) -> &'a Panel {
+        &self.weights.w1[self.unit * self.weights.columns + column]
     }
 
     /// W1^T, rows entries of x.
-    pub(super) fn w1_transposed(&self, unit: usize, column: usize) -> &Panel {
-        &self.w1_transposed[unit * self.columns + column]
+    #[inline]
+    pub(super) fn w1_transposed(self, column: usize) -> &'a Panel {
+        &self.weights.w1_transposed[self.unit * self.weights.columns + column]
     }
 
     /// W2, rows entries of y.
-    pub(super) fn w2(&self, unit: usize, column: usize) -> &Panel {
-        &self.w2[unit * self.columns + column]
+    #[inline]
+    pub(super) fn w2(self, column: usize) -> &'a Panel {
+        &self.weights.w2[self.unit * self.weights.columns + column]
     }
 
     /// W2^T, rows hidden units.
-    pub(super) fn w2_transposed(&self, unit: usize, column: usize) -> &Panel {
-        &self.w2_transposed[unit * self.columns + column]
+    #[inline]
+    pub(super) fn w2_transposed(self, column: usize) -> &'a Panel {
+        &self.weights.w2_transposed[self.unit * self.weights.columns + column]
+    }
+
+    #[inline]
+    pub(super) fn b1(self) -> &'a Block {
+        &self.weights.b1[self.unit]
+    }
+
+    /// Blocks of a row of x.
+    #[inline]
+    pub(super) fn columns(self) -> usize {
+        self.weights.columns
     }
 }
 
