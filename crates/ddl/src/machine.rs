@@ -3,8 +3,9 @@
 use crate::DdlError;
 use ddl_star::{ComputeDevice, DeviceChoice};
 
-/// Opens the device and sets the number of threads (all cores when `None`) of tensor operations and
-/// of goal search. Call it once, before anything else: CUDA can only be opened before the first
+/// Opens the device and sets the number of threads (all cores when `None`) of the kernels and of goal
+/// search. libtorch itself uses one: what is left to it on the CPU are small tensors, over which several
+/// threads would mostly wait for each other. Call it once, before anything else: CUDA can only be opened before the first
 /// tensor is made.
 ///
 /// # Errors
@@ -13,7 +14,7 @@ pub fn prepare(device: DeviceChoice, threads: Option<usize>) -> Result<(), DdlEr
     ComputeDevice::open(device)?;
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let threads = threads.unwrap_or(cores).max(1);
-    ddl_star::set_threads(threads);
+    ddl_star::set_threads(1);
     // A pool that was built earlier stays as it is: results do not depend on it.
     let _ = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)

@@ -24,14 +24,6 @@ const GOALS: f64 = 0.15;
 /// Lines of a log that are shown when a task fails.
 const LAST_LINES: usize = 8;
 
-/// Settings of glibc's allocator: memory freed by one tensor is kept for the next instead of going
-/// back to the system, which otherwise clears every page anew (a quarter of a training step).
-const KEEP_MEMORY: [(&str, &str); 3] = [
-    ("MALLOC_MMAP_THRESHOLD_", "4294967296"),
-    ("MALLOC_TRIM_THRESHOLD_", "8589934592"),
-    ("MALLOC_TOP_PAD_", "268435456"),
-];
-
 /// Runs up to `jobs` tasks at a time, each in a process of the program `ddl`.
 #[derive(Debug)]
 pub(crate) struct Local {
@@ -190,7 +182,6 @@ impl Local {
             .env("OMP_NUM_THREADS", self.threads.to_string())
             .env("RAYON_NUM_THREADS", self.threads.to_string())
             .env("DDL_COMMIT", &self.commit)
-            .envs(KEEP_MEMORY)
             .stderr(Stdio::from(errors));
         let (id, stdout) = self.children.start(&mut command)?;
         let mut reached = 0.0_f64;
