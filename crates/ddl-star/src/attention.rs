@@ -2,7 +2,7 @@
 //! every walker over its neighbours, and the newest token over all earlier ones.
 
 use crate::dropout::dropout;
-use crate::kernel::attention::{AmongWalkers, Attended, Dropout};
+use crate::kernel::{AmongWalkers, Attended};
 use crate::layers::Linear;
 use crate::neighbours::Seen;
 use crate::numbers::{numbers, tensor};
@@ -85,9 +85,7 @@ impl MultiHeadAttention {
     fn among_walkers_by_kernel(&self, qkv: &Tensor, seen: &Seen<'_>, pass: &Pass) -> Tensor {
         let (shape, heads) = (qkv.size(), self.heads as usize);
         let kernel = AmongWalkers::new(heads, self.width as usize / heads);
-        let dropout = pass
-            .dropout(self.dropout)
-            .map(|(p, seed)| Dropout { p, seed });
+        let dropout = pass.dropout(self.dropout);
         let (input, scenes) = (numbers(qkv), seen.scenes());
         let mut attended = Attended::default();
         kernel.forward(&input, scenes.frames(), dropout, &mut attended);

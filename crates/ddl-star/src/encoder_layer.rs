@@ -4,7 +4,7 @@
 use crate::attention::MultiHeadAttention;
 use crate::config::StarConfig;
 use crate::dropout::dropout;
-use crate::kernel::feed_forward::{Dropout, FeedForward, Gradients};
+use crate::kernel::{FeedForward, Gradients};
 use crate::layers::{LayerNorm, Linear};
 use crate::neighbours::Seen;
 use crate::numbers::{numbers, tensor};
@@ -91,9 +91,7 @@ impl EncoderLayer {
                 hidden,
             )
         });
-        let dropout = pass
-            .dropout(self.dropout)
-            .map(|(p, seed)| Dropout { p, seed });
+        let dropout = pass.dropout(self.dropout);
         let input = numbers(x);
         let mut output = vec![0.0; input.len()];
         kernel.forward(&input, dropout, &mut output);

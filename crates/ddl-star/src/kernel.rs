@@ -1,4 +1,34 @@
-//! The heavy parts of the network, computed by ourselves on the CPU.
+//! The heavy parts of the network, computed without libtorch: only what is needed, and what passes between two products
+//! stays in the cache.
+//!
+//! - [`feed_forward`]: the feed-forward block of an encoder layer;
+//! - [`among_walkers`]: attention of every walker over those of its scene that it sees, as [`scenes`] has it;
+//! - [`over_memory`]: attention of the newest token over the remembered ones.
+//!
+//! A computation is written once, as a `Kernel`, with the arithmetic of any [`simd::Simd`], sixteen numbers at a time.
+//! [`instruction_set`] runs it with the fastest instructions that the machine has: those of `x86`, or what the compiler
+//! makes of [`portable`] code. What is `unsafe` lies in `x86` alone.
+//!
+//! All results are the same for every number of threads; between instruction sets they agree to rounding.
 
-pub(crate) mod attention;
-pub(crate) mod feed_forward;
+mod among_walkers;
+mod dropout;
+mod exp2;
+mod feed_forward;
+mod heads;
+mod instruction_set;
+mod lanes;
+mod over_memory;
+mod portable;
+mod scenes;
+mod simd;
+#[cfg(test)]
+mod tests;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+pub(crate) use among_walkers::{AmongWalkers, Attended};
+pub(crate) use dropout::Dropout;
+pub(crate) use feed_forward::{FeedForward, Gradients};
+pub(crate) use over_memory::{KeyValue, KeyValueMut, OverMemory, OverMemoryGradients};
+pub(crate) use scenes::{Frames, Scenes};

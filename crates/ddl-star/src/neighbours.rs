@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use tch::{Device, Kind, Tensor};
 
-use crate::kernel::attention::{Frames, Scenes};
+use crate::kernel::{Frames, Scenes};
 
 /// Who sees whom in each frame of a batch: scene by scene for the kernels, as one mask for libtorch.
 #[derive(Debug)]

@@ -1,6 +1,6 @@
 //! The learned tensors, by name and in order, and their seeded initial values.
 
-use crate::kernel::feed_forward::Gradients;
+use crate::kernel::Gradients;
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;

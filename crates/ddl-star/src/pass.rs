@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use tch::{Kind, TchError, Tensor};
 
-use crate::kernel::feed_forward::{FeedForward, Gradients};
+use crate::kernel::{Dropout, FeedForward, Gradients};
 use crate::layers::Mode;
 use crate::parameters::Parameters;
 use crate::tape::Tape;
@@ -64,7 +64,7 @@ impl Pass {
     pub(crate) fn junction(&self, x: &Tensor) -> Tensor {
         match &self.tape {
             Some(tape) if x.requires_grad() && !x.is_leaf() => {
-                tape.cut(&[x], x.detach(), |gradient| {
+                tape.cut(&[x], &x.detach(), |gradient| {
                     Ok(vec![gradient.shallow_clone()])
                 })
             }
@@ -80,7 +80,7 @@ impl Pass {
         backward: impl FnOnce(&Tensor) -> Result<Vec<Tensor>, TchError> + 'static,
     ) -> Tensor {
         match &self.tape {
-            Some(tape) => tape.cut(inputs, output, backward),
+            Some(tape) => tape.cut(inputs, &output, backward),
             None => output,
         }
     }
@@ -93,15 +93,15 @@ impl Pass {
         }
     }
 
-    /// Probability and seed of a kernel's dropout, each with a seed of its own; none outside training.
-    pub(crate) fn dropout(&self, p: f64) -> Option<(f64, u64)> {
+    /// The dropout of a kernel with probability `p`, each with a seed of its own; none outside training.
+    pub(crate) fn dropout(&self, p: f64) -> Option<Dropout> {
         if self.mode == Mode::Evaluate || p == 0.0 {
             return None;
         }
         let seed = self.seed.get();
         // An odd constant goes through all numbers before one comes back.
         self.seed.set(seed.wrapping_add(0x9e37_79b9_7f4a_7c15));
-        Some((p, seed))
+        Some(Dropout { p, seed })
     }
 
     /// The packed weights of a layer, made at its first use in this pass.
@@ -198,7 +198,7 @@ mod tests {
         let pass = Pass::taped(Mode::Train, 7);
         let seeds: Vec<u64> = (0..100)
             .filter_map(|_| pass.dropout(0.1))
-            .map(|(_, seed)| seed)
+            .map(|dropout| dropout.seed)
             .collect();
         let mut distinct = seeds.clone();
         distinct.sort_unstable();

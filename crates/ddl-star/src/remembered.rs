@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use tch::{TchError, Tensor};
 
-use crate::kernel::attention as kernel;
+use crate::kernel;
 use crate::numbers::{numbers, tensor};
 use crate::pass::Pass;
 

@@ -34,7 +34,7 @@ impl Tape {
     pub(crate) fn cut(
         &self,
         inputs: &[&Tensor],
-        output: Tensor,
+        output: &Tensor,
         backward: impl FnOnce(&Tensor) -> Result<Vec<Tensor>, TchError> + 'static,
     ) -> Tensor {
         let output = output.set_requires_grad(true);
@@ -102,7 +102,7 @@ mod tests {
         let cube = |x: &Tensor| {
             let value = x.detach();
             let copy = value.shallow_clone();
-            tape.cut(&[x], value.pow_tensor_scalar(3), move |g| {
+            tape.cut(&[x], &value.pow_tensor_scalar(3), move |g| {
                 Ok(vec![copy.square() * 3.0 * g])
             })
         };
@@ -124,7 +124,7 @@ mod tests {
     fn what_the_loss_does_not_depend_on_gets_no_gradient() {
         let x = Tensor::ones([2], (Kind::Double, Device::Cpu)).set_requires_grad(true);
         let tape = Tape::default();
-        let _unused = tape.cut(&[&x], x.detach(), |_| panic!("never asked"));
+        let _unused = tape.cut(&[&x], &x.detach(), |_| panic!("never asked"));
         tape.backward(&(&x * 2.0).sum(Kind::Double)).unwrap();
         assert_eq!(Vec::<f64>::try_from(x.grad()).unwrap(), [2.0, 2.0]);
     }

@@ -1,24 +1,104 @@
-//! Parts of the network computed without libtorch, so that what passes between two products stays in the cache.
-//!
-//! Matrices are cut into blocks of 32 numbers, padded with zeros. A computation is written once, as a
-//! `Kernel`, for any `Simd`; `Dispatch::run` compiles it
-//! for each instruction set and picks the one that was chosen. What is `unsafe` lies in one module.
+//! The feed-forward block of an encoder layer: two affine maps, `ReLU` and dropout between them.
 
+mod backward;
 mod block;
 mod block_rows;
 mod dropout;
-mod feed_forward;
-mod instruction_set;
-mod portable;
+mod forward;
+mod gradients;
+mod hidden;
 mod product;
-mod simd;
 #[cfg(test)]
-mod speed;
-#[cfg(target_arch = "x86_64")]
-mod x86;
+mod tests;
+mod weights;
 
-pub use dropout::Dropout;
-pub use feed_forward::{FeedForward, Gradients};
-pub use instruction_set::InstructionSet;
+pub(crate) use gradients::Gradients;
 
-use block::{BLOCK, Block};
+use super::dropout::Dropout;
+use super::instruction_set::Dispatch;
+#[cfg(test)]
+use super::instruction_set::InstructionSet;
+use weights::Weights;
+
+/// y = W2 d(relu(W1 x + b1)) + b2, with dropout d.
+///
+/// A row of `hidden` activations is never stored: 32 of them are computed for a few rows, used, and forgotten; the
+/// backward pass computes them again.
+#[derive(Clone, Debug)]
+pub(crate) struct FeedForward {
+    weights: Weights,
+    dispatch: Dispatch,
+}
+
+impl FeedForward {
+    /// Arranges the weights of libtorch's layers for the kernels.
+    ///
+    /// # Shapes
+    /// `w1` `[hidden, width]`, `b1` `[hidden]`, `w2` `[width, hidden]`, `b2` `[width]`, by rows. Any width and hidden width
+    /// will do; both are padded to multiples of 32.
+    ///
+    /// # Panics
+    /// When a width is 0 or a slice has another length.
+    pub(crate) fn pack(
+        w1: &[f32],
+        b1: &[f32],
+        w2: &[f32],
+        b2: &[f32],
+        width: usize,
+        hidden: usize,
+    ) -> Self {
+        let mut weights = Weights::new(width, hidden);
+        weights.update([w1, b1, w2, b2]);
+        Self {
+            weights,
+            dispatch: Dispatch::detect(),
+        }
+    }
+
+    /// The same with other instructions than the fastest; `None` when the machine lacks them.
+    #[cfg(test)]
+    pub(super) fn with_instructions(mut self, set: InstructionSet) -> Option<Self> {
+        self.dispatch = Dispatch::new(set)?;
+        Some(self)
+    }
+
+    /// y for every row of x.
+    ///
+    /// # Shapes
+    /// `x` `[rows, width]` -> `y` `[rows, width]`, overwritten.
+    ///
+    /// # Panics
+    /// When `y` is not as long as `x` or this is no multiple of the width; unless 0 <= p < 1.
+    ///
+    /// # Numerics
+    /// For finite sums, an entry differs from the exact one by at most (width + hidden + 8) 2^-24 times the same formula
+    /// with the absolute values of all its terms and without `ReLU`. It does not depend on the number of threads nor on the other rows.
+    pub(crate) fn forward(&self, x: &[f32], dropout: Option<Dropout>, y: &mut [f32]) {
+        forward::run(self, x, dropout, y);
+    }
+
+    /// The derivative with respect to x, and those with respect to the weights added to `grads`.
+    ///
+    /// With the same dropout as in [`Self::forward`], whose decisions are made again.
+    ///
+    /// # Shapes
+    /// `x`, `gy` `[rows, width]` -> `gx` `[rows, width]`, overwritten.
+    ///
+    /// # Panics
+    /// As in [`Self::forward`]; when `grads` was made for other widths.
+    ///
+    /// # Numerics
+    /// An entry differs from the exact one by at most (width + hidden + 16) 2^-24 (for gx), (width + rows + 16) 2^-24 (for
+    /// the others) times the formula with the absolute values of all its terms; where W1 x + b1 is 0 to rounding the
+    /// derivative of `ReLU` may be taken as 0 or 1. Nothing depends on the number of threads.
+    pub(crate) fn backward(
+        &self,
+        x: &[f32],
+        gy: &[f32],
+        dropout: Option<Dropout>,
+        gx: &mut [f32],
+        grads: &mut Gradients,
+    ) {
+        backward::run(self, [x, gy], dropout, gx, grads);
+    }
+}

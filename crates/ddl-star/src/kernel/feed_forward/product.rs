@@ -6,15 +6,15 @@
     reason = "loops of a known count over registers, written as the matrices are"
 )]
 
-use super::block::{BLOCK, Block, Panel, tile_mut};
-use super::simd::{Simd, Tile};
+use super::block::{BLOCK, Block, PARTS, Panel, tile_mut};
+use crate::kernel::simd::{Simd, Tile};
 
-/// sum + A B for R rows of A and V registers of the columns of B, from register `part`.
+/// sum + A B for R rows of A and V parts of the columns of B, from part `part`.
 ///
 /// # Shapes
 /// A `[R, 32]`, B `[32, 32]`.
 #[inline(always)]
-pub(crate) fn multiply<S: Simd, const R: usize, const V: usize>(
+pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
     simd: S,
     mut sum: Tile<S, R, V>,
     a: &[Block; R],
@@ -24,7 +24,7 @@ pub(crate) fn multiply<S: Simd, const R: usize, const V: usize>(
     for t in 0..BLOCK {
         let mut of_b = [simd.splat(0.0); V];
         for v in 0..V {
-            of_b[v] = simd.load(&b[t], part + v);
+            of_b[v] = simd.load(b[t].part(part + v));
         }
         for r in 0..R {
             let of_a = simd.splat(a[r].0[t]);
@@ -36,12 +36,12 @@ pub(crate) fn multiply<S: Simd, const R: usize, const V: usize>(
     sum
 }
 
-/// A^T B for R columns of A, from column `first`, and V registers of the columns of B, from register `part`.
+/// A^T B for R columns of A, from column `first`, and V parts of the columns of B, from part `part`.
 ///
 /// # Shapes
 /// A `[t, 32]`, B `[t, 32]`.
 #[inline(always)]
-pub(crate) fn multiply_transposed<S: Simd, const R: usize, const V: usize>(
+pub(super) fn multiply_transposed<S: Simd, const R: usize, const V: usize>(
     simd: S,
     a: &[Block],
     first: usize,
@@ -53,7 +53,7 @@ pub(crate) fn multiply_transposed<S: Simd, const R: usize, const V: usize>(
     for (a, b) in a.iter().zip(b) {
         let mut of_b = [simd.splat(0.0); V];
         for v in 0..V {
-            of_b[v] = simd.load(b, part + v);
+            of_b[v] = simd.load(b.part(part + v));
         }
         for r in 0..R {
             let of_a = simd.splat(a.0[first + r]);
@@ -65,9 +65,9 @@ pub(crate) fn multiply_transposed<S: Simd, const R: usize, const V: usize>(
     sum
 }
 
-/// V registers of each row, from register `part`.
+/// V parts of each row, from part `part`.
 #[inline(always)]
-pub(crate) fn load_tile<S: Simd, const R: usize, const V: usize>(
+pub(super) fn load_tile<S: Simd, const R: usize, const V: usize>(
     simd: S,
     from: &[Block; R],
     part: usize,
@@ -75,15 +75,15 @@ pub(crate) fn load_tile<S: Simd, const R: usize, const V: usize>(
     let mut tile = [[simd.splat(0.0); V]; R];
     for r in 0..R {
         for v in 0..V {
-            tile[r][v] = simd.load(&from[r], part + v);
+            tile[r][v] = simd.load(from[r].part(part + v));
         }
     }
     tile
 }
 
-/// Writes V registers of each row, from register `part`.
+/// Writes V parts of each row, from part `part`.
 #[inline(always)]
-pub(crate) fn store_tile<S: Simd, const R: usize, const V: usize>(
+pub(super) fn store_tile<S: Simd, const R: usize, const V: usize>(
     simd: S,
     tile: &Tile<S, R, V>,
     into: &mut [Block; R],
@@ -91,7 +91,7 @@ pub(crate) fn store_tile<S: Simd, const R: usize, const V: usize>(
 ) {
     for r in 0..R {
         for v in 0..V {
-            simd.store(tile[r][v], &mut into[r], part + v);
+            simd.store(tile[r][v], into[r].part_mut(part + v));
         }
     }
 }
@@ -101,13 +101,13 @@ pub(crate) fn store_tile<S: Simd, const R: usize, const V: usize>(
 /// # Shapes
 /// `sum` and A `[R, 32]`, B `[32, 32]`.
 #[inline(always)]
-pub(crate) fn add_product<S: Simd, const R: usize, const V: usize>(
+pub(super) fn add_product<S: Simd, const R: usize, const V: usize>(
     simd: S,
     sum: &mut [Block; R],
     a: &[Block; R],
     b: &Panel,
 ) {
-    for part in (0..BLOCK / S::WIDTH).step_by(V) {
+    for part in (0..PARTS).step_by(V) {
         let tile = load_tile::<S, R, V>(simd, sum, part);
         let tile = multiply(simd, tile, a, b, part);
         store_tile(simd, &tile, sum, part);
@@ -119,7 +119,7 @@ pub(crate) fn add_product<S: Simd, const R: usize, const V: usize>(
 /// # Shapes
 /// `sum` `[32, 32]`, A and B `[t, 32]`.
 #[inline(always)]
-pub(crate) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
+pub(super) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
     simd: S,
     sum: &mut Panel,
     a: &[Block],
@@ -127,12 +127,12 @@ pub(crate) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
 ) {
     for first in (0..BLOCK).step_by(R) {
         let sum = tile_mut::<R>(sum, first);
-        for part in (0..BLOCK / S::WIDTH).step_by(V) {
+        for part in (0..PARTS).step_by(V) {
             let mut tile: Tile<S, R, V> = multiply_transposed(simd, a, first, b, part);
             for r in 0..R {
                 for v in 0..V {
                     // Added at the end: sums of sums are more exact than one long one.
-                    tile[r][v] = simd.add(tile[r][v], simd.load(&sum[r], part + v));
+                    tile[r][v] = simd.add(tile[r][v], simd.load(sum[r].part(part + v)));
                 }
             }
             store_tile(simd, &tile, sum, part);
@@ -141,17 +141,17 @@ pub(crate) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
 }
 
 #[inline(always)]
-pub(crate) fn sum_of_rows<S: Simd, const V: usize>(simd: S, rows: &[Block]) -> Block {
+pub(super) fn sum_of_rows<S: Simd, const V: usize>(simd: S, rows: &[Block]) -> Block {
     let mut result = Block::ZERO;
-    for part in (0..BLOCK / S::WIDTH).step_by(V) {
+    for part in (0..PARTS).step_by(V) {
         let mut sum = [simd.splat(0.0); V];
         for row in rows {
             for v in 0..V {
-                sum[v] = simd.add(sum[v], simd.load(row, part + v));
+                sum[v] = simd.add(sum[v], simd.load(row.part(part + v)));
             }
         }
         for v in 0..V {
-            simd.store(sum[v], &mut result, part + v);
+            simd.store(sum[v], result.part_mut(part + v));
         }
     }
     result

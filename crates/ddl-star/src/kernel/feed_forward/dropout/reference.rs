@@ -3,7 +3,7 @@
 use super::{Dropout, mixed};
 
 /// 16 random bits.
-pub(crate) fn bits(seed: u64, row: usize, unit: usize) -> u32 {
+pub(super) fn bits(seed: u64, row: usize, unit: usize) -> u32 {
     let key = mixed(mixed(seed).wrapping_add(row as u64));
     let (block, lane) = (unit / 32, unit % 32);
     let word = key as u32 ^ (block * 16 + lane % 16) as u32;

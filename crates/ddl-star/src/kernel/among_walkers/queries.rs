@@ -1,0 +1,104 @@
+//! What the forward and the backward kernel share: a scene's rows in lanes, and room for what is computed of them.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use super::Task;
+use super::dropout::LaneBits;
+use crate::kernel::heads::{GROUP, Part, row_of};
+use crate::kernel::lanes::{LANES, Lanes, Quad, ZERO_QUAD};
+use crate::kernel::simd::Simd;
+
+/// Room for one group of heads of a scene, kept from scene to scene.
+///
+/// Queries lie two by two, a walker in each half of the lanes; keys lie one by one, the same in both halves, so that
+/// two queries meet a key in one operation and no sum goes across lanes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Buffers {
+    /// By two queries and quad of the head's numbers, scaled so that scores are powers of two.
+    pub(super) queries: Vec<Quad>,
+    /// By key and quad.
+    pub(super) keys: Vec<Quad>,
+    /// By key and quad.
+    pub(super) values: Vec<Quad>,
+    /// By two queries and quad: gradient of what they mixed, over the sum of their weights.
+    pub(super) mixed_gradients: Vec<Quad>,
+    /// By two queries and quad.
+    pub(super) query_gradients: Vec<Quad>,
+    /// By two queries: largest score, and the mixed values' product with their gradient, over the sum of weights.
+    pub(super) inner: Vec<[Lanes; 2]>,
+    /// By two queries.
+    pub(super) bits: Vec<LaneBits>,
+    /// Scores, then weights; by key in the forward pass, by two queries in the backward pass.
+    pub(super) weights: Vec<Lanes>,
+    /// By two queries, of one key.
+    pub(super) score_gradients: Vec<Lanes>,
+}
+
+/// What is added to the scores of two queries, by the code of what they see.
+pub(super) static UNSEEN: [Lanes; 4] = {
+    let mut table = [Lanes([f32::NEG_INFINITY; LANES]); 4];
+    let mut lane = 0;
+    while lane < LANES {
+        table[1 + row_of(lane)].0[lane] = 0.0;
+        table[3].0[lane] = 0.0;
+        lane += 1;
+    }
+    table
+};
+
+impl Buffers {
+    /// Brings queries, keys and values of a group of heads into lanes.
+    #[inline(always)]
+    pub(super) fn load<S: Simd>(
+        &mut self,
+        simd: S,
+        task: &Task<'_>,
+        qkv: &[f32],
+        group: usize,
+        quads: usize,
+    ) {
+        let (row, walkers) = (task.heads.row(), task.scene.walkers);
+        let scale = simd.splat(task.heads.scale() * std::f32::consts::LOG2_E);
+        self.queries.resize(walkers.div_ceil(2) * quads, ZERO_QUAD);
+        self.keys.resize(walkers * quads, ZERO_QUAD);
+        self.values.resize(walkers * quads, ZERO_QUAD);
+        let twos = qkv.chunks(6 * row);
+        for (two, queries) in twos.zip(self.queries.chunks_exact_mut(quads)) {
+            let (first, second) = two.split_at(3 * row);
+            let second = second.get(..row);
+            for (quad, query) in queries.iter_mut().enumerate() {
+                let part = Part::new(task.heads, group, quad);
+                let loaded = part.load(simd, &first[..row], second);
+                simd.write(simd.scaled(loaded, scale), query);
+            }
+        }
+        let keys = self.keys.chunks_exact_mut(quads);
+        let keys = keys.zip(self.values.chunks_exact_mut(quads));
+        for (walker, (keys, values)) in qkv.chunks_exact(3 * row).zip(keys) {
+            let (key, value) = walker[row..].split_at(row);
+            for quad in 0..quads {
+                let part = Part::new(task.heads, group, quad);
+                simd.write(part.load(simd, key, Some(key)), &mut keys[quad]);
+                simd.write(part.load(simd, value, Some(value)), &mut values[quad]);
+            }
+        }
+        self.bits.clear();
+        if let Some(decisions) = task.decisions {
+            for first in (0..walkers).step_by(2) {
+                let of = |walker| decisions.query(task.entry, task.scene.first + walker);
+                let two = [of(first), of(first + 1)];
+                self.bits.push(LaneBits::new(two, group * GROUP));
+            }
+        }
+    }
+}
+
+/// `start` + Σ a b over all quads.
+#[inline(always)]
+pub(super) fn dot<S: Simd>(simd: S, a: &[Quad], b: &[Quad], start: S::Floats) -> S::Floats {
+    let mut sum = start;
+    for (a, b) in a.iter().zip(b) {
+        sum = simd.dot(simd.read(a), simd.read(b), sum);
+    }
+    sum
+}

@@ -1,0 +1,51 @@
+//! Numbers to test with, and how far results are apart.
+
+/// A generator of reproducible numbers (`SplitMix64`).
+pub(crate) struct Numbers(pub(crate) u64);
+
+impl Numbers {
+    pub(crate) fn word(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let word = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        word ^ (word >> 31)
+    }
+
+    /// Even in [−`bound`, `bound`].
+    pub(crate) fn even(&mut self, count: usize, bound: f32) -> Vec<f32> {
+        let number = |word: u64| bound * ((word >> 40) as f32 / 8_388_608.0 - 1.0);
+        (0..count).map(|_| number(self.word())).collect()
+    }
+
+    /// Who sees whom: itself always, others three times in four.
+    pub(crate) fn visible(&mut self, sizes: &[usize], frames: usize) -> Vec<bool> {
+        let mut visible = Vec::new();
+        for size in sizes.repeat(frames) {
+            for i in 0..size {
+                visible.extend((0..size).map(|j| i == j || !self.word().is_multiple_of(4)));
+            }
+        }
+        visible
+    }
+}
+
+/// Panics where a result is further from the expected one than `tolerance` times the largest of all.
+pub(crate) fn assert_close(what: &str, results: &[f32], expected: &[f64], tolerance: f64) {
+    assert_eq!(results.len(), expected.len(), "{what}");
+    let largest = expected.iter().fold(1e-3_f64, |a, b| a.max(b.abs()));
+    for (i, (result, expected)) in results.iter().zip(expected).enumerate() {
+        let error = (f64::from(*result) - expected).abs() / largest;
+        assert!(
+            error <= tolerance,
+            "{what} {i}: {result} for {expected}, error {error:e} of the largest"
+        );
+    }
+}
+
+pub(crate) fn wide(numbers: &[f32]) -> Vec<f64> {
+    numbers.iter().map(|&number| f64::from(number)).collect()
+}
+
+pub(crate) fn bits(numbers: &[f32]) -> Vec<u32> {
+    numbers.iter().map(|number| number.to_bits()).collect()
+}
