@@ -8,7 +8,6 @@ use ddl::{CertificateError, DeviceChoice, Forecaster as _, Variant};
 use ddl_tests::own_tracks::{self, Row};
 use ddl_tests::{bits, crowd, program, tiny_model};
 use serde::Deserialize;
-use std::path::Path;
 
 const FRAMES: usize = 12;
 const HYPOTHESES: usize = 20;
@@ -45,13 +44,6 @@ struct Hypothesis {
     goal: [f64; 2],
     positions: Vec<[f64; 2]>,
     certificate: serde_json::Value,
-}
-
-/// Forecasts rows with the tiny model, in the folder of its run.
-fn forecast_in(folder: &Path, rows: &[Row], options: &str) -> program::Finished {
-    std::fs::write(folder.join("tracks.csv"), own_tracks::csv(rows)).unwrap();
-    let command_line = format!("forecast --model . tracks.csv --threads 1 {options}");
-    program::run(folder, &command_line)
 }
 
 fn json_lines(text: &str) -> Vec<JsonLine> {
@@ -122,9 +114,9 @@ fn every_certificate_holds_and_speaks_of_the_positions_printed() {
             .find(|row| (row.0, row.1) == (frame, pedestrian));
         row.map(|&(_, _, x, y)| [x, y]).unwrap()
     };
-    let json = forecast_in(folder.path(), &rows, "--format jsonl --certificate").succeeds();
+    let json = program::forecast(folder.path(), &rows, "--format jsonl --certificate").succeeds();
     let lines = json_lines(&json);
-    let table = forecast_in(folder.path(), &rows, "--certificate").succeeds();
+    let table = program::forecast(folder.path(), &rows, "--certificate").succeeds();
     let mut printed = csv_rows(&table).into_iter();
     assert_eq!(lines.len(), 9);
     for line in &lines {
@@ -164,7 +156,7 @@ fn certificates_hold_in_map_coordinates() {
         .iter()
         .map(|&(frame, id, x, y)| (frame, id, x + 500_000.0, y + 4_600_000.0))
         .collect();
-    let table = forecast_in(folder.path(), &moved, "--certificate").succeeds();
+    let table = program::forecast(folder.path(), &moved, "--certificate").succeeds();
     let rows = csv_rows(&table);
     assert_eq!(rows.len(), 3 * HYPOTHESES * FRAMES);
     assert!(rows.iter().all(|row| row.certified));
@@ -180,8 +172,8 @@ fn certificates_hold_in_map_coordinates() {
 fn the_certificate_changes_no_other_number() {
     let folder = tiny_model::folder(Variant::Full);
     let rows = own_tracks::three_people(9);
-    let plain = forecast_in(folder.path(), &rows, "").succeeds();
-    let certified = forecast_in(folder.path(), &rows, "--certificate").succeeds();
+    let plain = program::forecast(folder.path(), &rows, "").succeeds();
+    let certified = program::forecast(folder.path(), &rows, "--certificate").succeeds();
     let cut: Vec<String> = certified
         .lines()
         .map(|line| line.split(',').take(7).collect::<Vec<_>>().join(","))
@@ -199,7 +191,7 @@ fn a_variant_without_dynamics_has_nothing_to_certify() {
     let rows = own_tracks::three_people(8);
     for variant in [Variant::Star, Variant::NoDynamics] {
         let folder = tiny_model::folder(variant);
-        let message = forecast_in(folder.path(), &rows, "--certificate").fails();
+        let message = program::forecast(folder.path(), &rows, "--certificate").fails();
         let name = format!("`{variant}`");
         assert!(
             message.contains(&name) && message.contains("no flow to certify"),

@@ -44,9 +44,7 @@ struct Hypothesis {
 
 /// Forecasts rows with the tiny model, in the folder of its run.
 fn forecast_in(folder: &Path, rows: &[Row], options: &str) -> String {
-    std::fs::write(folder.join("tracks.csv"), own_tracks::csv(rows)).unwrap();
-    let command_line = format!("forecast --model . tracks.csv --threads 1 {options}");
-    program::run(folder, &command_line).succeeds()
+    program::forecast(folder, rows, options).succeeds()
 }
 
 fn forecast(rows: &[Row], options: &str) -> String {

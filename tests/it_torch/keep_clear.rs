@@ -83,10 +83,9 @@ fn nobody_near_changes_nothing() {
 fn the_program_keeps_clear_and_says_so() {
     let folder = tiny_model::folder(Variant::Full);
     let rows = own_tracks::three_people(9);
-    std::fs::write(folder.path().join("tracks.csv"), own_tracks::csv(&rows)).unwrap();
     let forecast = |options: &str| {
-        let line = format!("forecast --model . tracks.csv --threads 1 --certificate {options}");
-        program::run(folder.path(), &line).succeeds()
+        let options = format!("--certificate {options}");
+        program::forecast(folder.path(), &rows, &options).succeeds()
     };
     let (free, clear) = (forecast(""), forecast("--keep-clear 0.8"));
     assert_eq!(free.lines().count(), clear.lines().count());
@@ -114,10 +113,9 @@ fn the_program_keeps_clear_and_says_so() {
 fn what_cannot_keep_clear_is_refused() {
     let folder = tiny_model::folder(Variant::Star);
     let rows = own_tracks::three_people(8);
-    std::fs::write(folder.path().join("tracks.csv"), own_tracks::csv(&rows)).unwrap();
     let run = |distance: &str| {
-        let line = format!("forecast --model . tracks.csv --threads 1 --keep-clear={distance}");
-        program::run(folder.path(), &line)
+        let options = format!("--keep-clear={distance}");
+        program::forecast(folder.path(), &rows, &options)
     };
     assert!(run("0.4").fails().contains("`star` has no flow"));
     for (distance, problem) in [

@@ -1,5 +1,6 @@
 //! The program `ddl`, run as a user runs it.
 
+use crate::own_tracks::{self, Row};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -39,6 +40,17 @@ pub fn run(folder: &Path, command_line: &str) -> Finished {
     let output = command(folder, command_line).output();
     let output = output.expect("the program can be started");
     Finished::new(format!("ddl {command_line}"), &output)
+}
+
+/// Forecasts rows of tracks with the model in `folder`, where they are written to `tracks.csv`.
+///
+/// # Panics
+/// If they cannot be written, or the program cannot be started.
+#[must_use]
+pub fn forecast(folder: &Path, rows: &[Row], options: &str) -> Finished {
+    std::fs::write(folder.join("tracks.csv"), own_tracks::csv(rows)).expect("a csv can be written");
+    let command_line = format!("forecast --model . tracks.csv --threads 1 {options}");
+    run(folder, &command_line)
 }
 
 /// How a run of the program ended.

@@ -23,8 +23,8 @@ pub(crate) struct Machine {
     /// Device: auto, cpu or cuda
     #[arg(long, default_value = "cpu")]
     pub(crate) device: DeviceChoice,
-    /// Threads for tensor operations and goal search [default: all cores; 1 for a forecast, whose
-    /// tensors are too small to share]
+    /// Threads for the network's kernels and goal search [default: all cores; 1 for a forecast, which
+    /// is too little to share]
     #[arg(long, value_parser = at_least_one)]
     threads: Option<usize>,
 }

@@ -58,7 +58,7 @@ impl MultiHeadAttention {
     ///
     /// # Shapes
     /// `x` `[B, P, width]`; `seen` during one frame or B -> `[B, P, width]`.
-    pub(crate) fn among_walkers(&self, x: &Tensor, seen: &Seen<'_>, pass: &Pass) -> Tensor {
+    pub(crate) fn among_walkers(&self, x: &Tensor, seen: &Seen, pass: &Pass) -> Tensor {
         let (batch, walkers) = (x.size()[0], x.size()[1]);
         let qkv = x.linear(&self.in_proj_weight, Some(&self.in_proj_bias));
         let mixed = if pass.kernels_may_take(&qkv) {
@@ -82,20 +82,20 @@ impl MultiHeadAttention {
     ///
     /// # Shapes
     /// `qkv` `[B, P, 3 * width]` -> `[B, P, width]`.
-    fn among_walkers_by_kernel(&self, qkv: &Tensor, seen: &Seen<'_>, pass: &Pass) -> Tensor {
+    fn among_walkers_by_kernel(&self, qkv: &Tensor, seen: &Seen, pass: &Pass) -> Tensor {
         let (shape, heads) = (qkv.size(), self.heads as usize);
         let kernel = AmongWalkers::new(heads, self.width as usize / heads);
         let dropout = pass.dropout(self.dropout);
-        let (input, scenes) = (numbers(qkv), seen.scenes());
+        let (input, seen) = (numbers(qkv), seen.clone());
         let mut attended = Attended::default();
-        kernel.forward(&input, scenes.frames(), dropout, &mut attended);
+        kernel.forward(&input, seen.frames(), dropout, &mut attended);
         let output = tensor(attended.mixed(), &[shape[0], shape[1], self.width]);
         pass.made_of(&[qkv], output, move |gradient| {
             let mut of_input = vec![0.0; input.len()];
             let gradient = numbers(gradient);
             kernel.backward(
                 &input,
-                scenes.frames(),
+                seen.frames(),
                 dropout,
                 &attended,
                 &gradient,

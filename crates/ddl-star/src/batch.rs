@@ -3,6 +3,7 @@
 use crate::StarError;
 use crate::neighbours::Neighbours;
 use ddl_data::{Rotation, Window};
+use std::rc::Rc;
 use tch::{Device, Kind, Tensor};
 
 /// The walkers of several windows, one after the other, with who sees whom.
@@ -13,7 +14,7 @@ use tch::{Device, Kind, Tensor};
 #[derive(Debug)]
 pub struct SceneBatch {
     pub(crate) positions: Tensor,
-    pub(crate) neighbours: Neighbours,
+    pub(crate) neighbours: Rc<Neighbours>,
     pub(crate) scene_mean: Tensor,
 }
 
@@ -64,7 +65,13 @@ impl SceneBatch {
         };
         Ok(Self {
             positions: tensor(&positions, &[t, p, 2])?,
-            neighbours: neighbours(windows, mask_frames, neighbour_box, device, kind),
+            neighbours: Rc::new(neighbours(
+                windows,
+                mask_frames,
+                neighbour_box,
+                device,
+                kind,
+            )),
             scene_mean: tensor(&mean, &[p, p])?,
         })
     }
@@ -79,7 +86,7 @@ impl SceneBatch {
             .to_device(self.positions.device());
         Self {
             positions: self.positions.matmul(&images),
-            neighbours: self.neighbours.shared(),
+            neighbours: Rc::clone(&self.neighbours),
             scene_mean: self.scene_mean.shallow_clone(),
         }
     }
@@ -114,7 +121,7 @@ fn neighbours(
             }
         }
     }
-    Neighbours::new(&sizes, &visible, device, kind)
+    Neighbours::new(&sizes, visible, device, kind)
 }
 
 fn check_length(window: &Window, frames: usize) -> Result<(), StarError> {

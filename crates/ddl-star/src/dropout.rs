@@ -6,9 +6,7 @@ use tch::{Kind, Tensor};
 /// Sets each entry to 0 with probability `p` and scales the others by 1 / (1 - p).
 ///
 /// The generator makes 64 bits at a time and libtorch spends them all on one decision; here they make
-/// four, of 16 bits each: the same distribution up to p being rounded to 1/65536. A training step of
-/// 32 walkers took 0.18 s instead of 0.22 s with it (`ddl train --fold zara1 --epochs 1
-/// --train-walkers 2000 --batch-walkers 32 --threads 1`, seconds over batches in `metrics.jsonl`).
+/// four, of 16 bits each: the same distribution up to p being rounded to 1/65536.
 pub(crate) fn dropout(x: Tensor, p: f64, mode: Mode) -> Tensor {
     if mode == Mode::Evaluate || p == 0.0 {
         return x;

@@ -45,7 +45,7 @@ impl EncoderLayer {
     }
 
     /// Every walker looks at its neighbours. Shapes as in [`MultiHeadAttention::among_walkers`].
-    pub(crate) fn among_walkers(&self, x: &Tensor, seen: &Seen<'_>, pass: &Pass) -> Tensor {
+    pub(crate) fn among_walkers(&self, x: &Tensor, seen: &Seen, pass: &Pass) -> Tensor {
         let x = pass.junction(x);
         let attended = self.attention.among_walkers(&x, seen, pass);
         self.after_attention(&x, attended, pass)

@@ -11,7 +11,7 @@ use rand_distr::StandardNormal;
 use tch::Tensor;
 
 /// Windows are rolled out together until they hold this many walkers: enough to fill the matrix
-/// products, few enough for attention over the whole batch to stay cheap.
+/// products, few enough for libtorch's attention over the whole batch, where it is that, to stay cheap.
 const WALKERS_AT_ONCE: usize = 64;
 
 /// What the output layer is told besides the walkers' tokens.

@@ -11,9 +11,9 @@ use crate::kernel::{Frames, Scenes};
 /// Who sees whom in each frame of a batch: scene by scene for the kernels, as one mask for libtorch.
 #[derive(Debug)]
 pub(crate) struct Neighbours {
-    scenes: Rc<Scenes>,
+    scenes: Scenes,
     /// For each frame, for each scene, `[size, size]`.
-    visible: Rc<[bool]>,
+    visible: Vec<bool>,
     device: Device,
     kind: Kind,
     dense: OnceCell<Tensor>,
@@ -22,10 +22,10 @@ pub(crate) struct Neighbours {
 impl Neighbours {
     /// # Shapes
     /// `sizes`: walkers of each scene; `visible`: for each frame, for each scene, `[size, size]`.
-    pub(crate) fn new(sizes: &[usize], visible: &[bool], device: Device, kind: Kind) -> Self {
+    pub(crate) fn new(sizes: &[usize], visible: Vec<bool>, device: Device, kind: Kind) -> Self {
         Self {
-            scenes: Rc::new(Scenes::new(sizes, visible)),
-            visible: Rc::from(visible),
+            scenes: Scenes::new(sizes, &visible),
+            visible,
             device,
             kind,
             dense: OnceCell::new(),
@@ -33,9 +33,9 @@ impl Neighbours {
     }
 
     /// Who sees whom during some frames: one frame serves every batch entry, several one entry each.
-    pub(crate) fn during(&self, frames: Range<usize>) -> Seen<'_> {
+    pub(crate) fn during(self: &Rc<Self>, frames: Range<usize>) -> Seen {
         Seen {
-            neighbours: self,
+            neighbours: Rc::clone(self),
             frames,
         }
     }
@@ -66,54 +66,24 @@ impl Neighbours {
                 .to_device(self.device)
         })
     }
-
-    /// The same neighbours for other positions of the same walkers.
-    pub(crate) fn shared(&self) -> Self {
-        Self {
-            scenes: Rc::clone(&self.scenes),
-            visible: Rc::clone(&self.visible),
-            device: self.device,
-            kind: self.kind,
-            dense: match self.dense.get() {
-                Some(dense) => OnceCell::from(dense.shallow_clone()),
-                None => OnceCell::new(),
-            },
-        }
-    }
 }
 
 /// [`Neighbours`] during some frames.
 #[derive(Debug, Clone)]
-pub(crate) struct Seen<'a> {
-    neighbours: &'a Neighbours,
+pub(crate) struct Seen {
+    neighbours: Rc<Neighbours>,
     frames: Range<usize>,
 }
 
-impl Seen<'_> {
+impl Seen {
     /// The mask for libtorch, `[frames, 1, P, P]`.
     pub(crate) fn mask(&self) -> Tensor {
         let (first, count) = (self.frames.start as i64, self.frames.len() as i64);
         self.neighbours.dense().narrow(0, first, count)
     }
 
-    /// For the kernels, to be kept until the gradient is asked for.
-    pub(crate) fn scenes(&self) -> SeenScenes {
-        SeenScenes {
-            scenes: Rc::clone(&self.neighbours.scenes),
-            frames: self.frames.clone(),
-        }
-    }
-}
-
-/// Scenes during some frames, owned.
-#[derive(Debug, Clone)]
-pub(crate) struct SeenScenes {
-    scenes: Rc<Scenes>,
-    frames: Range<usize>,
-}
-
-impl SeenScenes {
+    /// The scenes, for the kernels.
     pub(crate) fn frames(&self) -> Frames<'_> {
-        self.scenes.during(self.frames.clone())
+        self.neighbours.scenes.during(self.frames.clone())
     }
 }

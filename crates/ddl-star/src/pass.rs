@@ -60,14 +60,14 @@ impl Pass {
     }
 
     /// `x`, from which several later stretches of the network go on. Backwards, each stretch is gone through
-    /// once, and what comes back to `x` is added up before it goes on.
+    /// once, and what comes back to `x` is added up before it goes on. Where no kernel cuts the graph it stays
+    /// whole.
     pub(crate) fn junction(&self, x: &Tensor) -> Tensor {
         match &self.tape {
-            Some(tape) if x.requires_grad() && !x.is_leaf() => {
-                tape.cut(&[x], &x.detach(), |gradient| {
+            Some(tape) if self.kernels_may_take(x) && x.requires_grad() && !x.is_leaf() => tape
+                .cut(&[x], &x.detach(), |gradient| {
                     Ok(vec![gradient.shallow_clone()])
-                })
-            }
+                }),
             _ => x.shallow_clone(),
         }
     }

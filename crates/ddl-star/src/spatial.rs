@@ -23,7 +23,7 @@ impl SpatialEncoder {
 
     /// # Shapes
     /// `x` `[B, P, width]`; `seen` during one frame or B -> `[B, P, width]`.
-    pub(crate) fn forward(&self, x: &Tensor, seen: &Seen<'_>, pass: &Pass) -> Tensor {
+    pub(crate) fn forward(&self, x: &Tensor, seen: &Seen, pass: &Pass) -> Tensor {
         self.layers.iter().fold(x.shallow_clone(), |x, layer| {
             layer.among_walkers(&x, seen, pass)
         })

@@ -127,7 +127,7 @@ impl StarNetwork {
     /// # Shapes
     /// `centred` `[F, P, 2]`, positions relative to the scene's mean so far; `seen`
     /// during one frame or F -> `[F, P, width]`.
-    pub(crate) fn spatial_tokens(&self, centred: &Tensor, seen: &Seen<'_>, pass: &Pass) -> Tensor {
+    pub(crate) fn spatial_tokens(&self, centred: &Tensor, seen: &Seen, pass: &Pass) -> Tensor {
         let embedded = self.spatial_embedding.forward(centred).relu();
         self.spatial_encoder_1.forward(&embedded, seen, pass)
     }
@@ -142,7 +142,7 @@ impl StarNetwork {
         memory: &mut GraphMemory,
         relative: &Tensor,
         spatial: &Tensor,
-        seen: &Seen<'_>,
+        seen: &Seen,
         pass: &Pass,
     ) -> Tensor {
         let newest = self.temporal_embedding.forward(relative).relu();

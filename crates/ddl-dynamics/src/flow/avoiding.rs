@@ -40,7 +40,7 @@ use crate::{
 ///
 /// # Numerics
 /// The decrease goes first. A walker held up at a saddle still makes the smallest move to the goal that
-/// shows, a rounding a step, and so gets into the ball: 0.7 mm after 1000 steps in `f32`. And on a surface,
+/// shows, a rounding a step, and so gets into the ball, rounding by rounding. And on a surface,
 /// where rounding has used up the gap, up to `sqrt(2 epsilon) lambda_max` of the approach may be left between several
 /// balls. In `f64` neither shows; in `f32` allow some millimetres.
 ///

@@ -48,6 +48,31 @@ fn the_step_is_the_law_of_cosines<T: Real, const D: usize>(scene: &SceneDraw) ->
 }
 for_every_space!(the_step_is_the_law_of_cosines, any_scene);
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// `|e'|^2 = |e|^2 + (dt |P u|)^2` to rounding where `P u` is at right angles to `u` to rounding: with
+    /// `P = diag(a^2, 0)` but for sigma, and `u` off the second axis by a tiny angle.
+    #[test]
+    fn the_overshoot_bound_is_attained_up_to_rounding(
+        a in 1.0..=1e3_f64,
+        angle in -16.0..=-13.0_f64,
+        distance in 1e-2..=1e2_f64,
+        ratio in 0.1..=10.0_f64,
+    ) {
+        let angle = 10_f64.powf(angle);
+        let attractor = Attractor::new(Vector2::zeros()).unwrap();
+        let metric = CholeskyMetric::planar(a, 0.0, 0.0, 1e-30).unwrap();
+        let flow = NaturalGradientFlow::new(attractor, metric);
+        // dt |P u| = ratio |e|
+        let dt = ratio * distance / (a * a * angle);
+        let start = Vector2::new(angle, 1.0) * distance;
+        let next = Euler.step(&flow, &State::at(start), dt).unwrap();
+        let bound = distance * distance * (1.0 + ratio * ratio);
+        prop_assert!((next.norm_squared() / bound - 1.0).abs() < 1e-12);
+    }
+}
+
 #[test]
 fn the_overshoot_bound_is_attained() {
     // P = diag(1e6, 1e-8), u = (1e-7, 1): P u is almost at right angles to u. |e| = 1, dt |P u| = 0.1.
