@@ -3,12 +3,17 @@
 use crate::crowd;
 use crate::folder_contents::{self, Contents};
 use ddl::data::Dataset;
-use ddl::star::{ProposalConfig, TrainingConfig};
-use ddl::{Ddl, DeviceChoice, GoalRecipe, RunDirectory, TrainingRequest, TrainingStage, Variant};
+use ddl::star::{ProposalConfig, StarConfig, TrainingConfig};
+use ddl::{
+    Ddl, DdlError, DeviceChoice, GoalRecipe, RunDirectory, TrainingRequest, TrainingStage, Variant,
+};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::{Mutex, Once, OnceLock};
 use tempfile::TempDir;
+
+/// libtorch has one generator of random numbers: runs side by side would draw from each other's.
+static TRAINING: Mutex<()> = Mutex::new(());
 
 /// Walkers it is trained on: enough for every weight to have moved.
 pub const WALKERS: usize = 96;
@@ -70,16 +75,25 @@ pub fn use_one_thread() {
     });
 }
 
-/// Trains in this process, one run at a time: libtorch has one generator of random numbers, and runs
-/// side by side would draw from each other's.
+/// Trains in this process, one run at a time.
 ///
 /// # Panics
 /// If training fails.
 pub fn train(request: &TrainingRequest, dataset: &Dataset) {
-    static TRAINING: Mutex<()> = Mutex::new(());
     use_one_thread();
     let _one_at_a_time = TRAINING.lock();
     ddl::train(request, dataset, |_| ControlFlow::Continue(())).expect("training succeeds");
+}
+
+/// Runs the training of the tiny model's folder again, wherever it lies.
+///
+/// # Errors
+/// What stops the training.
+pub fn train_again(run: &RunDirectory) -> Result<(), DdlError> {
+    use_one_thread();
+    let _one_at_a_time = TRAINING.lock();
+    let request = request(crowd::FOLD, Variant::Full, WALKERS, run.path());
+    ddl::train(&request, &crowd::dataset(), |_| ControlFlow::Continue(()))
 }
 
 /// Walkers a batch when `walkers` are trained on: four batches.
@@ -99,7 +113,7 @@ pub fn request(fold: &str, variant: Variant, walkers: usize, out: &Path) -> Trai
     };
     TrainingRequest {
         fold: fold.to_owned(),
-        variant,
+        star: StarConfig::published(variant),
         goals: goal_recipe(training.seed),
         training,
         validation: 0.0,

@@ -2,7 +2,11 @@
 
 use crate::StarError;
 use crate::optimizer::Adam;
+use crate::origin::Origin;
 use crate::parameters::Parameters;
+use safetensors::SafeTensors;
+use safetensors::tensor::{Dtype, TensorView};
+use std::io::Write as _;
 use std::path::Path;
 use tch::{Kind, Tensor};
 
@@ -14,26 +18,34 @@ const FIRST_MOMENT: &str = "first_moment";
 const SECOND_MOMENT: &str = "second_moment";
 const PROGRESS: &str = "progress";
 
-/// Writes the learned tensors, by name.
+/// Writes the learned tensors, by name, and what they are of.
 ///
 /// # Errors
 /// [`StarError::Io`] or [`StarError::Torch`] when the file cannot be written; an existing file is
 /// then left as it was.
-pub fn save_parameters(parameters: &Parameters, path: &Path) -> Result<(), StarError> {
+pub fn save_parameters(
+    parameters: &Parameters,
+    origin: &Origin,
+    path: &Path,
+) -> Result<(), StarError> {
     let tensors: Vec<(String, Tensor)> = parameters
         .iter()
         .map(|(name, tensor)| (name.to_owned(), plain(tensor)))
         .collect();
-    write(&tensors, path)
+    write(&tensors, origin, path)
 }
 
 /// Reads the learned tensors into a network's parameters.
 ///
 /// # Errors
-/// [`StarError::Checkpoint`] when the file is truncated, too large, or holds other names, shapes or
-/// numbers than the network needs; the parameters are then unchanged.
-pub fn load_parameters(parameters: &Parameters, path: &Path) -> Result<(), StarError> {
-    let tensors = read(path, parameters.count() as u64 * 8)?;
+/// [`StarError::Checkpoint`] when the file is truncated, too large, of another origin, or holds other
+/// names, shapes or numbers than the network needs; the parameters are then unchanged.
+pub fn load_parameters(
+    parameters: &Parameters,
+    origin: &Origin,
+    path: &Path,
+) -> Result<(), StarError> {
+    let tensors = read(path, parameters.count() as u64 * 8, origin)?;
     if tensors.len() != parameters.len() {
         return Err(bad(
             path,
@@ -73,6 +85,7 @@ pub(crate) fn save_training(
     parameters: &Parameters,
     adam: &Adam,
     progress: Progress,
+    origin: &Origin,
     path: &Path,
 ) -> Result<(), StarError> {
     let numbers = Tensor::from_slice(&[progress.steps as f64, progress.loss_sum, progress.seconds]);
@@ -83,15 +96,16 @@ pub(crate) fn save_training(
         (PROGRESS, numbers),
     ]
     .map(|(name, tensor)| (name.to_owned(), tensor));
-    write(&tensors, path)
+    write(&tensors, origin, path)
 }
 
 pub(crate) fn load_training(
     parameters: &Parameters,
     adam: &mut Adam,
+    origin: &Origin,
     path: &Path,
 ) -> Result<Progress, StarError> {
-    let tensors = read(path, parameters.count() as u64 * 3 * 8)?;
+    let tensors = read(path, parameters.count() as u64 * 3 * 8, origin)?;
     let (size, kind) = (parameters.flat().size(), parameters.flat().kind());
     let weights = find(&tensors, WEIGHTS, &size, kind, path)?;
     let first = find(&tensors, FIRST_MOMENT, &size, kind, path)?;
@@ -121,7 +135,11 @@ pub(crate) fn plain(tensor: &Tensor) -> Tensor {
     tensor.detach().to_device(tch::Device::Cpu).contiguous()
 }
 
-pub(crate) fn write(tensors: &[(String, Tensor)], path: &Path) -> Result<(), StarError> {
+pub(crate) fn write(
+    tensors: &[(String, Tensor)],
+    origin: &Origin,
+    path: &Path,
+) -> Result<(), StarError> {
     let io = |source| StarError::Io {
         path: path.to_owned(),
         source,
@@ -130,37 +148,104 @@ pub(crate) fn write(tensors: &[(String, Tensor)], path: &Path) -> Result<(), Sta
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
+    let numbers = tensors
+        .iter()
+        .map(|(name, tensor)| Ok((name, Numbers::of(tensor, path)?)))
+        .collect::<Result<Vec<_>, StarError>>()?;
+    let broken = |error: safetensors::SafeTensorError| bad(path, error.to_string());
+    let views = numbers
+        .iter()
+        .map(|(name, numbers)| Ok((name, numbers.view()?)))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(broken)?;
+    let bytes = safetensors::serialize(views, Some(origin.to_header())).map_err(broken)?;
     let mut builder = tempfile::Builder::new();
     let builder = builder.prefix(".writing-").suffix(".safetensors");
     // Temporary files are private by default; results are as readable as the user's other files.
     #[cfg(unix)]
     let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let temporary = builder.tempfile_in(folder).map_err(io)?;
-    Tensor::write_safetensors(tensors, temporary.path())?;
+    let mut temporary = builder.tempfile_in(folder).map_err(io)?;
+    temporary.write_all(&bytes).map_err(io)?;
     temporary.as_file().sync_all().map_err(io)?;
     temporary.persist(path).map_err(|error| io(error.error))?;
     Ok(())
 }
 
-pub(crate) fn read(path: &Path, most_bytes: u64) -> Result<Vec<(String, Tensor)>, StarError> {
-    let size = std::fs::metadata(path)
-        .map_err(|source| StarError::Io {
-            path: path.to_owned(),
-            source,
-        })?
-        .len();
+/// A tensor as the file holds it.
+struct Numbers {
+    kind: Dtype,
+    shape: Vec<usize>,
+    bytes: Vec<u8>,
+}
+
+impl Numbers {
+    fn of(tensor: &Tensor, path: &Path) -> Result<Self, StarError> {
+        let kind = match tensor.kind() {
+            Kind::Float => Dtype::F32,
+            Kind::Double => Dtype::F64,
+            other => return Err(bad(path, format!("cannot hold numbers of kind {other:?}"))),
+        };
+        let count = tensor.numel();
+        let mut bytes = vec![0; count * tensor.kind().elt_size_in_bytes()];
+        tensor.f_copy_data_u8(&mut bytes, count)?;
+        let shape = tensor.size().iter().map(|&size| size as usize).collect();
+        Ok(Self { kind, shape, bytes })
+    }
+
+    fn view(&self) -> Result<TensorView<'_>, safetensors::SafeTensorError> {
+        TensorView::new(self.kind, self.shape.clone(), &self.bytes)
+    }
+}
+
+/// The tensors of a file of at most `most_bytes`, which has to be of this origin.
+pub(crate) fn read(
+    path: &Path,
+    most_bytes: u64,
+    origin: &Origin,
+) -> Result<Vec<(String, Tensor)>, StarError> {
+    let io = |source| StarError::Io {
+        path: path.to_owned(),
+        source,
+    };
+    // The size first: nothing is read, and no room made, for what cannot be a checkpoint.
+    let size = std::fs::metadata(path).map_err(io)?.len();
     if size > most_bytes + HEADER_BYTES {
         return Err(bad(
             path,
             format!("is {size} bytes long, a checkpoint of this network at most {most_bytes}"),
         ));
     }
-    Tensor::read_safetensors(path).map_err(|error| {
-        bad(
-            path,
-            format!("is not a whole safetensors file ({error}); delete it and train anew"),
-        )
-    })
+    let bytes = std::fs::read(path).map_err(io)?;
+    let broken = |error: safetensors::SafeTensorError| {
+        let problem = format!(
+            "is not a whole safetensors file ({error}); delete it and run the same training again"
+        );
+        bad(path, problem)
+    };
+    let (_, header) = SafeTensors::read_metadata(&bytes).map_err(broken)?;
+    if let Some(difference) = Origin::of_header(header.metadata().as_ref()).difference(origin) {
+        let problem = format!(
+            "belongs to another run: its {difference}; put back the file that was trained with this \
+             configuration, or delete it and run the same training again"
+        );
+        return Err(bad(path, problem));
+    }
+    let file = SafeTensors::deserialize(&bytes).map_err(broken)?;
+    file.iter()
+        .map(|(name, view)| {
+            let kind = match view.dtype() {
+                Dtype::F32 => Kind::Float,
+                Dtype::F64 => Kind::Double,
+                other => {
+                    let problem = format!("{name} holds {other:?}, expected 32- or 64-bit floats");
+                    return Err(bad(path, problem));
+                }
+            };
+            let shape: Vec<i64> = view.shape().iter().map(|&size| size as i64).collect();
+            let tensor = Tensor::f_from_data_size(view.data(), &shape, kind)?;
+            Ok((name.to_owned(), tensor))
+        })
+        .collect()
 }
 
 pub(crate) fn find<'a>(
@@ -176,13 +261,6 @@ pub(crate) fn find<'a>(
         .ok_or_else(|| bad(path, format!("lacks the tensor {name}")))?;
     if tensor.size() != shape {
         let problem = format!("{name} has shape {:?}, expected {shape:?}", tensor.size());
-        return Err(bad(path, problem));
-    }
-    if !matches!(tensor.kind(), Kind::Float | Kind::Double) {
-        let problem = format!(
-            "{name} holds {:?}, expected 32- or 64-bit floats",
-            tensor.kind()
-        );
         return Err(bad(path, problem));
     }
     // in the precision it will have: a large f64 is infinite in f32

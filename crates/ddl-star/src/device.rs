@@ -4,6 +4,9 @@ use crate::StarError;
 use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
+/// The libtorch that this crate is built for.
+pub const LIBTORCH_VERSION: &str = "2.11.0";
+
 /// The device asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

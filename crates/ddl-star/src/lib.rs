@@ -16,6 +16,7 @@ mod loss;
 mod neighbours;
 mod numbers;
 mod optimizer;
+mod origin;
 mod parameters;
 mod pass;
 mod proposal;
@@ -33,12 +34,13 @@ mod training_config;
 pub use batch::SceneBatch;
 pub use checkpoint::{load_parameters, save_parameters};
 pub use config::{StarConfig, Variant};
-pub use device::{ComputeDevice, DeviceChoice, set_threads};
+pub use device::{ComputeDevice, DeviceChoice, LIBTORCH_VERSION, set_threads};
 pub use error::StarError;
 pub use flow::{FlowConstants, StepRule, natural_gradient_step};
 pub use forecast::{Noise, WindowRollout};
 pub use layers::Mode;
 pub use loss::mean_squared_distance;
+pub use origin::Origin;
 pub use parameters::Parameters;
 pub use proposal::{
     ProposalConfig, ProposalExample, ProposalNetwork, ProposalStep, ProposalTrainer,

@@ -6,6 +6,7 @@ use crate::checkpoint::{self, Progress};
 use crate::layers::Mode;
 use crate::loss::mean_squared_distance;
 use crate::optimizer::Adam;
+use crate::origin::Origin;
 use crate::pass::Pass;
 use crate::schedule::Schedule;
 use crate::seed::{GENERATOR, Stage, stream};
@@ -119,16 +120,23 @@ impl Trainer {
     ///
     /// # Errors
     /// When the file cannot be written; an earlier one is then left as it was.
-    pub fn save(&self, path: &Path) -> Result<(), StarError> {
-        checkpoint::save_training(self.network.parameters(), &self.adam, self.progress, path)
+    pub fn save(&self, origin: &Origin, path: &Path) -> Result<(), StarError> {
+        checkpoint::save_training(
+            self.network.parameters(),
+            &self.adam,
+            self.progress,
+            origin,
+            path,
+        )
     }
 
     /// Goes on from a saved state of the same run.
     ///
     /// # Errors
-    /// [`StarError::Checkpoint`] when the file is not a whole state of this network.
-    pub fn resume(&mut self, path: &Path) -> Result<(), StarError> {
-        self.progress = checkpoint::load_training(self.network.parameters(), &mut self.adam, path)?;
+    /// [`StarError::Checkpoint`] when the file is of another origin, or not a whole state of this network.
+    pub fn resume(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
+        self.progress =
+            checkpoint::load_training(self.network.parameters(), &mut self.adam, origin, path)?;
         Ok(())
     }
 

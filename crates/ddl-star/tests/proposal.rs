@@ -3,8 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use ddl_star::{
-    ComputeDevice, DeviceChoice, ProposalConfig, ProposalExample, ProposalNetwork, ProposalTrainer,
-    ProposalTraining, ProposedEnds, StarError, WalkerView, load_parameters, save_parameters,
+    ComputeDevice, DeviceChoice, Origin, ProposalConfig, ProposalExample, ProposalNetwork,
+    ProposalTrainer, ProposalTraining, ProposedEnds, StarError, WalkerView, load_parameters,
+    save_parameters,
 };
 use std::f64::consts::TAU;
 
@@ -164,30 +165,35 @@ fn a_resumed_training_ends_with_the_same_weights() {
         folder.path().join("whole.safetensors"),
         folder.path().join("resumed.safetensors"),
     );
-    save_parameters(trained(12).parameters(), &whole).unwrap();
+    save_parameters(trained(12).parameters(), &Origin::default(), &whole).unwrap();
     let mut first = ProposalTrainer::new(network(), &examples(), training(12)).unwrap();
     for _ in 0..5 {
         first.step().unwrap();
     }
-    first.save(&state).unwrap();
+    first.save(&Origin::default(), &state).unwrap();
     drop(first);
     let mut second = ProposalTrainer::new(network(), &examples(), training(12)).unwrap();
-    second.resume(&state).unwrap();
+    second.resume(&Origin::default(), &state).unwrap();
     assert_eq!(second.steps(), (5, 12));
     while !second.is_finished() {
         second.step().unwrap();
     }
-    save_parameters(second.into_network().unwrap().parameters(), &resumed).unwrap();
+    save_parameters(
+        second.into_network().unwrap().parameters(),
+        &Origin::default(),
+        &resumed,
+    )
+    .unwrap();
     assert!(std::fs::read(&whole).unwrap() == std::fs::read(&resumed).unwrap());
 
     let loaded = network();
-    load_parameters(loaded.parameters(), &whole).unwrap();
+    load_parameters(loaded.parameters(), &Origin::default(), &whole).unwrap();
     let [ours, theirs] = [&loaded, &trained(12)].map(|network| oracle(network, &examples()));
     assert_eq!(ours.to_bits(), theirs.to_bits());
     let bytes = std::fs::read(&state).unwrap();
     std::fs::write(&state, &bytes[..bytes.len() / 2]).unwrap();
     let mut third = ProposalTrainer::new(network(), &examples(), training(12)).unwrap();
-    let error = third.resume(&state).unwrap_err();
+    let error = third.resume(&Origin::default(), &state).unwrap_err();
     assert!(matches!(error, StarError::Checkpoint { .. }), "{error}");
 }
 

@@ -4,8 +4,8 @@
 
 use ddl_data::{Dataset, Window, WindowRule};
 use ddl_star::{
-    ComputeDevice, DeviceChoice, StarConfig, StarError, StarNetwork, Trainer, TrainingConfig,
-    Variant, load_parameters, save_parameters,
+    ComputeDevice, DeviceChoice, Origin, StarConfig, StarError, StarNetwork, Trainer,
+    TrainingConfig, Variant, load_parameters, save_parameters,
 };
 use tch::Tensor;
 
@@ -25,6 +25,10 @@ fn config(variant: Variant) -> StarConfig {
         feed_forward_width: 64,
         ..StarConfig::published(variant)
     }
+}
+
+fn origin() -> Origin {
+    Origin::from_iter([("fold", "corridor"), ("seed", "7")])
 }
 
 fn trainer(variant: Variant, epochs: usize) -> Trainer {
@@ -84,9 +88,9 @@ fn a_run_stopped_anywhere_and_resumed_gives_the_same_weights() {
         for _ in 0..stop {
             first.step().unwrap();
         }
-        first.save(&state).unwrap();
+        first.save(&origin(), &state).unwrap();
         let mut second = trainer(Variant::Full, 2);
-        second.resume(&state).unwrap();
+        second.resume(&origin(), &state).unwrap();
         let mut last = None;
         while !second.is_finished() {
             last = second.step().unwrap().finished_epoch;
@@ -105,7 +109,7 @@ fn weights_survive_the_file_and_broken_files_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("model.safetensors");
     let network = StarNetwork::new(config(Variant::Full), 1, cpu()).unwrap();
-    save_parameters(network.parameters(), &path).unwrap();
+    save_parameters(network.parameters(), &origin(), &path).unwrap();
     let other = StarNetwork::new(config(Variant::Full), 2, cpu()).unwrap();
     let before = weights(&other);
     assert_ne!(before, weights(&network));
@@ -113,7 +117,7 @@ fn weights_survive_the_file_and_broken_files_are_refused() {
     let whole = std::fs::read(&path).unwrap();
     let broken = folder.path().join("broken.safetensors");
     let refuse = |what: &str, needle: &str| {
-        let error = load_parameters(other.parameters(), &broken).unwrap_err();
+        let error = load_parameters(other.parameters(), &origin(), &broken).unwrap_err();
         assert!(
             matches!(error, StarError::Checkpoint { .. }),
             "{what}: {error}"
@@ -128,25 +132,39 @@ fn weights_survive_the_file_and_broken_files_are_refused() {
     std::fs::write(&broken, vec![0; whole.len() * 3 + (2 << 20)]).unwrap();
     refuse("oversized", "bytes long");
     let star = StarNetwork::new(config(Variant::Star), 2, cpu()).unwrap();
-    save_parameters(star.parameters(), &broken).unwrap();
+    save_parameters(star.parameters(), &origin(), &broken).unwrap();
     refuse("another shape", "output_layer.weight has shape");
-    let rename = |name: &str| format!("{name}x");
-    let renamed: Vec<(String, Tensor)> = network
+    let elsewhere = Origin::from_iter([("fold", "plaza"), ("seed", "7")]);
+    save_parameters(network.parameters(), &elsewhere, &broken).unwrap();
+    refuse("another fold", "its fold is plaza, not corridor");
+    let tensors: Vec<(String, Tensor)> = network
         .parameters()
         .iter()
-        .map(|(n, t)| (rename(n), t.detach().contiguous()))
+        .map(|(name, tensor)| (name.to_owned(), tensor.detach().contiguous()))
         .collect();
-    Tensor::write_safetensors(&renamed, &broken).unwrap();
-    refuse("another name", "lacks the tensor");
-    let poisoned: Vec<(String, Tensor)> = network
-        .parameters()
-        .iter()
-        .map(|(name, tensor)| (name.to_owned(), tensor.detach() * f64::NAN))
-        .collect();
-    Tensor::write_safetensors(&poisoned, &broken).unwrap();
+    Tensor::write_safetensors(&tensors, &broken).unwrap();
+    refuse(
+        "a file of another program",
+        "its fold is nothing, not corridor",
+    );
+    let header = whole.iter().position(|&byte| byte == b'}').unwrap();
+    let name = b"fusion_layer.bias";
+    let at = whole[header..]
+        .windows(name.len())
+        .position(|bytes| bytes == name)
+        .unwrap()
+        + header;
+    let mut renamed = whole.clone();
+    renamed[at] = b'x';
+    std::fs::write(&broken, &renamed).unwrap();
+    refuse("another name", "lacks the tensor fusion_layer.bias");
+    let mut poisoned = whole.clone();
+    let last = poisoned.len() - 4;
+    poisoned[last..].copy_from_slice(&f32::NAN.to_le_bytes());
+    std::fs::write(&broken, &poisoned).unwrap();
     refuse("not a number", "NaN or infinite");
 
-    load_parameters(other.parameters(), &path).unwrap();
+    load_parameters(other.parameters(), &origin(), &path).unwrap();
     assert_eq!(weights(&other), weights(&network));
 }
 

@@ -4,6 +4,7 @@ use crate::DdlError;
 use crate::run_directory::write_atomically;
 use ddl_data::{Position, TIME_STEP, WINDOW, Window};
 use ddl_goal::ExpertLibrary;
+use ddl_star::Origin;
 use safetensors::SafeTensors;
 use safetensors::tensor::{Dtype, TensorView};
 use std::path::Path;
@@ -24,7 +25,7 @@ pub(crate) fn library(windows: &[Window]) -> Result<ExpertLibrary, DdlError> {
     Ok(ExpertLibrary::new(tracks, TIME_STEP)?)
 }
 
-pub(crate) fn save(library: &ExpertLibrary, path: &Path) -> Result<(), DdlError> {
+pub(crate) fn save(library: &ExpertLibrary, origin: &Origin, path: &Path) -> Result<(), DdlError> {
     let bytes: Vec<u8> = library
         .tracks()
         .iter()
@@ -35,18 +36,31 @@ pub(crate) fn save(library: &ExpertLibrary, path: &Path) -> Result<(), DdlError>
     let shape = vec![library.len(), WINDOW, 2];
     let broken = |error: safetensors::SafeTensorError| DdlError::run(path, error.to_string());
     let view = TensorView::new(Dtype::F64, shape, &bytes).map_err(broken)?;
-    let file = safetensors::serialize([(TRACKS, view)], None).map_err(broken)?;
+    let file =
+        safetensors::serialize([(TRACKS, view)], Some(origin.to_header())).map_err(broken)?;
     write_atomically(path, &file)
 }
 
-pub(crate) fn load(path: &Path) -> Result<ExpertLibrary, DdlError> {
+/// The library of a run of this origin.
+///
+/// # Errors
+/// When the file is broken, or belongs to another run.
+pub(crate) fn load(origin: &Origin, path: &Path) -> Result<ExpertLibrary, DdlError> {
     let bytes = std::fs::read(path).map_err(|error| DdlError::io(path, error))?;
-    let file = SafeTensors::deserialize(&bytes).map_err(|error| {
-        DdlError::run(
+    let broken = |error: safetensors::SafeTensorError| {
+        let problem = format!(
+            "is not a whole safetensors file ({error}); delete it and run the same training again"
+        );
+        DdlError::run(path, problem)
+    };
+    let (_, header) = SafeTensors::read_metadata(&bytes).map_err(broken)?;
+    if let Some(difference) = Origin::of_header(header.metadata().as_ref()).difference(origin) {
+        return Err(DdlError::run(
             path,
-            format!("is not a whole safetensors file ({error}); train anew"),
-        )
-    })?;
+            format!("belongs to another run: its {difference}"),
+        ));
+    }
+    let file = SafeTensors::deserialize(&bytes).map_err(broken)?;
     let view = file
         .tensor(TRACKS)
         .map_err(|error| DdlError::run(path, error.to_string()))?;

@@ -1,6 +1,7 @@
 //! Where the goals of a run come from: its expert library and, where it has one, its proposal network.
 
-use crate::run_directory::{RunConfig, RunDirectory};
+use crate::run_config::RunConfig;
+use crate::run_directory::RunDirectory;
 use crate::{DdlError, GoalRecipe, experts, goals, views};
 use ddl_data::Window;
 use ddl_eval::ForecastError;
@@ -40,7 +41,7 @@ impl GoalModel {
         config: RunConfig,
         device: ComputeDevice,
     ) -> Result<Self, DdlError> {
-        let library = experts::load(&run.experts())?;
+        let library = experts::load(&config.goals_origin(), &run.experts())?;
         let params = config.goals.retrieval.clone().query(QuerySpan::Observed);
         let estimator = GoalEstimator::new(params.check()?, library)?;
         let proposer = match &config.goals.proposal {
@@ -48,7 +49,11 @@ impl GoalModel {
             Some(recipe) => {
                 let network =
                     ProposalNetwork::new(recipe.network.clone(), recipe.training.seed, device)?;
-                load_parameters(network.parameters(), &run.proposal())?;
+                load_parameters(
+                    network.parameters(),
+                    &config.goals_origin(),
+                    &run.proposal(),
+                )?;
                 Some((network, recipe.retrieved_share))
             }
         };

@@ -4,7 +4,9 @@ use crate::run_directory::{RunDirectory, SAVE_EVERY};
 use crate::{DdlError, ProposalRecipe, experts, views};
 use ddl_data::Window;
 use ddl_goal::GoalError;
-use ddl_star::{ComputeDevice, ProposalNetwork, ProposalStep, ProposalTrainer, save_parameters};
+use ddl_star::{
+    ComputeDevice, Origin, ProposalNetwork, ProposalStep, ProposalTrainer, save_parameters,
+};
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -12,12 +14,12 @@ use std::time::Instant;
 pub(crate) fn train(
     recipe: Option<&ProposalRecipe>,
     windows: &[Window],
-    run: &RunDirectory,
+    (run, origin): (&RunDirectory, &Origin),
     device: ComputeDevice,
     mut observe: impl FnMut((u64, u64), &ProposalStep) -> ControlFlow<()>,
 ) -> Result<(), DdlError> {
     if !run.experts().is_file() {
-        experts::save(&experts::library(windows)?, &run.experts())?;
+        experts::save(&experts::library(windows)?, origin, &run.experts())?;
     }
     let Some(recipe) = recipe.filter(|_| !run.proposal().is_file()) else {
         return Ok(());
@@ -28,21 +30,22 @@ pub(crate) fn train(
     drop(examples);
     let state = run.proposal_state();
     if state.is_file() {
-        trainer.resume(&state)?;
+        trainer.resume(origin, &state)?;
     }
     let mut saved = Instant::now();
     while !trainer.is_finished() {
         let step = trainer.step()?;
         let stop = observe(trainer.steps(), &step).is_break();
         if stop || saved.elapsed() > SAVE_EVERY {
-            trainer.save(&state)?;
+            trainer.save(origin, &state)?;
             saved = Instant::now();
         }
         if stop {
             return Err(DdlError::Interrupted);
         }
     }
-    save_parameters(trainer.into_network()?.parameters(), &run.proposal())?;
+    let network = trainer.into_network()?;
+    save_parameters(network.parameters(), origin, &run.proposal())?;
     // of no use any more; a file that cannot be removed does no harm
     let _ = std::fs::remove_file(&state);
     Ok(())

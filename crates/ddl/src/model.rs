@@ -2,7 +2,8 @@
 
 use crate::certified_forecast::{self, CertifiedForecast, Walked};
 use crate::clearance::Clearance;
-use crate::run_directory::{RunConfig, RunDirectory};
+use crate::run_config::RunConfig;
+use crate::run_directory::RunDirectory;
 use crate::walk::Gait;
 use crate::{DdlError, GoalModel};
 use ddl_data::{Position, Window};
@@ -257,6 +258,6 @@ fn load_network(
     weights: &Path,
 ) -> Result<StarNetwork, DdlError> {
     let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
-    load_parameters(network.parameters(), weights)?;
+    load_parameters(network.parameters(), &config.network_origin(), weights)?;
     Ok(network)
 }

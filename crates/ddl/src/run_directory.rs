@@ -15,9 +15,9 @@
 //!
 //! Every file is written under a temporary name and renamed.
 
+use crate::run_config::{FORMAT, RunConfig};
 use crate::{DdlError, GoalRecipe};
-use ddl_data::{Convention, WindowRule};
-use ddl_star::{EpochReport, StarConfig, TrainingConfig};
+use ddl_star::EpochReport;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
@@ -25,75 +25,11 @@ use std::time::Duration;
 
 /// A run under way is saved at least this often.
 pub(crate) const SAVE_EVERY: Duration = Duration::from_secs(30);
-/// Version of the directory's layout.
-pub const FORMAT: u32 = 2;
-
-/// Everything that decides what a run computes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RunConfig {
-    /// Version of the layout, [`FORMAT`].
-    pub format: u32,
-    /// The network.
-    pub star: StarConfig,
-    /// How it is trained.
-    pub training: TrainingConfig,
-    /// What the goals come from.
-    pub goals: GoalRecipe,
-    /// What it is trained on.
-    pub data: TrainingData,
-    /// Weights are kept after every so many epochs.
-    pub keep_every: usize,
-    /// Commit of the program that trained it, as far as known.
-    pub commit: String,
-    /// Device it was trained on.
-    pub device: String,
-}
-
-impl RunConfig {
-    /// Whether a run under way can go on under `other`: only device and commit may differ.
-    fn agrees_with(&self, other: &Self) -> Result<(), &'static str> {
-        let parts = [
-            ("format", self.format == other.format),
-            ("star", self.star == other.star),
-            ("training", self.training == other.training),
-            ("goals", self.goals == other.goals),
-            ("data", self.data == other.data),
-            ("keep_every", self.keep_every == other.keep_every),
-        ];
-        parts
-            .iter()
-            .find(|(_, same)| !same)
-            .map_or(Ok(()), |(name, _)| Err(name))
-    }
-}
 
 /// The part of `config.json` that every layout has.
 #[derive(Deserialize)]
 struct Layout {
     format: u32,
-}
-
-/// What a run is trained on.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TrainingData {
-    /// Data convention.
-    pub convention: Convention,
-    /// The fold whose test scene was left out.
-    pub fold: String,
-    /// Rule that cut the training windows.
-    pub window_rule: WindowRule,
-    /// Share of the training recordings' time, at their ends, kept for validation; 0 for none.
-    pub validation: f64,
-    /// Training recordings kept for validation whole.
-    pub validation_recordings: Vec<String>,
-    /// Training windows.
-    pub windows: usize,
-    /// Walkers in them.
-    pub walkers: usize,
-    /// SHA-256 of their positions.
-    pub sha256: String,
 }
 
 /// Path of a run, and of the files in it.
@@ -199,15 +135,16 @@ impl RunDirectory {
         if !self.config_file().exists() {
             return write_json(&self.config_file(), config);
         }
-        self.config()?.agrees_with(config).map_err(|part| {
-            DdlError::run(
-                &self.0,
-                format!(
-                    "holds another run: `{part}` of its config.json differs from what was asked \
-                     for; choose another directory, or remove this one"
-                ),
-            )
-        })
+        match self.config()?.origin().difference(&config.origin()) {
+            None => Ok(()),
+            Some(difference) => {
+                let problem = format!(
+                    "holds another run: its {difference} as asked for; choose another directory, or \
+                     remove this one"
+                );
+                Err(DdlError::run(&self.0, problem))
+            }
+        }
     }
 
     /// Reads `config.json`.

@@ -1,12 +1,13 @@
 //! Training of one fold into a run directory, stopped and resumed at will.
 
-use crate::run_directory::{FORMAT, RunConfig, RunDirectory, SAVE_EVERY, TrainingData};
+use crate::run_config::{FORMAT, RunConfig, TrainingData};
+use crate::run_directory::{RunDirectory, SAVE_EVERY};
 use crate::{DdlError, GoalRecipe, goal_training};
 use ddl_data::{Convention, Dataset, Window, WindowRule};
 use ddl_goal::RetrievalFrame;
 use ddl_star::{
-    ComputeDevice, DeviceChoice, ProposalStep, StarConfig, StarError, StarNetwork, StepReport,
-    Trainer, TrainingConfig, Variant, save_parameters,
+    ComputeDevice, DeviceChoice, LIBTORCH_VERSION, Origin, ProposalStep, StarConfig, StarError,
+    StarNetwork, StepReport, Trainer, TrainingConfig, save_parameters,
 };
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
@@ -21,8 +22,8 @@ const KEPT_EPOCHS: usize = 20;
 pub struct TrainingRequest {
     /// The fold whose test scene is left out.
     pub fold: String,
-    /// Row of the paper's Table II.
-    pub variant: Variant,
+    /// Size and variant of the forecasting network.
+    pub star: StarConfig,
     /// How to train.
     pub training: TrainingConfig,
     /// Share of the training recordings' time, at their ends, kept for validation; 0 for none.
@@ -82,6 +83,7 @@ pub fn train(
     mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
 ) -> Result<(), DdlError> {
     // Everything is checked before the directory is claimed: a mistake must not leave a run behind.
+    request.star.check()?;
     request.training.check()?;
     request.goals.check()?;
     if !(0.0..1.0).contains(&request.validation) {
@@ -118,7 +120,7 @@ pub fn train(
     let run = &request.out;
     let config = RunConfig {
         format: FORMAT,
-        star: StarConfig::published(request.variant),
+        star: request.star.clone(),
         training: request.training.clone(),
         goals: request.goals.clone(),
         data: TrainingData {
@@ -133,13 +135,14 @@ pub fn train(
         },
         keep_every: request.training.epochs.div_ceil(KEPT_EPOCHS),
         commit: request.commit.clone(),
+        libtorch: LIBTORCH_VERSION.to_owned(),
         device: device.name().to_owned(),
     };
     run.claim(&config)?;
     goal_training::train(
         config.goals.proposal.as_ref(),
         &windows,
-        run,
+        (run, &config.goals_origin()),
         device,
         |steps, step| {
             let step = TrainingStep::Goals(step.clone());
@@ -149,18 +152,19 @@ pub fn train(
     if run.is_trained() || request.until == TrainingStage::Goals {
         return Ok(());
     }
+    let origin = config.network_origin();
     let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
     let mut trainer = Trainer::new(network, windows, config.training.clone())?;
     if run.optimizer().is_file() {
-        trainer.resume(&run.optimizer())?;
+        trainer.resume(&origin, &run.optimizer())?;
     }
-    run_epochs(&mut trainer, run, config.keep_every, observe)
+    run_epochs(&mut trainer, (run, &origin), config.keep_every, observe)
 }
 
 /// Trains to the end, saving what a later call needs to go on.
 fn run_epochs(
     trainer: &mut Trainer,
-    run: &RunDirectory,
+    (run, origin): (&RunDirectory, &Origin),
     keep_every: usize,
     mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
 ) -> Result<(), DdlError> {
@@ -172,7 +176,11 @@ fn run_epochs(
         if let Some(epoch) = &step.finished_epoch {
             epochs.push(epoch.clone());
             if epoch.epoch % keep_every == 0 || trainer.is_finished() {
-                save_parameters(trainer.network().parameters(), &run.epoch(epoch.epoch))?;
+                save_parameters(
+                    trainer.network().parameters(),
+                    origin,
+                    &run.epoch(epoch.epoch),
+                )?;
             }
             run.write_metrics(&epochs)?;
         }
@@ -183,14 +191,14 @@ fn run_epochs(
         })
         .is_break();
         if due || stop {
-            trainer.save(&run.optimizer())?;
+            trainer.save(origin, &run.optimizer())?;
             saved = Instant::now();
         }
         if stop && !trainer.is_finished() {
             return Err(DdlError::Interrupted);
         }
     }
-    save_parameters(trainer.network().parameters(), &run.model())?;
+    save_parameters(trainer.network().parameters(), origin, &run.model())?;
     Ok(())
 }
 

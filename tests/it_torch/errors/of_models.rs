@@ -1,8 +1,8 @@
 //! Runs that are missing, unfinished, damaged, or another's; devices that are not there.
 
 use super::{FORECAST, fails, folder_with_model};
-use ddl::Variant;
-use ddl_tests::{program, tiny_model};
+use ddl::{TrainingRequest, TrainingStage, Variant};
+use ddl_tests::{crowd, program, tiny_model};
 
 #[test]
 fn a_missing_model_is_named() {
@@ -45,15 +45,58 @@ fn half_a_file_is_named() {
     }
 }
 
-/// The configuration of another network, copied over that of the run.
+/// Weights of a variant whose shapes are the same, and goals of another fold, copied over those of the run.
 #[test]
-fn weights_of_another_network_are_refused() {
+fn files_of_another_run_are_refused() {
+    let other = tiny_model::folder(Variant::NoGoalShift);
+    let elsewhere = tempfile::tempdir().unwrap();
+    let request = tiny_model::request("plaza", Variant::Full, 40, elsewhere.path());
+    let only_goals = TrainingRequest {
+        until: TrainingStage::Goals,
+        ..request
+    };
+    tiny_model::train(&only_goals, &crowd::dataset());
+    for (from, file, difference) in [
+        (
+            other.path(),
+            "model.safetensors",
+            "star.variant is no-goal-shift, not full",
+        ),
+        (
+            elsewhere.path(),
+            "proposal.safetensors",
+            "data.fold is plaza, not corridor",
+        ),
+        (
+            elsewhere.path(),
+            "experts.safetensors",
+            "data.fold is plaza, not corridor",
+        ),
+    ] {
+        let folder = folder_with_model();
+        std::fs::copy(from.join(file), folder.path().join("run").join(file)).unwrap();
+        fails(folder.path(), FORECAST, &[file, "another run", difference]);
+    }
+}
+
+/// A run under way whose state was cut off says what to do, and can be begun anew.
+#[test]
+fn half_a_state_of_training_is_named() {
     let folder = folder_with_model();
-    let other = tiny_model::folder(Variant::Star);
-    let config = "config.json";
-    let over = folder.path().join("run").join(config);
-    std::fs::copy(other.path().join(config), over).unwrap();
-    fails(folder.path(), FORECAST, &["model.safetensors", "shape"]);
+    let run = folder.path().join("run");
+    std::fs::remove_file(run.join("model.safetensors")).unwrap();
+    let state = run.join("optimizer.safetensors");
+    let whole = std::fs::read(&state).unwrap();
+    std::fs::write(&state, &whole[..whole.len() / 2]).unwrap();
+    let model = ddl::RunDirectory::new(&run);
+    let error = tiny_model::train_again(&model).unwrap_err().to_string();
+    assert!(
+        error.contains("optimizer.safetensors") && error.contains("delete it"),
+        "{error}"
+    );
+    std::fs::remove_file(&state).unwrap();
+    tiny_model::train_again(&model).unwrap();
+    assert!(model.is_trained());
 }
 
 /// A run without validation cannot be measured on it, and one without results not be reported.

@@ -27,7 +27,7 @@ fn a_folder_that_holds_another_run_is_not_trained_over() {
     let recipe = serde_json::to_string(&tiny_model::goal_recipe(1)).unwrap();
     std::fs::write(folder.path().join("recipe.json"), recipe).unwrap();
     for (different, part) in [
-        ("--fold corridor --seed 77", "`training`"),
+        ("--fold corridor --seed 77", "training.seed is 1, not 77"),
         ("--fold corridor --variant star", "`star`"),
         ("--fold plaza", "`data`"),
     ] {

@@ -48,12 +48,20 @@ const SHORT: Recipe = Recipe {
     schedule: Cow::Borrowed("cosine"),
 };
 
+/// The paper's batches, and steps that fade out, so that fewer epochs do.
+const FADING: Recipe = Recipe {
+    schedule: Cow::Borrowed("cosine"),
+    ..PUBLISHED
+};
+
 #[rustfmt::skip]
-const PROFILES: [Profile; 3] = [
+const PROFILES: [Profile; 4] = [
     // Shows that everything works; its numbers mean nothing.
     Profile { name: "smoke", folds: 2, epochs: 1, train_walkers: Some(600), proposal_steps: Some(40), test_walkers: Some(150), recipe: PUBLISHED },
     // Numbers worth reading, in minutes on two cores.
     Profile { name: "quick", folds: 5, epochs: 10, train_walkers: Some(4000), proposal_steps: None, test_walkers: Some(2500), recipe: SHORT },
+    // Every window, trained until little more is learned: an evening on two cores.
+    Profile { name: "evening", folds: 5, epochs: 60, train_walkers: None, proposal_steps: None, test_walkers: None, recipe: FADING },
     // The paper's amount of training, on every window.
     Profile { name: "paper", folds: 5, epochs: 200, train_walkers: None, proposal_steps: None, test_walkers: None, recipe: PUBLISHED },
 ];
@@ -64,7 +72,7 @@ impl FromStr for Profile {
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         match PROFILES.into_iter().find(|profile| profile.name == text) {
             Some(profile) => Ok(profile),
-            None => bail!("a profile is smoke, quick or paper"),
+            None => bail!("a profile is smoke, quick, evening or paper"),
         }
     }
 }
@@ -75,9 +83,10 @@ mod tests {
 
     #[test]
     fn profiles_are_found_by_name_and_grow() {
-        let [smoke, quick, paper] =
-            ["smoke", "quick", "paper"].map(|name| name.parse::<Profile>().unwrap());
-        assert!(smoke.epochs < quick.epochs && quick.epochs < paper.epochs);
+        let [smoke, quick, evening, paper] =
+            ["smoke", "quick", "evening", "paper"].map(|name| name.parse::<Profile>().unwrap());
+        assert!(smoke.epochs < quick.epochs && quick.epochs < evening.epochs);
+        assert!(evening.epochs < paper.epochs && evening.train_walkers.is_none());
         assert!(smoke.test_walkers < quick.test_walkers);
         assert_eq!(
             (paper.epochs, paper.train_walkers, paper.test_walkers),

@@ -110,6 +110,16 @@ mod tests {
         }
     }
 
+    /// What runs record as their libtorch.
+    #[test]
+    fn the_version_that_runs_record_is_the_pinned_one() {
+        let device = Workspace::find()
+            .unwrap()
+            .path("crates/ddl-star/src/device.rs");
+        let text = std::fs::read_to_string(device).unwrap();
+        assert!(text.contains(&format!("LIBTORCH_VERSION: &str = \"{VERSION}\"")));
+    }
+
     #[test]
     fn every_wheel_is_pinned_whole() {
         for wheel in &WHEELS {

@@ -6,7 +6,7 @@ use crate::progress::Progress;
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use ddl::data::Convention;
-use ddl::star::{LearningRateSchedule, ProposalTraining, TrainingConfig};
+use ddl::star::{LearningRateSchedule, ProposalTraining, StarConfig, TrainingConfig};
 use ddl::{GoalRecipe, RunDirectory, TrainingRequest, TrainingStage, TrainingStep, Variant};
 use std::path::PathBuf;
 
@@ -27,6 +27,10 @@ pub(crate) struct Train {
     /// full, no-goal-shift, no-dynamics or star (neither)
     #[arg(long, default_value = "full")]
     variant: Variant,
+    /// Width of the hidden layer of each feed-forward block; narrower ones forecast faster
+    /// (docs/performance.md)
+    #[arg(long, default_value_t = 2048)]
+    feed_forward_width: i64,
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -85,7 +89,10 @@ impl Train {
         let goals = self.goal_recipe()?;
         let request = TrainingRequest {
             fold: self.fold,
-            variant: self.variant,
+            star: StarConfig {
+                feed_forward_width: self.feed_forward_width,
+                ..StarConfig::published(self.variant)
+            },
             training: TrainingConfig {
                 epochs: self.epochs,
                 walkers_per_epoch: self.walkers_per_epoch,

@@ -3,6 +3,7 @@
 use crate::StarError;
 use crate::checkpoint::{bad, find, plain, read, write};
 use crate::optimizer::Adam;
+use crate::origin::Origin;
 use crate::parameters::Parameters;
 use std::path::Path;
 use tch::{Kind, Tensor};
@@ -22,6 +23,7 @@ pub(super) fn save(
     average: &Tensor,
     adam: &Adam,
     progress: Progress,
+    origin: &Origin,
     path: &Path,
 ) -> Result<(), StarError> {
     let all = [
@@ -37,7 +39,7 @@ pub(super) fn save(
         .collect();
     let numbers = Tensor::from_slice(&[progress.steps as f64, progress.distance]);
     tensors.push((PROGRESS.to_owned(), numbers));
-    write(&tensors, path)
+    write(&tensors, origin, path)
 }
 
 /// Restores all of it; nothing is changed when the file is not whole.
@@ -45,9 +47,11 @@ pub(super) fn load(
     parameters: &Parameters,
     average: &mut Tensor,
     adam: &mut Adam,
+    origin: &Origin,
     path: &Path,
 ) -> Result<Progress, StarError> {
-    let tensors = read(path, parameters.count() as u64 * TENSORS.len() as u64 * 8)?;
+    let most_bytes = parameters.count() as u64 * TENSORS.len() as u64 * 8;
+    let tensors = read(path, most_bytes, origin)?;
     let (size, kind) = (parameters.flat().size(), parameters.flat().kind());
     let stored = TENSORS
         .iter()

@@ -10,6 +10,7 @@ use crate::StarError;
 use crate::device::OneThread;
 use crate::layers::Mode;
 use crate::optimizer::Adam;
+use crate::origin::Origin;
 use crate::pass::Pass;
 use crate::seed::{GENERATOR, Stage, stream};
 use crate::training_config::LearningRateSchedule;
@@ -113,18 +114,26 @@ impl ProposalTrainer {
     ///
     /// # Errors
     /// When the file cannot be written; an earlier one is then left as it was.
-    pub fn save(&self, path: &Path) -> Result<(), StarError> {
+    pub fn save(&self, origin: &Origin, path: &Path) -> Result<(), StarError> {
         let parameters = self.network.parameters();
-        checkpoint::save(parameters, &self.average, &self.adam, self.progress, path)
+        checkpoint::save(
+            parameters,
+            &self.average,
+            &self.adam,
+            self.progress,
+            origin,
+            path,
+        )
     }
 
     /// Goes on from a saved state of the same run.
     ///
     /// # Errors
-    /// [`StarError::Checkpoint`] when the file is not a whole state of this network.
-    pub fn resume(&mut self, path: &Path) -> Result<(), StarError> {
+    /// [`StarError::Checkpoint`] when the file is of another origin, or not a whole state of this network.
+    pub fn resume(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
         let parameters = self.network.parameters();
-        self.progress = checkpoint::load(parameters, &mut self.average, &mut self.adam, path)?;
+        self.progress =
+            checkpoint::load(parameters, &mut self.average, &mut self.adam, origin, path)?;
         Ok(())
     }
 

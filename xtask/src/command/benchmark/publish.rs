@@ -10,9 +10,18 @@ use crate::benchmark::{Plan, human};
 use crate::whole_file;
 use crate::workspace::Workspace;
 
-const FILE: &str = "docs/benchmark.md";
+/// The page of the profile that runs unless another is asked for.
+const PAGE: &str = "docs/benchmark.md";
 
-/// Writes `docs/benchmark.md`.
+/// Where a profile's results are shown.
+fn file(profile: &str) -> String {
+    match profile {
+        "quick" => PAGE.to_owned(),
+        other => format!("docs/benchmark-{other}.md"),
+    }
+}
+
+/// Writes the results of the plan into the page of its profile.
 pub(super) fn publish(
     workspace: &Workspace,
     plan: &Plan,
@@ -21,8 +30,9 @@ pub(super) fn publish(
 ) -> Result<()> {
     let report = fs::read_to_string(out.join("report.md")).context("the report cannot be read")?;
     let text = page(&report, plan, &workspace.commit(), &workspace.now(), took);
-    whole_file::write(&workspace.path(FILE), text.as_bytes())?;
-    println!("published: {FILE}");
+    let file = file(&plan.settings.profile);
+    whole_file::write(&workspace.path(&file), text.as_bytes())?;
+    println!("published: {file}");
     Ok(())
 }
 
@@ -109,6 +119,12 @@ fn command(plan: &Plan, seeds: &[String]) -> String {
 mod tests {
     use super::*;
     use crate::benchmark::Settings;
+
+    #[test]
+    fn a_profile_has_a_page_of_its_own() {
+        assert_eq!(file("quick"), "docs/benchmark.md");
+        assert_eq!(file("evening"), "docs/benchmark-evening.md");
+    }
 
     #[test]
     fn the_page_says_what_made_it_and_names_no_folder() {

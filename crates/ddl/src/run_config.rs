@@ -1,0 +1,152 @@
+//! Everything that decides what a run computes: its `config.json`.
+
+use crate::GoalRecipe;
+use ddl_data::{Convention, WindowRule};
+use ddl_star::{Origin, StarConfig, TrainingConfig};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// Version of the run directory's layout.
+pub const FORMAT: u32 = 3;
+
+/// Everything that decides what a run computes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunConfig {
+    /// Version of the layout, [`FORMAT`].
+    pub format: u32,
+    /// The network.
+    pub star: StarConfig,
+    /// How it is trained.
+    pub training: TrainingConfig,
+    /// What the goals come from.
+    pub goals: GoalRecipe,
+    /// What it is trained on.
+    pub data: TrainingData,
+    /// Weights are kept after every so many epochs.
+    pub keep_every: usize,
+    /// Commit of the program that trained it, as far as known.
+    pub commit: String,
+    /// libtorch that it was trained on.
+    pub libtorch: String,
+    /// Device it was trained on.
+    pub device: String,
+}
+
+impl RunConfig {
+    /// What the weights of the forecasting network, and the state of its training, are of.
+    #[must_use]
+    pub fn network_origin(&self) -> Origin {
+        self.origin_of(&["format", "star", "training", "data"])
+    }
+
+    /// What the expert library and the proposal network are of.
+    #[must_use]
+    pub fn goals_origin(&self) -> Origin {
+        self.origin_of(&["format", "goals", "data"])
+    }
+
+    /// What the run is of: everything but commit, libtorch and device, which may change while it is trained.
+    #[must_use]
+    pub fn origin(&self) -> Origin {
+        self.origin_of(&["format", "star", "training", "goals", "data", "keep_every"])
+    }
+
+    /// Some parts of `config.json`, each leaf under its path, such as `training.seed`.
+    fn origin_of(&self, parts: &[&str]) -> Origin {
+        let mut leaves = Vec::new();
+        // Plain data always becomes JSON; what did not would agree with nothing that did.
+        if let Ok(Value::Object(fields)) = serde_json::to_value(self) {
+            for (name, value) in fields {
+                if parts.contains(&name.as_str()) {
+                    push_leaves(name, &value, &mut leaves);
+                }
+            }
+        }
+        leaves.into_iter().collect()
+    }
+}
+
+fn push_leaves(path: String, value: &Value, leaves: &mut Vec<(String, String)>) {
+    match value {
+        Value::Object(fields) => {
+            for (name, value) in fields {
+                push_leaves(format!("{path}.{name}"), value, leaves);
+            }
+        }
+        Value::String(text) => leaves.push((path, text.clone())),
+        other => leaves.push((path, other.to_string())),
+    }
+}
+
+/// What a run is trained on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainingData {
+    /// Data convention.
+    pub convention: Convention,
+    /// The fold whose test scene was left out.
+    pub fold: String,
+    /// Rule that cut the training windows.
+    pub window_rule: WindowRule,
+    /// Share of the training recordings' time, at their ends, kept for validation; 0 for none.
+    pub validation: f64,
+    /// Training recordings kept for validation whole.
+    pub validation_recordings: Vec<String>,
+    /// Training windows.
+    pub windows: usize,
+    /// Walkers in them.
+    pub walkers: usize,
+    /// SHA-256 of their positions.
+    pub sha256: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ddl_star::Variant;
+
+    fn config(seed: u64, commit: &str) -> RunConfig {
+        RunConfig {
+            format: FORMAT,
+            star: StarConfig::published(Variant::Full),
+            training: TrainingConfig {
+                seed,
+                ..TrainingConfig::default()
+            },
+            goals: GoalRecipe::proposed(1),
+            data: TrainingData {
+                convention: Convention::Star,
+                fold: "eth".to_owned(),
+                window_rule: WindowRule::Complete,
+                validation: 0.0,
+                validation_recordings: Vec::new(),
+                windows: 3,
+                walkers: 9,
+                sha256: "00".to_owned(),
+            },
+            keep_every: 1,
+            commit: commit.to_owned(),
+            libtorch: "2".to_owned(),
+            device: "cpu".to_owned(),
+        }
+    }
+
+    #[test]
+    fn the_origin_is_what_decides_the_numbers() {
+        let origin = config(1, "a").origin();
+        assert_eq!(origin.difference(&config(1, "b").origin()), None);
+        let goals = config(1, "a").goals_origin();
+        assert_eq!(goals.difference(&config(2, "b").goals_origin()), None);
+        assert_eq!(
+            origin.difference(&config(2, "a").origin()).unwrap(),
+            "training.seed is 1, not 2"
+        );
+        let mut wider = config(1, "a");
+        wider.star.feed_forward_width = 64;
+        assert_eq!(
+            wider.origin().difference(&origin).unwrap(),
+            "star.feed_forward_width is 64, not 2048"
+        );
+    }
+}
