@@ -28,8 +28,8 @@ fn a_folder_that_holds_another_run_is_not_trained_over() {
     std::fs::write(folder.path().join("recipe.json"), recipe).unwrap();
     for (different, part) in [
         ("--fold corridor --seed 77", "training.seed is 1, not 77"),
-        ("--fold corridor --variant star", "`star`"),
-        ("--fold plaza", "`data`"),
+        ("--fold corridor --variant star", "star.variant is full, not star"),
+        ("--fold plaza", "data.fold is corridor, not plaza"),
     ] {
         // everything else as the tiny model was trained
         let train = format!(
@@ -39,7 +39,7 @@ fn a_folder_that_holds_another_run_is_not_trained_over() {
         fails(folder.path(), &train, &["another run", part]);
         let other_goals = train.replace("--goal-recipe recipe.json", "--proposal-steps 21");
         let other_goals = other_goals.replace(different, "--fold corridor");
-        fails(folder.path(), &other_goals, &["another run", "`goals`"]);
+        fails(folder.path(), &other_goals, &["another run", "its goals."]);
     }
 }
 
