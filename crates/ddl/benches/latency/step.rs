@@ -9,7 +9,7 @@ use ddl::{DeviceChoice, Variant};
 /// A line about the step of one batch of the published size, on so many threads.
 pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Result<String> {
     let training = TrainingConfig {
-        epochs: usize::MAX,
+        epochs: 1_000_000, // never done
         ..TrainingConfig::default()
     };
     let windows = one_batch(dataset, training.batch_walkers)?;
