@@ -9,6 +9,7 @@ pub mod crowd;
 pub mod folder_contents;
 pub mod goal_lines;
 pub mod own_tracks;
+pub mod processes;
 pub mod program;
 pub mod recordings;
 #[cfg(feature = "torch")]

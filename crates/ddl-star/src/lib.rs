@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod arithmetic;
 mod attention;
 mod batch;
 mod checkpoint;
@@ -30,6 +31,7 @@ mod tape;
 mod temporal;
 mod train;
 mod training_config;
+mod yardstick;
 
 pub use batch::SceneBatch;
 pub use checkpoint::{load_parameters, save_parameters};
@@ -50,3 +52,4 @@ pub use rollout::Rollout;
 pub use star::{NoiseInput, StarNetwork};
 pub use train::{EpochReport, StepReport, Trainer};
 pub use training_config::{LearningRateSchedule, TrainingConfig};
+pub use yardstick::MatrixProduct;

@@ -9,6 +9,9 @@ pub enum DdlError {
     /// Recordings could not be read.
     #[error(transparent)]
     Data(#[from] ddl_data::DataError),
+    /// A frame cannot be added to live tracks.
+    #[error(transparent)]
+    Live(#[from] ddl_data::LiveError),
     /// Goals could not be estimated.
     #[error(transparent)]
     Goal(#[from] ddl_goal::GoalError),

@@ -12,6 +12,7 @@ mod goal_picture;
 mod goal_recipe;
 mod goal_training;
 mod goals;
+mod live;
 mod machine;
 mod model;
 mod published;
@@ -43,6 +44,7 @@ pub use goal_evaluation::{GoalErrors, GoalEvaluation, MeasuredGoals, evaluate_go
 pub use goal_model::GoalModel;
 pub use goal_picture::goal_picture;
 pub use goal_recipe::{GoalRecipe, ProposalRecipe};
+pub use live::{LiveForecast, LiveForecaster};
 pub use machine::{cuda_status, prepare};
 pub use model::Ddl;
 pub use run_config::{FORMAT, RunConfig, TrainingData};

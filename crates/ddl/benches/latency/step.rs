@@ -1,0 +1,65 @@
+//! A training step.
+
+use crate::Result;
+use crate::clock::{Clock, side_by_side};
+use ddl::data::{Dataset, Window, WindowRule};
+use ddl::star::{ComputeDevice, StarConfig, StarNetwork, Trainer, TrainingConfig};
+use ddl::{DeviceChoice, Variant};
+
+/// A line about the step of one batch of the published size, on so many threads.
+pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Result<String> {
+    let training = TrainingConfig {
+        epochs: 1_000_000, // never done
+        ..TrainingConfig::default()
+    };
+    let windows = one_batch(dataset, training.batch_walkers)?;
+    let scenes: Vec<usize> = windows.iter().map(Window::len).collect();
+    let star = StarConfig::published(Variant::Full);
+    let operations = star.training_operations(&scenes) as f64;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()?;
+    let (clock, time) = if threads == 1 {
+        (Clock::Processor, "processor time")
+    } else {
+        (Clock::Wall, "by the clock")
+    };
+    let [step] = pool.install(|| {
+        let device = ComputeDevice::open(DeviceChoice::Cpu)?;
+        let mut trainer = Trainer::new(StarNetwork::new(star, 1, device)?, windows, training)?;
+        side_by_side(
+            clock,
+            threads,
+            turns,
+            [&mut || Ok(trainer.step().map(drop)?)],
+        )
+    })?;
+    let rate = operations / step.seconds;
+    Ok(format!(
+        "{} walkers in {} scenes, threads: {threads}: {:.3} s ({time}), {:.1} GFLOP, {:.1} GFLOP/s, {:.0}% of matmul's {:.1} GFLOP/s",
+        scenes.iter().sum::<usize>(),
+        scenes.len(),
+        step.seconds,
+        operations / 1e9,
+        rate / 1e9,
+        100.0 * rate / step.matrix_rate,
+        step.matrix_rate / 1e9,
+    ))
+}
+
+/// Training windows of few people each, as most recorded ones are, until they hold more than `walkers`: one batch.
+fn one_batch(dataset: &Dataset, walkers: usize) -> Result<Vec<Window>> {
+    let windows = dataset
+        .fold("corridor")?
+        .training_windows(WindowRule::Complete);
+    let mut batch = Vec::new();
+    let mut count = 0;
+    for window in windows.into_iter().step_by(40) {
+        count += window.len();
+        batch.push(window);
+        if count > walkers {
+            return Ok(batch);
+        }
+    }
+    Err("too few training windows".into())
+}

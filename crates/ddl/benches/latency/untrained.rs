@@ -1,0 +1,52 @@
+//! A run that was hardly trained: everything is there, of the published sizes, and costs what it costs.
+
+use crate::Result;
+use ddl::data::Dataset;
+use ddl::star::{ComputeDevice, StarNetwork, TrainingConfig, save_parameters};
+use ddl::{
+    DeviceChoice, GoalRecipe, RunConfig, RunDirectory, TrainingRequest, TrainingStage, Variant,
+};
+use std::ops::ControlFlow;
+use std::path::Path;
+
+/// A run of one small step for each of its networks.
+pub(crate) fn run(dataset: &Dataset, folder: &Path) -> Result<RunDirectory> {
+    let run = RunDirectory::new(folder.join("run"));
+    let mut goals = GoalRecipe::proposed(1);
+    if let Some(proposal) = &mut goals.proposal {
+        proposal.training.steps = 1;
+    }
+    let request = TrainingRequest {
+        fold: "corridor".to_owned(),
+        variant: Variant::Full,
+        training: TrainingConfig {
+            epochs: 1,
+            batch_walkers: 1,
+            walkers_per_epoch: Some(1),
+            ..TrainingConfig::default()
+        },
+        validation: 0.0,
+        validation_recordings: Vec::new(),
+        goals,
+        until: TrainingStage::Network,
+        out: run.clone(),
+        device: DeviceChoice::Cpu,
+        commit: "unknown".to_owned(),
+    };
+    ddl::train(&request, dataset, |_| ControlFlow::Continue(()))?;
+    Ok(run)
+}
+
+/// Gives the run a forecasting network with feed-forward blocks of another width, with initial weights.
+pub(crate) fn widen(run: &RunDirectory, feed_forward_width: i64) -> Result<()> {
+    let mut config: RunConfig = run.config()?;
+    config.star.feed_forward_width = feed_forward_width;
+    let device = ComputeDevice::open(DeviceChoice::Cpu)?;
+    let network = StarNetwork::new(config.star.clone(), 1, device)?;
+    save_parameters(network.parameters(), &run.model())?;
+    let text = serde_json::to_string_pretty(&config)?;
+    Ok(ddl::write_atomically(
+        &run.path().join("config.json"),
+        text.as_bytes(),
+    )?)
+}
