@@ -84,8 +84,21 @@ impl SceneBatch {
             .reshape([2, 2])
             .to_kind(self.positions.kind())
             .to_device(self.positions.device());
+        self.turned(&images)
+    }
+
+    /// All positions turned as the axes are: `images` `[2, 2]`, one a row. Neighbours stay as they were found.
+    pub(crate) fn turned(&self, images: &Tensor) -> Self {
         Self {
-            positions: self.positions.matmul(&images),
+            positions: self.positions.matmul(images),
+            ..self.shared()
+        }
+    }
+
+    /// The same batch, without copying.
+    pub(crate) fn shared(&self) -> Self {
+        Self {
+            positions: self.positions.shallow_clone(),
             neighbours: Rc::clone(&self.neighbours),
             scene_mean: self.scene_mean.shallow_clone(),
         }

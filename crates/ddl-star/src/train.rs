@@ -3,17 +3,17 @@
 use crate::StarError;
 use crate::batch::SceneBatch;
 use crate::checkpoint::{self, Progress};
+use crate::draws::{StepDraw, StepDraws};
 use crate::layers::Mode;
 use crate::loss::mean_squared_distance;
 use crate::optimizer::Adam;
 use crate::pass::Pass;
+use crate::prepared::PreparedBatches;
 use crate::schedule::Schedule;
-use crate::seed::{GENERATOR, Stage, stream};
+use crate::seed::GENERATOR;
 use crate::star::{NoiseInput, StarNetwork};
 use crate::training_config::TrainingConfig;
 use ddl_data::{WINDOW, Window};
-use rand::{Rng as _, RngExt as _};
-use rand_distr::StandardNormal;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::PoisonError;
@@ -55,7 +55,8 @@ pub struct Trainer {
     network: StarNetwork,
     adam: Adam,
     schedule: Schedule,
-    windows: Vec<Window>,
+    batches: PreparedBatches,
+    draws: Option<StepDraws>,
     config: TrainingConfig,
     progress: Progress,
 }
@@ -77,12 +78,19 @@ impl Trainer {
         if schedule.is_empty() {
             return Err(StarError::NoTrainingWindows);
         }
-        let adam = Adam::new(network.parameters());
-        Ok(Self {
-            network,
-            adam,
-            schedule,
+        let batches = PreparedBatches::new(
             windows,
+            schedule.batches(),
+            network.config().neighbour_box,
+            network.device(),
+            network.kind(),
+        );
+        Ok(Self {
+            adam: Adam::new(network.parameters()),
+            network,
+            schedule,
+            batches,
+            draws: None,
             config,
             progress: Progress::default(),
         })
@@ -140,12 +148,14 @@ impl Trainer {
     pub fn step(&mut self) -> Result<StepReport, StarError> {
         let started = Instant::now();
         let step = self.progress.steps;
-        let batch = self.batch(step)?;
+        let draw = self.draw(step)?;
+        let batch = self.batch(step, &draw)?;
         let (loss, pass) = {
             // Held from seeding to the last draw of dropout.
             let _generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
-            let (noise, seed) = self.draw(step);
-            let pass = Pass::taped(Mode::Train, seed);
+            tch::manual_seed(draw.libtorch);
+            let noise = NoiseInput::Draws(draw.noise);
+            let pass = Pass::taped(Mode::Train, draw.kernels);
             (self.loss(&batch, &noise, &pass)?, pass)
         };
         let value = loss.double_value(&[]);
@@ -182,36 +192,32 @@ impl Trainer {
         Ok(mean_squared_distance(&forecast, &truth))
     }
 
-    fn batch(&self, step: u64) -> Result<SceneBatch, StarError> {
-        let indices = self.schedule.batch(self.schedule.batch_index(step));
-        let windows: Vec<&Window> = indices.iter().map(|&index| &self.windows[index]).collect();
-        let batch = SceneBatch::new(
-            &windows,
-            WINDOW,
-            WINDOW - 1,
-            self.network.config().neighbour_box,
-            self.network.device(),
-            self.network.kind(),
-        )?;
-        let turn = self.config.rotate;
-        Ok(if turn {
-            batch.rotated(self.schedule.rotation(step))
-        } else {
-            batch
+    /// The batch of a step, turned as it draws.
+    fn batch(&self, step: u64, draw: &StepDraw) -> Result<SceneBatch, StarError> {
+        let index = self.schedule.batch_index(step);
+        let batch = self.batches.batch(index, self.schedule.batch(index))?;
+        Ok(match &draw.turn {
+            Some(images) => batch.turned(images),
+            None => batch.shared(),
         })
     }
 
-    /// The step's noise vector, shared by all walkers and frames; also seeds its dropout.
-    fn draw(&self, step: u64) -> (NoiseInput, u64) {
-        let mut rng = stream(self.config.seed, Stage::Step, step);
-        tch::manual_seed((rng.next_u64() >> 1).cast_signed());
-        let width = self.network.config().noise_width as usize;
-        let noise: Vec<f64> = (0..width).map(|_| rng.sample(StandardNormal)).collect();
-        let noise = Tensor::from_slice(&noise)
-            .unsqueeze(0)
-            .to_kind(self.network.kind())
-            .to_device(self.network.device());
-        (NoiseInput::Draws(noise), rng.next_u64())
+    /// What a step draws, drawn with all that is left of its epoch.
+    fn draw(&mut self, step: u64) -> Result<StepDraw, StarError> {
+        loop {
+            if let Some(draw) = self.draws.as_ref().and_then(|draws| draws.at(step)) {
+                return Ok(draw);
+            }
+            let epoch = self.schedule.steps_per_epoch() as u64;
+            self.draws = Some(StepDraws::new(
+                step..(step / epoch + 1) * epoch,
+                &self.schedule,
+                self.config.rotate,
+                self.network.config().noise_width,
+                self.network.device(),
+                self.network.kind(),
+            )?);
+        }
     }
 
     fn require_finite(&self, quantity: &'static str, value: f64) -> Result<(), StarError> {
@@ -224,7 +230,7 @@ impl Trainer {
             .batch(batch)
             .first()
             .map_or_else(String::new, |&index| {
-                let window = &self.windows[index];
+                let window = self.batches.window(index);
                 format!(
                     "{}@{} and following",
                     window.recording(),
