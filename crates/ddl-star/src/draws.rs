@@ -121,9 +121,8 @@ mod tests {
     fn a_step_draws_the_same_whatever_it_is_drawn_with() {
         let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
         let schedule = Schedule::new(&windows, &TrainingConfig::default());
-        let draws = |steps| {
-            StepDraws::new(steps, &schedule, true, 16, Device::Cpu, Kind::Double).unwrap()
-        };
+        let draws =
+            |steps| StepDraws::new(steps, &schedule, true, 16, Device::Cpu, Kind::Double).unwrap();
         let (whole, part) = (draws(0..9), draws(6..9));
         for step in 6..9 {
             let (one, other) = (whole.at(step).unwrap(), part.at(step).unwrap());

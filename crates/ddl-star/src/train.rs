@@ -4,6 +4,7 @@ use crate::StarError;
 use crate::batch::SceneBatch;
 use crate::checkpoint::{self, Progress};
 use crate::draws::{StepDraw, StepDraws};
+use crate::gate::Gate;
 use crate::layers::Mode;
 use crate::loss::mean_squared_distance;
 use crate::optimizer::Adam;
@@ -18,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::PoisonError;
 use std::time::Instant;
-use tch::Tensor;
+use tch::{Device, Kind, Tensor};
 
 /// What one step did.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,8 +30,12 @@ pub struct StepReport {
     pub done: usize,
     /// Steps of an epoch.
     pub steps_per_epoch: usize,
-    /// Loss of the batch, square metres.
-    pub loss: f64,
+    /// Mean loss (square metres) of the steps whose losses were read with this one; `None` when none was.
+    ///
+    /// On the CPU every step reads its own. On CUDA a loss stays on the device, where reading it would have
+    /// to wait for all work ahead of it: every sixteenth step reads those of the last sixteen, and the
+    /// last step of an epoch the rest.
+    pub loss: Option<f64>,
     /// Set when the step was the last of its epoch.
     pub finished_epoch: Option<EpochReport>,
 }
@@ -48,6 +53,9 @@ pub struct EpochReport {
     pub seconds: f64,
 }
 
+/// Steps whose losses CUDA keeps before they are read.
+const READ_EVERY_ON_CUDA: usize = 16;
+
 /// A network in training. Every step draws from its own random stream, so that a run that was
 /// stopped, saved and resumed gives the same weights as one that was not.
 #[derive(Debug)]
@@ -57,6 +65,10 @@ pub struct Trainer {
     schedule: Schedule,
     batches: PreparedBatches,
     draws: Option<StepDraws>,
+    gate: Gate,
+    /// Loss and norm of the gradient of the last steps, `[2]` each, not read yet.
+    unread: Vec<Tensor>,
+    read_every: usize,
     config: TrainingConfig,
     progress: Progress,
 }
@@ -85,12 +97,20 @@ impl Trainer {
             network.device(),
             network.kind(),
         );
+        let gate = Gate::new(network.device(), network.kind());
+        let read_every = match network.device() {
+            Device::Cpu => 1,
+            _ => READ_EVERY_ON_CUDA,
+        };
         Ok(Self {
             adam: Adam::new(network.parameters()),
             network,
             schedule,
             batches,
             draws: None,
+            gate,
+            unread: Vec::new(),
+            read_every,
             config,
             progress: Progress::default(),
         })
@@ -126,8 +146,10 @@ impl Trainer {
     /// Saves weights, optimiser and progress to one file.
     ///
     /// # Errors
-    /// When the file cannot be written; an earlier one is then left as it was.
-    pub fn save(&self, path: &Path) -> Result<(), StarError> {
+    /// When the file cannot be written; an earlier one is then left as it was. [`StarError::NonFinite`] as in
+    /// [`step`](Self::step).
+    pub fn save(&mut self, path: &Path) -> Result<(), StarError> {
+        self.read()?;
         checkpoint::save_training(self.network.parameters(), &self.adam, self.progress, path)
     }
 
@@ -137,14 +159,20 @@ impl Trainer {
     /// [`StarError::Checkpoint`] when the file is not a whole state of this network.
     pub fn resume(&mut self, path: &Path) -> Result<(), StarError> {
         self.progress = checkpoint::load_training(self.network.parameters(), &mut self.adam, path)?;
+        self.unread.clear();
+        self.gate.reopen();
         Ok(())
     }
 
     /// One batch: forward, backward, clipped Adam step.
     ///
+    /// Nothing is read back from the device but what [`StepReport::loss`] says. That a step changes nothing
+    /// when its loss is no longer a number is decided on the device, and so does no later one; the
+    /// next reading finds out.
+    ///
     /// # Errors
-    /// [`StarError::NonFinite`] when loss or gradient is no longer a number; the weights are then
-    /// those before the step.
+    /// [`StarError::NonFinite`] when loss or gradient of this step, or of one since the last reading, is no longer a
+    /// number. The weights and the steps done are then those before that step.
     pub fn step(&mut self) -> Result<StepReport, StarError> {
         let started = Instant::now();
         let step = self.progress.steps;
@@ -158,11 +186,10 @@ impl Trainer {
             let pass = Pass::taped(Mode::Train, draw.kernels);
             (self.loss(&batch, &noise, &pass)?, pass)
         };
-        let value = loss.double_value(&[]);
-        self.require_finite("loss", value)?;
         let gradient = pass.gradient(&loss, self.network.parameters())?;
         let norm = gradient.norm();
-        self.require_finite("gradient norm", norm.double_value(&[]))?;
+        let both = Tensor::f_stack(&[loss.detach(), norm.shallow_clone()], 0)?;
+        self.gate.watch(&both);
         let (_, total) = self.steps();
         let config = &self.config;
         let rate = config.learning_rate * config.learning_rate_schedule.factor(step, total);
@@ -172,11 +199,53 @@ impl Trainer {
             &norm,
             config.gradient_clip,
             rate,
+            &self.gate,
         );
+        self.unread.push(both);
         self.progress.steps += 1;
-        self.progress.loss_sum += value;
+        let epoch_ends = self
+            .progress
+            .steps
+            .is_multiple_of(self.schedule.steps_per_epoch() as u64);
+        let loss = if epoch_ends || self.unread.len() >= self.read_every {
+            self.read()?
+        } else {
+            None
+        };
         self.progress.seconds += started.elapsed().as_secs_f64();
-        Ok(self.report(step, value))
+        Ok(self.report(step, loss))
+    }
+
+    /// Reads the losses that are not read yet: their mean, if there are any. Waits for the device.
+    ///
+    /// # Errors
+    /// [`StarError::NonFinite`] for the first step that has none; training is then back before that step.
+    fn read(&mut self) -> Result<Option<f64>, StarError> {
+        let unread = std::mem::take(&mut self.unread);
+        if unread.is_empty() {
+            return Ok(None);
+        }
+        let numbers = Tensor::f_stack(&unread, 0)?
+            .f_to_device(Device::Cpu)?
+            .f_to_kind(Kind::Double)?
+            .f_reshape([-1])?;
+        let numbers: Vec<f64> = Vec::try_from(numbers)?;
+        let (pairs, _) = numbers.as_chunks::<2>();
+        let mut sum = 0.0;
+        for (&[loss, norm], left) in pairs.iter().zip((1..=pairs.len() as u64).rev()) {
+            let bad = [("loss", loss), ("gradient norm", norm)]
+                .into_iter()
+                .find(|(_, value)| !value.is_finite());
+            if let Some((quantity, value)) = bad {
+                self.progress.steps -= left;
+                self.adam.set_steps(self.progress.steps);
+                self.gate.reopen();
+                return Err(self.non_finite(quantity, value));
+            }
+            self.progress.loss_sum += loss;
+            sum += loss;
+        }
+        Ok(Some(sum / pairs.len() as f64))
     }
 
     /// Loss of a batch with the true ends as goals (the goal estimator is never used in training).
@@ -220,10 +289,8 @@ impl Trainer {
         }
     }
 
-    fn require_finite(&self, quantity: &'static str, value: f64) -> Result<(), StarError> {
-        if value.is_finite() {
-            return Ok(());
-        }
+    /// What is said when the next step is the one at fault.
+    fn non_finite(&self, quantity: &'static str, value: f64) -> StarError {
         let batch = self.schedule.batch_index(self.progress.steps);
         let windows = self
             .schedule
@@ -238,16 +305,16 @@ impl Trainer {
                 )
             });
         let epoch = self.completed_epochs() + 1;
-        Err(StarError::NonFinite {
+        StarError::NonFinite {
             epoch,
             batch,
             quantity,
             value,
             windows,
-        })
+        }
     }
 
-    fn report(&mut self, step: u64, loss: f64) -> StepReport {
+    fn report(&mut self, step: u64, loss: Option<f64>) -> StepReport {
         let steps_per_epoch = self.schedule.steps_per_epoch();
         let epoch = (step / steps_per_epoch as u64) as usize + 1;
         let done = (step % steps_per_epoch as u64) as usize + 1;
@@ -270,3 +337,7 @@ impl Trainer {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "train_tests.rs"]
+mod tests;
