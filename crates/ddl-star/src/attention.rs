@@ -1,9 +1,8 @@
 //! Multi-head attention (Vaswani et al. 2017, section 3.2), in the two forms STAR needs:
 //! every walker over its neighbours, and the newest token over all earlier ones.
 
-use crate::dropout::dropout;
 use crate::kernel::{AmongWalkers, Attended};
-use crate::layers::Linear;
+use crate::layers::{Linear, Mode};
 use crate::neighbours::Seen;
 use crate::numbers::{numbers, tensor};
 use crate::parameters::Initializer;
@@ -59,23 +58,43 @@ impl MultiHeadAttention {
     /// # Shapes
     /// `x` `[B, P, width]`; `seen` during one frame or B -> `[B, P, width]`.
     pub(crate) fn among_walkers(&self, x: &Tensor, seen: &Seen, pass: &Pass) -> Tensor {
-        let (batch, walkers) = (x.size()[0], x.size()[1]);
         let qkv = x.linear(&self.in_proj_weight, Some(&self.in_proj_bias));
         let mixed = if pass.kernels_may_take(&qkv) {
             self.among_walkers_by_kernel(&qkv, seen, pass)
         } else {
-            let qkv = qkv
-                .view([batch, walkers, 3, self.heads, self.width / self.heads])
-                .permute([2, 0, 3, 1, 4]);
-            let (query, key, value) = (qkv.get(0), qkv.get(1), qkv.get(2));
-            let scores = (query * self.scale()).matmul(&key.transpose(-1, -2)) + seen.mask();
-            let weights = scores.softmax(-1, scores.kind());
-            dropout(weights, self.dropout, pass.mode())
-                .matmul(&value)
-                .transpose(1, 2)
-                .reshape([batch, walkers, self.width])
+            self.among_walkers_by_libtorch(&qkv, seen, pass)
         };
         self.out_proj.forward(&mixed)
+    }
+
+    /// The same between the projections by libtorch, row by row: see [`Packing`](crate::packing::Packing).
+    ///
+    /// # Shapes
+    /// `qkv` `[B, P, 3 * width]` -> `[B, P, width]`.
+    fn among_walkers_by_libtorch(&self, qkv: &Tensor, seen: &Seen, pass: &Pass) -> Tensor {
+        let entries = qkv.size()[0];
+        let rows = seen.to_rows(qkv);
+        let (count, length) = (rows.size()[0], rows.size()[1]);
+        let parts = rows
+            .view([count, length, 3, self.heads, self.width / self.heads])
+            .unbind(2);
+        let [query, key, value] = [0, 1, 2].map(|part: usize| parts[part].transpose(1, 2));
+        let dropout = match pass.mode() {
+            Mode::Train => self.dropout,
+            Mode::Evaluate => 0.0,
+        };
+        let mixed = Tensor::scaled_dot_product_attention(
+            &query,
+            &key,
+            &value,
+            Some(&seen.row_mask(entries)),
+            dropout,
+            false,
+            self.scale(),
+            false,
+        );
+        let mixed = mixed.transpose(1, 2).reshape([count, length, self.width]);
+        seen.from_rows(&mixed)
     }
 
     /// The same between the projections by [`AmongWalkers`], scene by scene.
@@ -117,24 +136,17 @@ impl MultiHeadAttention {
             let mixed = remembered::over_memory(&qkv, plain, self.heads, pass);
             return self.out_proj.forward(&mixed);
         }
-        let qkv = qkv.view([batch, walkers, 3, self.heads, self.width / self.heads]);
-        let (query, key, value) = (qkv.select(2, 0), qkv.select(2, 1), qkv.select(2, 2));
-        let mut keys = vec![&key];
-        let mut values = vec![&value];
-        for token in memory {
-            if let KeyValue::Tensors { key, value } = token {
-                keys.push(key);
-                values.push(value);
-            }
-        }
+        let mut tokens: Vec<&Tensor> = memory.iter().filter_map(KeyValue::projected).collect();
+        tokens.push(&qkv);
+        // All projections of all tokens at once: one copy, and one gradient for each token.
+        let parts = Tensor::stack(&tokens, 0)
+            .view([-1, batch, walkers, 3, self.heads, self.width / self.heads])
+            .unbind(3);
+        let (query, key, value) = (parts[0].narrow(0, -1, 1), &parts[1], &parts[2]);
         // One query a walker and head: products and sums beat a batch of 1 x t matrix products.
-        let scores = (Tensor::stack(&keys, 0) * (query * self.scale())).sum_dim_intlist(
-            [-1i64].as_slice(),
-            true,
-            None,
-        );
+        let scores = (key * (query * self.scale())).sum_dim_intlist([-1i64].as_slice(), true, None);
         let weights = scores.softmax(0, scores.kind());
-        let mixed = (Tensor::stack(&values, 0) * weights)
+        let mixed = (value * weights)
             .sum_dim_intlist([0i64].as_slice(), false, None)
             .reshape([batch, walkers, self.width]);
         self.out_proj.forward(&mixed)
@@ -145,15 +157,26 @@ impl MultiHeadAttention {
     /// # Shapes
     /// `token` `[B, P, width]`.
     pub(crate) fn remember(&self, token: &Tensor, pass: &Pass) -> KeyValue {
+        if !pass.kernels_may_take(token) {
+            // The query is projected too and never used: a part of the weights would have a gradient as large
+            // as the whole, at every token.
+            return KeyValue::Projected(
+                token.linear(&self.in_proj_weight, Some(&self.in_proj_bias)),
+            );
+        }
         let rows = 2 * self.width;
         let key_value = token.linear(
             &self.in_proj_weight.narrow(0, self.width, rows),
             Some(&self.in_proj_bias.narrow(0, self.width, rows)),
         );
-        KeyValue::of(&key_value, self.heads, pass)
+        KeyValue::of(&key_value, pass)
     }
 
     fn scale(&self) -> f64 {
         1.0 / ((self.width / self.heads) as f64).sqrt()
     }
 }
+
+#[cfg(test)]
+#[path = "attention_tests.rs"]
+mod tests;

@@ -2,6 +2,7 @@
 
 use crate::StarError;
 use crate::neighbours::Neighbours;
+use crate::scene_means::SceneMeans;
 use ddl_data::{Rotation, Window};
 use std::rc::Rc;
 use tch::{Device, Kind, Tensor};
@@ -9,13 +10,12 @@ use tch::{Device, Kind, Tensor};
 /// The walkers of several windows, one after the other, with who sees whom.
 ///
 /// # Shapes
-/// T frames, P walkers in all: positions `[T, P, 2]` in metres; who sees whom in the first M frames;
-/// scene mean `[P, P]`, the matrix that averages over the walkers of a scene.
+/// T frames, P walkers in all: positions `[T, P, 2]` in metres; who sees whom in the first M frames.
 #[derive(Debug)]
 pub struct SceneBatch {
     pub(crate) positions: Tensor,
     pub(crate) neighbours: Rc<Neighbours>,
-    pub(crate) scene_mean: Tensor,
+    pub(crate) scene_means: SceneMeans,
 }
 
 impl SceneBatch {
@@ -40,7 +40,6 @@ impl SceneBatch {
             });
         }
         let mut positions = vec![0.0; frames * walkers * 2];
-        let mut mean = vec![0.0; walkers * walkers];
         let mut first = 0;
         for window in windows {
             check_length(window, frames)?;
@@ -50,29 +49,18 @@ impl SceneBatch {
                     positions[at] = *x;
                     positions[at + 1] = *y;
                 }
-                let share = 1.0 / window.len() as f64;
-                let row = (first + i) * walkers + first;
-                mean[row..row + window.len()].fill(share);
             }
             first += window.len();
         }
         let (t, p) = (frames as i64, walkers as i64);
-        let tensor = |values: &[f64], shape: &[i64]| -> Result<Tensor, tch::TchError> {
-            Tensor::from_slice(values)
-                .f_to_kind(kind)?
-                .f_reshape(shape)?
-                .f_to_device(device)
-        };
+        let neighbours = neighbours(windows, mask_frames, neighbour_box, device, kind);
         Ok(Self {
-            positions: tensor(&positions, &[t, p, 2])?,
-            neighbours: Rc::new(neighbours(
-                windows,
-                mask_frames,
-                neighbour_box,
-                device,
-                kind,
-            )),
-            scene_mean: tensor(&mean, &[p, p])?,
+            positions: Tensor::from_slice(&positions)
+                .f_to_kind(kind)?
+                .f_reshape([t, p, 2])?
+                .f_to_device(device)?,
+            scene_means: SceneMeans::new(neighbours.scenes(), device, kind),
+            neighbours: Rc::new(neighbours),
         })
     }
 
@@ -84,10 +72,23 @@ impl SceneBatch {
             .reshape([2, 2])
             .to_kind(self.positions.kind())
             .to_device(self.positions.device());
+        self.turned(&images)
+    }
+
+    /// All positions turned as the axes are: `images` `[2, 2]`, one a row. Neighbours stay as they were found.
+    pub(crate) fn turned(&self, images: &Tensor) -> Self {
         Self {
-            positions: self.positions.matmul(&images),
+            positions: self.positions.matmul(images),
+            ..self.shared()
+        }
+    }
+
+    /// The same batch, without copying.
+    pub(crate) fn shared(&self) -> Self {
+        Self {
+            positions: self.positions.shallow_clone(),
             neighbours: Rc::clone(&self.neighbours),
-            scene_mean: self.scene_mean.shallow_clone(),
+            scene_means: self.scene_means.shallow_clone(),
         }
     }
 

@@ -5,11 +5,15 @@ use tch::{Kind, Tensor};
 
 /// Sets each entry to 0 with probability `p` and scales the others by 1 / (1 - p).
 ///
-/// The generator makes 64 bits at a time and libtorch spends them all on one decision; here they make
+/// On the CPU the generator makes 64 bits at a time and libtorch spends them all on one decision; here they make
 /// four, of 16 bits each: the same distribution up to p being rounded to 1/65536.
 pub(crate) fn dropout(x: Tensor, p: f64, mode: Mode) -> Tensor {
     if mode == Mode::Evaluate || p == 0.0 {
         return x;
+    }
+    if x.device().is_cuda() {
+        // One kernel, and cheap random numbers.
+        return x.dropout(p, true);
     }
     let count = x.numel() as i64;
     let words = count.div_euclid(4) + 1;

@@ -7,8 +7,9 @@ use std::rc::Rc;
 use tch::{Device, Kind, Tensor};
 
 use crate::kernel::{Frames, Scenes};
+use crate::packing::Packing;
 
-/// Who sees whom in each frame of a batch: scene by scene for the kernels, as one mask for libtorch.
+/// Who sees whom in each frame of a batch: scene by scene for the kernels, in rows for libtorch.
 #[derive(Debug)]
 pub(crate) struct Neighbours {
     scenes: Scenes,
@@ -16,7 +17,7 @@ pub(crate) struct Neighbours {
     visible: Vec<bool>,
     device: Device,
     kind: Kind,
-    dense: OnceCell<Tensor>,
+    rows: OnceCell<Rows>,
 }
 
 impl Neighbours {
@@ -28,8 +29,13 @@ impl Neighbours {
             visible,
             device,
             kind,
-            dense: OnceCell::new(),
+            rows: OnceCell::new(),
         }
+    }
+
+    /// The walkers of each scene.
+    pub(crate) fn scenes(&self) -> &[Range<usize>] {
+        self.scenes.ranges()
     }
 
     /// Who sees whom during some frames: one frame serves every batch entry, several one entry each.
@@ -40,17 +46,24 @@ impl Neighbours {
         }
     }
 
-    /// `[frames, 1, P, P]`, 0 where a walker sees another or itself, -inf elsewhere; made when first asked for.
-    fn dense(&self) -> &Tensor {
-        self.dense.get_or_init(|| {
+    /// The rows for libtorch, made when first asked for.
+    fn rows(&self) -> &Rows {
+        self.rows.get_or_init(|| {
             let scenes = &self.scenes;
-            let (frames, walkers) = (scenes.frames(), scenes.walkers());
-            let mut mask = vec![f32::NEG_INFINITY; frames * walkers * walkers];
+            let packing = Packing::new(scenes.ranges());
+            let (rows, length) = (packing.rows(), packing.length());
+            let frames = scenes.frames();
+            let mut mask = vec![f32::NEG_INFINITY; frames * rows * length * length];
             let mut visible = self.visible.iter();
-            for mask in mask.chunks_exact_mut(walkers * walkers) {
+            for mask in mask.chunks_exact_mut(rows * length * length) {
+                // Who fills a row up sees itself, so that its weights are numbers.
+                for (place, row) in mask.chunks_exact_mut(length).enumerate() {
+                    row[place % length] = 0.0;
+                }
                 for scene in scenes.ranges() {
-                    for i in scene.clone() {
-                        let row = &mut mask[i * walkers..][scene.clone()];
+                    let places = &packing.places()[scene.clone()];
+                    for place in places {
+                        let row = &mut mask[place * length..][places[0] % length..][..scene.len()];
                         for (entry, &seen) in row.iter_mut().zip(visible.by_ref()) {
                             if seen {
                                 *entry = 0.0;
@@ -59,13 +72,32 @@ impl Neighbours {
                     }
                 }
             }
-            let (frames, walkers) = (frames as i64, walkers as i64);
-            Tensor::from_slice(&mask)
-                .to_kind(self.kind)
-                .reshape([frames, 1, walkers, walkers])
-                .to_device(self.device)
+            let shape = [frames, rows, length, length].map(|size| size as i64);
+            let indices = |numbers: &[usize]| {
+                let numbers: Vec<i64> = numbers.iter().map(|&number| number as i64).collect();
+                Tensor::from_slice(&numbers).to_device(self.device)
+            };
+            Rows {
+                walkers: indices(&packing.walkers()),
+                places: indices(packing.places()),
+                mask: Tensor::from_slice(&mask)
+                    .to_kind(self.kind)
+                    .reshape(shape)
+                    .to_device(self.device),
+            }
         })
     }
+}
+
+/// The walkers of all scenes in rows of one length, as [`Packing`] has them.
+#[derive(Debug)]
+struct Rows {
+    /// The walker at each place, `[R * L]`.
+    walkers: Tensor,
+    /// The place of each walker, `[P]`.
+    places: Tensor,
+    /// `[frames, R, L, L]`, 0 where a walker sees another or itself, -inf elsewhere.
+    mask: Tensor,
 }
 
 /// [`Neighbours`] during some frames.
@@ -76,10 +108,35 @@ pub(crate) struct Seen {
 }
 
 impl Seen {
-    /// The mask for libtorch, `[frames, 1, P, P]`.
-    pub(crate) fn mask(&self) -> Tensor {
-        let (first, count) = (self.frames.start as i64, self.frames.len() as i64);
-        self.neighbours.dense().narrow(0, first, count)
+    /// Walkers in rows of one length, for libtorch.
+    ///
+    /// # Shapes
+    /// `x` `[B, P, n]` -> `[B * R, L, n]`.
+    pub(crate) fn to_rows(&self, x: &Tensor) -> Tensor {
+        let rows = self.neighbours.rows();
+        let length = rows.mask.size()[3];
+        x.index_select(1, &rows.walkers)
+            .view([-1, length, x.size()[2]])
+    }
+
+    /// Undoes [`to_rows`](Self::to_rows).
+    ///
+    /// # Shapes
+    /// `x` `[B * R, L, n]` -> `[B, P, n]`.
+    pub(crate) fn from_rows(&self, x: &Tensor) -> Tensor {
+        let rows = self.neighbours.rows();
+        let (places, width) = (rows.walkers.size()[0], x.size()[2]);
+        x.reshape([-1, places, width]).index_select(1, &rows.places)
+    }
+
+    /// Who sees whom in the rows of a batch of `entries`: `[B * R, 1, L, L]`, 0 or -inf. Nobody sees beyond its
+    /// scene, and everybody sees somebody.
+    pub(crate) fn row_mask(&self, entries: i64) -> Tensor {
+        let mask = &self.neighbours.rows().mask;
+        let (rows, length) = (mask.size()[1], mask.size()[3]);
+        mask.narrow(0, self.frames.start as i64, self.frames.len() as i64)
+            .expand([entries, rows, length, length], false)
+            .reshape([entries * rows, 1, length, length])
     }
 
     /// The scenes, for the kernels.

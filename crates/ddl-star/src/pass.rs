@@ -126,11 +126,11 @@ impl Pass {
         loss: &Tensor,
         parameters: &Parameters,
     ) -> Result<Tensor, TchError> {
+        let Some(tape) = self.tape.as_ref().filter(|tape| !tape.is_empty()) else {
+            return parameters.gradient_of(loss);
+        };
         parameters.zero_gradients();
-        match &self.tape {
-            Some(tape) => tape.backward(loss)?,
-            None => loss.f_backward()?,
-        }
+        tape.backward(loss)?;
         parameters.flat_gradient(&self.gradients.borrow())
     }
 }

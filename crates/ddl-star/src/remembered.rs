@@ -12,13 +12,8 @@ use crate::pass::Pass;
 /// Key and value of one token a walker.
 #[derive(Debug)]
 pub(crate) enum KeyValue {
-    /// For libtorch, both `[B, P, heads, width / heads]`.
-    Tensors {
-        /// What queries are compared with.
-        key: Tensor,
-        /// What is mixed.
-        value: Tensor,
-    },
+    /// For libtorch: query, key and value side by side, `[B, P, 3 * width]`; the query is not used.
+    Projected(Tensor),
     /// For the kernels.
     Plain(Rc<Plain>),
 }
@@ -33,54 +28,50 @@ pub(crate) struct Plain {
 }
 
 impl KeyValue {
-    /// What is remembered of tokens whose keys and values stand side by side.
+    /// What the kernels remember of tokens whose keys and values stand side by side.
     ///
     /// # Shapes
     /// `key_value` `[B, P, 2 * width]`.
-    pub(crate) fn of(key_value: &Tensor, heads: i64, pass: &Pass) -> Self {
+    pub(crate) fn of(key_value: &Tensor, pass: &Pass) -> Self {
         let shape = key_value.size();
-        if pass.kernels_may_take(key_value) {
-            let [key, value] = columns(&numbers(key_value), shape[2] as usize / 2);
-            let plain = Rc::new(Plain {
-                key,
-                value,
-                gradient: RefCell::new(None),
-            });
-            let remembered = Rc::clone(&plain);
-            pass.joined(key_value, move || {
-                let gradient = remembered.gradient.take()?;
-                Some(tensor(
-                    &side_by_side(&gradient, shape[2] as usize / 2),
-                    &shape,
-                ))
-            });
-            return Self::Plain(plain);
-        }
-        let key_value = pass.junction(key_value);
-        let split = key_value.view([shape[0], shape[1], 2, heads, shape[2] / (2 * heads)]);
-        Self::Tensors {
-            key: split.select(2, 0),
-            value: split.select(2, 1),
-        }
+        let [key, value] = columns(&numbers(key_value), shape[2] as usize / 2);
+        let plain = Rc::new(Plain {
+            key,
+            value,
+            gradient: RefCell::new(None),
+        });
+        let remembered = Rc::clone(&plain);
+        pass.joined(key_value, move || {
+            let gradient = remembered.gradient.take()?;
+            Some(tensor(
+                &side_by_side(&gradient, shape[2] as usize / 2),
+                &shape,
+            ))
+        });
+        Self::Plain(plain)
     }
 
     /// Repeats a single batch entry `batch` times, without copying.
     pub(crate) fn expand_batch(&self, batch: i64) -> Self {
-        let expand = |tensor: &Tensor| tensor.expand([batch, -1, -1, -1], false);
         match self {
-            Self::Tensors { key, value } => Self::Tensors {
-                key: expand(key),
-                value: expand(value),
-            },
+            Self::Projected(projected) => Self::Projected(projected.expand([batch, -1, -1], false)),
             // The kernels take fewer rows for repetitions.
             Self::Plain(plain) => Self::Plain(Rc::clone(plain)),
+        }
+    }
+
+    /// As libtorch wants it, where it is that.
+    pub(crate) fn projected(&self) -> Option<&Tensor> {
+        match self {
+            Self::Projected(projected) => Some(projected),
+            Self::Plain(_) => None,
         }
     }
 
     /// As plain numbers, where it is that.
     pub(crate) fn plain(&self) -> Option<Rc<Plain>> {
         match self {
-            Self::Tensors { .. } => None,
+            Self::Projected(_) => None,
             Self::Plain(plain) => Some(Rc::clone(plain)),
         }
     }

@@ -50,18 +50,18 @@ impl StarNetwork {
         // The frames are known, so all of them pass the first spatial encoder at once.
         let spatial =
             self.spatial_tokens(&centre(batch, &positions), &seen(0..steps as usize), pass);
-        let spatial = pass.junction(&spatial);
+        // All frames at once: the gradients of single ones would each be filled up to the whole and added.
+        let spatial = pass.junction(&spatial).split(1, 0);
         let reference = self.reference(batch, goals);
         let relative = &positions - &reference;
         let mut memory = GraphMemory::default();
-        let tokens: Vec<Tensor> = (0..steps)
+        let tokens: Vec<Tensor> = (0..steps as usize)
             .map(|t| {
-                let frame = |tensor: &Tensor| tensor.narrow(0, t, 1);
                 self.step(
                     &mut memory,
-                    &frame(&relative),
-                    &frame(&spatial),
-                    &seen(t as usize..t as usize + 1),
+                    &relative.narrow(0, t as i64, 1),
+                    &spatial[t],
+                    &seen(t..t + 1),
                     pass,
                 )
             })
@@ -134,7 +134,7 @@ impl StarNetwork {
             factors.push(emitted);
             if t + 1 < OBSERVED + horizon {
                 sum = &sum + &position;
-                let centred = &position - batch.scene_mean.matmul(&sum) / (t + 1) as f64;
+                let centred = &position - batch.scene_means.of(&sum) / (t + 1) as f64;
                 let spatial = self.spatial_tokens(&centred, &seen, pass);
                 let relative = &position - &reference;
                 token = self.step(&mut memory, &relative, &spatial, &seen, pass);
@@ -194,6 +194,6 @@ fn centre(batch: &SceneBatch, positions: &Tensor) -> Tensor {
         .view([frames, 1, 1]);
     positions
         - batch
-            .scene_mean
-            .matmul(&(positions.cumsum(0, positions.kind()) / count))
+            .scene_means
+            .of(&(positions.cumsum(0, positions.kind()) / count))
 }

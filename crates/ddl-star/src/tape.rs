@@ -57,6 +57,11 @@ impl Tape {
         });
     }
 
+    /// Whether the graph is whole: no cut was made.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.cuts.borrow().is_empty()
+    }
+
     fn push(
         &self,
         inputs: &[&Tensor],

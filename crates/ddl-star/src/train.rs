@@ -3,23 +3,24 @@
 use crate::StarError;
 use crate::batch::SceneBatch;
 use crate::checkpoint::{self, Progress};
+use crate::draws::{StepDraw, StepDraws};
+use crate::gate::Gate;
 use crate::layers::Mode;
 use crate::loss::mean_squared_distance;
 use crate::optimizer::Adam;
 use crate::origin::Origin;
 use crate::pass::Pass;
+use crate::prepared::PreparedBatches;
 use crate::schedule::Schedule;
-use crate::seed::{GENERATOR, Stage, stream};
+use crate::seed::GENERATOR;
 use crate::star::{NoiseInput, StarNetwork};
 use crate::training_config::TrainingConfig;
 use ddl_data::{WINDOW, Window};
-use rand::{Rng as _, RngExt as _};
-use rand_distr::StandardNormal;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::PoisonError;
 use std::time::Instant;
-use tch::Tensor;
+use tch::{Device, Kind, Tensor};
 
 /// What one step did.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,8 +31,12 @@ pub struct StepReport {
     pub done: usize,
     /// Steps of an epoch.
     pub steps_per_epoch: usize,
-    /// Loss of the batch, square metres.
-    pub loss: f64,
+    /// Mean loss (square metres) of the steps whose losses were read with this one; `None` when none was.
+    ///
+    /// On the CPU every step reads its own. On CUDA a loss stays on the device, where reading it would have
+    /// to wait for all work ahead of it: every sixteenth step reads those of the last sixteen, and the
+    /// last step of an epoch the rest.
+    pub loss: Option<f64>,
     /// Set when the step was the last of its epoch.
     pub finished_epoch: Option<EpochReport>,
 }
@@ -49,6 +54,9 @@ pub struct EpochReport {
     pub seconds: f64,
 }
 
+/// Steps whose losses CUDA keeps before they are read.
+const READ_EVERY_ON_CUDA: usize = 16;
+
 /// A network in training. Every step draws from its own random stream, so that a run that was
 /// stopped, saved and resumed gives the same weights as one that was not.
 #[derive(Debug)]
@@ -56,7 +64,12 @@ pub struct Trainer {
     network: StarNetwork,
     adam: Adam,
     schedule: Schedule,
-    windows: Vec<Window>,
+    batches: PreparedBatches,
+    draws: Option<StepDraws>,
+    gate: Gate,
+    /// Loss and norm of the gradient of the last steps, `[2]` each, not read yet.
+    unread: Vec<Tensor>,
+    read_every: usize,
     config: TrainingConfig,
     progress: Progress,
 }
@@ -78,12 +91,27 @@ impl Trainer {
         if schedule.is_empty() {
             return Err(StarError::NoTrainingWindows);
         }
-        let adam = Adam::new(network.parameters());
-        Ok(Self {
-            network,
-            adam,
-            schedule,
+        let batches = PreparedBatches::new(
             windows,
+            schedule.batches(),
+            network.config().neighbour_box,
+            network.device(),
+            network.kind(),
+        );
+        let gate = Gate::new(network.device(), network.kind());
+        let read_every = match network.device() {
+            Device::Cpu => 1,
+            _ => READ_EVERY_ON_CUDA,
+        };
+        Ok(Self {
+            adam: Adam::new(network.parameters()),
+            network,
+            schedule,
+            batches,
+            draws: None,
+            gate,
+            unread: Vec::new(),
+            read_every,
             config,
             progress: Progress::default(),
         })
@@ -119,8 +147,10 @@ impl Trainer {
     /// Saves weights, optimiser and progress to one file.
     ///
     /// # Errors
-    /// When the file cannot be written; an earlier one is then left as it was.
-    pub fn save(&self, origin: &Origin, path: &Path) -> Result<(), StarError> {
+    /// When the file cannot be written; an earlier one is then left as it was. [`StarError::NonFinite`] as in
+    /// [`step`](Self::step).
+    pub fn save(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
+        self.read()?;
         checkpoint::save_training(
             self.network.parameters(),
             &self.adam,
@@ -137,30 +167,37 @@ impl Trainer {
     pub fn resume(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
         self.progress =
             checkpoint::load_training(self.network.parameters(), &mut self.adam, origin, path)?;
+        self.unread.clear();
+        self.gate.reopen();
         Ok(())
     }
 
     /// One batch: forward, backward, clipped Adam step.
     ///
+    /// Nothing is read back from the device but what [`StepReport::loss`] says. That a step changes nothing
+    /// when its loss is no longer a number is decided on the device, and so does no later one; the
+    /// next reading finds out.
+    ///
     /// # Errors
-    /// [`StarError::NonFinite`] when loss or gradient is no longer a number; the weights are then
-    /// those before the step.
+    /// [`StarError::NonFinite`] when loss or gradient of this step, or of one since the last reading, is no longer a
+    /// number. The weights and the steps done are then those before that step.
     pub fn step(&mut self) -> Result<StepReport, StarError> {
         let started = Instant::now();
         let step = self.progress.steps;
-        let batch = self.batch(step)?;
+        let draw = self.draw(step)?;
+        let batch = self.batch(step, &draw)?;
         let (loss, pass) = {
             // Held from seeding to the last draw of dropout.
             let _generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
-            let (noise, seed) = self.draw(step);
-            let pass = Pass::taped(Mode::Train, seed);
+            tch::manual_seed(draw.libtorch);
+            let noise = NoiseInput::Draws(draw.noise);
+            let pass = Pass::taped(Mode::Train, draw.kernels);
             (self.loss(&batch, &noise, &pass)?, pass)
         };
-        let value = loss.double_value(&[]);
-        self.require_finite("loss", value)?;
         let gradient = pass.gradient(&loss, self.network.parameters())?;
         let norm = gradient.norm();
-        self.require_finite("gradient norm", norm.double_value(&[]))?;
+        let both = Tensor::f_stack(&[loss.detach(), norm.shallow_clone()], 0)?;
+        self.gate.watch(&both);
         let (_, total) = self.steps();
         let config = &self.config;
         let rate = config.learning_rate * config.learning_rate_schedule.factor(step, total);
@@ -170,11 +207,53 @@ impl Trainer {
             &norm,
             config.gradient_clip,
             rate,
+            &self.gate,
         );
+        self.unread.push(both);
         self.progress.steps += 1;
-        self.progress.loss_sum += value;
+        let epoch_ends = self
+            .progress
+            .steps
+            .is_multiple_of(self.schedule.steps_per_epoch() as u64);
+        let loss = if epoch_ends || self.unread.len() >= self.read_every {
+            self.read()?
+        } else {
+            None
+        };
         self.progress.seconds += started.elapsed().as_secs_f64();
-        Ok(self.report(step, value))
+        Ok(self.report(step, loss))
+    }
+
+    /// Reads the losses that are not read yet: their mean, if there are any. Waits for the device.
+    ///
+    /// # Errors
+    /// [`StarError::NonFinite`] for the first step that has none; training is then back before that step.
+    fn read(&mut self) -> Result<Option<f64>, StarError> {
+        let unread = std::mem::take(&mut self.unread);
+        if unread.is_empty() {
+            return Ok(None);
+        }
+        let numbers = Tensor::f_stack(&unread, 0)?
+            .f_to_device(Device::Cpu)?
+            .f_to_kind(Kind::Double)?
+            .f_reshape([-1])?;
+        let numbers: Vec<f64> = Vec::try_from(numbers)?;
+        let (pairs, _) = numbers.as_chunks::<2>();
+        let mut sum = 0.0;
+        for (&[loss, norm], left) in pairs.iter().zip((1..=pairs.len() as u64).rev()) {
+            let bad = [("loss", loss), ("gradient norm", norm)]
+                .into_iter()
+                .find(|(_, value)| !value.is_finite());
+            if let Some((quantity, value)) = bad {
+                self.progress.steps -= left;
+                self.adam.set_steps(self.progress.steps);
+                self.gate.reopen();
+                return Err(self.non_finite(quantity, value));
+            }
+            self.progress.loss_sum += loss;
+            sum += loss;
+        }
+        Ok(Some(sum / pairs.len() as f64))
     }
 
     /// Loss of a batch with the true ends as goals (the goal estimator is never used in training).
@@ -190,49 +269,43 @@ impl Trainer {
         Ok(mean_squared_distance(&forecast, &truth))
     }
 
-    fn batch(&self, step: u64) -> Result<SceneBatch, StarError> {
-        let indices = self.schedule.batch(self.schedule.batch_index(step));
-        let windows: Vec<&Window> = indices.iter().map(|&index| &self.windows[index]).collect();
-        let batch = SceneBatch::new(
-            &windows,
-            WINDOW,
-            WINDOW - 1,
-            self.network.config().neighbour_box,
-            self.network.device(),
-            self.network.kind(),
-        )?;
-        let turn = self.config.rotate;
-        Ok(if turn {
-            batch.rotated(self.schedule.rotation(step))
-        } else {
-            batch
+    /// The batch of a step, turned as it draws.
+    fn batch(&self, step: u64, draw: &StepDraw) -> Result<SceneBatch, StarError> {
+        let index = self.schedule.batch_index(step);
+        let batch = self.batches.batch(index, self.schedule.batch(index))?;
+        Ok(match &draw.turn {
+            Some(images) => batch.turned(images),
+            None => batch.shared(),
         })
     }
 
-    /// The step's noise vector, shared by all walkers and frames; also seeds its dropout.
-    fn draw(&self, step: u64) -> (NoiseInput, u64) {
-        let mut rng = stream(self.config.seed, Stage::Step, step);
-        tch::manual_seed((rng.next_u64() >> 1).cast_signed());
-        let width = self.network.config().noise_width as usize;
-        let noise: Vec<f64> = (0..width).map(|_| rng.sample(StandardNormal)).collect();
-        let noise = Tensor::from_slice(&noise)
-            .unsqueeze(0)
-            .to_kind(self.network.kind())
-            .to_device(self.network.device());
-        (NoiseInput::Draws(noise), rng.next_u64())
+    /// What a step draws, drawn with all that is left of its epoch.
+    fn draw(&mut self, step: u64) -> Result<StepDraw, StarError> {
+        loop {
+            if let Some(draw) = self.draws.as_ref().and_then(|draws| draws.at(step)) {
+                return Ok(draw);
+            }
+            let epoch = self.schedule.steps_per_epoch() as u64;
+            self.draws = Some(StepDraws::new(
+                step..(step / epoch + 1) * epoch,
+                &self.schedule,
+                self.config.rotate,
+                self.network.config().noise_width,
+                self.network.device(),
+                self.network.kind(),
+            )?);
+        }
     }
 
-    fn require_finite(&self, quantity: &'static str, value: f64) -> Result<(), StarError> {
-        if value.is_finite() {
-            return Ok(());
-        }
+    /// What is said when the next step is the one at fault.
+    fn non_finite(&self, quantity: &'static str, value: f64) -> StarError {
         let batch = self.schedule.batch_index(self.progress.steps);
         let windows = self
             .schedule
             .batch(batch)
             .first()
             .map_or_else(String::new, |&index| {
-                let window = &self.windows[index];
+                let window = self.batches.window(index);
                 format!(
                     "{}@{} and following",
                     window.recording(),
@@ -240,16 +313,16 @@ impl Trainer {
                 )
             });
         let epoch = self.completed_epochs() + 1;
-        Err(StarError::NonFinite {
+        StarError::NonFinite {
             epoch,
             batch,
             quantity,
             value,
             windows,
-        })
+        }
     }
 
-    fn report(&mut self, step: u64, loss: f64) -> StepReport {
+    fn report(&mut self, step: u64, loss: Option<f64>) -> StepReport {
         let steps_per_epoch = self.schedule.steps_per_epoch();
         let epoch = (step / steps_per_epoch as u64) as usize + 1;
         let done = (step % steps_per_epoch as u64) as usize + 1;
@@ -272,3 +345,7 @@ impl Trainer {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "train_tests.rs"]
+mod tests;

@@ -28,7 +28,10 @@ fn a_folder_that_holds_another_run_is_not_trained_over() {
     std::fs::write(folder.path().join("recipe.json"), recipe).unwrap();
     for (different, part) in [
         ("--fold corridor --seed 77", "training.seed is 1, not 77"),
-        ("--fold corridor --variant star", "star.variant is full, not star"),
+        (
+            "--fold corridor --variant star",
+            "star.variant is full, not star",
+        ),
         ("--fold plaza", "data.fold is corridor, not plaza"),
     ] {
         // everything else as the tiny model was trained

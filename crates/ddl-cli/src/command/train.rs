@@ -116,6 +116,7 @@ impl Train {
         };
         // Each stage has its bar, from its first step on.
         let (mut goals, mut network) = (None, None);
+        let mut losses = String::new();
         let bar = |stage| move || Progress::new(stage, self.telling.progress);
         ddl::train(&request, &dataset, |now| {
             let (done, total) = now.steps;
@@ -125,10 +126,13 @@ impl Train {
                     goals.tell(done, total, &format!("within {:.2} m", step.distance));
                 }
                 TrainingStep::Network(step) => {
-                    let (epoch, loss) = (step.epoch, step.loss);
+                    // On CUDA not every step knows: the last loss that was read stays.
+                    if let Some(loss) = step.loss {
+                        losses = format!(" loss {loss:.4}");
+                    }
                     goals = None;
                     let network = network.get_or_insert_with(bar("train"));
-                    network.tell(done, total, &format!("epoch {epoch} loss {loss:.4}"));
+                    network.tell(done, total, &format!("epoch {}{losses}", step.epoch));
                 }
             }
             interrupt.flow()

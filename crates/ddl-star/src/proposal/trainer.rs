@@ -8,6 +8,7 @@ use super::loss::{LossWeights, winner_takes_all};
 use super::network::ProposalNetwork;
 use crate::StarError;
 use crate::device::OneThread;
+use crate::gate::Gate;
 use crate::layers::Mode;
 use crate::optimizer::Adam;
 use crate::origin::Origin;
@@ -39,6 +40,8 @@ pub struct ProposalStep {
 pub struct ProposalTrainer {
     network: ProposalNetwork,
     adam: Adam,
+    /// Always open: every step is looked at before it is taken.
+    gate: Gate,
     /// Running mean of the weights, which is what is used in the end.
     average: Tensor,
     views: Views,
@@ -80,6 +83,7 @@ impl ProposalTrainer {
             .to_device(device);
         Ok(Self {
             adam: Adam::new(network.parameters()),
+            gate: Gate::new(device, kind),
             average: network.parameters().flat().detach().copy(),
             network,
             views,
@@ -173,7 +177,8 @@ impl ProposalTrainer {
             training.learning_rate * LearningRateSchedule::Cosine.factor(step, training.steps);
         // Members learn apart: the norm of all their gradients grows with the root of their number.
         let clip = training.gradient_clip * (self.network.config().members as f64).sqrt();
-        self.adam.step(parameters, &gradient, &norm, clip, rate);
+        self.adam
+            .step(parameters, &gradient, &norm, clip, rate, &self.gate);
         let _guard = tch::no_grad_guard();
         // Young means follow quickly, so that the initial weights are soon forgotten.
         let kept = AVERAGE.min((step as f64 + 1.0) / (step as f64 + 10.0));

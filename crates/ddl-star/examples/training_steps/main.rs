@@ -1,0 +1,41 @@
+//! Training steps of the published network in double precision, where libtorch computes everything, as on CUDA.
+//!
+//! With the library made of `operations.cpp` it counts what libtorch does in a step (docs/performance.md):
+//!
+//! ```console
+//! $ cargo run --release -p ddl-star --example training_steps -- STEPS DROPOUT
+//! ```
+#![allow(
+    clippy::print_stdout,
+    reason = "a command-line program answers on standard output"
+)]
+
+use ddl_data::{Dataset, WindowRule};
+use ddl_star::{
+    ComputeDevice, DeviceChoice, StarConfig, StarNetwork, Trainer, TrainingConfig, Variant,
+};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let mut next = |default: &str| arguments.next().unwrap_or_else(|| default.to_owned());
+    let (steps, dropout): (u64, f64) = (next("3").parse()?, next("0.1").parse()?);
+    ddl_star::set_threads(1);
+    let config = StarConfig {
+        spatial_dropout: dropout,
+        ..StarConfig::published(Variant::Full)
+    };
+    let cpu = ComputeDevice::open(DeviceChoice::Cpu)?;
+    let network = StarNetwork::with_precision(config, 1, cpu, tch::Kind::Double)?;
+    // How many walkers there are makes no difference to the number of operations.
+    let training = TrainingConfig {
+        batch_walkers: 16,
+        ..TrainingConfig::default()
+    };
+    let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
+    let mut trainer = Trainer::new(network, windows, training)?;
+    for _ in 0..steps {
+        trainer.step()?;
+    }
+    println!("{steps} steps, dropout {dropout}");
+    Ok(())
+}

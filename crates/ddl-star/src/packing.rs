@@ -1,0 +1,131 @@
+//! Scenes in rows of one length, so that attention among their walkers is a batch of small matrices.
+
+use std::cmp::Reverse;
+use std::ops::Range;
+
+/// Rows are a multiple of this long: what libtorch's fused attention on CUDA takes without copying the mask.
+const ALIGNMENT: usize = 8;
+
+/// Where the walkers of some scenes stand in rows of one length.
+///
+/// A row is about as long as the largest scene and holds as many scenes as fit, each in one piece. Batches of
+/// real recordings have one scene of forty walkers and thirty small ones: a row for each scene would be empty
+/// for the most part.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Packing {
+    rows: usize,
+    length: usize,
+    /// For each walker, its place: `row * length + column`.
+    places: Vec<usize>,
+}
+
+impl Packing {
+    /// Places scenes, the largest first, each in the first row that has room for it.
+    pub(crate) fn new(scenes: &[Range<usize>]) -> Self {
+        let largest = scenes.iter().map(Range::len).max().unwrap_or(0);
+        let length = largest.next_multiple_of(ALIGNMENT);
+        let mut order: Vec<&Range<usize>> = scenes.iter().collect();
+        order.sort_by_key(|scene| (Reverse(scene.len()), scene.start));
+        let mut places = vec![0; scenes.iter().map(Range::len).sum()];
+        let mut filled: Vec<usize> = Vec::new();
+        for scene in order {
+            let row = filled
+                .iter()
+                .position(|&filled| filled + scene.len() <= length)
+                .unwrap_or_else(|| {
+                    filled.push(0);
+                    filled.len() - 1
+                });
+            let first = row * length + filled[row];
+            filled[row] += scene.len();
+            for (walker, place) in scene.clone().zip(first..) {
+                places[walker] = place;
+            }
+        }
+        Self {
+            rows: filled.len(),
+            length,
+            places,
+        }
+    }
+
+    /// How many rows there are.
+    pub(crate) fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Places in a row.
+    pub(crate) fn length(&self) -> usize {
+        self.length
+    }
+
+    /// The place of each walker: `row * length + column`.
+    pub(crate) fn places(&self) -> &[usize] {
+        &self.places
+    }
+
+    /// The walker at each place; the first walker where nobody stands.
+    pub(crate) fn walkers(&self) -> Vec<usize> {
+        let mut walkers = vec![0; self.rows * self.length];
+        for (walker, &place) in self.places.iter().enumerate() {
+            walkers[place] = walker;
+        }
+        walkers
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn scenes(sizes: &[usize]) -> Vec<Range<usize>> {
+        let mut first = 0;
+        let mut ranges = Vec::new();
+        for size in sizes {
+            ranges.push(first..first + size);
+            first += size;
+        }
+        ranges
+    }
+
+    #[test]
+    fn small_scenes_share_a_row() {
+        let packing = Packing::new(&scenes(&[2, 9, 1, 7, 6]));
+        assert_eq!((packing.rows(), packing.length()), (2, 16));
+        // 9 and 7 fill the first row; 6, 2 and 1 stand in the second
+        assert_eq!(packing.places()[..2], [22, 23]);
+        assert_eq!(packing.places()[2], 0);
+        assert_eq!(packing.places()[11], 24);
+        assert_eq!(packing.places()[12], 9);
+        assert_eq!(packing.places()[19], 16);
+    }
+
+    proptest! {
+        #[test]
+        fn every_walker_has_a_place_and_every_scene_one_row(
+            sizes in prop::collection::vec(1_usize..60, 1..40),
+        ) {
+            let scenes = scenes(&sizes);
+            let packing = Packing::new(&scenes);
+            let walkers: usize = sizes.iter().sum();
+            let at = packing.walkers();
+            prop_assert_eq!(packing.places().len(), walkers);
+            prop_assert_eq!(at.len(), packing.rows() * packing.length());
+            for (walker, &place) in packing.places().iter().enumerate() {
+                prop_assert_eq!(at[place], walker);
+            }
+            for scene in &scenes {
+                let places = &packing.places()[scene.clone()];
+                prop_assert!(places.windows(2).all(|pair| pair[1] == pair[0] + 1));
+                prop_assert_eq!(
+                    places[0] / packing.length(),
+                    places[places.len() - 1] / packing.length()
+                );
+            }
+            // any two rows together hold more than one row has room for
+            let half_full = packing.rows().saturating_sub(1) * packing.length();
+            prop_assert!(half_full < 2 * walkers);
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! The mean over the walkers of each scene.
+
+use std::ops::Range;
+use tch::{Device, Kind, Tensor};
+
+/// Averages over scenes whose walkers stand one after the other.
+///
+/// Scenes are laid side by side, filled up to the size of the largest, and summed: the same order of
+/// additions whenever it is computed, which sums by index do not have on CUDA.
+#[derive(Debug)]
+pub(crate) struct SceneMeans {
+    scenes: i64,
+    largest: i64,
+    /// `[S * largest]`, the walkers of each scene; its first walker again where it has no more.
+    walkers: Tensor,
+    /// `[S, largest, 1]`, 1 / size for the walkers of a scene, 0 for what fills it up.
+    shares: Tensor,
+    /// `[P]`, the scene of each walker.
+    scene_of: Tensor,
+}
+
+impl SceneMeans {
+    pub(crate) fn new(scenes: &[Range<usize>], device: Device, kind: Kind) -> Self {
+        let largest = scenes.iter().map(Range::len).max().unwrap_or(0);
+        let places = scenes.len() * largest;
+        let (mut walkers, mut shares) = (Vec::with_capacity(places), Vec::with_capacity(places));
+        let mut scene_of = Vec::new();
+        for (index, scene) in scenes.iter().enumerate() {
+            for place in 0..largest {
+                let real = place < scene.len();
+                walkers.push((scene.start + if real { place } else { 0 }) as i64);
+                shares.push(if real { 1.0 / scene.len() as f64 } else { 0.0 });
+            }
+            scene_of.extend(std::iter::repeat_n(index as i64, scene.len()));
+        }
+        let (scenes, largest) = (scenes.len() as i64, largest as i64);
+        Self {
+            scenes,
+            largest,
+            walkers: Tensor::from_slice(&walkers).to_device(device),
+            shares: Tensor::from_slice(&shares)
+                .reshape([scenes, largest, 1])
+                .to_kind(kind)
+                .to_device(device),
+            scene_of: Tensor::from_slice(&scene_of).to_device(device),
+        }
+    }
+
+    /// For every walker, the mean of `x` over its scene.
+    ///
+    /// # Shapes
+    /// `x` `[B, P, n]` -> the same.
+    pub(crate) fn of(&self, x: &Tensor) -> Tensor {
+        let (batch, width) = (x.size()[0], x.size()[2]);
+        let side_by_side =
+            x.index_select(1, &self.walkers)
+                .view([batch, self.scenes, self.largest, width]);
+        (side_by_side * &self.shares)
+            .sum_dim_intlist([2i64].as_slice(), false, None::<Kind>)
+            .index_select(1, &self.scene_of)
+    }
+
+    pub(crate) fn shallow_clone(&self) -> Self {
+        Self {
+            walkers: self.walkers.shallow_clone(),
+            shares: self.shares.shallow_clone(),
+            scene_of: self.scene_of.shallow_clone(),
+            ..*self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_walker_gets_the_mean_of_its_own_scene() {
+        let means = SceneMeans::new(&[0..1, 1..4, 4..6], Device::Cpu, Kind::Double);
+        let x = Tensor::from_slice(&[
+            5.0, 1.0, 1.0, 2.0, 2.0, 4.0, 6.0, 9.0, 10.0, 0.0, 30.0, 1.0, //
+            0.0, 0.0, 3.0, 3.0, 3.0, 3.0, 3.0, 3.0, -1.0, 4.0, 1.0, 5.0,
+        ])
+        .view([2, 6, 2]);
+        let expected = Tensor::from_slice(&[
+            5.0, 1.0, 3.0, 5.0, 3.0, 5.0, 3.0, 5.0, 20.0, 0.5, 20.0, 0.5, //
+            0.0, 0.0, 3.0, 3.0, 3.0, 3.0, 3.0, 3.0, 0.0, 4.5, 0.0, 4.5,
+        ])
+        .view([2, 6, 2]);
+        let difference = (means.of(&x) - expected).abs().max().double_value(&[]);
+        assert!(difference < 1e-14, "{difference}");
+    }
+}
