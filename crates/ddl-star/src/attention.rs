@@ -2,13 +2,11 @@
 //! every walker over its neighbours, and the newest token over all earlier ones.
 
 use crate::dropout::dropout;
-use crate::kernel::{AmongWalkers, Attended};
 use crate::layers::Linear;
 use crate::neighbours::Seen;
-use crate::numbers::{numbers, tensor};
 use crate::parameters::Initializer;
 use crate::pass::Pass;
-use crate::remembered::{self, KeyValue};
+use crate::remembered::KeyValue;
 use tch::Tensor;
 
 /// Multi-head attention with one joint projection for query, key and value.
@@ -35,15 +33,7 @@ impl MultiHeadAttention {
         let in_proj_weight =
             init.uniform(format!("{name}.in_proj_weight"), &[3 * width, width], bound);
         let in_proj_bias = init.constant(format!("{name}.in_proj_bias"), &[3 * width], 0.0);
-        let out_bound = 1.0 / (width as f64).sqrt();
-        let out_proj = Linear {
-            weight: init.uniform(
-                format!("{name}.out_proj.weight"),
-                &[width, width],
-                out_bound,
-            ),
-            bias: init.constant(format!("{name}.out_proj.bias"), &[width], 0.0),
-        };
+        let out_proj = Linear::with_zero_bias(init, &format!("{name}.out_proj"), width, width);
         Self {
             in_proj_weight,
             in_proj_bias,
@@ -61,62 +51,26 @@ impl MultiHeadAttention {
     pub(crate) fn among_walkers(&self, x: &Tensor, seen: &Seen, pass: &Pass) -> Tensor {
         let (batch, walkers) = (x.size()[0], x.size()[1]);
         let qkv = x.linear(&self.in_proj_weight, Some(&self.in_proj_bias));
-        let mixed = if pass.kernels_may_take(&qkv) {
-            self.among_walkers_by_kernel(&qkv, seen, pass)
-        } else {
-            let qkv = qkv
-                .view([batch, walkers, 3, self.heads, self.width / self.heads])
-                .permute([2, 0, 3, 1, 4]);
-            let (query, key, value) = (qkv.get(0), qkv.get(1), qkv.get(2));
-            let scores = (query * self.scale()).matmul(&key.transpose(-1, -2)) + seen.mask();
-            let weights = scores.softmax(-1, scores.kind());
-            dropout(weights, self.dropout, pass.mode())
-                .matmul(&value)
-                .transpose(1, 2)
-                .reshape([batch, walkers, self.width])
-        };
+        let qkv = qkv
+            .view([batch, walkers, 3, self.heads, self.width / self.heads])
+            .permute([2, 0, 3, 1, 4]);
+        let (query, key, value) = (qkv.get(0), qkv.get(1), qkv.get(2));
+        let scores = (query * self.scale()).matmul(&key.transpose(-1, -2)) + seen.mask();
+        let weights = scores.softmax(-1, scores.kind());
+        let mixed = dropout(weights, self.dropout, pass.mode())
+            .matmul(&value)
+            .transpose(1, 2)
+            .reshape([batch, walkers, self.width]);
         self.out_proj.forward(&mixed)
-    }
-
-    /// The same between the projections by [`AmongWalkers`], scene by scene.
-    ///
-    /// # Shapes
-    /// `qkv` `[B, P, 3 * width]` -> `[B, P, width]`.
-    fn among_walkers_by_kernel(&self, qkv: &Tensor, seen: &Seen, pass: &Pass) -> Tensor {
-        let (shape, heads) = (qkv.size(), self.heads as usize);
-        let kernel = AmongWalkers::new(heads, self.width as usize / heads);
-        let dropout = pass.dropout(self.dropout);
-        let (input, seen) = (numbers(qkv), seen.clone());
-        let mut attended = Attended::default();
-        kernel.forward(&input, seen.frames(), dropout, &mut attended);
-        let output = tensor(attended.mixed(), &[shape[0], shape[1], self.width]);
-        pass.made_of(&[qkv], output, move |gradient| {
-            let mut of_input = vec![0.0; input.len()];
-            let gradient = numbers(gradient);
-            kernel.backward(
-                &input,
-                seen.frames(),
-                dropout,
-                &attended,
-                &gradient,
-                &mut of_input,
-            );
-            Ok(vec![tensor(&of_input, &shape)])
-        })
     }
 
     /// Attention of the newest token over itself and the remembered ones.
     ///
     /// # Shapes
     /// `newest` `[B, P, width]`; each memory as [`KeyValue`] -> `[B, P, width]`.
-    pub(crate) fn over_memory(&self, newest: &Tensor, memory: &[KeyValue], pass: &Pass) -> Tensor {
+    pub(crate) fn over_memory(&self, newest: &Tensor, memory: &[KeyValue]) -> Tensor {
         let (batch, walkers) = (newest.size()[0], newest.size()[1]);
         let qkv = newest.linear(&self.in_proj_weight, Some(&self.in_proj_bias));
-        let plain: Option<Vec<_>> = memory.iter().map(KeyValue::plain).collect();
-        if let Some(plain) = plain.filter(|_| pass.kernels_may_take(&qkv)) {
-            let mixed = remembered::over_memory(&qkv, plain, self.heads, pass);
-            return self.out_proj.forward(&mixed);
-        }
         let qkv = qkv.view([batch, walkers, 3, self.heads, self.width / self.heads]);
         let (query, key, value) = (qkv.select(2, 0), qkv.select(2, 1), qkv.select(2, 2));
         let mut keys = vec![&key];
@@ -144,13 +98,18 @@ impl MultiHeadAttention {
     ///
     /// # Shapes
     /// `token` `[B, P, width]`.
-    pub(crate) fn remember(&self, token: &Tensor, pass: &Pass) -> KeyValue {
+    pub(crate) fn remember(&self, token: &Tensor) -> KeyValue {
+        let (batch, walkers) = (token.size()[0], token.size()[1]);
         let rows = 2 * self.width;
         let key_value = token.linear(
             &self.in_proj_weight.narrow(0, self.width, rows),
             Some(&self.in_proj_bias.narrow(0, self.width, rows)),
         );
-        KeyValue::of(&key_value, self.heads, pass)
+        let split = key_value.view([batch, walkers, 2, self.heads, self.width / self.heads]);
+        KeyValue::Tensors {
+            key: split.select(2, 0),
+            value: split.select(2, 1),
+        }
     }
 
     fn scale(&self) -> f64 {

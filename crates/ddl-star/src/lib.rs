@@ -16,6 +16,7 @@ mod loss;
 mod neighbours;
 mod numbers;
 mod optimizer;
+mod packed;
 mod parameters;
 mod pass;
 mod proposal;
@@ -27,6 +28,7 @@ mod spatial;
 mod star;
 mod tape;
 mod temporal;
+mod tokens;
 mod train;
 mod training_config;
 
