@@ -11,24 +11,31 @@
 //!
 //! All results are the same for every number of threads; between instruction sets they agree to rounding.
 
+mod add_norm;
+mod affine;
 mod among_walkers;
+mod buffer;
+mod columns;
 mod dropout;
+mod encoder_layer;
 mod exp2;
 mod feed_forward;
 mod heads;
 mod instruction_set;
 mod lanes;
+mod linear;
 mod over_memory;
 mod portable;
 mod scenes;
 mod simd;
 #[cfg(test)]
 mod tests;
+mod threads;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-pub(crate) use among_walkers::{AmongWalkers, Attended};
+pub(crate) use buffer::Buffer;
 pub(crate) use dropout::Dropout;
-pub(crate) use feed_forward::{FeedForward, Gradients};
-pub(crate) use over_memory::{KeyValue, KeyValueMut, OverMemory, OverMemoryGradients};
+pub(crate) use encoder_layer::{Dropouts, EncoderLayer, Remembered, Sizes};
+pub(crate) use linear::Linear;
 pub(crate) use scenes::{Frames, Scenes};

@@ -1,10 +1,11 @@
 //! Between tensors and the plain numbers that kernels take.
 
+use crate::kernel::Buffer;
 use tch::Tensor;
 
 /// The numbers of a tensor, row by row.
-pub(crate) fn numbers(tensor: &Tensor) -> Vec<f32> {
-    let mut numbers = vec![0.0; tensor.numel()];
+pub(crate) fn numbers(tensor: &Tensor) -> Buffer {
+    let mut numbers = Buffer::any(tensor.numel());
     let plain = tensor.detach().contiguous();
     plain.copy_data(&mut numbers, tensor.numel());
     numbers

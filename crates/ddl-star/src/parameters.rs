@@ -1,9 +1,9 @@
 //! The learned tensors, by name and in order, and their seeded initial values.
 
-use crate::kernel::Gradients;
+use crate::numbers::numbers;
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
-use std::collections::BTreeMap;
+use std::ops::Range;
 use tch::{Device, Kind, Tensor};
 
 /// The learned tensors of a network, in the order in which its layers were made.
@@ -77,42 +77,29 @@ impl Parameters {
         Tensor::f_cat(&rows, 0)
     }
 
-    /// The gradients that libtorch has added up, and those of kernels, as one vector like [`flat`](Self::flat).
-    pub(crate) fn flat_gradient(
-        &self,
-        kernels: &BTreeMap<String, Gradients>,
-    ) -> Result<Tensor, tch::TchError> {
-        let rows = self
-            .entries
-            .iter()
-            .map(|(name, tensor)| {
-                let gradient = tensor.f_grad()?;
-                let gradient = if gradient.defined() {
-                    gradient.f_reshape([-1])?
-                } else {
-                    tensor.f_zeros_like()?.f_reshape([-1])?
-                };
-                match kernels
-                    .iter()
-                    .find_map(|(layer, of)| named(of, name.strip_prefix(layer)?))
-                {
-                    Some(kernel) => gradient.f_add(&Tensor::from_slice(kernel)),
-                    None => Ok(gradient),
+    /// Adds the gradients that libtorch has added up to `sums`, numbers in the order of [`flat`](Self::flat).
+    pub(crate) fn add_gradients(&self, sums: &mut [f32]) -> Result<(), tch::TchError> {
+        let mut rest = sums;
+        for (_, tensor) in &self.entries {
+            let sums = rest.split_off_mut(..tensor.numel()).unwrap_or_default();
+            let gradient = tensor.f_grad()?;
+            if gradient.defined() {
+                for (sum, term) in sums.iter_mut().zip(numbers(&gradient).iter()) {
+                    *sum += term;
                 }
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        Tensor::f_cat(&rows, 0)
+            }
+        }
+        Ok(())
     }
-}
 
-/// The gradient of a weight of a feed-forward block, by its name within the layer.
-fn named<'a>(gradients: &'a Gradients, name: &str) -> Option<&'a [f32]> {
-    match name {
-        ".linear1.weight" => Some(&gradients.w1),
-        ".linear1.bias" => Some(&gradients.b1),
-        ".linear2.weight" => Some(&gradients.w2),
-        ".linear2.bias" => Some(&gradients.b2),
-        _ => None,
+    /// Another number whenever a learned number may have changed.
+    pub(crate) fn version(&self) -> i64 {
+        // Tensors count their changes. Each has a count of its own, although they share their memory.
+        let tensors = self.entries.iter().map(|(_, tensor)| tensor);
+        tensors
+            .chain([&self.flat])
+            .map(Tensor::internal_version)
+            .sum()
     }
 }
 
@@ -136,6 +123,16 @@ impl Initializer {
             kind,
             entries: Vec::new(),
         }
+    }
+
+    /// How many numbers there are so far.
+    pub(crate) fn count(&self) -> usize {
+        self.entries.iter().map(|(_, tensor)| tensor.numel()).sum()
+    }
+
+    /// Where the numbers made from `start` on stand in [`Parameters::flat`].
+    pub(crate) fn since(&self, start: usize) -> Range<usize> {
+        start..self.count()
     }
 
     /// Moves all tensors made so far into one flat vector.

@@ -5,8 +5,10 @@ use crate::flow::{FlowConstants, StepRule, natural_gradient_step};
 use crate::layers::Mode;
 use crate::pass::Pass;
 use crate::star::{GraphMemory, NoiseInput, StarNetwork};
+use crate::tokens::Tokens;
 use ddl_data::OBSERVED;
 use std::ops::Range;
+use std::slice::from_ref;
 use tch::{Kind, Tensor};
 
 /// What the network made of observed frames: where everybody goes, and what shaped the way.
@@ -33,7 +35,7 @@ impl StarNetwork {
         noise: &NoiseInput,
         mode: Mode,
     ) -> Tensor {
-        self.teacher_forced_in(batch, goals, noise, &Pass::plain(mode))
+        self.teacher_forced_in(batch, goals, noise, &self.pass(mode))
     }
 
     /// [`teacher_forced`](Self::teacher_forced) in a pass of its own.
@@ -44,29 +46,29 @@ impl StarNetwork {
         noise: &NoiseInput,
         pass: &Pass,
     ) -> Tensor {
-        let steps = batch.positions.size()[0] - 1;
-        let positions = batch.positions.narrow(0, 0, steps);
+        let steps = batch.positions.size()[0] as usize - 1;
+        let positions = batch.positions.narrow(0, 0, steps as i64);
         let seen = |frames: Range<usize>| batch.neighbours.during(frames);
         // The frames are known, so all of them pass the first spatial encoder at once.
-        let spatial =
-            self.spatial_tokens(&centre(batch, &positions), &seen(0..steps as usize), pass);
-        // All frames at once: the gradients of single ones would each be filled up to the whole and added.
-        let spatial = pass.junction(&spatial).split(1, 0);
+        let centred = Tokens::of(&centre(batch, &positions), pass);
+        let spatial = self
+            .spatial_tokens(&centred, &seen(0..steps), pass)
+            .each_entry(pass);
         let reference = self.reference(batch, goals);
-        let relative = &positions - &reference;
+        let relative = Tokens::of(&(&positions - &reference), pass).each_entry(pass);
         let mut memory = GraphMemory::default();
-        let tokens: Vec<Tensor> = (0..steps as usize)
+        let tokens: Vec<Tokens> = (0..steps)
             .map(|t| {
                 self.step(
                     &mut memory,
-                    &relative.narrow(0, t as i64, 1),
+                    &relative[t],
                     &spatial[t],
                     &seen(t..t + 1),
                     pass,
                 )
             })
             .collect();
-        let emitted = self.emit(&Tensor::cat(&tokens, 0), noise);
+        let emitted = self.emit(&Tokens::joined(&tokens, pass), noise);
         self.next_positions(&positions, goals, &reference, &emitted, StepRule::Euler)
     }
 
@@ -86,36 +88,30 @@ impl StarNetwork {
         horizon: usize,
         rule: StepRule,
     ) -> Rollout {
-        let pass = &Pass::plain(Mode::Evaluate);
+        let pass = &self.pass(Mode::Evaluate);
         let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
         let last = OBSERVED as i64 - 1;
         let hypotheses = goals.size()[0].max(noise.count());
         let reference = self.reference(batch, goals);
         let spatial = self.spatial_tokens(
-            &centre(batch, &observed),
+            &Tokens::of(&centre(batch, &observed), pass),
             &batch.neighbours.during(0..OBSERVED),
             pass,
         );
         // The observed frames differ between hypotheses only through the goal they are shifted by:
         // `relative` has one batch entry a distinct reference.
         let mut memory = GraphMemory::default();
-        let mut observe = |t: i64| {
-            let relative = observed.get(t) - &reference;
-            let seen = batch.neighbours.during(t as usize..t as usize + 1);
-            self.step(
-                &mut memory,
-                &relative,
-                &spatial.narrow(0, t, 1),
-                &seen,
-                pass,
-            )
+        let mut observe = |t: usize| {
+            let relative = Tokens::of(&(observed.get(t as i64) - &reference), pass);
+            let seen = batch.neighbours.during(t..t + 1);
+            self.step(&mut memory, &relative, &spatial.entry(t, pass), &seen, pass)
         };
         let mut token = observe(0);
-        for t in 1..=last {
+        for t in 1..OBSERVED {
             token = observe(t);
         }
-        if token.size()[0] < hypotheses {
-            token = token.expand([hypotheses, -1, -1], false);
+        if token.entries() < hypotheses as usize {
+            token = token.repeated(hypotheses as usize, pass);
             memory = memory.expand_batch(hypotheses);
         }
         let seen = batch.neighbours.during(OBSERVED - 1..OBSERVED);
@@ -128,15 +124,15 @@ impl StarNetwork {
         let mut path = Vec::with_capacity(horizon);
         let mut factors = Vec::with_capacity(horizon);
         for t in OBSERVED..OBSERVED + horizon {
-            let emitted = self.emit(&token, noise);
+            let emitted = self.emit(&Tokens::joined(from_ref(&token), pass), noise);
             position = self.next_positions(&position, goals, &reference, &emitted, rule);
             path.push(position.shallow_clone());
             factors.push(emitted);
             if t + 1 < OBSERVED + horizon {
                 sum = &sum + &position;
                 let centred = &position - batch.scene_means.of(&sum) / (t + 1) as f64;
-                let spatial = self.spatial_tokens(&centred, &seen, pass);
-                let relative = &position - &reference;
+                let spatial = self.spatial_tokens(&Tokens::of(&centred, pass), &seen, pass);
+                let relative = Tokens::of(&(&position - &reference), pass);
                 token = self.step(&mut memory, &relative, &spatial, &seen, pass);
             }
         }

@@ -5,7 +5,7 @@ use crate::encoder_layer::EncoderLayer;
 use crate::neighbours::Seen;
 use crate::parameters::Initializer;
 use crate::pass::Pass;
-use tch::Tensor;
+use crate::tokens::Tokens;
 
 #[derive(Debug)]
 pub(crate) struct SpatialEncoder {
@@ -23,9 +23,9 @@ impl SpatialEncoder {
 
     /// # Shapes
     /// `x` `[B, P, width]`; `seen` during one frame or B -> `[B, P, width]`.
-    pub(crate) fn forward(&self, x: &Tensor, seen: &Seen, pass: &Pass) -> Tensor {
-        self.layers.iter().fold(x.shallow_clone(), |x, layer| {
-            layer.among_walkers(&x, seen, pass)
-        })
+    pub(crate) fn forward(&self, x: &Tokens, seen: &Seen, pass: &Pass) -> Tokens {
+        self.layers
+            .iter()
+            .fold(x.shared(), |x, layer| layer.among_walkers(&x, seen, pass))
     }
 }

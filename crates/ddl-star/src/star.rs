@@ -8,13 +8,14 @@
 use crate::StarError;
 use crate::config::StarConfig;
 use crate::device::ComputeDevice;
-use crate::layers::Linear;
+use crate::layers::{Linear, Mode};
 use crate::neighbours::Seen;
 use crate::parameters::{Initializer, Parameters};
 use crate::pass::Pass;
 use crate::seed::{Stage, stream};
 use crate::spatial::SpatialEncoder;
 use crate::temporal::{TemporalEncoder, TemporalMemory};
+use crate::tokens::Tokens;
 use tch::{Device, Kind, Tensor};
 
 /// STAR with the three outputs (a, b, c) of the Cholesky factor (paper eq. 12), or two for the
@@ -122,13 +123,23 @@ impl StarNetwork {
         self.kind
     }
 
+    /// A pass through the network that ends before gradients: by our own kernels where nobody wants them.
+    pub(crate) fn pass(&self, mode: Mode) -> Pass {
+        // What is made of a learned tensor wants a gradient, unless libtorch was told otherwise.
+        if self.fusion.bias.view(-1).requires_grad() {
+            Pass::plain(mode)
+        } else {
+            Pass::forward_only(mode, &self.parameters)
+        }
+    }
+
     /// Spatial tokens of whole frames: embedding and first spatial encoder.
     ///
     /// # Shapes
     /// `centred` `[F, P, 2]`, positions relative to the scene's mean so far; `seen`
     /// during one frame or F -> `[F, P, width]`.
-    pub(crate) fn spatial_tokens(&self, centred: &Tensor, seen: &Seen, pass: &Pass) -> Tensor {
-        let embedded = self.spatial_embedding.forward(centred).relu();
+    pub(crate) fn spatial_tokens(&self, centred: &Tokens, seen: &Seen, pass: &Pass) -> Tokens {
+        let embedded = self.spatial_embedding.of_tokens(centred, pass).relu(pass);
         self.spatial_encoder_1.forward(&embedded, seen, pass)
     }
 
@@ -140,24 +151,23 @@ impl StarNetwork {
     pub(crate) fn step(
         &self,
         memory: &mut GraphMemory,
-        relative: &Tensor,
-        spatial: &Tensor,
+        relative: &Tokens,
+        spatial: &Tokens,
         seen: &Seen,
         pass: &Pass,
-    ) -> Tensor {
-        let newest = self.temporal_embedding.forward(relative).relu();
+    ) -> Tokens {
+        let newest = self.temporal_embedding.of_tokens(relative, pass).relu(pass);
         let temporal = self
             .temporal_encoder_1
             .forward(&newest, &memory.first, pass);
-        let spatial = spatial.expand_as(&temporal);
+        let spatial = spatial.repeated(temporal.entries(), pass);
         let fused = self
             .fusion
-            .forward(&Tensor::cat(&[&temporal, &spatial], -1));
+            .of_tokens(&temporal.beside(&spatial, pass), pass);
         let among = self.spatial_encoder_2.forward(&fused, seen, pass);
         let token = self
             .temporal_encoder_2
             .forward(&among, &memory.second, pass);
-        let token = pass.junction(&token);
         memory
             .first
             .push(self.temporal_encoder_1.remember(&token, pass));

@@ -8,7 +8,7 @@ use crate::encoder_layer::EncoderLayer;
 use crate::parameters::Initializer;
 use crate::pass::Pass;
 use crate::remembered::KeyValue;
-use tch::Tensor;
+use crate::tokens::Tokens;
 
 #[derive(Debug)]
 pub(crate) struct TemporalEncoder {
@@ -47,11 +47,11 @@ impl TemporalEncoder {
 
     /// # Shapes
     /// `newest` `[B, P, width]` -> the same.
-    pub(crate) fn forward(&self, newest: &Tensor, memory: &TemporalMemory, pass: &Pass) -> Tensor {
+    pub(crate) fn forward(&self, newest: &Tokens, memory: &TemporalMemory, pass: &Pass) -> Tokens {
         self.layer.over_memory(newest, &memory.tokens, pass)
     }
 
-    pub(crate) fn remember(&self, token: &Tensor, pass: &Pass) -> KeyValue {
+    pub(crate) fn remember(&self, token: &Tokens, pass: &Pass) -> KeyValue {
         self.layer.remember(token, pass)
     }
 }

@@ -191,7 +191,7 @@ impl Trainer {
             let _generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
             tch::manual_seed(draw.libtorch);
             let noise = NoiseInput::Draws(draw.noise);
-            let pass = Pass::taped(Mode::Train, draw.kernels);
+            let pass = Pass::training(Mode::Train, draw.kernels, self.network.parameters());
             (self.loss(&batch, &noise, &pass)?, pass)
         };
         let gradient = pass.gradient(&loss, self.network.parameters())?;

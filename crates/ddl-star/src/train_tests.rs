@@ -104,14 +104,14 @@ fn saving_reads_what_is_not_read_yet() {
         every.step().unwrap();
         some.step().unwrap();
     }
-    some.save(&path).unwrap();
+    some.save(&Origin::default(), &path).unwrap();
     let mut resumed = trainer(Kind::Float, 16);
-    resumed.resume(&path).unwrap();
+    resumed.resume(&Origin::default(), &path).unwrap();
     assert_eq!(resumed.progress.loss_sum, every.progress.loss_sum);
     assert_eq!(resumed.steps(), every.steps());
     assert_eq!(state(&resumed), state(&every));
 
     some.draws.as_mut().unwrap().spoil(3);
     some.step().unwrap();
-    assert!(matches!(some.save(&path), Err(StarError::NonFinite { .. })));
+    assert!(matches!(some.save(&Origin::default(), &path), Err(StarError::NonFinite { .. })));
 }

@@ -7,8 +7,7 @@ mod queries;
 #[cfg(test)]
 mod tests;
 
-use rayon::prelude::*;
-
+use super::buffer::Buffer;
 use super::dropout::Dropout;
 use super::heads::Heads;
 use super::instruction_set::Dispatch;
@@ -16,13 +15,14 @@ use super::instruction_set::Dispatch;
 use super::instruction_set::InstructionSet;
 use super::lanes::Lanes;
 use super::scenes::{Frames, Scene};
+use super::threads::each;
 use backward::Backward;
 use dropout::Decisions;
 use forward::Forward;
 use queries::Buffers;
 
-/// Pairs of a query and a key below which other threads are not worth waking.
-const PAIRS_FOR_THREADS: usize = 20_000;
+/// Multiplications that take as long as a pair of a query and a key.
+const WORK_OF_A_PAIR: usize = 50;
 
 /// Multi-head attention within scenes.
 ///
@@ -41,7 +41,7 @@ pub(crate) struct AmongWalkers {
 /// What came out of [`AmongWalkers::forward`], and what its gradient needs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Attended {
-    mixed: Vec<f32>,
+    mixed: Buffer,
     /// By entry, scene, group of heads and two queries: the largest score (log2 units), and 1 / Σ 2^(score − largest).
     normalisers: Vec<[Lanes; 2]>,
 }
@@ -106,7 +106,7 @@ impl AmongWalkers {
         let entries = self.check(qkv, frames);
         let rows = entries * frames.scenes().walkers();
         let row = self.heads.row();
-        attended.mixed.resize(rows * row, 0.0);
+        attended.mixed = Buffer::any(rows * row);
         let normalisers = entries * self.normalisers(frames);
         attended.normalisers.resize(normalisers, [Lanes::ZERO; 2]);
         let (mut mixed, mut normalisers) = (&mut attended.mixed[..], &mut attended.normalisers[..]);
@@ -123,9 +123,13 @@ impl AmongWalkers {
                 task,
             });
         }
-        self.each(jobs, frames.pairs(entries), |job, buffers| {
-            self.dispatch.run(forward::Run { job, buffers });
-        });
+        each(
+            jobs,
+            self.work(frames, entries),
+            |job, buffers: &mut Buffers| {
+                self.dispatch.run(forward::Run { job, buffers });
+            },
+        );
     }
 
     /// The gradient of the inputs of [`AmongWalkers::forward`] from that of its output.
@@ -183,9 +187,18 @@ impl AmongWalkers {
                 task,
             });
         }
-        self.each(jobs, frames.pairs(entries), |job, buffers| {
-            self.dispatch.run(backward::Run { job, buffers });
-        });
+        each(
+            jobs,
+            self.work(frames, entries),
+            |job, buffers: &mut Buffers| {
+                self.dispatch.run(backward::Run { job, buffers });
+            },
+        );
+    }
+
+    /// What there is to be done, in multiplications.
+    fn work(&self, frames: Frames<'_>, entries: usize) -> usize {
+        frames.pairs(entries) * self.heads.groups() * self.heads.quads() * WORK_OF_A_PAIR
     }
 
     /// [`Task::normalisers`] of all scenes of an entry.
@@ -231,19 +244,5 @@ impl AmongWalkers {
                 (&qkv[scene.first * row..][..scene.walkers * row], task)
             })
         })
-    }
-
-    /// Does all jobs, on all threads when there are many `pairs`.
-    fn each<J: Send>(&self, jobs: Vec<J>, pairs: usize, run: impl Fn(J, &mut Buffers) + Sync) {
-        let pairs = pairs * self.heads.groups() * self.heads.quads();
-        if pairs < PAIRS_FOR_THREADS {
-            let mut buffers = Buffers::default();
-            for job in jobs {
-                run(job, &mut buffers);
-            }
-        } else {
-            jobs.into_par_iter()
-                .for_each_init(Buffers::default, |buffers, job| run(job, buffers));
-        }
     }
 }

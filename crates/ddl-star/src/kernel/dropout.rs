@@ -2,13 +2,17 @@
 //!
 //! What is decided on, and how a place becomes random bits, is up to each kernel: see its own module of this name.
 
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use super::simd::Simd;
+
 /// Sets each number to 0 with probability `p` and scales the others by 1 / (1 - p).
 ///
 /// The decision is a function of `seed` and the place of the number alone: the same in the forward and the backward pass,
 /// on every machine, for every number of threads. Each layer of each step needs a seed of its own.
 ///
 /// # Numerics
-/// p is rounded to a multiple of 2^-16 for hidden units, of 2^-24 for attention weights, and to less than 1.
+/// p is rounded to a multiple of 2^-16 for hidden units, of 2^-24 for attention weights and outputs, and to less than 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Dropout {
     /// Probability that a number is dropped, 0 <= p < 1.
@@ -40,6 +44,30 @@ impl Dropout {
             least: dropped as u32,
             scale: (values / (values - dropped)) as f32,
         })
+    }
+}
+
+/// Random numbers of one row, from which those of its places are made.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RowKey(pub(super) [u32; 2]);
+
+impl RowKey {
+    /// Of a row under a seed that [`mixed`] has made.
+    #[inline]
+    pub(super) fn new(seed: u64, row: u64) -> Self {
+        let bits = mixed(seed.wrapping_add(row));
+        Self([bits as u32, (bits >> 32) as u32])
+    }
+
+    /// 32 random bits for each of the sixteen places from `first`, a multiple of 16.
+    #[inline(always)]
+    pub(super) fn bits<S: Simd>(self, simd: S, first: usize) -> S::Bits {
+        let [a, b] = self.0;
+        // The finaliser of a multiplicative hash (lowbias32, C. Wellons 2018), the row's second word in between.
+        let bits = simd.count_from(a ^ first as u32);
+        let bits = simd.mul_low(simd.xor_shift::<16>(bits), 0x7feb_352d);
+        let bits = simd.mul_low(simd.xor(simd.xor_shift::<15>(bits), b), 0x846c_a68b);
+        simd.xor_shift::<16>(bits)
     }
 }
 

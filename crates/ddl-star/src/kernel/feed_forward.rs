@@ -14,6 +14,8 @@ mod weights;
 
 pub(crate) use gradients::Gradients;
 
+use std::ops::DerefMut;
+
 use super::dropout::Dropout;
 use super::instruction_set::Dispatch;
 #[cfg(test)]
@@ -31,14 +33,30 @@ pub(crate) struct FeedForward {
 }
 
 impl FeedForward {
+    /// A block whose weights are all 0. Any width and hidden width will do; both are padded to multiples of 32.
+    ///
+    /// # Panics
+    /// When a width is 0.
+    pub(crate) fn zeros(width: usize, hidden: usize) -> Self {
+        Self {
+            weights: Weights::new(width, hidden),
+            dispatch: Dispatch::detect(),
+        }
+    }
+
     /// Arranges the weights of libtorch's layers for the kernels.
     ///
     /// # Shapes
-    /// `w1` `[hidden, width]`, `b1` `[hidden]`, `w2` `[width, hidden]`, `b2` `[width]`, by rows. Any width and hidden width
-    /// will do; both are padded to multiples of 32.
+    /// W1 `[hidden, width]`, b1 `[hidden]`, W2 `[width, hidden]`, b2 `[width]`, by rows.
     ///
     /// # Panics
-    /// When a width is 0 or a slice has another length.
+    /// When a slice has another length.
+    pub(crate) fn update(&mut self, weights: [&[f32]; 4]) {
+        self.weights.update(weights);
+    }
+
+    /// Both at once.
+    #[cfg(test)]
     pub(crate) fn pack(
         w1: &[f32],
         b1: &[f32],
@@ -47,12 +65,9 @@ impl FeedForward {
         width: usize,
         hidden: usize,
     ) -> Self {
-        let mut weights = Weights::new(width, hidden);
-        weights.update([w1, b1, w2, b2]);
-        Self {
-            weights,
-            dispatch: Dispatch::detect(),
-        }
+        let mut block = Self::zeros(width, hidden);
+        block.update([w1, b1, w2, b2]);
+        block
     }
 
     /// The same with other instructions than the fastest; `None` when the machine lacks them.
@@ -97,7 +112,7 @@ impl FeedForward {
         gy: &[f32],
         dropout: Option<Dropout>,
         gx: &mut [f32],
-        grads: &mut Gradients,
+        grads: &mut Gradients<impl DerefMut<Target = [f32]>>,
     ) {
         backward::run(self, [x, gy], dropout, gx, grads);
     }

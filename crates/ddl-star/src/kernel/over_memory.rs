@@ -6,12 +6,11 @@ mod forward;
 mod tests;
 mod tokens;
 
-use rayon::prelude::*;
-
 use super::heads::Heads;
 use super::instruction_set::Dispatch;
 #[cfg(test)]
 use super::instruction_set::InstructionSet;
+use super::threads::each;
 use backward::Backward;
 use forward::Forward;
 use tokens::Buffers;
@@ -19,8 +18,8 @@ use tokens::Buffers;
 /// Rows that a thread takes at once: with any number of heads they fill whole groups of lanes.
 const ROWS_AT_ONCE: usize = 64;
 
-/// Rows times tokens below which other threads are not worth waking.
-const TOKENS_FOR_THREADS: usize = 4_000;
+/// Multiplications that take as long as a number of a token.
+const WORK_OF_A_NUMBER: usize = 8;
 
 /// Multi-head attention of one query a row over t remembered tokens and its own.
 ///
@@ -127,7 +126,7 @@ impl OverMemory {
                 mixed,
             })
             .collect();
-        each(jobs, query.len(), memory.len(), |job, buffers| {
+        each(jobs, work(query, memory), |job, buffers: &mut Buffers| {
             self.dispatch.run(forward::Run { job, buffers });
         });
     }
@@ -197,7 +196,7 @@ impl OverMemory {
                 token_gradients: tokens.map(|token| token.split_off(count)).collect(),
             });
         }
-        each(jobs, query.len(), memory.len(), |job, buffers| {
+        each(jobs, work(query, memory), |job, buffers: &mut Buffers| {
             self.dispatch.run(backward::Run { job, buffers });
         });
     }
@@ -239,21 +238,7 @@ impl<'a> KeyValueMut<'a> {
     }
 }
 
-/// Does all jobs, on all threads when there are many.
-fn each<J: Send>(
-    jobs: Vec<J>,
-    numbers: usize,
-    remembered: usize,
-    run: impl Fn(J, &mut Buffers) + Sync,
-) {
-    // Counted in tokens of the usual width of 32.
-    if numbers * (remembered + 1) < 32 * TOKENS_FOR_THREADS {
-        let mut buffers = Buffers::default();
-        for job in jobs {
-            run(job, &mut buffers);
-        }
-    } else {
-        jobs.into_par_iter()
-            .for_each_init(Buffers::default, |buffers, job| run(job, buffers));
-    }
+/// What there is to be done, in multiplications.
+fn work(query: &[f32], memory: &[KeyValue<'_>]) -> usize {
+    query.len() * (memory.len() + 1) * WORK_OF_A_NUMBER
 }

@@ -74,6 +74,11 @@ impl Simd for Portable {
     }
 
     #[inline(always)]
+    fn sqrt(self, a: Floats) -> Floats {
+        each_lane!(a, |l| a[l].sqrt())
+    }
+
+    #[inline(always)]
     fn max(self, a: Floats, b: Floats) -> Floats {
         each_lane!(a, |l| if a[l] > b[l] { a[l] } else { b[l] })
     }
@@ -117,6 +122,14 @@ impl Simd for Portable {
     fn spread<const FROM: i32>(self, a: Floats) -> Floats {
         let from = (FROM / 0x55) as usize;
         each_lane!(a, |l| a[l / 4 * 4 + from])
+    }
+
+    #[inline(always)]
+    fn sum_of_quarters(self, a: Floats) -> Floats {
+        each_lane!(a, |l| {
+            let j = l % DEPTH;
+            (a[j] + a[j + 8]) + (a[j + 4] + a[j + 12])
+        })
     }
 
     #[inline(always)]

@@ -26,6 +26,7 @@ pub(super) trait Simd: Copy + Send + Sync {
     fn sub(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn mul(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn div(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    fn sqrt(self, a: Self::Floats) -> Self::Floats;
     /// The larger of each two numbers; `b` where one is NaN.
     fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// a b + c, rounded once or twice.
@@ -38,6 +39,8 @@ pub(super) trait Simd: Copy + Send + Sync {
     fn transpose(self, groups: Vectors<Self>) -> Vectors<Self>;
     /// Lane 4 i + j of the result is lane 4 i + `FROM` / 0x55 of `a`, the way instructions encode it.
     fn spread<const FROM: i32>(self, a: Self::Floats) -> Self::Floats;
+    /// Lane 4 i + j of the result is the sum of the lanes 4 k + j of `a` over k.
+    fn sum_of_quarters(self, a: Self::Floats) -> Self::Floats;
 
     /// Lane l is `first` xor l.
     fn count_from(self, first: u32) -> Self::Bits;

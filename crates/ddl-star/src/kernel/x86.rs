@@ -80,6 +80,7 @@ impl Simd for Avx512 {
         fn sub(a: __m512, b: __m512) -> __m512 = _mm512_sub_ps(a, b);
         fn mul(a: __m512, b: __m512) -> __m512 = _mm512_mul_ps(a, b);
         fn div(a: __m512, b: __m512) -> __m512 = _mm512_div_ps(a, b);
+        fn sqrt(a: __m512) -> __m512 = _mm512_sqrt_ps(a);
         // The second operand is the result when one is NaN.
         fn max(a: __m512, b: __m512) -> __m512 = _mm512_max_ps(a, b);
         fn mul_add(a: __m512, b: __m512, c: __m512) -> __m512 = _mm512_fmadd_ps(a, b, c);
@@ -90,6 +91,10 @@ impl Simd for Avx512 {
             _mm512_slli_epi32::<23>(_mm512_castps_si512(exponent)),
         ));
         fn spread<const FROM: i32>(a: __m512) -> __m512 = _mm512_permute_ps::<FROM>(a);
+        fn sum_of_quarters(a: __m512) -> __m512 = {
+            let halves = _mm512_add_ps(a, _mm512_shuffle_f32x4::<0b01_00_11_10>(a, a));
+            _mm512_add_ps(halves, _mm512_shuffle_f32x4::<0b10_11_00_01>(halves, halves))
+        };
         fn transpose(groups: [__m512; 4]) -> [__m512; 4] = {
             let [a, b, c, d] = groups;
             let [low, high] = [_mm512_unpacklo_ps(a, b), _mm512_unpacklo_ps(c, d)];
@@ -162,6 +167,7 @@ impl Simd for Avx2 {
         fn sub(a: Floats, b: Floats) -> Floats = halves!(|a, b| _mm256_sub_ps(a, b));
         fn mul(a: Floats, b: Floats) -> Floats = halves!(|a, b| _mm256_mul_ps(a, b));
         fn div(a: Floats, b: Floats) -> Floats = halves!(|a, b| _mm256_div_ps(a, b));
+        fn sqrt(a: Floats) -> Floats = halves!(|a| _mm256_sqrt_ps(a));
         // The second operand is the result when one is NaN.
         fn max(a: Floats, b: Floats) -> Floats = halves!(|a, b| _mm256_max_ps(a, b));
         fn mul_add(a: Floats, b: Floats, c: Floats) -> Floats = halves!(|a, b, c| _mm256_fmadd_ps(a, b, c));
@@ -172,6 +178,10 @@ impl Simd for Avx2 {
             _mm256_add_epi32(_mm256_castps_si256(power), _mm256_slli_epi32::<23>(_mm256_castps_si256(exponent)))
         ));
         fn spread<const FROM: i32>(a: Floats) -> Floats = halves!(|a| _mm256_permute_ps::<FROM>(a));
+        fn sum_of_quarters(a: Floats) -> Floats = {
+            let halves = _mm256_add_ps(a[0], a[1]);
+            [_mm256_add_ps(halves, _mm256_permute2f128_ps::<1>(halves, halves)); 2]
+        };
         fn transpose(groups: [Floats; 4]) -> [Floats; 4] = {
             let [a, b, c, d] = groups;
             let [low, high] = halves!(|a, b, c, d| {

@@ -5,7 +5,7 @@
 
 #![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
 
-use rayon::prelude::*;
+use std::ops::DerefMut;
 
 use super::FeedForward;
 use super::block::{BLOCK, Block, Panel, tile_mut};
@@ -17,6 +17,7 @@ use super::product::{add_product, add_transposed_product, sum_of_rows};
 use super::weights::Weights;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::simd::{Simd, TiledKernel};
+use crate::kernel::threads::each;
 
 /// Groups of hidden units at most.
 const GROUPS: usize = 8;
@@ -30,7 +31,7 @@ pub(super) fn run(
     [x, gy]: [&[f32]; 2],
     dropout: Option<Dropout>,
     gx: &mut [f32],
-    grads: &mut Gradients,
+    grads: &mut Gradients<impl DerefMut<Target = [f32]>>,
 ) {
     let weights = &layer.weights;
     let Weights {
@@ -61,29 +62,28 @@ pub(super) fn run(
     for (span, ((x, gy), gx)) in pieces.zip(gx.chunks_mut(SPAN * width)).enumerate() {
         let x = BlockRows::padded(x, width);
         let gy = BlockRows::padded(gy, width);
-        parts
-            .par_iter_mut()
-            .enumerate()
-            .for_each(|(g, (part, scratch))| {
-                layer.dispatch.run(Backward {
-                    weights,
-                    decisions: decisions.as_ref(),
-                    first: span * SPAN,
-                    units: g * group,
-                    x: &x,
-                    gy: &gy,
-                    scratch,
-                    part,
-                });
+        let groups: Vec<_> = parts.iter_mut().enumerate().collect();
+        let work = 5 * x.rows() * width * hidden;
+        each(groups, work, |(g, (part, scratch)), (): &mut ()| {
+            layer.dispatch.run(Backward {
+                weights,
+                decisions: decisions.as_ref(),
+                first: span * SPAN,
+                units: g * group,
+                x: &x,
+                gy: &gy,
+                scratch,
+                part,
             });
-        gx.par_chunks_mut(KEPT * width)
-            .enumerate()
-            .for_each(|(piece, gx)| {
-                gx.fill(0.0);
-                for (_, scratch) in &parts {
-                    scratch.gx.add_to(piece * KEPT, gx, width);
-                }
-            });
+        });
+        gx.fill(0.0);
+        let work = gx.len() * parts.len();
+        let pieces: Vec<_> = gx.chunks_mut(KEPT * width).enumerate().collect();
+        each(pieces, work, |(piece, gx), (): &mut ()| {
+            for (_, scratch) in &parts {
+                scratch.gx.add_to(piece * KEPT, gx, width);
+            }
+        });
     }
 }
 

@@ -2,8 +2,6 @@
 
 #![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
 
-use rayon::prelude::*;
-
 use super::FeedForward;
 use super::block::{Block, tile_mut};
 use super::block_rows::{BlockRows, ROWS};
@@ -13,6 +11,7 @@ use super::product::add_product;
 use super::weights::Weights;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::simd::{Simd, TiledKernel};
+use crate::kernel::threads::each;
 
 /// Rows of a tile at most: x and y of the tile and a block's weights fit the second-level cache.
 const TILE: usize = 256;
@@ -32,10 +31,10 @@ pub(super) fn run(layer: &FeedForward, x: &[f32], dropout: Option<Dropout>, y: &
         .div_ceil(TILE)
         .next_multiple_of(rayon::current_num_threads());
     let size = rows.div_ceil(tiles).next_multiple_of(ROWS);
-    let tiles = x
-        .par_chunks(size * width)
-        .zip(y.par_chunks_mut(size * width));
-    tiles.enumerate().for_each(|(tile, (x, y))| {
+    let tiles = x.chunks(size * width).zip(y.chunks_mut(size * width));
+    let tiles: Vec<_> = tiles.enumerate().collect();
+    let work = 2 * x.len() * weights.hidden;
+    each(tiles, work, |(tile, (x, y)), (): &mut ()| {
         let x = BlockRows::padded(x, width);
         let mut result = BlockRows::zeros(x.rows(), weights.columns);
         layer.dispatch.run(Forward {

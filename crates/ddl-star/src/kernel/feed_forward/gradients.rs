@@ -1,20 +1,23 @@
 //! Derivatives with respect to the weights.
 
+use std::ops::DerefMut;
+
 use super::block::BLOCK;
 
 /// Sums of derivatives with respect to the weights, in libtorch's layout.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Gradients {
+pub(crate) struct Gradients<N = Vec<f32>> {
     /// `[hidden, width]`, by rows.
-    pub(crate) w1: Vec<f32>,
+    pub(crate) w1: N,
     /// `[hidden]`.
-    pub(crate) b1: Vec<f32>,
+    pub(crate) b1: N,
     /// `[width, hidden]`, by rows.
-    pub(crate) w2: Vec<f32>,
+    pub(crate) w2: N,
     /// `[width]`.
-    pub(crate) b2: Vec<f32>,
+    pub(crate) b2: N,
 }
 
+#[cfg(test)]
 impl Gradients {
     /// Zeros.
     pub(crate) fn zeros(width: usize, hidden: usize) -> Self {
@@ -25,7 +28,9 @@ impl Gradients {
             b2: vec![0.0; width],
         }
     }
+}
 
+impl<N: DerefMut<Target = [f32]>> Gradients<N> {
     /// Panics unless they are those of these widths.
     pub(super) fn check(&self, width: usize, hidden: usize) {
         assert_eq!(

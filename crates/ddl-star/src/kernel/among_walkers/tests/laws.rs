@@ -1,9 +1,10 @@
 //! Laws that hold for any input.
 
 use super::Case;
+use crate::kernel::among_walkers::{AmongWalkers, Attended};
 use crate::kernel::instruction_set::InstructionSet;
 use crate::kernel::tests::numbers::{assert_close, bits, wide};
-use crate::kernel::{AmongWalkers, Attended, Dropout, Scenes};
+use crate::kernel::{Dropout, Scenes};
 use proptest::prelude::*;
 
 fn case() -> impl Strategy<Value = Case> {

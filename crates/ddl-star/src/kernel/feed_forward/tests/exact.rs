@@ -1,8 +1,9 @@
 //! The formula in double precision, term by term.
 
+use crate::kernel::Dropout;
 use crate::kernel::feed_forward::dropout::reference;
+use crate::kernel::feed_forward::{FeedForward, Gradients};
 use crate::kernel::tests::numbers::Numbers;
-use crate::kernel::{Dropout, FeedForward, Gradients};
 
 /// A layer and what it is applied to.
 pub(super) struct Case {

@@ -5,8 +5,9 @@ use rayon::ThreadPoolBuilder;
 
 use super::exact::Case;
 use super::{check, sets};
+use crate::kernel::Dropout;
 use crate::kernel::feed_forward::dropout::reference;
-use crate::kernel::{Dropout, FeedForward, Gradients};
+use crate::kernel::feed_forward::{FeedForward, Gradients};
 
 fn dropouts() -> impl Strategy<Value = Option<Dropout>> {
     prop_oneof![

@@ -1,0 +1,160 @@
+//! Products of matrices of plain rows.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+#![expect(
+    clippy::needless_range_loop,
+    reason = "loops of a known count over registers, written as the matrices are"
+)]
+
+use super::{Matrix, Start};
+use crate::kernel::columns::{Columns, ColumnsMut, load, store};
+use crate::kernel::lanes::LANES;
+use crate::kernel::simd::Simd;
+
+/// y = start + A B.
+///
+/// # Shapes
+/// A `[rows, t]`, B `[t, columns]`, y `[rows, columns]`.
+#[inline(always)]
+pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    a: Columns<'_>,
+    b: &Matrix,
+    start: Start<'_>,
+    y: &mut ColumnsMut<'_>,
+) {
+    let rows = a.rows();
+    assert_eq!(rows, y.rows(), "rows of a product");
+    let mut row = 0;
+    while row + R <= rows {
+        tile::<S, R, V>(simd, a, b, start, y, row);
+        row += R;
+    }
+    while R > 4 && row + 4 <= rows {
+        tile::<S, 4, V>(simd, a, b, start, y, row);
+        row += 4;
+    }
+    while row < rows {
+        tile::<S, 1, V>(simd, a, b, start, y, row);
+        row += 1;
+    }
+}
+
+#[inline(always)]
+fn tile<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    a: Columns<'_>,
+    b: &Matrix,
+    start: Start<'_>,
+    y: &mut ColumnsMut<'_>,
+    row: usize,
+) {
+    let depth = b.lanes.len() / b.vectors;
+    let mut of_a: [&[f32]; R] = [&[]; R];
+    for r in 0..R {
+        of_a[r] = &a.row(row + r)[..depth];
+    }
+    for vector in (0..b.vectors).step_by(V) {
+        let mut sum = [[simd.splat(0.0); V]; R];
+        for r in 0..R {
+            for v in 0..V {
+                sum[r][v] = match start {
+                    Start::Row(numbers) => simd.load(&numbers[vector + v].0),
+                    Start::Zero => simd.splat(0.0),
+                    Start::There => load(simd, y.row_mut(row + r), (vector + v) * LANES),
+                };
+            }
+        }
+        for (t, of_b) in b.lanes.chunks_exact(b.vectors).enumerate() {
+            let of_b = &of_b[vector..][..V];
+            for r in 0..R {
+                let of_a = simd.splat(of_a[r][t]);
+                for v in 0..V {
+                    sum[r][v] = simd.mul_add(of_a, simd.load(&of_b[v].0), sum[r][v]);
+                }
+            }
+        }
+        for r in 0..R {
+            for v in 0..V {
+                store(simd, sum[r][v], y.row_mut(row + r), (vector + v) * LANES);
+            }
+        }
+    }
+}
+
+/// Adds A^T B.
+///
+/// # Shapes
+/// A `[t, rows]`, B `[t, columns]`, sum `[rows, columns]`.
+#[inline(always)]
+pub(super) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    a: Columns<'_>,
+    rows: usize,
+    b: Columns<'_>,
+    columns: usize,
+    sum: &mut [f32],
+) {
+    assert_eq!(a.rows(), b.rows(), "rows of a product");
+    assert_eq!(sum.len(), rows * columns, "entries of a product");
+    let sum = &mut ColumnsMut::whole(sum, columns);
+    let mut row = 0;
+    while row + R <= rows {
+        transposed_tile::<S, R, V>(simd, a, b, columns, sum, row);
+        row += R;
+    }
+    while row < rows {
+        transposed_tile::<S, 1, V>(simd, a, b, columns, sum, row);
+        row += 1;
+    }
+}
+
+#[inline(always)]
+fn transposed_tile<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    a: Columns<'_>,
+    b: Columns<'_>,
+    columns: usize,
+    sums: &mut ColumnsMut<'_>,
+    row: usize,
+) {
+    for first in (0..columns).step_by(V * LANES) {
+        let mut sum = [[simd.splat(0.0); V]; R];
+        for t in 0..a.rows() {
+            let of_a = &a.row(t)[row..][..R];
+            let of_b = b.row(t);
+            let mut loaded = [simd.splat(0.0); V];
+            for v in 0..V {
+                loaded[v] = load(simd, of_b, first + v * LANES);
+            }
+            for r in 0..R {
+                let of_a = simd.splat(of_a[r]);
+                for v in 0..V {
+                    sum[r][v] = simd.mul_add(of_a, loaded[v], sum[r][v]);
+                }
+            }
+        }
+        for r in 0..R {
+            let into = sums.row_mut(row + r);
+            for v in 0..V {
+                // Added at the end: sums of sums are more exact than one long one.
+                let at = first + v * LANES;
+                let total = simd.add(load(simd, into, at), sum[r][v]);
+                store(simd, total, into, at);
+            }
+        }
+    }
+}
+
+/// Adds all rows of a matrix to `sums`.
+#[inline(always)]
+pub(in crate::kernel) fn sum_of_rows<S: Simd>(simd: S, rows: Columns<'_>, sums: &mut [f32]) {
+    for at in (0..sums.len()).step_by(LANES) {
+        let mut sum = simd.splat(0.0);
+        for row in 0..rows.rows() {
+            sum = simd.add(sum, load(simd, rows.row(row), at));
+        }
+        let total = simd.add(load(simd, sums, at), sum);
+        store(simd, total, sums, at);
+    }
+}

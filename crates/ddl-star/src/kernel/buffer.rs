@@ -1,0 +1,118 @@
+//! Memory for rows of numbers that is used again.
+
+use std::cell::RefCell;
+use std::ops::{Deref, DerefMut};
+
+use super::lanes::LANES;
+
+/// Buffers that a thread keeps for the next ones: to ask the system for memory, and to be given it a page at a time, would
+/// take as long as the work on small batches.
+const SPARE: usize = 64;
+
+thread_local! {
+    static SPARES: RefCell<Vec<Vec<f32>>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Numbers that begin where a register's load begins.
+#[derive(Debug)]
+pub(crate) struct Buffer {
+    numbers: Vec<f32>,
+    first: usize,
+    count: usize,
+}
+
+impl Buffer {
+    /// `count` numbers, whatever was there before.
+    pub(crate) fn any(count: usize) -> Self {
+        let spare = SPARES.with_borrow_mut(Vec::pop);
+        let mut numbers = spare.unwrap_or_default();
+        if numbers.len() < count + LANES {
+            numbers.resize(count + LANES, 0.0);
+        }
+        let aligned = numbers.as_ptr().align_offset(LANES * size_of::<f32>());
+        let first = if aligned < LANES { aligned } else { 0 };
+        Self {
+            numbers,
+            first,
+            count,
+        }
+    }
+
+    pub(crate) fn zeros(count: usize) -> Self {
+        let mut buffer = Self::any(count);
+        buffer.fill(0.0);
+        buffer
+    }
+
+    pub(crate) fn copy(numbers: &[f32]) -> Self {
+        let mut buffer = Self::any(numbers.len());
+        buffer.copy_from_slice(numbers);
+        buffer
+    }
+}
+
+impl Default for Buffer {
+    /// No numbers, and no memory.
+    fn default() -> Self {
+        Self {
+            numbers: Vec::new(),
+            first: 0,
+            count: 0,
+        }
+    }
+}
+
+impl Clone for Buffer {
+    fn clone(&self) -> Self {
+        Self::copy(self)
+    }
+}
+
+impl Deref for Buffer {
+    type Target = [f32];
+
+    fn deref(&self) -> &[f32] {
+        &self.numbers[self.first..][..self.count]
+    }
+}
+
+impl DerefMut for Buffer {
+    fn deref_mut(&mut self) -> &mut [f32] {
+        &mut self.numbers[self.first..][..self.count]
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        let numbers = std::mem::take(&mut self.numbers);
+        if numbers.is_empty() {
+            return;
+        }
+        // At the end of a thread there is no place to keep it any more.
+        let _ = SPARES.try_with(|spares| {
+            let mut spares = spares.borrow_mut();
+            if spares.len() < SPARE {
+                spares.push(numbers);
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn buffers_are_aligned_and_as_long_as_asked_for() {
+        for count in [0, 1, 17, 1000, 3, 500] {
+            let buffer = Buffer::zeros(count);
+            assert_eq!(buffer.len(), count);
+            assert!(buffer.iter().all(|&number| number == 0.0));
+            assert_eq!(buffer.as_ptr().align_offset(64), 0, "{count}");
+            let mut copy = Buffer::copy(&buffer);
+            copy.fill(1.0);
+            assert!(buffer.iter().all(|&number| number == 0.0));
+        }
+        assert!(Buffer::default().is_empty());
+    }
+}
