@@ -1,13 +1,14 @@
 //! How long the network takes to forecast one scene: 25 walkers, 20 goals each, 12 frames.
 //!
-//! `RAYON_NUM_THREADS=1 cargo run --release -p ddl-star --example forecast_latency [rounds]` prints, for feed-forward blocks
-//! 64 and 2048 wide, the time of one forecast on one core: the least and the median of the rounds. On Linux it is processor
+//! `RAYON_NUM_THREADS=1 cargo run --release -p ddl-star --example forecast_latency [rounds [widths]]` prints, for
+//! feed-forward blocks 64 and 2048 wide or those that are named, the time of one forecast on one core: the least and the median of the rounds. On Linux it is processor
 //! time, which says the same on a machine that others use as well.
 
 #![expect(clippy::print_stdout, reason = "what it is for")]
 
 use std::error::Error;
 use std::hint::black_box;
+use std::sync::LazyLock;
 use std::time::Instant;
 
 use ddl_data::{PedestrianId, Position, Window};
@@ -19,15 +20,22 @@ const WALKERS: u32 = 25;
 const GOALS: u32 = 20;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let rounds: usize = std::env::args()
-        .nth(1)
-        .map_or(Ok(50), |rounds| rounds.parse())?;
+    let mut arguments = std::env::args().skip(1);
+    let rounds: usize = arguments.next().map_or(Ok(50), |rounds| rounds.parse())?;
+    let widths: Vec<i64> = arguments
+        .map(|width| width.parse())
+        .collect::<Result<_, _>>()?;
+    let widths = if widths.is_empty() {
+        vec![64, 2048]
+    } else {
+        widths
+    };
     let device = ComputeDevice::open(DeviceChoice::Cpu)?;
     set_threads(1);
     let window = scene()?;
     let goals = vec![goals(&window)];
     let windows = [window];
-    for feed_forward_width in [64, 2048] {
+    for feed_forward_width in widths {
         let config = StarConfig {
             feed_forward_width,
             ..StarConfig::published(Variant::Full)
@@ -85,14 +93,17 @@ fn goals(window: &Window) -> Vec<Vec<Position>> {
     (0..window.len()).map(of).collect()
 }
 
-/// Time that this thread has spent on a processor, or where that is not known, time that has passed.
+/// Time that this process has spent on processors, or where that is not known, time that has passed.
 fn milliseconds() -> f64 {
-    use std::sync::LazyLock;
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
-    let spent = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let spent = spent.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
-    spent.map_or_else(
-        || START.elapsed().as_secs_f64() * 1e3,
-        |nanoseconds| nanoseconds / 1e6,
-    )
+    spent().unwrap_or_else(|| START.elapsed().as_secs_f64() * 1e3)
+}
+
+fn spent() -> Option<f64> {
+    let mut nanoseconds = 0.0;
+    for thread in std::fs::read_dir("/proc/self/task").ok()? {
+        let spent = std::fs::read_to_string(thread.ok()?.path().join("schedstat")).ok()?;
+        nanoseconds += spent.split(' ').next()?.parse::<f64>().ok()?;
+    }
+    Some(nanoseconds / 1e6)
 }
