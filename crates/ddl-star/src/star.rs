@@ -126,7 +126,7 @@ impl StarNetwork {
     /// A pass through the network that ends before gradients: by our own kernels where nobody wants them.
     pub(crate) fn pass(&self, mode: Mode) -> Pass {
         // What is made of a learned tensor wants a gradient, unless libtorch was told otherwise.
-        if self.fusion.bias.view(-1).requires_grad() {
+        if self.fusion.bias.square().requires_grad() {
             Pass::plain(mode)
         } else {
             Pass::forward_only(mode, &self.parameters)

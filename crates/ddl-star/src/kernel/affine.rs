@@ -22,12 +22,11 @@ pub(super) struct Affine {
     bias: Vec<Lanes>,
 }
 
-/// Rows of sixteen numbers at a time, padded with zeros to a multiple of 32.
+/// 32 columns of all rows together, then the next 32; padded with zeros.
 #[derive(Clone, Debug)]
 struct Matrix {
-    /// Times sixteen numbers in a row.
-    vectors: usize,
-    lanes: Vec<Lanes>,
+    rows: usize,
+    pairs: Vec<[Lanes; 2]>,
 }
 
 /// What a product is added to.
@@ -42,15 +41,15 @@ enum Start<'a> {
 
 impl Matrix {
     fn zeros(rows: usize, columns: usize) -> Self {
-        let vectors = columns.div_ceil(2 * LANES) * 2;
         Self {
-            vectors,
-            lanes: vec![Lanes::ZERO; rows * vectors],
+            rows,
+            pairs: vec![[Lanes::ZERO; 2]; rows * columns.div_ceil(2 * LANES)],
         }
     }
 
     fn set(&mut self, row: usize, column: usize, value: f32) {
-        self.lanes[row * self.vectors + column / LANES].0[column % LANES] = value;
+        let pair = &mut self.pairs[column / (2 * LANES) * self.rows + row];
+        pair[column / LANES % 2].0[column % LANES] = value;
     }
 }
 

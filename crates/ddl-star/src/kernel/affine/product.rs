@@ -8,8 +8,11 @@
 
 use super::{Matrix, Start};
 use crate::kernel::columns::{Columns, ColumnsMut, load, store};
-use crate::kernel::lanes::LANES;
-use crate::kernel::simd::Simd;
+use crate::kernel::lanes::{LANES, Lanes};
+use crate::kernel::simd::{Simd, Tile};
+
+/// Rows of B that are gone through together.
+const BLOCK: usize = 32;
 
 /// y = start + A B.
 ///
@@ -49,37 +52,73 @@ fn tile<S: Simd, const R: usize, const V: usize>(
     y: &mut ColumnsMut<'_>,
     row: usize,
 ) {
-    let depth = b.lanes.len() / b.vectors;
     let mut of_a: [&[f32]; R] = [&[]; R];
     for r in 0..R {
-        of_a[r] = &a.row(row + r)[..depth];
+        of_a[r] = a.row(row + r);
     }
-    for vector in (0..b.vectors).step_by(V) {
-        let mut sum = [[simd.splat(0.0); V]; R];
-        for r in 0..R {
-            for v in 0..V {
-                sum[r][v] = match start {
-                    Start::Row(numbers) => simd.load(&numbers[vector + v].0),
-                    Start::Zero => simd.splat(0.0),
-                    Start::There => load(simd, y.row_mut(row + r), (vector + v) * LANES),
-                };
-            }
-        }
-        for (t, of_b) in b.lanes.chunks_exact(b.vectors).enumerate() {
-            let of_b = &of_b[vector..][..V];
+    for (column, pairs) in b.pairs.chunks_exact(b.rows).enumerate() {
+        for part in (0..2).step_by(V) {
+            let vector = 2 * column + part;
+            let mut sum = [[simd.splat(0.0); V]; R];
             for r in 0..R {
-                let of_a = simd.splat(of_a[r][t]);
                 for v in 0..V {
-                    sum[r][v] = simd.mul_add(of_a, simd.load(&of_b[v].0), sum[r][v]);
+                    sum[r][v] = match start {
+                        Start::Row(numbers) => simd.load(&numbers[vector + v].0),
+                        Start::Zero => simd.splat(0.0),
+                        Start::There => load(simd, y.row_mut(row + r), (vector + v) * LANES),
+                    };
+                }
+            }
+            let (blocks, rest) = pairs.as_chunks();
+            for (block, of_b) in blocks.iter().enumerate() {
+                sum = add_block(simd, sum, of_a, block * BLOCK, of_b, part);
+            }
+            for (t, of_b) in (blocks.len() * BLOCK..).zip(rest) {
+                for r in 0..R {
+                    let of_a = simd.splat(of_a[r][t]);
+                    for v in 0..V {
+                        sum[r][v] = simd.mul_add(of_a, simd.load(&of_b[part + v].0), sum[r][v]);
+                    }
+                }
+            }
+            for r in 0..R {
+                for v in 0..V {
+                    store(simd, sum[r][v], y.row_mut(row + r), (vector + v) * LANES);
                 }
             }
         }
+    }
+}
+
+/// sum + A B for 32 columns of A from `first`: the usual width, all of whose bounds are known.
+#[inline(always)]
+fn add_block<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    mut sum: Tile<S, R, V>,
+    a: [&[f32]; R],
+    first: usize,
+    b: &[[Lanes; 2]; BLOCK],
+    part: usize,
+) -> Tile<S, R, V> {
+    let mut of_a = [&[0.0; BLOCK]; R];
+    for r in 0..R {
+        of_a[r] = a[r][first..]
+            .first_chunk()
+            .expect("as many columns as rows of B");
+    }
+    for t in 0..BLOCK {
+        let mut of_b = [simd.splat(0.0); V];
+        for v in 0..V {
+            of_b[v] = simd.load(&b[t][part + v].0);
+        }
         for r in 0..R {
+            let of_a = simd.splat(of_a[r][t]);
             for v in 0..V {
-                store(simd, sum[r][v], y.row_mut(row + r), (vector + v) * LANES);
+                sum[r][v] = simd.mul_add(of_a, of_b[v], sum[r][v]);
             }
         }
     }
+    sum
 }
 
 /// Adds A^T B.

@@ -20,6 +20,9 @@ impl Block {
 
     /// Up to 32 numbers, the others 0.
     pub(super) fn padded(from: &[f32]) -> Self {
+        if let Some(whole) = from.first_chunk() {
+            return Self(*whole);
+        }
         let mut block = Self::ZERO;
         block.0[..from.len()].copy_from_slice(from);
         block
