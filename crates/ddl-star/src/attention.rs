@@ -58,13 +58,13 @@ impl MultiHeadAttention {
     /// # Shapes
     /// `x` `[B, P, width]`; `seen` during one frame or B -> `[B, P, width]`.
     pub(crate) fn among_walkers(&self, x: &Tensor, seen: &Seen, pass: &Pass) -> Tensor {
-        let qkv = x.linear(&self.in_proj_weight, Some(&self.in_proj_bias));
+        let qkv = pass.linear(x, &self.in_proj_weight, &self.in_proj_bias);
         let mixed = if pass.kernels_may_take(&qkv) {
             self.among_walkers_by_kernel(&qkv, seen, pass)
         } else {
             self.among_walkers_by_libtorch(&qkv, seen, pass)
         };
-        self.out_proj.forward(&mixed)
+        self.out_proj.forward_in(&mixed, pass)
     }
 
     /// The same between the projections by libtorch, row by row: see [`Packing`](crate::packing::Packing).
@@ -130,11 +130,11 @@ impl MultiHeadAttention {
     /// `newest` `[B, P, width]`; each memory as [`KeyValue`] -> `[B, P, width]`.
     pub(crate) fn over_memory(&self, newest: &Tensor, memory: &[KeyValue], pass: &Pass) -> Tensor {
         let (batch, walkers) = (newest.size()[0], newest.size()[1]);
-        let qkv = newest.linear(&self.in_proj_weight, Some(&self.in_proj_bias));
+        let qkv = pass.linear(newest, &self.in_proj_weight, &self.in_proj_bias);
         let plain: Option<Vec<_>> = memory.iter().map(KeyValue::plain).collect();
         if let Some(plain) = plain.filter(|_| pass.kernels_may_take(&qkv)) {
             let mixed = remembered::over_memory(&qkv, plain, self.heads, pass);
-            return self.out_proj.forward(&mixed);
+            return self.out_proj.forward_in(&mixed, pass);
         }
         let mut tokens: Vec<&Tensor> = memory.iter().filter_map(KeyValue::projected).collect();
         tokens.push(&qkv);
@@ -149,7 +149,7 @@ impl MultiHeadAttention {
         let mixed = (value * weights)
             .sum_dim_intlist([0i64].as_slice(), false, None)
             .reshape([batch, walkers, self.width]);
-        self.out_proj.forward(&mixed)
+        self.out_proj.forward_in(&mixed, pass)
     }
 
     /// Key and value of tokens, to be remembered.
@@ -160,9 +160,11 @@ impl MultiHeadAttention {
         if !pass.kernels_may_take(token) {
             // The query is projected too and never used: a part of the weights would have a gradient as large
             // as the whole, at every token.
-            return KeyValue::Projected(
-                token.linear(&self.in_proj_weight, Some(&self.in_proj_bias)),
-            );
+            return KeyValue::Projected(pass.linear(
+                token,
+                &self.in_proj_weight,
+                &self.in_proj_bias,
+            ));
         }
         let rows = 2 * self.width;
         let key_value = token.linear(

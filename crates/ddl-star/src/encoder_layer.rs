@@ -69,9 +69,9 @@ impl EncoderLayer {
         let fed = if pass.kernels_may_take(&x) {
             self.feed_forward_by_kernel(&x, pass)
         } else {
-            let hidden = self.linear1.forward(&x).relu();
+            let hidden = self.linear1.forward_in(&x, pass).relu();
             let hidden = dropout(hidden, self.dropout, pass.mode());
-            self.linear2.forward(&hidden)
+            self.linear2.forward_in(&hidden, pass)
         };
         let fed = dropout(fed, self.dropout, pass.mode());
         self.norm2.forward(&(x + fed))

@@ -1,6 +1,7 @@
 //! The three elementary layers: affine map, layer normalisation, feed-forward block.
 
 use crate::parameters::Initializer;
+use crate::pass::Pass;
 use tch::Tensor;
 
 /// y = x W^T + b.
@@ -24,6 +25,11 @@ impl Linear {
     /// `x` `[.., inputs]` -> `[.., outputs]`.
     pub(crate) fn forward(&self, x: &Tensor) -> Tensor {
         x.linear(&self.weight, Some(&self.bias))
+    }
+
+    /// The same as one of many uses in a pass.
+    pub(crate) fn forward_in(&self, x: &Tensor, pass: &Pass) -> Tensor {
+        pass.linear(x, &self.weight, &self.bias)
     }
 }
 

@@ -58,25 +58,6 @@ impl Parameters {
         }
     }
 
-    /// The gradient of a loss that only libtorch's operations lead to, as one vector like [`flat`](Self::flat).
-    ///
-    /// Nothing is added up in the tensors: there is nothing to forget before, and nothing to add to.
-    pub(crate) fn gradient_of(&self, loss: &Tensor) -> Result<Tensor, tch::TchError> {
-        let tensors: Vec<&Tensor> = self.entries.iter().map(|(_, tensor)| tensor).collect();
-        let rows = Tensor::f_run_backward(&[loss], &tensors, false, false)?
-            .iter()
-            .zip(tensors)
-            .map(|(gradient, tensor)| {
-                if gradient.defined() {
-                    gradient.f_reshape([-1])
-                } else {
-                    tensor.f_zeros_like()?.f_reshape([-1])
-                }
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        Tensor::f_cat(&rows, 0)
-    }
-
     /// The gradients that libtorch has added up, and those of kernels, as one vector like [`flat`](Self::flat).
     pub(crate) fn flat_gradient(
         &self,

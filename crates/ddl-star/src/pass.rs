@@ -9,6 +9,7 @@ use tch::{Kind, TchError, Tensor};
 use crate::kernel::{Dropout, FeedForward, Gradients};
 use crate::layers::Mode;
 use crate::parameters::Parameters;
+use crate::shared_weights::SharedWeights;
 use crate::tape::Tape;
 
 /// What a forward pass carries along.
@@ -21,6 +22,8 @@ pub(crate) struct Pass {
     /// Seed of the next dropout.
     seed: Cell<u64>,
     tape: Option<Tape>,
+    /// Weights that libtorch computes with again and again.
+    shared: SharedWeights,
     /// Weights as the kernels want them, by the name of their layer.
     packed: RefCell<BTreeMap<String, Rc<FeedForward>>>,
     /// Gradients of those weights, which libtorch does not see.
@@ -34,6 +37,7 @@ impl Pass {
             mode,
             seed: Cell::new(0),
             tape: None,
+            shared: SharedWeights::default(),
             packed: RefCell::default(),
             gradients: Rc::default(),
         }
@@ -57,6 +61,18 @@ impl Pass {
         x.kind() == Kind::Float
             && x.device() == tch::Device::Cpu
             && (self.tape.is_some() || !x.requires_grad())
+    }
+
+    /// y = x W^T + b. In training the gradients of W and b are left to [`gradient`](Self::gradient), unless kernels
+    /// cut the graph.
+    ///
+    /// # Shapes
+    /// `x` `[.., inputs]`, `weight` `[outputs, inputs]`, `bias` `[outputs]` -> `[.., outputs]`.
+    pub(crate) fn linear(&self, x: &Tensor, weight: &Tensor, bias: &Tensor) -> Tensor {
+        if self.tape.is_some() && !self.kernels_may_take(x) {
+            return self.shared.linear(x, weight, bias);
+        }
+        x.linear(weight, Some(bias))
     }
 
     /// `x`, from which several later stretches of the network go on. Backwards, each stretch is gone through
@@ -127,7 +143,7 @@ impl Pass {
         parameters: &Parameters,
     ) -> Result<Tensor, TchError> {
         let Some(tape) = self.tape.as_ref().filter(|tape| !tape.is_empty()) else {
-            return parameters.gradient_of(loss);
+            return self.shared.gradient(loss, parameters);
         };
         parameters.zero_gradients();
         tape.backward(loss)?;
@@ -180,6 +196,10 @@ mod tests {
             let (loss, ours) = gradient(Kind::Float, &taped);
             assert!(!taped.packed.borrow().is_empty(), "no kernel was used");
             let (known_loss, known) = gradient(Kind::Double, &Pass::plain(Mode::Evaluate));
+            // On CUDA, as in double precision: no kernels, and weights shared by all their uses.
+            let (_, shared) = gradient(Kind::Double, &Pass::taped(Mode::Evaluate, 0));
+            let difference = (shared - &known).norm().double_value(&[]);
+            assert!(difference < 1e-12 * known.norm().double_value(&[]));
             assert!(
                 (loss / known_loss - 1.0).abs() < 1e-5,
                 "{loss} {known_loss}"

@@ -145,14 +145,14 @@ impl StarNetwork {
         seen: &Seen,
         pass: &Pass,
     ) -> Tensor {
-        let newest = self.temporal_embedding.forward(relative).relu();
+        let newest = self.temporal_embedding.forward_in(relative, pass).relu();
         let temporal = self
             .temporal_encoder_1
             .forward(&newest, &memory.first, pass);
         let spatial = spatial.expand_as(&temporal);
         let fused = self
             .fusion
-            .forward(&Tensor::cat(&[&temporal, &spatial], -1));
+            .forward_in(&Tensor::cat(&[&temporal, &spatial], -1), pass);
         let among = self.spatial_encoder_2.forward(&fused, seen, pass);
         let token = self
             .temporal_encoder_2
