@@ -38,6 +38,15 @@ pub(crate) enum Command {
 }
 
 impl Command {
+    /// Where to work: this program's workspace, but for a benchmark of a given program the current folder, if it
+    /// has what is needed there. So it runs on a machine without the workspace.
+    pub(crate) fn workspace(&self) -> Result<Workspace> {
+        match self {
+            Self::Benchmark(arguments) if arguments.has_program() => Workspace::here_or_find(),
+            _ => Workspace::find(),
+        }
+    }
+
     pub(crate) fn run(self, workspace: &Workspace) -> Result<ExitCode> {
         match self {
             Self::Setup(arguments) => arguments.run(workspace),

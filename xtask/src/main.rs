@@ -30,7 +30,6 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use crate::command::Command;
-use crate::workspace::Workspace;
 
 /// Set-up, recordings, benchmark, tests and tidy checks of the DDL workspace.
 #[derive(Debug, Parser)]
@@ -47,7 +46,8 @@ struct Arguments {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    let outcome = Workspace::find().and_then(|workspace| arguments.command.run(&workspace));
+    let workspace = arguments.command.workspace();
+    let outcome = workspace.and_then(|workspace| arguments.command.run(&workspace));
     match outcome {
         Ok(code) => code,
         Err(error) => {

@@ -56,6 +56,20 @@ impl Workspace {
         Self::at(root)
     }
 
+    /// The current folder, if it has a workspace's list of recordings; otherwise as [`Workspace::find`].
+    pub(crate) fn here_or_find() -> Result<Self> {
+        let here = env::current_dir().context("the current folder cannot be read")?;
+        if here.join("datasets/manifest.toml").is_file() {
+            return Self::at(&here);
+        }
+        Self::find().with_context(|| {
+            format!(
+                "{} has no datasets/manifest.toml: copy the folder datasets of the checkout there",
+                here.display()
+            )
+        })
+    }
+
     /// The workspace at a known root.
     pub(crate) fn at(root: &Path) -> Result<Self> {
         let shell = Shell::new().context("the current folder cannot be read")?;

@@ -48,7 +48,7 @@ impl MultiHeadAttention {
     /// # Shapes
     /// `x` `[B, P, width]`; `seen` during one frame or B -> `[B, P, width]`.
     pub(crate) fn among_walkers(&self, x: &Tensor, seen: &Seen, pass: &Pass) -> Tensor {
-        let qkv = x.linear(&self.in_proj_weight, Some(&self.in_proj_bias));
+        let qkv = pass.linear(x, &self.in_proj_weight, &self.in_proj_bias);
         // Row by row: see `Packing`.
         let entries = qkv.size()[0];
         let rows = seen.to_rows(&qkv);
@@ -72,16 +72,16 @@ impl MultiHeadAttention {
             false,
         );
         let mixed = mixed.transpose(1, 2).reshape([count, length, self.width]);
-        self.out_proj.forward(&seen.from_rows(&mixed))
+        self.out_proj.forward(&seen.from_rows(&mixed), pass)
     }
 
     /// Attention of the newest token over itself and the remembered ones.
     ///
     /// # Shapes
     /// `newest` `[B, P, width]`; each memory as [`KeyValue`] -> `[B, P, width]`.
-    pub(crate) fn over_memory(&self, newest: &Tensor, memory: &[KeyValue]) -> Tensor {
+    pub(crate) fn over_memory(&self, newest: &Tensor, memory: &[KeyValue], pass: &Pass) -> Tensor {
         let (batch, walkers) = (newest.size()[0], newest.size()[1]);
-        let qkv = newest.linear(&self.in_proj_weight, Some(&self.in_proj_bias));
+        let qkv = pass.linear(newest, &self.in_proj_weight, &self.in_proj_bias);
         let mut tokens: Vec<&Tensor> = memory.iter().filter_map(KeyValue::projected).collect();
         tokens.push(&qkv);
         // All projections of all tokens at once: one copy, and one gradient for each token.
@@ -95,17 +95,17 @@ impl MultiHeadAttention {
         let mixed = (value * weights)
             .sum_dim_intlist([0i64].as_slice(), false, None)
             .reshape([batch, walkers, self.width]);
-        self.out_proj.forward(&mixed)
+        self.out_proj.forward(&mixed, pass)
     }
 
     /// Key and value of tokens, to be remembered.
     ///
     /// # Shapes
     /// `token` `[B, P, width]`.
-    pub(crate) fn remember(&self, token: &Tensor) -> KeyValue {
+    pub(crate) fn remember(&self, token: &Tensor, pass: &Pass) -> KeyValue {
         // The query is projected too and never used: a part of the weights would have a gradient as large
         // as the whole, at every token.
-        KeyValue::Projected(token.linear(&self.in_proj_weight, Some(&self.in_proj_bias)))
+        KeyValue::Projected(pass.linear(token, &self.in_proj_weight, &self.in_proj_bias))
     }
 
     fn scale(&self) -> f64 {

@@ -89,7 +89,7 @@ impl EncoderLayer {
     pub(crate) fn over_memory(&self, newest: &Tokens, memory: &[KeyValue], pass: &Pass) -> Tokens {
         match newest {
             Tokens::Tensor(x) => {
-                let attended = self.attention.over_memory(x, memory);
+                let attended = self.attention.over_memory(x, memory, pass);
                 Tokens::Tensor(self.after_attention(x, attended, pass))
             }
             Tokens::Rows(x) => Tokens::Rows(self.over_rows(x, memory, pass)),
@@ -125,7 +125,7 @@ impl EncoderLayer {
     /// Keys and values of tokens, for later queries.
     pub(crate) fn remember(&self, token: &Tokens, pass: &Pass) -> KeyValue {
         let x = match token {
-            Tokens::Tensor(x) => return self.attention.remember(x),
+            Tokens::Tensor(x) => return self.attention.remember(x, pass),
             Tokens::Rows(x) => Rc::clone(x),
         };
         let kernel = self.kernel(pass);
@@ -160,9 +160,13 @@ impl EncoderLayer {
     fn after_attention(&self, x: &Tensor, attended: Tensor, pass: &Pass) -> Tensor {
         let attended = dropout(attended, self.dropout, pass.mode());
         let x = self.norm1.forward(&(x + attended));
-        let hidden = self.linear1.forward(&x).relu();
+        let hidden = self.linear1.forward(&x, pass).relu();
         let hidden = dropout(hidden, self.dropout, pass.mode());
-        let fed = dropout(self.linear2.forward(&hidden), self.dropout, pass.mode());
+        let fed = dropout(
+            self.linear2.forward(&hidden, pass),
+            self.dropout,
+            pass.mode(),
+        );
         self.norm2.forward(&(x + fed))
     }
 }

@@ -47,15 +47,15 @@ impl Linear {
 
     /// # Shapes
     /// `x` `[.., inputs]` -> `[.., outputs]`.
-    pub(crate) fn forward(&self, x: &Tensor) -> Tensor {
-        x.linear(&self.weight, Some(&self.bias))
+    pub(crate) fn forward(&self, x: &Tensor, pass: &Pass) -> Tensor {
+        pass.linear(x, &self.weight, &self.bias)
     }
 
     /// # Shapes
     /// `x` `[B, P, inputs]` -> `[B, P, outputs]`.
     pub(crate) fn of_tokens(&self, x: &Tokens, pass: &Pass) -> Tokens {
         let x = match x {
-            Tokens::Tensor(x) => return Tokens::Tensor(self.forward(x)),
+            Tokens::Tensor(x) => return Tokens::Tensor(self.forward(x, pass)),
             Tokens::Rows(x) => Rc::clone(x),
         };
         let [batch, walkers, inputs] = x.shape();

@@ -31,6 +31,7 @@ mod rollout;
 mod scene_means;
 mod schedule;
 mod seed;
+mod shared_weights;
 mod spatial;
 mod star;
 mod tape;

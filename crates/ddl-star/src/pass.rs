@@ -10,6 +10,7 @@ use crate::kernel::{Buffer, Dropout};
 use crate::layers::Mode;
 use crate::numbers::numbers;
 use crate::parameters::Parameters;
+use crate::shared_weights::SharedWeights;
 use crate::tape::Tape;
 use crate::tokens::Rows;
 
@@ -22,6 +23,8 @@ pub(crate) struct Pass {
     /// For the kernels; `None` where libtorch computes all.
     weights: Option<Weights>,
     tape: Option<Tape>,
+    /// For training by libtorch.
+    shared: Option<SharedWeights>,
 }
 
 /// The learned numbers, as they are in a pass.
@@ -47,6 +50,7 @@ impl Pass {
             seed: Cell::new(0),
             weights: None,
             tape: None,
+            shared: None,
         }
     }
 
@@ -69,6 +73,7 @@ impl Pass {
         Self {
             seed: Cell::new(seed),
             tape: pass.weights.is_some().then(Tape::default),
+            shared: pass.weights.is_none().then(SharedWeights::default),
             ..pass
         }
     }
@@ -119,6 +124,17 @@ impl Pass {
         self.tape.is_some()
     }
 
+    /// y = x W^T + b, by libtorch. In training the gradients of W and b are left to [`gradient`](Self::gradient).
+    ///
+    /// # Shapes
+    /// `x` `[.., inputs]`, `weight` `[outputs, inputs]`, `bias` `[outputs]` -> `[.., outputs]`.
+    pub(crate) fn linear(&self, x: &Tensor, weight: &Tensor, bias: &Tensor) -> Tensor {
+        match &self.shared {
+            Some(shared) => shared.linear(x, weight, bias),
+            None => x.linear(weight, Some(bias)),
+        }
+    }
+
     /// The dropout of a kernel with probability `p`, each with a seed of its own; none outside training.
     pub(crate) fn dropout(&self, p: f64) -> Option<Dropout> {
         if self.mode == Mode::Evaluate || p == 0.0 {
@@ -136,6 +152,9 @@ impl Pass {
         loss: &Tensor,
         parameters: &Parameters,
     ) -> Result<Tensor, TchError> {
+        if let Some(shared) = &self.shared {
+            return shared.gradient(loss, parameters);
+        }
         let Some(tape) = &self.tape else {
             return parameters.gradient_of(loss);
         };

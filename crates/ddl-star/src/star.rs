@@ -187,7 +187,8 @@ impl StarNetwork {
         match noise {
             NoiseInput::Draws(noise) => {
                 let noise = noise.unsqueeze(1).expand([batch, walkers, -1], false);
-                self.output.forward(&Tensor::cat(&[tokens, &noise], -1))
+                Tensor::cat(&[tokens, &noise], -1)
+                    .linear(&self.output.weight, Some(&self.output.bias))
             }
             NoiseInput::Expected => {
                 let (width, noise) = (self.config.model_width, self.config.noise_width);

@@ -113,5 +113,8 @@ fn saving_reads_what_is_not_read_yet() {
 
     some.draws.as_mut().unwrap().spoil(3);
     some.step().unwrap();
-    assert!(matches!(some.save(&Origin::default(), &path), Err(StarError::NonFinite { .. })));
+    assert!(matches!(
+        some.save(&Origin::default(), &path),
+        Err(StarError::NonFinite { .. })
+    ));
 }

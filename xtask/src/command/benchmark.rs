@@ -2,6 +2,7 @@
 
 mod build;
 mod publish;
+mod side_by_side;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,6 +13,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 
+use self::side_by_side::SideBySide;
 use super::set_up;
 use crate::benchmark::{
     Display, End, Executor, Local, Plan, Profile, Settings, Stop, VARIANTS, fold_names, human,
@@ -53,7 +55,7 @@ pub(crate) struct Arguments {
         default_value = "1"
     )]
     seeds: Vec<u64>,
-    /// Processes side by side, which share the cores [default: one a core]
+    /// Processes side by side, which share the cores [default: one a core; on cuda all tasks, at most five]
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
     /// auto, cpu or cuda
@@ -62,6 +64,9 @@ pub(crate) struct Arguments {
     /// Folder of the results; one that is there is gone on with [default: `runs/CONVENTION-PROFILE`]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Program `ddl` to run, built already: needs no Rust and no checkout but its folder `datasets` [default: build it]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["cargo_profile", "publish"])]
+    program: Option<PathBuf>,
     /// Cargo profile the program is built with
     #[arg(long, default_value = "release", value_parser = ["release", "dev"])]
     cargo_profile: String,
@@ -99,17 +104,16 @@ impl Arguments {
         let plan = self.plan(workspace, &chosen)?;
         let out = self.out_folder(workspace, &plan)?;
         plan.write(&out)?;
-        set_up(workspace)?;
-        let program = build::program(workspace, &self.cargo_profile)?;
+        let (program, commit) = self.program(workspace)?;
         let cores = thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        let jobs = self.jobs.unwrap_or(cores);
-        let threads = (cores / jobs).max(1);
+        let SideBySide { jobs, threads } =
+            SideBySide::new(self.jobs, &self.device, cores, plan.tasks.len());
         println!(
             "plan: {} tasks, {jobs} at a time with {threads} threads each, in {}",
             plan.tasks.len(),
             out.display()
         );
-        let executor = Local::new(program.clone(), jobs, threads).of_commit(workspace.commit());
+        let executor = Local::new(program.clone(), jobs, threads).of_commit(commit);
         let ends = work_off(&executor, &plan, &out)?;
         let finished: Vec<PathBuf> = plan
             .tasks
@@ -151,6 +155,29 @@ impl Arguments {
         Ok(ExitCode::SUCCESS)
     }
 
+    /// Whether the program is given and not built here.
+    pub(crate) fn has_program(&self) -> bool {
+        self.program.is_some()
+    }
+
+    /// The program to run, and the commit that results name.
+    fn program(&self, workspace: &Workspace) -> Result<(PathBuf, String)> {
+        let Some(given) = &self.program else {
+            set_up(workspace)?;
+            let program = build::program(workspace, &self.cargo_profile)?;
+            return Ok((program, workspace.commit()));
+        };
+        let program = absolute(given)?;
+        ensure!(
+            program.is_file(),
+            "{} is no file: --program takes a built ddl",
+            program.display()
+        );
+        // Which commit a given program is of, only who built it knows.
+        let commit = std::env::var("DDL_COMMIT").unwrap_or_else(|_| "unknown".to_owned());
+        Ok((program, commit))
+    }
+
     fn plan(&self, workspace: &Workspace, chosen: &Chosen) -> Result<Plan> {
         let known = fold_names(workspace, chosen.convention)?;
         let folds = if self.folds.is_empty() {
@@ -171,7 +198,10 @@ impl Arguments {
             convention: chosen.convention.name().to_owned(),
             data: chosen.folder.clone(),
             device: self.device.clone(),
-            cargo_profile: self.cargo_profile.clone(),
+            cargo_profile: match &self.program {
+                Some(_) => "given program".to_owned(),
+                None => self.cargo_profile.clone(),
+            },
             epochs: self.epochs.unwrap_or(self.profile.epochs),
             train_walkers: self.train_walkers.or(self.profile.train_walkers),
             proposal_steps: self.profile.proposal_steps,
@@ -266,6 +296,7 @@ pub(super) fn smoke(workspace: &Workspace) -> Result<()> {
         jobs: None,
         device: "cpu".to_owned(),
         out: Some(out),
+        program: None,
         cargo_profile: "dev".to_owned(),
         train_walkers: None,
         test_walkers: None,

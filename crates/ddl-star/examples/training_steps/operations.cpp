@@ -23,7 +23,7 @@ const char* const COUNTED[] = {
     "aten::masked_fill", "aten::masked_fill_", "aten::mean", "aten::mm", "aten::mul", "aten::mul_",
     "aten::native_layer_norm", "aten::native_layer_norm_backward", "aten::neg", "aten::pow", "aten::random_",
     "aten::reciprocal", "aten::rsub", "aten::sqrt", "aten::sub", "aten::sub_", "aten::sum",
-    "aten::threshold_backward"};
+    "aten::threshold_backward", "aten::zero_"};
 
 std::mutex mutex;
 std::map<std::string, long> counts;

@@ -43,9 +43,13 @@ fn kernels_and_tape_give_the_gradients_of_libtorch() {
             feed_forward_width: 96,
             ..StarConfig::published(variant)
         };
-        let gradient = |kind: Kind| {
+        let gradient = |kind: Kind, plain: bool| {
             let network = StarNetwork::with_precision(config.clone(), 3, cpu, kind).unwrap();
-            let pass = Pass::training(Mode::Evaluate, 0, network.parameters());
+            let pass = if plain {
+                Pass::plain(Mode::Evaluate)
+            } else {
+                Pass::training(Mode::Evaluate, 0, network.parameters())
+            };
             assert_eq!(pass.has_kernels(), kind == Kind::Float);
             let batch = &batches(kind)[scenes];
             let noise = NoiseInput::Draws(Tensor::ones([1, 16], (kind, tch::Device::Cpu)) * 0.3);
@@ -56,8 +60,12 @@ fn kernels_and_tape_give_the_gradients_of_libtorch() {
             let gradient = pass.gradient(&loss, network.parameters()).unwrap();
             (loss.double_value(&[]), gradient.to_kind(Kind::Double))
         };
-        let (loss, ours) = gradient(Kind::Float);
-        let (known_loss, known) = gradient(Kind::Double);
+        let (loss, ours) = gradient(Kind::Float, false);
+        let (known_loss, known) = gradient(Kind::Double, true);
+        // On CUDA, as in double precision: no kernels, and weights shared by all their uses.
+        let (_, shared) = gradient(Kind::Double, false);
+        let difference = (shared - &known).norm().double_value(&[]);
+        assert!(difference < 1e-12 * known.norm().double_value(&[]));
         assert!(
             (loss / known_loss - 1.0).abs() < 1e-5,
             "{variant}: {loss} {known_loss}"
