@@ -13,8 +13,8 @@ use std::process::Command;
 /// Set in the child: the file to write the growth to, the steps, and the bytes to lose at each.
 const CHILD: &str = "DDL_TESTS_TRAINING_MEMORY";
 const MIB: u64 = 1 << 20;
-/// Growth that counts as none: what allocators keep for themselves. Over 400 steps, 10 KiB a step.
-const TOLERANCE: u64 = 4 * MIB;
+/// Growth that counts as none: what allocators keep for themselves. Over 400 steps, 5 KiB a step.
+const TOLERANCE: u64 = 2 * MIB;
 
 /// Trains the steps of the batches that are visited round and round, losing `lost` bytes at each; how much more is resident
 /// after the last step than after the `first`.

@@ -24,8 +24,8 @@ use std::borrow::Borrow;
 /// anew at every frame; without goal shift, it is relative to the last observed position, which moves on. It is also made of the
 /// position relative to the mean of the scene, which runs over the frames and the walkers of the window, both others one frame
 /// later. Whoever carried tokens over would compute another function than the one that was trained. Within a
-/// forecast, where goals and window stand still, they are kept. Nor is who was near whom: a window has new walkers, and finding
-/// their neighbours takes a thousandth of a forecast.
+/// forecast, where goals and window stand still, they are kept. Nor is who was near whom: it is judged
+/// relative to a point that moves with the scene, and finding it anew takes less than a thousandth of a forecast.
 ///
 /// # Errors
 /// After an error of [`push`](Self::push) or [`push_certified`](LiveForecaster::push_certified) nothing has changed: the same
@@ -151,7 +151,7 @@ impl<M: Forecaster> LiveForecaster<M> {
         frame: i64,
         people: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Option<LiveForecast>, DdlError> {
-        self.push_with(frame, people, |model, window| model.forecast(window))
+        self.push_with(frame, people, M::forecast)
     }
 }
 
