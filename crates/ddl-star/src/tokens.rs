@@ -214,8 +214,10 @@ impl Tokens {
 
     /// All batch entries of all tokens, for libtorch, which goes on from there.
     pub(crate) fn joined(all: &[Self], pass: &Pass) -> Tensor {
-        let tensors: Vec<Tensor> = all.iter().map(Self::tensor).collect();
-        let joined = Tensor::cat(&tensors, 0);
+        let joined = match all {
+            [one] => one.tensor(),
+            all => Tensor::cat(&all.iter().map(Self::tensor).collect::<Vec<_>>(), 0),
+        };
         if !pass.is_taped() {
             return joined;
         }

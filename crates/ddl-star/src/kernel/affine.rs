@@ -1,5 +1,7 @@
 //! Affine maps of rows: the projections before and after attention, embeddings, the fusion of tokens.
 
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+
 mod product;
 #[cfg(test)]
 mod tests;

@@ -9,6 +9,7 @@ use super::simd::Simd;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Columns<'a> {
     numbers: &'a [f32],
+    rows: usize,
     /// Numbers in a row of the whole matrix.
     stride: usize,
     first: usize,
@@ -19,6 +20,7 @@ pub(super) struct Columns<'a> {
 #[derive(Debug)]
 pub(super) struct ColumnsMut<'a> {
     numbers: &'a mut [f32],
+    rows: usize,
     stride: usize,
     first: usize,
     count: usize,
@@ -40,6 +42,7 @@ impl<'a> Columns<'a> {
         );
         Self {
             numbers,
+            rows: numbers.len() / stride,
             stride,
             first,
             count,
@@ -48,7 +51,7 @@ impl<'a> Columns<'a> {
 
     #[inline(always)]
     pub(super) fn rows(&self) -> usize {
-        self.numbers.len() / self.stride
+        self.rows
     }
 
     #[inline(always)]
@@ -63,9 +66,10 @@ impl<'a> ColumnsMut<'a> {
     }
 
     pub(super) fn part(numbers: &'a mut [f32], stride: usize, first: usize, count: usize) -> Self {
-        let Columns { .. } = Columns::part(numbers, stride, first, count);
+        let rows = Columns::part(numbers, stride, first, count).rows;
         Self {
             numbers,
+            rows,
             stride,
             first,
             count,
@@ -74,7 +78,7 @@ impl<'a> ColumnsMut<'a> {
 
     #[inline(always)]
     pub(super) fn rows(&self) -> usize {
-        self.numbers.len() / self.stride
+        self.rows
     }
 
     #[inline(always)]
@@ -95,13 +99,12 @@ pub(super) fn load<S: Simd>(simd: S, row: &[f32], at: usize) -> S::Floats {
 /// Writes sixteen numbers of a row from `at`, as far as it goes.
 #[inline(always)]
 pub(super) fn store<S: Simd>(simd: S, value: S::Floats, row: &mut [f32], at: usize) {
-    match row.get_mut(at..at + LANES) {
-        Some(whole) => simd.store(value, &mut whole.as_chunks_mut().0[0]),
-        None => {
-            let mut numbers = [0.0; LANES];
-            simd.store(value, &mut numbers);
-            store_end(&numbers, row, at);
-        }
+    if let Some(whole) = row.get_mut(at..at + LANES) {
+        simd.store(value, &mut whole.as_chunks_mut().0[0]);
+    } else {
+        let mut numbers = [0.0; LANES];
+        simd.store(value, &mut numbers);
+        store_end(&numbers, row, at);
     }
 }
 

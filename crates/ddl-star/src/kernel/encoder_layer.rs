@@ -166,7 +166,7 @@ impl EncoderLayer {
             &mut of_qkv,
         );
         let parts = Parts::Together(&of_qkv);
-        self.project_backward(0, x, parts, &mut gx, of_weights);
+        self.project_backward(0, x, &parts, &mut gx, of_weights);
         gx
     }
 
@@ -231,7 +231,7 @@ impl EncoderLayer {
         self.over
             .backward(query, &views(memory), own.view(), &of_mixed, gradients);
         let parts = Parts::Apart(vec![&of_query, &of_own.key, &of_own.value]);
-        self.project_backward(0, x, parts, &mut gx, of_weights);
+        self.project_backward(0, x, &parts, &mut gx, of_weights);
         gx
     }
 
@@ -260,7 +260,7 @@ impl EncoderLayer {
     ) -> Buffer {
         let mut gx = Buffer::zeros(x.len());
         let parts = Parts::Apart(vec![&gradient.key, &gradient.value]);
-        self.project_backward(1, x, parts, &mut gx, of_weights);
+        self.project_backward(1, x, &parts, &mut gx, of_weights);
         gx
     }
 }

@@ -122,7 +122,7 @@ impl EncoderLayer {
         &self,
         first: usize,
         x: &[f32],
-        parts: Parts<'_>,
+        parts: &Parts<'_>,
         gx: &mut [f32],
         of_weights: &mut [f32],
     ) {
