@@ -73,7 +73,7 @@ impl MultiHeadAttention {
     /// `qkv` `[B, P, 3 * width]` -> `[B, P, width]`.
     fn among_walkers_by_libtorch(&self, qkv: &Tensor, seen: &Seen, pass: &Pass) -> Tensor {
         let entries = qkv.size()[0];
-        let rows = seen.to_rows(qkv);
+        let rows = seen.in_rows(qkv);
         let (count, length) = (rows.size()[0], rows.size()[1]);
         let parts = rows
             .view([count, length, 3, self.heads, self.width / self.heads])
@@ -94,7 +94,7 @@ impl MultiHeadAttention {
             false,
         );
         let mixed = mixed.transpose(1, 2).reshape([count, length, self.width]);
-        seen.from_rows(&mixed)
+        seen.out_of_rows(&mixed)
     }
 
     /// The same between the projections by [`AmongWalkers`], scene by scene.

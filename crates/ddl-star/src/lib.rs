@@ -35,6 +35,7 @@ mod tape;
 mod temporal;
 mod train;
 mod training_config;
+mod training_report;
 
 pub use batch::SceneBatch;
 pub use checkpoint::{load_parameters, save_parameters};
@@ -52,5 +53,6 @@ pub use proposal::{
 };
 pub use rollout::Rollout;
 pub use star::{NoiseInput, StarNetwork};
-pub use train::{EpochReport, StepReport, Trainer};
+pub use train::Trainer;
 pub use training_config::{LearningRateSchedule, TrainingConfig};
+pub use training_report::{EpochReport, StepReport};
