@@ -59,8 +59,12 @@ impl Workspace {
     /// The current folder, if it has a workspace's list of recordings; otherwise as [`Workspace::find`].
     pub(crate) fn here_or_find() -> Result<Self> {
         let here = env::current_dir().context("the current folder cannot be read")?;
+        Self::at_or_find(&here)
+    }
+
+    fn at_or_find(here: &Path) -> Result<Self> {
         if here.join("datasets/manifest.toml").is_file() {
-            return Self::at(&here);
+            return Self::at(here);
         }
         Self::find().with_context(|| {
             format!(
@@ -245,6 +249,17 @@ mod tests {
         let workspace = Workspace::find().unwrap();
         assert!(workspace.path("Cargo.toml").is_file());
         assert!(workspace.path("xtask/src/workspace.rs").is_file());
+    }
+
+    #[test]
+    fn a_folder_with_a_list_of_recordings_stands_for_the_workspace() {
+        let folder = tempfile::tempdir().unwrap();
+        let found = Workspace::at_or_find(folder.path()).unwrap();
+        assert_eq!(found.root(), Workspace::find().unwrap().root());
+        std::fs::create_dir(folder.path().join("datasets")).unwrap();
+        std::fs::write(folder.path().join("datasets/manifest.toml"), "").unwrap();
+        let here = Workspace::at_or_find(folder.path()).unwrap();
+        assert_eq!(here.root(), folder.path());
     }
 
     #[test]

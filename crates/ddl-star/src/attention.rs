@@ -51,7 +51,7 @@ impl MultiHeadAttention {
         let qkv = pass.linear(x, &self.in_proj_weight, &self.in_proj_bias);
         // Row by row: see `Packing`.
         let entries = qkv.size()[0];
-        let rows = seen.to_rows(&qkv);
+        let rows = seen.in_rows(&qkv);
         let (count, length) = (rows.size()[0], rows.size()[1]);
         let parts = rows
             .view([count, length, 3, self.heads, self.width / self.heads])
@@ -72,7 +72,7 @@ impl MultiHeadAttention {
             false,
         );
         let mixed = mixed.transpose(1, 2).reshape([count, length, self.width]);
-        self.out_proj.forward(&seen.from_rows(&mixed), pass)
+        self.out_proj.forward(&seen.out_of_rows(&mixed), pass)
     }
 
     /// Attention of the newest token over itself and the remembered ones.

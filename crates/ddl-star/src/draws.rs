@@ -75,9 +75,10 @@ impl StepDraws {
                 .f_reshape(shape)?
                 .f_to_device(device)
         };
-        let turns = match turned {
-            true => Some(tensor(&turns, &[count, 2, 2])?),
-            false => None,
+        let turns = if turned {
+            Some(tensor(&turns, &[count, 2, 2])?)
+        } else {
+            None
         };
         Ok(Self {
             steps,

@@ -39,6 +39,7 @@ mod temporal;
 mod tokens;
 mod train;
 mod training_config;
+mod training_report;
 mod yardstick;
 
 pub use batch::SceneBatch;
@@ -58,6 +59,7 @@ pub use proposal::{
 };
 pub use rollout::Rollout;
 pub use star::{NoiseInput, StarNetwork};
-pub use train::{EpochReport, StepReport, Trainer};
+pub use train::Trainer;
 pub use training_config::{LearningRateSchedule, TrainingConfig};
+pub use training_report::{EpochReport, StepReport};
 pub use yardstick::MatrixProduct;

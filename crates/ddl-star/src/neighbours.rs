@@ -112,18 +112,18 @@ impl Seen {
     ///
     /// # Shapes
     /// `x` `[B, P, n]` -> `[B * R, L, n]`.
-    pub(crate) fn to_rows(&self, x: &Tensor) -> Tensor {
+    pub(crate) fn in_rows(&self, x: &Tensor) -> Tensor {
         let rows = self.neighbours.rows();
         let length = rows.mask.size()[3];
         x.index_select(1, &rows.walkers)
             .view([-1, length, x.size()[2]])
     }
 
-    /// Undoes [`to_rows`](Self::to_rows).
+    /// Undoes [`in_rows`](Self::in_rows).
     ///
     /// # Shapes
     /// `x` `[B * R, L, n]` -> `[B, P, n]`.
-    pub(crate) fn from_rows(&self, x: &Tensor) -> Tensor {
+    pub(crate) fn out_of_rows(&self, x: &Tensor) -> Tensor {
         let rows = self.neighbours.rows();
         let (places, width) = (rows.walkers.size()[0], x.size()[2]);
         x.reshape([-1, places, width]).index_select(1, &rows.places)

@@ -312,19 +312,4 @@ pub(super) fn smoke(workspace: &Workspace) -> Result<()> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn unknown_names_are_refused_with_the_known_ones() {
-        let known = VARIANTS.map(str::to_owned);
-        check_names("variant", &["star".to_owned()], &known).unwrap();
-        let message = check_names("variant", &["ful".to_owned()], &known)
-            .unwrap_err()
-            .to_string();
-        assert_eq!(
-            message,
-            "there is no variant \"ful\": choose from full, no-goal-shift, no-dynamics, star"
-        );
-    }
-}
+mod tests;
