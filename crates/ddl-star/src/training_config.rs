@@ -98,13 +98,21 @@ impl Default for TrainingConfig {
     }
 }
 
+/// So that steps can be counted, whatever the windows.
+const MOST_EPOCHS: usize = 1_000_000;
+
 impl TrainingConfig {
     /// Checks every field.
     ///
     /// # Errors
     /// [`StarError::Config`] naming the first field that is out of range.
     pub fn check(&self) -> Result<(), StarError> {
-        require(self.epochs > 0, "epochs", &self.epochs, "at least 1")?;
+        require(
+            (1..=MOST_EPOCHS).contains(&self.epochs),
+            "epochs",
+            &self.epochs,
+            "a whole number in 1..=1000000",
+        )?;
         let rate = self.learning_rate;
         require(
             rate.is_finite() && rate > 0.0,
@@ -152,6 +160,11 @@ mod tests {
     #[test]
     fn a_broken_value_is_named() {
         TrainingConfig::default().check().unwrap();
+        let endless = TrainingConfig {
+            epochs: usize::MAX,
+            ..TrainingConfig::default()
+        };
+        assert!(endless.check().unwrap_err().to_string().contains("epochs"));
         let bad = TrainingConfig {
             learning_rate: f64::NAN,
             ..TrainingConfig::default()
