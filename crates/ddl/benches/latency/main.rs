@@ -26,7 +26,7 @@ use std::path::Path;
 type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
 /// Widths of the feed-forward blocks; the first is the published one.
-const WIDTHS: [i64; 6] = [2048, 512, 256, 128, 64, 32];
+const WIDTHS: [i64; 7] = [2048, 512, 256, 128, 64, 32, 16];
 
 fn main() -> Result<()> {
     // `cargo bench` says so; anything else wants to see that it runs.
@@ -109,7 +109,11 @@ fn forecast(run: &Path, window: &Window, turns: usize) -> Result<Row> {
     let star = &model.config().star;
     let device = ComputeDevice::open(DeviceChoice::Cpu)?;
     let network = StarNetwork::new(star.clone(), 0, device)?;
-    load_parameters(network.parameters(), &model.run().model())?;
+    load_parameters(
+        network.parameters(),
+        &model.config().network_origin(),
+        &model.run().model(),
+    )?;
     let windows = std::slice::from_ref(window);
     let sets = model.goal_model().goals(windows)?.remove(0);
     let goals: Vec<Vec<Position>> = sets.iter().map(|set| set.goals().to_vec()).collect();

@@ -2,7 +2,7 @@
 
 use crate::Result;
 use ddl::data::Dataset;
-use ddl::star::{ComputeDevice, StarNetwork, TrainingConfig, save_parameters};
+use ddl::star::{ComputeDevice, StarConfig, StarNetwork, TrainingConfig, save_parameters};
 use ddl::{
     DeviceChoice, GoalRecipe, RunConfig, RunDirectory, TrainingRequest, TrainingStage, Variant,
 };
@@ -18,7 +18,7 @@ pub(crate) fn run(dataset: &Dataset, folder: &Path) -> Result<RunDirectory> {
     }
     let request = TrainingRequest {
         fold: "corridor".to_owned(),
-        variant: Variant::Full,
+        star: StarConfig::published(Variant::Full),
         training: TrainingConfig {
             epochs: 1,
             batch_walkers: 1,
@@ -43,7 +43,7 @@ pub(crate) fn widen(run: &RunDirectory, feed_forward_width: i64) -> Result<()> {
     config.star.feed_forward_width = feed_forward_width;
     let device = ComputeDevice::open(DeviceChoice::Cpu)?;
     let network = StarNetwork::new(config.star.clone(), 1, device)?;
-    save_parameters(network.parameters(), &run.model())?;
+    save_parameters(network.parameters(), &config.network_origin(), &run.model())?;
     let text = serde_json::to_string_pretty(&config)?;
     Ok(ddl::write_atomically(
         &run.path().join("config.json"),
