@@ -31,7 +31,7 @@ fn until_first_output(folder: &Path) -> Option<Duration> {
 
 /// Processor time and not the clock's, so that other work on the machine does not decide.
 #[test]
-fn the_first_output_comes_within_a_second() {
+fn the_first_output_comes_soon() {
     let folder = tiny_model::folder(Variant::Full);
     let tracks = own_tracks::csv(&own_tracks::three_people(8));
     std::fs::write(folder.path().join("tracks.csv"), tracks).unwrap();

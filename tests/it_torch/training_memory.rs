@@ -13,8 +13,8 @@ use std::process::Command;
 /// Set in the child: the file to write the growth to, the steps, and the bytes to lose at each.
 const CHILD: &str = "DDL_TESTS_TRAINING_MEMORY";
 const MIB: u64 = 1 << 20;
-/// Growth that counts as none: what allocators keep for themselves. Over 400 steps, 5 KiB a step.
-const TOLERANCE: u64 = 2 * MIB;
+/// Growth that counts as none: what allocators keep for themselves, two huge pages among it. Over 900 steps, 7 KiB a step.
+const TOLERANCE: u64 = 6 * MIB;
 
 /// Trains the steps of the batches that are visited round and round, losing `lost` bytes at each; how much more is resident
 /// after the last step than after the `first`.
@@ -86,9 +86,9 @@ fn steps_do_not_add_up_in_memory() {
     };
     // 20 MiB are lost on purpose: seen, or the test shows nothing
     assert!((15 * MIB..30 * MIB).contains(&lossy), "{lossy} bytes");
-    let growth = growth_alone(folder.path(), [100, 500, 0]).unwrap();
+    let growth = growth_alone(folder.path(), [100, 1000, 0]).unwrap();
     assert!(
         growth <= TOLERANCE,
-        "{growth} bytes more after 500 steps than after 100"
+        "{growth} bytes more after 1,000 steps than after 100"
     );
 }

@@ -24,15 +24,15 @@ pub fn processor_time(id: u32) -> Option<Duration> {
     ))
 }
 
-/// Bytes of this process that are in memory now.
+/// Bytes of this process that are in memory now, or were and are swapped out.
 #[must_use]
 pub fn resident_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmRSS:"))?;
-    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(1024 * kibibytes)
+    let kibibytes = |name: &str| -> Option<u64> {
+        let line = status.lines().find_map(|line| line.strip_prefix(name))?;
+        line.trim().strip_suffix("kB")?.trim().parse().ok()
+    };
+    Some(1024 * (kibibytes("VmRSS:")? + kibibytes("VmSwap:").unwrap_or(0)))
 }
 
 #[cfg(test)]

@@ -19,6 +19,7 @@ const NAME: &str = "live";
 /// - Whoever is missing in a frame, also in an empty one, is forgotten, and starts anew when seen again. So what is kept is
 ///   bounded by the people of the last frame, 8 positions each.
 /// - After an error nothing has changed: the same frame can be pushed again, corrected.
+/// - A frame far ahead is a gap too, and earlier ones come too early then: [`clear`](Self::clear) starts anew.
 ///
 /// ```
 /// use ddl_data::{LiveTracks, PedestrianId};
@@ -81,6 +82,12 @@ impl LiveTracks {
             frame_step,
             ..Self::new()
         })
+    }
+
+    /// Forgets everybody and the last frame: any frame may come next, as when a tracker starts anew.
+    pub fn clear(&mut self) {
+        self.last_frame = None;
+        self.walkers.clear();
     }
 
     /// Raw frames in one step of 0.4 s.
@@ -231,7 +238,7 @@ pub enum LiveError {
     /// A frame that goes back in time, or comes less than 0.4 s after the last one.
     #[error(
         "frame {frame} comes too early: the last one was {last}, the next one 0.4 s later is {due}; leave frames in between \
-         out, or give another frame step"
+         out, give another frame step, or clear the tracks when the tracker starts anew"
     )]
     TooEarly {
         /// The raw frame number.

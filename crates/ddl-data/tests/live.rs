@@ -183,3 +183,19 @@ fn a_step_of_nothing_is_refused() {
         assert_eq!(error, Err(LiveError::FrameStep { found }));
     }
 }
+
+/// A frame far ahead by mistake, or a tracker that counts from 0 again.
+#[test]
+fn what_was_cleared_starts_anew() {
+    let one = || [(PedestrianId(1), [0.0, 0.0])];
+    let mut tracks = LiveTracks::new();
+    tracks.push(1 << 52, one()).unwrap();
+    let error = tracks.push(0, one()).unwrap_err();
+    assert!(error.to_string().contains("clear"), "{error}");
+    tracks.clear();
+    assert_eq!((tracks.len(), tracks.last_frame()), (0, None));
+    for frame in 0..7 {
+        assert!(tracks.push(frame, one()).unwrap().is_none());
+    }
+    assert!(tracks.push(7, one()).unwrap().is_some());
+}

@@ -6,7 +6,7 @@ use crate::origin::Origin;
 use crate::parameters::Parameters;
 use safetensors::SafeTensors;
 use safetensors::tensor::{Dtype, TensorView};
-use std::io::Write as _;
+use std::io::{Read as _, Write as _};
 use std::path::Path;
 use tch::{Kind, Tensor};
 
@@ -102,6 +102,7 @@ pub(crate) fn save_training(
 pub(crate) fn load_training(
     parameters: &Parameters,
     adam: &mut Adam,
+    most_steps: u64,
     origin: &Origin,
     path: &Path,
 ) -> Result<Progress, StarError> {
@@ -110,24 +111,41 @@ pub(crate) fn load_training(
     let weights = find(&tensors, WEIGHTS, &size, kind, path)?;
     let first = find(&tensors, FIRST_MOMENT, &size, kind, path)?;
     let second = find(&tensors, SECOND_MOMENT, &size, kind, path)?;
+    require_squares(second, path)?;
     let numbers: Vec<f64> = Vec::try_from(find(&tensors, PROGRESS, &[3], Kind::Double, path)?)?;
-    let steps = numbers[0];
-    if steps < 0.0 || steps.fract() != 0.0 {
-        return Err(bad(
-            path,
-            format!("the step count is {steps}, not a whole number"),
-        ));
-    }
+    let steps = whole_steps(numbers[0], most_steps, path)?;
     let _guard = tch::no_grad_guard();
     parameters.flat().shallow_clone().f_copy_(weights)?;
     adam.first_moment.f_copy_(first)?;
     adam.second_moment.f_copy_(second)?;
-    adam.set_steps(steps as u64);
+    adam.set_steps(steps);
     Ok(Progress {
-        steps: steps as u64,
+        steps,
         loss_sum: numbers[1],
         seconds: numbers[2],
     })
+}
+
+/// Adam divides by the root of its second moment: a negative one would turn weights into NaN.
+pub(crate) fn require_squares(second_moment: &Tensor, path: &Path) -> Result<(), StarError> {
+    if second_moment.lt(0.0).any().int64_value(&[]) == 0 {
+        return Ok(());
+    }
+    let problem = format!(
+        "{SECOND_MOMENT} holds negative numbers; delete it and run the same training again"
+    );
+    Err(bad(path, problem))
+}
+
+/// A number of steps as the file holds it.
+pub(crate) fn whole_steps(number: f64, most: u64, path: &Path) -> Result<u64, StarError> {
+    if number.fract() == 0.0 && (0.0..=most as f64).contains(&number) {
+        return Ok(number as u64);
+    }
+    let problem = format!(
+        "the step count is {number}, not a whole number in 0..={most}; delete it and run the same training again"
+    );
+    Err(bad(path, problem))
 }
 
 /// The tensor on the CPU, contiguous and without gradient.
@@ -215,7 +233,11 @@ pub(crate) fn read(
             format!("is {size} bytes long, a checkpoint of this network at most {most_bytes}"),
         ));
     }
-    let bytes = std::fs::read(path).map_err(io)?;
+    let mut bytes = Vec::new();
+    // What is no plain file may have more to say than its size.
+    let file = std::fs::File::open(path).map_err(io)?;
+    let most = most_bytes + HEADER_BYTES;
+    file.take(most).read_to_end(&mut bytes).map_err(io)?;
     let broken = |error: safetensors::SafeTensorError| {
         let problem = format!(
             "is not a whole safetensors file ({error}); delete it and run the same training again"

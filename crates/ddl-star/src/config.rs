@@ -102,7 +102,18 @@ pub struct StarConfig {
     pub time_step: f64,
 }
 
+/// As many as the kernels have room for.
+const MOST_HEADS: i64 = 256;
+/// Upper limits keep a damaged file from asking for all the memory there is.
+const MOST_LAYER_NUMBERS: i64 = 1 << 24;
+const MOST_LAYERS: usize = 64;
+
 impl StarConfig {
+    /// Weights of an encoder layer, without biases and normalisation.
+    fn layer_numbers(&self) -> i64 {
+        self.model_width * (4 * self.model_width + 2 * self.feed_forward_width)
+    }
+
     /// The published network: 32-wide tokens, 8 heads, 2048-wide feed-forward blocks, two spatial
     /// layers, 16 noise numbers, sigma = 1e-8, 0.4 s.
     #[must_use]
@@ -147,6 +158,25 @@ impl StarConfig {
                 "a whole number in 1..=65536",
             )?;
         }
+        require(
+            self.heads <= MOST_HEADS,
+            "heads",
+            &self.heads,
+            "at most 256",
+        )?;
+        let numbers = self.layer_numbers();
+        require(
+            numbers <= MOST_LAYER_NUMBERS,
+            "feed_forward_width",
+            &self.feed_forward_width,
+            "so that a layer has at most 2^24 weights",
+        )?;
+        require(
+            self.spatial_layers <= MOST_LAYERS,
+            "spatial_layers",
+            &self.spatial_layers,
+            "at most 64",
+        )?;
         require(
             self.model_width % self.heads == 0,
             "heads",
@@ -206,6 +236,18 @@ mod tests {
             ..good.clone()
         };
         assert!(bad.check().unwrap_err().to_string().contains("heads = 5"));
+        let too_many = StarConfig {
+            model_width: 512,
+            heads: 512,
+            ..good.clone()
+        };
+        assert!(too_many.check().unwrap_err().to_string().contains("heads"));
+        let too_wide = StarConfig {
+            model_width: 65_536,
+            feed_forward_width: 65_536,
+            ..good.clone()
+        };
+        assert!(too_wide.check().is_err());
         let bad = StarConfig { sigma: 0.0, ..good };
         assert!(bad.check().unwrap_err().to_string().contains("sigma"));
     }

@@ -10,8 +10,8 @@ use rand::RngExt as _;
 use rand_distr::StandardNormal;
 use tch::Tensor;
 
-/// Windows are rolled out together until they hold this many walkers: enough to fill the matrix
-/// products, few enough for libtorch's attention over the whole batch, where it is that, to stay cheap.
+/// Windows are rolled out together until they hold this many walkers: enough to fill the products, few enough for
+/// the tokens of their hypotheses to stay near the processor.
 const WALKERS_AT_ONCE: usize = 64;
 
 /// What the output layer is told besides the walkers' tokens.

@@ -1,9 +1,12 @@
 //! The heavy parts of the network, computed without libtorch: only what is needed, and what passes between two products
 //! stays in the cache.
 //!
-//! - [`feed_forward`]: the feed-forward block of an encoder layer;
-//! - [`among_walkers`]: attention of every walker over those of its scene that it sees, as [`scenes`] has it;
-//! - [`over_memory`]: attention of the newest token over the remembered ones.
+//! - [`encoder_layer`]: a whole encoder layer, made of
+//!   - [`affine`]: projections, and [`add_norm`]: residual connection and normalisation;
+//!   - [`among_walkers`]: attention of every walker over those of its scene that it sees, as [`scenes`] has it;
+//!   - [`over_memory`]: attention of the newest token over the remembered ones;
+//!   - [`feed_forward`]: the feed-forward block;
+//! - [`linear`]: an affine map between layers.
 //!
 //! A computation is written once, as a `Kernel`, with the arithmetic of any [`simd::Simd`], sixteen numbers at a time.
 //! [`instruction_set`] runs it with the fastest instructions that the machine has: those of `x86`, or what the compiler

@@ -1,4 +1,4 @@
-//! The three elementary layers: affine map, layer normalisation, feed-forward block.
+//! The two elementary layers: affine map and layer normalisation.
 
 use std::rc::Rc;
 

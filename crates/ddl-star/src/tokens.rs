@@ -148,7 +148,7 @@ impl Tokens {
         )
     }
 
-    /// max(0, x), entry by entry.
+    /// max(0, x), entry by entry; what is no number stays none.
     pub(crate) fn relu(&self, pass: &Pass) -> Self {
         let x = match self {
             Self::Tensor(x) => return Self::Tensor(x.relu()),
@@ -156,12 +156,12 @@ impl Tokens {
         };
         let mut numbers = Buffer::any(x.len());
         for (y, x) in numbers.iter_mut().zip(x.iter()) {
-            *y = x.max(0.0);
+            *y = if *x < 0.0 { 0.0 } else { *x };
         }
         Self::Rows(pass.made(x.shape, numbers, move |gradient, _| {
             let mut of_x = Buffer::any(x.len());
             for ((of_x, x), gradient) in of_x.iter_mut().zip(x.iter()).zip(gradient) {
-                *of_x = if *x > 0.0 { *gradient } else { 0.0 };
+                *of_x = if *x <= 0.0 { 0.0 } else { *gradient };
             }
             x.add_gradient(of_x);
         }))

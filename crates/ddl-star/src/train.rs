@@ -90,7 +90,8 @@ impl Trainer {
         &self.network
     }
 
-    /// Ends training and hands the network over.
+    /// Ends training and hands the network over. On CUDA, losses not read yet are never looked at: end at the
+    /// end of an epoch, or [`save`](Self::save) first.
     #[must_use]
     pub fn into_network(self) -> StarNetwork {
         self.network
@@ -133,8 +134,9 @@ impl Trainer {
     /// # Errors
     /// [`StarError::Checkpoint`] when the file is of another origin, or not a whole state of this network.
     pub fn resume(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
-        self.progress =
-            checkpoint::load_training(self.network.parameters(), &mut self.adam, origin, path)?;
+        let (_, total) = self.steps();
+        let parameters = self.network.parameters();
+        self.progress = checkpoint::load_training(parameters, &mut self.adam, total, origin, path)?;
         self.unread.clear();
         self.gate.reopen();
         Ok(())

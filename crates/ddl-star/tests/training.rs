@@ -170,27 +170,32 @@ fn weights_survive_the_file_and_broken_files_are_refused() {
 
 #[test]
 fn a_loss_that_is_no_number_stops_the_run_and_names_the_batch() {
-    let mut trainer = trainer(Variant::Full, 1);
-    let parameters = trainer.network().parameters();
-    {
-        let _guard = tch::no_grad_guard();
-        let _ = parameters
-            .get("output_layer.bias")
-            .unwrap()
-            .shallow_clone()
-            .fill_(f64::NAN);
+    // At the end of the network, which libtorch computes, and at its beginning, from where it has to come through kernels.
+    for bias in [
+        "output_layer.bias",
+        "input_embedding_layer_temporal.bias",
+        "input_embedding_layer_spatial.bias",
+        "fusion_layer.bias",
+    ] {
+        let mut trainer = trainer(Variant::Full, 1);
+        {
+            let _guard = tch::no_grad_guard();
+            let parameters = trainer.network().parameters();
+            let bias = parameters.get(bias).unwrap();
+            let _ = bias.shallow_clone().fill_(f64::NAN);
+        }
+        let error = trainer.step().unwrap_err();
+        assert!(
+            matches!(
+                error,
+                StarError::NonFinite {
+                    epoch: 1,
+                    batch: 0,
+                    ..
+                }
+            ),
+            "{bias}: {error}"
+        );
+        assert!(error.to_string().contains('@'), "{error}");
     }
-    let error = trainer.step().unwrap_err();
-    assert!(
-        matches!(
-            error,
-            StarError::NonFinite {
-                epoch: 1,
-                batch: 0,
-                ..
-            }
-        ),
-        "{error}"
-    );
-    assert!(error.to_string().contains('@'), "{error}");
 }

@@ -7,11 +7,14 @@ use ddl_goal::ExpertLibrary;
 use ddl_star::Origin;
 use safetensors::SafeTensors;
 use safetensors::tensor::{Dtype, TensorView};
+use std::io::Read as _;
 use std::path::Path;
 
 const TRACKS: &str = "tracks";
 /// Bytes of a track: 20 positions of two f64.
 const TRACK_BYTES: usize = WINDOW * 2 * 8;
+/// Room for the header of the file.
+const HEADER_BYTES: usize = 1 << 20;
 
 /// The library of all walkers of the training windows.
 ///
@@ -41,12 +44,23 @@ pub(crate) fn save(library: &ExpertLibrary, origin: &Origin, path: &Path) -> Res
     write_atomically(path, &file)
 }
 
-/// The library of a run of this origin.
+/// The library of a run of this origin, with as many tracks as its configuration says.
 ///
 /// # Errors
 /// When the file is broken, or belongs to another run.
-pub(crate) fn load(origin: &Origin, path: &Path) -> Result<ExpertLibrary, DdlError> {
-    let bytes = std::fs::read(path).map_err(|error| DdlError::io(path, error))?;
+pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<ExpertLibrary, DdlError> {
+    // Nothing more is read, and no room made, than the library of the run takes.
+    let most = (tracks * TRACK_BYTES + HEADER_BYTES) as u64;
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(|error| DdlError::io(path, error))?;
+    file.take(most + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| DdlError::io(path, error))?;
+    if bytes.len() as u64 > most {
+        let problem =
+            format!("is longer than {most} bytes, which is all that {tracks} tracks take");
+        return Err(DdlError::run(path, problem));
+    }
     let broken = |error: safetensors::SafeTensorError| {
         let problem = format!(
             "is not a whole safetensors file ({error}); delete it and run the same training again"
@@ -64,15 +78,15 @@ pub(crate) fn load(origin: &Origin, path: &Path) -> Result<ExpertLibrary, DdlErr
     let view = file
         .tensor(TRACKS)
         .map_err(|error| DdlError::run(path, error.to_string()))?;
-    if view.dtype() != Dtype::F64 || view.shape().len() != 3 || view.shape()[1..] != [WINDOW, 2] {
+    if view.dtype() != Dtype::F64 || view.shape() != [tracks, WINDOW, 2] {
         let problem = format!(
-            "`{TRACKS}` is {:?} {:?}, expected f64 tracks of {WINDOW} positions",
+            "`{TRACKS}` is {:?} {:?}, expected {tracks} f64 tracks of {WINDOW} positions",
             view.dtype(),
             view.shape()
         );
         return Err(DdlError::run(path, problem));
     }
-    let tracks = view
+    let tracks: Vec<Vec<Position>> = view
         .data()
         .chunks_exact(TRACK_BYTES)
         .map(|track| {

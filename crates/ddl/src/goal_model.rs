@@ -41,7 +41,7 @@ impl GoalModel {
         config: RunConfig,
         device: ComputeDevice,
     ) -> Result<Self, DdlError> {
-        let library = experts::load(&config.goals_origin(), &run.experts())?;
+        let library = experts::load(&config.goals_origin(), config.data.walkers, &run.experts())?;
         let params = config.goals.retrieval.clone().query(QuerySpan::Observed);
         let estimator = GoalEstimator::new(params.check()?, library)?;
         let proposer = match &config.goals.proposal {

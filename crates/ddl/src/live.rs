@@ -114,6 +114,17 @@ impl<M> LiveForecaster<M> {
         &self.model
     }
 
+    /// Ends watching and hands over what forecasts.
+    #[must_use]
+    pub fn into_model(self) -> M {
+        self.model
+    }
+
+    /// Forgets everybody and the last frame: any frame may come next, as when a tracker starts anew.
+    pub fn clear(&mut self) {
+        self.tracks.clear();
+    }
+
     /// What is remembered of the frames so far.
     pub fn tracks(&self) -> &LiveTracks {
         &self.tracks

@@ -25,11 +25,11 @@ pub struct RunConfig {
     pub data: TrainingData,
     /// Weights are kept after every so many epochs.
     pub keep_every: usize,
-    /// Commit of the program that trained it, as far as known.
+    /// Commit of the program that began it, as far as known.
     pub commit: String,
-    /// libtorch that it was trained on.
+    /// libtorch that it was begun with.
     pub libtorch: String,
-    /// Device it was trained on.
+    /// Device it was begun on; it may have gone on elsewhere.
     pub device: String,
 }
 

@@ -8,9 +8,37 @@ use super::lanes::LANES;
 /// Buffers that a thread keeps for the next ones: to ask the system for memory, and to be given it a page at a time, would
 /// take as long as the work on small batches.
 const SPARE: usize = 64;
+/// Numbers that all of them may hold together, 32 MiB: what one crowded frame took is given back.
+const SPARE_NUMBERS: usize = 1 << 23;
+
+#[derive(Debug)]
+struct Spares {
+    buffers: Vec<Vec<f32>>,
+    numbers: usize,
+}
 
 thread_local! {
-    static SPARES: RefCell<Vec<Vec<f32>>> = const { RefCell::new(Vec::new()) };
+    static SPARES: RefCell<Spares> = const {
+        RefCell::new(Spares {
+            buffers: Vec::new(),
+            numbers: 0,
+        })
+    };
+}
+
+impl Spares {
+    fn take(&mut self) -> Vec<f32> {
+        let buffer = self.buffers.pop().unwrap_or_default();
+        self.numbers -= buffer.len();
+        buffer
+    }
+
+    fn keep(&mut self, buffer: Vec<f32>) {
+        if self.buffers.len() < SPARE && self.numbers + buffer.len() <= SPARE_NUMBERS {
+            self.numbers += buffer.len();
+            self.buffers.push(buffer);
+        }
+    }
 }
 
 /// Numbers that begin where a register's load begins.
@@ -24,8 +52,7 @@ pub(crate) struct Buffer {
 impl Buffer {
     /// `count` numbers, whatever was there before.
     pub(crate) fn any(count: usize) -> Self {
-        let spare = SPARES.with_borrow_mut(Vec::pop);
-        let mut numbers = spare.unwrap_or_default();
+        let mut numbers = SPARES.with_borrow_mut(Spares::take);
         if numbers.len() < count + LANES {
             numbers.resize(count + LANES, 0.0);
         }
@@ -89,18 +116,25 @@ impl Drop for Buffer {
             return;
         }
         // At the end of a thread there is no place to keep it any more.
-        let _ = SPARES.try_with(|spares| {
-            let mut spares = spares.borrow_mut();
-            if spares.len() < SPARE {
-                spares.push(numbers);
-            }
-        });
+        let _ = SPARES.try_with(|spares| spares.borrow_mut().keep(numbers));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_kept_is_bounded() {
+        let many: Vec<Buffer> = (0..100).map(|_| Buffer::any(1 << 20)).collect();
+        drop(many);
+        drop(Buffer::any(2 * SPARE_NUMBERS));
+        SPARES.with_borrow(|spares| {
+            let kept: usize = spares.buffers.iter().map(Vec::len).sum();
+            assert_eq!(kept, spares.numbers);
+            assert!((1..=SPARE_NUMBERS).contains(&kept), "{kept} numbers");
+        });
+    }
 
     #[test]
     fn buffers_are_aligned_and_as_long_as_asked_for() {

@@ -1,7 +1,7 @@
 //! The state of a training under way, as one file.
 
 use crate::StarError;
-use crate::checkpoint::{bad, find, plain, read, write};
+use crate::checkpoint::{find, plain, read, require_squares, whole_steps, write};
 use crate::optimizer::Adam;
 use crate::origin::Origin;
 use crate::parameters::Parameters;
@@ -47,6 +47,7 @@ pub(super) fn load(
     parameters: &Parameters,
     average: &mut Tensor,
     adam: &mut Adam,
+    most_steps: u64,
     origin: &Origin,
     path: &Path,
 ) -> Result<Progress, StarError> {
@@ -57,20 +58,17 @@ pub(super) fn load(
         .iter()
         .map(|name| find(&tensors, name, &size, kind, path))
         .collect::<Result<Vec<_>, _>>()?;
+    require_squares(stored[3], path)?;
     let numbers: Vec<f64> = Vec::try_from(find(&tensors, PROGRESS, &[2], Kind::Double, path)?)?;
-    let steps = numbers[0];
-    if steps < 0.0 || steps.fract() != 0.0 {
-        let problem = format!("the step count is {steps}, not a whole number");
-        return Err(bad(path, problem));
-    }
+    let steps = whole_steps(numbers[0], most_steps, path)?;
     let _guard = tch::no_grad_guard();
     parameters.flat().shallow_clone().f_copy_(stored[0])?;
     average.f_copy_(stored[1])?;
     adam.first_moment.f_copy_(stored[2])?;
     adam.second_moment.f_copy_(stored[3])?;
-    adam.set_steps(steps as u64);
+    adam.set_steps(steps);
     Ok(Progress {
-        steps: steps as u64,
+        steps,
         distance: numbers[1],
     })
 }

@@ -136,8 +136,14 @@ impl ProposalTrainer {
     /// [`StarError::Checkpoint`] when the file is of another origin, or not a whole state of this network.
     pub fn resume(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
         let parameters = self.network.parameters();
-        self.progress =
-            checkpoint::load(parameters, &mut self.average, &mut self.adam, origin, path)?;
+        self.progress = checkpoint::load(
+            parameters,
+            &mut self.average,
+            &mut self.adam,
+            self.training.steps,
+            origin,
+            path,
+        )?;
         Ok(())
     }
 

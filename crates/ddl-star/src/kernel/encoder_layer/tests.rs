@@ -1,4 +1,4 @@
-//! What must hold for every layer. That it is the layer of libtorch is tested where both meet, in `pass.rs`.
+//! What must hold for every layer. That it is the layer of libtorch is tested where both meet, in `pass/tests.rs`.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::{Dropouts, EncoderLayer, Remembered, Sizes};
