@@ -4,7 +4,9 @@ use crate::crowd;
 use crate::folder_contents::{self, Contents};
 use ddl::data::Dataset;
 use ddl::star::{ProposalConfig, TrainingConfig};
-use ddl::{Ddl, DeviceChoice, GoalRecipe, RunDirectory, TrainingRequest, TrainingStage, Variant};
+use ddl::{
+    Ddl, DeviceChoice, GoalRecipe, Precision, RunDirectory, TrainingRequest, TrainingStage, Variant,
+};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::{Mutex, Once, OnceLock};
@@ -107,6 +109,7 @@ pub fn request(fold: &str, variant: Variant, walkers: usize, out: &Path) -> Trai
         until: TrainingStage::Network,
         out: RunDirectory::new(out),
         device: DeviceChoice::Cpu,
+        precision: Precision::F32,
         commit: "of the tests".to_owned(),
     }
 }

@@ -83,6 +83,7 @@ impl EncoderLayer {
         let (hidden, width) = (hidden as usize, width as usize);
         let kernel = pass.packed(&self.name, || {
             FeedForward::pack(
+                pass.precision(),
                 &numbers(&self.linear1.weight),
                 &numbers(&self.linear1.bias),
                 &numbers(&self.linear2.weight),

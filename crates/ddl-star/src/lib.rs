@@ -18,6 +18,7 @@ mod numbers;
 mod optimizer;
 mod parameters;
 mod pass;
+mod precision;
 mod proposal;
 mod remembered;
 mod rollout;
@@ -40,6 +41,7 @@ pub use forecast::{Noise, WindowRollout};
 pub use layers::Mode;
 pub use loss::mean_squared_distance;
 pub use parameters::Parameters;
+pub use precision::Precision;
 pub use proposal::{
     ProposalConfig, ProposalExample, ProposalNetwork, ProposalStep, ProposalTrainer,
     ProposalTraining, ProposedEnds, WalkerView,

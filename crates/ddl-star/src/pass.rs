@@ -9,6 +9,7 @@ use tch::{Kind, TchError, Tensor};
 use crate::kernel::{Dropout, FeedForward, Gradients};
 use crate::layers::Mode;
 use crate::parameters::Parameters;
+use crate::precision::Precision;
 use crate::tape::Tape;
 
 /// What a forward pass carries along.
@@ -18,6 +19,7 @@ use crate::tape::Tape;
 #[derive(Debug)]
 pub(crate) struct Pass {
     mode: Mode,
+    precision: Precision,
     /// Seed of the next dropout.
     seed: Cell<u64>,
     tape: Option<Tape>,
@@ -32,6 +34,7 @@ impl Pass {
     pub(crate) fn plain(mode: Mode) -> Self {
         Self {
             mode,
+            precision: Precision::F32,
             seed: Cell::new(0),
             tape: None,
             packed: RefCell::default(),
@@ -46,6 +49,15 @@ impl Pass {
             tape: Some(Tape::default()),
             ..Self::plain(mode)
         }
+    }
+
+    /// The same, whose kernels have that precision.
+    pub(crate) fn in_precision(self, precision: Precision) -> Self {
+        Self { precision, ..self }
+    }
+
+    pub(crate) fn precision(&self) -> Precision {
+        self.precision
     }
 
     pub(crate) fn mode(&self) -> Mode {

@@ -33,7 +33,8 @@ impl StarNetwork {
         noise: &NoiseInput,
         mode: Mode,
     ) -> Tensor {
-        self.teacher_forced_in(batch, goals, noise, &Pass::plain(mode))
+        let pass = Pass::plain(mode).in_precision(self.precision());
+        self.teacher_forced_in(batch, goals, noise, &pass)
     }
 
     /// [`teacher_forced`](Self::teacher_forced) in a pass of its own.
@@ -86,7 +87,7 @@ impl StarNetwork {
         horizon: usize,
         rule: StepRule,
     ) -> Rollout {
-        let pass = &Pass::plain(Mode::Evaluate);
+        let pass = &Pass::plain(Mode::Evaluate).in_precision(self.precision());
         let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
         let last = OBSERVED as i64 - 1;
         let hypotheses = goals.size()[0].max(noise.count());

@@ -145,7 +145,7 @@ impl Trainer {
             // Held from seeding to the last draw of dropout.
             let _generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
             let (noise, seed) = self.draw(step);
-            let pass = Pass::taped(Mode::Train, seed);
+            let pass = Pass::taped(Mode::Train, seed).in_precision(self.network.precision());
             (self.loss(&batch, &noise, &pass)?, pass)
         };
         let value = loss.double_value(&[]);

@@ -5,8 +5,8 @@ use crate::{DdlError, GoalRecipe, goal_training};
 use ddl_data::{Convention, Dataset, Window, WindowRule};
 use ddl_goal::RetrievalFrame;
 use ddl_star::{
-    ComputeDevice, DeviceChoice, ProposalStep, StarConfig, StarError, StarNetwork, StepReport,
-    Trainer, TrainingConfig, Variant, save_parameters,
+    ComputeDevice, DeviceChoice, Precision, ProposalStep, StarConfig, StarError, StarNetwork,
+    StepReport, Trainer, TrainingConfig, Variant, save_parameters,
 };
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
@@ -37,6 +37,8 @@ pub struct TrainingRequest {
     pub out: RunDirectory,
     /// Where to compute.
     pub device: DeviceChoice,
+    /// Precision of the feed-forward blocks' products; a later call may go on in another.
+    pub precision: Precision,
     /// Commit of the program, for the record.
     pub commit: String,
 }
@@ -133,7 +135,7 @@ pub fn train(
         },
         keep_every: request.training.epochs.div_ceil(KEPT_EPOCHS),
         commit: request.commit.clone(),
-        device: device.name().to_owned(),
+        device: request.precision.on(device),
     };
     run.claim(&config)?;
     goal_training::train(
@@ -149,7 +151,8 @@ pub fn train(
     if run.is_trained() || request.until == TrainingStage::Goals {
         return Ok(());
     }
-    let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
+    let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?
+        .in_precision(request.precision)?;
     let mut trainer = Trainer::new(network, windows, config.training.clone())?;
     if run.optimizer().is_file() {
         trainer.resume(&run.optimizer())?;

@@ -1,6 +1,6 @@
 //! `ddl train`.
 
-use super::{Machine, Telling, dataset};
+use super::{Exactness, Machine, Telling, dataset};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use anyhow::{Context as _, bail};
@@ -68,6 +68,8 @@ pub(crate) struct Train {
     #[command(flatten)]
     machine: Machine,
     #[command(flatten)]
+    exactness: Exactness,
+    #[command(flatten)]
     telling: Telling,
 }
 
@@ -105,6 +107,7 @@ impl Train {
             },
             out: RunDirectory::new(self.out),
             device: self.machine.device,
+            precision: self.exactness.precision(),
             commit: self.telling.commit,
         };
         // Each stage has its bar, from its first step on.

@@ -1,6 +1,7 @@
 //! The feed-forward block of an encoder layer: two affine maps, `ReLU` and dropout between them.
 
 mod backward;
+mod bf16;
 mod block;
 mod block_rows;
 mod dropout;
@@ -15,10 +16,12 @@ mod weights;
 pub(crate) use gradients::Gradients;
 
 use super::dropout::Dropout;
-use super::instruction_set::Dispatch;
 #[cfg(test)]
 use super::instruction_set::InstructionSet;
-use weights::Weights;
+use super::instruction_set::{Dispatch, PairDispatch};
+use crate::Precision;
+use bf16::PairPanel;
+use weights::{Sizes, Weights};
 
 /// y = W2 d(relu(W1 x + b1)) + b2, with dropout d.
 ///
@@ -26,8 +29,14 @@ use weights::Weights;
 /// backward pass computes them again.
 #[derive(Clone, Debug)]
 pub(crate) struct FeedForward {
-    weights: Weights,
-    dispatch: Dispatch,
+    arithmetic: Arithmetic,
+}
+
+/// The weights, and the instructions that take them.
+#[derive(Clone, Debug)]
+enum Arithmetic {
+    F32(Weights, Dispatch),
+    Bf16(Weights<PairPanel>, PairDispatch),
 }
 
 impl FeedForward {
@@ -40,6 +49,7 @@ impl FeedForward {
     /// # Panics
     /// When a width is 0 or a slice has another length.
     pub(crate) fn pack(
+        precision: Precision,
         w1: &[f32],
         b1: &[f32],
         w2: &[f32],
@@ -47,19 +57,43 @@ impl FeedForward {
         width: usize,
         hidden: usize,
     ) -> Self {
-        let mut weights = Weights::new(width, hidden);
-        weights.update([w1, b1, w2, b2]);
-        Self {
-            weights,
-            dispatch: Dispatch::detect(),
+        let weights = Weights::new([w1, b1, w2, b2], width, hidden);
+        let arithmetic = match precision {
+            Precision::F32 => Arithmetic::F32(weights, Dispatch::detect()),
+            Precision::Bf16 => {
+                let dispatch = PairDispatch::detect();
+                let weights = weights.map(|squares| bf16::round_panels(dispatch, squares));
+                Arithmetic::Bf16(weights, dispatch)
+            }
+        };
+        Self { arithmetic }
+    }
+
+    fn sizes(&self) -> Sizes {
+        match &self.arithmetic {
+            Arithmetic::F32(weights, _) => weights.sizes,
+            Arithmetic::Bf16(weights, _) => weights.sizes,
         }
     }
 
-    /// The same with other instructions than the fastest; `None` when the machine lacks them.
+    /// The same with other instructions than the fastest, bf16 emulated; `None` when the machine lacks them.
     #[cfg(test)]
     pub(super) fn with_instructions(mut self, set: InstructionSet) -> Option<Self> {
-        self.dispatch = Dispatch::new(set)?;
+        let dispatch = Dispatch::new(set)?;
+        match &mut self.arithmetic {
+            Arithmetic::F32(_, of_f32) => *of_f32 = dispatch,
+            Arithmetic::Bf16(_, of_pairs) => *of_pairs = PairDispatch::Emulated(dispatch),
+        }
         Some(self)
+    }
+
+    /// The arithmetic and its instructions, for messages.
+    #[cfg(test)]
+    pub(super) fn instructions(&self) -> String {
+        match &self.arithmetic {
+            Arithmetic::F32(_, dispatch) => format!("f32 by {dispatch:?}"),
+            Arithmetic::Bf16(_, dispatch) => format!("bf16 by {dispatch:?}"),
+        }
     }
 
     /// y for every row of x.
@@ -73,6 +107,9 @@ impl FeedForward {
     /// # Numerics
     /// For finite sums, an entry differs from the exact one by at most (width + hidden + 8) 2^-24 times the same formula
     /// with the absolute values of all its terms and without `ReLU`. It does not depend on the number of threads nor on the other rows.
+    ///
+    /// In bf16 x, W1, W2 and the hidden activations are rounded to it first, each by at most 2^-9 of itself; sums and biases
+    /// are `f32`, and what is said above holds of the formula with rounded numbers.
     pub(crate) fn forward(&self, x: &[f32], dropout: Option<Dropout>, y: &mut [f32]) {
         forward::run(self, x, dropout, y);
     }
@@ -91,6 +128,9 @@ impl FeedForward {
     /// An entry differs from the exact one by at most (width + hidden + 16) 2^-24 (for gx), (width + rows + 16) 2^-24 (for
     /// the others) times the formula with the absolute values of all its terms; where W1 x + b1 is 0 to rounding the
     /// derivative of `ReLU` may be taken as 0 or 1. Nothing depends on the number of threads.
+    ///
+    /// In bf16 gy is rounded as well, and what comes back to W1 x + b1 for gx and W1; sums are `f32`, as are the derivatives
+    /// with respect to b1 and b2 throughout.
     pub(crate) fn backward(
         &self,
         x: &[f32],

@@ -7,14 +7,15 @@
 
 use rayon::prelude::*;
 
-use super::FeedForward;
+use super::bf16::{Rounded, backward::PairBackward};
 use super::block::{BLOCK, Block, Panel, tile_mut};
 use super::block_rows::{BlockRows, ROWS};
 use super::dropout::Decisions;
 use super::gradients::{Gradients, Part};
 use super::hidden::{activate, deactivate};
 use super::product::{add_product, add_transposed_product, sum_of_rows};
-use super::weights::Weights;
+use super::weights::{Sizes, Weights};
+use super::{Arithmetic, FeedForward};
 use crate::kernel::dropout::Dropout;
 use crate::kernel::simd::{Simd, TiledKernel};
 
@@ -23,7 +24,7 @@ const GROUPS: usize = 8;
 /// Rows that a group goes through before the groups' gx are added up: they fit the second-level cache.
 const SPAN: usize = 512;
 /// Rows whose hidden activations of one block are kept for the derivatives of the weights, in the first-level cache.
-const KEPT: usize = 64;
+pub(super) const KEPT: usize = 64;
 
 pub(super) fn run(
     layer: &FeedForward,
@@ -32,14 +33,12 @@ pub(super) fn run(
     gx: &mut [f32],
     grads: &mut Gradients,
 ) {
-    let weights = &layer.weights;
-    let Weights {
+    let Sizes {
         width,
         hidden,
         columns,
         units,
-        ..
-    } = *weights;
+    } = layer.sizes();
     assert_eq!(x.len() % width, 0, "x is not made of rows of {width}");
     assert_eq!(x.len(), gy.len(), "entries of x and gy");
     assert_eq!(x.len(), gx.len(), "entries of x and gx");
@@ -61,21 +60,37 @@ pub(super) fn run(
     for (span, ((x, gy), gx)) in pieces.zip(gx.chunks_mut(SPAN * width)).enumerate() {
         let x = BlockRows::padded(x, width);
         let gy = BlockRows::padded(gy, width);
-        parts
-            .par_iter_mut()
-            .enumerate()
-            .for_each(|(g, (part, scratch))| {
-                layer.dispatch.run(Backward {
+        let (decisions, first) = (decisions.as_ref(), span * SPAN);
+        let groups = parts.par_iter_mut().enumerate();
+        match &layer.arithmetic {
+            Arithmetic::F32(weights, dispatch) => groups.for_each(|(g, (part, scratch))| {
+                dispatch.run(Backward {
                     weights,
-                    decisions: decisions.as_ref(),
-                    first: span * SPAN,
+                    decisions,
+                    first,
                     units: g * group,
                     x: &x,
                     gy: &gy,
                     scratch,
                     part,
                 });
-            });
+            }),
+            Arithmetic::Bf16(weights, dispatch) => {
+                let [x, gy] = [x, gy].map(|rows| Rounded::both_ways(*dispatch, &rows, columns));
+                groups.for_each(|(g, (part, scratch))| {
+                    dispatch.run(PairBackward {
+                        weights,
+                        decisions,
+                        first,
+                        units: g * group,
+                        x: &x,
+                        gy: &gy,
+                        scratch,
+                        part,
+                    });
+                });
+            }
+        }
         gx.par_chunks_mut(KEPT * width)
             .enumerate()
             .for_each(|(piece, gx)| {
@@ -88,17 +103,13 @@ pub(super) fn run(
 }
 
 /// What a group works on.
-struct Scratch {
+pub(super) struct Scratch {
     /// Its share of gx.
-    gx: BlockRows,
+    pub(super) gx: BlockRows,
     /// Sums over a span of the derivatives of W1, rows hidden units, for one block of them.
-    w1: Vec<Panel>,
+    pub(super) w1: Vec<Panel>,
     /// Likewise of W2, rows entries of y.
-    w2: Vec<Panel>,
-    /// Hidden activations of some rows.
-    hidden: Vec<Block>,
-    /// Derivatives with respect to what they are activations of.
-    gradient: Vec<Block>,
+    pub(super) w2: Vec<Panel>,
 }
 
 impl Scratch {
@@ -107,8 +118,6 @@ impl Scratch {
             gx: BlockRows::zeros(rows, columns),
             w1: vec![[Block::ZERO; BLOCK]; columns],
             w2: vec![[Block::ZERO; BLOCK]; columns],
-            hidden: vec![Block::ZERO; KEPT],
-            gradient: vec![Block::ZERO; KEPT],
         }
     }
 }
@@ -140,21 +149,17 @@ impl TiledKernel for Backward<'_, '_> {
             scratch,
             part,
         } = self;
-        let Scratch {
-            gx,
-            w1,
-            w2,
-            hidden,
-            gradient,
-        } = scratch;
+        let Scratch { gx, w1, w2 } = scratch;
+        // Hidden activations of some rows, and the derivatives with respect to what they are activations of.
+        let [mut hidden, mut gradient] = [[Block::ZERO; KEPT]; 2];
         let scale = match decisions {
             Some(decisions) => decisions.scale,
             None => 1.0,
         };
-        for column in 0..weights.columns {
+        for column in 0..weights.sizes.columns {
             gx.column_mut(column).fill(Block::ZERO);
         }
-        for (u, b1) in part.b1.chunks_mut(BLOCK).enumerate() {
+        for u in 0..part.b1.len().div_ceil(BLOCK) {
             let unit = units + u;
             let of_unit = weights.unit(unit);
             w1.fill([Block::ZERO; BLOCK]);
@@ -163,37 +168,28 @@ impl TiledKernel for Backward<'_, '_> {
                 let count = KEPT.min(x.rows() - start);
                 for r in (0..count).step_by(R) {
                     let row = start + r;
-                    let hidden = tile_mut::<R>(hidden, r);
-                    let gradient = tile_mut::<R>(gradient, r);
+                    let hidden = tile_mut::<R>(&mut hidden, r);
+                    let gradient = tile_mut::<R>(&mut gradient, r);
                     activate::<S, R, V>(simd, of_unit, x, row, hidden);
                     if let Some(decisions) = decisions {
                         decisions.apply(simd, hidden, first + row, unit);
                     }
                     deactivate::<S, R, V>(simd, of_unit, gy, row, scale, hidden, gradient);
-                    for column in 0..weights.columns {
+                    for column in 0..weights.sizes.columns {
                         let gx = tile_mut(gx.column_mut(column), row);
                         add_product::<S, R, V>(simd, gx, gradient, of_unit.w1(column));
                     }
                 }
                 let (hidden, gradient) = (&hidden[..count], &gradient[..count]);
-                sum_of_rows::<S, V>(simd, gradient).add_to(b1);
-                for column in 0..weights.columns {
+                sum_of_rows::<S, V>(simd, gradient).add_to(&mut part.b1[u * BLOCK..]);
+                for column in 0..weights.sizes.columns {
                     let x = &x.column(column)[start..][..count];
                     let gy = &gy.column(column)[start..][..count];
                     add_transposed_product::<S, R, V>(simd, &mut w1[column], gradient, x);
                     add_transposed_product::<S, R, V>(simd, &mut w2[column], gy, hidden);
                 }
             }
-            for column in 0..weights.columns {
-                let rows = part.w1.chunks_exact_mut(weights.width).skip(u * BLOCK);
-                for (row, sums) in rows.zip(&w1[column]) {
-                    sums.add_to(&mut row[column * BLOCK..]);
-                }
-                let rows = part.w2.iter_mut().skip(column * BLOCK);
-                for (row, sums) in rows.zip(&w2[column]) {
-                    sums.add_to(&mut row[u * BLOCK..]);
-                }
-            }
+            part.add(u, [w1, w2], weights.sizes);
         }
     }
 }

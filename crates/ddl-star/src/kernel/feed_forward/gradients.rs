@@ -1,6 +1,7 @@
 //! Derivatives with respect to the weights.
 
-use super::block::BLOCK;
+use super::block::{BLOCK, Panel};
+use super::weights::Sizes;
 
 /// Sums of derivatives with respect to the weights, in libtorch's layout.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,4 +69,20 @@ pub(super) struct Part<'a> {
     pub(super) b1: &'a mut [f32],
     /// Their columns, of each row.
     pub(super) w2: Vec<&'a mut [f32]>,
+}
+
+impl Part<'_> {
+    /// Adds the sums for block `unit` of the part's hidden units: of W1, rows hidden units, and of W2, rows entries of y.
+    pub(super) fn add(&mut self, unit: usize, [w1, w2]: [&[Panel]; 2], sizes: Sizes) {
+        for column in 0..sizes.columns {
+            let rows = self.w1.chunks_exact_mut(sizes.width).skip(unit * BLOCK);
+            for (row, sums) in rows.zip(&w1[column]) {
+                sums.add_to(&mut row[column * BLOCK..]);
+            }
+            let rows = self.w2.iter_mut().skip(column * BLOCK);
+            for (row, sums) in rows.zip(&w2[column]) {
+                sums.add_to(&mut row[unit * BLOCK..]);
+            }
+        }
+    }
 }

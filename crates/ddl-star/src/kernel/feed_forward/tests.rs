@@ -5,6 +5,7 @@ mod exact;
 mod laws;
 
 use super::{FeedForward, Gradients};
+use crate::Precision;
 use crate::kernel::Dropout;
 use crate::kernel::instruction_set::InstructionSet;
 use exact::Case;
@@ -15,6 +16,14 @@ fn sets() -> Vec<InstructionSet> {
     let sets = InstructionSet::available();
     assert!(sets.contains(&InstructionSet::Portable));
     sets
+}
+
+/// The layer of a case with every instruction set, and with what the machine is fastest with.
+fn layers(case: &Case) -> Vec<FeedForward> {
+    let with = |set| case.layer().with_instructions(set).unwrap();
+    let mut layers: Vec<_> = sets().into_iter().map(with).collect();
+    layers.push(case.layer());
+    layers
 }
 
 #[track_caller]
@@ -41,13 +50,14 @@ fn check(case: &Case) {
     let rows = case.x.len() / case.width;
     let (of_y, of_gx) = (case.width + case.hidden + 8, case.width + case.hidden + 16);
     let of_weights = case.width + rows + 16;
-    for set in sets() {
-        let layer = case.layer().with_instructions(set).unwrap();
+    for layer in layers(case) {
         let (y, gx, grads) = case.run(&layer);
-        let name =
-            |what: &str| format!("{set:?}, {what}, {} x {rows} x {}", case.width, case.hidden);
-        let none = vec![0.0; y.len()];
-        let bounds = scaled(of_y, [&exact.y.sizes, &none]);
+        let name = |what: &str| {
+            let (width, hidden) = (case.width, case.hidden);
+            let way = layer.instructions();
+            format!("{way}, {what}, {width} x {rows} x {hidden}")
+        };
+        let bounds = scaled(of_y, [&exact.y.sizes, &exact.y.doubts]);
         assert_near(&name("y"), &y, &exact.y.values, &bounds);
         let found = [gx, grads.w1, grads.b1, grads.w2, grads.b2];
         let steps = [of_gx, of_weights, of_weights, of_weights, of_weights];
@@ -66,10 +76,13 @@ fn values_and_gradients_are_those_of_the_formula() {
         for rows in [1, 7, 8, 25, 65] {
             check(&Case::new(width, hidden, rows, None));
             check(&Case::new(width, hidden, rows, dropout(0.1)));
+            check(&Case::new(width, hidden, rows, None).in_bf16());
+            check(&Case::new(width, hidden, rows, dropout(0.1)).in_bf16());
         }
     }
     check(&Case::new(32, 64, 1301, dropout(0.5)));
     check(&Case::new(33, 300, 531, dropout(0.9)));
+    check(&Case::new(33, 300, 531, dropout(0.9)).in_bf16());
 }
 
 #[test]
@@ -92,12 +105,27 @@ fn gradients_are_limits_of_differences() {
 }
 
 #[test]
+fn bf16_is_bf16() {
+    let case = Case::new(32, 256, 40, None);
+    let (reference, ..) = case.run(&case.layer());
+    let case = case.in_bf16();
+    let (rounded, ..) = case.run(&case.layer());
+    let norm = |values: &mut dyn Iterator<Item = f32>| values.map(|v| v * v).sum::<f32>().sqrt();
+    let difference = norm(&mut reference.iter().zip(&rounded).map(|(a, b)| a - b));
+    let relative = difference / norm(&mut reference.iter().copied());
+    // Some roundings of up to 2^-9 that add up like noise.
+    assert!((1e-3..1e-2).contains(&relative), "{relative}");
+}
+
+#[test]
 fn no_rows() {
     let case = Case::new(32, 64, 0, Some(Dropout { p: 0.1, seed: 1 }));
-    for set in sets() {
-        let (y, gx, grads) = case.run(&case.layer().with_instructions(set).unwrap());
-        assert!(y.is_empty() && gx.is_empty());
-        assert_eq!(grads, Gradients::zeros(32, 64));
+    for case in [case.clone(), case.in_bf16()] {
+        for layer in layers(&case) {
+            let (y, gx, grads) = case.run(&layer);
+            assert!(y.is_empty() && gx.is_empty());
+            assert_eq!(grads, Gradients::zeros(32, 64));
+        }
     }
 }
 
@@ -105,14 +133,17 @@ fn no_rows() {
 fn what_is_not_a_number_stays_in_its_row() {
     let mut case = Case::new(32, 64, 12, None);
     case.x[5 * 32 + 3] = f32::NAN;
-    for set in sets() {
-        let (y, gx, grads) = case.run(&case.layer().with_instructions(set).unwrap());
-        for (r, row) in y.chunks(32).enumerate() {
-            assert!(row.iter().all(|y| y.is_nan() == (r == 5)), "{set:?}, {r}");
+    for case in [case.clone(), case.in_bf16()] {
+        for layer in layers(&case) {
+            let (y, gx, grads) = case.run(&layer);
+            let way = layer.instructions();
+            for (r, row) in y.chunks(32).enumerate() {
+                assert!(row.iter().all(|y| y.is_nan() == (r == 5)), "{way}, {r}");
+            }
+            // As in libtorch, the derivative of ReLU at NaN is 1.
+            assert!(gx.iter().all(|gx| gx.is_finite()), "{way}");
+            assert!(grads.w2.iter().all(|g| g.is_nan()), "{way}");
         }
-        // As in libtorch, the derivative of ReLU at NaN is 1.
-        assert!(gx.iter().all(|gx| gx.is_finite()), "{set:?}");
-        assert!(grads.w2.iter().all(|g| g.is_nan()), "{set:?}");
     }
 }
 
@@ -142,5 +173,13 @@ fn dropping_all() {
 #[test]
 #[should_panic(expected = "entries of W2")]
 fn a_matrix_of_another_size() {
-    let _: FeedForward = FeedForward::pack(&[0.0; 32], &[0.0], &[0.0; 31], &[0.0; 32], 32, 1);
+    let _: FeedForward = FeedForward::pack(
+        Precision::F32,
+        &[0.0; 32],
+        &[0.0],
+        &[0.0; 31],
+        &[0.0; 32],
+        32,
+        1,
+    );
 }

@@ -4,7 +4,8 @@ use proptest::prelude::*;
 use rayon::ThreadPoolBuilder;
 
 use super::exact::Case;
-use super::{check, sets};
+use super::{check, layers, sets};
+use crate::Precision;
 use crate::kernel::feed_forward::dropout::reference;
 use crate::kernel::{Dropout, FeedForward, Gradients};
 
@@ -25,7 +26,27 @@ proptest! {
         rows in 0..150_usize,
         dropout in dropouts(),
     ) {
-        check(&Case::new(width, hidden, rows, dropout));
+        let case = Case::new(width, hidden, rows, dropout);
+        check(&case);
+        check(&case.in_bf16());
+    }
+
+    /// Emulated or not.
+    #[test]
+    fn bf16_is_the_same_bits_with_all_instructions(
+        width in 1..70_usize,
+        hidden in 1..140_usize,
+        rows in 0..150_usize,
+        dropout in dropouts(),
+    ) {
+        let case = Case::new(width, hidden, rows, dropout).in_bf16();
+        let (y, gx, grads) = case.run(&case.layer());
+        for layer in layers(&case) {
+            let (other_y, other_gx, other) = case.run(&layer);
+            prop_assert_eq!(&y, &other_y);
+            prop_assert_eq!(&gx, &other_gx);
+            prop_assert_eq!(&grads, &other);
+        }
     }
 
     #[test]
@@ -35,8 +56,8 @@ proptest! {
         dropout in dropouts(),
     ) {
         let case = Case::new(32, hidden, rows, dropout);
-        for set in sets() {
-            let layer = case.layer().with_instructions(set).unwrap();
+        let bf16 = case.clone().in_bf16();
+        for layer in layers(&case).into_iter().chain([bf16.layer()]) {
             let mut results = [1, 2, 3, 7].map(|threads| {
                 let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 pool.install(|| case.run(&layer))
@@ -52,8 +73,8 @@ proptest! {
     fn a_row_does_not_see_the_others(rows in 1..80_usize, from in 0..80_usize) {
         let from = from.min(rows);
         let case = Case::new(32, 64, rows, None);
-        for set in sets() {
-            let layer = case.layer().with_instructions(set).unwrap();
+        let bf16 = case.clone().in_bf16();
+        for layer in layers(&case).into_iter().chain(layers(&bf16)) {
             let (all, ..) = case.run(&layer);
             let mut some = vec![0.0; (rows - from) * 32];
             layer.forward(&case.x[from * 32..], None, &mut some);
@@ -82,7 +103,7 @@ proptest! {
             .map(|i| if i / WIDTH == i % WIDTH { 1.0 } else { 0.0 })
             .collect();
         let zeros = [0.0; WIDTH];
-        let layer = FeedForward::pack(&unit, &zeros, &unit, &zeros, WIDTH, WIDTH);
+        let layer = FeedForward::pack(Precision::F32, &unit, &zeros, &unit, &zeros, WIDTH, WIDTH);
         let dropout = Some(Dropout { p, seed });
         let ones = vec![1.0; rows * WIDTH];
         for set in sets() {
