@@ -12,6 +12,7 @@ mod goals_measured;
 mod keep_clear;
 mod leak;
 mod leak_in_reports;
+mod precision;
 mod prepare;
 mod real_recordings;
 mod train_resume;

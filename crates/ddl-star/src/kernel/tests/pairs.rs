@@ -1,5 +1,7 @@
 //! Arithmetic on pairs of bf16 numbers: every way of it gives the bits that the definition says.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::float_cmp, reason = "rounding is exact")]
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
 
 use proptest::prelude::*;
 
@@ -139,9 +141,8 @@ fn number() -> impl Strategy<Value = f32> {
     prop_oneof![
         any::<u32>().prop_map(f32::from_bits),
         -4.0..4.0_f32,
-        (any::<u16>(), 0x7ffe..0x8002_u32).prop_map(|(half, rest)| f32::from_bits(
-            u32::from(half) << 16 | rest
-        )),
+        (any::<u16>(), 0x7ffe..0x8002_u32)
+            .prop_map(|(half, rest)| f32::from_bits(u32::from(half) << 16 | rest)),
         (0..0x0200_0000_u32, any::<bool>())
             .prop_map(|(bits, sign)| f32::from_bits(bits | u32::from(sign) << 31)),
     ]

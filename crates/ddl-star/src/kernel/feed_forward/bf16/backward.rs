@@ -82,7 +82,7 @@ impl PairKernel for PairBackward<'_, '_> {
                     for i in 0..ROWS {
                         gradient_rows[i].round(pairs, &gradient[i]);
                     }
-                    let kept = r / 2..(r + ROWS) / 2;
+                    let kept = r / 2..r / 2 + ROWS / 2;
                     round_two_by_two(pairs, &hidden, &mut hidden_kept[kept.clone()]);
                     round_two_by_two(pairs, &gradient, &mut gradient_kept[kept]);
                     for column in 0..columns {

@@ -1,8 +1,8 @@
 //! The formula in double precision, term by term; of numbers rounded to bf16 where the layer takes these.
 
+use crate::Precision;
 use crate::kernel::feed_forward::dropout::reference;
 use crate::kernel::tests::numbers::Numbers;
-use crate::Precision;
 use crate::kernel::{Dropout, FeedForward, Gradients};
 
 /// A layer and what it is applied to.
