@@ -3,6 +3,7 @@
 
 mod exact;
 mod laws;
+mod speed;
 
 use super::{FeedForward, Gradients};
 use crate::Precision;
