@@ -11,7 +11,7 @@ use crate::progress::ProgressMode;
 use anyhow::Context as _;
 use clap::Args;
 use ddl::data::{Convention, Dataset, locate};
-use ddl::{Clearance, Ddl, DdlError, DeviceChoice};
+use ddl::{Clearance, Ddl, DdlError, DeviceChoice, Precision};
 use std::path::Path;
 
 /// Seed of the simulated crowds: one data set for everybody.
@@ -38,6 +38,28 @@ impl Machine {
     /// The same for a few small tensors: a second thread would only wait.
     pub(crate) fn prepare_for_little(&self) -> Result<(), DdlError> {
         ddl::prepare(self.device, self.threads.or(Some(1)))
+    }
+}
+
+/// How exactly the network computes.
+#[derive(Debug, Args)]
+pub(crate) struct Exactness {
+    /// Products in the network's feed-forward blocks: f32, or bf16 (8 significant bits, sums in f32), which is faster on
+    /// processors with AVX-512 BF16 and slower on others; on the CPU only
+    #[arg(long, default_value = "f32")]
+    precision: Precision,
+}
+
+impl Exactness {
+    /// The precision, and a warning where it is no gain.
+    pub(crate) fn precision(&self) -> Precision {
+        if !self.precision.is_native() {
+            eprintln!(
+                "warning: this processor has no {name} instructions; --precision {name} is emulated, slower than f32",
+                name = self.precision.name()
+            );
+        }
+        self.precision
     }
 }
 

@@ -12,6 +12,9 @@
 //! [`instruction_set`] runs it with the fastest instructions that the machine has: those of `x86`, or what the compiler
 //! makes of [`portable`] code. What is `unsafe` lies in `x86` alone.
 //!
+//! Products of bf16 numbers, which the feed-forward block can be asked for, are a second arithmetic, [`simd::Pairs`], with
+//! instructions of its own.
+//!
 //! All results are the same for every number of threads; between instruction sets they agree to rounding.
 
 mod add_norm;
@@ -36,6 +39,11 @@ mod tests;
 mod threads;
 #[cfg(target_arch = "x86_64")]
 mod x86;
+
+/// Whether the machine has instructions for products of bf16 numbers.
+pub(crate) fn has_bf16_instructions() -> bool {
+    instruction_set::PairDispatch::detect().is_native()
+}
 
 pub(crate) use buffer::Buffer;
 pub(crate) use dropout::Dropout;

@@ -24,6 +24,7 @@ mod packed;
 mod packing;
 mod parameters;
 mod pass;
+mod precision;
 mod prepared;
 mod proposal;
 mod remembered;
@@ -53,6 +54,7 @@ pub use layers::Mode;
 pub use loss::mean_squared_distance;
 pub use origin::Origin;
 pub use parameters::Parameters;
+pub use precision::Precision;
 pub use proposal::{
     ProposalConfig, ProposalExample, ProposalNetwork, ProposalStep, ProposalTrainer,
     ProposalTraining, ProposedEnds, WalkerView,

@@ -10,6 +10,7 @@ use crate::kernel::{Buffer, Dropout};
 use crate::layers::Mode;
 use crate::numbers::numbers;
 use crate::parameters::Parameters;
+use crate::precision::Precision;
 use crate::shared_weights::SharedWeights;
 use crate::tape::Tape;
 use crate::tokens::Rows;
@@ -33,6 +34,8 @@ pub(crate) struct Weights {
     flat: Tensor,
     /// See [`Parameters::version`].
     pub(crate) version: i64,
+    /// Of the products in feed-forward blocks.
+    pub(crate) precision: Precision,
 }
 
 impl Weights {
@@ -55,21 +58,22 @@ impl Pass {
     }
 
     /// A pass without gradients, by kernels of our own where they can: on the CPU, in `f32`.
-    pub(crate) fn forward_only(mode: Mode, parameters: &Parameters) -> Self {
+    pub(crate) fn forward_only(mode: Mode, parameters: &Parameters, precision: Precision) -> Self {
         let flat = parameters.flat();
         let kernels = flat.kind() == Kind::Float && flat.device() == tch::Device::Cpu;
         Self {
             weights: kernels.then(|| Weights {
                 flat: flat.shallow_clone(),
                 version: parameters.version(),
+                precision,
             }),
             ..Self::plain(mode)
         }
     }
 
-    /// A pass of training, by kernels where they can: dropout by this seed, gradients by [`gradient`](Self::gradient).
+    /// A pass of training, by kernels where they can, in `f32`: dropout by this seed, gradients by [`gradient`](Self::gradient).
     pub(crate) fn training(mode: Mode, seed: u64, parameters: &Parameters) -> Self {
-        let pass = Self::forward_only(mode, parameters);
+        let pass = Self::forward_only(mode, parameters, Precision::F32);
         Self {
             seed: Cell::new(seed),
             tape: pass.weights.is_some().then(Tape::default),

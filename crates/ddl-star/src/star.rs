@@ -12,6 +12,7 @@ use crate::layers::{Linear, Mode};
 use crate::neighbours::Seen;
 use crate::parameters::{Initializer, Parameters};
 use crate::pass::Pass;
+use crate::precision::Precision;
 use crate::seed::{Stage, stream};
 use crate::spatial::SpatialEncoder;
 use crate::temporal::{TemporalEncoder, TemporalMemory};
@@ -26,6 +27,7 @@ pub struct StarNetwork {
     parameters: Parameters,
     device: Device,
     kind: Kind,
+    precision: Precision,
     temporal_embedding: Linear,
     spatial_embedding: Linear,
     spatial_encoder_1: SpatialEncoder,
@@ -92,6 +94,7 @@ impl StarNetwork {
             parameters,
             device,
             kind,
+            precision: Precision::F32,
             temporal_embedding,
             spatial_embedding,
             spatial_encoder_1,
@@ -101,6 +104,22 @@ impl StarNetwork {
             fusion,
             output,
         })
+    }
+
+    /// The same network, whose feed-forward blocks are computed in that precision; where libtorch is asked for gradients,
+    /// and in training, they are `f32`.
+    ///
+    /// # Errors
+    /// [`StarError::Config`] for another than [`Precision::F32`] in f64, and elsewhere than on the CPU.
+    pub fn in_precision(self, precision: Precision) -> Result<Self, StarError> {
+        if precision != Precision::F32 && (self.device, self.kind) != (Device::Cpu, Kind::Float) {
+            return Err(StarError::Config {
+                field: "precision",
+                value: precision.name().to_owned(),
+                rule: "f32, unless the network computes in f32 on the CPU",
+            });
+        }
+        Ok(Self { precision, ..self })
     }
 
     /// Size and constants.
@@ -118,7 +137,12 @@ impl StarNetwork {
         self.device
     }
 
-    /// Precision of the network.
+    /// Precision of the products in its feed-forward blocks.
+    pub fn precision(&self) -> Precision {
+        self.precision
+    }
+
+    /// Kind of all its numbers.
     pub fn kind(&self) -> Kind {
         self.kind
     }
@@ -129,7 +153,7 @@ impl StarNetwork {
         if self.fusion.bias.square().requires_grad() {
             Pass::plain(mode)
         } else {
-            Pass::forward_only(mode, &self.parameters)
+            Pass::forward_only(mode, &self.parameters, self.precision)
         }
     }
 

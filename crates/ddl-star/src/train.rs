@@ -10,6 +10,7 @@ use crate::loss::mean_squared_distance;
 use crate::optimizer::Adam;
 use crate::origin::Origin;
 use crate::pass::Pass;
+use crate::precision::Precision;
 use crate::prepared::PreparedBatches;
 use crate::schedule::Schedule;
 use crate::seed::GENERATOR;
@@ -46,7 +47,7 @@ impl Trainer {
     /// Prepares training of `network` on `windows`, each with its future.
     ///
     /// # Errors
-    /// [`StarError::Config`] for a bad configuration, [`StarError::NoTrainingWindows`] when no
+    /// [`StarError::Config`] for a bad configuration or a network in bf16, [`StarError::NoTrainingWindows`] when no
     /// window has a future.
     pub fn new(
         network: StarNetwork,
@@ -54,6 +55,13 @@ impl Trainer {
         config: TrainingConfig,
     ) -> Result<Self, StarError> {
         config.check()?;
+        if network.precision() != Precision::F32 {
+            return Err(StarError::Config {
+                field: "precision",
+                value: network.precision().name().to_owned(),
+                rule: "f32 in training",
+            });
+        }
         let windows: Vec<Window> = windows.into_iter().filter(Window::has_future).collect();
         let schedule = Schedule::new(&windows, &config);
         if schedule.is_empty() {

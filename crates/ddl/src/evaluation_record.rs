@@ -20,7 +20,7 @@ impl Record {
     fn new(model: &Ddl, request: &EvaluationRequest) -> Self {
         Self {
             request: request.clone(),
-            device: model.device().name().to_owned(),
+            device: model.computed_on(),
             clearance: model.clearance(),
         }
     }

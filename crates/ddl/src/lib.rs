@@ -36,7 +36,7 @@ pub use ddl_star as star;
 pub use certified_forecast::{CertificateError, CertifiedForecast};
 pub use clearance::Clearance;
 pub use ddl_eval::{Forecast, Forecaster, Protocol};
-pub use ddl_star::{DeviceChoice, Variant};
+pub use ddl_star::{DeviceChoice, Precision, Variant};
 pub use error::DdlError;
 pub use evaluation::{EvaluationProgress, EvaluationRequest, EvaluationSplit, evaluate};
 pub use evaluation_record::{is_evaluated, save_evaluation};

@@ -9,7 +9,9 @@ use crate::{DdlError, GoalModel};
 use ddl_data::{Position, Window};
 use ddl_eval::{Forecast, ForecastError, Forecaster};
 use ddl_goal::GoalSet;
-use ddl_star::{ComputeDevice, Noise, StarNetwork, StepRule, WindowRollout, load_parameters};
+use ddl_star::{
+    ComputeDevice, Noise, Precision, StarNetwork, StepRule, WindowRollout, load_parameters,
+};
 use std::path::Path;
 
 /// The name of the model in tables.
@@ -90,6 +92,16 @@ impl Ddl {
         })
     }
 
+    /// The same model, whose network has its feed-forward blocks computed in that precision. Where the walkers go from what
+    /// it emits is computed in `f64` as ever: the guarantee does not depend on it.
+    ///
+    /// # Errors
+    /// For `bf16` elsewhere than on the CPU.
+    pub fn in_precision(self, precision: Precision) -> Result<Self, DdlError> {
+        let network = self.network.in_precision(precision)?;
+        Ok(Self { network, ..self })
+    }
+
     /// What decided the model.
     pub fn config(&self) -> &RunConfig {
         self.goals.config()
@@ -103,6 +115,15 @@ impl Ddl {
     /// Where it computes.
     pub fn device(&self) -> ComputeDevice {
         self.device
+    }
+
+    /// Device and precision, as reports name them.
+    pub(crate) fn computed_on(&self) -> String {
+        let device = self.device.name();
+        match self.network.precision() {
+            Precision::F32 => device.to_owned(),
+            Precision::Bf16 => format!("{device}, bf16"),
+        }
     }
 
     /// How far its walkers keep from each other; `None` where each walks as if alone.
@@ -122,7 +143,8 @@ impl Ddl {
 
     /// The network, with the weights kept after `epoch`.
     pub(crate) fn network_of_epoch(&self, epoch: usize) -> Result<StarNetwork, DdlError> {
-        load_network(self.config(), self.device, &self.run().epoch(epoch))
+        let network = load_network(self.config(), self.device, &self.run().epoch(epoch))?;
+        Ok(network.in_precision(self.network.precision())?)
     }
 
     /// Forecasts the windows, with the evidence for every hypothesis that it goes to its goal.

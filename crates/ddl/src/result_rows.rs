@@ -102,7 +102,7 @@ impl ResultRows<'_> {
             seed: Some(training.seed),
             epochs: Some(training.epochs),
             selection: Some(self.selection.to_owned()),
-            device: self.model.device().name().to_owned(),
+            device: self.model.computed_on(),
             training_subset: subset(training),
             recipe: Some(recipe(training, &config.goals)),
             ..plain

@@ -1,6 +1,6 @@
 //! `ddl evaluate`.
 
-use super::{KeepClear, Machine, Telling, at_least_one, dataset};
+use super::{Exactness, KeepClear, Machine, Telling, at_least_one, dataset};
 use crate::interrupt::Interrupt;
 use crate::progress::{Progress, ProgressMode};
 use clap::Args;
@@ -35,6 +35,8 @@ pub(crate) struct Evaluate {
     #[command(flatten)]
     machine: Machine,
     #[command(flatten)]
+    exactness: Exactness,
+    #[command(flatten)]
     telling: Telling,
 }
 
@@ -42,9 +44,9 @@ impl Evaluate {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         self.machine.prepare()?;
         let interrupt = Interrupt::catch()?;
-        let model = self
-            .clear
-            .of(Ddl::load(&self.model, self.machine.device)?)?;
+        let model = Ddl::load(&self.model, self.machine.device)?
+            .in_precision(self.exactness.precision())?;
+        let model = self.clear.of(model)?;
         let request = EvaluationRequest {
             protocols: self.protocols.clone(),
             on: if self.validation {

@@ -3,7 +3,7 @@
 mod json_lines;
 mod table;
 
-use super::{KeepClear, Machine};
+use super::{Exactness, KeepClear, Machine};
 use crate::tracks::{Tracks, write_output};
 use clap::{Args, ValueEnum};
 use ddl::data::{HORIZON, OBSERVED, Window};
@@ -41,6 +41,8 @@ pub(crate) struct Forecast {
     clear: KeepClear,
     #[command(flatten)]
     machine: Machine,
+    #[command(flatten)]
+    exactness: Exactness,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -60,9 +62,9 @@ impl Forecast {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         self.machine.prepare_for_little()?;
         let windows = self.tracks.windows()?;
-        let model = self
-            .clear
-            .of(Ddl::load(&self.model, self.machine.device)?)?;
+        let model = Ddl::load(&self.model, self.machine.device)?
+            .in_precision(self.exactness.precision())?;
+        let model = self.clear.of(model)?;
         let text = if self.certificate {
             let certified = model.forecast_certified(&windows)?;
             let pairs = windows.iter().zip(&certified);

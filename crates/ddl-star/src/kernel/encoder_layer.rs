@@ -18,6 +18,7 @@ use super::instruction_set::Dispatch;
 use super::instruction_set::InstructionSet;
 use super::over_memory::{KeyValue, OverMemory, OverMemoryGradients};
 use super::scenes::Frames;
+use crate::Precision;
 use backward::Parts;
 use forward::Targets;
 use keep::Attention;
@@ -97,11 +98,12 @@ impl EncoderLayer {
         })
     }
 
-    /// Takes over learned numbers, in the order of [`Sizes`].
+    /// Takes over learned numbers, in the order of [`Sizes`], for a feed-forward block in that precision. There is no backward
+    /// pass in bf16.
     ///
     /// # Panics
     /// When there are more or fewer than [`Sizes::count`].
-    pub(crate) fn update(&mut self, weights: &[f32]) {
+    pub(crate) fn update(&mut self, weights: &[f32], precision: Precision) {
         let width = self.sizes.width;
         let [w, b, wo, bo, w1, b1, w2, b2, n1, c1, n2, c2] = self.sizes.pieces(weights);
         let parts = w.chunks_exact(width * width).zip(b.chunks_exact(width));
@@ -111,7 +113,7 @@ impl EncoderLayer {
         self.out.update(wo, bo);
         self.norm1.update(n1, c1);
         self.norm2.update(n2, c2);
-        self.feed_forward.update([w1, b1, w2, b2]);
+        self.feed_forward.update([w1, b1, w2, b2], precision);
     }
 
     /// The layer with attention among the walkers of each scene.

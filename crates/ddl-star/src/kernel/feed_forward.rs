@@ -1,6 +1,7 @@
 //! The feed-forward block of an encoder layer: two affine maps, `ReLU` and dropout between them.
 
 mod backward;
+mod bf16;
 mod block;
 mod block_rows;
 mod dropout;
@@ -17,9 +18,11 @@ pub(crate) use gradients::Gradients;
 use std::ops::DerefMut;
 
 use super::dropout::Dropout;
-use super::instruction_set::Dispatch;
 #[cfg(test)]
 use super::instruction_set::InstructionSet;
+use super::instruction_set::{Dispatch, PairDispatch};
+use crate::Precision;
+use bf16::Squares;
 use weights::Weights;
 
 /// y = W2 d(relu(W1 x + b1)) + b2, with dropout d.
@@ -29,7 +32,10 @@ use weights::Weights;
 #[derive(Clone, Debug)]
 pub(crate) struct FeedForward {
     weights: Weights,
+    /// For the forward pass in bf16.
+    rounded: Option<Squares>,
     dispatch: Dispatch,
+    pair_dispatch: PairDispatch,
 }
 
 impl FeedForward {
@@ -40,22 +46,26 @@ impl FeedForward {
     pub(crate) fn zeros(width: usize, hidden: usize) -> Self {
         Self {
             weights: Weights::new(width, hidden),
+            rounded: None,
             dispatch: Dispatch::detect(),
+            pair_dispatch: PairDispatch::detect(),
         }
     }
 
-    /// Arranges the weights of libtorch's layers for the kernels.
+    /// Arranges the weights of libtorch's layers for the kernels, in bf16 for the forward pass alone.
     ///
     /// # Shapes
     /// W1 `[hidden, width]`, b1 `[hidden]`, W2 `[width, hidden]`, b2 `[width]`, by rows.
     ///
     /// # Panics
     /// When a slice has another length.
-    pub(crate) fn update(&mut self, weights: [&[f32]; 4]) {
+    pub(crate) fn update(&mut self, weights: [&[f32]; 4], precision: Precision) {
         self.weights.update(weights);
+        self.rounded = (precision == Precision::Bf16)
+            .then(|| Squares::round(&self.weights, self.pair_dispatch));
     }
 
-    /// Both at once.
+    /// Both at once, in `f32`.
     #[cfg(test)]
     pub(crate) fn pack(
         w1: &[f32],
@@ -66,14 +76,15 @@ impl FeedForward {
         hidden: usize,
     ) -> Self {
         let mut block = Self::zeros(width, hidden);
-        block.update([w1, b1, w2, b2]);
+        block.update([w1, b1, w2, b2], Precision::F32);
         block
     }
 
-    /// The same with other instructions than the fastest; `None` when the machine lacks them.
+    /// The same with other instructions than the fastest, bf16 emulated; `None` when the machine lacks them.
     #[cfg(test)]
     pub(super) fn with_instructions(mut self, set: InstructionSet) -> Option<Self> {
         self.dispatch = Dispatch::new(set)?;
+        self.pair_dispatch = PairDispatch::Emulated(self.dispatch);
         Some(self)
     }
 
@@ -88,6 +99,9 @@ impl FeedForward {
     /// # Numerics
     /// For finite sums, an entry differs from the exact one by at most (width + hidden + 8) 2^-24 times the same formula
     /// with the absolute values of all its terms and without `ReLU`. It does not depend on the number of threads nor on the other rows.
+    ///
+    /// In bf16 x, W1, W2 and the hidden activations are rounded to it first, each by at most 2^-9 of itself; sums and biases
+    /// are `f32`, and what is said above holds of the formula with rounded numbers.
     pub(crate) fn forward(&self, x: &[f32], dropout: Option<Dropout>, y: &mut [f32]) {
         forward::run(self, x, dropout, y);
     }
@@ -100,7 +114,7 @@ impl FeedForward {
     /// `x`, `gy` `[rows, width]` -> `gx` `[rows, width]`, overwritten.
     ///
     /// # Panics
-    /// As in [`Self::forward`]; when `grads` was made for other widths.
+    /// As in [`Self::forward`]; when `grads` was made for other widths; in bf16.
     ///
     /// # Numerics
     /// An entry differs from the exact one by at most (width + hidden + 16) 2^-24 (for gx), (width + rows + 16) 2^-24 (for

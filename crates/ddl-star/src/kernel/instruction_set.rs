@@ -1,9 +1,11 @@
 //! Which vector instructions there are, and running a kernel with them.
 
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+
 use super::portable::Portable;
-use super::simd::{Kernel, Simd};
+use super::simd::{Kernel, PairKernel, Pairs, Simd};
 #[cfg(target_arch = "x86_64")]
-use super::x86::{Avx2, Avx512};
+use super::x86::{Avx2, Avx512, Avx512Bf16};
 
 /// Vector instructions that the kernels can be run with.
 ///
@@ -80,5 +82,50 @@ impl Dispatch {
             #[cfg(target_arch = "x86_64")]
             Self::Avx512(simd) => simd.run(kernel),
         }
+    }
+}
+
+/// How pairs of bf16 numbers are computed with: all ways give the same bits.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum PairDispatch {
+    /// By portable code, compiled for the instruction set.
+    Emulated(Dispatch),
+    #[cfg(target_arch = "x86_64")]
+    Avx512Bf16(Avx512Bf16),
+}
+
+impl PairDispatch {
+    /// The fastest of this machine.
+    pub(super) fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(pairs) = Avx512Bf16::detect() {
+            return Self::Avx512Bf16(pairs);
+        }
+        Self::Emulated(Dispatch::detect())
+    }
+
+    /// Whether the machine has instructions for it.
+    pub(super) fn is_native(self) -> bool {
+        !matches!(self, Self::Emulated(_))
+    }
+
+    /// Runs `kernel`.
+    #[inline]
+    pub(super) fn run<K: PairKernel>(self, kernel: K) {
+        match self {
+            Self::Emulated(dispatch) => dispatch.run(Emulated(kernel)),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512Bf16(pairs) => pairs.run_pairs(kernel),
+        }
+    }
+}
+
+/// Takes nothing of an instruction set but what the compiler makes of it.
+struct Emulated<K>(K);
+
+impl<K: PairKernel> Kernel for Emulated<K> {
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        Portable.run_pairs(self.0);
     }
 }

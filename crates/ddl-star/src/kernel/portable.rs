@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
 use super::lanes::{DEPTH, LANES};
-use super::simd::{Kernel, Simd, TiledKernel};
+use super::simd::{Kernel, PairKernel, Pairs, Simd, TiledKernel};
 
 /// No particular instructions.
 #[derive(Clone, Copy, Debug)]
@@ -164,5 +164,87 @@ impl Simd for Portable {
     #[inline(always)]
     fn keep(self, a: Floats, bits: Bits, least: u32) -> Floats {
         each_lane!(a, |l| if bits[l] >= least { a[l] } else { 0.0 })
+    }
+}
+
+/// The bf16 instructions, emulated to the bit: for machines without them, slower than `f32`.
+impl Pairs for Portable {
+    type Simd = Self;
+    type Words = Bits;
+
+    #[inline(always)]
+    fn simd(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    fn run_pairs<K: PairKernel>(self, kernel: K) {
+        kernel.run(self);
+    }
+
+    #[inline(always)]
+    fn splat(self, pair: u32) -> Bits {
+        [pair; LANES]
+    }
+
+    #[inline(always)]
+    fn load(self, from: &Bits) -> Bits {
+        *from
+    }
+
+    #[inline(always)]
+    fn store(self, value: Bits, into: &mut Bits) {
+        *into = value;
+    }
+
+    #[inline(always)]
+    fn neighbours(self, a: Floats, b: Floats) -> Bits {
+        let mut words = [0; LANES];
+        for (l, word) in words.iter_mut().enumerate() {
+            let from = if l < LANES / 2 { &a } else { &b };
+            let first = 2 * l % LANES;
+            *word = rounded(from[first]) | rounded(from[first + 1]) << 16;
+        }
+        words
+    }
+
+    #[inline(always)]
+    fn across(self, a: Floats, b: Floats) -> Bits {
+        let mut words = [0; LANES];
+        for l in 0..LANES {
+            words[l] = rounded(a[l]) | rounded(b[l]) << 16;
+        }
+        words
+    }
+
+    #[inline(always)]
+    fn dot(self, a: Bits, b: Bits, sum: Floats) -> Floats {
+        each_lane!(sum, |l| {
+            let upper = |word: u32| normal(f32::from_bits(word & 0xffff_0000));
+            let lower = |word: u32| normal(f32::from_bits(word << 16));
+            // Rounded once each, whatever the machine.
+            let sum = normal(upper(a[l]).mul_add(upper(b[l]), normal(sum[l])));
+            normal(lower(a[l]).mul_add(lower(b[l]), sum))
+        })
+    }
+}
+
+/// The upper half of the nearest bf16 number, ties to even. What is not a number stays so.
+#[inline(always)]
+fn rounded(value: f32) -> u32 {
+    let bits = normal(value).to_bits();
+    if value.is_nan() {
+        return bits >> 16 | 0x40;
+    }
+    (bits + 0x7fff + (bits >> 16 & 1)) >> 16
+}
+
+/// 0 of the same sign for a subnormal number.
+#[inline(always)]
+fn normal(value: f32) -> f32 {
+    if value.abs() < f32::MIN_POSITIVE {
+        0.0_f32.copysign(value)
+    } else {
+        value
     }
 }

@@ -135,3 +135,40 @@ impl<K: TiledKernel> Kernel for K {
         simd.run_tiled(self);
     }
 }
+
+/// Arithmetic on sixteen pairs of bf16 numbers at a time, beside that on `f32`.
+///
+/// A bf16 number is the upper half of an `f32`: its range, with 8 significant bits. A pair is a word of 32 bits, the first
+/// number its lower half.
+///
+/// # Numerics
+/// As the instructions of AVX-512 BF16 have it, to the bit: to the nearest, ties to even; what is subnormal counts as 0,
+/// as argument and as result.
+pub(super) trait Pairs: Copy + Send + Sync {
+    /// The arithmetic on `f32`.
+    type Simd: Simd;
+    /// Sixteen pairs.
+    type Words: Copy;
+
+    fn simd(self) -> Self::Simd;
+    /// Compiles `kernel` with this instruction set and runs it.
+    fn run_pairs<K: PairKernel>(self, kernel: K);
+
+    fn splat(self, pair: u32) -> Self::Words;
+    fn load(self, from: &[u32; LANES]) -> Self::Words;
+    fn store(self, value: Self::Words, into: &mut [u32; LANES]);
+    /// Rounds to bf16 and pairs numbers 0 and 1 of `a`, 2 and 3, and so on; then those of `b`.
+    fn neighbours(self, a: Floats<Self>, b: Floats<Self>) -> Self::Words;
+    /// Rounds to bf16 and pairs number 0 of `a` with number 0 of `b`, and so on.
+    fn across(self, a: Floats<Self>, b: Floats<Self>) -> Self::Words;
+    /// (sum + a₁ b₁) + a₀ b₀ for each two pairs, rounded after each addition.
+    fn dot(self, a: Self::Words, b: Self::Words, sum: Floats<Self>) -> Floats<Self>;
+}
+
+/// Sixteen `f32` beside sixteen pairs.
+pub(super) type Floats<P> = <<P as Pairs>::Simd as Simd>::Floats;
+
+/// A computation on pairs that is compiled once for each instruction set. What is said of [`Kernel`] holds.
+pub(super) trait PairKernel {
+    fn run<P: Pairs>(self, pairs: P);
+}

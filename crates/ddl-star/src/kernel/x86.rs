@@ -1,6 +1,6 @@
 //! Vector instructions of x86-64 processors: the only unsafe code of the kernels.
 //!
-//! [`Avx2`] and [`Avx512`] can be made by their `detect` alone, which asks the processor: whoever holds one may execute
+//! [`Avx2`], [`Avx512`] and [`Avx512Bf16`] can be made by their `detect` alone, which asks the processor: whoever holds one may execute
 //! its instructions.
 
 #![allow(
@@ -16,7 +16,7 @@
 use std::arch::x86_64::*;
 
 use super::lanes::LANES;
-use super::simd::{Kernel, Simd, TiledKernel};
+use super::simd::{Kernel, PairKernel, Pairs, Simd, TiledKernel};
 
 /// The proof that the processor has AVX2 and fused multiplication.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +25,10 @@ pub(super) struct Avx2(());
 /// The proof that the processor has AVX-512 F.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx512(());
+
+/// The proof that the processor has AVX-512 BF16, beside F and BW.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Avx512Bf16(Avx512);
 
 impl Avx2 {
     pub(super) fn detect() -> Option<Self> {
@@ -38,6 +42,13 @@ impl Avx512 {
     pub(super) fn detect() -> Option<Self> {
         let found = Avx2::detect().is_some() && is_x86_feature_detected!("avx512f");
         found.then_some(Self(()))
+    }
+}
+
+impl Avx512Bf16 {
+    pub(super) fn detect() -> Option<Self> {
+        let found = is_x86_feature_detected!("avx512bw") && is_x86_feature_detected!("avx512bf16");
+        Avx512::detect().filter(|_| found).map(Self)
     }
 }
 
@@ -122,6 +133,58 @@ impl Simd for Avx512 {
         fn keep(a: __m512, bits: __m512i, least: u32) -> __m512 =
             _mm512_maskz_mov_ps(_mm512_cmpge_epu32_mask(bits, _mm512_set1_epi32(least.cast_signed())), a);
     }
+}
+
+impl Pairs for Avx512Bf16 {
+    type Simd = Avx512;
+    type Words = __m512i;
+
+    #[inline(always)]
+    fn simd(self) -> Avx512 {
+        self.0
+    }
+
+    #[inline]
+    fn run_pairs<K: PairKernel>(self, kernel: K) {
+        #[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512bf16")]
+        fn compiled<K: PairKernel>(pairs: Avx512Bf16, kernel: K) {
+            kernel.run(pairs);
+        }
+        // SAFETY: `self` is the proof that the processor has the instructions.
+        unsafe { compiled(self, kernel) }
+    }
+
+    instructions! {
+        fn splat(pair: u32) -> __m512i = _mm512_set1_epi32(pair.cast_signed());
+        fn load(from: &[u32; LANES]) -> __m512i = _mm512_loadu_epi32(from.as_ptr().cast());
+        fn store(value: __m512i, into: &mut [u32; LANES]) -> () =
+            _mm512_storeu_epi32(into.as_mut_ptr().cast(), value);
+        fn neighbours(a: __m512, b: __m512) -> __m512i = words(_mm512_cvtne2ps_pbh(b, a));
+        // Rounded numbers 0 of a and b, which are 0 and 16 of both side by side; then 1 and 17, and so on.
+        fn across(a: __m512, b: __m512) -> __m512i = _mm512_permutexvar_epi16(
+            _mm512_add_epi32(
+                _mm512_mullo_epi32(
+                    _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
+                    _mm512_set1_epi32(0x0001_0001),
+                ),
+                _mm512_set1_epi32(0x0010_0000),
+            ),
+            words(_mm512_cvtne2ps_pbh(b, a)),
+        );
+        fn dot(a: __m512i, b: __m512i, sum: __m512) -> __m512 = _mm512_dpbf16_ps(sum, pairs(a), pairs(b));
+    }
+}
+
+#[inline(always)]
+fn words(pairs: __m512bh) -> __m512i {
+    // SAFETY: both are any 512 bits.
+    unsafe { std::mem::transmute(pairs) }
+}
+
+#[inline(always)]
+fn pairs(words: __m512i) -> __m512bh {
+    // SAFETY: both are any 512 bits.
+    unsafe { std::mem::transmute(words) }
 }
 
 /// Lanes 0 to 7, and 8 to 15.

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::{Dropouts, EncoderLayer, Remembered, Sizes};
+use crate::Precision;
 use crate::kernel::buffer::Buffer;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::instruction_set::InstructionSet;
@@ -52,7 +53,7 @@ impl Case {
         let mut layer = EncoderLayer::zeros(self.sizes)
             .with_instructions(set)
             .unwrap();
-        layer.update(&self.weights);
+        layer.update(&self.weights, Precision::F32);
         layer
     }
 
@@ -214,5 +215,36 @@ fn gradients_are_slopes() {
                 "over {over}, {p}, x {of_x}: {quotient} {square}"
             );
         }
+    }
+}
+
+/// And back: what `update` says last counts.
+#[test]
+fn the_feed_forward_block_alone_is_rounded() {
+    let sizes = Sizes {
+        width: 32,
+        heads: 8,
+        hidden: 256,
+    };
+    let case = Case::new(3, sizes, &[4, 1, 6], 0.0);
+    let forwards = |layer: &EncoderLayer| {
+        let memory = layer.remember(&case.x);
+        let frames = case.scenes.throughout();
+        let (among, _) = layer.among_walkers(&case.x, frames, case.dropouts);
+        let (over, _) = layer.over_memory(&case.x, &[&memory], case.dropouts);
+        [&memory.key, &memory.value, &among, &over].map(|numbers| numbers.to_vec())
+    };
+    for set in InstructionSet::available() {
+        let mut layer = case.layer(set);
+        let reference = forwards(&layer);
+        layer.update(&case.weights, Precision::Bf16);
+        let rounded = forwards(&layer);
+        assert_eq!(rounded[..2], reference[..2], "{set:?}");
+        for (what, (rounded, reference)) in rounded[2..].iter().zip(&reference[2..]).enumerate() {
+            assert_ne!(rounded, reference, "{set:?} {what}");
+            assert_close(&format!("{set:?} {what}"), rounded, &wide(reference), 0.02);
+        }
+        layer.update(&case.weights, Precision::F32);
+        assert_eq!(forwards(&layer), reference, "{set:?}");
     }
 }

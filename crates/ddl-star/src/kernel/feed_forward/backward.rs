@@ -33,6 +33,7 @@ pub(super) fn run(
     gx: &mut [f32],
     grads: &mut Gradients<impl DerefMut<Target = [f32]>>,
 ) {
+    assert!(layer.rounded.is_none(), "a backward pass in bf16");
     let weights = &layer.weights;
     let Weights {
         width,

@@ -3,6 +3,7 @@
 #![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
 
 use super::FeedForward;
+use super::bf16::forward::PairForward;
 use super::block::{Block, tile_mut};
 use super::block_rows::{BlockRows, ROWS};
 use super::dropout::Decisions;
@@ -37,26 +38,30 @@ pub(super) fn run(layer: &FeedForward, x: &[f32], dropout: Option<Dropout>, y: &
     each(tiles, work, |(tile, (x, y)), (): &mut ()| {
         let x = BlockRows::padded(x, width);
         let mut result = BlockRows::zeros(x.rows(), weights.columns);
-        layer.dispatch.run(Forward {
+        let tile = Forward {
             weights,
             decisions: decisions.as_ref(),
             first: tile * size,
             x: &x,
             y: &mut result,
-        });
+        };
+        match &layer.rounded {
+            None => layer.dispatch.run(tile),
+            Some(squares) => layer.pair_dispatch.run(PairForward { tile, squares }),
+        }
         y.fill(0.0);
         result.add_to(0, y, width);
     });
 }
 
 /// One tile.
-struct Forward<'a> {
-    weights: &'a Weights,
-    decisions: Option<&'a Decisions>,
+pub(super) struct Forward<'a> {
+    pub(super) weights: &'a Weights,
+    pub(super) decisions: Option<&'a Decisions>,
     /// The first row's number.
-    first: usize,
-    x: &'a BlockRows,
-    y: &'a mut BlockRows,
+    pub(super) first: usize,
+    pub(super) x: &'a BlockRows,
+    pub(super) y: &'a mut BlockRows,
 }
 
 impl TiledKernel for Forward<'_> {

@@ -1,6 +1,7 @@
 //! Against the formula in double precision.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+mod bf16;
 mod exact;
 mod laws;
 

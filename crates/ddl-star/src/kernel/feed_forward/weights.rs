@@ -13,9 +13,9 @@ pub(super) struct Weights {
     /// Blocks of hidden units.
     pub(super) units: usize,
     w1: Vec<Panel>,
-    w1_transposed: Vec<Panel>,
+    pub(super) w1_transposed: Vec<Panel>,
     w2: Vec<Panel>,
-    w2_transposed: Vec<Panel>,
+    pub(super) w2_transposed: Vec<Panel>,
     b1: Vec<Block>,
     pub(super) b2: Vec<Block>,
 }

@@ -90,7 +90,7 @@ impl Case {
     }
 
     /// 0 for a unit that is dropped, else what it is scaled by.
-    fn factor(&self, row: usize, unit: usize) -> f64 {
+    pub(super) fn factor(&self, row: usize, unit: usize) -> f64 {
         self.dropout
             .map_or(1.0, |dropout| reference::factor(dropout, row, unit))
     }

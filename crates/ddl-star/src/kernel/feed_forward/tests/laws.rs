@@ -9,7 +9,7 @@ use crate::kernel::Dropout;
 use crate::kernel::feed_forward::dropout::reference;
 use crate::kernel::feed_forward::{FeedForward, Gradients};
 
-fn dropouts() -> impl Strategy<Value = Option<Dropout>> {
+pub(super) fn dropouts() -> impl Strategy<Value = Option<Dropout>> {
     prop_oneof![
         Just(None),
         (0.0..0.95, any::<u64>()).prop_map(|(p, seed)| Some(Dropout { p, seed })),
