@@ -2,9 +2,10 @@
 
 use crate::StarError;
 use crate::batch::SceneBatch;
+use crate::emission::NoiseInput;
 use crate::flow::StepRule;
 use crate::seed::{Stage, stream};
-use crate::star::{NoiseInput, StarNetwork};
+use crate::star::StarNetwork;
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use rand::RngExt as _;
 use rand_distr::StandardNormal;

@@ -8,6 +8,7 @@ mod config;
 mod device;
 mod draws;
 mod dropout;
+mod emission;
 mod encoder_layer;
 mod error;
 mod flow;
@@ -47,6 +48,7 @@ pub use batch::SceneBatch;
 pub use checkpoint::{load_parameters, save_parameters};
 pub use config::{StarConfig, Variant};
 pub use device::{ComputeDevice, DeviceChoice, LIBTORCH_VERSION, set_threads};
+pub use emission::NoiseInput;
 pub use error::StarError;
 pub use flow::{FlowConstants, StepRule, natural_gradient_step};
 pub use forecast::{Noise, WindowRollout};
@@ -60,7 +62,7 @@ pub use proposal::{
     ProposalTraining, ProposedEnds, WalkerView,
 };
 pub use rollout::Rollout;
-pub use star::{NoiseInput, StarNetwork};
+pub use star::StarNetwork;
 pub use train::Trainer;
 pub use training_config::{LearningRateSchedule, TrainingConfig};
 pub use training_report::{EpochReport, StepReport};

@@ -1,10 +1,11 @@
 //! From windows and goals to positions: teacher-forced for training, recurrent for forecasts.
 
 use crate::batch::SceneBatch;
+use crate::emission::NoiseInput;
 use crate::flow::{FlowConstants, StepRule, natural_gradient_step};
 use crate::layers::Mode;
 use crate::pass::Pass;
-use crate::star::{GraphMemory, NoiseInput, StarNetwork};
+use crate::star::{GraphMemory, StarNetwork};
 use crate::tokens::Tokens;
 use ddl_data::OBSERVED;
 use std::ops::Range;
@@ -68,7 +69,7 @@ impl StarNetwork {
                 )
             })
             .collect();
-        let emitted = self.emit(&Tokens::joined(&tokens, pass), noise);
+        let emitted = self.emission(noise).of(&Tokens::joined(&tokens, pass));
         self.next_positions(&positions, goals, &reference, &emitted, StepRule::Euler)
     }
 
@@ -115,6 +116,7 @@ impl StarNetwork {
             memory = memory.expand_batch(hypotheses);
         }
         let seen = batch.neighbours.during(OBSERVED - 1..OBSERVED);
+        let emission = self.emission(noise);
         let mut position = observed
             .narrow(0, last, 1)
             .expand([hypotheses, -1, -1], false);
@@ -124,7 +126,7 @@ impl StarNetwork {
         let mut path = Vec::with_capacity(horizon);
         let mut factors = Vec::with_capacity(horizon);
         for t in OBSERVED..OBSERVED + horizon {
-            let emitted = self.emit(&Tokens::joined(from_ref(&token), pass), noise);
+            let emitted = emission.of(&Tokens::joined(from_ref(&token), pass));
             position = self.next_positions(&position, goals, &reference, &emitted, rule);
             path.push(position.shallow_clone());
             factors.push(emitted);

@@ -8,6 +8,7 @@
 use crate::StarError;
 use crate::config::StarConfig;
 use crate::device::ComputeDevice;
+use crate::emission::{Emission, NoiseInput};
 use crate::layers::{Linear, Mode};
 use crate::neighbours::Seen;
 use crate::parameters::{Initializer, Parameters};
@@ -17,7 +18,7 @@ use crate::seed::{Stage, stream};
 use crate::spatial::SpatialEncoder;
 use crate::temporal::{TemporalEncoder, TemporalMemory};
 use crate::tokens::Tokens;
-use tch::{Device, Kind, Tensor};
+use tch::{Device, Kind};
 
 /// STAR with the three outputs (a, b, c) of the Cholesky factor (paper eq. 12), or two for the
 /// variants without dynamics.
@@ -201,103 +202,8 @@ impl StarNetwork {
         token
     }
 
-    /// What the tokens mean: (a, b, c), or (x, y), a walker.
-    ///
-    /// # Shapes
-    /// `tokens` `[B, P, width]`; noise `[1 or B, noise]`, shared by all walkers
-    /// -> `[B, P, outputs]`.
-    pub(crate) fn emit(&self, tokens: &Tensor, noise: &NoiseInput) -> Tensor {
-        let (batch, walkers) = (tokens.size()[0], tokens.size()[1]);
-        match noise {
-            NoiseInput::Draws(noise) => {
-                let noise = noise.unsqueeze(1).expand([batch, walkers, -1], false);
-                Tensor::cat(&[tokens, &noise], -1)
-                    .linear(&self.output.weight, Some(&self.output.bias))
-            }
-            NoiseInput::Expected => {
-                let (width, noise) = (self.config.model_width, self.config.noise_width);
-                let mean = tokens.linear(
-                    &self.output.weight.narrow(1, 0, width),
-                    Some(&self.output.bias),
-                );
-                if self.config.variant.dynamics() {
-                    expected_factor(&mean, &self.output.weight.narrow(1, width, noise))
-                } else {
-                    mean
-                }
-            }
-        }
-    }
-}
-
-/// The noise of the output layer.
-#[derive(Debug)]
-pub enum NoiseInput {
-    /// One vector a hypothesis (or one for all), `[1 or H, noise]`.
-    Draws(Tensor),
-    /// The expectation over N(0, 1) noise.
-    Expected,
-}
-
-impl NoiseInput {
-    /// Hypotheses that differ by their noise.
-    pub(crate) fn count(&self) -> i64 {
-        match self {
-            Self::Draws(draws) => draws.size()[0],
-            Self::Expected => 1,
-        }
-    }
-}
-
-/// The Cholesky factor of E[L L^T] when noise n ~ N(0, I) adds W n to (a, b, c).
-///
-/// The output is linear in the noise, so E[L L^T] = L0 L0^T + E[D D^T] with D built from W n, whose
-/// covariance is C = W W^T: the mean velocity of the noisy walkers, in closed form. The noise-free L0
-/// alone would be too slow: P is quadratic in L, and the noise's share of it is not small.
-///
-/// # Shapes
-/// `mean` `[.., 3]`, `weight` `[3, noise]` -> `[.., 3]`.
-fn expected_factor(mean: &Tensor, weight: &Tensor) -> Tensor {
-    let covariance = weight.matmul(&weight.transpose(0, 1));
-    let c = |i: i64, j: i64| covariance.get(i).get(j);
-    let l = |i: i64| mean.narrow(-1, i, 1);
-    let (a, b, d) = (l(0), l(1), l(2));
-    let p11 = a.square() + c(0, 0);
-    let p12 = &a * &b + c(0, 1);
-    let p22 = b.square() + d.square() + c(1, 1) + c(2, 2);
-    let first = p11.clamp_min(SMALLEST_PIVOT).sqrt();
-    let below = p12 / &first;
-    let second = (p22 - below.square()).clamp_min(SMALLEST_PIVOT).sqrt();
-    Tensor::cat(&[first, below, second], -1)
-}
-
-/// Pivots of the expected metric below this count as this, in m/s.
-const SMALLEST_PIVOT: f64 = 1e-12;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The metric of the factor is the mean of the noisy metrics.
-    #[test]
-    fn the_expected_factor_is_that_of_the_mean_metric() {
-        tch::manual_seed(3);
-        let options = (Kind::Double, Device::Cpu);
-        let (mean, weight) = (
-            Tensor::randn([3], options),
-            Tensor::randn([3, 16], options) * 0.1,
-        );
-        let metric = |factors: &Tensor| {
-            let entry = |i: i64| factors.select(-1, i);
-            let (a, b, c) = (entry(0), entry(1), entry(2));
-            Tensor::stack(&[a.square(), &a * &b, b.square() + c.square()], -1)
-        };
-        let noise = Tensor::randn([400_000, 16], options);
-        let sampled = metric(&(&mean + noise.matmul(&weight.transpose(0, 1))));
-        let sampled = sampled.mean_dim([0i64].as_slice(), false, None::<Kind>);
-        let expected = metric(&expected_factor(&mean, &weight));
-        // standard error of the sampled mean: about 2e-3
-        let difference = (sampled - expected).abs().max().double_value(&[]);
-        assert!(difference < 1e-2, "{difference}");
+    /// What the output layer makes of tokens under this noise.
+    pub(crate) fn emission<'a>(&'a self, noise: &'a NoiseInput) -> Emission<'a> {
+        Emission::new(&self.output, noise, &self.config)
     }
 }

@@ -5,9 +5,10 @@ use super::*;
 use crate::batch::SceneBatch;
 use crate::config::{StarConfig, Variant};
 use crate::device::{ComputeDevice, DeviceChoice};
+use crate::emission::NoiseInput;
 use crate::flow::StepRule;
 use crate::loss::mean_squared_distance;
-use crate::star::{NoiseInput, StarNetwork};
+use crate::star::StarNetwork;
 use ddl_data::{Dataset, WINDOW, Window, WindowRule};
 
 /// Windows of very different numbers of walkers, a lone one among them, or that one alone.
