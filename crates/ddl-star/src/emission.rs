@@ -1,7 +1,10 @@
 //! From tokens to what they mean: the output layer and its noise.
 
 use crate::config::StarConfig;
+use crate::kernel::Buffer;
 use crate::layers::Linear;
+use crate::pass::Pass;
+use crate::tokens::Tokens;
 use tch::Tensor;
 
 /// The noise of the output layer.
@@ -27,6 +30,7 @@ impl NoiseInput {
 #[derive(Debug)]
 pub(crate) struct Emission<'a> {
     output: &'a Linear,
+    token_width: i64,
     noise: Prepared<'a>,
 }
 
@@ -55,7 +59,11 @@ impl<'a> Emission<'a> {
                 }
             }
         };
-        Self { output, noise }
+        Self {
+            output,
+            token_width: width,
+            noise,
+        }
     }
 
     /// What the tokens mean: (a, b, c), or (x, y), a walker. Noise is shared by all walkers.
@@ -78,6 +86,50 @@ impl<'a> Emission<'a> {
                 }
             }
         }
+    }
+}
+
+impl Emission<'_> {
+    /// The noise beside each token, for [`of_rows`](Self::of_rows).
+    pub(crate) fn noise_rows(&self, [batch, walkers]: [usize; 2], pass: &Pass) -> Tokens {
+        let width = self.output.inputs() - self.token_width;
+        let noise = match &self.noise {
+            Prepared::Draws(noise) => noise.unsqueeze(1),
+            // The mean: what the noise spreads is added afterwards.
+            Prepared::Expected { weight, .. } => {
+                Tensor::zeros([1, 1, width], (weight.kind(), weight.device()))
+            }
+        };
+        Tokens::of(
+            &noise.expand([batch as i64, walkers as i64, width], false),
+            pass,
+        )
+    }
+
+    /// [`of`](Self::of) for tokens of the kernels.
+    ///
+    /// # Shapes
+    /// `tokens` `[B, P, width]` -> `[B, P, outputs]`.
+    pub(crate) fn of_rows(&self, tokens: &Tokens, noise: &Tokens, pass: &Pass) -> Buffer {
+        let emitted = self.output.of_tokens(&tokens.beside(noise, pass), pass);
+        let mut numbers = emitted.numbers();
+        if let Prepared::Expected {
+            spread: Some(spread),
+            ..
+        } = &self.noise
+        {
+            let (factors, _) = numbers.as_chunks_mut::<3>();
+            let spread = [&spread.c11, &spread.c12, &spread.c22];
+            let [c11, c12, c22] = spread.map(|c| c.double_value(&[]) as f32);
+            for factor in factors {
+                let [a, b, d] = *factor;
+                let first = (a * a + c11).max(SMALLEST_PIVOT as f32).sqrt();
+                let below = (a * b + c12) / first;
+                let rest = b * b + d * d + c22 - below * below;
+                *factor = [first, below, rest.max(SMALLEST_PIVOT as f32).sqrt()];
+            }
+        }
+        numbers
     }
 }
 

@@ -45,6 +45,11 @@ impl Linear {
         }
     }
 
+    /// Numbers in a row of x.
+    pub(crate) fn inputs(&self) -> i64 {
+        self.weight.size()[1]
+    }
+
     /// # Shapes
     /// `x` `[.., inputs]` -> `[.., outputs]`.
     pub(crate) fn forward(&self, x: &Tensor, pass: &Pass) -> Tensor {

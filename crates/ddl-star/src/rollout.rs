@@ -1,5 +1,7 @@
 //! From windows and goals to positions: teacher-forced for training, recurrent for forecasts.
 
+mod on_rows;
+
 use crate::batch::SceneBatch;
 use crate::emission::NoiseInput;
 use crate::flow::{FlowConstants, StepRule, natural_gradient_step};
@@ -8,6 +10,7 @@ use crate::pass::Pass;
 use crate::star::{GraphMemory, StarNetwork};
 use crate::tokens::Tokens;
 use ddl_data::OBSERVED;
+use on_rows::OnRows;
 use std::ops::Range;
 use std::slice::from_ref;
 use tch::{Kind, Tensor};
@@ -117,6 +120,16 @@ impl StarNetwork {
         }
         let seen = batch.neighbours.during(OBSERVED - 1..OBSERVED);
         let emission = self.emission(noise);
+        if let Tokens::Rows(_) = token {
+            return OnRows::new(batch, goals, &reference, hypotheses, rule).walk(
+                self,
+                batch,
+                &emission,
+                (token, memory),
+                (&seen, pass),
+                horizon,
+            );
+        }
         let mut position = observed
             .narrow(0, last, 1)
             .expand([hypotheses, -1, -1], false);

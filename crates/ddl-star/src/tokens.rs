@@ -93,6 +93,14 @@ impl Tokens {
         }
     }
 
+    /// All numbers, row by row.
+    pub(crate) fn numbers(&self) -> Buffer {
+        match self {
+            Self::Tensor(x) => numbers(x),
+            Self::Rows(x) => Buffer::copy(x),
+        }
+    }
+
     /// B, whose entries [`entry`](Self::entry) gives.
     pub(crate) fn entries(&self) -> usize {
         match self {

@@ -1,0 +1,176 @@
+//! The forecast frames of a rollout on plain numbers, where kernels compute the network: libtorch would spend as long on
+//! the forty small operations between two of its steps as the kernels on the network.
+
+use std::rc::Rc;
+
+use ddl_data::OBSERVED;
+use ddl_dynamics::{
+    Attractor, CholeskyMetric, DynamicsError, Euler, NaturalGradientFlow, StableEuler, rollout_into,
+};
+use nalgebra::Vector2;
+use tch::{Kind, Tensor};
+
+use crate::batch::SceneBatch;
+use crate::emission::Emission;
+use crate::flow::StepRule;
+use crate::kernel::Buffer;
+use crate::neighbours::Seen;
+use crate::numbers::{numbers, tensor};
+use crate::pass::Pass;
+use crate::rollout::Rollout;
+use crate::star::{GraphMemory, StarNetwork};
+use crate::tokens::{Rows, Tokens};
+
+/// Everybody in every hypothesis, `[H, P, 2]` each, metres.
+#[derive(Debug)]
+pub(super) struct OnRows {
+    positions: Buffer,
+    /// Over all frames so far.
+    sums: Buffer,
+    goals: Buffer,
+    /// What the network's temporal positions are relative to.
+    references: Buffer,
+    rule: StepRule,
+}
+
+impl OnRows {
+    /// After the observed frames.
+    ///
+    /// # Shapes
+    /// `batch` of P walkers; `goals` `[G, P, 2]`, `reference` `[G or 1, P, 2]`, in `hypotheses` hypotheses.
+    pub(super) fn new(
+        batch: &SceneBatch,
+        goals: &Tensor,
+        reference: &Tensor,
+        hypotheses: i64,
+        rule: StepRule,
+    ) -> Self {
+        let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
+        let last = observed.narrow(0, OBSERVED as i64 - 1, 1);
+        let sum = observed.sum_dim_intlist([0i64].as_slice(), true, None::<Kind>);
+        let each = |x: &Tensor| numbers(&x.expand([hypotheses, -1, -1], false));
+        Self {
+            positions: each(&last),
+            sums: each(&sum),
+            goals: each(goals),
+            references: each(reference),
+            rule,
+        }
+    }
+
+    /// Goes on for `horizon` frames, with the tokens and the memory of the last observed one.
+    pub(super) fn walk(
+        mut self,
+        network: &StarNetwork,
+        batch: &SceneBatch,
+        emission: &Emission<'_>,
+        (mut token, mut memory): (Tokens, GraphMemory),
+        (seen, pass): (&Seen, &Pass),
+        horizon: usize,
+    ) -> Rollout {
+        let [hypotheses, walkers] = [token.entries(), batch.walkers()];
+        let noise = emission.noise_rows([hypotheses, walkers], pass);
+        let shaped = network.config().variant.dynamics();
+        let (mut path, mut factors) = (Vec::new(), Vec::new());
+        for t in OBSERVED..OBSERVED + horizon {
+            let emitted = emission.of_rows(&token, &noise, pass);
+            if shaped {
+                self.follow(&emitted, network);
+                factors.extend_from_slice(&emitted);
+            } else {
+                for ((p, r), e) in self.places().zip(emitted.iter()) {
+                    *p = r + e;
+                }
+            }
+            path.extend_from_slice(&self.positions);
+            if t + 1 < OBSERVED + horizon {
+                let shape = [hypotheses, walkers, 2];
+                let centred = rows(shape, self.centred(batch, t + 1));
+                let spatial = network.spatial_tokens(&centred, seen, pass);
+                let relative = rows(shape, self.relative());
+                token = network.step(&mut memory, &relative, &spatial, seen, pass);
+            }
+        }
+        let shape = |width: i64| [horizon as i64, hypotheses as i64, walkers as i64, width];
+        Rollout {
+            positions: tensor(&path, &shape(2)),
+            factors: shaped.then(|| tensor(&factors, &shape(3))),
+        }
+    }
+
+    /// Each coordinate with that of its reference.
+    fn places(&mut self) -> impl Iterator<Item = (&mut f32, &f32)> {
+        self.positions.iter_mut().zip(self.references.iter())
+    }
+
+    /// One step of the dynamics for everybody, by the reference implementation.
+    fn follow(&mut self, factors: &[f32], network: &StarNetwork) {
+        let config = network.config();
+        let (sigma, dt) = (config.sigma as f32, config.time_step as f32);
+        let (places, _) = self.positions.as_chunks_mut::<2>();
+        let (goals, _) = self.goals.as_chunks::<2>();
+        let (factors, _) = factors.as_chunks::<3>();
+        for ((place, goal), factor) in places.iter_mut().zip(goals).zip(factors) {
+            // What the network makes of numbers that are none is no number, and told by whoever walks the same way in f64.
+            *place = next(*place, *goal, *factor, sigma, dt, self.rule).unwrap_or([f32::NAN; 2]);
+        }
+    }
+
+    /// Relative to the mean over all walkers of the scene and all `frames` so far, the newest included.
+    fn centred(&mut self, batch: &SceneBatch, frames: usize) -> Buffer {
+        for (sum, position) in self.sums.iter_mut().zip(self.positions.iter()) {
+            *sum += position;
+        }
+        let mut centred = Buffer::copy(&self.positions);
+        let (sums, _) = self.sums.as_chunks::<2>();
+        let (places, _) = centred.as_chunks_mut::<2>();
+        let walkers = batch.walkers();
+        let entries = places.chunks_exact_mut(walkers);
+        for (places, sums) in entries.zip(sums.chunks_exact(walkers)) {
+            for scene in batch.neighbours.scenes() {
+                let mut mean = [0.0; 2];
+                for [x, y] in &sums[scene.clone()] {
+                    mean[0] += x;
+                    mean[1] += y;
+                }
+                let share = 1.0 / (scene.len() * frames) as f32;
+                for [x, y] in &mut places[scene.clone()] {
+                    *x -= mean[0] * share;
+                    *y -= mean[1] * share;
+                }
+            }
+        }
+        centred
+    }
+
+    fn relative(&self) -> Buffer {
+        let mut relative = Buffer::copy(&self.positions);
+        for (x, reference) in relative.iter_mut().zip(self.references.iter()) {
+            *x -= reference;
+        }
+        relative
+    }
+}
+
+fn rows(shape: [usize; 3], numbers: Buffer) -> Tokens {
+    Tokens::Rows(Rc::new(Rows::new(shape, numbers)))
+}
+
+fn next(
+    place: [f32; 2],
+    goal: [f32; 2],
+    [a, b, c]: [f32; 3],
+    sigma: f32,
+    dt: f32,
+    rule: StepRule,
+) -> Result<[f32; 2], DynamicsError> {
+    let attractor = Attractor::new(Vector2::from(goal))?;
+    let flow = NaturalGradientFlow::new(attractor, CholeskyMetric::planar(a, b, c, sigma)?);
+    let start = Vector2::from(place);
+    let mut path = [start; 2];
+    match rule {
+        StepRule::Euler => rollout_into(&flow, &Euler, start, dt, &mut path)?,
+        StepRule::StableEuler => rollout_into(&flow, &StableEuler, start, dt, &mut path)?,
+    }
+    Ok(path[1].into())
+}
