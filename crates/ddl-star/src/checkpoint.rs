@@ -247,8 +247,8 @@ pub(crate) fn read(
     let (_, header) = SafeTensors::read_metadata(&bytes).map_err(broken)?;
     if let Some(difference) = Origin::of_header(header.metadata().as_ref()).difference(origin) {
         let problem = format!(
-            "belongs to another run: its {difference}; put back the file that was trained with this \
-             configuration, or delete it and run the same training again"
+            "belongs to another run than the config.json beside it: its {difference}; put back the file, or the \
+             config.json, that it was made with"
         );
         return Err(bad(path, problem));
     }

@@ -71,7 +71,10 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
     if let Some(difference) = Origin::of_header(header.metadata().as_ref()).difference(origin) {
         return Err(DdlError::run(
             path,
-            format!("belongs to another run: its {difference}"),
+            format!(
+                "belongs to another run than the config.json beside it: its {difference}; put back the file, or \
+             the config.json, that it was made with"
+            ),
         ));
     }
     let file = SafeTensors::deserialize(&bytes).map_err(broken)?;

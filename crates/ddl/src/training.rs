@@ -2,7 +2,7 @@
 
 use crate::run_config::{FORMAT, RunConfig, TrainingData};
 use crate::run_directory::{RunDirectory, SAVE_EVERY};
-use crate::{DdlError, GoalRecipe, goal_training};
+use crate::{Ddl, DdlError, GoalRecipe, goal_training};
 use ddl_data::{Convention, Dataset, Window, WindowRule};
 use ddl_goal::RetrievalFrame;
 use ddl_star::{
@@ -149,7 +149,11 @@ pub fn train(
             observe(&TrainingProgress { steps, step })
         },
     )?;
-    if run.is_trained() || request.until == TrainingStage::Goals {
+    if run.is_trained() {
+        // Finished is what can be loaded: a file that was damaged since is named.
+        return Ddl::load(run.path(), request.device).map(drop);
+    }
+    if request.until == TrainingStage::Goals {
         return Ok(());
     }
     let origin = config.network_origin();

@@ -97,6 +97,16 @@ fn half_a_state_of_training_is_named() {
     std::fs::remove_file(&state).unwrap();
     tiny_model::train_again(&model).unwrap();
     assert!(model.is_trained());
+    // A finished run is finished only as long as it can be loaded.
+    std::fs::write(model.model(), &whole[..100]).unwrap();
+    let error = tiny_model::train_again(&model).unwrap_err().to_string();
+    assert!(
+        error.contains("model.safetensors") && error.contains("delete it"),
+        "{error}"
+    );
+    std::fs::remove_file(model.model()).unwrap();
+    tiny_model::train_again(&model).unwrap();
+    assert!(model.is_trained());
 }
 
 /// A run without validation cannot be measured on it, and one without results not be reported.

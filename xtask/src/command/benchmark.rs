@@ -26,8 +26,8 @@ const INTERRUPTED: u8 = 130;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// How much work: smoke (a minute), quick (minutes), evening (60 epochs: hours), paper (the
-    /// paper's 200 epochs: a night, or one GPU)
+    /// How much work: smoke (a minute), quick (minutes), evening (60 epochs: an hour or two),
+    /// paper (the paper's 200 epochs: some hours, or one GPU)
     #[arg(long, default_value = "quick")]
     profile: Profile,
     /// star, social-gan or simulated [default: the first of these that can be had]
