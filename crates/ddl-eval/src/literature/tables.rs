@@ -1,27 +1,27 @@
-//! The published numbers as markdown tables.
+//! The published numbers as tables.
 
 use ddl_data::Convention;
 
 use super::{ABLATION, AdeFde, FOLDS, LiteratureRow, MEASURED, STAR_CONVENTION, TABLE_ONE};
-use crate::table::MarkdownTable;
+use crate::document::Table;
 
 /// Table I of the DDL paper, with the source and the convention of each row.
 #[must_use]
-pub fn table_one() -> String {
+pub fn table_one() -> Table {
     literature_table(&TABLE_ONE)
 }
 
 /// The best published systems in the `star` convention.
 #[must_use]
-pub fn star_convention_table() -> String {
+pub fn star_convention_table() -> Table {
     literature_table(&STAR_CONVENTION)
 }
 
 /// Table II of the DDL paper: what each component adds.
 #[must_use]
-pub fn ablation_table() -> String {
+pub fn ablation_table() -> Table {
     let start = ["variant", "goal shift", "dynamics"];
-    let mut table = MarkdownTable::new(start.into_iter().chain(FOLDS).chain(["mean"]))
+    let mut table = Table::new(start.into_iter().chain(FOLDS).chain(["mean"]))
         .text_column("goal shift")
         .text_column("dynamics");
     for row in &ABLATION {
@@ -33,17 +33,17 @@ pub fn ablation_table() -> String {
         ];
         table.row(start.into_iter().chain(cells(&row.folds, row.mean)));
     }
-    table.to_string()
+    table
 }
 
 /// The measured baselines, with the plain mean of their folds.
 #[must_use]
-pub fn measured_table() -> String {
+pub fn measured_table() -> Table {
     let header = ["baseline"]
         .into_iter()
         .chain(FOLDS)
         .chain(["mean", "remark"]);
-    let mut table = MarkdownTable::new(header).text_column("remark");
+    let mut table = Table::new(header).text_column("remark");
     let mean = |values: [f64; 5]| values.iter().sum::<f64>() / 5.0;
     for row in &MEASURED {
         let cell = |ade: Option<f64>, fde: f64| match ade {
@@ -55,15 +55,15 @@ pub fn measured_table() -> String {
         let end = [mean, row.remark.to_owned()];
         table.row([row.method.to_owned()].into_iter().chain(folds).chain(end));
     }
-    table.to_string()
+    table
 }
 
-fn literature_table(rows: &[LiteratureRow]) -> String {
+fn literature_table(rows: &[LiteratureRow]) -> Table {
     let header = ["method"]
         .into_iter()
         .chain(FOLDS)
         .chain(["mean", "convention", "source"]);
-    let mut table = MarkdownTable::new(header)
+    let mut table = Table::new(header)
         .text_column("convention")
         .text_column("source");
     for row in rows {
@@ -79,7 +79,7 @@ fn literature_table(rows: &[LiteratureRow]) -> String {
                 .chain([convention, source]),
         );
     }
-    table.to_string()
+    table
 }
 
 fn name(convention: Convention) -> String {

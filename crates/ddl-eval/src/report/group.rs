@@ -75,6 +75,31 @@ impl Group<'_> {
         )
     }
 
+    /// Whether both groups score the same windows of the same data, under whatever protocol.
+    pub(super) fn same_windows(&self, other: &Self) -> bool {
+        (self.convention, self.window_rule, self.test_subset)
+            == (other.convention, other.window_rule, other.test_subset)
+    }
+
+    /// What the table is of.
+    pub(super) fn title(&self) -> String {
+        format!(
+            "Protocol `{}`, window rule `{}`, convention `{}`",
+            self.protocol, self.window_rule, self.convention
+        )
+    }
+
+    /// Protocol, window rule, convention and scored part: what a caption must name.
+    pub(super) fn conditions_in_words(&self) -> String {
+        format!(
+            "Data convention `{}`, window rule `{}`, protocol `{}`; scored: {}.",
+            self.convention,
+            self.window_rule,
+            self.protocol,
+            self.test_subset.unwrap_or("all test windows")
+        )
+    }
+
     /// The columns: the folds of the convention, and any other fold that a row names.
     pub(super) fn folds(&self) -> Vec<&str> {
         let mut folds: Vec<&str> = self.convention.fold_names().collect();

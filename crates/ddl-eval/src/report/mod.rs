@@ -4,10 +4,15 @@ use std::{io::Write, path::Path};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ResultRow, error::ReportError};
+use crate::{ResultRow, document::Document, error::ReportError};
 
+mod ablation;
+mod across_protocols;
+mod content;
+mod further;
 mod group;
-mod markdown;
+mod published;
+mod section;
 mod spread;
 
 /// Version of the JSON file.
@@ -99,7 +104,13 @@ impl Report {
     /// The report as a page of markdown; its first line names the data convention of the numbers.
     #[must_use]
     pub fn to_markdown(&self) -> String {
-        markdown::page(&self.title, &self.rows)
+        self.document().to_markdown()
+    }
+
+    /// The report as a document, to be rendered as markdown, HTML or LaTeX.
+    #[must_use]
+    pub fn document(&self) -> Document {
+        content::document(&self.title, &self.rows)
     }
 
     /// The report as JSON, from which [`Report::from_json`] makes the same report, bit by bit.

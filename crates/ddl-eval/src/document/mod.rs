@@ -1,0 +1,119 @@
+//! A page of results before it has a form: what is said in which order, to be rendered as markdown, HTML or LaTeX.
+//!
+//! All three are made from the same parts, so that a number cannot differ between them.
+
+mod html;
+mod latex;
+mod markdown;
+mod table;
+
+pub use table::Table;
+
+/// Headings, paragraphs, warnings and tables in the order in which they are read.
+///
+/// In every text, `words between backticks` are code; nothing else is marked up.
+///
+/// # Examples
+/// ```
+/// use ddl_eval::document::{Document, Part, Table};
+/// let mut table = Table::new(["method", "eth"]);
+/// table.row(["STAR", "0.36/0.65"]);
+/// let document = Document {
+///     lead: "Data convention: `star`.".to_owned(),
+///     title: "Results".to_owned(),
+///     parts: vec![Part::heading("Published"), Part::Table(table.captioned("ADE/FDE in metres, `star`."))],
+/// };
+/// assert!(document.to_markdown().contains("| STAR   | 0.36/0.65 |"));
+/// assert!(document.to_html().contains("<td>0.36/0.65</td>"));
+/// assert!(document.to_latex().contains(r"STAR & 0.36/0.65 \\"));
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Document {
+    /// What must be known before anything else is read: the first line.
+    pub lead: String,
+    /// The title.
+    pub title: String,
+    /// Everything else.
+    pub parts: Vec<Part>,
+}
+
+/// A piece of a [`Document`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Part {
+    /// A heading; level 1 stands below the title.
+    Heading {
+        /// 1, 2, ...
+        level: usize,
+        /// The words.
+        text: String,
+    },
+    /// Running text.
+    Paragraph(String),
+    /// Items of a list.
+    List(Vec<String>),
+    /// What a reader must not miss.
+    Warning(String),
+    /// Numbers.
+    Table(Table),
+}
+
+impl Part {
+    /// A heading below the title.
+    pub fn heading(text: impl Into<String>) -> Self {
+        Self::Heading {
+            level: 1,
+            text: text.into(),
+        }
+    }
+
+    /// A heading below [`Part::heading`].
+    pub fn subheading(text: impl Into<String>) -> Self {
+        Self::Heading {
+            level: 2,
+            text: text.into(),
+        }
+    }
+}
+
+impl Document {
+    /// Markdown that reads well both as text and rendered; tables of pipes.
+    #[must_use]
+    pub fn to_markdown(&self) -> String {
+        markdown::page(self)
+    }
+
+    /// HTML for the body of a page: lead, title and parts, each section with an `id` made of its heading. Text is
+    /// escaped.
+    #[must_use]
+    pub fn to_html(&self) -> String {
+        html::body(self)
+    }
+
+    /// The tables for a paper, each a `table*` with its caption, to be included with `\input`; needs the package `booktabs`.
+    /// The warnings of a section stand in the captions of its tables, so that they are copied with them.
+    #[must_use]
+    pub fn to_latex(&self) -> String {
+        latex::tables(self)
+    }
+}
+
+/// A piece of a text: as it is, or between backticks.
+enum Span<'a> {
+    Plain(&'a str),
+    Code(&'a str),
+}
+
+/// The text cut at its backticks; one without a partner is kept as it is.
+fn spans(text: &str) -> Vec<Span<'_>> {
+    let mut spans = Vec::new();
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('`') {
+        let Some((code, after)) = after.split_once('`') else {
+            break;
+        };
+        spans.extend([Span::Plain(before), Span::Code(code)]);
+        rest = after;
+    }
+    spans.push(Span::Plain(rest));
+    spans
+}

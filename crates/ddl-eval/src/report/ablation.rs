@@ -1,0 +1,104 @@
+//! The ablation: what the goal and the dynamics each add, beside the paper's Table II.
+
+use super::{
+    group::{Group, Line},
+    section::pair,
+};
+use crate::{
+    document::{Part, Table},
+    literature::{ABLATION, ablation_table},
+};
+
+/// One table a group that has a variant without one of the two components, then the paper's.
+pub(super) fn parts(groups: &[Group<'_>]) -> Vec<Part> {
+    let ablated: Vec<&Group<'_>> = groups.iter().filter(|g| has_ablated_variant(g)).collect();
+    if ablated.is_empty() {
+        return Vec::new();
+    }
+    let mut parts = vec![
+        Part::heading("Ablation: goal shift and dynamics"),
+        Part::Paragraph(
+            "Goal shift: positions enter the network relative to the goal. Dynamics: the network shapes a flow to the goal \
+             instead of emitting positions. The variants differ in nothing else: folds, windows, seeds, recipe and goals are \
+             the same."
+                .to_owned(),
+        ),
+    ];
+    for group in ablated {
+        parts.push(Part::subheading(group.title()));
+        if let Some(warning) = group.protocol.warning() {
+            parts.push(Part::Warning(warning.to_owned()));
+        }
+        parts.push(Part::Table(measured(group).captioned(format!(
+            "Ablation, minADE/minFDE in metres; FDE@minADE of the mean is what the paper prints as FDE. {}",
+            group.conditions_in_words()
+        ))));
+    }
+    parts.extend([
+        Part::subheading(
+            "Table II of the DDL paper (ablation; convention `star`, protocol `published`)",
+        ),
+        Part::Paragraph(
+            "As printed. Compare with results under `published` in the `star` convention alone."
+                .to_owned(),
+        ),
+        Part::Table(ablation_table()),
+    ]);
+    parts
+}
+
+fn has_ablated_variant(group: &Group<'_>) -> bool {
+    let ablated = |line: &Line<'_>| variant(line).is_some_and(|row| row.variant != "full");
+    group.lines.iter().any(ablated)
+}
+
+/// The row of Table II that a line corresponds to: a variant as it is, walked as the protocol has it.
+fn variant<'a>(line: &Line<'_>) -> Option<&'a crate::literature::AblationRow> {
+    let conditions = line.conditions();
+    let name = conditions.variant.as_deref()?;
+    // "DDL with plain Euler steps" and the like are no variants of their own.
+    (conditions.forecaster == "DDL")
+        .then(|| ABLATION.iter().find(|row| row.variant == name))
+        .flatten()
+}
+
+fn measured(group: &Group<'_>) -> Table {
+    let folds = group.folds();
+    let start = ["variant", "goal shift", "dynamics", "seeds"];
+    let columns = start.into_iter().chain(folds.iter().copied());
+    let mut table = Table::new(columns.chain(["mean", "mean FDE@minADE"]))
+        .text_column("goal shift")
+        .text_column("dynamics")
+        .text_column("seeds");
+    for row in &ABLATION {
+        let lines = group
+            .lines
+            .iter()
+            .filter(|line| variant(line).is_some_and(|known| known.variant == row.variant));
+        for line in lines {
+            let has = |component| if component { "yes" } else { "no" }.to_owned();
+            let seeds: Vec<String> = line.seeds().iter().flatten().map(u64::to_string).collect();
+            let start = [
+                row.variant.to_owned(),
+                has(row.goal_shift),
+                has(row.dynamics),
+                seeds.join(", "),
+            ];
+            let cells = folds.iter().map(|fold| {
+                pair(
+                    line.on_fold(fold, |s| s.min_ade),
+                    line.on_fold(fold, |s| s.min_fde),
+                )
+            });
+            let mean = pair(
+                line.over_folds(&folds, |s| s.min_ade),
+                line.over_folds(&folds, |s| s.min_fde),
+            );
+            let at_ade = line
+                .over_folds(&folds, |s| s.fde_at_min_ade)
+                .map_or("-".to_owned(), |spread| spread.to_string());
+            table.row(start.into_iter().chain(cells).chain([mean, at_ade]));
+        }
+    }
+    table
+}

@@ -1,0 +1,97 @@
+//! The same forecaster under every protocol: what choosing with the truth is worth.
+//!
+//! The one table in which protocols meet. It is there to show that their numbers must not be compared, and says so.
+
+use super::{
+    group::{Group, Line},
+    section::{NOTHING, pair},
+};
+use crate::{
+    Protocol,
+    document::{Part, Table},
+};
+
+const NOTE: &str = "The same data, windows, folds and code in every line. Only what is chosen with the true future \
+    differs: under `published` the goal of each pedestrian, then the best of 20 samples on it, and the epoch; under \
+    `fair` the best of 20 hypotheses; under `single` nothing. The differences are the protocol's, not a model's.";
+
+/// For each convention, window rule and scored part that has results under `published` and another protocol, the lines
+/// of trained forecasters and of straight lines to goals, protocol by protocol.
+pub(super) fn parts(groups: &[Group<'_>]) -> Vec<Part> {
+    let mut parts = Vec::new();
+    for oracle in groups.iter().filter(|g| g.protocol == Protocol::Published) {
+        let comparable: Vec<&Group<'_>> =
+            groups.iter().filter(|g| g.same_windows(oracle)).collect();
+        if comparable.len() < 2 {
+            continue;
+        }
+        parts.extend([
+            Part::heading(format!(
+                "One forecaster under several protocols, window rule `{}`, convention `{}`",
+                oracle.window_rule, oracle.convention
+            )),
+            Part::Paragraph(NOTE.to_owned()),
+        ]);
+        parts.extend(
+            oracle
+                .protocol
+                .warning()
+                .map(|words| Part::Warning(words.to_owned())),
+        );
+        parts.push(Part::Table(table(&comparable).captioned(format!(
+            "minADE/minFDE in metres by protocol. NOT comparable with one another: see the warning. Data convention `{}`, \
+             window rule `{}`; scored: {}.",
+            oracle.convention,
+            oracle.window_rule,
+            oracle.test_subset.unwrap_or("all test windows")
+        ))));
+    }
+    parts
+}
+
+fn table(groups: &[&Group<'_>]) -> Table {
+    let folds = groups[0].folds();
+    let columns = ["forecaster", "protocol", "candidates"].into_iter();
+    let mut table = Table::new(columns.chain(folds.iter().copied()).chain(["mean"]))
+        .text_column("protocol")
+        .text_column("candidates");
+    for group in groups {
+        for (line, label) in group.lines.iter().zip(group.labels()) {
+            if !heads_for_goals(line) {
+                continue;
+            }
+            let candidates = match group.protocol {
+                Protocol::Published if line.conditions().epochs.is_some() => {
+                    "20 goals x 20 samples".to_owned()
+                }
+                Protocol::Published => "20 goals".to_owned(),
+                _ => line.rows[0].scores.hypotheses.to_string(),
+            };
+            let cells = folds.iter().map(|fold| {
+                let on = |of: fn(&crate::Scores) -> f64| line.on_fold(fold, of);
+                pair(on(|s| s.min_ade), on(|s| s.min_fde))
+            });
+            let mean = pair(
+                line.over_folds(&folds, |s| s.min_ade),
+                line.over_folds(&folds, |s| s.min_fde),
+            );
+            let start = [label, group.protocol.to_string(), candidates];
+            table.row(start.into_iter().chain(cells).chain([mean]));
+        }
+    }
+    if table.rows().is_empty() {
+        table.row([NOTHING]);
+    }
+    table
+}
+
+/// Whether a protocol has a goal to choose: trained forecasters, and straight lines to estimated goals.
+fn heads_for_goals(line: &Line<'_>) -> bool {
+    line.conditions().epochs.is_some()
+        || line.rows[0].scores.goal_fde.is_some()
+            && !line.conditions().forecaster.contains("the TRUE end")
+        || line
+            .conditions()
+            .forecaster
+            .contains("nearest the TRUE end")
+}
