@@ -3,7 +3,10 @@
 use ddl_data::{Convention, Window, WindowRule};
 use serde::{Deserialize, Serialize};
 
-use crate::{Forecaster, MeasureError, Protocol, Scores};
+use crate::{
+    EvaluationError, Forecast, Forecaster, MeasureError, Protocol, Scores,
+    significance::{BlockErrors, block_errors},
+};
 
 /// How a result came about. Two results are comparable when their convention, window rule, protocol
 /// and test subset are the same; [`Report`](crate::Report) never puts others into one table.
@@ -107,6 +110,9 @@ pub struct ResultRow {
     pub conditions: Conditions,
     /// The numbers.
     pub scores: Scores,
+    /// Errors summed over 20 s each, from which it is told how sure the means are; empty when unknown.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub blocks: Vec<BlockErrors>,
 }
 
 impl ResultRow {
@@ -123,7 +129,24 @@ impl ResultRow {
         windows: &[Window],
     ) -> Result<Self, MeasureError> {
         let forecasts = conditions.protocol.forecast(forecaster, windows)?;
-        let scores = Scores::evaluate(windows, &forecasts)?;
-        Ok(Self { conditions, scores })
+        Ok(Self::score(conditions, windows, &forecasts)?)
+    }
+
+    /// Scores forecasts that are there already, one a window.
+    ///
+    /// The conditions are taken at their word, as by [`ResultRow::measure`].
+    ///
+    /// # Errors
+    /// As [`Scores::evaluate`].
+    pub fn score(
+        conditions: Conditions,
+        windows: &[Window],
+        forecasts: &[Forecast],
+    ) -> Result<Self, EvaluationError> {
+        Ok(Self {
+            conditions,
+            scores: Scores::evaluate(windows, forecasts)?,
+            blocks: block_errors(windows, forecasts)?,
+        })
     }
 }

@@ -17,6 +17,7 @@ mod protocol;
 mod report;
 mod scene;
 mod scores;
+pub mod significance;
 mod training_curve;
 
 pub use conditions::{Conditions, ResultRow};

@@ -6,6 +6,7 @@
 )]
 
 use ddl_data::{Convention, WindowRule};
+use ddl_eval::significance::BlockErrors;
 use ddl_eval::{Conditions, Protocol, Report, ReportError, ResultRow, Scores, StabilityScores};
 
 fn scores(min_ade: f64) -> Scores {
@@ -33,6 +34,18 @@ fn scores(min_ade: f64) -> Scores {
     }
 }
 
+/// Ten blocks of ten pedestrians whose mean error is `min_ade`.
+fn blocks(fold: &str, min_ade: f64) -> Vec<BlockErrors> {
+    let block = |block: i64| BlockErrors {
+        recording: fold.to_owned(),
+        block,
+        pedestrians: 10,
+        min_ade: 10.0 * min_ade * (0.55 + 0.1 * block as f64),
+        min_fde: 20.0 * min_ade,
+    };
+    (0..10).map(block).collect()
+}
+
 fn row(protocol: Protocol, fold: &str, seed: u64, min_ade: f64) -> ResultRow {
     let conditions = Conditions {
         variant: Some("full".to_owned()),
@@ -53,6 +66,7 @@ fn row(protocol: Protocol, fold: &str, seed: u64, min_ade: f64) -> ResultRow {
     ResultRow {
         conditions,
         scores: scores(min_ade),
+        blocks: blocks(fold, min_ade),
     }
 }
 
@@ -272,4 +286,91 @@ fn the_same_row_twice_is_one_and_a_contradiction_is_refused() {
 fn an_empty_report_says_so() {
     let page = Report::new("Nothing", []).unwrap().to_markdown();
     assert!(page.starts_with("Data convention: none"));
+}
+
+/// The better forecaster is so in every block, by 0.05 m on the mean.
+#[test]
+fn differences_come_with_their_interval_and_their_p_value() {
+    let better = five_folds(Protocol::Fair, 1, 0.25);
+    let mut worse = five_folds(Protocol::Fair, 1, 0.30);
+    for row in &mut worse {
+        row.conditions.forecaster = "straight line".to_owned();
+        row.conditions.variant = None;
+        row.conditions.epochs = None;
+    }
+    let report = Report::new("Sure", better.into_iter().chain(worse)).unwrap();
+    let page = report.to_markdown();
+    let sure = page.split("How sure").nth(1).unwrap();
+    let cells = cells(line(sure, "| straight line "));
+    assert_eq!(cells[1], "all");
+    assert!(cells[2].starts_with("0.300 [0.2"), "{cells:?}");
+    assert!(cells[4].starts_with("+0.050 [+0.04"), "{cells:?}");
+    assert_eq!(cells[5], "<0.001");
+    assert_eq!(cells[6], "+0.100 [+0.100, +0.100]");
+    let reference = self::cells(line(sure, "| DDL "));
+    assert_eq!(reference[4..], ["-"; 4]);
+}
+
+/// Everything that a page says stands in each of its forms.
+#[test]
+fn all_forms_of_a_report_hold_the_same_cells() {
+    let mut rows = five_folds(Protocol::Fair, 1, 0.25);
+    rows.extend(five_folds(Protocol::Published, 1, 0.125));
+    let report = Report::new("Forms", rows).unwrap();
+    let (html, latex) = (report.document().to_html(), report.document().to_latex());
+    for cell in ["0.250/0.500", "0.125/0.250", "0.36/0.65"] {
+        assert!(html.contains(&format!("<td>{cell}</td>")), "{cell}");
+        assert!(latex.contains(&format!("& {cell} ")), "{cell}");
+    }
+    for text in [&html, &latex] {
+        assert!(text.contains("chosen with the TRUE end"));
+    }
+}
+
+/// The same model is shown under the oracle's protocol and under the fair one in one table, with the warning.
+#[test]
+fn protocols_meet_in_one_table_with_its_warning() {
+    let mut rows = five_folds(Protocol::Fair, 1, 0.25);
+    rows.extend(five_folds(Protocol::Published, 1, 0.125));
+    let page = Report::new("Protocols", rows).unwrap().to_markdown();
+    let together = page
+        .split("## One forecaster under several protocols")
+        .nth(1)
+        .unwrap();
+    let together = together.split("\n## ").next().unwrap();
+    assert!(together.contains("up to 400 candidates"));
+    let rows: Vec<Vec<&str>> = together
+        .lines()
+        .filter(|line| line.starts_with("| DDL "))
+        .map(cells)
+        .collect();
+    assert_eq!(rows[0][1..4], ["fair", "20", "0.250/0.500"]);
+    assert_eq!(
+        rows[1][1..4],
+        ["published", "20 goals x 20 samples", "0.125/0.250"]
+    );
+}
+
+#[test]
+fn the_ablation_stands_beside_the_papers() {
+    let mut rows = Vec::new();
+    for (variant, error) in [("full", 0.2), ("no-goal-shift", 0.3), ("star", 0.4)] {
+        for seed in [1, 2] {
+            let spread = 0.1 * (seed - 1) as f64;
+            for mut row in five_folds(Protocol::Published, seed, error + spread) {
+                row.conditions.variant = Some(variant.to_owned());
+                rows.push(row);
+            }
+        }
+    }
+    let page = Report::new("Ablation", rows).unwrap().to_markdown();
+    let ablation = page.split("## Ablation").nth(1).unwrap();
+    let star = cells(line(ablation, "| star "));
+    assert_eq!(
+        star[..5],
+        ["star", "no", "no", "1, 2", "0.450±0.071/0.900±0.141"]
+    );
+    assert!(ablation.contains("Table II of the DDL paper"));
+    let plain = Report::new("Plain", five_folds(Protocol::Fair, 1, 0.2)).unwrap();
+    assert!(!plain.to_markdown().contains("Ablation"));
 }

@@ -5,7 +5,7 @@ use crate::model::{self, Ddl};
 use crate::test_set::TestSet;
 use crate::training_words::{recipe, subset};
 use ddl_data::{Window, WindowRule};
-use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, Scores, baseline};
+use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, baseline};
 
 /// Seed of constant velocity with angular noise: the same in every run, so that runs agree.
 const NOISE_SEED: u64 = 1;
@@ -75,8 +75,7 @@ impl ResultRows<'_> {
                     conditions = self.of_the_model(conditions);
                 }
                 conditions.forecaster.clone_from(&one.forecaster);
-                let scores = Scores::evaluate(&windows, &of_rule)?;
-                rows.push(ResultRow { conditions, scores });
+                rows.push(ResultRow::score(conditions, &windows, &of_rule)?);
             }
             rows.extend(baseline::measure(&plain, &windows, NOISE_SEED)?);
         }

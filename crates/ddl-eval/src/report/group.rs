@@ -3,7 +3,7 @@
 use ddl_data::{Convention, WindowRule};
 
 use super::spread::Spread;
-use crate::{Protocol, ResultRow, Scores, conditions::Conditions};
+use crate::{Protocol, ResultRow, Scores, conditions::Conditions, significance::BlockErrors};
 
 /// Rows whose numbers are comparable: one table.
 pub(super) struct Group<'a> {
@@ -161,6 +161,31 @@ impl<'a> Line<'a> {
             .iter()
             .copied()
             .filter(move |row| row.conditions.fold == fold)
+    }
+
+    /// The errors by block on one fold, mean over the seeds; `None` where a row has none, or the seeds were not measured on
+    /// the same windows.
+    pub(super) fn blocks(&self, fold: &str) -> Option<Vec<BlockErrors>> {
+        let rows: Vec<&ResultRow> = self.on(fold).collect();
+        let count = rows.len() as f64;
+        let mut mean = rows.first()?.blocks.clone();
+        for row in &rows[1..] {
+            if row.blocks.len() != mean.len() {
+                return None;
+            }
+            for (sum, block) in mean.iter_mut().zip(&row.blocks) {
+                if !sum.same_windows(block) {
+                    return None;
+                }
+                sum.min_ade += block.min_ade;
+                sum.min_fde += block.min_fde;
+            }
+        }
+        for sum in &mut mean {
+            sum.min_ade /= count;
+            sum.min_fde /= count;
+        }
+        (!mean.is_empty()).then_some(mean)
     }
 
     /// The seeds, sorted; `None` stands for results that have no seed.

@@ -13,6 +13,7 @@ mod further;
 mod group;
 mod published;
 mod section;
+mod significance;
 mod spread;
 
 /// Version of the JSON file.

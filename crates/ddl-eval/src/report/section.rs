@@ -5,6 +5,7 @@ use ddl_data::WindowRule;
 use super::{
     further,
     group::{Group, Line},
+    significance,
 };
 use crate::{
     Conditions,
@@ -44,6 +45,7 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
         "Further metrics. {}",
         group.conditions_in_words()
     ))));
+    parts.extend(significance::parts(group));
     parts
 }
 

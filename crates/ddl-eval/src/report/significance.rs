@@ -1,0 +1,131 @@
+//! How sure the numbers of a table are, and the differences between its lines.
+
+use super::{
+    group::{Group, Line},
+    section::NOTHING,
+};
+use crate::{
+    document::{Part, Table},
+    significance::{
+        BlockErrors, BlockMetric, Interval, RESAMPLES, mean_interval, paired_difference,
+    },
+};
+
+/// Intervals of every line that has errors by block, and its differences from the first trained one.
+pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
+    let folds = group.folds();
+    let lines: Vec<(Measured<'_>, String)> = group
+        .lines
+        .iter()
+        .zip(group.labels())
+        .filter_map(|(line, label)| Some((Measured::of(line, &folds)?, label)))
+        .collect();
+    let Some((reference, name)) = lines
+        .iter()
+        .find(|(measured, _)| measured.line.conditions().epochs.is_some())
+        .or(lines.first())
+    else {
+        return Vec::new();
+    };
+    let note = format!(
+        "How sure these means are: in brackets the 95 % interval over {RESAMPLES} resamples of 20 s of recording (windows overlap \
+         and are no independent samples); p: how often chance alone would make as large a difference from {name}, by changing \
+         the sign of the difference of every 20 s at random, not corrected for the number of comparisons. Seeds are averaged first. \
+         The intervals speak of other moments in the same places, not of other places: for that, look at how much the folds differ."
+    );
+    let mut table = Table::new([
+        "forecaster".to_owned(),
+        "folds".to_owned(),
+        "minADE m".to_owned(),
+        "minFDE m".to_owned(),
+        format!("minADE - {name} m"),
+        "p".to_owned(),
+        format!("minFDE - {name} m"),
+        "p".to_owned(),
+    ])
+    .text_column("folds");
+    for (measured, label) in &lines {
+        let mut cells = vec![label.clone(), measured.folds_in_words(&folds)];
+        for metric in [BlockMetric::MinAde, BlockMetric::MinFde] {
+            let interval = mean_interval(&measured.slices(), metric);
+            cells.push(interval.map_or(NOTHING.to_owned(), in_words));
+        }
+        for metric in [BlockMetric::MinAde, BlockMetric::MinFde] {
+            cells.extend(difference(measured, reference, metric));
+        }
+        table.row(cells);
+    }
+    vec![
+        Part::Paragraph(note),
+        Part::Table(table.captioned(format!(
+            "95 % intervals and paired differences. {}",
+            group.conditions_in_words()
+        ))),
+    ]
+}
+
+/// A line with its errors by block, seeds averaged.
+struct Measured<'a> {
+    line: &'a Line<'a>,
+    /// The folds it has, each with its blocks.
+    folds: Vec<(String, Vec<BlockErrors>)>,
+}
+
+impl<'a> Measured<'a> {
+    /// `None` where a row has no errors by block.
+    fn of(line: &'a Line<'a>, folds: &[&str]) -> Option<Self> {
+        let present = line.present(folds);
+        let folds: Option<Vec<_>> = present
+            .iter()
+            .map(|&fold| Some((fold.to_owned(), line.blocks(fold)?)))
+            .collect();
+        let folds = folds.filter(|folds| !folds.is_empty())?;
+        Some(Self { line, folds })
+    }
+
+    fn slices(&self) -> Vec<&[BlockErrors]> {
+        self.folds.iter().map(|(_, blocks)| &blocks[..]).collect()
+    }
+
+    fn folds_in_words(&self, all: &[&str]) -> String {
+        if self.folds.len() == all.len() {
+            return "all".to_owned();
+        }
+        let names: Vec<&str> = self.folds.iter().map(|(name, _)| name.as_str()).collect();
+        names.join(", ")
+    }
+}
+
+/// The difference and its p-value as two cells; nothing where the two have other folds or windows, or are the same line.
+fn difference(
+    measured: &Measured<'_>,
+    reference: &Measured<'_>,
+    metric: BlockMetric,
+) -> [String; 2] {
+    let nothing = || [NOTHING.to_owned(), NOTHING.to_owned()];
+    let names = |of: &Measured<'_>| {
+        of.folds
+            .iter()
+            .map(|(name, _)| name.clone())
+            .collect::<Vec<_>>()
+    };
+    if std::ptr::eq(measured.line, reference.line) || names(measured) != names(reference) {
+        return nothing();
+    }
+    match paired_difference(&measured.slices(), &reference.slices(), metric) {
+        Ok(Some(pair)) => {
+            let p = match pair.p_value {
+                small if small < 1e-3 => "<0.001".to_owned(),
+                p => format!("{p:.3}"),
+            };
+            let Interval { mean, low, high } = pair.difference;
+            [format!("{mean:+.3} [{low:+.3}, {high:+.3}]"), p]
+        }
+        Ok(None) | Err(_) => nothing(),
+    }
+}
+
+fn in_words(interval: Interval) -> String {
+    let Interval { mean, low, high } = interval;
+    format!("{mean:.3} [{low:.3}, {high:.3}]")
+}

@@ -1,0 +1,139 @@
+//! Errors summed over stretches of time.
+
+use std::collections::BTreeMap;
+
+use ddl_data::Window;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::BlockMetric;
+use crate::{EvaluationError, Forecast, Scene, metric::displacement::DisplacementErrors};
+
+/// Steps of 0.4 s within which windows start that belong to one block: 20 s.
+pub const BLOCK_STEPS: i64 = 50;
+
+/// The errors of all windows of a recording that start within the same 20 s.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BlockErrors {
+    /// The recording.
+    pub recording: String,
+    /// Number of the block, counted from raw frame 0 of the recording.
+    pub block: i64,
+    /// Pedestrians in its windows; one in several windows counts in each.
+    pub pedestrians: usize,
+    /// Sum over them of minADE, m.
+    pub min_ade: f64,
+    /// Sum over them of minFDE, m.
+    pub min_fde: f64,
+}
+
+impl BlockErrors {
+    /// The sum of one metric, m.
+    #[must_use]
+    pub fn sum(&self, metric: BlockMetric) -> f64 {
+        match metric {
+            BlockMetric::MinAde => self.min_ade,
+            BlockMetric::MinFde => self.min_fde,
+        }
+    }
+
+    /// Whether both are of the same windows: place and pedestrians agree.
+    #[must_use]
+    pub fn same_windows(&self, other: &Self) -> bool {
+        (&self.recording, self.block, self.pedestrians)
+            == (&other.recording, other.block, other.pedestrians)
+    }
+}
+
+/// Sums the errors of forecasts, one a window, block by block: by recording, then by time.
+///
+/// Windows are measured in parallel and summed in order: the result does not depend on the number of threads.
+///
+/// # Errors
+/// A window has no future, or a forecast is not of its window's pedestrians.
+pub fn block_errors(
+    windows: &[Window],
+    forecasts: &[Forecast],
+) -> Result<Vec<BlockErrors>, EvaluationError> {
+    if windows.len() != forecasts.len() {
+        let (windows, forecasts) = (windows.len(), forecasts.len());
+        return Err(EvaluationError::Count { windows, forecasts });
+    }
+    let sums: Vec<[f64; 2]> = windows
+        .par_iter()
+        .zip(forecasts)
+        .map(|(window, forecast)| {
+            let errors = DisplacementErrors::of(&Scene::new(window, forecast)?);
+            let sum = |of: fn(&DisplacementErrors, usize) -> f64| {
+                (0..window.len()).map(|i| of(&errors, i)).sum()
+            };
+            Ok([
+                sum(DisplacementErrors::min_ade),
+                sum(DisplacementErrors::min_fde),
+            ])
+        })
+        .collect::<Result<_, EvaluationError>>()?;
+    let mut blocks: BTreeMap<(&str, i64), BlockErrors> = BTreeMap::new();
+    for (window, [min_ade, min_fde]) in windows.iter().zip(sums) {
+        let length = BLOCK_STEPS.saturating_mul(window.frame_step());
+        let block = window.start_frame().div_euclid(length);
+        let sum = blocks
+            .entry((window.recording(), block))
+            .or_insert_with(|| BlockErrors {
+                recording: window.recording().to_owned(),
+                block,
+                pedestrians: 0,
+                min_ade: 0.0,
+                min_fde: 0.0,
+            });
+        sum.pedestrians += window.len();
+        sum.min_ade += min_ade;
+        sum.min_fde += min_fde;
+    }
+    Ok(blocks.into_values().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+    use ddl_data::{PedestrianId, Position};
+
+    use super::*;
+
+    fn standing(recording: &str, start: i64, at: Position) -> Window {
+        let (id, track) = (vec![PedestrianId(1)], vec![vec![at; 20]]);
+        Window::new(recording, start, 10, id, track).unwrap()
+    }
+
+    /// A step is 10 frames, so that a block is 500: windows from 0 and 499 share one, those from 500 and -1 do not.
+    #[test]
+    fn windows_belong_to_the_block_they_start_in() {
+        let starts = [("a", 0), ("a", 499), ("a", 500), ("a", -1), ("b", 0)];
+        let windows: Vec<_> = starts
+            .iter()
+            .map(|&(name, start)| standing(name, start, [0.0, 0.0]))
+            .collect();
+        // Window i is missed by i + 1 metres.
+        let forecasts: Vec<_> = (1..=5)
+            .map(|off| Forecast::equally_likely(1, 1, vec![[f64::from(off), 0.0]; 12]).unwrap())
+            .collect();
+        let blocks = block_errors(&windows, &forecasts).unwrap();
+        let short: Vec<_> = blocks
+            .iter()
+            .map(|b| (b.recording.as_str(), b.block, b.pedestrians))
+            .collect();
+        assert_eq!(short, [("a", -1, 1), ("a", 0, 2), ("a", 1, 1), ("b", 0, 1)]);
+        for (block, expected) in blocks.iter().zip([4.0, 3.0, 3.0, 5.0]) {
+            assert_relative_eq!(block.sum(BlockMetric::MinAde), expected);
+            assert_relative_eq!(block.sum(BlockMetric::MinFde), expected);
+        }
+    }
+
+    #[test]
+    fn as_many_forecasts_as_windows_are_needed() {
+        assert!(matches!(
+            block_errors(&[standing("a", 0, [0.0; 2])], &[]),
+            Err(EvaluationError::Count { .. })
+        ));
+    }
+}

@@ -1,0 +1,167 @@
+//! Intervals by resampling blocks.
+
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+
+use super::{BlockErrors, BlockMetric};
+
+/// Resamples drawn for an interval, and sign changes for a test.
+pub const RESAMPLES: usize = 10_000;
+
+/// Seed of the resamples: the same in every report, so that it is made again bit by bit.
+const SEED: u64 = 0;
+
+/// A mean and the interval that holds 95 % of its resamples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// The mean itself.
+    pub mean: f64,
+    /// The 2.5th percentile of the resamples.
+    pub low: f64,
+    /// Their 97.5th percentile.
+    pub high: f64,
+}
+
+/// The plain mean over the folds of the mean error of each, with its 95 % percentile interval over resampled blocks, m.
+///
+/// `folds[f]` are the blocks of fold f. In each of [`RESAMPLES`] resamples every fold draws as many of its blocks as it has, with
+/// replacement; its mean is that of the pedestrians in them. `None` when there is no fold, or one without pedestrians.
+///
+/// # Numerics
+/// A fold of a few blocks knows little of its own spread: below about ten of them the interval is too narrow.
+#[must_use]
+pub fn mean_interval(folds: &[&[BlockErrors]], metric: BlockMetric) -> Option<Interval> {
+    let folds: Vec<Vec<Part>> = folds
+        .iter()
+        .map(|blocks| blocks.iter().map(|b| Part::of(b.sum(metric), b)).collect())
+        .collect();
+    interval(&folds)
+}
+
+/// A sum over some pedestrians.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Part {
+    pub(super) sum: f64,
+    pub(super) pedestrians: usize,
+}
+
+impl Part {
+    pub(super) fn of(sum: f64, block: &BlockErrors) -> Self {
+        Self {
+            sum,
+            pedestrians: block.pedestrians,
+        }
+    }
+}
+
+pub(super) fn interval(folds: &[Vec<Part>]) -> Option<Interval> {
+    let whole = |fold: &Vec<Part>| mean(fold.iter().copied());
+    let means: Option<Vec<f64>> = folds.iter().map(whole).collect();
+    let mean_of = |means: &[f64]| means.iter().sum::<f64>() / means.len() as f64;
+    let means = means.filter(|means| !means.is_empty())?;
+    let mut random = generator();
+    let mut resamples: Vec<f64> = (0..RESAMPLES)
+        .map(|_| {
+            let drawn: Vec<f64> = folds
+                .iter()
+                .map(|fold| {
+                    let draw = (0..fold.len()).map(|_| fold[random.random_range(0..fold.len())]);
+                    // Every block holds somebody, so that every resample has a mean.
+                    mean(draw).unwrap_or(f64::NAN)
+                })
+                .collect();
+            mean_of(&drawn)
+        })
+        .collect();
+    resamples.sort_by(f64::total_cmp);
+    Some(Interval {
+        mean: mean_of(&means),
+        low: percentile(&resamples, 0.025),
+        high: percentile(&resamples, 0.975),
+    })
+}
+
+pub(super) fn generator() -> ChaCha8Rng {
+    ChaCha8Rng::seed_from_u64(SEED)
+}
+
+/// Mean error of the pedestrians of some blocks; `None` without any.
+pub(super) fn mean(parts: impl Iterator<Item = Part>) -> Option<f64> {
+    let (sum, pedestrians) = parts.fold((0.0, 0), |(sum, count), part| {
+        (sum + part.sum, count + part.pedestrians)
+    });
+    (pedestrians > 0).then(|| sum / pedestrians as f64)
+}
+
+/// The value below which this share of sorted values lies, between two of them by proportion.
+fn percentile(sorted: &[f64], share: f64) -> f64 {
+    let place = share * (sorted.len() - 1) as f64;
+    let below = place.floor() as usize;
+    let above = (below + 1).min(sorted.len() - 1);
+    sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+
+    fn blocks(errors: &[f64]) -> Vec<BlockErrors> {
+        (0..)
+            .zip(errors)
+            .map(|(block, &error)| BlockErrors {
+                recording: "a".to_owned(),
+                block,
+                pedestrians: 10,
+                min_ade: 10.0 * error,
+                min_fde: 20.0 * error,
+            })
+            .collect()
+    }
+
+    #[test]
+    fn equal_blocks_leave_nothing_in_doubt() {
+        let fold = blocks(&[0.3; 12]);
+        let interval = mean_interval(&[&fold], BlockMetric::MinAde).unwrap();
+        for value in [interval.mean, interval.low, interval.high] {
+            assert_relative_eq!(value, 0.3, epsilon = 1e-12);
+        }
+    }
+
+    /// 40 blocks, half of error 0 and half of error 1: the mean of a resample is binomial, 0.5 with the deviation
+    /// sqrt(0.25 / 40) = 0.0791, so that 95 % lie within 0.5 -+ 1.96 * 0.0791 = [0.345, 0.655].
+    #[test]
+    fn the_interval_is_that_of_the_binomial_distribution() {
+        let errors: Vec<f64> = (0..40).map(|i| f64::from(i % 2)).collect();
+        let fold = blocks(&errors);
+        let interval = mean_interval(&[&fold], BlockMetric::MinAde).unwrap();
+        assert_relative_eq!(interval.mean, 0.5, epsilon = 1e-12);
+        assert_relative_eq!(interval.low, 0.345, epsilon = 0.011);
+        assert_relative_eq!(interval.high, 0.655, epsilon = 0.011);
+        let twice = mean_interval(&[&fold], BlockMetric::MinFde).unwrap();
+        assert_relative_eq!(twice.low, 2.0 * interval.low, epsilon = 1e-12);
+    }
+
+    /// Two folds of the same spread: the deviation of the mean falls by sqrt(2), whatever their levels.
+    #[test]
+    fn folds_count_alike_and_are_resampled_apart() {
+        let errors: Vec<f64> = (0..40).map(|i| f64::from(i % 2)).collect();
+        let (low, high) = (
+            blocks(&errors),
+            blocks(&errors.iter().map(|e| e + 2.0).collect::<Vec<_>>()),
+        );
+        let one = mean_interval(&[&low], BlockMetric::MinAde).unwrap();
+        let two = mean_interval(&[&low, &high], BlockMetric::MinAde).unwrap();
+        assert_relative_eq!(two.mean, 1.5, epsilon = 1e-12);
+        let ratio = (one.high - one.low) / (two.high - two.low);
+        assert_relative_eq!(ratio, std::f64::consts::SQRT_2, epsilon = 0.1);
+    }
+
+    #[test]
+    fn without_blocks_there_is_no_interval() {
+        assert_eq!(mean_interval(&[], BlockMetric::MinAde), None);
+        let fold = blocks(&[0.1]);
+        assert_eq!(mean_interval(&[&fold, &[]], BlockMetric::MinAde), None);
+    }
+}

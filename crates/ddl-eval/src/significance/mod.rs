@@ -1,0 +1,27 @@
+//! How sure a difference is: intervals and tests that know how windows overlap.
+//!
+//! Windows start at every frame and last 20, so neighbours share 19 of their frames and most of their people: they are no
+//! independent samples, and an interval that takes them for that is several times too narrow. Here the unit is a *block*: all
+//! windows of a recording that start within the same 20 s ([`BLOCK_STEPS`] steps), which is longer than most people stay in view.
+//! Errors are summed block by block ([`BlockErrors`]), and blocks are resampled within each fold.
+//!
+//! # References
+//! Künsch, "The jackknife and the bootstrap for general stationary observations", Annals of Statistics 1989 (blocks);
+//! Efron, Tibshirani, "An Introduction to the Bootstrap", 1993 (percentile interval, permutation test).
+
+mod blocks;
+mod bootstrap;
+mod paired;
+
+pub use blocks::{BLOCK_STEPS, BlockErrors, block_errors};
+pub use bootstrap::{Interval, RESAMPLES, mean_interval};
+pub use paired::{PairedDifference, UnpairedError, paired_difference};
+
+/// Which of the errors of a block is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum BlockMetric {
+    /// minADE, m.
+    MinAde,
+    /// minFDE, m.
+    MinFde,
+}
