@@ -52,7 +52,9 @@ fn evaluate(model: &Ddl, dataset: &Dataset) -> Vec<ResultRow> {
         test_walkers: None,
         commit: String::new(),
     };
-    ddl::evaluate(model, dataset, &request, |_| ControlFlow::Continue(())).unwrap()
+    ddl::evaluate(model, dataset, &request, |_| ControlFlow::Continue(()))
+        .unwrap()
+        .rows
 }
 
 /// What a forecast says of itself, without the truth: bit by bit.

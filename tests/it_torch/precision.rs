@@ -46,8 +46,8 @@ fn reports_name_it() {
         commit: String::new(),
     };
     let dataset = crowd::dataset();
-    let rows = ddl::evaluate(&model, &dataset, &request, |_| ControlFlow::Continue(())).unwrap();
-    for row in rows {
+    let evaluation = ddl::evaluate(&model, &dataset, &request, |_| ControlFlow::Continue(())).unwrap();
+    for row in evaluation.rows {
         let conditions = row.conditions;
         let device = if conditions.variant.is_some() {
             "cpu, bf16"

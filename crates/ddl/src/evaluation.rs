@@ -10,7 +10,7 @@ use crate::test_set::TestSet;
 use crate::walk::Gait;
 use ddl_data::{Dataset, Window};
 use ddl_eval::baseline::WeightedGoals;
-use ddl_eval::{Forecast, ForecastError, Forecaster as _, Protocol, ResultRow};
+use ddl_eval::{Forecast, ForecastError, Forecaster as _, Moment, Protocol, ResultRow, gallery};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -51,6 +51,16 @@ pub struct EvaluationProgress {
     pub protocol: Protocol,
 }
 
+/// What an evaluation gives.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Evaluation {
+    /// The numbers, each with its conditions.
+    pub rows: Vec<ResultRow>,
+    /// Moments to look at, with what the model forecast under `fair`, on windows of the headline rule; none without that protocol.
+    pub moments: Vec<Moment>,
+}
+
 /// Measures the model and the baselines on the test windows of the model's fold.
 ///
 /// # Errors
@@ -61,7 +71,7 @@ pub fn evaluate(
     dataset: &Dataset,
     request: &EvaluationRequest,
     observe: impl FnMut(&EvaluationProgress) -> ControlFlow<()>,
-) -> Result<Vec<ResultRow>, DdlError> {
+) -> Result<Evaluation, DdlError> {
     let test = TestSet::of_run(
         model.goal_model(),
         dataset,
@@ -88,8 +98,12 @@ pub fn evaluate(
     if request.protocols.contains(&Protocol::Published) {
         rows.extend(measuring.published()?);
     }
-    rows.extend(measuring.honest()?);
-    Ok(rows)
+    let honest = measuring.honest()?;
+    rows.extend(honest.rows);
+    Ok(Evaluation {
+        rows,
+        moments: honest.moments,
+    })
 }
 
 /// A way in which the model's forecasts are walked, each a row of its own.
@@ -118,13 +132,16 @@ struct Measuring<'a, O> {
 
 impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
     /// `fair` and `single`: one set of forecasts serves both.
-    fn honest(&mut self) -> Result<Vec<ResultRow>, DdlError> {
+    fn honest(&mut self) -> Result<Evaluation, DdlError> {
         let protocols: Vec<Protocol> = Protocol::ALL
             .into_iter()
             .filter(|p| !p.shows_future() && self.asked(*p))
             .collect();
         let Some(&first) = protocols.first() else {
-            return Ok(Vec::new());
+            return Ok(Evaluation {
+                rows: Vec::new(),
+                moments: Vec::new(),
+            });
         };
         let model = self.model;
         let manners = self.manners();
@@ -153,7 +170,23 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             forecasted.push(Forecasted::lines_to(goal, lines));
             rows.extend(self.rows(protocol, "last epoch").of(&forecasted)?);
         }
-        Ok(rows)
+        let moments = if self.asked(Protocol::Fair) {
+            self.moments(&forecasts.model[0])?
+        } else {
+            Vec::new()
+        };
+        Ok(Evaluation { rows, moments })
+    }
+
+    /// What to look at of the model's forecasts, one a window of the test set.
+    fn moments(&self, forecasts: &[Forecast]) -> Result<Vec<Moment>, DdlError> {
+        let (windows, forecasts): (Vec<Window>, Vec<Forecast>) = self
+            .test
+            .headline_indices()
+            .map(|index| (self.test.windows[index].clone(), forecasts[index].clone()))
+            .unzip();
+        let fold = &self.model.config().data.fold;
+        Ok(gallery::moments(fold, &self.model.name(), &windows, &forecasts)?)
     }
 
     /// The model as it is; what the published steps would make of the same flow, told once, in the

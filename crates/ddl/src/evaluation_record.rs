@@ -1,8 +1,8 @@
 //! Which evaluation a run's `report.json` holds, so that a repeated one can be skipped.
 
-use crate::run_directory::{read_json, write_json};
+use crate::run_directory::{read_json, serialise, write_json};
 use crate::{Clearance, Ddl, DdlError, EvaluationRequest};
-use ddl_eval::Report;
+use ddl_eval::{Moment, Report};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -30,14 +30,15 @@ impl Record {
 #[must_use]
 pub fn is_evaluated(model: &Ddl, request: &EvaluationRequest) -> bool {
     let record = record_file(model);
-    if !record.is_file() || !model.run().report().is_file() {
+    let run = model.run();
+    if ![&record, &run.report(), &run.moments()].iter().all(|file| file.is_file()) {
         return false;
     }
     // a record that cannot be read, of another version perhaps, vouches for nothing
     read_json::<Record>(&record).is_ok_and(|done| done == Record::new(model, request))
 }
 
-/// Writes `report.json`, then the record of what was asked for.
+/// Writes `report.json` and `moments.json`, then the record of what was asked for.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -45,6 +46,7 @@ pub fn save_evaluation(
     model: &Ddl,
     request: &EvaluationRequest,
     report: &Report,
+    moments: &[Moment],
 ) -> Result<(), DdlError> {
     let record = record_file(model);
     if record.is_file() {
@@ -53,6 +55,10 @@ pub fn save_evaluation(
     }
     let json = report.to_json()?;
     crate::write_atomically(&model.run().report(), json.as_bytes())?;
+    // positions by the thousand: not for people to read
+    let path = model.run().moments();
+    let compact = serialise(&path, &moments, false)?;
+    crate::write_atomically(&path, compact.as_bytes())?;
     write_json(&record, &Record::new(model, request))
 }
 

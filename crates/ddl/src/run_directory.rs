@@ -11,6 +11,7 @@
 //! | `proposal-state.safetensors` | weights, Adam's state and progress of its training under way |
 //! | `model.safetensors` | the final weights; there only when training is finished |
 //! | `report.json` | results of the evaluation |
+//! | `moments.json` | moments of the evaluation, to look at |
 //! | `evaluation.json` | which evaluation that was |
 //!
 //! Every file is written under a temporary name and renamed.
@@ -75,6 +76,11 @@ impl RunDirectory {
     /// Results.
     pub fn report(&self) -> PathBuf {
         self.0.join("report.json")
+    }
+
+    /// Moments of the evaluation, to look at.
+    pub fn moments(&self) -> PathBuf {
+        self.0.join("moments.json")
     }
 
     /// Weights after an epoch.
@@ -222,7 +228,7 @@ pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), DdlE
     write_atomically(path, text.as_bytes())
 }
 
-fn serialise(path: &Path, value: &impl Serialize, pretty: bool) -> Result<String, DdlError> {
+pub(crate) fn serialise(path: &Path, value: &impl Serialize, pretty: bool) -> Result<String, DdlError> {
     let text = if pretty {
         serde_json::to_string_pretty(value)
     } else {

@@ -156,11 +156,13 @@ impl TestSet {
 
     /// Windows of the headline rule.
     pub(crate) fn headline(&self) -> impl Iterator<Item = &Window> {
-        self.rules
-            .iter()
-            .take(1)
-            .flat_map(|(_, indices)| indices)
-            .map(|&i| &self.windows[i])
+        self.headline_indices().map(|i| &self.windows[i])
+    }
+
+    /// Indices of the windows of the headline rule.
+    pub(crate) fn headline_indices(&self) -> impl Iterator<Item = usize> {
+        let headline = self.rules.iter().take(1);
+        headline.flat_map(|(_, indices)| indices).copied()
     }
 
     /// A seeded part of the windows, in their order, with at least `walkers` walkers.

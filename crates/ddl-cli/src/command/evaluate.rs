@@ -62,7 +62,7 @@ impl Evaluate {
         }
         let dataset = dataset(model.config().data.convention, self.data.as_deref())?;
         let progress = Progress::new("evaluate", self.telling.progress);
-        let rows = ddl::evaluate(&model, &dataset, &request, |now| {
+        let evaluation = ddl::evaluate(&model, &dataset, &request, |now| {
             let (done, total) = now.walkers;
             progress.tell(done as u64, total as u64, now.protocol.name());
             interrupt.flow()
@@ -73,8 +73,8 @@ impl Evaluate {
             model.config().data.fold,
             model.config().star.variant
         );
-        let report = Report::new(title, rows)?;
-        ddl::save_evaluation(&model, &request, &report)?;
+        let report = Report::new(title, evaluation.rows)?;
+        ddl::save_evaluation(&model, &request, &report, &evaluation.moments)?;
         self.tell(&report)
     }
 
