@@ -46,7 +46,8 @@ fn reports_name_it() {
         commit: String::new(),
     };
     let dataset = crowd::dataset();
-    let evaluation = ddl::evaluate(&model, &dataset, &request, |_| ControlFlow::Continue(())).unwrap();
+    let evaluation =
+        ddl::evaluate(&model, &dataset, &request, |_| ControlFlow::Continue(())).unwrap();
     for row in evaluation.rows {
         let conditions = row.conditions;
         let device = if conditions.variant.is_some() {

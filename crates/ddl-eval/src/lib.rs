@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 pub mod baseline;
+pub mod category;
 mod conditions;
 pub mod document;
 mod error;
@@ -12,14 +13,15 @@ pub mod leak;
 pub mod literature;
 pub mod metric;
 mod moment;
-mod motion_kind;
 mod protocol;
 mod report;
 mod scene;
 mod scores;
 pub mod significance;
 mod training_curve;
+mod walker_scores;
 
+pub use category::{Category, CategoryScores, MotionKind};
 pub use conditions::{Conditions, ResultRow};
 pub use error::{EvaluationError, ForecastError, ForecastShapeError, MeasureError, ReportError};
 pub use figure::error::{FigureError, GoalCaseProblem};
@@ -27,7 +29,6 @@ pub use forecast::Forecast;
 pub use forecaster::Forecaster;
 pub use metric::stability::StabilityScores;
 pub use moment::{Moment, MomentHypothesis, MomentWalker};
-pub use motion_kind::MotionKind;
 pub use protocol::{Protocol, UnknownProtocol};
 pub use report::Report;
 pub use scene::Scene;

@@ -6,22 +6,25 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Forecast, Scene,
+    category::CategoryScores,
     error::EvaluationError,
     metric::{
-        collision::{self, DISC_RADIUS},
+        amd::amv,
         displacement::DisplacementErrors,
-        goal::goal_fde,
+        gaussian::Covariance,
         joint::{joint_ade, joint_fde},
-        miss::{MISS_DISTANCE, is_miss},
         stability::{self, RolloutStability, StabilityScores},
     },
+    walker_scores::WalkerScores,
 };
 
 /// The metrics of one forecaster on the test windows of one fold.
 ///
 /// Means are over pedestrians; a pedestrian in several windows counts once for each. The mean over
 /// the five folds is the plain mean of their `Scores` (see [`Report`](crate::Report)).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+///
+/// Fields that earlier versions did not write are `None` when their files are read.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Scores {
     /// Pedestrians scored, over all windows.
     pub pedestrians: usize,
@@ -49,6 +52,50 @@ pub struct Scores {
     pub goal_fde: Option<f64>,
     /// Behaviour of the rollouts towards their goals; `None` for forecasts without goals.
     pub stability: Option<StabilityScores>,
+    /// ADE of the hypothesis of least FDE, metres.
+    #[serde(default)]
+    pub ade_at_min_fde: Option<f64>,
+    /// ADE of all hypotheses, weighted, metres.
+    #[serde(default)]
+    pub expected_ade: Option<f64>,
+    /// FDE of all hypotheses, weighted, metres.
+    #[serde(default)]
+    pub expected_fde: Option<f64>,
+    /// ADE of the most likely hypothesis, metres.
+    #[serde(default)]
+    pub most_likely_ade: Option<f64>,
+    /// FDE of the most likely hypothesis, metres.
+    #[serde(default)]
+    pub most_likely_fde: Option<f64>,
+    /// As [`miss_rate`](Self::miss_rate), by more than 1 m.
+    #[serde(default)]
+    pub miss_rate_1m: Option<f64>,
+    /// As [`miss_rate`](Self::miss_rate), by more than 2 m.
+    #[serde(default)]
+    pub miss_rate_2m: Option<f64>,
+    /// Share of pedestrians whose most likely forecast runs into another's true future, in [0, 1].
+    #[serde(default)]
+    pub true_neighbour_collision_rate: Option<f64>,
+    /// Negative log-likelihood of the truth under a kernel density of the hypotheses, nats; `None` for one
+    /// hypothesis.
+    #[serde(default)]
+    pub kde_nll: Option<f64>,
+    /// Average Mahalanobis distance of the truth, deviations; `None` for one hypothesis.
+    #[serde(default)]
+    pub amd: Option<f64>,
+    /// Average maximum eigenvalue: spread of the hypotheses, square metres; `None` for one hypothesis.
+    #[serde(default)]
+    pub amv: Option<f64>,
+    /// Mean distance between the paths of two hypotheses, metres; `None` for one hypothesis.
+    #[serde(default)]
+    pub diversity: Option<f64>,
+    /// Mean distance between the ends of two hypotheses, metres; `None` for one hypothesis.
+    #[serde(default)]
+    pub end_diversity: Option<f64>,
+    /// The walkers by kind of motion, in the order of [`Category::all`](crate::category::Category::all);
+    /// categories that nobody is in are left out.
+    #[serde(default)]
+    pub categories: Vec<CategoryScores>,
 }
 
 impl Scores {
@@ -66,41 +113,81 @@ impl Scores {
             return Err(EvaluationError::Count { windows, forecasts });
         }
         let first = forecasts.first().ok_or(EvaluationError::NoWindows)?;
-        let sums: Vec<SceneSums> = windows
+        let scenes: Vec<SceneScores> = windows
             .par_iter()
             .zip(forecasts)
             .map(|(window, forecast)| {
                 check_alike(window, forecast, first)?;
-                Ok(SceneSums::of(&Scene::new(window, forecast)?))
+                Ok(SceneScores::of(&Scene::new(window, forecast)?))
             })
             .collect::<Result<_, EvaluationError>>()?;
-        Ok(Self::from_sums(&sums, first))
+        Ok(Self::mean(&scenes, first))
     }
 
-    fn from_sums(sums: &[SceneSums], first: &Forecast) -> Self {
-        let pedestrians: usize = sums.iter().map(|s| s.pedestrians).sum();
-        let mean =
-            |of: fn(&SceneSums) -> f64| sums.iter().map(of).sum::<f64>() / pedestrians as f64;
-        let rollouts: Vec<RolloutStability> = sums
+    fn mean(scenes: &[SceneScores], first: &Forecast) -> Self {
+        let pedestrians: usize = scenes.iter().map(|s| s.walkers.len()).sum();
+        let total = pedestrians as f64;
+        let over_scenes = |of: fn(&SceneScores) -> f64| scenes.iter().map(of).sum::<f64>() / total;
+        let mean = |of: fn(&WalkerScores) -> f64| {
+            let sums = scenes.iter().map(|s| s.walkers.iter().map(of).sum::<f64>());
+            sums.sum::<f64>() / total
+        };
+        let share = |of: fn(&WalkerScores) -> bool| {
+            let walkers = scenes.iter().flat_map(|s| &s.walkers);
+            walkers.filter(|walker| of(walker)).count() as f64 / total
+        };
+        // All walkers have as many hypotheses: either each has a distribution or none.
+        let several = first.hypotheses() > 1;
+        let of_several = |of: fn(&WalkerScores) -> Option<f64>| {
+            let sum = |s: &SceneScores| s.walkers.iter().filter_map(of).sum::<f64>();
+            several.then(|| scenes.iter().map(sum).sum::<f64>() / total)
+        };
+        let rollouts: Vec<RolloutStability> = scenes
             .iter()
             .flat_map(|s| s.rollouts.iter().copied())
             .collect();
         Self {
             pedestrians,
-            windows: sums.len(),
+            windows: scenes.len(),
             hypotheses: first.hypotheses(),
-            min_ade: mean(|s| s.min_ade),
-            min_fde: mean(|s| s.min_fde),
-            fde_at_min_ade: mean(|s| s.fde_at_min_ade),
-            joint_ade: mean(|s| s.joint_ade),
-            joint_fde: mean(|s| s.joint_fde),
-            miss_rate: mean(|s| s.misses as f64),
-            collision_rate: mean(|s| s.collisions as f64),
-            true_collision_rate: mean(|s| s.true_collisions as f64),
-            goal_fde: first.has_goals().then(|| mean(|s| s.goal_fde)),
+            min_ade: mean(|w| w.min_ade),
+            min_fde: mean(|w| w.min_fde),
+            fde_at_min_ade: mean(|w| w.fde_at_min_ade),
+            joint_ade: over_scenes(|s| s.joint_ade),
+            joint_fde: over_scenes(|s| s.joint_fde),
+            miss_rate: share(|w| w.missed),
+            collision_rate: share(|w| w.collides),
+            true_collision_rate: share(|w| w.truly_collides),
+            goal_fde: first
+                .has_goals()
+                .then(|| mean(|w| w.goal_fde.unwrap_or(0.0))),
             stability: StabilityScores::mean(&rollouts),
+            ade_at_min_fde: Some(mean(|w| w.ade_at_min_fde)),
+            expected_ade: Some(mean(|w| w.expected_ade)),
+            expected_fde: Some(mean(|w| w.expected_fde)),
+            most_likely_ade: Some(mean(|w| w.most_likely_ade)),
+            most_likely_fde: Some(mean(|w| w.most_likely_fde)),
+            miss_rate_1m: Some(share(|w| w.missed_widely[0])),
+            miss_rate_2m: Some(share(|w| w.missed_widely[1])),
+            true_neighbour_collision_rate: Some(share(|w| w.collides_with_truth)),
+            kde_nll: of_several(|w| w.kde_nll),
+            amd: of_several(|w| w.distribution.map(|d| d.mahalanobis)),
+            amv: several.then(|| amv(mean_covariance(scenes, total))),
+            diversity: of_several(|w| w.diversity.map(|d| d.path)),
+            end_diversity: of_several(|w| w.diversity.map(|d| d.ends)),
+            categories: CategoryScores::of(scenes.iter().flat_map(|s| &s.walkers)),
         }
     }
+}
+
+fn mean_covariance(scenes: &[SceneScores], pedestrians: f64) -> Covariance {
+    let of_scene = |s: &SceneScores| {
+        let covariances = s.walkers.iter().filter_map(|w| w.distribution);
+        covariances.fold(Covariance::default(), |sum, d| sum.plus(d.covariance))
+    };
+    let sum = scenes.iter().map(of_scene);
+    sum.fold(Covariance::default(), Covariance::plus)
+        .scaled(1.0 / pedestrians)
 }
 
 fn check_alike(
@@ -132,113 +219,27 @@ fn check_alike(
     Ok(())
 }
 
-/// Sums over the pedestrians of one window.
-struct SceneSums {
-    pedestrians: usize,
-    min_ade: f64,
-    min_fde: f64,
-    fde_at_min_ade: f64,
+/// What one window adds.
+struct SceneScores {
+    walkers: Vec<WalkerScores>,
+    /// JADE times the pedestrians, metres.
     joint_ade: f64,
     joint_fde: f64,
-    misses: usize,
-    collisions: usize,
-    true_collisions: usize,
-    goal_fde: f64,
     rollouts: Vec<RolloutStability>,
 }
 
-impl SceneSums {
+impl SceneScores {
     fn of(scene: &Scene<'_>) -> Self {
         let errors = DisplacementErrors::of(scene);
-        let n = scene.pedestrians();
-        let sum = |of: fn(&DisplacementErrors, usize) -> f64| (0..n).map(|i| of(&errors, i)).sum();
+        let pedestrians = scene.pedestrians() as f64;
         Self {
-            pedestrians: n,
-            min_ade: sum(DisplacementErrors::min_ade),
-            min_fde: sum(DisplacementErrors::min_fde),
-            fde_at_min_ade: sum(DisplacementErrors::fde_at_min_ade),
-            joint_ade: joint_ade(&errors) * n as f64,
-            joint_fde: joint_fde(&errors) * n as f64,
-            misses: (0..n)
-                .filter(|&i| is_miss(&errors, i, MISS_DISTANCE))
-                .count(),
-            collisions: collision::forecast_collisions(scene, DISC_RADIUS),
-            true_collisions: collision::true_collisions(scene, DISC_RADIUS),
-            goal_fde: (0..n).filter_map(|i| goal_fde(scene, i)).sum(),
+            walkers: WalkerScores::of(scene, &errors),
+            joint_ade: joint_ade(&errors) * pedestrians,
+            joint_fde: joint_fde(&errors) * pedestrians,
             rollouts: stability::rollouts(scene),
         }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use approx::assert_relative_eq;
-
-    use super::*;
-    use crate::metric::fixture::{forecast, walk, window};
-
-    /// One window of one pedestrian (errors 1 m) and one of three (errors 0): the mean is over the
-    /// four pedestrians, not over the two windows.
-    #[test]
-    fn means_are_over_pedestrians() {
-        let (still, far) = ([0.0, 0.0], [[0.0, 0.0], [5.0, 0.0], [9.0, 0.0]]);
-        let windows = [window(&[still], &[still]), window(&far, &[still; 3])];
-        let forecasts = [
-            forecast(1, &[walk([1.0, 0.0], still)]),
-            forecast(3, &far.map(|at| walk(at, still))),
-        ];
-        let scores = Scores::evaluate(&windows, &forecasts).unwrap();
-        assert_eq!(
-            (scores.pedestrians, scores.windows, scores.hypotheses),
-            (4, 2, 1)
-        );
-        for mean in [
-            scores.min_ade,
-            scores.min_fde,
-            scores.fde_at_min_ade,
-            scores.joint_ade,
-        ] {
-            assert_relative_eq!(mean, 0.25);
-        }
-        assert_relative_eq!(scores.miss_rate, 0.25);
-        assert_eq!((scores.goal_fde, scores.stability), (None, None));
-    }
-
-    #[test]
-    fn what_does_not_belong_together_is_refused() {
-        let still = [0.0, 0.0];
-        let windows = [window(&[still], &[still]), window(&[still], &[still])];
-        let one = forecast(1, &[walk(still, still)]);
-        let two = forecast(1, &[walk(still, still), walk(still, still)]);
-        let pair = forecast(2, &[walk(still, still), walk(still, still)]);
-        let error = |w: &[Window], f: &[Forecast]| Scores::evaluate(w, f).unwrap_err();
-        assert_eq!(error(&[], &[]), EvaluationError::NoWindows);
-        assert!(matches!(
-            error(&windows, &[]),
-            EvaluationError::Count {
-                windows: 2,
-                forecasts: 0
-            }
-        ));
-        assert!(matches!(
-            error(&windows, &[one.clone(), two]),
-            EvaluationError::Hypotheses {
-                expected: 1,
-                found: 2,
-                ..
-            }
-        ));
-        assert!(matches!(
-            error(&windows[..1], &[pair]),
-            EvaluationError::Pedestrians {
-                expected: 1,
-                found: 2,
-                ..
-            }
-        ));
-        assert!(matches!(
-            error(&[windows[0].without_future()], &[one]),
-            EvaluationError::NoFuture { .. }
-        ));
-    }
-}
+mod tests;

@@ -12,15 +12,24 @@ use ddl_eval::{
 
 fn windows() -> Vec<Window> {
     let dataset = Dataset::simulated(1);
-    dataset.fold("corridor").unwrap().test_windows(WindowRule::Complete)
+    dataset
+        .fold("corridor")
+        .unwrap()
+        .test_windows(WindowRule::Complete)
 }
 
 fn oracle(windows: &[Window]) -> Vec<Forecast> {
-    Protocol::Published.forecast(&StraightLine::to(TrueEnd), windows).unwrap()
+    Protocol::Published
+        .forecast(&StraightLine::to(TrueEnd), windows)
+        .unwrap()
 }
 
 fn shown(moments: &[Moment]) -> Vec<Show> {
-    let mut shown: Vec<Show> = moments.iter().flat_map(|m| &m.picks).map(|pick| pick.show).collect();
+    let mut shown: Vec<Show> = moments
+        .iter()
+        .flat_map(|m| &m.picks)
+        .map(|pick| pick.show)
+        .collect();
     shown.sort();
     shown
 }
@@ -30,7 +39,10 @@ fn each_kind_of_case_is_picked_once_and_time_is_covered() {
     let windows = windows();
     let moments = gallery::moments("corridor", "oracle", &windows, &oracle(&windows)).unwrap();
     let kinds = shown(&moments);
-    assert!(kinds.contains(&Show::Convergence) && kinds.contains(&Show::KeepingDistance), "{kinds:?}");
+    assert!(
+        kinds.contains(&Show::Convergence) && kinds.contains(&Show::KeepingDistance),
+        "{kinds:?}"
+    );
     let mut once = kinds.clone();
     once.dedup();
     assert_eq!(kinds, once);
@@ -60,7 +72,11 @@ fn the_case_shown_is_the_median_one() {
         .iter()
         .find(|m| m.picks.iter().any(|p| p.show == Show::Convergence))
         .unwrap();
-    let pick = moment.picks.iter().find(|p| p.show == Show::Convergence).unwrap();
+    let pick = moment
+        .picks
+        .iter()
+        .find(|p| p.show == Show::Convergence)
+        .unwrap();
     let error = |window: &Window, i: usize, forecast: &Forecast| {
         average_displacement(forecast.hypothesis(i, 0), window.future(i))
     };
@@ -81,13 +97,20 @@ fn the_case_shown_is_the_median_one() {
     }
     errors.sort_by(f64::total_cmp);
     assert_eq!(shown, Some(errors[(errors.len() - 1) / 2]));
-    assert!(pick.rule.starts_with(&format!("of {} such walkers", errors.len())), "{}", pick.rule);
+    assert!(
+        pick.rule
+            .starts_with(&format!("of {} such walkers", errors.len())),
+        "{}",
+        pick.rule
+    );
 }
 
 #[test]
 fn forecasts_without_goals_converge_nowhere_and_few_windows_are_all_shown() {
     let windows = windows();
-    let forecasts = Protocol::Fair.forecast(&ConstantVelocity::last_step(), &windows[..3]).unwrap();
+    let forecasts = Protocol::Fair
+        .forecast(&ConstantVelocity::last_step(), &windows[..3])
+        .unwrap();
     let moments = gallery::moments("corridor", "CV", &windows[..3], &forecasts).unwrap();
     assert_eq!(moments.len(), 3);
     assert!(!shown(&moments).contains(&Show::Convergence));

@@ -31,6 +31,7 @@ fn scores(min_ade: f64) -> Scores {
             reversing: 0.0,
             certified: Some(0.875),
         }),
+        ..Scores::default()
     }
 }
 

@@ -186,7 +186,12 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             .map(|index| (self.test.windows[index].clone(), forecasts[index].clone()))
             .unzip();
         let fold = &self.model.config().data.fold;
-        Ok(gallery::moments(fold, &self.model.name(), &windows, &forecasts)?)
+        Ok(gallery::moments(
+            fold,
+            &self.model.name(),
+            &windows,
+            &forecasts,
+        )?)
     }
 
     /// The model as it is; what the published steps would make of the same flow, told once, in the

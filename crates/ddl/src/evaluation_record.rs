@@ -31,7 +31,10 @@ impl Record {
 pub fn is_evaluated(model: &Ddl, request: &EvaluationRequest) -> bool {
     let record = record_file(model);
     let run = model.run();
-    if ![&record, &run.report(), &run.moments()].iter().all(|file| file.is_file()) {
+    if ![&record, &run.report(), &run.moments()]
+        .iter()
+        .all(|file| file.is_file())
+    {
         return false;
     }
     // a record that cannot be read, of another version perhaps, vouches for nothing

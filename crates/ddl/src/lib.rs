@@ -38,7 +38,9 @@ pub use clearance::Clearance;
 pub use ddl_eval::{Forecast, Forecaster, Protocol};
 pub use ddl_star::{DeviceChoice, Precision, Variant};
 pub use error::DdlError;
-pub use evaluation::{Evaluation, EvaluationProgress, EvaluationRequest, EvaluationSplit, evaluate};
+pub use evaluation::{
+    Evaluation, EvaluationProgress, EvaluationRequest, EvaluationSplit, evaluate,
+};
 pub use evaluation_record::{is_evaluated, save_evaluation};
 pub use goal_evaluation::{GoalErrors, GoalEvaluation, MeasuredGoals, evaluate_goals};
 pub use goal_model::GoalModel;

@@ -228,7 +228,11 @@ pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), DdlE
     write_atomically(path, text.as_bytes())
 }
 
-pub(crate) fn serialise(path: &Path, value: &impl Serialize, pretty: bool) -> Result<String, DdlError> {
+pub(crate) fn serialise(
+    path: &Path,
+    value: &impl Serialize,
+    pretty: bool,
+) -> Result<String, DdlError> {
     let text = if pretty {
         serde_json::to_string_pretty(value)
     } else {

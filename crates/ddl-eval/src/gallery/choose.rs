@@ -90,7 +90,11 @@ fn picks(
 /// The case of median error; of an even number the better of the two in the middle.
 fn median(show: Show, mut cases: Vec<Case>) -> (usize, Pick) {
     let count = cases.len();
-    cases.sort_by(|a, b| a.min_ade.total_cmp(&b.min_ade).then(a.window.cmp(&b.window)));
+    cases.sort_by(|a, b| {
+        a.min_ade
+            .total_cmp(&b.min_ade)
+            .then(a.window.cmp(&b.window))
+    });
     let case = cases.swap_remove((count - 1) / 2);
     let rule = match count {
         1 => format!("the only such walker (minADE {:.2} m)", case.min_ade),
@@ -168,14 +172,16 @@ fn mean_distance(a: &[Position], b: &[Position]) -> f64 {
 fn spread_over_time(windows: &[Window]) -> BTreeSet<usize> {
     let mut of_recording: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (index, window) in windows.iter().enumerate() {
-        of_recording.entry(window.recording()).or_default().push(index);
+        of_recording
+            .entry(window.recording())
+            .or_default()
+            .push(index);
     }
     of_recording
         .values()
         .flat_map(|indices| {
-            (0..MOMENTS_A_RECORDING).map(|part| {
-                indices[(2 * part + 1) * indices.len() / (2 * MOMENTS_A_RECORDING)]
-            })
+            (0..MOMENTS_A_RECORDING)
+                .map(|part| indices[(2 * part + 1) * indices.len() / (2 * MOMENTS_A_RECORDING)])
         })
         .collect()
 }

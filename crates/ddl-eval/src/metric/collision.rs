@@ -40,16 +40,16 @@ pub const DISC_RADIUS: f64 = 0.2;
 /// ```
 #[must_use]
 pub fn closest_approach(a: &[Position], b: &[Position]) -> f64 {
-    let apart: Vec<Position> = a
-        .iter()
-        .zip(b)
-        .map(|(p, q)| [p[0] - q[0], p[1] - q[1]])
-        .collect();
-    let first = apart.first().map_or(f64::INFINITY, |r| r[0].hypot(r[1]));
-    apart
-        .windows(2)
-        .map(|pair| distance_to_origin(pair[0], pair[1]))
-        .fold(first, f64::min)
+    let mut apart = a.iter().zip(b).map(|(p, q)| [p[0] - q[0], p[1] - q[1]]);
+    let Some(mut before) = apart.next() else {
+        return f64::INFINITY;
+    };
+    let mut least = before[0].hypot(before[1]);
+    for now in apart {
+        least = least.min(distance_to_origin(before, now));
+        before = now;
+    }
+    least
 }
 
 /// Distance of the origin from the segment from `r0` to `r1`.
@@ -64,9 +64,12 @@ fn distance_to_origin(r0: Position, r1: Position) -> f64 {
     (r0[0] + s * d[0]).hypot(r0[1] + s * d[1])
 }
 
-/// Number of tracks whose disc of radius `radius` metres overlaps that of any other track.
+/// Which tracks' discs of radius `radius` metres overlap that of any other track.
+///
+/// # Shapes
+/// one entry a track.
 #[must_use]
-pub fn colliding(tracks: &[&[Position]], radius: f64) -> usize {
+pub fn collides(tracks: &[&[Position]], radius: f64) -> Vec<bool> {
     let mut hit = vec![false; tracks.len()];
     for i in 0..tracks.len() {
         for j in i + 1..tracks.len() {
@@ -76,24 +79,41 @@ pub fn colliding(tracks: &[&[Position]], radius: f64) -> usize {
             }
         }
     }
+    hit
+}
+
+/// Number of tracks whose disc of radius `radius` metres overlaps that of any other track.
+#[must_use]
+pub fn colliding(tracks: &[&[Position]], radius: f64) -> usize {
+    let hit = collides(tracks, radius);
     hit.into_iter().filter(|&h| h).count()
+}
+
+/// The most likely forecast of each pedestrian, metres.
+#[must_use]
+pub fn most_likely_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
+    let forecast = scene.forecast();
+    (0..scene.pedestrians())
+        .map(|i| forecast.hypothesis(i, forecast.most_likely(i)))
+        .collect()
+}
+
+/// The true future of each pedestrian, metres.
+#[must_use]
+pub fn true_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
+    (0..scene.pedestrians()).map(|i| scene.truth(i)).collect()
 }
 
 /// Number of pedestrians whose most likely forecast collides with another's.
 #[must_use]
 pub fn forecast_collisions(scene: &Scene<'_>, radius: f64) -> usize {
-    let forecast = scene.forecast();
-    let tracks: Vec<_> = (0..scene.pedestrians())
-        .map(|i| forecast.hypothesis(i, forecast.most_likely(i)))
-        .collect();
-    colliding(&tracks, radius)
+    colliding(&most_likely_tracks(scene), radius)
 }
 
 /// Number of pedestrians whose true future collides with another's: what real people do.
 #[must_use]
 pub fn true_collisions(scene: &Scene<'_>, radius: f64) -> usize {
-    let tracks: Vec<_> = (0..scene.pedestrians()).map(|i| scene.truth(i)).collect();
-    colliding(&tracks, radius)
+    colliding(&true_tracks(scene), radius)
 }
 
 #[cfg(test)]

@@ -5,10 +5,12 @@
 //! ```text
 //! ADE_k = 1/T sum_t |p_k(t) - p(t)|        FDE_k = |p_k(T) - p(T)|        metres
 //! minADE_K = min_k ADE_k    minFDE_K = min_k FDE_k    FDE@minADE_K = FDE_k* with k* = argmin_k ADE_k
+//! ADE@minFDE_K = ADE_k* with k* = argmin_k FDE_k
 //! ```
 //!
 //! The two minima are independent, which is how most of the literature reads "best of 20"; STAR's and
-//! DDL's code prints `FDE@minADE`, which is never smaller than `minFDE`.
+//! DDL's code prints `FDE@minADE`, which is never smaller than `minFDE`. `ADE@minFDE` is that of works
+//! which choose by the end (PECNet, Y-Net); it is never smaller than `minADE`.
 //!
 //! # References
 //! Pellegrini et al., "You'll never walk alone", ICCV 2009 (displacement errors); Gupta et al.,
@@ -148,10 +150,22 @@ impl DisplacementErrors {
     /// When `i` is out of range.
     #[must_use]
     pub fn fde_at_min_ade(&self, i: usize) -> f64 {
-        let ade = self.ade(i);
-        let best = (1..ade.len()).fold(0, |best, k| if ade[k] < ade[best] { k } else { best });
-        self.fde(i)[best]
+        self.fde(i)[least(self.ade(i))]
     }
+
+    /// ADE of the hypothesis of least FDE of pedestrian `i` (of equals, the first), metres.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn ade_at_min_fde(&self, i: usize) -> f64 {
+        self.ade(i)[least(self.fde(i))]
+    }
+}
+
+/// Index of the least of some numbers; of equals, the first.
+fn least(errors: &[f64]) -> usize {
+    (1..errors.len()).fold(0, |best, k| if errors[k] < errors[best] { k } else { best })
 }
 
 #[cfg(test)]
@@ -183,6 +197,7 @@ mod tests {
         assert_relative_eq!(errors.min_ade(0), 0.3, epsilon = 1e-12);
         assert_relative_eq!(errors.min_fde(0), 0.0, epsilon = 1e-12);
         assert_relative_eq!(errors.fde_at_min_ade(0), 0.3, epsilon = 1e-12);
+        assert_relative_eq!(errors.ade_at_min_fde(0), 11.0 / 12.0, epsilon = 1e-12);
     }
 
     #[test]

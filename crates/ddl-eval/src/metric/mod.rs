@@ -2,13 +2,19 @@
 //!
 //! All are functions of a [`Scene`](crate::Scene): N pedestrians, K hypotheses, 12 frames, metres.
 
+pub mod amd;
 pub mod calibration;
 pub mod collision;
 pub mod displacement;
+pub mod diversity;
+pub mod expected;
+pub mod gaussian;
 pub mod goal;
 pub mod joint;
+pub mod kde;
 pub mod miss;
 pub mod stability;
+pub mod true_neighbour_collision;
 
 #[cfg(test)]
 pub(crate) mod fixture;

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use ddl_data::{HORIZON, OBSERVED, Position, TIME_STEP, WINDOW};
+use serde::{Deserialize, Serialize};
 
 use crate::metric::displacement::distance;
 
@@ -33,7 +34,8 @@ const CHANGE: f64 = 0.3;
 /// ```
 ///
 /// Left is from x to y, counter-clockwise where y points up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum MotionKind {
     /// Within 1 m of the first position all the time.
     Standing,

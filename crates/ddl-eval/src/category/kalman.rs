@@ -1,0 +1,83 @@
+//! A constant-velocity Kalman filter: where a walker would be if it went on in a straight line.
+//!
+//! Each axis for itself, in steps of one frame, with the state s = (position, velocity a frame):
+//!
+//! ```text
+//! s(t+1) = [1 1; 0 1] s(t) + noise of covariance 1e-5 I        z(t) = position + noise of 5 cm
+//! s(1) ~ N((z(1), 0), I)                                        the forecast: p(8) + 12 v(8)
+//! ```
+//!
+//! Noises and prior are those of `TrajNet++`'s filter. It then adapts them by ten rounds of EM and
+//! averages five random continuations; here they stay as they are and the continuation is the expected
+//! one, so that the same track always has the same kind.
+
+use ddl_data::{HORIZON, Position};
+
+/// Variance of what a state changes by in a frame: metres squared, and (metres a frame) squared.
+const TRANSITION: f64 = 1e-5;
+/// Variance of an observed position, square metres.
+const OBSERVATION: f64 = 0.05 * 0.05;
+
+/// Where the filter expects a walker 12 frames after the last of its observed positions, metres.
+///
+/// # Panics
+/// When `observed` is empty.
+pub(crate) fn expected_end(observed: &[Position]) -> Position {
+    let mut position = observed[0];
+    let mut velocity = [0.0, 0.0];
+    // The covariance of position and velocity is the same on both axes.
+    let [mut pp, mut pv, mut vv] = [1.0, 0.0, 1.0];
+    for (t, seen) in observed.iter().enumerate() {
+        if t > 0 {
+            for axis in 0..2 {
+                position[axis] += velocity[axis];
+            }
+            [pp, pv, vv] = [pp + 2.0 * pv + vv + TRANSITION, pv + vv, vv + TRANSITION];
+        }
+        let [gain_p, gain_v] = [pp, pv].map(|c| c / (pp + OBSERVATION));
+        for axis in 0..2 {
+            let surprise = seen[axis] - position[axis];
+            position[axis] += gain_p * surprise;
+            velocity[axis] += gain_v * surprise;
+        }
+        [pp, pv, vv] = [(1.0 - gain_p) * pp, (1.0 - gain_p) * pv, vv - gain_v * pv];
+    }
+    [0, 1].map(|axis| position[axis] + HORIZON as f64 * velocity[axis])
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+
+    /// The prior pulls the speed towards 0, and eight positions outweigh it: half a centimetre of 6 m.
+    #[test]
+    fn a_straight_walk_goes_on() {
+        let walk: Vec<_> = (0..8)
+            .map(|t| [0.5 * f64::from(t), 1.0 - 0.25 * f64::from(t)])
+            .collect();
+        let end = expected_end(&walk);
+        assert_relative_eq!(end[0], 9.5, epsilon = 5e-3);
+        assert_relative_eq!(end[1], -3.75, epsilon = 5e-3);
+    }
+
+    /// The same filter with whole matrices, written with numpy from the equations above: see
+    /// `tests/reference/distribution.py`, which prints these numbers.
+    #[test]
+    fn a_crooked_walk_as_computed_elsewhere() {
+        let walk = [
+            [0.0, 0.0],
+            [0.4, 0.1],
+            [0.9, 0.1],
+            [1.3, 0.3],
+            [1.6, 0.6],
+            [2.1, 0.7],
+            [2.4, 1.1],
+            [2.9, 1.2],
+        ];
+        let end = expected_end(&walk);
+        assert_relative_eq!(end[0], 7.757_791_477_031_529, epsilon = 1e-12);
+        assert_relative_eq!(end[1], 3.402_978_619_963_234, epsilon = 1e-12);
+    }
+}

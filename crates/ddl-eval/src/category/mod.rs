@@ -1,0 +1,88 @@
+//! What kind of walk a result is about: the walker's own motion, and what the others had to do with it.
+//!
+//! Two divisions, side by side. [`MotionKind`] looks at the walker alone: standing, straight on, turning,
+//! slowing down, speeding up. [`TrajectoryType`] is `TrajNet++`'s: static, linear, interacting and
+//! non-interacting, with [`Interaction`] for the sub-kinds of the third. Each walker has one motion kind
+//! and one type; it may have several sub-kinds, so that only the sub-kinds add up to more than all.
+//!
+//! All of them read the future. They group results after the forecasts are made; no forecast may depend
+//! on them.
+
+mod interaction;
+mod kalman;
+mod motion_kind;
+mod scores;
+mod trajectory_type;
+
+use std::fmt;
+
+use ddl_data::Window;
+use serde::{Deserialize, Serialize};
+
+pub use interaction::Interaction;
+pub use motion_kind::MotionKind;
+pub use scores::CategoryScores;
+pub use trajectory_type::TrajectoryType;
+
+/// A group of walkers.
+///
+/// # Examples
+/// ```
+/// use ddl_data::{PedestrianId, Window};
+/// use ddl_eval::category::{Category, MotionKind, TrajectoryType};
+/// let straight = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect();
+/// let window = Window::new("corridor", 0, 10, vec![PedestrianId(7)], vec![straight])?;
+/// assert_eq!(
+///     Category::of(&window, 0),
+///     [Category::Motion(MotionKind::Straight), Category::Type(TrajectoryType::Linear)],
+/// );
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Category {
+    /// How the walker itself moves.
+    Motion(MotionKind),
+    /// Its type in `TrajNet++`'s taxonomy.
+    Type(TrajectoryType),
+    /// A sub-kind of type III.
+    Interaction(Interaction),
+}
+
+impl Category {
+    /// Every category, in the order in which they are shown.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let motions = MotionKind::ALL.into_iter().map(Self::Motion);
+        let types = TrajectoryType::ALL.into_iter().map(Self::Type);
+        let interactions = Interaction::ALL.into_iter().map(Self::Interaction);
+        motions.chain(types).chain(interactions)
+    }
+
+    /// The categories of walker `i`, in that order; none for windows without a future.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn of(window: &Window, i: usize) -> Vec<Self> {
+        let Some((kind, interactions)) = TrajectoryType::with_interactions(window, i) else {
+            return Vec::new();
+        };
+        let motion = MotionKind::of(window.track(i)).map(Self::Motion);
+        let interactions = interactions.into_iter().map(Self::Interaction);
+        motion
+            .into_iter()
+            .chain([Self::Type(kind)])
+            .chain(interactions)
+            .collect()
+    }
+}
+
+impl fmt::Display for Category {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Motion(kind) => kind.fmt(f),
+            Self::Type(kind) => kind.fmt(f),
+            Self::Interaction(kind) => kind.fmt(f),
+        }
+    }
+}

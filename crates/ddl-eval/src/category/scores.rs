@@ -1,0 +1,70 @@
+//! The metrics of the walkers of one category.
+
+use serde::{Deserialize, Serialize};
+
+use super::Category;
+use crate::walker_scores::WalkerScores;
+
+/// The metrics of one category on the test windows of one fold: means over its walkers, as the totals
+/// are over all.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CategoryScores {
+    /// Whose they are.
+    pub category: Category,
+    /// Pedestrians in it, at least one; a pedestrian in several windows counts once for each.
+    pub pedestrians: usize,
+    /// minADE over K, metres.
+    pub min_ade: f64,
+    /// minFDE over K, a minimum of its own, metres.
+    pub min_fde: f64,
+    /// FDE of the hypothesis of least ADE, metres.
+    pub fde_at_min_ade: f64,
+    /// Share of pedestrians whom every hypothesis misses by more than 0.5 m at the end, in [0, 1].
+    pub miss_rate: f64,
+    /// ADE of the most likely hypothesis, metres.
+    pub most_likely_ade: f64,
+    /// FDE of the most likely hypothesis, metres.
+    pub most_likely_fde: f64,
+    /// Share of pedestrians whose most likely forecast collides with another's, in [0, 1].
+    pub collision_rate: f64,
+}
+
+impl CategoryScores {
+    /// One a category that somebody is in.
+    pub(crate) fn of<'a>(walkers: impl Iterator<Item = &'a WalkerScores>) -> Vec<Self> {
+        let mut groups: Vec<(Category, Vec<&WalkerScores>)> = Category::all()
+            .map(|category| (category, Vec::new()))
+            .collect();
+        for walker in walkers {
+            for category in &walker.categories {
+                let group = groups.iter_mut().find(|(known, _)| known == category);
+                group
+                    .into_iter()
+                    .for_each(|(_, members)| members.push(walker));
+            }
+        }
+        groups.retain(|(_, members)| !members.is_empty());
+        let scores = groups
+            .iter()
+            .map(|(category, members)| Self::mean(*category, members));
+        scores.collect()
+    }
+
+    fn mean(category: Category, members: &[&WalkerScores]) -> Self {
+        let n = members.len() as f64;
+        let mean = |of: fn(&WalkerScores) -> f64| members.iter().map(|w| of(w)).sum::<f64>() / n;
+        let share =
+            |of: fn(&WalkerScores) -> bool| members.iter().filter(|w| of(w)).count() as f64 / n;
+        Self {
+            category,
+            pedestrians: members.len(),
+            min_ade: mean(|w| w.min_ade),
+            min_fde: mean(|w| w.min_fde),
+            fde_at_min_ade: mean(|w| w.fde_at_min_ade),
+            miss_rate: share(|w| w.missed),
+            most_likely_ade: mean(|w| w.most_likely_ade),
+            most_likely_fde: mean(|w| w.most_likely_fde),
+            collision_rate: share(|w| w.collides),
+        }
+    }
+}

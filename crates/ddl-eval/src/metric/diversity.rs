@@ -1,0 +1,87 @@
+//! How different the hypotheses of a walker are from one another.
+//!
+//! ```text
+//! APD_i = mean over pairs k < l of 1/T sum_t |x_k(t) - x_l(t)|        metres
+//! FPD_i = mean over pairs k < l of |x_k(T) - x_l(T)|                  metres
+//! ```
+//!
+//! The average pairwise displacement over the whole path, and that of the ends. Weights do not count,
+//! and neither does the truth: diversity is no merit of its own. Random noise has plenty. It says
+//! whether a best of K has K chances or one. A forecast of one hypothesis has none.
+//!
+//! # References
+//! Yuan and Kitani, "DLow: Diversifying Latent Flows for Diverse Human Motion Prediction", ECCV 2020
+//! (APD, there over whole poses).
+
+use crate::Scene;
+
+/// Mean distances between the hypotheses of one walker.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Diversity {
+    /// Over the whole path, metres.
+    pub path: f64,
+    /// Between the ends, metres.
+    pub ends: f64,
+}
+
+impl Diversity {
+    /// Of pedestrian `i`; `None` for forecasts of one hypothesis.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
+        let (forecast, k) = (scene.forecast(), scene.hypotheses());
+        if k < 2 {
+            return None;
+        }
+        let (mut path, mut ends) = (0.0, 0.0);
+        for a in 0..k {
+            for b in a + 1..k {
+                let pairs = forecast
+                    .hypothesis(i, a)
+                    .iter()
+                    .zip(forecast.hypothesis(i, b));
+                let mut steps = 0_usize;
+                let (mut sum, mut last) = (0.0, 0.0);
+                for (p, q) in pairs {
+                    let (dx, dy) = (p[0] - q[0], p[1] - q[1]);
+                    // Positions of walkers are far from where squares overflow.
+                    last = (dx * dx + dy * dy).sqrt();
+                    sum += last;
+                    steps += 1;
+                }
+                path += sum / steps as f64;
+                ends += last;
+            }
+        }
+        let pairs = (k * (k - 1) / 2) as f64;
+        Some(Self {
+            path: path / pairs,
+            ends: ends / pairs,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::metric::fixture::{forecast, walk, window};
+
+    /// Three hypotheses from one place: standing, 0.3 m a frame along x, 0.4 m a frame along y. They
+    /// part by 0.3, 0.4 and 0.5 m a frame: 0.4 m on average, times a mean of 6.5 frames, 12 at the end.
+    #[test]
+    fn pairs_of_a_right_triangle() {
+        let still = [0.0, 0.0];
+        let window = window(&[still], &[still]);
+        let three = [still, [0.3, 0.0], [0.0, 0.4]].map(|step| walk(still, step));
+        let three = forecast(1, &three);
+        let diversity = Diversity::of(&Scene::new(&window, &three).unwrap(), 0).unwrap();
+        assert_relative_eq!(diversity.path, 0.4 * 6.5, epsilon = 1e-12);
+        assert_relative_eq!(diversity.ends, 0.4 * 12.0, epsilon = 1e-12);
+        let one = forecast(1, &[walk(still, still)]);
+        assert_eq!(Diversity::of(&Scene::new(&window, &one).unwrap(), 0), None);
+    }
+}

@@ -1,0 +1,186 @@
+//! Mean, covariance and principal axes of weighted points in the plane.
+//!
+//! For points x_k with weights w_k that sum to 1:
+//!
+//! ```text
+//! m = sum_k w_k x_k                         metres
+//! C = sum_k w_k (x_k - m) (x_k - m)^T       square metres (not the unbiased estimate)
+//! ```
+//!
+//! What the metrics of a distribution of positions have in common.
+
+use ddl_data::Position;
+
+/// A symmetric 2 x 2 matrix, square metres.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Covariance {
+    /// Variance along x.
+    pub xx: f64,
+    /// Covariance of x and y.
+    pub xy: f64,
+    /// Variance along y.
+    pub yy: f64,
+}
+
+impl Covariance {
+    /// Every entry times `factor`.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            xx: factor * self.xx,
+            xy: factor * self.xy,
+            yy: factor * self.yy,
+        }
+    }
+
+    /// The sum of two.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            xx: self.xx + other.xx,
+            xy: self.xy + other.xy,
+            yy: self.yy + other.yy,
+        }
+    }
+
+    /// Eigenvalues, the larger first, and the unit eigenvector of the larger one.
+    #[must_use]
+    pub fn principal_axes(self) -> PrincipalAxes {
+        let (mean, half) = (0.5 * (self.xx + self.yy), 0.5 * (self.xx - self.yy));
+        let radius = half.hypot(self.xy);
+        let (sin, cos) = (0.5 * self.xy.atan2(half)).sin_cos();
+        PrincipalAxes {
+            variances: [mean + radius, mean - radius],
+            axis: [cos, sin],
+        }
+    }
+}
+
+/// A covariance along its own axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PrincipalAxes {
+    /// The eigenvalues, the larger first, square metres.
+    pub variances: [f64; 2],
+    /// Unit eigenvector of the larger one.
+    pub axis: Position,
+}
+
+impl PrincipalAxes {
+    /// The same axes, with eigenvalues below `least` raised to it: a spread of nothing has no inverse.
+    #[must_use]
+    pub fn raised_to(self, least: f64) -> Self {
+        Self {
+            variances: self.variances.map(|variance| variance.max(least)),
+            ..self
+        }
+    }
+
+    /// The matrix that has these axes.
+    #[must_use]
+    pub fn covariance(self) -> Covariance {
+        let ([large, small], [cos, sin]) = (self.variances, self.axis);
+        Covariance {
+            xx: large * cos * cos + small * sin * sin,
+            xy: (large - small) * cos * sin,
+            yy: large * sin * sin + small * cos * cos,
+        }
+    }
+
+    /// `d^T C^-1 d`: the squared Mahalanobis length of a difference of positions; no unit.
+    #[must_use]
+    pub fn mahalanobis_squared(self, d: Position) -> f64 {
+        let [cos, sin] = self.axis;
+        let (along, across) = (cos * d[0] + sin * d[1], cos * d[1] - sin * d[0]);
+        along * along / self.variances[0] + across * across / self.variances[1]
+    }
+
+    /// `ln det C`, with C in square metres.
+    #[must_use]
+    pub fn ln_determinant(self) -> f64 {
+        self.variances[0].ln() + self.variances[1].ln()
+    }
+}
+
+/// First and second moment of weighted points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moments {
+    /// The mean, metres.
+    pub mean: Position,
+    /// The covariance about it, square metres.
+    pub covariance: Covariance,
+}
+
+impl Moments {
+    /// Of points with weights that sum to 1.
+    ///
+    /// # Panics
+    /// When there is not one weight a point.
+    #[must_use]
+    pub fn of(points: &[Position], weights: &[f64]) -> Self {
+        assert_eq!(points.len(), weights.len(), "one weight a point");
+        let weighted = || points.iter().zip(weights);
+        let mean = weighted().fold([0.0, 0.0], |m, (p, w)| [m[0] + w * p[0], m[1] + w * p[1]]);
+        let covariance = weighted().fold(Covariance::default(), |c, (p, w)| {
+            let d = [p[0] - mean[0], p[1] - mean[1]];
+            c.plus(Covariance {
+                xx: w * d[0] * d[0],
+                xy: w * d[0] * d[1],
+                yy: w * d[1] * d[1],
+            })
+        });
+        Self { mean, covariance }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+    use proptest::{collection::vec, prelude::*};
+
+    use super::*;
+
+    /// (0, 0) and (3, 4) with weights 1/2: mean (1.5, 2), variance 6.25 along (0.6, 0.8), none across.
+    #[test]
+    fn two_points_spread_along_their_line() {
+        let moments = Moments::of(&[[0.0, 0.0], [3.0, 4.0]], &[0.5, 0.5]);
+        assert_relative_eq!(moments.mean[0], 1.5);
+        assert_relative_eq!(moments.mean[1], 2.0);
+        let axes = moments.covariance.principal_axes();
+        assert_relative_eq!(axes.variances[0], 6.25, epsilon = 1e-12);
+        assert_relative_eq!(axes.variances[1], 0.0, epsilon = 1e-12);
+        assert_relative_eq!(axes.axis[0].abs(), 0.6, epsilon = 1e-12);
+        assert_relative_eq!(axes.axis[1].abs(), 0.8, epsilon = 1e-12);
+        // Along the line 2.5 / 2.5 deviations, across it 0.3 / 0.1.
+        let raised = axes.raised_to(0.01);
+        assert_relative_eq!(raised.mahalanobis_squared([1.5, 2.0]), 1.0, epsilon = 1e-12);
+        assert_relative_eq!(
+            raised.mahalanobis_squared([-0.24, 0.18]),
+            9.0,
+            epsilon = 1e-9
+        );
+        assert_relative_eq!(raised.ln_determinant(), 0.0625_f64.ln(), epsilon = 1e-12);
+    }
+
+    #[test]
+    fn a_single_point_has_no_spread() {
+        let moments = Moments::of(&[[7.0, -3.0]], &[1.0]);
+        assert_eq!(moments.covariance, Covariance::default());
+        let axes = moments.covariance.principal_axes().raised_to(1e-4);
+        assert_relative_eq!(axes.mahalanobis_squared([0.03, 0.04]), 25.0, epsilon = 1e-9);
+    }
+
+    proptest! {
+        #[test]
+        fn the_axes_make_the_matrix_again(
+            points in vec((-9.0..9.0_f64, -9.0..9.0_f64), 1..9)
+        ) {
+            let points: Vec<Position> = points.into_iter().map(|(x, y)| [x, y]).collect();
+            let weights = vec![1.0 / points.len() as f64; points.len()];
+            let covariance = Moments::of(&points, &weights).covariance;
+            let again = covariance.principal_axes().covariance();
+            prop_assert!((again.xx - covariance.xx).abs() < 1e-12 * (1.0 + covariance.xx));
+            prop_assert!((again.xy - covariance.xy).abs() < 1e-12 * (1.0 + covariance.xx + covariance.yy));
+            prop_assert!((again.yy - covariance.yy).abs() < 1e-12 * (1.0 + covariance.yy));
+        }
+    }
+}

@@ -1,0 +1,69 @@
+use approx::assert_relative_eq;
+
+use super::*;
+use crate::metric::fixture::{forecast, walk, window};
+
+/// One window of one pedestrian (errors 1 m) and one of three (errors 0): the mean is over the
+/// four pedestrians, not over the two windows.
+#[test]
+fn means_are_over_pedestrians() {
+    let (still, far) = ([0.0, 0.0], [[0.0, 0.0], [5.0, 0.0], [9.0, 0.0]]);
+    let windows = [window(&[still], &[still]), window(&far, &[still; 3])];
+    let forecasts = [
+        forecast(1, &[walk([1.0, 0.0], still)]),
+        forecast(3, &far.map(|at| walk(at, still))),
+    ];
+    let scores = Scores::evaluate(&windows, &forecasts).unwrap();
+    assert_eq!(
+        (scores.pedestrians, scores.windows, scores.hypotheses),
+        (4, 2, 1)
+    );
+    for mean in [
+        scores.min_ade,
+        scores.min_fde,
+        scores.fde_at_min_ade,
+        scores.joint_ade,
+    ] {
+        assert_relative_eq!(mean, 0.25);
+    }
+    assert_relative_eq!(scores.miss_rate, 0.25);
+    assert_eq!((scores.goal_fde, scores.stability), (None, None));
+}
+
+#[test]
+fn what_does_not_belong_together_is_refused() {
+    let still = [0.0, 0.0];
+    let windows = [window(&[still], &[still]), window(&[still], &[still])];
+    let one = forecast(1, &[walk(still, still)]);
+    let two = forecast(1, &[walk(still, still), walk(still, still)]);
+    let pair = forecast(2, &[walk(still, still), walk(still, still)]);
+    let error = |w: &[Window], f: &[Forecast]| Scores::evaluate(w, f).unwrap_err();
+    assert_eq!(error(&[], &[]), EvaluationError::NoWindows);
+    assert!(matches!(
+        error(&windows, &[]),
+        EvaluationError::Count {
+            windows: 2,
+            forecasts: 0
+        }
+    ));
+    assert!(matches!(
+        error(&windows, &[one.clone(), two]),
+        EvaluationError::Hypotheses {
+            expected: 1,
+            found: 2,
+            ..
+        }
+    ));
+    assert!(matches!(
+        error(&windows[..1], &[pair]),
+        EvaluationError::Pedestrians {
+            expected: 1,
+            found: 2,
+            ..
+        }
+    ));
+    assert!(matches!(
+        error(&[windows[0].without_future()], &[one]),
+        EvaluationError::NoFuture { .. }
+    ));
+}
