@@ -18,6 +18,7 @@
 
 use crate::run_config::{FORMAT, RunConfig};
 use crate::{DdlError, GoalRecipe};
+use ddl_eval::Moment;
 use ddl_star::EpochReport;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::io::{ErrorKind, Write as _};
@@ -96,6 +97,24 @@ impl RunDirectory {
 
     fn metrics_file(&self) -> PathBuf {
         self.0.join("metrics.jsonl")
+    }
+
+    /// Whether there is a run at all.
+    pub(crate) fn has_config(&self) -> bool {
+        self.config_file().is_file()
+    }
+
+    /// Reads `moments.json`; empty when there is none.
+    ///
+    /// # Errors
+    /// When the file is damaged.
+    pub(crate) fn read_moments(&self) -> Result<Vec<Moment>, DdlError> {
+        let path = self.moments();
+        if path.is_file() {
+            read_json(&path)
+        } else {
+            Ok(Vec::new())
+        }
     }
 
     /// Whether training is finished.

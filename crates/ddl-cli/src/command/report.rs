@@ -1,8 +1,7 @@
 //! `ddl report`.
 
-use anyhow::Context as _;
 use clap::Args;
-use ddl::eval::Report as Results;
+use ddl::Results;
 use std::path::PathBuf;
 
 /// Put the results of evaluated runs together into report.md and report.json
@@ -22,20 +21,6 @@ pub(crate) struct Report {
 
 impl Report {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        let mut results = Results::new(self.title, [])?;
-        for run in &self.runs {
-            let path = ddl::RunDirectory::new(run).report();
-            let report = Results::load(&path).with_context(|| {
-                format!(
-                    "{} holds no results; run `ddl evaluate` on it first",
-                    run.display()
-                )
-            })?;
-            results.extend(report.rows().iter().cloned())?;
-        }
-        std::fs::create_dir_all(&self.out)
-            .with_context(|| format!("cannot make {}", self.out.display()))?;
-        results.save(&self.out)?;
-        Ok(())
+        Ok(Results::of(self.title, &self.runs)?.save(&self.out)?)
     }
 }

@@ -8,6 +8,7 @@ use crate::{ResultRow, document::Document, error::ReportError};
 
 mod ablation;
 mod across_protocols;
+mod categories;
 mod content;
 mod further;
 mod group;
@@ -137,7 +138,7 @@ impl Report {
         Self::new(read.title, read.rows)
     }
 
-    /// Writes `report.md` and `report.json` into `folder`, which is created if need be. Each file is
+    /// Writes `report.md`, `report.tex` (its tables for a paper) and `report.json` into `folder`, which is created if need be. Each file is
     /// written under another name and renamed, so that none is ever there by half.
     ///
     /// # Errors
@@ -146,6 +147,7 @@ impl Report {
         std::fs::create_dir_all(folder).map_err(|source| in_file(folder, source))?;
         for (name, text) in [
             ("report.md", self.to_markdown()),
+            ("report.tex", self.document().to_latex()),
             ("report.json", self.to_json()?),
         ] {
             let path = folder.join(name);

@@ -3,7 +3,7 @@
 use ddl_data::WindowRule;
 
 use super::{
-    further,
+    categories, further,
     group::{Group, Line},
     significance,
 };
@@ -46,6 +46,7 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
         group.conditions_in_words()
     ))));
     parts.extend(significance::parts(group));
+    parts.extend(categories::parts(group));
     parts
 }
 

@@ -1,0 +1,82 @@
+//! Results of several evaluations put together: tables, figures and the page to look at them.
+
+use crate::{DdlError, RunDirectory};
+use ddl_eval::{EpochPoint, Moment, Report, TrainingCurve};
+use std::path::Path;
+
+/// What the curve of a training shows.
+const LOSS: &str = "training loss: mean squared error of the next position (m²)";
+
+/// Results of any number of evaluated runs, with what there is to look at.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Results {
+    /// All rows.
+    pub report: Report,
+    /// Moments of the runs of the whole method and of the lowest seed: the model that the headline is about.
+    pub moments: Vec<Moment>,
+    /// How each training went.
+    pub curves: Vec<TrainingCurve>,
+}
+
+impl Results {
+    /// Gathers what lies in folders that hold a `report.json`: evaluated runs, or results of other programs' forecasts.
+    ///
+    /// # Errors
+    /// When a folder holds no results, one of its files is damaged, or two folders hold different numbers for the same conditions.
+    pub fn of(title: impl Into<String>, folders: &[impl AsRef<Path>]) -> Result<Self, DdlError> {
+        let mut results = Self {
+            report: Report::new(title, [])?,
+            moments: Vec::new(),
+            curves: Vec::new(),
+        };
+        let mut headline: Vec<(u64, Vec<Moment>)> = Vec::new();
+        for folder in folders {
+            let run = RunDirectory::new(folder.as_ref());
+            if !run.report().is_file() {
+                return Err(DdlError::run(
+                    run.path(),
+                    "holds no results (report.json); run `ddl evaluate` on it first",
+                ));
+            }
+            let report = Report::load(&run.report())?;
+            results.report.extend(report.rows().iter().cloned())?;
+            // Results of another program's forecasts come without a run.
+            if !run.has_config() {
+                continue;
+            }
+            let config = run.config()?;
+            let epochs = run.metrics()?.into_iter().map(|epoch| EpochPoint {
+                epoch: epoch.epoch,
+                loss: epoch.loss,
+                validation: None,
+                seconds: epoch.seconds,
+            });
+            results.curves.push(TrainingCurve {
+                fold: config.data.fold.clone(),
+                variant: config.star.variant.name().to_owned(),
+                seed: config.training.seed,
+                loss: LOSS.to_owned(),
+                epochs: epochs.collect(),
+            });
+            if config.star.variant == ddl_star::Variant::Full {
+                headline.push((config.training.seed, run.read_moments()?));
+            }
+        }
+        let lowest = headline.iter().map(|(seed, _)| *seed).min();
+        results.moments = headline
+            .into_iter()
+            .filter(|(seed, _)| Some(*seed) == lowest)
+            .flat_map(|(_, moments)| moments)
+            .collect();
+        Ok(results)
+    }
+
+    /// Writes `report.md`, `report.tex` and `report.json` into `folder`, which is made if need be.
+    ///
+    /// # Errors
+    /// When the folder or a file cannot be written.
+    pub fn save(&self, folder: &Path) -> Result<(), DdlError> {
+        Ok(self.report.save(folder)?)
+    }
+}
