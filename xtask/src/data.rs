@@ -11,7 +11,7 @@ use std::str::FromStr;
 
 use anyhow::bail;
 
-pub(crate) use choice::{Chosen, choose};
+pub(crate) use choice::{Chosen, at_hand, choose};
 pub(crate) use fetch::fetch;
 pub(crate) use locate::{Places, check, lookup};
 pub(crate) use manifest::Manifest;

@@ -1,5 +1,6 @@
 //! The commands, one a file, and the options they share.
 
+pub(crate) mod baselines;
 pub(crate) mod evaluate;
 pub(crate) mod forecast;
 pub(crate) mod goals;

@@ -3,6 +3,7 @@
 mod command;
 mod interrupt;
 mod progress;
+mod result_lines;
 mod tracks;
 
 use clap::{Parser, Subcommand};
@@ -24,6 +25,7 @@ struct Cli {
 enum Command {
     Train(command::train::Train),
     Evaluate(command::evaluate::Evaluate),
+    Baselines(command::baselines::Baselines),
     Report(command::report::Report),
     Forecast(command::forecast::Forecast),
     Goals(command::goals::Goals),
@@ -34,6 +36,7 @@ fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Train(command) => command.run(),
         Command::Evaluate(command) => command.run(),
+        Command::Baselines(command) => command.run(),
         Command::Report(command) => command.run(),
         Command::Forecast(command) => command.run(),
         Command::Goals(command) => command.run(),

@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod baselines;
 mod certified_forecast;
 mod clearance;
 mod error;
@@ -34,6 +35,7 @@ pub use ddl_goal as goal;
 pub use ddl_softdtw as softdtw;
 pub use ddl_star as star;
 
+pub use baselines::measure_baselines;
 pub use certified_forecast::{CertificateError, CertifiedForecast};
 pub use clearance::Clearance;
 pub use ddl_eval::{Forecast, Forecaster, Protocol};

@@ -8,7 +8,7 @@ use ddl_data::{Window, WindowRule};
 use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, baseline};
 
 /// Seed of constant velocity with angular noise: the same in every run, so that runs agree.
-const NOISE_SEED: u64 = 1;
+pub(crate) const NOISE_SEED: u64 = 1;
 
 /// Forecasts of one forecaster, one a window of the test set.
 #[derive(Debug)]

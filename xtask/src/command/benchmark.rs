@@ -2,11 +2,12 @@
 
 mod build;
 mod publish;
+mod report;
 mod side_by_side;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 use std::thread;
 use std::time::Instant;
 
@@ -133,7 +134,7 @@ impl Arguments {
         }
         let failed = ends.len() - finished.len();
         if !finished.is_empty() {
-            self.report(&plan, &program, &finished, &out)?;
+            report::write(workspace, &plan, &program, &finished, &out)?;
         }
         println!("wall time: {}", human(start.elapsed()));
         if failed > 0 {
@@ -219,35 +220,6 @@ impl Arguments {
                 plan.settings.convention, plan.settings.profile
             ))),
         }
-    }
-
-    /// Has the program write the report over all finished runs, and prints it.
-    fn report(&self, plan: &Plan, program: &Path, runs: &[PathBuf], out: &Path) -> Result<()> {
-        let title = format!(
-            "Benchmark: {}, {}",
-            plan.settings.convention, self.profile.name
-        );
-        let output = Command::new(program)
-            .arg("report")
-            .args(runs)
-            .args(["--title", &title, "--out"])
-            .arg(out)
-            .output()
-            .with_context(|| format!("{} cannot be started", program.display()))?;
-        if !output.status.success() {
-            bail!(
-                "`ddl report` ended with {}: {}",
-                output.status,
-                String::from_utf8_lossy(&output.stderr).trim_end()
-            );
-        }
-        let file = out.join("report.md");
-        let text = fs::read_to_string(&file)
-            .with_context(|| format!("{} cannot be read", file.display()))?;
-        println!("\n{}\n", text.trim_end());
-        println!("report: {}", file.display());
-        println!("        {}", out.join("report.json").display());
-        Ok(())
     }
 }
 

@@ -58,6 +58,30 @@ pub(crate) fn choose(
     first_that_can_be_had(workspace, &manifest, &places, data, say)
 }
 
+/// The folder of a convention's recordings if they are on this machine: in the usual places, or beside the recordings of
+/// another convention. Nothing is fetched.
+///
+/// # Errors
+/// If recordings are there that are not the pinned ones.
+pub(crate) fn at_hand(
+    workspace: &Workspace,
+    convention: Convention,
+    another: Option<&Path>,
+) -> Result<Option<PathBuf>> {
+    let manifest = Manifest::load(workspace)?;
+    let Some(entry) = manifest.entry(convention) else {
+        return Ok(None);
+    };
+    let beside = another.and_then(Path::parent);
+    for folder in [None, beside] {
+        let places = Places::new(workspace, folder)?;
+        if let Some(found) = find_right(&places, convention, entry)? {
+            return Ok(Some(found));
+        }
+    }
+    Ok(None)
+}
+
 /// The recorded conventions in turn, then the simulated crowd.
 fn first_that_can_be_had(
     workspace: &Workspace,

@@ -3,10 +3,10 @@
 use super::{Exactness, KeepClear, Machine, Telling, at_least_one, dataset};
 use crate::interrupt::Interrupt;
 use crate::progress::{Progress, ProgressMode};
+use crate::result_lines;
 use clap::Args;
 use ddl::eval::Report;
 use ddl::{Ddl, EvaluationRequest, EvaluationSplit, Protocol};
-use std::io::Write as _;
 use std::path::PathBuf;
 
 /// Measure a trained model on the scene left out of its training, beside the baselines
@@ -81,31 +81,8 @@ impl Evaluate {
     /// The results for people; programs read `report.json`.
     fn tell(&self, report: &Report) -> anyhow::Result<()> {
         if self.telling.progress != ProgressMode::Json {
-            print(report)?;
+            result_lines::print(report, "the run's report.json")?;
         }
         Ok(())
     }
-}
-
-/// One line a result, under the conditions that tell it from the others.
-fn print(report: &Report) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
-    writeln!(
-        out,
-        "minADE/minFDE in metres; everything else is in the run's report.json"
-    )?;
-    for row in report.rows() {
-        let (conditions, scores) = (&row.conditions, &row.scores);
-        writeln!(
-            out,
-            "{:10} {:10} {:>6} walkers  {:.3}/{:.3}  {}",
-            conditions.protocol.name(),
-            conditions.window_rule.to_string(),
-            scores.pedestrians,
-            scores.min_ade,
-            scores.min_fde,
-            conditions.label()
-        )?;
-    }
-    Ok(())
 }

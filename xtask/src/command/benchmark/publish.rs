@@ -10,15 +10,20 @@ use crate::benchmark::{Plan, human};
 use crate::whole_file;
 use crate::workspace::Workspace;
 
-/// The page of the profile that runs unless another is asked for.
-const PAGE: &str = "docs/benchmark.md";
-
-/// Where a profile's results are shown.
-fn file(profile: &str) -> String {
-    match profile {
-        "quick" => PAGE.to_owned(),
-        other => format!("docs/benchmark-{other}.md"),
-    }
+/// Where the results of a profile in a data convention are shown: every pair has a page of its own.
+fn file(profile: &str, convention: &str) -> String {
+    let named = |name: &str, usual: &str| {
+        if name == usual {
+            String::new()
+        } else {
+            format!("-{name}")
+        }
+    };
+    format!(
+        "docs/benchmark{}{}.md",
+        named(convention, "star"),
+        named(profile, "quick")
+    )
 }
 
 /// Writes the results of the plan into the page of its profile.
@@ -30,7 +35,7 @@ pub(super) fn publish(
 ) -> Result<()> {
     let report = fs::read_to_string(out.join("report.md")).context("the report cannot be read")?;
     let text = page(&report, plan, &workspace.commit(), &workspace.now(), took);
-    let file = file(&plan.settings.profile);
+    let file = file(&plan.settings.profile, &plan.settings.convention);
     whole_file::write(&workspace.path(&file), text.as_bytes())?;
     println!("published: {file}");
     Ok(())
@@ -121,9 +126,10 @@ mod tests {
     use crate::benchmark::Settings;
 
     #[test]
-    fn a_profile_has_a_page_of_its_own() {
-        assert_eq!(file("quick"), "docs/benchmark.md");
-        assert_eq!(file("evening"), "docs/benchmark-evening.md");
+    fn a_profile_and_a_convention_have_a_page_of_their_own() {
+        assert_eq!(file("quick", "star"), "docs/benchmark.md");
+        assert_eq!(file("evening", "star"), "docs/benchmark-evening.md");
+        assert_eq!(file("quick", "social-gan"), "docs/benchmark-social-gan.md");
     }
 
     #[test]

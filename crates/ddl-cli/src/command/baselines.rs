@@ -1,0 +1,65 @@
+//! `ddl baselines`.
+
+use super::{Telling, at_least_one, dataset};
+use crate::progress::ProgressMode;
+use crate::result_lines;
+use clap::Args;
+use ddl::Protocol;
+use ddl::data::Convention;
+use ddl::eval::Report;
+use std::path::PathBuf;
+
+/// Measure the baselines (constant velocity and the like) on the test scenes of a data convention
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example:\n  ddl baselines --convention social-gan --out runs/baselines-social-gan"
+)]
+pub(crate) struct Baselines {
+    /// star, social-gan or simulated
+    #[arg(long)]
+    convention: Convention,
+    /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
+    #[arg(long)]
+    data: Option<PathBuf>,
+    /// Fold to measure on; may be repeated [default: all]
+    #[arg(long = "fold")]
+    folds: Vec<String>,
+    /// published, fair or single; may be repeated
+    #[arg(long = "protocol", default_values = ["fair", "single"])]
+    protocols: Vec<Protocol>,
+    /// Measure a seeded part of the test windows with at least so many walkers a fold [default: all]
+    #[arg(long, value_parser = at_least_one)]
+    test_walkers: Option<usize>,
+    /// Folder to write report.json, report.md and report.tex to [default: only print]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    telling: Telling,
+}
+
+impl Baselines {
+    pub(crate) fn run(self) -> anyhow::Result<()> {
+        let dataset = dataset(self.convention, self.data.as_deref())?;
+        let folds = if self.folds.is_empty() {
+            let names = dataset.fold_names().into_iter();
+            names.map(str::to_owned).collect()
+        } else {
+            self.folds
+        };
+        let (protocols, walkers) = (&self.protocols, self.test_walkers);
+        let commit = &self.telling.commit;
+        let rows = ddl::measure_baselines(&dataset, &folds, protocols, walkers, commit)?;
+        let report = Report::new(format!("Baselines: {}", self.convention), rows)?;
+        let rest = match &self.out {
+            Some(folder) => {
+                report.save(folder)?;
+                folder.join("report.json").display().to_string()
+            }
+            None => "the report.json that --out writes".to_owned(),
+        };
+        if self.telling.progress != ProgressMode::Json {
+            result_lines::print(&report, &rest)?;
+        }
+        Ok(())
+    }
+}
