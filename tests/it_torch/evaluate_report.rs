@@ -1,7 +1,7 @@
 //! `ddl train`, `ddl evaluate`, `ddl report`: the way of a number from the recordings to the page.
 
 use ddl::data::{Convention, WindowRule};
-use ddl::eval::{Report, ResultRow};
+use ddl::eval::{Moment, Report, ResultRow};
 use ddl::star::EpochReport;
 use ddl::{Protocol, RunDirectory};
 use ddl_tests::folder_contents::{self, Contents};
@@ -206,6 +206,26 @@ fn check_rows(rows: &[ResultRow]) {
     }
 }
 
+/// Moments to look at: what the model forecast under `fair`, certified, some of them picked to show something.
+fn check_moments(run: &Path) {
+    let text = std::fs::read_to_string(run.join("moments.json")).unwrap();
+    let moments: Vec<Moment> = serde_json::from_str(&text).unwrap();
+    assert!(!moments.is_empty());
+    assert!(moments.iter().any(|moment| !moment.picks.is_empty()));
+    for moment in &moments {
+        assert_eq!(
+            (moment.fold.as_str(), moment.forecaster.as_str()),
+            ("plaza", "DDL")
+        );
+        for hypothesis in moment.walkers.iter().flat_map(|walker| &walker.hypotheses) {
+            assert_eq!(
+                (hypothesis.certified, hypothesis.decreasing),
+                (Some(true), Some(true))
+            );
+        }
+    }
+}
+
 #[test]
 fn a_number_goes_from_the_recordings_to_the_page() {
     let folder = tempfile::tempdir().unwrap();
@@ -226,11 +246,26 @@ fn a_number_goes_from_the_recordings_to_the_page() {
     check_rows(report.rows());
     returns_at_once(here, EVALUATE);
 
-    let page = "report run --title Plaza --out pages";
+    check_moments(&run);
+
+    let baselines = "baselines --convention simulated --fold doorway --test-walkers 60 --commit 0123abc --out baselines";
+    let printed = program::run(here, baselines).succeeds();
+    assert!(printed.contains("doorway") && printed.contains("constant velocity (last step)"));
+    let elsewhere = Report::load(&here.join("baselines/report.json")).unwrap();
+    let folds: Vec<&str> = elsewhere
+        .rows()
+        .iter()
+        .map(|r| r.conditions.fold.as_str())
+        .collect();
+    assert!(!folds.is_empty() && folds.iter().all(|fold| *fold == "doorway"));
+
+    let page = "report run baselines --title Plaza --out pages";
     assert_eq!(program::run(here, page).succeeds(), "");
     let collected = Report::load(&here.join("pages/report.json")).unwrap();
     assert_eq!(collected.title(), "Plaza");
-    assert_eq!(collected.rows(), report.rows());
+    assert_eq!(collected.rows(), [report.rows(), elsewhere.rows()].concat());
+    let latex = std::fs::read_to_string(here.join("pages/report.tex")).unwrap();
+    assert!(latex.contains("\\begin{tabular}") && latex.contains("\\texttt{fair}"));
     let markdown = std::fs::read_to_string(here.join("pages/report.md")).unwrap();
     assert!(markdown.lines().next().unwrap().contains("simulated"));
     let warning = Protocol::Published.warning().unwrap();

@@ -218,6 +218,25 @@ mod tests {
     }
 
     #[test]
+    fn another_convention_is_found_beside_the_one_at_hand_and_never_fetched() {
+        let (folder, workspace) = workspace();
+        let star = folder.path().join("data/star");
+        let found = || at_hand(&workspace, Convention::SocialGan, Some(&star));
+        fs::create_dir_all(&star).unwrap();
+        assert_eq!(found().unwrap(), None);
+        let manifest = Manifest::load(&workspace).unwrap();
+        let beside = folder.path().join("data/social-gan");
+        fs::create_dir(&beside).unwrap();
+        for file in &manifest.entry(Convention::SocialGan).unwrap().files {
+            fs::write(beside.join(&file.name), "0\t1\t0\t0\n").unwrap();
+        }
+        let message = format!("{:#}", found().unwrap_err());
+        assert!(message.contains("8 of 8 files are wrong"), "{message}");
+        let none = at_hand(&workspace, Convention::Simulated, Some(&star));
+        assert_eq!(none.unwrap(), None);
+    }
+
+    #[test]
     fn the_simulated_convention_is_had_at_once() {
         let (_folder, workspace) = workspace();
         let chosen = choose(&workspace, Some(Convention::Simulated), None, &mut |_| {}).unwrap();
