@@ -2,15 +2,16 @@
 
 use crate::DdlError;
 use crate::goals;
+use crate::manner::{GivenGoals, Manner};
 use crate::model::Ddl;
 use crate::published::Published;
 use crate::result_rows::{Forecasted, ResultRows};
 use crate::straight_lines::straight_lines;
 use crate::test_set::TestSet;
-use crate::walk::Gait;
 use ddl_data::{Dataset, Window};
 use ddl_eval::baseline::WeightedGoals;
 use ddl_eval::{Forecast, ForecastError, Forecaster as _, Moment, Protocol, ResultRow, gallery};
+use ddl_goal::QuerySpan;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -106,15 +107,7 @@ pub fn evaluate(
     })
 }
 
-/// A way in which the model's forecasts are walked, each a row of its own.
-struct Manner {
-    gait: Gait,
-    /// What is different from the model as it is; `None` for that one.
-    change: Option<String>,
-    protocols: &'static [Protocol],
-}
-
-/// Forecasts of the model and straight lines to the same goals, one each a window.
+/// Forecasts of the model and straight lines to its own goals, one each a window.
 struct Forecasts {
     /// One list a manner.
     model: Vec<Vec<Forecast>>,
@@ -144,12 +137,20 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             });
         };
         let model = self.model;
-        let manners = self.manners();
+        let manners = Manner::all(model, &self.request.protocols);
         let goal = "the estimated goals";
+        let published = model
+            .goal_model()
+            .published_estimator(QuerySpan::Observed)?;
         let forecasts = self.forecast(first, manners.len(), |windows| {
             let goals = model.goal_model().goals(windows)?;
-            let towards =
-                |manner: &Manner| model.forecast_towards(windows, goals.clone(), manner.gait);
+            let towards = |manner: &Manner| {
+                let goals = match manner.goals {
+                    GivenGoals::Own => goals.clone(),
+                    GivenGoals::Published => goals::retrieved(&published, windows)?,
+                };
+                model.forecast_towards(windows, goals, manner.gait)
+            };
             Ok(Forecasts {
                 model: manners.iter().map(towards).collect::<Result<_, _>>()?,
                 lines: straight_lines(goal, windows, &goals::weighted(&goals)?)?,
@@ -194,34 +195,10 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         )?)
     }
 
-    /// The model as it is; what the published steps would make of the same flow, told once, in the
-    /// headline protocol; and, where asked for, keeping clear of others.
-    fn manners(&self) -> Vec<Manner> {
-        let mut manners = vec![Manner {
-            gait: Gait::Stable(None),
-            change: None,
-            protocols: &[Protocol::Fair, Protocol::Single],
-        }];
-        if self.asked(Protocol::Fair) && self.model.config().star.variant.dynamics() {
-            manners.push(Manner {
-                gait: Gait::PlainEuler,
-                change: Some("with plain Euler steps".to_owned()),
-                protocols: &[Protocol::Fair],
-            });
-        }
-        if let Some(clearance) = self.model.clearance() {
-            manners.push(Manner {
-                gait: Gait::Stable(Some(clearance)),
-                change: Some(format!("minding others within {} m", clearance.distance())),
-                protocols: &[Protocol::Fair, Protocol::Single],
-            });
-        }
-        manners
-    }
-
     fn published(&mut self) -> Result<Vec<ResultRow>, DdlError> {
         let protocol = Protocol::Published;
-        let estimator = self.model.goal_model().published_estimator()?;
+        let goal_model = self.model.goal_model();
+        let estimator = goal_model.published_estimator(QuerySpan::PublishedFuture)?;
         let mut walkers = 0;
         let windows: Vec<Window> = self
             .test

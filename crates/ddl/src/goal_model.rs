@@ -144,10 +144,11 @@ impl GoalModel {
             .collect())
     }
 
-    /// The estimator of the published protocol, whose query reads the first future frame.
-    pub(crate) fn published_estimator(&self) -> Result<GoalEstimator, DdlError> {
+    /// The published estimator: under the protocol `published` its query reads the first future frame.
+    pub(crate) fn published_estimator(&self, query: QuerySpan) -> Result<GoalEstimator, DdlError> {
         let library: ExpertLibrary = self.estimator.library().clone();
-        let params: GoalEstimatorParams = self.recipe().retrieval.clone().into_published();
+        let retrieval = self.recipe().retrieval.clone();
+        let params: GoalEstimatorParams = retrieval.into_published().query(query);
         Ok(GoalEstimator::new(params.check()?, library)?)
     }
 }

@@ -15,6 +15,7 @@ mod goal_training;
 mod goals;
 mod live;
 mod machine;
+mod manner;
 mod model;
 mod published;
 mod result_rows;

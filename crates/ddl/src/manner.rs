@@ -1,0 +1,65 @@
+//! The ways in which one model is measured under the honest protocols.
+
+use crate::model::Ddl;
+use crate::walk::Gait;
+use ddl_eval::Protocol;
+
+/// A way in which the model forecasts, each a row of its own.
+#[derive(Debug)]
+pub(crate) struct Manner {
+    pub(crate) goals: GivenGoals,
+    pub(crate) gait: Gait,
+    /// What is different from the model as it is; `None` for that one.
+    pub(crate) change: Option<String>,
+    pub(crate) protocols: &'static [Protocol],
+}
+
+/// Which goals the model is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum GivenGoals {
+    /// Its own.
+    Own,
+    /// Those of the published estimator, without its look at the first future frame.
+    Published,
+}
+
+impl Manner {
+    /// The model as it is; what the published steps would make of the same flow, and where `published` is measured too, what
+    /// its goals are worth when none of them is chosen with the truth, both told once, in the headline protocol; and, where asked
+    /// for, keeping clear of others.
+    pub(crate) fn all(model: &Ddl, asked: &[Protocol]) -> Vec<Self> {
+        let asked = |protocol| asked.contains(&protocol);
+        let variant = model.config().star.variant;
+        let mut manners = vec![Self {
+            goals: GivenGoals::Own,
+            gait: Gait::Stable(None),
+            change: None,
+            protocols: &[Protocol::Fair, Protocol::Single],
+        }];
+        if asked(Protocol::Fair) && variant.dynamics() {
+            manners.push(Self {
+                goals: GivenGoals::Own,
+                gait: Gait::PlainEuler,
+                change: Some("with plain Euler steps".to_owned()),
+                protocols: &[Protocol::Fair],
+            });
+        }
+        if asked(Protocol::Fair) && asked(Protocol::Published) && variant.uses_goal() {
+            manners.push(Self {
+                goals: GivenGoals::Published,
+                gait: Gait::Stable(None),
+                change: Some("with the published goals, all 20 kept".to_owned()),
+                protocols: &[Protocol::Fair],
+            });
+        }
+        if let Some(clearance) = model.clearance() {
+            manners.push(Self {
+                goals: GivenGoals::Own,
+                gait: Gait::Stable(Some(clearance)),
+                change: Some(format!("minding others within {} m", clearance.distance())),
+                protocols: &[Protocol::Fair, Protocol::Single],
+            });
+        }
+        manners
+    }
+}
