@@ -13,6 +13,7 @@ pub mod literature;
 pub mod metric;
 mod moment;
 mod motion_kind;
+pub mod page;
 mod protocol;
 mod report;
 mod scene;
