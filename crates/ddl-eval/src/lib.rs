@@ -13,6 +13,7 @@ pub mod leak;
 pub mod literature;
 pub mod metric;
 mod moment;
+pub mod page;
 mod protocol;
 mod report;
 mod scene;

@@ -70,6 +70,9 @@ pub enum DdlError {
     /// A picture could not be drawn.
     #[error(transparent)]
     Figure(#[from] ddl_eval::FigureError),
+    /// The page of a report could not be made.
+    #[error(transparent)]
+    Page(#[from] ddl_eval::page::PageError),
     /// A run directory that cannot be used.
     #[error("run {}: {problem}", path.display())]
     Run {

@@ -1,6 +1,7 @@
 //! Results of several evaluations put together: tables, figures and the page to look at them.
 
-use crate::{DdlError, RunDirectory};
+use crate::{DdlError, RunDirectory, write_atomically};
+use ddl_eval::page::Page;
 use ddl_eval::{EpochPoint, Moment, Report, TrainingCurve};
 use std::path::Path;
 
@@ -72,11 +73,21 @@ impl Results {
         Ok(results)
     }
 
-    /// Writes `report.md`, `report.tex` and `report.json` into `folder`, which is made if need be.
+    /// Writes `report.md`, `report.tex`, `report.json`, the page `report.html` and each of its figures as `figures/NAME.svg` into
+    /// `folder`, which is made if need be. A file that is there is replaced as a whole.
     ///
     /// # Errors
-    /// When the folder or a file cannot be written.
+    /// When the folder or a file cannot be written, or a figure cannot be drawn.
     pub fn save(&self, folder: &Path) -> Result<(), DdlError> {
-        Ok(self.report.save(folder)?)
+        self.report.save(folder)?;
+        let page = Page::new(&self.report)
+            .moments(self.moments.clone())
+            .curves(self.curves.clone());
+        let figures = folder.join("figures");
+        std::fs::create_dir_all(&figures).map_err(|error| DdlError::io(&figures, error))?;
+        for (name, svg) in page.figures()? {
+            write_atomically(&figures.join(name), svg.as_bytes())?;
+        }
+        write_atomically(&folder.join("report.html"), page.to_html()?.as_bytes())
     }
 }

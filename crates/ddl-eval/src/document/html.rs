@@ -1,22 +1,36 @@
 //! A document as the body of an HTML page.
 
-use super::{Document, Part, Span, Table, spans};
+use super::{ContentsEntry, Document, Part, Span, Table, spans};
 
 pub(super) fn body(document: &Document) -> String {
-    let mut body = format!(
-        "<header>\n<h1>{}</h1>\n<p class=\"lead\">{}</p>\n</header>\n",
+    format!(
+        "<header>\n<h1>{}</h1>\n<p class=\"lead\">{}</p>\n</header>\n{}",
         inline(&document.title),
-        inline(&document.lead)
-    );
+        inline(&document.lead),
+        sections(document)
+    )
+}
+
+/// The parts without title and lead. A section that holds a warning has the class `warned`.
+pub(super) fn sections(document: &Document) -> String {
+    let mut body = String::new();
     let mut open = false;
     let mut used: Vec<String> = Vec::new();
-    for part in &document.parts {
+    for (at, part) in document.parts.iter().enumerate() {
         let rendered = match part {
             Part::Heading { level: 1, text } => {
                 let end = if open { "</section>\n" } else { "" };
                 open = true;
                 let id = unused(identifier(text), &mut used);
-                format!("{end}<section id=\"{id}\">\n<h2>{}</h2>\n", inline(text))
+                let class = if warns(&document.parts[at + 1..]) {
+                    " class=\"warned\""
+                } else {
+                    ""
+                };
+                format!(
+                    "{end}<section id=\"{id}\"{class}>\n<h2>{}</h2>\n",
+                    inline(text)
+                )
             }
             Part::Heading { level, text } => {
                 let level = (level + 1).min(6);
@@ -40,6 +54,33 @@ pub(super) fn body(document: &Document) -> String {
         body.push_str("</section>\n");
     }
     body
+}
+
+/// Whether a warning stands before the next section begins.
+fn warns(parts: &[Part]) -> bool {
+    parts
+        .iter()
+        .take_while(|part| !matches!(part, Part::Heading { level: 1, .. }))
+        .any(|part| matches!(part, Part::Warning(_)))
+}
+
+/// The headings below the title, with the `id` that [`sections`] gives them.
+pub(super) fn contents(document: &Document) -> Vec<ContentsEntry> {
+    let mut used: Vec<String> = Vec::new();
+    let mut entries = Vec::new();
+    for (at, part) in document.parts.iter().enumerate() {
+        if let Part::Heading { level, text } = part {
+            let id = unused(identifier(text), &mut used);
+            if *level == 1 {
+                entries.push(ContentsEntry {
+                    id,
+                    heading: inline(text),
+                    warned: warns(&document.parts[at + 1..]),
+                });
+            }
+        }
+    }
+    entries
 }
 
 /// Wide tables scroll within a box of their own, which the keyboard can reach.
@@ -79,7 +120,8 @@ fn render(table: &Table) -> String {
     )
 }
 
-fn inline(text: &str) -> String {
+/// Text with its code marked up, and nothing else taken for markup.
+pub(crate) fn inline(text: &str) -> String {
     let rendered = spans(text).into_iter().map(|span| match span {
         Span::Plain(text) => escape(text),
         Span::Code(code) => format!("<code>{}</code>", escape(code)),

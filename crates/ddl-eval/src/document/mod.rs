@@ -7,6 +7,7 @@ mod latex;
 mod markdown;
 mod table;
 
+pub(crate) use html::{escape, inline};
 pub use table::Table;
 
 /// Headings, paragraphs, warnings and tables in the order in which they are read.
@@ -89,12 +90,33 @@ impl Document {
         html::body(self)
     }
 
+    /// The parts as HTML, without title and lead, for a page that has a head of its own.
+    pub(crate) fn sections_html(&self) -> String {
+        html::sections(self)
+    }
+
+    /// The sections that [`sections_html`](Self::sections_html) makes.
+    pub(crate) fn contents(&self) -> Vec<ContentsEntry> {
+        html::contents(self)
+    }
+
     /// The tables for a paper, each a `table*` with its caption, to be included with `\input`; needs the package `booktabs`.
     /// The warnings of a section stand in the captions of its tables, so that they are copied with them.
     #[must_use]
     pub fn to_latex(&self) -> String {
         latex::tables(self)
     }
+}
+
+/// A section of a document rendered as HTML.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct ContentsEntry {
+    /// Its `id`.
+    pub(crate) id: String,
+    /// Its heading, as HTML.
+    pub(crate) heading: String,
+    /// Whether it holds a warning.
+    pub(crate) warned: bool,
 }
 
 /// A piece of a text: as it is, or between backticks.

@@ -59,3 +59,14 @@ pub struct Pick {
     /// By which rule it was picked, in words, with its numbers: "of 212 such walkers the one of median minADE (0.14 m)".
     pub rule: String,
 }
+
+impl Pick {
+    /// A case of these walkers, picked by this rule.
+    pub fn new(show: Show, walkers: Vec<usize>, rule: impl Into<String>) -> Self {
+        Self {
+            show,
+            walkers,
+            rule: rule.into(),
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! The comparison at the head of the page: every forecaster on every fold, errors as dots.
+
+use super::{Drawing, chart_scale::ChartScale};
+use crate::page::standing::{Standing, StandingLine};
+
+/// At most this many lines: more are in the tables.
+const MOST_LINES: usize = 10;
+/// Height of a line, px.
+const LINE: f64 = 26.0;
+
+/// Which page the chart is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// Folds side by side.
+    Wide,
+    /// Folds below each other.
+    Narrow,
+}
+
+/// For each fold a column of dumbbells: the full dot is minADE, the hollow one minFDE, m.
+pub(crate) fn headline_chart(standing: &Standing, shape: Shape) -> Drawing {
+    let lines = &standing.lines[..standing.lines.len().min(MOST_LINES)];
+    let values = lines.iter().flat_map(columns).flatten().map(|pair| pair[1]);
+    let largest = values.filter(|v| v.is_finite()).fold(0.0, f64::max);
+    let mut names: Vec<String> = standing.folds.clone();
+    if standing.folds.len() > 1 {
+        names.push("mean".to_owned());
+    }
+    let title = format!(
+        "minADE and minFDE in metres of {} forecasters on {}; convention {}, window rule {}, protocol {}",
+        lines.len(),
+        standing.folds.join(", "),
+        standing.shared.convention,
+        standing.shared.window_rule,
+        standing.shared.protocol
+    );
+    match shape {
+        Shape::Wide => wide(lines, &names, largest, &title),
+        Shape::Narrow => narrow(lines, &names, largest, &title),
+    }
+}
+
+/// The folds, then their mean where there are several.
+fn columns(line: &StandingLine) -> Vec<Option<[f64; 2]>> {
+    let several = line.folds.len() > 1;
+    let mean = several.then_some(line.mean);
+    line.folds.iter().copied().chain(mean).collect()
+}
+
+fn wide(lines: &[StandingLine], names: &[String], largest: f64, title: &str) -> Drawing {
+    let (width, left, gap, top) = (1080.0, 250.0, 22.0, 44.0);
+    let column = (width - left - gap * names.len() as f64) / names.len() as f64;
+    let bottom = top + LINE * lines.len() as f64;
+    let mut drawing = Drawing::new(width, bottom + 44.0, title);
+    for (row, line) in lines.iter().enumerate() {
+        let y = top + LINE * (row as f64 + 0.5);
+        drawing.text(name_class(row), [0.0, y + 4.0], shortened(&line.label, 36));
+    }
+    for (at, name) in names.iter().enumerate() {
+        let x = left + gap + (column + gap) * at as f64;
+        // The number stands behind the dots, within the column.
+        let scale = ChartScale::from_zero(largest, [x, x + column - 8.0]);
+        drawing.text("title", [x, 16.0], name);
+        axis(&mut drawing, &scale, [top, bottom], [x, x + column]);
+        for (row, line) in lines.iter().enumerate() {
+            let y = top + LINE * (row as f64 + 0.5);
+            dumbbell(
+                &mut drawing,
+                &scale,
+                columns(line)[at],
+                row,
+                [x, y],
+                x + column,
+            );
+        }
+    }
+    key(&mut drawing, [left + gap, bottom + 38.0]);
+    drawing
+}
+
+fn narrow(lines: &[StandingLine], names: &[String], largest: f64, title: &str) -> Drawing {
+    let (width, line_height) = (358.0, 38.0);
+    let block = 56.0 + line_height * lines.len() as f64;
+    let mut drawing = Drawing::new(width, 28.0 + block * names.len() as f64, title);
+    key(&mut drawing, [0.0, 12.0]);
+    for (at, name) in names.iter().enumerate() {
+        let top = 28.0 + block * at as f64;
+        let scale = ChartScale::from_zero(largest, [0.0, width - 8.0]);
+        drawing.text("title", [0.0, top + 14.0], name);
+        axis(
+            &mut drawing,
+            &scale,
+            [top + 24.0, top + block - 30.0],
+            [0.0, width],
+        );
+        for (row, line) in lines.iter().enumerate() {
+            let y = top + 26.0 + line_height * (row as f64 + 0.5);
+            drawing.text(
+                &format!("small halo {}", name_class(row)),
+                [0.0, y - 4.0],
+                shortened(&line.label, 40),
+            );
+            dumbbell(
+                &mut drawing,
+                &scale,
+                columns(line)[at],
+                row,
+                [0.0, y + 8.0],
+                width,
+            );
+        }
+    }
+    drawing
+}
+
+fn name_class(row: usize) -> &'static str {
+    if row == 0 { "best" } else { "name" }
+}
+
+fn axis(
+    drawing: &mut Drawing,
+    scale: &ChartScale,
+    [top, bottom]: [f64; 2],
+    [left, right]: [f64; 2],
+) {
+    let ticks = scale.ticks();
+    for (at, (value, label)) in ticks.iter().enumerate() {
+        let x = scale.at(*value);
+        drawing.line(if at == 0 { "axis" } else { "grid" }, [x, top], [x, bottom]);
+        let unit = if at == 0 { " m" } else { "" };
+        let class = match at {
+            0 => "small",
+            _ if at + 1 == ticks.len() && right - x < 14.0 => "small end",
+            _ => "small middle",
+        };
+        let x = if class == "small end" {
+            right
+        } else {
+            x.max(left)
+        };
+        drawing.text(class, [x, bottom + 14.0], format!("{label}{unit}"));
+    }
+}
+
+fn dumbbell(
+    drawing: &mut Drawing,
+    scale: &ChartScale,
+    pair: Option<[f64; 2]>,
+    row: usize,
+    [left, y]: [f64; 2],
+    right: f64,
+) {
+    let Some([ade, fde]) = pair else {
+        drawing.text("small", [left + 4.0, y + 4.0], "not measured");
+        return;
+    };
+    let first = if row == 0 { " first" } else { "" };
+    let [a, b] = [scale.at(ade), scale.at(fde)];
+    drawing.line(&format!("stem{first}"), [a, y], [b, y]);
+    drawing.circle(&format!("fde{first}"), [b, y], 3.6);
+    drawing.circle(&format!("ade{first}"), [a, y], 4.4);
+    // The number stands on the side that has room.
+    let words = format!("{ade:.3}");
+    let class = if row == 0 {
+        "small halo best"
+    } else {
+        "small halo"
+    };
+    if right - b > 44.0 {
+        drawing.text(class, [b + 9.0, y + 4.0], words);
+    } else if a - left > 42.0 {
+        drawing.text(&format!("{class} end"), [a - 9.0, y + 4.0], words);
+    } else {
+        drawing.text(
+            &format!("{class} middle"),
+            [f64::midpoint(a, b), y - 6.0],
+            words,
+        );
+    }
+}
+
+fn key(drawing: &mut Drawing, [x, y]: [f64; 2]) {
+    drawing.circle("ade", [x + 5.0, y - 4.0], 4.4);
+    drawing.text("small", [x + 16.0, y], "minADE (printed)");
+    drawing.circle("fde", [x + 127.0, y - 4.0], 3.6);
+    drawing.text("small", [x + 137.0, y], "minFDE, metres; less is better");
+}
+
+/// At most so many characters.
+fn shortened(words: &str, most: usize) -> String {
+    if words.chars().count() <= most {
+        return words.to_owned();
+    }
+    words.chars().take(most - 1).chain(['…']).collect()
+}

@@ -1,0 +1,82 @@
+//! The gallery: the picked cases as figures with captions.
+
+use std::fmt::Write as _;
+
+use super::figure::{Drawing, case_figure};
+use crate::{
+    Moment,
+    document::{escape, inline},
+    gallery::{Pick, Show},
+};
+
+/// Cases in the order of [`Show::ALL`], with the place of their moment.
+fn cases(moments: &[Moment]) -> Vec<(usize, &Moment, &Pick)> {
+    let mut cases: Vec<(usize, &Moment, &Pick)> = moments
+        .iter()
+        .enumerate()
+        .flat_map(|(at, moment)| moment.picks.iter().map(move |pick| (at, moment, pick)))
+        .collect();
+    cases.sort_by_key(|(_, _, pick)| pick.show);
+    cases
+}
+
+/// What a case shows, in a sentence.
+fn meaning(show: Show) -> &'static str {
+    match show {
+        Show::Convergence => "The likeliest hypothesis walks to its goal, and so does the walker.",
+        Show::Group => "People who walk together are forecast to stay together.",
+        Show::SlowingDown => "The arrows grow shorter: the walker is forecast to slow down.",
+        Show::KeepingDistance => "People pass each other; the forecasts keep their distance.",
+        Show::Turning => "The way bends towards the goal.",
+    }
+}
+
+pub(super) fn html(moments: &[Moment]) -> String {
+    let cases = cases(moments);
+    if cases.is_empty() {
+        return "<p class=\"nothing\">No cases were picked for this page.</p>\n".to_owned();
+    }
+    let mut html = "<div class=\"cases\">\n".to_owned();
+    for (at, moment, pick) in cases {
+        let figure = case_figure(moment, pick, false).inline("case");
+        let walker = pick.walkers.first().copied().unwrap_or(0);
+        let who: Vec<String> = pick
+            .walkers
+            .iter()
+            .map(|&walker| moment.walkers[walker].pedestrian.to_string())
+            .collect();
+        let plural = if who.len() == 1 { "walker" } else { "walkers" };
+        let _ = write!(
+            html,
+            "<figure>\n{figure}\n<figcaption>\n<h3>{}</h3>\n<p>{} {} of recording <code>{}</code> (fold <code>{}</code>), \
+             frame {}; forecast by {}.</p>\n<p class=\"rule\">Picked by rule: {}.</p>\n<button type=\"button\" \
+             data-moment=\"{at}\" data-walker=\"{walker}\">Play this moment</button>\n</figcaption>\n</figure>\n",
+            capitalised(&pick.show.to_string()),
+            meaning(pick.show),
+            capitalised(&format!("{plural} {}", who.join(", "))),
+            escape(&moment.recording),
+            escape(&moment.fold),
+            moment.frame,
+            escape(&moment.forecaster),
+            inline(pick.rule.trim_end_matches('.')),
+        );
+    }
+    html + "</div>\n"
+}
+
+pub(super) fn figures(moments: &[Moment]) -> Vec<(String, Drawing)> {
+    cases(moments)
+        .into_iter()
+        .map(|(_, moment, pick)| {
+            let name = format!("case {} {} {}", pick.show, moment.recording, moment.frame);
+            (name, case_figure(moment, pick, true))
+        })
+        .collect()
+}
+
+fn capitalised(words: &str) -> String {
+    let mut characters = words.chars();
+    characters.next().map_or(String::new(), |first| {
+        first.to_uppercase().chain(characters).collect()
+    })
+}

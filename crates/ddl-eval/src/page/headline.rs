@@ -1,0 +1,164 @@
+//! The first screen: what was measured, on what, the best result with its conditions, and what it is compared with.
+
+use std::fmt::Write as _;
+
+use super::{
+    figure::{Shape, headline_chart},
+    standing::{Standing, StandingLine, standing},
+};
+use crate::{
+    Report,
+    document::{escape, inline},
+};
+
+/// The head of the page, as HTML; a report without rows says so.
+pub(super) fn headline(report: &Report) -> String {
+    let Some(standing) = standing(report) else {
+        return "<p class=\"nothing\">This report holds no results.</p>\n".to_owned();
+    };
+    let mut html = String::new();
+    if let Some(best) = standing.lines.first() {
+        html.push_str(&figures_of(&standing, best));
+    }
+    if let Some(warning) = standing.shared.protocol.warning() {
+        let _ = writeln!(
+            html,
+            "<p class=\"warning\" role=\"note\"><strong>Warning.</strong> {}</p>",
+            inline(warning)
+        );
+    }
+    let caption = format!(
+        "minADE and minFDE in metres, less is better; the number is minADE. {} Lines with K = 1 have one guess, lines with \
+         K = 20 twenty. Every number stands in the tables below.",
+        conditions_in_words(&standing)
+    );
+    let _ = write!(
+        html,
+        "<figure class=\"comparison\">\n{}\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
+        headline_chart(&standing, Shape::Wide).inline("wide"),
+        headline_chart(&standing, Shape::Narrow).inline("narrow"),
+        inline(&caption)
+    );
+    html
+}
+
+fn conditions_in_words(standing: &Standing) -> String {
+    let c = &standing.shared;
+    format!(
+        "Data convention `{}`, window rule `{}`, protocol `{}`; scored: {}.",
+        c.convention,
+        c.window_rule,
+        c.protocol,
+        c.test_subset.as_deref().unwrap_or("all test windows")
+    )
+}
+
+fn figures_of(standing: &Standing, best: &StandingLine) -> String {
+    let Some([ade, fde]) = best
+        .mean
+        .or_else(|| best.folds.iter().copied().find_map(|pair| pair))
+    else {
+        return String::new();
+    };
+    let over = match standing.folds.as_slice() {
+        [one] => format!("on `{one}`"),
+        all if standing.all_folds => format!("plain mean of the {} folds", all.len()),
+        some => format!(
+            "plain mean of the {} folds measured: {}",
+            some.len(),
+            some.join(", ")
+        ),
+    };
+    let number = |name: &str, value: f64| {
+        format!(
+            "<div class=\"number\"><b data-number=\"{name}\">{value:.3}</b><span class=\"unit\">m</span>\
+             <span class=\"name\">{name}, best of {}</span></div>\n",
+            best.hypotheses
+        )
+    };
+    let lead = format!(
+        "<strong>{}</strong> errs least of the {} measured under protocol <code>{}</code>: {}, {}.",
+        escape(&best.label),
+        forecasters(standing.lines.len()),
+        standing.shared.protocol,
+        inline(&over),
+        inline(&format!("convention `{}`", standing.shared.convention)),
+    );
+    let [walkers, windows] = best.scored;
+    let facts = [
+        (
+            "Measured",
+            format!(
+                "how far 12 forecast positions (4.8 s) lie from the true ones, after 8 observed (3.2 s): {}",
+                standing.shared.protocol.description()
+            ),
+        ),
+        (
+            "On",
+            format!(
+                "{walkers} walkers in {windows} test windows of {}; scored: {}",
+                standing.folds.join(", "),
+                standing
+                    .shared
+                    .test_subset
+                    .as_deref()
+                    .unwrap_or("all test windows")
+            ),
+        ),
+        ("Conditions", conditions_of(best)),
+    ];
+    let mut html = format!(
+        "<div class=\"best\">\n<p class=\"verdict\">{lead}</p>\n<div class=\"numbers\">\n{}{}</div>\n</div>\n<dl class=\"facts\">\n",
+        number("minADE", ade),
+        number("minFDE", fde)
+    );
+    for (name, words) in facts {
+        let _ = writeln!(
+            html,
+            "<div><dt>{name}</dt><dd>{}</dd></div>",
+            inline(&words)
+        );
+    }
+    html + "</dl>\n"
+}
+
+fn forecasters(count: usize) -> String {
+    match count {
+        1 => "one forecaster".to_owned(),
+        several => format!("{several} forecasters"),
+    }
+}
+
+/// Under what conditions a line came about.
+fn conditions_of(line: &StandingLine) -> String {
+    let c = &line.conditions;
+    let seeds: Vec<String> = line.seeds.iter().map(u64::to_string).collect();
+    let mut words = vec![match seeds.as_slice() {
+        [] => "no seed (nothing random)".to_owned(),
+        [one] => format!("seed {one}"),
+        several => format!("mean of seeds {}", several.join(", ")),
+    }];
+    match c.epochs {
+        None => words.push("not trained".to_owned()),
+        Some(epochs) => {
+            words.push(format!("{epochs} epochs"));
+            words.extend(c.selection.clone());
+            words.extend(c.recipe.clone());
+            let subset = c
+                .training_subset
+                .as_deref()
+                .unwrap_or("all training windows");
+            words.push(format!("trained on {subset}"));
+        }
+    }
+    let known = |text: &str| {
+        if text.is_empty() {
+            "unknown".to_owned()
+        } else {
+            text.to_owned()
+        }
+    };
+    words.push(format!("device {}", known(&c.device)));
+    words.push(format!("commit `{}`", known(&c.commit)));
+    words.join("; ")
+}

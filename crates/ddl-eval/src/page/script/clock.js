@@ -1,0 +1,63 @@
+// The time of the player, in frames from 0 to 19: it runs at twice the speed of life, or frame by frame where motion is
+// to be reduced.
+
+const SPEED = 2;
+const PAUSE_AT_END = 1.2;
+
+function makeClock(onTime, onPlaying) {
+  const reduced = matchMedia("(prefers-reduced-motion: reduce)");
+  let time = OBSERVED - 1;
+  let playing = false;
+  let last = 0;
+  let rest = 0;
+
+  function tick(now) {
+    if (!playing) return;
+    const seconds = Math.min((now - last) / 1000, 0.25);
+    last = now;
+    if (rest > 0) {
+      rest -= seconds;
+      if (rest <= 0) time = 0;
+    } else {
+      time += (SPEED * seconds) / SECONDS_A_FRAME;
+      if (time >= FRAMES - 1) {
+        time = FRAMES - 1;
+        rest = PAUSE_AT_END;
+      }
+    }
+    onTime(reduced.matches ? Math.floor(time) : time);
+    requestAnimationFrame(tick);
+  }
+
+  function set(to) {
+    time = Math.min(Math.max(to, 0), FRAMES - 1);
+    rest = 0;
+    onTime(time);
+  }
+
+  function play(on) {
+    if (on === playing) return;
+    playing = on;
+    if (playing) {
+      if (time >= FRAMES - 1) time = 0;
+      rest = 0;
+      last = performance.now();
+      requestAnimationFrame(tick);
+    } else {
+      onTime(reduced.matches ? Math.floor(time) : time);
+    }
+    onPlaying(playing);
+  }
+
+  return {
+    set,
+    play,
+    toggle: () => play(!playing),
+    // To a whole frame, and stop there.
+    step: (by) => {
+      play(false);
+      set(by > 0 ? Math.floor(time + 1e-9) + by : Math.ceil(time - 1e-9) + by);
+    },
+    time: () => time,
+  };
+}

@@ -1,0 +1,48 @@
+// The metrics of one walker, as the evaluation defines them; all in metres.
+
+const AT_GOAL = 1e-3;
+
+function distance(a, b) {
+  return Math.hypot(a[0] - b[0], a[1] - b[1]);
+}
+
+// ADE: the mean distance of the 12 positions from the true ones. FDE: that of the last.
+function displacement(path, truth) {
+  const distances = path.map((place, at) => distance(place, truth[at]));
+  const sum = distances.reduce((total, d) => total + d, 0);
+  return { ade: sum / distances.length, fde: distances[distances.length - 1] };
+}
+
+// minADE and minFDE: two minima over the hypotheses, each of its own.
+function walkerErrors(walker) {
+  const each = walker.hypotheses.map((h) => displacement(h.path, walker.truth));
+  return {
+    each,
+    minAde: Math.min(...each.map((e) => e.ade)),
+    minFde: Math.min(...each.map((e) => e.fde)),
+  };
+}
+
+// Phi: the distance to the goal, from the last observed frame (t = 0) to the 12th forecast one.
+function phi(walker, hypothesis) {
+  if (!hypothesis.goal) return null;
+  return [walker.observed[OBSERVED - 1], ...hypothesis.path].map((place) => distance(place, hypothesis.goal));
+}
+
+// What is known of the descent of Phi, in words. The verdict is that of the unrounded forecast.
+function verdictWords(walker, hypothesis) {
+  const values = phi(walker, hypothesis);
+  if (!values) return "no goal, no Φ";
+  const rises = [];
+  for (let t = 1; t < values.length; t += 1) {
+    const falls = values[t] < values[t - 1] || Math.max(values[t], values[t - 1]) <= AT_GOAL;
+    if (!falls) rises.push(t);
+  }
+  let words;
+  if (hypothesis.falls) words = `Φ falls at each of ${HORIZON} steps`;
+  else if (rises.length === 0) words = "Φ rises by less than a millimetre";
+  else if (rises.length === 1) words = `Φ does not fall at step ${rises[0]} of ${HORIZON}`;
+  else words = `Φ does not fall at ${rises.length} of ${HORIZON} steps`;
+  const certificate = { true: "; certified", false: "; not certified", null: "" };
+  return words + certificate[hypothesis.certified];
+}

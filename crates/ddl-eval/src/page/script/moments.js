@@ -1,0 +1,70 @@
+// The embedded moments: whole millimetres and steps along a path become positions in metres.
+
+const OBSERVED = 8;
+const HORIZON = 12;
+const FRAMES = OBSERVED + HORIZON;
+const SECONDS_A_FRAME = 0.4;
+
+function embedded(id) {
+  return JSON.parse(document.getElementById(id).textContent);
+}
+
+// Steps in millimetres, from a place in millimetres, as an array of [x, y] in metres.
+function walked(from, steps) {
+  let [x, y] = from;
+  const path = [];
+  for (let at = 0; at < steps.length; at += 2) {
+    x += steps[at];
+    y += steps[at + 1];
+    path.push([x / 1000, y / 1000]);
+  }
+  return path;
+}
+
+function decodeWalker(data) {
+  let last = [0, 0];
+  for (let at = 0; at < data.observed.length; at += 2) {
+    last = [last[0] + data.observed[at], last[1] + data.observed[at + 1]];
+  }
+  const verdict = (letter) => (letter === "y" ? true : letter === "n" ? false : null);
+  const hypotheses = data.paths.map((steps, index) => {
+    const goal = data.goals[index];
+    return {
+      index,
+      weight: data.weights[index] / 1000,
+      path: walked(last, steps),
+      goal: goal && [(last[0] + goal[0]) / 1000, (last[1] + goal[1]) / 1000],
+      falls: verdict(data.falls[index]),
+      certified: verdict(data.certified[index]),
+    };
+  });
+  return {
+    pedestrian: data.pedestrian,
+    observed: walked([0, 0], data.observed),
+    truth: walked(last, data.truth),
+    hypotheses,
+    likeliest: hypotheses.reduce((best, h) => (h.weight > best.weight ? h : best)).index,
+  };
+}
+
+// A moment is decoded when it is first shown: a page may hold many.
+function decodeMoment(data) {
+  return { ...data, walkers: data.walkers.map(decodeWalker) };
+}
+
+// The place at a time counted in frames from 0; between two frames on the line between them.
+function placeAt(observed, ahead, time) {
+  const at = Math.min(Math.max(time, 0), FRAMES - 1);
+  const frame = Math.floor(at);
+  const place = (f) => (f < OBSERVED ? observed[f] : ahead[f - OBSERVED]);
+  const [a, b] = [place(frame), place(Math.min(frame + 1, FRAMES - 1))];
+  const share = at - frame;
+  return [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
+}
+
+// The velocity in m/s of the step that the time lies in; of the last step at the end.
+function velocityAt(observed, ahead, time) {
+  const frame = Math.min(Math.floor(Math.max(time, 0)), FRAMES - 2);
+  const [a, b] = [placeAt(observed, ahead, frame), placeAt(observed, ahead, frame + 1)];
+  return [(b[0] - a[0]) / SECONDS_A_FRAME, (b[1] - a[1]) / SECONDS_A_FRAME];
+}

@@ -1,0 +1,18 @@
+// The colours of the page for a canvas, which knows no variables.
+
+const PALETTE_NAMES = ["ink", "ink-2", "paper", "panel", "rule", "rule-soft", "other", "accent", "accent-deep", "accent-soft", "truth"];
+
+// A probe element resolves what depends on the theme.
+function readPalette() {
+  const probe = document.createElement("span");
+  probe.hidden = true;
+  document.body.append(probe);
+  const palette = {};
+  for (const name of PALETTE_NAMES) {
+    probe.style.color = `var(--${name})`;
+    palette[name] = getComputedStyle(probe).color;
+  }
+  palette.font = getComputedStyle(document.body).fontFamily;
+  probe.remove();
+  return palette;
+}

@@ -1,0 +1,248 @@
+// The player: what is chosen, and everything that follows from it.
+
+const byId = (id) => document.getElementById(id);
+
+function makePlayer(moments) {
+  const stage = document.querySelector(".stage");
+  const canvas = byId("scene");
+  const context = canvas.getContext("2d");
+  const decoded = new Map();
+  const recordings = [];
+  for (const moment of moments) {
+    const name = recordingName(moment);
+    if (!recordings.includes(name)) recordings.push(name);
+  }
+  const state = {
+    moment: 0,
+    walker: 0,
+    hypothesis: null,
+    time: OBSERVED - 1,
+    zoom: false,
+    show: { truth: true, hypotheses: true, goals: true, others: true, everything: false },
+  };
+  let palette = readPalette();
+  let size = { width: 0, height: 0, ratio: 1 };
+  let view = null;
+  let waiting = false;
+  const chart = makePhiChart(byId("phi"));
+  const list = makeHypothesisList(byId("hypotheses"), chooseHypothesis);
+  const clock = makeClock(showTime, (playing) => {
+    byId("play").setAttribute("aria-pressed", playing);
+    byId("play").setAttribute("aria-label", playing ? "Pause" : "Play");
+  });
+
+  function recordingName(moment) {
+    const fold = moment.fold === moment.recording ? "" : ` (fold ${moment.fold})`;
+    return `${moment.recording}${fold}, ${moment.forecaster}`;
+  }
+
+  function momentAt(at) {
+    if (!decoded.has(at)) decoded.set(at, decodeMoment(moments[at]));
+    return decoded.get(at);
+  }
+
+  const current = () => momentAt(state.moment);
+  const walker = () => current().walkers[state.walker];
+  const chosenHypothesis = () => state.hypothesis ?? walker().likeliest;
+
+  function fillSelect(select, options, value) {
+    select.replaceChildren(...options.map(([key, text]) => new Option(text, key, false, String(key) === String(value))));
+  }
+
+  function momentsOf(name) {
+    return moments.map((_, at) => at).filter((at) => recordingName(moments[at]) === name);
+  }
+
+  // Draws once before the next picture, however often it is asked.
+  function redraw() {
+    if (waiting) return;
+    waiting = true;
+    requestAnimationFrame(() => {
+      waiting = false;
+      draw();
+    });
+  }
+
+  function draw() {
+    if (!view) return;
+    drawScene(context, view, size, current(), state, palette);
+  }
+
+  function fit() {
+    const box = canvas.getBoundingClientRect();
+    if (box.width === 0) return;
+    const ratio = window.devicePixelRatio || 1;
+    size = { width: box.width, height: box.height, ratio };
+    canvas.width = Math.round(box.width * ratio);
+    canvas.height = Math.round(box.height * ratio);
+    const places = [];
+    if (state.zoom) places.push(...placesOf(walker(), true));
+    else current().walkers.forEach((who, at) => places.push(...placesOf(who, at === state.walker || current().walkers.length <= 30)));
+    view = viewOf(places, size.width, size.height);
+    redraw();
+  }
+
+  function showTime(time) {
+    state.time = time;
+    const frame = Math.floor(time + 1e-9);
+    const seconds = (time - (OBSERVED - 1)) * SECONDS_A_FRAME;
+    const part = frame < OBSERVED ? `observed frame ${frame + 1} of ${OBSERVED}` : `forecast frame ${frame - OBSERVED + 1} of ${HORIZON}`;
+    const sign = seconds < -1e-9 ? "−" : seconds > 1e-9 ? "+" : "";
+    byId("time-words").textContent = `${sign}${Math.abs(seconds).toFixed(1)} s, ${part}`;
+    byId("time").value = frame + 1;
+    byId("time").setAttribute("aria-valuetext", byId("time-words").textContent);
+    const who = walker();
+    const ahead = frame >= OBSERVED - 1 && time > OBSERVED - 1 ? who.hypotheses[chosenHypothesis()].path : who.truth;
+    const [x, y] = placeAt(who.observed, ahead, time);
+    const speed = Math.hypot(...velocityAt(who.observed, ahead, time));
+    const what = time > OBSERVED - 1 ? "forecast" : "observed";
+    byId("now-words").textContent = `${what} at (${x.toFixed(2)}, ${y.toFixed(2)}) m, ${speed.toFixed(2)} m/s`;
+    canvas.dataset.time = time.toFixed(3);
+    chart.moveTo(time);
+    redraw();
+  }
+
+  function showWalker() {
+    const moment = current();
+    const who = walker();
+    const errors = walkerErrors(who);
+    const chosen = chosenHypothesis();
+    byId("choose-walker").value = state.walker;
+    byId("walker-name").textContent = `Walker ${who.pedestrian}`;
+    byId("min-ade").textContent = errors.minAde.toFixed(3);
+    byId("min-fde").textContent = errors.minFde.toFixed(3);
+    const count = who.hypotheses.length;
+    byId("convention-words").textContent =
+      `${count === 1 ? "One hypothesis" : `Best of ${count} hypotheses`}, two minima of their own; from positions rounded to the millimetre. ` +
+      `${moment.recording}, frame ${moment.frame}.`;
+    canvas.setAttribute(
+      "aria-label",
+      `The scene from above: ${moment.walkers.length} walkers of ${moment.recording}, frame ${moment.frame}; walker ${who.pedestrian} is chosen`,
+    );
+    chart.draw(who, chosen);
+    list.draw(who, errors, chosen);
+    byId("certificate-words").textContent = `Hypothesis ${chosen + 1}: ${verdictWords(who, who.hypotheses[chosen])}.`;
+    fit();
+    showTime(state.time);
+  }
+
+  function chooseHypothesis(index) {
+    // A second click goes back to the likeliest.
+    state.hypothesis = state.hypothesis === index ? null : index;
+    const chosen = chosenHypothesis();
+    list.mark(chosen);
+    chart.draw(walker(), chosen);
+    byId("certificate-words").textContent = `Hypothesis ${chosen + 1}: ${verdictWords(walker(), walker().hypotheses[chosen])}.`;
+    showTime(state.time);
+  }
+
+  function chooseWalker(at) {
+    const count = current().walkers.length;
+    state.walker = (at + count) % count;
+    state.hypothesis = null;
+    showWalker();
+  }
+
+  function chooseMoment(at, who = null) {
+    state.moment = (at + moments.length) % moments.length;
+    const moment = current();
+    const name = recordingName(moment);
+    fillSelect(byId("choose-recording"), recordings.map((r) => [r, r]), name);
+    fillSelect(
+      byId("choose-moment"),
+      momentsOf(name).map((m) => {
+        const picks = moments[m].picks.map((pick) => pick.show.replace("-", " "));
+        const people = moments[m].walkers.length;
+        return [m, [`frame ${moments[m].frame}`, `${people} ${people === 1 ? "walker" : "walkers"}`, ...new Set(picks)].join(", ")];
+      }),
+      state.moment,
+    );
+    fillSelect(byId("choose-walker"), moment.walkers.map((w, i) => [i, `walker ${w.pedestrian}`]), 0);
+    const picked = moment.picks[0]?.walkers[0] ?? 0;
+    chooseWalker(who ?? picked);
+  }
+
+  function setShow(name, on) {
+    if (name === "zoom") state.zoom = on;
+    else state.show[name] = on;
+    byId(name === "zoom" ? "zoom" : `show-${name}`).checked = on;
+    if (name === "zoom") fit();
+    redraw();
+  }
+
+  const isShown = (name) => (name === "zoom" ? state.zoom : state.show[name]);
+
+  // The walker whose way, up to now and ahead, passes nearest the pointer.
+  function nearestWalker(event) {
+    const box = canvas.getBoundingClientRect();
+    const at = [event.clientX - box.left, event.clientY - box.top];
+    let best = null;
+    current().walkers.forEach((who, index) => {
+      const here = view.px(placeAt(who.observed, who.truth, state.time));
+      const others = [...who.observed, ...who.truth].map(view.px);
+      const reach = Math.min(Math.hypot(here[0] - at[0], here[1] - at[1]) - 8, ...others.map((p) => Math.hypot(p[0] - at[0], p[1] - at[1])));
+      if (reach < 22 && (!best || reach < best.reach)) best = { index, reach };
+    });
+    return best?.index;
+  }
+
+  byId("play").addEventListener("click", clock.toggle);
+  byId("back").addEventListener("click", () => clock.step(-1));
+  byId("forth").addEventListener("click", () => clock.step(1));
+  byId("time").addEventListener("input", (event) => {
+    clock.play(false);
+    clock.set(Number(event.target.value) - 1);
+  });
+  byId("choose-recording").addEventListener("change", (event) => chooseMoment(momentsOf(event.target.value)[0]));
+  byId("choose-moment").addEventListener("change", (event) => chooseMoment(Number(event.target.value)));
+  byId("choose-walker").addEventListener("change", (event) => chooseWalker(Number(event.target.value)));
+  for (const name of ["truth", "hypotheses", "goals", "others", "everything"]) {
+    byId(`show-${name}`).addEventListener("change", (event) => setShow(name, event.target.checked));
+  }
+  byId("zoom").addEventListener("change", (event) => setShow("zoom", event.target.checked));
+  canvas.addEventListener("click", (event) => {
+    const found = nearestWalker(event);
+    if (found !== undefined) chooseWalker(found);
+    stage.focus({ preventScroll: true });
+  });
+  for (const button of document.querySelectorAll("button[data-moment]")) {
+    button.addEventListener("click", () => {
+      chooseMoment(Number(button.dataset.moment), Number(button.dataset.walker));
+      byId("player").scrollIntoView();
+      stage.focus({ preventScroll: true });
+      clock.set(0);
+      clock.play(true);
+    });
+  }
+  onThemeChange(() => {
+    palette = readPalette();
+    redraw();
+  });
+  new ResizeObserver(fit).observe(canvas);
+  chooseMoment(0);
+
+  return {
+    clock,
+    nextWalker: (by) => chooseWalker(state.walker + by),
+    nextMoment: (by) => chooseMoment(state.moment + by),
+    nextRecording: () => {
+      const at = recordings.indexOf(recordingName(current()));
+      chooseMoment(momentsOf(recordings[(at + 1) % recordings.length])[0]);
+    },
+    toggle: (name) => setShow(name, !isShown(name)),
+    sortByWeight: () => list.sort("weight"),
+    stage,
+    // For measuring: the time of one drawing, in milliseconds, with everyone's hypotheses.
+    measure: (times) => {
+      const before = state.show.everything;
+      state.show.everything = true;
+      const start = performance.now();
+      for (let i = 0; i < times; i += 1) draw();
+      context.getImageData(0, 0, 1, 1);
+      const spent = (performance.now() - start) / times;
+      state.show.everything = before;
+      draw();
+      return spent;
+    },
+  };
+}

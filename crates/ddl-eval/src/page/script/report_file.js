@@ -1,0 +1,10 @@
+// The embedded report as a file.
+
+document.getElementById("save-report").addEventListener("click", () => {
+  const text = document.getElementById("report-json").textContent;
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text], { type: "application/json" }));
+  link.download = "report.json";
+  link.click();
+  URL.revokeObjectURL(link.href);
+});

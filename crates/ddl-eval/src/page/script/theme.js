@@ -1,0 +1,40 @@
+// Light, dark, or as the system has it. The choice is kept where the browser lets a file keep one.
+
+const THEMES = ["auto", "light", "dark"];
+const THEME_WORDS = { auto: "as the system has them", light: "light", dark: "dark" };
+const themeListeners = [];
+
+function onThemeChange(listener) {
+  themeListeners.push(listener);
+}
+
+function applyTheme(theme) {
+  const root = document.documentElement;
+  if (theme === "auto") delete root.dataset.theme;
+  else root.dataset.theme = theme;
+  const button = document.getElementById("theme");
+  button.textContent = theme[0].toUpperCase() + theme.slice(1);
+  button.setAttribute("aria-label", `Colours: ${THEME_WORDS[theme]}; change`);
+  themeListeners.forEach((listener) => listener());
+}
+
+{
+  let theme = "auto";
+  try {
+    theme = localStorage.getItem("ddl-theme") ?? "auto";
+  } catch {
+    // Some browsers keep nothing for files: the system's colours it is.
+  }
+  if (!THEMES.includes(theme)) theme = "auto";
+  applyTheme(theme);
+  document.getElementById("theme").addEventListener("click", () => {
+    theme = THEMES[(THEMES.indexOf(theme) + 1) % THEMES.length];
+    applyTheme(theme);
+    try {
+      localStorage.setItem("ddl-theme", theme);
+    } catch {
+      // It holds until the page is closed.
+    }
+  });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => themeListeners.forEach((listener) => listener()));
+}

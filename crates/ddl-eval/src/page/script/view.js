@@ -1,0 +1,42 @@
+// Metres to pixels: equal on both axes, y up.
+
+const LEAST_SPAN = 4;
+
+function boundsOf(places) {
+  const low = [Infinity, Infinity];
+  const high = [-Infinity, -Infinity];
+  for (const place of places) {
+    for (const axis of [0, 1]) {
+      low[axis] = Math.min(low[axis], place[axis]);
+      high[axis] = Math.max(high[axis], place[axis]);
+    }
+  }
+  return { low, high };
+}
+
+// Everything that a walker did, is forecast to do and heads for.
+function* placesOf(walker, allHypotheses) {
+  yield* walker.observed;
+  yield* walker.truth;
+  for (const hypothesis of walker.hypotheses) {
+    if (allHypotheses || hypothesis.index === walker.likeliest) {
+      yield* hypothesis.path;
+      if (hypothesis.goal) yield hypothesis.goal;
+    }
+  }
+}
+
+// The view that shows these places in a canvas of this size.
+function viewOf(places, width, height) {
+  const { low, high } = boundsOf(places);
+  const margin = Math.min(34, 0.09 * Math.min(width, height));
+  const fit = (axis, pixels) => (pixels - 2 * margin) / Math.max(high[axis] - low[axis], LEAST_SPAN);
+  // The stamp above and the scale below keep a little more room.
+  const scale = Math.min(fit(0, width), fit(1, height - 40));
+  const centre = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
+  return {
+    scale,
+    px: ([x, y]) => [width / 2 + scale * (x - centre[0]), height / 2 - scale * (y - centre[1])],
+    metres: ([x, y]) => [centre[0] + (x - width / 2) / scale, centre[1] - (y - height / 2) / scale],
+  };
+}
