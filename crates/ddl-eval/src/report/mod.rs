@@ -115,12 +115,22 @@ impl Report {
         content::document(&self.title, &self.rows)
     }
 
-    /// The report as JSON, from which [`Report::from_json`] makes the same report, bit by bit.
+    /// The report as JSON, a line a row, from which [`Report::from_json`] makes the same report, bit by bit.
     ///
     /// # Errors
     /// None in practice: scores are finite.
     pub fn to_json(&self) -> Result<String, ReportError> {
-        Ok(serde_json::to_string_pretty(self)? + "\n")
+        let rows: Vec<String> = self
+            .rows
+            .iter()
+            .map(serde_json::to_string)
+            .collect::<Result<_, _>>()?;
+        let title = serde_json::to_string(&self.title)?;
+        Ok(format!(
+            "{{\"format\":{},\"title\":{title},\"rows\":[\n{}\n]}}\n",
+            self.format,
+            rows.join(",\n")
+        ))
     }
 
     /// Reads what [`Report::to_json`] wrote.

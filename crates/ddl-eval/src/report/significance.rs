@@ -119,9 +119,19 @@ fn difference(
                 p => format!("{p:.3}"),
             };
             let Interval { mean, low, high } = pair.difference;
-            [format!("{mean:+.3} [{low:+.3}, {high:+.3}]"), p]
+            let [mean, low, high] = [mean, low, high].map(signed);
+            [format!("{mean} [{low}, {high}]"), p]
         }
         Ok(None) | Err(_) => nothing(),
+    }
+}
+
+/// With its sign, unless it rounds to nothing.
+fn signed(metres: f64) -> String {
+    let text = format!("{metres:+.3}");
+    match text.as_str() {
+        "+0.000" | "-0.000" => "0.000".to_owned(),
+        _ => text,
     }
 }
 
