@@ -113,6 +113,41 @@ fn a_table_names_everything_it_must() {
     assert!(!page.contains("Table II"));
 }
 
+/// Metrics that a row lacks, or a fold of it, are left out and not counted as 0.
+#[test]
+fn the_forecast_as_a_whole_has_a_table() {
+    let mut rows = five_folds(Protocol::Fair, 1, 0.25);
+    for row in &mut rows {
+        row.scores.kde_nll = Some(-0.5);
+        row.scores.true_neighbour_collision_rate = Some(0.125);
+        row.scores.amd = Some(2.0);
+    }
+    rows[3].scores.amd = None;
+    let page = Report::new("Quick", rows).unwrap().to_markdown();
+    let header = page
+        .lines()
+        .position(|l| l.contains("KDE NLL nats"))
+        .unwrap();
+    let lines: Vec<&str> = page.lines().collect();
+    let names = cells(lines[header]);
+    let values = cells(lines[header + 2]);
+    let value = |name: &str| values[names.iter().position(|n| *n == name).unwrap()];
+    assert_eq!(value("KDE NLL nats"), "-0.500");
+    assert_eq!(value("runs into %"), "12.5");
+    assert_eq!(value("AMD"), "-");
+    assert_eq!(value("APD m"), "-");
+    assert_eq!(names.len(), values.len());
+}
+
+#[test]
+fn scores_written_before_there_were_more_metrics_still_load() {
+    let text = r#"{"pedestrians":1,"windows":1,"hypotheses":20,"min_ade":0.1,"min_fde":0.2,
+        "fde_at_min_ade":0.2,"joint_ade":0.1,"joint_fde":0.2,"miss_rate":0.0,"collision_rate":0.0,
+        "true_collision_rate":0.0,"goal_fde":null,"stability":null}"#;
+    let scores: Scores = serde_json::from_str(text).unwrap();
+    assert_eq!((scores.kde_nll, scores.categories.len()), (None, 0));
+}
+
 #[test]
 fn the_share_of_certified_rollouts_has_a_column() {
     let mut rows = five_folds(Protocol::Fair, 1, 0.25);

@@ -4,7 +4,10 @@ use std::fmt::Write;
 
 use ddl_data::{Convention, WindowRule};
 
-use super::group::{Group, Line, groups};
+use super::{
+    group::{Group, Line, groups},
+    whole_forecast::{WHOLE_FORECAST, WHOLE_FORECAST_LEGEND},
+};
 use crate::{Conditions, ResultRow, Scores, literature, table::MarkdownTable};
 
 /// What a table shows where there is nothing to show.
@@ -86,7 +89,9 @@ fn section(group: &Group<'_>) -> String {
         let _ = writeln!(text, "\n> **Warning.** {warning}");
     }
     let _ = write!(text, "\n{}\n{}", headline(group), conditions(group));
-    let _ = write!(text, "\n{FURTHER_LEGEND}\n\n{}", further(group));
+    let _ = write!(text, "\n{FURTHER_LEGEND}\n\n{}", further(group, &FURTHER));
+    let whole = further(group, &WHOLE_FORECAST);
+    let _ = write!(text, "\n{WHOLE_FORECAST_LEGEND}\n\n{whole}");
     text
 }
 
@@ -182,8 +187,8 @@ fn settings(line: &Line<'_>) -> String {
     parts.join("; ")
 }
 
-/// A metric of the second table: its column, its decimals, and where it is found in the scores.
-type Column = (&'static str, usize, fn(&Scores) -> Option<f64>);
+/// A metric of the tables after the first: its column, its decimals, and where it is found in the scores.
+pub(super) type Column = (&'static str, usize, fn(&Scores) -> Option<f64>);
 
 const FURTHER_LEGEND: &str = "Further metrics, mean over the folds named. FDE@minADE: FDE of the \
     hypothesis of least ADE; JADE, JFDE: one hypothesis index for the whole scene; missed: every \
@@ -216,11 +221,11 @@ const FURTHER: [Column; 13] = [
     ("K", 0, |s| Some(s.hypotheses as f64)),
 ];
 
-fn further(group: &Group<'_>) -> MarkdownTable {
+fn further(group: &Group<'_>, metrics: &[Column]) -> MarkdownTable {
     let folds = group.folds();
     let columns = ["forecaster", "folds"]
         .into_iter()
-        .chain(FURTHER.map(|(name, ..)| name));
+        .chain(metrics.iter().map(|(name, ..)| *name));
     let mut table = MarkdownTable::new(columns).text_column("folds");
     for (line, label) in group.lines.iter().zip(group.labels()) {
         let present = line.present(&folds);
@@ -229,7 +234,7 @@ fn further(group: &Group<'_>) -> MarkdownTable {
         } else {
             present.join(", ")
         };
-        let cells = FURTHER.iter().map(|&(_, decimals, of)| {
+        let cells = metrics.iter().map(|&(_, decimals, of)| {
             // A metric that a fold lacks is NaN there, and so is its mean.
             let spread = line.over_folds(&present, |s| of(s).unwrap_or(f64::NAN));
             let text = spread.map(|spread| format!("{spread:.decimals$}"));

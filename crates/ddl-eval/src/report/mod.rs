@@ -9,6 +9,7 @@ use crate::{ResultRow, error::ReportError};
 mod group;
 mod markdown;
 mod spread;
+mod whole_forecast;
 
 /// Version of the JSON file.
 const FORMAT: u32 = 1;
