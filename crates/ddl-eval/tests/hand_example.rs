@@ -22,15 +22,18 @@ use ddl_eval::{
     category::TrajectoryType,
 };
 
+/// A position at frame `s`.
+type Path = fn(f64) -> Position;
+
 /// Positions of the three walkers at frame `s`, 0 being the last observed one.
-const TRUTH: [fn(f64) -> Position; 3] = [
+const TRUTH: [Path; 3] = [
     |s| [3.5 + 0.5 * s, 0.0],
     |_| [9.1, 2.56],
     |s| [12.5 - 0.5 * s, 0.3],
 ];
 
 /// Offsets of the hypotheses from the truth at frame `s`.
-const OFFSETS: [[fn(f64) -> Position; 2]; 3] = [
+const OFFSETS: [[Path; 2]; 3] = [
     [|_| [0.24, 0.32], |s| [0.06 * s, 0.08 * s]],
     [|s| [0.15 * s, -0.2 * s], |_| [0.9, -1.2]],
     [

@@ -290,8 +290,8 @@ proptest! {
         prop_assert!((scores.kde_nll.unwrap() + highest).abs() < 1e-9);
         prop_assert!(scores.amd.unwrap() < 1e-9);
         prop_assert!((scores.amv.unwrap() - 1e-4).abs() < 1e-12);
-        prop_assert_eq!(scores.diversity.unwrap(), 0.0);
-        prop_assert_eq!(scores.end_diversity.unwrap(), 0.0);
+        let diversity = (scores.diversity, scores.end_diversity);
+        prop_assert_eq!(diversity, (Some(0.0), Some(0.0)));
     }
 
     #[test]
