@@ -11,7 +11,7 @@ use crate::{
         expected::{expected, most_likely_ade, most_likely_fde},
         goal::goal_fde,
         kde::kde_nll,
-        miss::{MISS_DISTANCE, WIDER_MISS_DISTANCES, is_miss},
+        miss::{MISS_DISTANCES, is_miss},
         true_neighbour_collision::collides_with_truth,
     },
 };
@@ -26,9 +26,8 @@ pub(crate) struct WalkerScores {
     pub(crate) expected_fde: f64,
     pub(crate) most_likely_ade: f64,
     pub(crate) most_likely_fde: f64,
-    pub(crate) missed: bool,
-    /// By 1 m and by 2 m.
-    pub(crate) missed_widely: [bool; 2],
+    /// By 0.5 m, 1 m and 2 m.
+    pub(crate) missed: [bool; 3],
     pub(crate) collides: bool,
     pub(crate) truly_collides: bool,
     pub(crate) collides_with_truth: bool,
@@ -56,8 +55,8 @@ impl WalkerScores {
                 expected_fde: expected(forecast, i, errors.fde(i)),
                 most_likely_ade: most_likely_ade(forecast, errors, i),
                 most_likely_fde: most_likely_fde(forecast, errors, i),
-                missed: is_miss(errors, i, MISS_DISTANCE),
-                missed_widely: WIDER_MISS_DISTANCES.map(|far| is_miss(errors, i, far)),
+
+                missed: MISS_DISTANCES.map(|far| is_miss(errors, i, far)),
                 collides: collides_forecast[i],
                 truly_collides: collides_truly[i],
                 collides_with_truth: collides_with_truth[i],

@@ -7,8 +7,9 @@
 
 use ddl_data::{Convention, Dataset, WindowRule, locate};
 use ddl_eval::{
-    Conditions, Forecaster, Protocol, Report, ResultRow,
-    baseline::{self, ConstantVelocity, StraightLine, TrueEnd},
+    Category, Conditions, Forecaster, Protocol, Report, ResultRow,
+    baseline::{self, ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine, TrueEnd},
+    category::{Interaction, TrajectoryType},
     leak, literature,
 };
 
@@ -58,7 +59,7 @@ fn assert_printed(found: f64, expected: f64, what: &str) {
 fn deterministic_baselines_agree_to_the_printed_decimals() {
     let Some(dataset) = recordings() else { return };
     let walkers = [2511, 1026, 24_254, 2324, 5900];
-    let rows: [(&str, Box<dyn Forecaster>); 3] = [
+    let rows: [(&str, Box<dyn Forecaster>); 6] = [
         (
             "constant velocity (last step)",
             Box::new(ConstantVelocity::last_step()),
@@ -67,6 +68,15 @@ fn deterministic_baselines_agree_to_the_printed_decimals() {
             "constant velocity (mean observed)",
             Box::new(ConstantVelocity::mean_observed()),
         ),
+        (
+            "constant acceleration",
+            Box::new(ConstantAcceleration::unbounded()),
+        ),
+        (
+            "constant acceleration (bounded)",
+            Box::new(ConstantAcceleration::bounded()),
+        ),
+        ("social force", Box::new(SocialForce)),
         (
             "straight line to the TRUE end",
             Box::new(StraightLine::to(TrueEnd)),
@@ -95,6 +105,40 @@ fn deterministic_baselines_agree_to_the_printed_decimals() {
                 &format!("{name}, {fold}, FDE"),
             );
         }
+    }
+}
+
+/// Walkers of each type, I to IV, and of each sub-kind of III, counted with numpy from the definitions in
+/// the docstrings, angles by arctan2 and the filter with whole matrices.
+#[test]
+fn walkers_are_of_the_types_counted_independently() {
+    let Some(dataset) = recordings() else { return };
+    let counted = [
+        [219, 484, 781, 1027, 230, 60, 356, 235],
+        [660, 165, 112, 89, 7, 11, 71, 26],
+        [4524, 1890, 15_189, 2651, 2584, 4569, 7127, 4442],
+        [132, 431, 861, 900, 144, 138, 537, 135],
+        [2767, 432, 1751, 950, 297, 301, 1048, 422],
+    ];
+    for (fold, expected) in literature::FOLDS.iter().zip(counted) {
+        let windows = dataset
+            .fold(fold)
+            .unwrap()
+            .test_windows(WindowRule::Published);
+        let row = ResultRow::measure(
+            conditions(Protocol::Single, fold),
+            &ConstantVelocity::last_step(),
+            &windows,
+        );
+        let categories = row.unwrap().scores.categories;
+        let types = TrajectoryType::ALL.map(Category::Type);
+        let interactions = Interaction::ALL.map(Category::Interaction);
+        let count = |category| {
+            let of = categories.iter().find(|c| c.category == category);
+            of.map_or(0, |c| c.pedestrians)
+        };
+        let found: Vec<usize> = types.into_iter().chain(interactions).map(count).collect();
+        assert_eq!(found, expected, "{fold}");
     }
 }
 
@@ -156,12 +200,15 @@ fn forecasters_that_look_ahead_are_found_out() {
         .unwrap()
         .test_windows(WindowRule::Published);
     let crowded = windows.iter().max_by_key(|window| window.len()).unwrap();
-    for honest in [
-        ConstantVelocity::last_step(),
-        ConstantVelocity::mean_observed(),
-        ConstantVelocity::angular_noise(5),
-    ] {
-        assert_eq!(leak::find(&honest, crowded).unwrap(), None);
+    let honest: [Box<dyn Forecaster>; 5] = [
+        Box::new(ConstantVelocity::last_step()),
+        Box::new(ConstantVelocity::mean_observed()),
+        Box::new(ConstantVelocity::angular_noise(5)),
+        Box::new(ConstantAcceleration::bounded()),
+        Box::new(SocialForce),
+    ];
+    for forecaster in &honest {
+        assert_eq!(leak::find(forecaster, crowded).unwrap(), None);
     }
     assert!(leak::find(&StraightLine::to(TrueEnd), crowded).is_err());
 }

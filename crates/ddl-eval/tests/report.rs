@@ -130,6 +130,41 @@ fn a_table_names_everything_it_must() {
     assert!(!page.contains("Table II"));
 }
 
+/// Metrics that a row lacks, or a fold of it, are left out and not counted as 0.
+#[test]
+fn the_forecast_as_a_whole_has_a_table() {
+    let mut rows = five_folds(Protocol::Fair, 1, 0.25);
+    for row in &mut rows {
+        row.scores.kde_nll = Some(-0.5);
+        row.scores.true_neighbour_collision_rate = Some(0.125);
+        row.scores.amd = Some(2.0);
+    }
+    rows[3].scores.amd = None;
+    let page = Report::new("Quick", rows).unwrap().to_markdown();
+    let header = page
+        .lines()
+        .position(|l| l.contains("KDE NLL nats"))
+        .unwrap();
+    let lines: Vec<&str> = page.lines().collect();
+    let names = cells(lines[header]);
+    let values = cells(lines[header + 2]);
+    let value = |name: &str| values[names.iter().position(|n| *n == name).unwrap()];
+    assert_eq!(value("KDE NLL nats"), "-0.500");
+    assert_eq!(value("runs into %"), "12.5");
+    assert_eq!(value("AMD"), "-");
+    assert_eq!(value("APD m"), "-");
+    assert_eq!(names.len(), values.len());
+}
+
+#[test]
+fn scores_written_before_there_were_more_metrics_still_load() {
+    let text = r#"{"pedestrians":1,"windows":1,"hypotheses":20,"min_ade":0.1,"min_fde":0.2,
+        "fde_at_min_ade":0.2,"joint_ade":0.1,"joint_fde":0.2,"miss_rate":0.0,"collision_rate":0.0,
+        "true_collision_rate":0.0,"goal_fde":null,"stability":null}"#;
+    let scores: Scores = serde_json::from_str(text).unwrap();
+    assert_eq!((scores.kde_nll, scores.categories.len()), (None, 0));
+}
+
 #[test]
 fn the_share_of_certified_rollouts_has_a_column() {
     let mut rows = five_folds(Protocol::Fair, 1, 0.25);
@@ -250,7 +285,7 @@ fn json_round_trips_and_is_checked() {
     let report = Report::new("Quick", rows).unwrap();
     let json = report.to_json().unwrap();
     assert_eq!(Report::from_json(&json).unwrap(), report);
-    let newer = json.replacen("\"format\": 1", "\"format\": 2", 1);
+    let newer = json.replacen("\"format\":1", "\"format\":2", 1);
     assert!(matches!(
         Report::from_json(&newer),
         Err(ReportError::Format { found: 2, .. })
@@ -270,7 +305,7 @@ fn files_are_written_whole_and_read_back() {
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     names.sort();
-    assert_eq!(names, ["report.json", "report.md"]);
+    assert_eq!(names, ["report.json", "report.md", "report.tex"]);
     let missing = Report::load(&folder.path().join("absent.json")).unwrap_err();
     assert!(missing.to_string().contains("absent.json"));
 }
@@ -304,7 +339,7 @@ fn differences_come_with_their_interval_and_their_p_value() {
     }
     let report = Report::new("Sure", better.into_iter().chain(worse)).unwrap();
     let page = report.to_markdown();
-    let sure = page.split("How sure").nth(1).unwrap();
+    let sure = page.split("### How sure").nth(1).unwrap();
     let cells = cells(line(sure, "| straight line "));
     assert_eq!(cells[1], "all");
     assert!(cells[2].starts_with("0.300 [0.2"), "{cells:?}");

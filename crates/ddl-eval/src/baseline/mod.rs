@@ -1,11 +1,15 @@
 //! Forecasters without a model: what every result must be read against.
 
+mod constant_acceleration;
 mod constant_velocity;
+mod social_force;
 mod straight_line;
 
 use ddl_data::Window;
 
+pub use constant_acceleration::ConstantAcceleration;
 pub use constant_velocity::ConstantVelocity;
+pub use social_force::SocialForce;
 pub use straight_line::{GoalSource, StraightLine, TrueEnd, WeightedGoals};
 
 use crate::{Conditions, Forecaster, MeasureError, Protocol, ResultRow};
@@ -13,8 +17,8 @@ use crate::{Conditions, Forecaster, MeasureError, Protocol, ResultRow};
 /// Measures the baselines that a protocol admits on the windows of one fold.
 ///
 /// These are constant velocity (last step, mean observed), with angular noise where the protocol
-/// allows several hypotheses, and the straight line to the TRUE end where it shows the future. Of the
-/// `conditions` the fold, convention, window rule, protocol, test subset and commit are kept.
+/// allows several hypotheses, constant acceleration (bounded), the social force model, and the straight
+/// line to the TRUE end where the protocol shows the future. Of the `conditions` the fold, convention, window rule, protocol, test subset and commit are kept.
 ///
 /// # Errors
 /// The windows cannot be scored.
@@ -47,6 +51,8 @@ pub fn measure(
             Some(noise_seed),
         )?);
     }
+    rows.push(row(&ConstantAcceleration::bounded(), None)?);
+    rows.push(row(&SocialForce, None)?);
     if conditions.protocol.shows_future() {
         rows.push(row(&StraightLine::to(TrueEnd), None)?);
     }

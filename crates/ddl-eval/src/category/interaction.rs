@@ -25,7 +25,7 @@ const GROUP_DEVIATION: f64 = 0.2;
 /// A kind of interaction of `TrajNet++`'s type III. A walker may have several.
 ///
 /// For the walker i and another j, at the forecast frames t = 9..20, with v(t) = p(t) - p(t - 3),
-/// d(t) = |p_j(t) - p_i(t)|, the bearing of p_j(t) - p_i(t) from `v_i(t)`, and the course of `v_j(t)` from
+/// d(t) = |`p_j(t)` - `p_i(t)`|, the bearing of `p_j(t)` - `p_i(t)` from `v_i(t)`, and the course of `v_j(t)` from
 /// `v_i(t)`:
 ///
 /// ```text

@@ -36,11 +36,10 @@ impl CategoryScores {
             .map(|category| (category, Vec::new()))
             .collect();
         for walker in walkers {
-            for category in &walker.categories {
-                let group = groups.iter_mut().find(|(known, _)| known == category);
-                group
-                    .into_iter()
-                    .for_each(|(_, members)| members.push(walker));
+            for (category, members) in &mut groups {
+                if walker.categories.contains(category) {
+                    members.push(walker);
+                }
             }
         }
         groups.retain(|(_, members)| !members.is_empty());
@@ -61,7 +60,7 @@ impl CategoryScores {
             min_ade: mean(|w| w.min_ade),
             min_fde: mean(|w| w.min_fde),
             fde_at_min_ade: mean(|w| w.fde_at_min_ade),
-            miss_rate: share(|w| w.missed),
+            miss_rate: share(|w| w.missed[0]),
             most_likely_ade: mean(|w| w.most_likely_ade),
             most_likely_fde: mean(|w| w.most_likely_fde),
             collision_rate: share(|w| w.collides),

@@ -5,7 +5,7 @@ use super::MeasuredRow;
 /// Baselines on all test windows of the `star` convention, cut by the published rule.
 ///
 /// The rows on goals were measured with the published estimator (100 experts, 20 centres, gamma = 1).
-pub const MEASURED: [MeasuredRow; 9] = [
+pub const MEASURED: [MeasuredRow; 12] = [
     MeasuredRow {
         method: "constant velocity (last step)",
         remark: "",
@@ -23,6 +23,24 @@ pub const MEASURED: [MeasuredRow; 9] = [
         remark: "",
         ade: Some([0.492, 0.252, 0.388, 0.304, 0.226]),
         fde: [0.924, 0.473, 0.817, 0.619, 0.476],
+    },
+    MeasuredRow {
+        method: "constant acceleration",
+        remark: "",
+        ade: Some([3.924, 1.968, 1.068, 0.892, 0.642]),
+        fde: [9.777, 4.900, 2.668, 2.215, 1.617],
+    },
+    MeasuredRow {
+        method: "constant acceleration (bounded)",
+        remark: "",
+        ade: Some([1.928, 0.763, 0.648, 0.644, 0.446]),
+        fde: [4.027, 1.556, 1.436, 1.475, 1.029],
+    },
+    MeasuredRow {
+        method: "social force",
+        remark: "",
+        ade: Some([0.724, 0.339, 0.695, 0.514, 0.401]),
+        fde: [1.379, 0.627, 1.380, 1.061, 0.825],
     },
     MeasuredRow {
         method: "straight line to the TRUE end",

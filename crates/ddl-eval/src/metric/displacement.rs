@@ -10,7 +10,7 @@
 //!
 //! The two minima are independent, which is how most of the literature reads "best of 20"; STAR's and
 //! DDL's code prints `FDE@minADE`, which is never smaller than `minFDE`. `ADE@minFDE` is that of works
-//! which choose by the end (PECNet, Y-Net); it is never smaller than `minADE`.
+//! which choose by the end (`PECNet`, Y-Net); it is never smaller than `minADE`.
 //!
 //! # References
 //! Pellegrini et al., "You'll never walk alone", ICCV 2009 (displacement errors); Gupta et al.,

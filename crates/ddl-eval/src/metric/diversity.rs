@@ -10,7 +10,7 @@
 //! whether a best of K has K chances or one. A forecast of one hypothesis has none.
 //!
 //! # References
-//! Yuan and Kitani, "DLow: Diversifying Latent Flows for Diverse Human Motion Prediction", ECCV 2020
+//! Yuan and Kitani, "`DLow`: Diversifying Latent Flows for Diverse Human Motion Prediction", ECCV 2020
 //! (APD, there over whole poses).
 
 use crate::Scene;

@@ -1,6 +1,6 @@
 //! Mean, covariance and principal axes of weighted points in the plane.
 //!
-//! For points x_k with weights w_k that sum to 1:
+//! For points `x_k` with weights `w_k` that sum to 1:
 //!
 //! ```text
 //! m = sum_k w_k x_k                         metres

@@ -1,6 +1,6 @@
 //! The likelihood of the truth under a kernel density of the hypotheses.
 //!
-//! For one pedestrian and one frame with the hypotheses x_k of weight w_k (sum 1) and the true
+//! For one pedestrian and one frame with the hypotheses `x_k` of weight `w_k` (sum 1) and the true
 //! position p, in d = 2 dimensions:
 //!
 //! ```text
@@ -115,7 +115,7 @@ mod tests {
     use super::*;
     use crate::metric::fixture::{forecast, walk, window};
 
-    /// Points at (+-1, +-1) with weights 1/4: covariance 4/3 of the identity, n_eff = 4, so that
+    /// Points at (+-1, +-1) with weights 1/4: covariance 4/3 of the identity, `n_eff` = 4, so that
     /// H = 4^(-1/3) 4/3 of the identity; the centre is sqrt(2) from each.
     #[test]
     fn a_square_of_points_by_hand() {

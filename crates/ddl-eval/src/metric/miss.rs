@@ -11,8 +11,8 @@ use super::displacement::DisplacementErrors;
 
 /// The distance beyond which an end counts as missed, metres.
 pub const MISS_DISTANCE: f64 = 0.5;
-/// Distances of other works, metres.
-pub const WIDER_MISS_DISTANCES: [f64; 2] = [1.0, 2.0];
+/// It, and the distances of other works; metres.
+pub const MISS_DISTANCES: [f64; 3] = [MISS_DISTANCE, 1.0, 2.0];
 
 /// Whether every hypothesis of pedestrian `i` ends farther than `threshold` metres from the truth.
 ///

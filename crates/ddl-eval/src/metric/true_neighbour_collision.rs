@@ -2,7 +2,7 @@
 //!
 //! As in [`collision`](super::collision), pedestrians are discs of radius r = 0.2 m, and tracks are
 //! straight from frame to frame, with the exact minimum over time. Pedestrian i follows its most likely
-//! hypothesis x_i, everybody else j its TRUE future p_j:
+//! hypothesis `x_i`, everybody else j its TRUE future `p_j`:
 //!
 //! ```text
 //! i collides when min over j and t in [1, 12] of |x_i(t) - p_j(t)| < 2 r = 0.4 m

@@ -10,7 +10,8 @@ use crate::{
     document::{Part, Table},
 };
 
-const NOTE: &str = "By category of walker, minADE/minFDE in metres, mean over the walkers of all folds that the forecaster was \
+/// What the categories are.
+pub(super) const LEGEND: &str = "By category of walker: minADE/minFDE in metres, mean over the walkers of all folds that the forecaster was \
     scored on (not over the folds: some hold few walkers of a kind). First the walker's own motion, then the types of TrajNet++ \
     (static, linear, interacting, non-interacting), then the kinds of interaction, of which a walker may have several. Categories \
     are told with the true future, after the forecasts are made.";
@@ -51,7 +52,7 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
         table.row(start.into_iter().chain(cells));
     }
     vec![
-        Part::Paragraph(NOTE.to_owned()),
+        Part::subheading("By category of walker"),
         Part::Table(table.captioned(format!(
             "minADE/minFDE in metres by category of walker, pooled over folds. {}",
             group.conditions_in_words()

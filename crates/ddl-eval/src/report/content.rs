@@ -3,9 +3,9 @@
 use ddl_data::Convention;
 
 use super::{
-    ablation, across_protocols,
+    ablation, across_protocols, categories, further,
     group::{Group, groups},
-    published, section,
+    published, section, significance, whole_forecast,
 };
 use crate::{
     ResultRow,
@@ -15,6 +15,19 @@ use crate::{
 pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
     let groups = groups(rows);
     let mut parts: Vec<Part> = groups.iter().flat_map(section::parts).collect();
+    if !groups.is_empty() {
+        parts.push(Part::heading("How to read the tables"));
+        parts.push(Part::List(
+            [
+                further::LEGEND,
+                whole_forecast::LEGEND,
+                significance::LEGEND,
+                categories::LEGEND,
+            ]
+            .map(str::to_owned)
+            .to_vec(),
+        ));
+    }
     parts.extend(across_protocols::parts(&groups));
     parts.extend(ablation::parts(&groups));
     parts.extend(published::parts(rows));

@@ -3,8 +3,8 @@
 use super::{group::Group, section::NOTHING};
 use crate::{Scores, document::Table};
 
-/// A metric of the second table: its column, its decimals, and where it is found in the scores.
-type Column = (&'static str, usize, fn(&Scores) -> Option<f64>);
+/// A metric of the tables after the first: its column, its decimals, and where it is found in the scores.
+pub(super) type Column = (&'static str, usize, fn(&Scores) -> Option<f64>);
 
 pub(super) const LEGEND: &str = "Further metrics, mean over the folds named. FDE@minADE: FDE of the \
     hypothesis of least ADE; JADE, JFDE: one hypothesis index for the whole scene; missed: every \
@@ -15,7 +15,7 @@ pub(super) const LEGEND: &str = "Further metrics, mean over the folds named. FDE
     turn: largest angle between a step and the goal direction; reverse: rollouts that turn by more \
     than 90 degrees; K: hypotheses a pedestrian.";
 
-const COLUMNS: [Column; 13] = [
+pub(super) const COLUMNS: [Column; 13] = [
     ("FDE@minADE m", 3, |s| Some(s.fde_at_min_ade)),
     ("JADE m", 3, |s| Some(s.joint_ade)),
     ("JFDE m", 3, |s| Some(s.joint_fde)),
@@ -37,11 +37,12 @@ const COLUMNS: [Column; 13] = [
     ("K", 0, |s| Some(s.hypotheses as f64)),
 ];
 
-pub(super) fn table(group: &Group<'_>) -> Table {
+/// One line a forecaster, one column a metric, mean over the folds that it has.
+pub(super) fn table(group: &Group<'_>, metrics: &[Column]) -> Table {
     let folds = group.folds();
     let columns = ["forecaster", "folds"]
         .into_iter()
-        .chain(COLUMNS.map(|(name, ..)| name));
+        .chain(metrics.iter().map(|(name, ..)| *name));
     let mut table = Table::new(columns).text_column("folds");
     for (line, label) in group.lines.iter().zip(group.labels()) {
         let present = line.present(&folds);
@@ -50,7 +51,7 @@ pub(super) fn table(group: &Group<'_>) -> Table {
         } else {
             present.join(", ")
         };
-        let cells = COLUMNS.iter().map(|&(_, decimals, of)| {
+        let cells = metrics.iter().map(|&(_, decimals, of)| {
             // A metric that a fold lacks is NaN there, and so is its mean.
             let spread = line.over_folds(&present, |s| of(s).unwrap_or(f64::NAN));
             let text = spread.map(|spread| format!("{spread:.decimals$}"));

@@ -16,6 +16,7 @@ mod published;
 mod section;
 mod significance;
 mod spread;
+mod whole_forecast;
 
 /// Version of the JSON file.
 const FORMAT: u32 = 1;

@@ -5,7 +5,7 @@ use ddl_data::WindowRule;
 use super::{
     categories, further,
     group::{Group, Line},
-    significance,
+    significance, whole_forecast,
 };
 use crate::{
     Conditions,
@@ -33,6 +33,7 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
              pedestrians; `mean`: plain mean of the folds, given when all are there; ±: standard \
              deviation over seeds."
                 .to_owned(),
+            "What the other columns are: see \"How to read the tables\", below.".to_owned(),
         ]),
     ];
     if let Some(warning) = group.protocol.warning() {
@@ -40,11 +41,13 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
     }
     parts.push(Part::Table(headline(group).captioned(caption(group))));
     parts.push(Part::List(conditions(group)));
-    parts.push(Part::Paragraph(further::LEGEND.to_owned()));
-    parts.push(Part::Table(further::table(group).captioned(format!(
-        "Further metrics. {}",
-        group.conditions_in_words()
-    ))));
+    let metrics = |name: &str, columns: &[further::Column]| {
+        let caption = format!("{name}. {}", group.conditions_in_words());
+        let table = further::table(group, columns).captioned(caption);
+        [Part::subheading(name), Part::Table(table)]
+    };
+    parts.extend(metrics("Further metrics", &further::COLUMNS));
+    parts.extend(metrics("The forecast as a whole", &whole_forecast::COLUMNS));
     parts.extend(significance::parts(group));
     parts.extend(categories::parts(group));
     parts

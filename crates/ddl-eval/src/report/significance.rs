@@ -6,10 +6,15 @@ use super::{
 };
 use crate::{
     document::{Part, Table},
-    significance::{
-        BlockErrors, BlockMetric, Interval, RESAMPLES, mean_interval, paired_difference,
-    },
+    significance::{BlockErrors, BlockMetric, Interval, mean_interval, paired_difference},
 };
+
+/// What the intervals and p-values are.
+pub(super) const LEGEND: &str = "How sure the means are: in brackets the 95 % interval over 10,000 resamples of 20 s of recording \
+    (windows overlap and are no independent samples); p: how often chance alone would make as large a difference from the first \
+    trained forecaster, by changing the sign of the difference of every 20 s at random; not corrected for the number of \
+    comparisons. Seeds are averaged first. The intervals speak of other moments in the same places, not of other places: for that, \
+    look at how much the folds differ.";
 
 /// Intervals of every line that has errors by block, and its differences from the first trained one.
 pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
@@ -27,12 +32,6 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
     else {
         return Vec::new();
     };
-    let note = format!(
-        "How sure these means are: in brackets the 95 % interval over {RESAMPLES} resamples of 20 s of recording (windows overlap \
-         and are no independent samples); p: how often chance alone would make as large a difference from {name}, by changing \
-         the sign of the difference of every 20 s at random, not corrected for the number of comparisons. Seeds are averaged first. \
-         The intervals speak of other moments in the same places, not of other places: for that, look at how much the folds differ."
-    );
     let mut table = Table::new([
         "forecaster".to_owned(),
         "folds".to_owned(),
@@ -56,7 +55,7 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
         table.row(cells);
     }
     vec![
-        Part::Paragraph(note),
+        Part::subheading("How sure the means are"),
         Part::Table(table.captioned(format!(
             "95 % intervals and paired differences. {}",
             group.conditions_in_words()

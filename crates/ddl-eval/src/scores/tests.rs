@@ -67,3 +67,35 @@ fn what_does_not_belong_together_is_refused() {
         EvaluationError::NoFuture { .. }
     ));
 }
+
+/// Sums are taken in the order of the windows, whoever measured them.
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    let steps = [[0.3, 0.1], [-0.2, 0.37], [0.41, -0.13]];
+    let windows: Vec<Window> = (0..40)
+        .map(|w| {
+            let starts = steps.map(|s| [s[0] * f64::from(w), 1.7 * s[1]]);
+            window(&starts, &steps)
+        })
+        .collect();
+    let forecasts: Vec<Forecast> = windows
+        .iter()
+        .map(|window| {
+            let walks = (0..6).map(|h| walk(window.observed(h / 2)[7], [0.1 * h as f64, 0.3]));
+            forecast(3, &walks.collect::<Vec<_>>())
+        })
+        .collect();
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let pool = pool.build().unwrap();
+        pool.install(|| Scores::evaluate(&windows, &forecasts).unwrap())
+    };
+    let one = on(1);
+    assert!(one.amd.is_some() && one.categories.len() > 1);
+    for threads in [2, 5] {
+        let several = on(threads);
+        assert_eq!(several, one);
+        let text = |scores| serde_json::to_string(scores).unwrap();
+        assert_eq!(text(&several), text(&one));
+    }
+}

@@ -71,6 +71,24 @@ def kalman(observed):
     return sees @ state
 
 
+def hand_example():
+    # Offsets from the truth of the two hypotheses of A, B and C at the frames 1 to 12, and their weights.
+    frames = range(1, 13)
+    a = [([0.24, 0.32], [0.06 * t, 0.08 * t]) for t in frames]
+    b = [([0.15 * t, -0.2 * t], [0.9, -1.2]) for t in frames]
+    c = [([0.72, 0.96], [1.28, -0.96] if t < 12 else [0.0, 0.0]) for t in frames]
+    nll, distances, covariances = [], [], []
+    for offsets, weights in ((a, [0.75, 0.25]), (b, [0.2, 0.8]), (c, [0.6, 0.4])):
+        for pair in offsets:
+            nll.append(-max(log_density(pair, weights, [0.0, 0.0]), -20.0))
+            distance, covariance = spread(pair, weights, [0.0, 0.0])
+            distances.append(distance)
+            covariances.append(covariance)
+    amv = np.linalg.eigvalsh(np.mean(covariances, axis=0)).max()
+    return np.mean(nll), np.mean(distances), amv
+
+
 json.dump(dict(cases=list(cases())), open("distribution.json", "w"), indent=1)
 walk = [[0.0, 0.0], [0.4, 0.1], [0.9, 0.1], [1.3, 0.3], [1.6, 0.6], [2.1, 0.7], [2.4, 1.1], [2.9, 1.2]]
 print("Kalman:", *(repr(float(c)) for c in kalman(walk)))
+print("hand example, KDE NLL, AMD, AMV:", *(repr(float(c)) for c in hand_example()))

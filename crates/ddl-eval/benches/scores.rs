@@ -1,0 +1,88 @@
+//! Time to score a fold as large as univ: 24,254 walkers with 20 hypotheses each, every metric and category.
+#![allow(
+    missing_docs,
+    reason = "criterion's macro makes a function without them"
+)]
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use ddl_data::{PedestrianId, Position, WINDOW, Window};
+use ddl_eval::{
+    Forecast, Forecaster, Scores,
+    baseline::{ConstantVelocity, SocialForce},
+};
+
+/// Walkers of univ under the published rule.
+const WALKERS: usize = 24_254;
+/// Walkers of a window.
+const CROWD: usize = 25;
+/// Side of the square they begin in, m: as dense as univ.
+const SIDE: f64 = 14.0;
+
+/// Numbers in [0, 1).
+fn numbers(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// Walkers of up to 1.5 m/s who sway and turn; one in five stands.
+fn windows() -> Vec<Window> {
+    let mut next = numbers(1);
+    let mut track = || -> Vec<Position> {
+        let mut here = [SIDE * next(), SIDE * next()];
+        let mut heading = std::f64::consts::TAU * next();
+        let step = if next() < 0.2 {
+            0.0
+        } else {
+            0.2 + 0.4 * next()
+        };
+        let turn = 0.1 * (next() - 0.5);
+        (0..WINDOW)
+            .map(|_| {
+                heading += turn;
+                let sway = [0.05 * (next() - 0.5), 0.05 * (next() - 0.5)];
+                let (sin, cos) = heading.sin_cos();
+                here = [
+                    here[0] + step * cos + sway[0],
+                    here[1] + step * sin + sway[1],
+                ];
+                here
+            })
+            .collect()
+    };
+    let mut left = WALKERS;
+    let mut windows = Vec::new();
+    while left > 0 {
+        let n = left.min(CROWD);
+        let ids = (0..).take(n).map(PedestrianId).collect();
+        let tracks = (0..n).map(|_| track()).collect();
+        let frame = 10 * windows.len() as i64;
+        windows.push(Window::new("crowd", frame, 10, ids, tracks).expect("finite"));
+        left -= n;
+    }
+    windows
+}
+
+fn score(criterion: &mut Criterion) {
+    let windows = windows();
+    let noisy = ConstantVelocity::angular_noise(1);
+    let forecasts: Vec<Forecast> = noisy.forecast_all(&windows).expect("a forecast");
+    let mut group = criterion.benchmark_group("24,254 walkers");
+    group.sample_size(10);
+    group.bench_function("every metric of 20 hypotheses", |b| {
+        b.iter(|| Scores::evaluate(black_box(&windows), black_box(&forecasts)));
+    });
+    group.bench_function("social force forecasts", |b| {
+        b.iter(|| SocialForce.forecast_all(black_box(&windows)));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, score);
+criterion_main!(benches);

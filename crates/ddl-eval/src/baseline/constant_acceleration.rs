@@ -1,0 +1,167 @@
+//! Everybody goes on speeding up, slowing down or turning as in the last two steps.
+
+use ddl_data::{HORIZON, OBSERVED, Position, Window};
+
+use crate::{Forecast, Forecaster, error::ForecastError};
+
+/// Constant acceleration: `p(8 + t) = p(8) + t v + t (t + 1)/2 a`, with `v = p(8) - p(7)` in metres a frame
+/// and `a = v - (p(7) - p(6))` in metres a frame squared.
+///
+/// The definition of the literature, of the last three positions. Noise of an annotated position counts
+/// 90-fold by the twelfth frame, which is why constant velocity is far better:
+/// [`unbounded`](Self::unbounded) is there to say so. [`bounded`](Self::bounded) lets the same
+/// acceleration act only as long as a walker would: nobody gets faster than the fastest of its 7 observed
+/// steps, and who would turn back stands still from then on.
+///
+/// # References
+/// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion prediction",
+/// RA-L 2020 (baseline of the last three positions).
+///
+/// # Examples
+/// ```
+/// use ddl_data::{PedestrianId, Window};
+/// use ddl_eval::{Forecaster, baseline::ConstantAcceleration};
+/// // Steps of 0.1, 0.2, ... 0.7 m: the next are 0.8 and 0.9 m.
+/// let speeds_up = (0..8).map(|t| [0.05 * f64::from(t * (t + 1)), 1.0]).collect();
+/// let window = Window::new("corridor", 0, 10, vec![PedestrianId(7)], vec![speeds_up])?;
+/// let forecast = ConstantAcceleration::unbounded().forecast(&window)?;
+/// assert!((forecast.hypothesis(0, 0)[1][0] - 4.5).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ConstantAcceleration {
+    bounded: bool,
+}
+
+impl ConstantAcceleration {
+    /// As defined, whatever comes out.
+    #[must_use]
+    pub fn unbounded() -> Self {
+        Self { bounded: false }
+    }
+
+    /// No faster than observed, and no turning back.
+    #[must_use]
+    pub fn bounded() -> Self {
+        Self { bounded: true }
+    }
+}
+
+impl Forecaster for ConstantAcceleration {
+    fn name(&self) -> String {
+        if self.bounded {
+            "constant acceleration (bounded)".to_owned()
+        } else {
+            "constant acceleration".to_owned()
+        }
+    }
+
+    fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
+        let mut positions = Vec::with_capacity(window.len() * HORIZON);
+        for i in 0..window.len() {
+            let observed = window.observed(i);
+            let steps: Vec<Position> = observed.windows(2).map(|p| minus(p[1], p[0])).collect();
+            let last = steps[OBSERVED - 2];
+            let acceleration = minus(last, steps[OBSERVED - 3]);
+            let fastest = steps.iter().map(|s| length(*s)).fold(0.0, f64::max);
+            let (mut here, mut step) = (observed[OBSERVED - 1], last);
+            let mut stands = false;
+            for _ in 0..HORIZON {
+                step = [step[0] + acceleration[0], step[1] + acceleration[1]];
+                if self.bounded {
+                    stands |= step[0] * last[0] + step[1] * last[1] < 0.0;
+                    let speed = length(step);
+                    if stands {
+                        step = [0.0, 0.0];
+                    } else if speed > fastest {
+                        step = step.map(|c| c * fastest / speed);
+                    }
+                }
+                here = [here[0] + step[0], here[1] + step[1]];
+                positions.push(here);
+            }
+        }
+        Ok(Forecast::equally_likely(window.len(), 1, positions)?)
+    }
+}
+
+fn minus(a: Position, b: Position) -> Position {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+fn length(v: Position) -> f64 {
+    v[0].hypot(v[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+    use ddl_data::PedestrianId;
+
+    use super::*;
+
+    /// 8 positions whose steps are given, from the origin.
+    fn window(steps: [Position; 7]) -> Window {
+        let mut track = vec![[0.0, 0.0]];
+        for (t, step) in steps.into_iter().enumerate() {
+            track.push([track[t][0] + step[0], track[t][1] + step[1]]);
+        }
+        Window::new("corridor", 0, 10, vec![PedestrianId(1)], vec![track]).unwrap()
+    }
+
+    fn end(forecaster: ConstantAcceleration, steps: [Position; 7]) -> Position {
+        forecaster
+            .forecast(&window(steps))
+            .unwrap()
+            .hypothesis(0, 0)[11]
+    }
+
+    /// From (7, 0) with v = (1, 0) and a = (0, 0.1): 12 m along x, 0.1 * 12 * 13 / 2 = 7.8 m along y.
+    #[test]
+    fn the_last_change_of_velocity_goes_on() {
+        let mut steps = [[1.0, 0.0]; 7];
+        steps[5] = [1.0, -0.1];
+        let found = end(ConstantAcceleration::unbounded(), steps);
+        assert_relative_eq!(found[0], 19.0, epsilon = 1e-9);
+        assert_relative_eq!(found[1], -0.1 + 7.8, epsilon = 1e-9);
+    }
+
+    /// Steps of 1 m, the last of 0.75 m: 0.5, 0.25 and 0 m follow. Unbounded, the walker turns back:
+    /// 12 * 0.75 - 0.25 * 78 = -10.5 m.
+    #[test]
+    fn who_brakes_comes_to_a_stand() {
+        let mut steps = [[1.0, 0.0]; 7];
+        steps[6] = [0.75, 0.0];
+        assert_relative_eq!(
+            end(ConstantAcceleration::bounded(), steps)[0],
+            7.5,
+            epsilon = 1e-12
+        );
+        let back = end(ConstantAcceleration::unbounded(), steps)[0];
+        assert_relative_eq!(back, 6.75 - 10.5, epsilon = 1e-12);
+    }
+
+    /// Steps of 0.5 m, once 0.6 m and the last 0.55 m: 0.6 m a frame is as fast as it gets.
+    #[test]
+    fn nobody_gets_faster_than_seen() {
+        let mut steps = [[0.5, 0.0]; 7];
+        steps[2] = [0.6, 0.0];
+        steps[6] = [0.55, 0.0];
+        let found = end(ConstantAcceleration::bounded(), steps)[0];
+        assert_relative_eq!(found, 3.65 + 12.0 * 0.6, epsilon = 1e-9);
+    }
+
+    #[test]
+    fn who_walks_evenly_or_stands_is_forecast_as_by_constant_velocity() {
+        for step in [[0.5, -0.25], [0.0, 0.0]] {
+            for forecaster in [
+                ConstantAcceleration::bounded(),
+                ConstantAcceleration::unbounded(),
+            ] {
+                let found = end(forecaster, [step; 7]);
+                assert_relative_eq!(found[0], 19.0 * step[0], epsilon = 1e-12);
+                assert_relative_eq!(found[1], 19.0 * step[1], epsilon = 1e-12);
+            }
+        }
+    }
+}

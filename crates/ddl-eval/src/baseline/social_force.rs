@@ -1,0 +1,309 @@
+//! Everybody would go on as before, and keeps away from the others.
+
+use ddl_data::{HORIZON, OBSERVED, Position, TIME_STEP, Window};
+use rayon::prelude::*;
+
+use crate::{Forecast, Forecaster, error::ForecastError};
+
+/// Time in which a walker returns to the velocity it desires: tau, s.
+const RELAXATION: f64 = 0.5;
+/// Strength of the repulsive potential: V0, m^2/s^2.
+const STRENGTH: f64 = 2.1;
+/// Its reach: sigma, m.
+const REACH: f64 = 0.3;
+/// How far others are seen to look ahead: the step of the ellipses, s.
+const FORESIGHT: f64 = 2.0;
+/// Half the angle of sight: phi, degrees.
+const HALF_SIGHT: f64 = 100.0;
+/// What somebody out of sight counts: c.
+const OUT_OF_SIGHT: f64 = 0.5;
+/// Nobody is faster than this many times the desired speed.
+const TOP_SPEED: f64 = 1.3;
+/// Integration steps in one frame of 0.4 s.
+const SUBSTEPS: usize = 8;
+/// Beyond this semi-minor axis a push is below 3e-6 m/s^2, m.
+const NEGLIGIBLE: f64 = 15.0 * REACH;
+
+/// The social force model of Helbing and Molnar, for all walkers of a window together.
+///
+/// Each desires the velocity of its last observed step, `v0 = (p(8) - p(7)) / 0.4 s` along `e`, and is
+/// pushed away by every other one, b, whose next step of `s = 2 s * |v_b|` along `e_b` it sees coming:
+///
+/// ```text
+/// dv/dt = (v0 - v) / tau - sum_b w grad V(r)              r = x - x_b, m; tau = 0.5 s
+/// V = V0 exp(-B / sigma)                                  V0 = 2.1 m^2/s^2, sigma = 0.3 m
+/// 2 B = sqrt((|r| + |r - s e_b|)^2 - s^2)                 semi-minor axis of an ellipse, m
+/// w = 1 within 100 degrees of e, else 0.5;  |v| <= 1.3 |v0|
+/// ```
+///
+/// Integrated by Euler in steps of 0.05 s, first the velocity, then the position. All parameters are
+/// those of the paper and none is tuned. Left out are its walls, which the recordings do not have, its
+/// fluctuations, so that the forecast is one and the same, and its attractions. A walker alone goes on at
+/// constant velocity; who stands keeps standing. One hypothesis.
+///
+/// # References
+/// Helbing and Molnar, "Social force model for pedestrian dynamics", Physical Review E 51 (1995).
+///
+/// # Examples
+/// ```
+/// use ddl_data::{PedestrianId, Window};
+/// use ddl_eval::{Forecaster, baseline::SocialForce};
+/// // Two meet, one a little to the side of the other: they pass, and each gives way to its side.
+/// let east = (0..8).map(|t| [0.5 * f64::from(t), 0.1]).collect();
+/// let west = (0..8).map(|t| [12.0 - 0.5 * f64::from(t), -0.1]).collect();
+/// let window = Window::new("corridor", 0, 10, vec![PedestrianId(1), PedestrianId(2)], vec![east, west])?;
+/// let forecast = SocialForce.forecast(&window)?;
+/// assert!(forecast.hypothesis(0, 0)[11][1] > 0.2 && forecast.hypothesis(1, 0)[11][1] < -0.2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SocialForce;
+
+impl Forecaster for SocialForce {
+    fn name(&self) -> String {
+        "social force".to_owned()
+    }
+
+    fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
+        let n = window.len();
+        let mut walkers: Vec<Walker> = (0..n).map(|i| Walker::of(window.observed(i))).collect();
+        let mut positions = vec![[0.0, 0.0]; n * HORIZON];
+        let mut forces = vec![[0.0, 0.0]; n];
+        for t in 0..HORIZON {
+            for _ in 0..SUBSTEPS {
+                for (i, force) in forces.iter_mut().enumerate() {
+                    *force = walkers[i].force(i, &walkers);
+                }
+                for (walker, force) in walkers.iter_mut().zip(&forces) {
+                    walker.advance(*force);
+                }
+            }
+            for (i, walker) in walkers.iter().enumerate() {
+                positions[i * HORIZON + t] = walker.position;
+            }
+        }
+        Ok(Forecast::equally_likely(n, 1, positions)?)
+    }
+
+    fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
+        windows
+            .par_iter()
+            .map(|window| self.forecast(window))
+            .collect()
+    }
+}
+
+struct Walker {
+    position: Position,
+    velocity: Position,
+    desired: Position,
+    /// Direction of the desired velocity; zero for who stands.
+    direction: Position,
+    top_speed: f64,
+    /// Length of the step that others see coming, m.
+    stride: f64,
+}
+
+impl Walker {
+    fn of(observed: &[Position]) -> Self {
+        let (before, position) = (observed[OBSERVED - 2], observed[OBSERVED - 1]);
+        let desired = [0, 1].map(|c| (position[c] - before[c]) / TIME_STEP);
+        let speed = length(desired);
+        let direction = if speed > 0.0 {
+            desired.map(|c| c / speed)
+        } else {
+            [0.0, 0.0]
+        };
+        Self {
+            position,
+            velocity: desired,
+            desired,
+            direction,
+            top_speed: TOP_SPEED * speed,
+            stride: FORESIGHT * speed,
+        }
+    }
+
+    /// Acceleration of walker `i`, which this is, among all, m/s^2.
+    fn force(&self, i: usize, walkers: &[Walker]) -> Position {
+        let mut sum = [0, 1].map(|c| (self.desired[c] - self.velocity[c]) / RELAXATION);
+        if self.top_speed == 0.0 {
+            return sum;
+        }
+        let sight = HALF_SIGHT.to_radians().cos();
+        for (j, other) in walkers.iter().enumerate() {
+            if j == i {
+                continue;
+            }
+            let push = self.push_of(other);
+            // The other is where the push comes from.
+            let ahead = -(push[0] * self.direction[0] + push[1] * self.direction[1]);
+            let weight = if ahead > sight * length(push) {
+                1.0
+            } else {
+                OUT_OF_SIGHT
+            };
+            sum = [sum[0] + weight * push[0], sum[1] + weight * push[1]];
+        }
+        sum
+    }
+
+    /// `-grad V`, m/s^2.
+    fn push_of(&self, other: &Walker) -> Position {
+        let stride = other.stride;
+        let from = [0, 1].map(|c| self.position[c] - other.position[c]);
+        let near = length(from);
+        // |r - s e| >= |r| - s, so that B^2 >= |r| (|r| - s).
+        if near * (near - stride) > NEGLIGIBLE * NEGLIGIBLE {
+            return [0.0, 0.0];
+        }
+        let from_next = [0, 1].map(|c| from[c] - stride * other.direction[c]);
+        let far = length(from_next);
+        let around = near + far;
+        let semi_minor = 0.5 * (around * around - stride * stride).max(0.0).sqrt();
+        // On the line of its next step the push has no side.
+        if semi_minor > NEGLIGIBLE || semi_minor == 0.0 || near == 0.0 || far == 0.0 {
+            return [0.0, 0.0];
+        }
+        let slope = STRENGTH / REACH * (-semi_minor / REACH).exp() * around / (4.0 * semi_minor);
+        [0, 1].map(|c| slope * (from[c] / near + from_next[c] / far))
+    }
+
+    fn advance(&mut self, force: Position) {
+        let dt = TIME_STEP / SUBSTEPS as f64;
+        let wanted = [0, 1].map(|c| self.velocity[c] + dt * force[c]);
+        let speed = length(wanted);
+        self.velocity = if speed > self.top_speed {
+            wanted.map(|c| c * self.top_speed / speed)
+        } else {
+            wanted
+        };
+        self.stride = FORESIGHT * length(self.velocity);
+        self.position = [0, 1].map(|c| self.position[c] + dt * self.velocity[c]);
+    }
+}
+
+fn length(v: Position) -> f64 {
+    (v[0] * v[0] + v[1] * v[1]).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+    use ddl_data::PedestrianId;
+
+    use super::*;
+    use crate::{baseline::ConstantVelocity, metric::displacement::distance};
+
+    fn walkers(all: &[(Position, Position)]) -> Window {
+        let track = |&(start, step): &(Position, Position)| {
+            let at = |t| {
+                [
+                    start[0] + f64::from(t) * step[0],
+                    start[1] + f64::from(t) * step[1],
+                ]
+            };
+            (0..8).map(at).collect()
+        };
+        let ids = (0..).take(all.len()).map(PedestrianId).collect();
+        Window::new("made up", 0, 10, ids, all.iter().map(track).collect()).unwrap()
+    }
+
+    /// One stands at the origin; the other stands 0.3 m from it, so that s = 0 and B = |r| = 0.3 m: the
+    /// push is V0 / sigma exp(-1) = 7 / e m/s^2, straight away.
+    #[test]
+    fn the_push_of_who_stands_by_hand() {
+        let at = |position| Walker {
+            position,
+            velocity: [0.0, 0.0],
+            desired: [0.0, 0.0],
+            direction: [0.0, 0.0],
+            top_speed: 1.0,
+            stride: 0.0,
+        };
+        let push = at([0.18, 0.24]).push_of(&at([0.0, 0.0]));
+        let expected = 7.0 * (-1.0_f64).exp();
+        assert_relative_eq!(push[0], 0.6 * expected, epsilon = 1e-12);
+        assert_relative_eq!(push[1], 0.8 * expected, epsilon = 1e-12);
+    }
+
+    /// The push is the slope of the potential, here by differences of 1e-6 m.
+    #[test]
+    fn the_push_of_who_walks_is_the_slope_of_the_potential() {
+        let other = Walker::of(
+            &[[0.0, 0.0]; 7]
+                .into_iter()
+                .chain([[0.3, 0.4]])
+                .collect::<Vec<_>>(),
+        );
+        let potential = |p: Position| {
+            let s = FORESIGHT * 1.25;
+            let next = [0.3 + s * 0.6, 0.4 + s * 0.8];
+            let around = distance(p, other.position) + distance(p, next);
+            STRENGTH * (-0.5 * (around * around - s * s).sqrt() / REACH).exp()
+        };
+        let mut me = Walker::of(&[[0.0, 0.0]; 8]);
+        for p in [[1.0, 0.2], [0.5, 1.9], [-0.4, 0.4], [3.0, 3.0]] {
+            me.position = p;
+            let push = me.push_of(&other);
+            let h = 1e-6;
+            let slope_x = (potential([p[0] + h, p[1]]) - potential([p[0] - h, p[1]])) / (2.0 * h);
+            let slope_y = (potential([p[0], p[1] + h]) - potential([p[0], p[1] - h])) / (2.0 * h);
+            assert_relative_eq!(push[0], -slope_x, epsilon = 1e-7);
+            assert_relative_eq!(push[1], -slope_y, epsilon = 1e-7);
+        }
+    }
+
+    #[test]
+    fn alone_it_is_constant_velocity() {
+        let far = [
+            ([0.0, 0.0], [0.5, 0.1]),
+            ([100.0, 0.0], [0.0, -0.4]),
+            ([0.0, 90.0], [0.0, 0.0]),
+        ];
+        let window = walkers(&far);
+        let forced = SocialForce.forecast(&window).unwrap();
+        let free = ConstantVelocity::last_step().forecast(&window).unwrap();
+        for i in 0..3 {
+            for (p, q) in forced.hypothesis(i, 0).iter().zip(free.hypothesis(i, 0)) {
+                assert!(distance(*p, *q) < 1e-9, "{p:?} {q:?}");
+            }
+        }
+    }
+
+    /// 20 people at one place and around it, some of them standing: finite, and nobody faster than 1.3
+    /// times before.
+    #[test]
+    fn nothing_runs_away() {
+        let crowd: Vec<_> = (0..20)
+            .map(|i| {
+                let (x, y) = (f64::from(i % 5), f64::from(i / 5));
+                (
+                    [0.01 * x, 0.01 * y * f64::from(i % 3)],
+                    [0.1 * (x - 2.0), 0.1 * y],
+                )
+            })
+            .collect();
+        let window = walkers(&crowd);
+        let forecast = SocialForce.forecast(&window).unwrap();
+        for (i, (_, step)) in crowd.iter().enumerate() {
+            let mut here = window.observed(i)[7];
+            for next in forecast.hypothesis(i, 0) {
+                assert!(distance(here, *next) <= TOP_SPEED * length(*step) + 1e-9);
+                here = *next;
+            }
+        }
+    }
+
+    #[test]
+    fn who_overtakes_gives_way_and_the_order_of_walkers_does_not_matter() {
+        let ahead = ([1.5, 0.0], [0.2, 0.0]);
+        let behind = ([0.0, 0.001], [0.5, 0.0]);
+        let one = SocialForce.forecast(&walkers(&[ahead, behind])).unwrap();
+        let other = SocialForce.forecast(&walkers(&[behind, ahead])).unwrap();
+        assert_eq!(one.hypothesis(0, 0), other.hypothesis(1, 0));
+        assert_eq!(one.hypothesis(1, 0), other.hypothesis(0, 0));
+        let pushed = one.hypothesis(1, 0)[11];
+        assert!(pushed[1].abs() > 0.05, "{pushed:?}");
+    }
+}
