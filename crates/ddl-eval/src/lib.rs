@@ -6,6 +6,7 @@ mod error;
 pub mod figure;
 mod forecast;
 mod forecaster;
+pub mod foreign;
 pub mod leak;
 pub mod literature;
 pub mod metric;
