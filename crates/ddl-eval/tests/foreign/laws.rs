@@ -1,7 +1,5 @@
 //! What must hold of files of forecasts, whatever is in them.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
 use ddl_data::{HORIZON, OBSERVED, PedestrianId, Position, Window};
 use ddl_eval::Forecast;
 use ddl_eval::foreign::{self, Coverage, ForeignFormat};
