@@ -67,6 +67,11 @@ fn the_python_example_is_scored_as_the_baseline_on_real_recordings() {
         );
         let report = Report::load(&here.join("results/report.json")).unwrap();
         check(&report, "mine");
+        let selection = row(&report, "fair", "mine").conditions.selection.as_deref();
+        assert_eq!(
+            selection,
+            Some("made by another program, read from forecasts.jsonl")
+        );
         assert_eq!(row(&report, "fair", "mine").scores.pedestrians, walkers);
         assert_eq!(
             row(&report, "fair", "mine").conditions.window_rule,
@@ -111,11 +116,15 @@ fn a_part_of_the_walkers_is_scored_only_when_asked_for() {
         assert!(message.contains(&needle), "{needle} is not in: {message}");
     }
     assert!(!here.join("part").exists());
-    program::run(
-        here,
-        &format!("{EVALUATE} some.jsonl --intersection --out part"),
-    )
-    .succeeds();
+    let part = format!("{EVALUATE} some.jsonl --intersection --out part");
+    let summary = program::run(here, &part).succeeds();
+    assert!(
+        summary.contains(
+            "  some
+"
+        ),
+        "{summary}"
+    );
     let report = Report::load(&here.join("part/report.json")).unwrap();
     check(&report, "some");
     let subset = format!("walkers forecast by some.jsonl: {} of {count}", count - 7);
@@ -193,6 +202,23 @@ fn what_ddl_forecast_writes_is_read_back() {
             assert_eq!(a.weight(i, k).to_bits(), b.weight(i, k).to_bits());
         }
     }
+}
+
+/// Tracks in the words of TrajNet++ are forecast as the same tracks in a table.
+#[test]
+fn tracks_of_trajnet_are_forecast_as_they_are() {
+    let run = tiny_model::folder(Variant::Full);
+    let rows = own_tracks::three_people(9);
+    let table = forecast(run.path(), &rows, "");
+    let lines: Vec<String> = rows
+        .iter()
+        .map(|(f, p, x, y)| {
+            format!("{{\"track\": {{\"f\": {f}, \"p\": {p}, \"x\": {x}, \"y\": {y}}}}}")
+        })
+        .collect();
+    std::fs::write(run.path().join("tracks.ndjson"), lines.join("\n")).unwrap();
+    let command_line = "forecast --model . tracks.ndjson --threads 1";
+    assert_eq!(program::run(run.path(), command_line).succeeds(), table);
 }
 
 fn forecast(folder: &Path, rows: &[own_tracks::Row], options: &str) -> String {

@@ -30,8 +30,14 @@ pub struct Matched {
 }
 
 impl Matched {
-    pub(super) fn from_file(self, file: String) -> Self {
+    pub(super) fn named_after(self, file: String) -> Self {
         Self { file, ..self }
+    }
+
+    /// The name of the file, without its folder.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        &self.file
     }
 
     /// Walkers who are forecast, counted once for each window.

@@ -10,7 +10,7 @@ pub const NOISE_SEED: u64 = 1;
 /// Scores forecasts of a file under the protocol of the conditions, then the baselines on the same walkers.
 ///
 /// The conditions are taken at their word for the fold and the rule, as by [`ResultRow::measure`]; the test subset is
-/// set to [`Matched::test_subset`]. Under `single` the hypothesis of greatest weight is scored, of equals the first.
+/// set to [`Matched::test_subset`], and the selection to where the forecasts are from. Under `single` the hypothesis of greatest weight is scored, of equals the first.
 ///
 /// # Errors
 /// [`ForeignError::Published`] under the protocol `published`; more hypotheses than the protocol allows; windows that
@@ -25,6 +25,10 @@ pub fn measure(
     }
     let conditions = Conditions {
         test_subset: matched.test_subset(),
+        selection: Some(format!(
+            "made by another program, read from {}",
+            matched.file()
+        )),
         ..conditions.clone()
     };
     let forecasts = conditions

@@ -128,7 +128,7 @@ pub fn read(
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let reader = BufReader::with_capacity(1 << 20, file);
     let matched = read_from(reader, &origin, format, windows, coverage)?;
-    Ok(matched.from_file(name.into_owned()))
+    Ok(matched.named_after(name.into_owned()))
 }
 
 /// The same for anything that can be read; `origin` is the file's name in error messages.

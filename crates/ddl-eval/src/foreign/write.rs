@@ -10,7 +10,7 @@ use super::walkers::last_observed;
 use crate::Forecast;
 
 #[derive(Serialize)]
-struct Observed<'a> {
+struct Walker<'a> {
     recording: &'a str,
     observed_until: i64,
     pedestrian: i64,
@@ -48,7 +48,7 @@ struct Hypothesis<'a> {
 pub fn write_windows(windows: &[Window], mut writer: impl Write) -> Result<(), ForeignError> {
     for window in windows {
         for (i, pedestrian) in window.pedestrians().iter().enumerate() {
-            let line = Observed {
+            let line = Walker {
                 recording: window.recording(),
                 observed_until: last_observed(window),
                 pedestrian: pedestrian.0,

@@ -1,11 +1,13 @@
 //! What must hold of files of forecasts, whatever is in them.
 
+use std::fmt::Write as _;
+
 use ddl_data::{HORIZON, OBSERVED, PedestrianId, Position, Window};
 use ddl_eval::Forecast;
 use ddl_eval::foreign::{self, Coverage, ForeignFormat};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Any finite number, as other programs print them.
 fn coordinate() -> impl Strategy<Value = f64> {
@@ -36,7 +38,9 @@ fn forecast_windows() -> impl Strategy<Value = (Vec<Window>, Vec<Forecast>)> {
                     let (tracks, positions, mut weights, goals) = parts;
                     for row in weights.chunks_mut(k) {
                         let sum: f64 = row.iter().sum();
-                        row.iter_mut().for_each(|weight| *weight /= sum);
+                        for weight in row {
+                            *weight /= sum;
+                        }
                     }
                     let ids = (0..).take(n).map(|id| PedestrianId(7 * id - 3)).collect();
                     let name = if index % 2 == 0 {
@@ -192,13 +196,15 @@ fn as_table(windows: &[Window], forecasts: &[Forecast]) -> String {
                 .iter()
                 .zip(&window.frames()[OBSERVED..]);
             for ([x, y], frame) in positions {
-                text += &format!(
-                    "{},{},{},{k},{},{frame},{x:?},{y:?}\n",
+                writeln!(
+                    text,
+                    "{},{},{},{k},{},{frame},{x:?},{y:?}",
                     window.recording(),
                     window.frames()[OBSERVED - 1],
                     window.pedestrians()[i],
                     forecast.weight(i, k)
-                );
+                )
+                .unwrap();
             }
         }
     }
@@ -210,18 +216,17 @@ fn as_trajnet(windows: &[Window], forecasts: &[Forecast]) -> String {
     let (mut text, mut id) = (String::new(), 0);
     for (window, forecast) in windows.iter().zip(forecasts) {
         let frames = window.frames();
-        let recording = serde_json::to_string(window.recording()).unwrap();
         for (i, pedestrian) in window.pedestrians().iter().enumerate() {
             let (s, e) = (frames[0], frames[19]);
-            text += &format!(
-                "{{\"scene\":{{\"id\":{id},\"p\":{pedestrian},\"s\":{s},\"e\":{e},\"recording\":{recording}}}}}\n"
-            );
+            let scene = json!({"id": id, "p": pedestrian.0, "s": s, "e": e, "recording": window.recording()});
+            writeln!(text, "{}", json!({"scene": scene})).unwrap();
             for k in 0..forecast.hypotheses() {
                 let positions = forecast.hypothesis(i, k).iter().zip(&frames[OBSERVED..]);
                 for ([x, y], f) in positions {
-                    text += &format!(
-                        "{{\"track\":{{\"f\":{f},\"p\":{pedestrian},\"x\":{x:?},\"y\":{y:?},\"prediction_number\":{k},\"scene_id\":{id}}}}}\n"
-                    );
+                    let track = json!({
+                        "f": f, "p": pedestrian.0, "x": x, "y": y, "prediction_number": k, "scene_id": id,
+                    });
+                    writeln!(text, "{}", json!({"track": track})).unwrap();
                 }
             }
             id += 1;

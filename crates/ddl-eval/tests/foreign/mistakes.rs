@@ -15,6 +15,7 @@ fn check(format: ForeignFormat, text: &str, expected: &str) {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of mistakes")]
 fn every_mistake_of_json_lines_is_named_with_its_place() {
     let first = line(70, 3, &hypothesis(1.0));
     let bad = |text: &str| first.clone() + text;
