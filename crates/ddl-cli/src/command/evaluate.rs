@@ -9,7 +9,7 @@ use anyhow::bail;
 use clap::Args;
 use ddl::eval::Report;
 use ddl::{Ddl, EvaluationRequest, EvaluationSplit, Protocol};
-use forecasts::Forecasts;
+use forecasts::OtherProgram;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -23,7 +23,7 @@ pub(crate) struct Evaluate {
     #[arg(long, required_unless_present = "forecasts", conflicts_with_all = ["forecasts", "convention", "fold", "window_rule"])]
     model: Option<PathBuf>,
     #[command(flatten)]
-    forecasts: Forecasts,
+    other: OtherProgram,
     /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
     #[arg(long)]
     data: Option<PathBuf>,
@@ -48,12 +48,10 @@ pub(crate) struct Evaluate {
 
 impl Evaluate {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        match (&self.forecasts.forecasts, &self.model) {
+        match (&self.other.forecasts, &self.model) {
             (Some(file), _) => {
                 let (data, commit) = (self.data.as_deref(), &self.telling.commit);
-                let report = self
-                    .forecasts
-                    .evaluate(file, &self.protocols, data, commit)?;
+                let report = self.other.evaluate(file, &self.protocols, data, commit)?;
                 self.tell(&report)
             }
             (None, Some(run)) => self.measure(run),

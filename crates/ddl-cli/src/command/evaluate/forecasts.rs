@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// A file of forecasts and what it is to be measured on.
 #[derive(Debug, Args)]
-pub(crate) struct Forecasts {
+pub(crate) struct OtherProgram {
     /// Instead of a model: forecasts that another program made of the lines of `ddl windows` (docs/your-model.md)
     ///
     /// The extension tells the format: jsonl, csv, or ndjson for TrajNet++.
@@ -33,7 +33,7 @@ pub(crate) struct Forecasts {
     out: Option<PathBuf>,
 }
 
-impl Forecasts {
+impl OtherProgram {
     /// Scores the file under each protocol, and writes the report where asked to.
     pub(crate) fn evaluate(
         &self,
