@@ -7,3 +7,4 @@ mod guarantee_on_real_people;
 mod leak_baselines;
 mod leak_goals;
 mod leak_is_caught;
+mod other_program;

@@ -13,6 +13,7 @@ mod keep_clear;
 mod leak;
 mod leak_in_reports;
 mod live;
+mod other_program;
 mod precision;
 mod prepare;
 mod real_recordings;

@@ -8,6 +8,7 @@ pub mod bits;
 pub mod crowd;
 pub mod folder_contents;
 pub mod goal_lines;
+pub mod other_program;
 pub mod own_tracks;
 pub mod processes;
 pub mod program;

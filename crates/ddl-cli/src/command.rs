@@ -6,7 +6,9 @@ pub(crate) mod forecast;
 pub(crate) mod goals;
 pub(crate) mod info;
 pub(crate) mod report;
+mod test_windows;
 pub(crate) mod train;
+pub(crate) mod windows;
 
 use crate::progress::ProgressMode;
 use anyhow::Context as _;

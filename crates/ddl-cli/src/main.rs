@@ -29,6 +29,7 @@ enum Command {
     Report(command::report::Report),
     Forecast(command::forecast::Forecast),
     Goals(command::goals::Goals),
+    Windows(command::windows::Windows),
     Info(command::info::Info),
 }
 
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
         Command::Report(command) => command.run(),
         Command::Forecast(command) => command.run(),
         Command::Goals(command) => command.run(),
+        Command::Windows(command) => command.run(),
         Command::Info(command) => command.run(),
     };
     match result {

@@ -2,7 +2,7 @@
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use ddl::data::{Format, Recording, TIME_STEP, Window, read_recording};
+use ddl::data::{Format, Recording, TIME_STEP, Window, parse_recording};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub(crate) struct Tracks {
     /// csv with the header frame,pedestrian,x,y: metres, one row each 0.4 s
+    ///
+    /// Or TrajNet++ ndjson, ETH obsmat.txt or the files of a data convention, told by extension and first lines.
     #[arg(value_name = "TRACKS")]
     file: PathBuf,
     /// Raw frames between two rows of a pedestrian [default: the most common difference]
@@ -21,9 +23,19 @@ pub(crate) struct Tracks {
 }
 
 impl Tracks {
+    /// The tracks, in the format that their file looks like. It is read once, so that it may be a pipe.
+    fn recording(&self) -> anyhow::Result<Recording> {
+        let bytes = std::fs::read(&self.file)
+            .with_context(|| format!("cannot read {}", self.file.display()))?;
+        let format = Format::guess(&self.file, &bytes);
+        let name = self.file.file_stem().unwrap_or_default().to_string_lossy();
+        let recording = parse_recording(&bytes, &self.file.display().to_string(), format)?;
+        Ok(recording.with_name(&*name))
+    }
+
     /// Windows of 8 observed frames, one a frame that has anybody to forecast.
     pub(crate) fn windows(&self) -> anyhow::Result<Vec<Window>> {
-        let mut recording: Recording = read_recording(&self.file, Format::Table)?;
+        let mut recording = self.recording()?;
         if let Some(step) = self.frame_step {
             recording = recording.with_frame_step(step)?;
         }

@@ -21,7 +21,9 @@ fn it_names_its_version_and_commands() {
         format!("ddl {}\n", env!("CARGO_PKG_VERSION"))
     );
     let help = ddl("--help");
-    for command in ["train", "evaluate", "report", "forecast", "goals", "info"] {
+    for command in [
+        "train", "evaluate", "report", "forecast", "goals", "windows", "info",
+    ] {
         assert!(help.contains(command), "{command}");
     }
 }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::UnknownName;
 use crate::format::Format;
+use crate::rule::{SOCIAL_GAN_FEWEST, WindowRule};
 
 /// Where recordings come from and how they were sampled: numbers of two conventions are never
 /// comparable.
@@ -42,6 +43,17 @@ impl Convention {
             Self::Star => Some(Format::StarCsv),
             Self::SocialGan => Some(Format::SocialGan),
             Self::Simulated => None,
+        }
+    }
+
+    /// The window rule that the convention's published numbers are measured with: the one of headline tables.
+    pub fn headline_rule(self) -> WindowRule {
+        match self {
+            Self::Star => WindowRule::Published,
+            Self::SocialGan => WindowRule::SocialGan {
+                min_pedestrians: SOCIAL_GAN_FEWEST,
+            },
+            Self::Simulated => WindowRule::Complete,
         }
     }
 

@@ -84,6 +84,43 @@ pub enum FormatProblem {
         /// The field's text, shortened.
         found: String,
     },
+    /// A field that must be a number, whatever its value, is none.
+    #[error("{name} must be a number, found {found:?}")]
+    NotNumber {
+        /// What the field holds, such as `v_x`.
+        name: &'static str,
+        /// The field's text, shortened.
+        found: String,
+    },
+    /// A line is no JSON object.
+    #[error("the line must be one JSON object (which has no NaN and no Infinity): {detail}")]
+    Json {
+        /// The reader's own words.
+        detail: String,
+    },
+    /// A JSON object lacks a field.
+    #[error("{name} is missing")]
+    MissingField {
+        /// The field, such as `track.f`.
+        name: &'static str,
+    },
+    /// Overlapping scenes repeat a track with another position.
+    #[error(
+        "pedestrian {pedestrian} is in frame {frame} at {found}, but on line {first_line} at {first}; \
+         scenes that overlap must agree"
+    )]
+    Disagreement {
+        /// The pedestrian.
+        pedestrian: PedestrianId,
+        /// The raw frame number.
+        frame: i64,
+        /// Line of the first occurrence.
+        first_line: usize,
+        /// Where the pedestrian was there (m).
+        first: String,
+        /// Where the pedestrian is here (m).
+        found: String,
+    },
     /// One pedestrian twice in one frame.
     #[error("pedestrian {pedestrian} is in frame {frame} already (line {first_line}); keep one")]
     Duplicate {

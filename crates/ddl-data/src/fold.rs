@@ -23,6 +23,20 @@ pub struct TrainingSplit {
     pub validation: Vec<Window>,
 }
 
+/// Share of each training recording that Social-GAN's folders keep for validation.
+const SOCIAL_GAN_VALIDATION: f64 = 0.2;
+
+/// Windows of the three folders that Social-GAN publishes for a fold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SocialGanSplit {
+    /// Windows of the files `train/*_train.txt`.
+    pub training: Vec<Window>,
+    /// Windows of the files `val/*_val.txt`.
+    pub validation: Vec<Window>,
+    /// Windows of the files `test/*.txt`.
+    pub test: Vec<Window>,
+}
+
 impl<'a> Fold<'a> {
     pub(crate) fn new(
         name: &'static str,
@@ -111,23 +125,17 @@ impl<'a> Fold<'a> {
     /// The cut of a recording with n annotated frames comes before the frame with index
     /// floor((1 - f) n), f being `validation_fraction` (clamped to [0, 1], NaN taken as 0). Windows
     /// that span the cut belong to neither side, so that no position is seen in both. With f = 0.2
-    /// this is the training/validation split of the Social-GAN convention. Recordings [set apart](Self::set_apart) are
+    /// this is the split of the Social-GAN convention ([`social_gan_split`](Self::social_gan_split)). Recordings [set apart](Self::set_apart) are
     /// validated on whole.
     #[must_use]
     pub fn training_split(&self, rule: WindowRule, validation_fraction: f64) -> TrainingSplit {
-        let fraction = if validation_fraction.is_nan() {
-            0.0
-        } else {
-            validation_fraction.clamp(0.0, 1.0)
-        };
         let mut split = TrainingSplit {
             training: Vec::new(),
             validation: Vec::new(),
         };
         for recording in &self.training {
             let frames = recording.frames();
-            #[expect(clippy::cast_sign_loss, reason = "a share of a count is not negative")]
-            let cut = ((1.0 - fraction) * frames.len() as f64).floor() as usize;
+            let cut = recording.cut_index(validation_fraction);
             for window in recording.windows(rule) {
                 let (first, last) = (window.start_frame(), window.frames()[window.steps() - 1]);
                 match frames.get(cut) {
@@ -140,5 +148,26 @@ impl<'a> Fold<'a> {
         let set_apart = self.set_apart.iter().flat_map(|r| r.windows(rule));
         split.validation.extend(set_apart);
         split
+    }
+
+    /// Training, validation and test of the Social-GAN convention, window by window what its published folders
+    /// `train`, `val` and `test` hold.
+    ///
+    /// Each training recording is two files there: `_train` with its first floor(0.8 n) of n annotated frames,
+    /// `_val` with the rest ([`Recording::parts`]); windows are cut from each file alone, so none spans the
+    /// two. The test scene's files are whole. `min_pedestrians` is 2 in the original code, 1 in much later work.
+    /// Recordings [set apart](Self::set_apart) are validated on whole, which the published folders do not do.
+    #[must_use]
+    pub fn social_gan_split(&self, min_pedestrians: usize) -> SocialGanSplit {
+        let rule = WindowRule::SocialGan { min_pedestrians };
+        let TrainingSplit {
+            training,
+            validation,
+        } = self.training_split(rule, SOCIAL_GAN_VALIDATION);
+        SocialGanSplit {
+            training,
+            validation,
+            test: self.test_windows(rule),
+        }
     }
 }

@@ -19,7 +19,7 @@ pub use augment::Rotation;
 pub use convention::Convention;
 pub use dataset::Dataset;
 pub use error::{DataError, FormatError, FormatProblem, RecordingError, UnknownName, WindowError};
-pub use fold::{Fold, TrainingSplit};
+pub use fold::{Fold, SocialGanSplit, TrainingSplit};
 pub use format::{Format, parse_recording, read_recording};
 pub use live::{LiveError, LiveTracks};
 pub use locate::{DATASETS_VARIABLE, locate};

@@ -190,6 +190,57 @@ impl Recording {
         rule::windows(self, rule)
     }
 
+    /// The recording in two parts by time: the first floor((1 - f) n) of its n annotated frames, and the rest; a part
+    /// without any frame is `None`.
+    ///
+    /// `fraction` is the share f of the second part, clamped to [0, 1], NaN taken as 0. With f = 0.2 the parts are
+    /// the files `_train` and `_val` that the Social-GAN convention keeps of a training recording.
+    ///
+    /// ```
+    /// use ddl_data::{Observation, PedestrianId, Recording};
+    ///
+    /// let walk = (0..10).map(|t| Observation::new(10 * t, PedestrianId(1), [0.0, 0.0])).collect();
+    /// let (first, rest) = Recording::new("yard", 10, walk)?.parts(0.2);
+    /// assert_eq!(first.map(|r| r.frames().len()), Some(8));
+    /// assert_eq!(rest.map(|r| r.frames().to_vec()), Some(vec![80, 90]));
+    /// # Ok::<(), ddl_data::RecordingError>(())
+    /// ```
+    #[must_use]
+    pub fn parts(&self, fraction: f64) -> (Option<Self>, Option<Self>) {
+        let cut = self.cut_index(fraction);
+        (self.part(0..cut), self.part(cut..self.frames.len()))
+    }
+
+    /// Index of the annotated frame before which a share of the recording's time is cut off.
+    pub(crate) fn cut_index(&self, fraction: f64) -> usize {
+        let fraction = if fraction.is_nan() {
+            0.0
+        } else {
+            fraction.clamp(0.0, 1.0)
+        };
+        #[expect(clippy::cast_sign_loss, reason = "a share of a count is not negative")]
+        let cut = ((1.0 - fraction) * self.frames.len() as f64).floor() as usize;
+        cut.min(self.frames.len())
+    }
+
+    /// Some annotated frames in a row, by their indices.
+    fn part(&self, frames: Range<usize>) -> Option<Self> {
+        if frames.is_empty() {
+            return None;
+        }
+        let first = self.starts[frames.start];
+        Some(Self {
+            name: self.shared_name(),
+            frame_step: self.frame_step,
+            observations: self.observations[first..self.starts[frames.end]].to_vec(),
+            starts: self.starts[frames.start..=frames.end]
+                .iter()
+                .map(|start| start - first)
+                .collect(),
+            frames: self.frames[frames].to_vec(),
+        })
+    }
+
     /// What can be forecast from: windows of [`OBSERVED`](crate::OBSERVED) frames without a future,
     /// one for every frame up to which somebody was seen that many steps in a row.
     ///

@@ -2,9 +2,11 @@
 
 use std::fmt;
 use std::ops::Range;
+use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use crate::error::UnknownName;
 use crate::recording::Recording;
 use crate::{OBSERVED, PedestrianId, Position, WINDOW, Window};
 
@@ -13,6 +15,9 @@ use crate::{OBSERVED, PedestrianId, Position, WINDOW, Window};
 const PUBLISHED_END_MARGIN: i64 = 20;
 /// Steps after which the published loader wants to see somebody again: one beyond the window.
 const STEPS_AHEAD: i64 = 20;
+
+/// Fewest pedestrians of a window in the original code of Social-GAN.
+pub(crate) const SOCIAL_GAN_FEWEST: usize = 2;
 
 /// Which stretches of 20 steps count as windows, and who belongs to them.
 ///
@@ -49,6 +54,37 @@ impl fmt::Display for WindowRule {
                 write!(f, "social-gan (at least {min_pedestrians} pedestrians)")
             }
         }
+    }
+}
+
+/// `published`, `complete`, `social-gan` (at least 2 pedestrians), or `social-gan-N` for at least N.
+///
+/// ```
+/// use ddl_data::WindowRule;
+/// assert_eq!("complete".parse(), Ok(WindowRule::Complete));
+/// assert_eq!("social-gan-1".parse(), Ok(WindowRule::SocialGan { min_pedestrians: 1 }));
+/// assert!("social-gan-few".parse::<WindowRule>().is_err());
+/// ```
+impl FromStr for WindowRule {
+    type Err = UnknownName;
+
+    fn from_str(word: &str) -> Result<Self, UnknownName> {
+        let fewest = match word {
+            "published" => return Ok(Self::Published),
+            "complete" => return Ok(Self::Complete),
+            "social-gan" => Some(SOCIAL_GAN_FEWEST),
+            _ => word
+                .strip_prefix("social-gan-")
+                .and_then(|number| number.parse().ok()),
+        };
+        fewest
+            .filter(|&fewest| fewest > 0)
+            .map(|min_pedestrians| Self::SocialGan { min_pedestrians })
+            .ok_or_else(|| UnknownName {
+                kind: "window rule",
+                found: word.to_owned(),
+                expected: "published, complete, social-gan (at least 2 pedestrians), social-gan-1",
+            })
     }
 }
 

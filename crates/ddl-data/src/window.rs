@@ -235,6 +235,34 @@ impl Window {
         }
     }
 
+    /// The window with some of its pedestrians alone; `None` if there would be nobody.
+    ///
+    /// ```
+    /// use ddl_data::{PedestrianId, Window};
+    ///
+    /// let stands = vec![[0.0, 0.0]; 8];
+    /// let ids = vec![PedestrianId(1), PedestrianId(2)];
+    /// let window = Window::new("yard", 0, 10, ids, vec![stands; 2])?;
+    /// let alone = window.keeping(|i| i == 1).ok_or("nobody")?;
+    /// assert_eq!(alone.pedestrians(), [PedestrianId(2)]);
+    /// assert!(window.keeping(|_| false).is_none());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn keeping(&self, mut keep: impl FnMut(usize) -> bool) -> Option<Window> {
+        let kept: Vec<usize> = (0..self.len()).filter(|&i| keep(i)).collect();
+        if kept.is_empty() {
+            return None;
+        }
+        Some(Window {
+            recording: Arc::clone(&self.recording),
+            frame_step: self.frame_step,
+            frames: self.frames.clone(),
+            pedestrians: kept.iter().map(|&i| self.pedestrians[i]).collect(),
+            positions: kept.iter().flat_map(|&i| self.track(i)).copied().collect(),
+        })
+    }
+
     /// The window with every position replaced by `f(i, step, position)`: pedestrian index, step from
     /// 0, position (m).
     ///

@@ -131,6 +131,72 @@ fn a_fifth_is_the_social_gan_split() {
     assert_eq!(split.validation, validation);
 }
 
+/// Rows of the files `NAME_train.txt` and `NAME_val.txt` that Social-GAN publishes, and the first frame of the
+/// latter: counted from published copies, outside this project.
+const PUBLISHED_PARTS: [(&str, usize, usize, i64); 8] = [
+    ("eth", 3666, 1826, 10_240),
+    ("hotel", 4946, 1597, 14_400),
+    ("zara01", 4307, 846, 7110),
+    ("zara02", 7621, 2101, 8420),
+    ("students001", 18_353, 3460, 3550),
+    ("students003", 15_641, 2312, 4320),
+    ("uni_examples", 2266, 481, 5940),
+    ("zara03", 3708, 1297, 6030),
+];
+
+#[test]
+fn the_social_gan_split_is_that_of_the_published_files() {
+    let Some(dataset) = recordings::load(Convention::SocialGan) else {
+        return;
+    };
+    assert_eq!(dataset.recordings().len(), PUBLISHED_PARTS.len());
+    for (name, training, validation, first) in PUBLISHED_PARTS {
+        let (train, val) = dataset.recording(name).unwrap().parts(0.2);
+        let (train, val) = (train.unwrap(), val.unwrap());
+        let rows = (train.observations().len(), val.observations().len());
+        assert_eq!(rows, (training, validation), "{name}");
+        assert_eq!(val.frames()[0], first, "{name}");
+    }
+    for min_pedestrians in [1, 2] {
+        let rule = WindowRule::SocialGan { min_pedestrians };
+        for fold in dataset.folds() {
+            let split = fold.social_gan_split(min_pedestrians);
+            let (mut training, mut validation) = (Vec::new(), Vec::new());
+            for recording in fold.training_recordings() {
+                let (train, val) = recording.parts(0.2);
+                training.extend(train.unwrap().windows(rule));
+                validation.extend(val.unwrap().windows(rule));
+            }
+            assert_eq!(split.training, training);
+            assert_eq!(split.validation, validation);
+            assert_eq!(split.test, fold.test_windows(rule));
+            assert!(!split.validation.is_empty() && !split.test.is_empty());
+        }
+    }
+}
+
+#[test]
+fn the_parts_of_a_recording_are_all_of_it_in_order() {
+    let dataset = Dataset::simulated(2);
+    for recording in dataset.recordings() {
+        for fraction in [0.0, 0.2, 0.5, 1.0, 7.0, -1.0, f64::NAN] {
+            let (first, rest) = recording.parts(fraction);
+            let parts = [first, rest];
+            let rows: Vec<_> = parts
+                .iter()
+                .flatten()
+                .flat_map(Recording::observations)
+                .collect();
+            assert!(rows.into_iter().eq(recording.observations()), "{fraction}");
+            for part in parts.iter().flatten() {
+                let again =
+                    Recording::new(part.name(), part.frame_step(), part.observations().to_vec());
+                assert_eq!(again.as_ref(), Ok(part));
+            }
+        }
+    }
+}
+
 #[test]
 fn training_and_validation_share_no_moment_of_a_real_recording() {
     for convention in [Convention::Star, Convention::SocialGan] {

@@ -39,6 +39,31 @@ fn written(rows: &[Observation], format: Format) -> String {
                 writeln!(text, "{}\t{}.0\t{x}\t{y}", o.frame, o.pedestrian).unwrap();
             }
         }
+        Format::TrajNet => {
+            for (scene, o) in rows.iter().enumerate() {
+                let [x, y] = o.position;
+                let (f, p) = (o.frame, o.pedestrian);
+                writeln!(text, "{{\"scene\":{{\"id\":{scene},\"p\":{p},\"s\":{f},\"e\":{f},\"fps\":2.5,\"tag\":[4,[]]}}}}").unwrap();
+                writeln!(
+                    text,
+                    "{{\"track\":{{\"f\":{f},\"p\":{p},\"x\":{x:?},\"y\":{y:?}}}}}"
+                )
+                .unwrap();
+                // a forecast of the same moment is no observation
+                writeln!(text, "{{\"track\":{{\"f\":{f},\"p\":{p},\"x\":0.5,\"y\":{x:?},\"prediction_number\":0,\"scene_id\":{scene}}}}}").unwrap();
+            }
+        }
+        Format::Obsmat => {
+            for o in rows {
+                let [x, y] = o.position;
+                writeln!(
+                    text,
+                    "  {:e}   {:e}  {x:e}  0.0e+00 {y:e} 1.5e+0 0 -2E-3",
+                    o.frame as f64, o.pedestrian.0 as f64
+                )
+                .unwrap();
+            }
+        }
         _ => {
             text.push_str("pedestrian,frame,y,x\n");
             for o in rows {
@@ -97,6 +122,48 @@ proptest! {
             if let Ok(recording) = parse_recording(&bytes, "f", format) {
                 prop_assert!(recording.observations().len() <= rows.len() + 1 + changes.len());
                 prop_assert!(recording.observations().iter().flat_map(|o| o.position).all(f64::is_finite));
+            }
+        }
+    }
+}
+
+proptest! {
+    /// Overlapping scenes of TrajNet++ repeat tracks: the same track any number of times is one.
+    #[test]
+    fn tracks_that_scenes_repeat_count_once(
+        rows in observations(),
+        again in prop::collection::vec(any::<prop::sample::Index>(), 0..9),
+    ) {
+        let mut text = written(&rows, Format::TrajNet);
+        let lines: Vec<String> = text.lines().map(str::to_owned).collect();
+        for index in again {
+            text += &lines[index.index(lines.len())];
+            text.push('\n');
+        }
+        let recording = parse_recording(text.as_bytes(), "f", Format::TrajNet).unwrap();
+        prop_assert_eq!(recording.observations(), &rows[..]);
+    }
+
+    #[test]
+    fn no_json_like_text_makes_a_reader_panic(text in "([-+0-9.,eE:{}\\[\\]\"fpxys \n]|track|scene|null|NaN){0,120}") {
+        let _ = parse_recording(text.as_bytes(), "f", Format::TrajNet);
+        let _ = Format::guess("f".as_ref(), text.as_bytes());
+    }
+
+    /// What is written in a format is guessed to be of it, whatever the file's name says not.
+    #[test]
+    fn the_format_of_a_file_is_guessed(rows in observations()) {
+        for (format, name) in [
+            (Format::StarCsv, "f.csv"),
+            (Format::SocialGan, "f.txt"),
+            (Format::Table, "f.csv"),
+            (Format::TrajNet, "f"),
+            (Format::Obsmat, "f.txt"),
+        ] {
+            // four lines of four numbers are taken for a table without its header
+            if format != Format::StarCsv || rows.len() != 4 {
+                let text = written(&rows, format);
+                prop_assert_eq!(Format::guess(name.as_ref(), text.as_bytes()), format);
             }
         }
     }

@@ -42,6 +42,24 @@ fn good_files_are_read() {
             Format::Table,
             "\u{feff}y, x, pedestrian, frame\n0.04,0,3,10\n-2,1.5,1,0\n-2,1.75,1,10\n",
         ),
+        (
+            Format::TrajNet,
+            r#"{"scene": {"id": 266, "p": 1, "s": 0, "e": 10, "fps": 2.5, "tag": 2}}
+{"track": {"f": 0, "p": 1, "x": 1.5, "y": -2}}
+{"weather": "fine"}
+
+{"track": {"f": 10.0, "p": 1, "x": 1.75, "y": -2.0, "prediction_number": null}}
+{"track": {"f": 10, "p": 3, "x": 0, "y": 4e-2, "height": "tall"}, "more": [1]}
+{"track": {"f": 20, "p": 3, "x": 0, "y": 9, "prediction_number": 0, "scene_id": 266}}
+{"track": {"f": 10, "p": 3, "x": 0.0, "y": 0.04}}
+"#,
+        ),
+        (
+            Format::Obsmat,
+            "  0.0000000e+00   1.0000000e+00   1.5000000e+00   0.0000000e+00  -2.0000000e+00   1.6e+00   0.0e+00   1.9e-01\n  \
+             1.0000000e+01   1.0000000e+00   1.7500000e+00   0.0000000e+00  -2.0000000e+00   1.6e+00   0.0e+00   NaN\n  \
+             1.0000000e+01   3.0000000e+00   0.0000000e+00   0.0000000e+00   4.0000000e-02   1.6e+00   0.0e+00   1.9e-01\n",
+        ),
     ] {
         let recording = parse_recording(text.as_bytes(), "f", format).unwrap();
         assert_eq!(recording.observations(), expected, "{format}: {text:?}");
@@ -176,6 +194,102 @@ fn every_mistake_of_a_table_file_is_named_with_its_place() {
             (
                 "frame,pedestrian,x,y\n0,1,2,3\n1,1,2,3\n0,1,2,3\n",
                 "f, line 4: pedestrian 1 is",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn every_mistake_of_a_trajnet_file_is_named_with_its_place() {
+    let track = r#"{"track": {"f": 0, "p": 1, "x": 2.0, "y": 3.0}}"#;
+    let second = |text: &str| format!("{track}\n{text}\n");
+    let cases: Vec<(String, &str)> = vec![
+        (String::new(), "f, line 1: the file holds no observation"),
+        (
+            r#"{"scene": {"id": 0}}"#.to_owned(),
+            "f, line 1: the file holds no observation",
+        ),
+        (
+            second("[1, 2]"),
+            "f, line 2: the line must be one JSON object",
+        ),
+        (
+            second(&track[..20]),
+            "f, line 2: the line must be one JSON object",
+        ),
+        (
+            second(r#"{"track": {"f": 0, "p": 2, "x": NaN, "y": 3.0}}"#),
+            "f, line 2: the line must be one JSON object (which has no NaN",
+        ),
+        (
+            second(r#"{"track": {"p": 2, "x": 1, "y": 3.0}}"#),
+            "f, line 2: track.f is missing",
+        ),
+        (
+            second(r#"{"track": [1, 2, 3, 4]}"#),
+            "f, line 2: track.f is missing",
+        ),
+        (
+            second(r#"{"track": {"f": 1.5, "p": 2, "x": 1, "y": 3.0}}"#),
+            "f, line 2: track.f must be a whole number",
+        ),
+        (
+            second(r#"{"track": {"f": 1, "p": "two", "x": 1, "y": 3.0}}"#),
+            "f, line 2: track.p must be a whole number",
+        ),
+        (
+            second(r#"{"track": {"f": 1, "p": 2, "x": "1", "y": 3.0}}"#),
+            "f, line 2: track.x must be a finite number",
+        ),
+        (
+            second(r#"{"track": {"f": 1, "p": 2, "x": 1, "y": null}}"#),
+            "f, line 2: track.y must be a finite number",
+        ),
+        (
+            second(r#"{"track": {"f": 0, "p": 1, "x": 2.0, "y": 3.5}}"#),
+            "f, line 2: pedestrian 1 is in frame 0 at [2.0, 3.5], but on line 1 at [2.0, 3.0]",
+        ),
+    ];
+    for (text, expected) in &cases {
+        check(Format::TrajNet, &[(text, expected)]);
+    }
+}
+
+#[test]
+fn every_mistake_of_an_obsmat_file_is_named_with_its_place() {
+    check(
+        Format::Obsmat,
+        &[
+            ("", "f, line 1: the file holds no observation"),
+            ("0 1 2 3", "f, line 1: 4 fields where 8 are expected"),
+            (
+                "0 1 2 0 3 0 0 0\n1 1 2 0 3 0 0 0 0",
+                "f, line 2: 9 fields where 8 are expected",
+            ),
+            (
+                "0.5 1 2 0 3 0 0 0",
+                "f, line 1, field 1: frame must be a whole number",
+            ),
+            (
+                "5 one 2 0 3 0 0 0",
+                "f, line 1, field 2: pedestrian must be a whole number",
+            ),
+            (
+                "5 1 NaN 0 3 0 0 0",
+                "f, line 1, field 3: x must be a finite number",
+            ),
+            ("5 1 2 up 3 0 0 0", "f, line 1, field 4: z must be a number"),
+            (
+                "5 1 2 0 inf 0 0 0",
+                "f, line 1, field 5: y must be a finite number",
+            ),
+            (
+                "5 1 2 0 3 0 0 fast",
+                "f, line 1, field 8: v_y must be a number",
+            ),
+            (
+                "5 1 2 0 3 0 0 0\n5 1 2 0 3 0 0 0",
+                "f, line 2: pedestrian 1 is in frame 5 already (line 1)",
             ),
         ],
     );

@@ -8,6 +8,7 @@ mod error;
 pub mod figure;
 mod forecast;
 mod forecaster;
+pub mod foreign;
 pub mod gallery;
 pub mod leak;
 pub mod literature;

@@ -1,6 +1,6 @@
 //! Which evaluation a run's `report.json` holds, so that a repeated one can be skipped.
 
-use crate::run_directory::{read_json, serialise, write_json};
+use crate::run_directory::{read_json, write_json};
 use crate::{Clearance, Ddl, DdlError, EvaluationRequest};
 use ddl_eval::{Moment, Report};
 use serde::{Deserialize, Serialize};
@@ -58,10 +58,7 @@ pub fn save_evaluation(
     }
     let json = report.to_json()?;
     crate::write_atomically(&model.run().report(), json.as_bytes())?;
-    // positions by the thousand: not for people to read
-    let path = model.run().moments();
-    let compact = serialise(&path, &moments, false)?;
-    crate::write_atomically(&path, compact.as_bytes())?;
+    model.run().write_moments(moments)?;
     write_json(&record, &Record::new(model, request))
 }
 

@@ -14,13 +14,24 @@ const LOSS: &str = "training loss: mean squared error of the next position (m²)
 pub struct Results {
     /// All rows.
     pub report: Report,
-    /// Moments of the runs of the whole method and of the lowest seed: the model that the headline is about.
+    /// Moments of the runs of the whole method and of the lowest seed, the model that the headline is about, and those of other
+    /// programs' forecasts.
     pub moments: Vec<Moment>,
     /// How each training went.
     pub curves: Vec<TrainingCurve>,
 }
 
 impl Results {
+    /// Results that were not gathered from runs: those of another program's forecasts.
+    #[must_use]
+    pub fn new(report: Report, moments: Vec<Moment>) -> Self {
+        Self {
+            report,
+            moments,
+            curves: Vec::new(),
+        }
+    }
+
     /// Gathers what lies in folders that hold a `report.json`: evaluated runs, or results of other programs' forecasts.
     ///
     /// # Errors
@@ -32,6 +43,7 @@ impl Results {
             curves: Vec::new(),
         };
         let mut headline: Vec<(u64, Vec<Moment>)> = Vec::new();
+        let mut elsewhere = Vec::new();
         for folder in folders {
             let run = RunDirectory::new(folder.as_ref());
             if !run.report().is_file() {
@@ -44,6 +56,7 @@ impl Results {
             results.report.extend(report.rows().iter().cloned())?;
             // Results of another program's forecasts come without a run.
             if !run.has_config() {
+                elsewhere.extend(run.read_moments()?);
                 continue;
             }
             let config = run.config()?;
@@ -69,17 +82,19 @@ impl Results {
             .into_iter()
             .filter(|(seed, _)| Some(*seed) == lowest)
             .flat_map(|(_, moments)| moments)
+            .chain(elsewhere)
             .collect();
         Ok(results)
     }
 
-    /// Writes `report.md`, `report.tex`, `report.json`, the page `report.html` and each of its figures as `figures/NAME.svg` into
+    /// Writes `report.md`, `report.tex`, `report.json`, `moments.json`, the page `report.html` and each of its figures as `figures/NAME.svg` into
     /// `folder`, which is made if need be. A file that is there is replaced as a whole.
     ///
     /// # Errors
     /// When the folder or a file cannot be written, or a figure cannot be drawn.
     pub fn save(&self, folder: &Path) -> Result<(), DdlError> {
         self.report.save(folder)?;
+        RunDirectory::new(folder).write_moments(&self.moments)?;
         let page = Page::new(&self.report)
             .moments(self.moments.clone())
             .curves(self.curves.clone());

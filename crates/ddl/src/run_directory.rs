@@ -117,6 +117,12 @@ impl RunDirectory {
         }
     }
 
+    /// Writes `moments.json`: positions by the thousand, not for people to read.
+    pub(crate) fn write_moments(&self, moments: &[Moment]) -> Result<(), DdlError> {
+        let path = self.moments();
+        write_atomically(&path, serialise(&path, &moments, false)?.as_bytes())
+    }
+
     /// Whether training is finished.
     pub fn is_trained(&self) -> bool {
         self.model().is_file()
@@ -247,11 +253,7 @@ pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), DdlE
     write_atomically(path, text.as_bytes())
 }
 
-pub(crate) fn serialise(
-    path: &Path,
-    value: &impl Serialize,
-    pretty: bool,
-) -> Result<String, DdlError> {
+fn serialise(path: &Path, value: &impl Serialize, pretty: bool) -> Result<String, DdlError> {
     let text = if pretty {
         serde_json::to_string_pretty(value)
     } else {

@@ -1,23 +1,29 @@
 //! `ddl evaluate`.
 
+mod forecasts;
+
 use super::{Exactness, KeepClear, Machine, Telling, at_least_one, dataset};
 use crate::interrupt::Interrupt;
 use crate::progress::{Progress, ProgressMode};
 use crate::result_lines;
+use anyhow::bail;
 use clap::Args;
 use ddl::eval::Report;
 use ddl::{Ddl, EvaluationRequest, EvaluationSplit, Protocol};
-use std::path::PathBuf;
+use forecasts::OtherProgram;
+use std::path::{Path, PathBuf};
 
-/// Measure a trained model on the scene left out of its training, beside the baselines
+/// Measure a trained model on the scene left out of its training, or forecasts of another program, beside the baselines
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Example:\n  ddl evaluate --model runs/eth --protocol fair --protocol single"
-)]
+#[command(after_help = "Examples:\n  \
+        ddl evaluate --model runs/eth --protocol fair --protocol single\n  \
+        ddl evaluate --forecasts mine.jsonl --fold zara1 --out results")]
 pub(crate) struct Evaluate {
     /// Directory of the run
-    #[arg(long)]
-    model: PathBuf,
+    #[arg(long, required_unless_present = "forecasts", conflicts_with_all = ["forecasts", "convention", "fold", "window_rule"])]
+    model: Option<PathBuf>,
+    #[command(flatten)]
+    other: OtherProgram,
     /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
     #[arg(long)]
     data: Option<PathBuf>,
@@ -25,10 +31,10 @@ pub(crate) struct Evaluate {
     #[arg(long = "protocol", default_values = ["fair", "single"])]
     protocols: Vec<Protocol>,
     /// Measure on the validation part of the training recordings instead of the test scene
-    #[arg(long)]
+    #[arg(long, conflicts_with = "forecasts")]
     validation: bool,
     /// Measure a seeded part of the test windows with at least so many walkers [default: all]
-    #[arg(long, value_parser = at_least_one)]
+    #[arg(long, value_parser = at_least_one, conflicts_with = "forecasts")]
     test_walkers: Option<usize>,
     #[command(flatten)]
     clear: KeepClear,
@@ -42,10 +48,24 @@ pub(crate) struct Evaluate {
 
 impl Evaluate {
     pub(crate) fn run(self) -> anyhow::Result<()> {
+        match (&self.other.forecasts, &self.model) {
+            (Some(file), _) => {
+                let (data, commit) = (self.data.as_deref(), &self.telling.commit);
+                let report = self.other.evaluate(file, &self.protocols, data, commit)?;
+                self.tell(&report)
+            }
+            (None, Some(run)) => self.measure(run),
+            (None, None) => {
+                bail!("give the --model to measure, or the --forecasts of another program")
+            }
+        }
+    }
+
+    fn measure(&self, run: &Path) -> anyhow::Result<()> {
         self.machine.prepare()?;
         let interrupt = Interrupt::catch()?;
-        let model = Ddl::load(&self.model, self.machine.device)?
-            .in_precision(self.exactness.precision())?;
+        let model =
+            Ddl::load(run, self.machine.device)?.in_precision(self.exactness.precision())?;
         let model = self.clear.of(model)?;
         let request = EvaluationRequest {
             protocols: self.protocols.clone(),
@@ -81,7 +101,7 @@ impl Evaluate {
     /// The results for people; programs read `report.json`.
     fn tell(&self, report: &Report) -> anyhow::Result<()> {
         if self.telling.progress != ProgressMode::Json {
-            result_lines::print(report, "the run's report.json")?;
+            result_lines::print(report, "report.json")?;
         }
         Ok(())
     }

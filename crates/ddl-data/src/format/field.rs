@@ -34,6 +34,16 @@ pub(super) fn coordinate(text: &str, name: &'static str) -> Result<f64, FormatPr
         })
 }
 
+/// A number of any size, NaN included, that is not used: it must be there.
+pub(super) fn number(text: &str, name: &'static str) -> Result<(), FormatProblem> {
+    text.parse::<f64>()
+        .map(|_| ())
+        .map_err(|_| FormatProblem::NotNumber {
+            name,
+            found: quoted(text),
+        })
+}
+
 fn quoted(text: &str) -> String {
     match text.char_indices().nth(QUOTED) {
         Some((end, _)) => format!("{}...", &text[..end]),

@@ -1,13 +1,17 @@
 //! File formats of recordings: text in, a checked [`Recording`] out.
 //!
 //! Every reader refuses what it does not understand and says where: file, line, field. Nothing is
-//! skipped, repaired or guessed; the order of the rows does not matter.
+//! skipped, repaired or guessed; the order of the rows does not matter. TrajNet++ alone says that lines and
+//! fields of other kinds may stand between, and that overlapping scenes may repeat a track.
 
 mod field;
+mod guess;
+mod obsmat;
 mod rows;
 mod social_gan;
 mod star_csv;
 mod table;
+mod trajnet;
 
 use std::fmt;
 use std::path::Path;
@@ -32,11 +36,25 @@ pub enum Format {
     /// A comma-separated table with a header that names the columns `frame`, `pedestrian`, `x` and `y`
     /// (m) in any order: the format for one's own tracks.
     Table,
+    /// The newline-delimited JSON of TrajNet++: `{"track": {"f", "p", "x", "y"}}` a line (frame, pedestrian,
+    /// metres). Lines of forecasts (with `prediction_number`), of scenes and of anything else are no
+    /// observations.
+    #[serde(rename = "trajnet")]
+    TrajNet,
+    /// The `obsmat.txt` of the ETH recordings: eight columns separated by blanks, frame, pedestrian, x, z, **y**
+    /// (m) and three velocities, of which the ground plane is x and y.
+    Obsmat,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 3] = [Self::StarCsv, Self::SocialGan, Self::Table];
+    pub const ALL: [Self; 5] = [
+        Self::StarCsv,
+        Self::SocialGan,
+        Self::Table,
+        Self::TrajNet,
+        Self::Obsmat,
+    ];
 
     /// The format's name.
     pub fn name(self) -> &'static str {
@@ -44,6 +62,8 @@ impl Format {
             Self::StarCsv => "star-csv",
             Self::SocialGan => "social-gan",
             Self::Table => "table",
+            Self::TrajNet => "trajnet",
+            Self::Obsmat => "obsmat",
         }
     }
 }
@@ -64,7 +84,7 @@ impl FromStr for Format {
             .ok_or_else(|| UnknownName {
                 kind: "format",
                 found: word.to_owned(),
-                expected: "star-csv, social-gan, table",
+                expected: "star-csv, social-gan, table, trajnet, obsmat",
             })
     }
 }
@@ -117,6 +137,8 @@ pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Rec
         Format::StarCsv => star_csv::parse(text, origin),
         Format::SocialGan => social_gan::parse(text, origin),
         Format::Table => table::parse(text, origin),
+        Format::TrajNet => trajnet::parse(text, origin),
+        Format::Obsmat => obsmat::parse(text, origin),
     }?;
     rows::into_recording(rows, origin)
 }

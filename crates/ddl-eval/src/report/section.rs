@@ -139,6 +139,11 @@ fn settings(line: &Line<'_>) -> String {
         _ => format!("seeds {}", seeds.join(", ")),
     }];
     match c.epochs {
+        // What made the forecasts of another program is known to it alone.
+        None if c.selection.is_some() => {
+            parts.extend(c.selection.clone());
+            return parts.join("; ");
+        }
         None => parts.push("not trained".to_owned()),
         Some(epochs) => {
             let selection = c

@@ -1,4 +1,4 @@
-//! Forecasts as JSON lines: an object a pedestrian.
+//! Forecasts as JSON lines: an object a pedestrian, in the format that `ddl evaluate --forecasts` reads.
 
 use super::Moment;
 use ddl::dynamics::{LyapunovCertificate, Violation};

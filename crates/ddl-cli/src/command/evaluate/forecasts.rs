@@ -1,0 +1,100 @@
+//! `ddl evaluate --forecasts`: what another program forecast, scored beside the baselines.
+
+use super::super::test_windows::TestWindows;
+use anyhow::Context as _;
+use clap::Args;
+use ddl::eval::foreign::{self, Coverage, ForeignFormat};
+use ddl::eval::{Conditions, Report, gallery};
+use ddl::{Protocol, Results};
+use std::path::{Path, PathBuf};
+
+/// A file of forecasts and what it is to be measured on.
+#[derive(Debug, Args)]
+pub(crate) struct OtherProgram {
+    /// Instead of a model: forecasts that another program made of the lines of `ddl windows` (docs/your-model.md)
+    ///
+    /// The extension tells the format: jsonl, csv, or ndjson for TrajNet++.
+    #[arg(
+        long,
+        value_name = "FILE",
+        help_heading = "Forecasts of another program"
+    )]
+    pub(crate) forecasts: Option<PathBuf>,
+    #[command(flatten)]
+    windows: TestWindows,
+    /// Name of the other program in tables [default: the file's name]
+    #[arg(long, requires = "forecasts")]
+    name: Option<String>,
+    /// Score the walkers that are both in the windows and in the file, and say so in the results
+    #[arg(long, requires = "forecasts")]
+    intersection: bool,
+    /// Folder to write the report to: report.html to look at, report.md, report.tex, report.json and figures
+    #[arg(long, value_name = "FOLDER", requires = "forecasts")]
+    out: Option<PathBuf>,
+}
+
+impl OtherProgram {
+    /// Scores the file under each protocol, and writes the report where asked to.
+    pub(crate) fn evaluate(
+        &self,
+        file: &Path,
+        protocols: &[Protocol],
+        data: Option<&Path>,
+        commit: &str,
+    ) -> anyhow::Result<Report> {
+        let fold = self.windows.fold()?;
+        if protocols.contains(&Protocol::Published) {
+            return Err(foreign::ForeignError::Published.into());
+        }
+        let windows = self.windows.windows(data)?;
+        let coverage = if self.intersection {
+            Coverage::Intersection
+        } else {
+            Coverage::Whole
+        };
+        let matched = foreign::read(file, ForeignFormat::of_file(file), &windows, coverage)
+            .map_err(|error| named(error, &self.windows))?;
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        let name = self.name.as_deref().unwrap_or(&stem);
+        let mut rows = Vec::new();
+        for &protocol in protocols {
+            let (convention, rule) = (self.windows.convention, self.windows.rule());
+            let conditions = Conditions {
+                commit: commit.to_owned(),
+                ..Conditions::new(convention, rule, protocol, fold, name)
+            };
+            rows.extend(foreign::measure(
+                &conditions,
+                &matched,
+                foreign::NOISE_SEED,
+            )?);
+        }
+        let report = Report::new(format!("{name} on {fold}"), rows)?;
+        if let Some(folder) = &self.out {
+            let moments = gallery::moments(fold, name, &matched.windows, &matched.forecasts)?;
+            Results::new(report.clone(), moments)
+                .save(folder)
+                .with_context(|| format!("cannot write to {}", folder.display()))?;
+        }
+        Ok(report)
+    }
+}
+
+/// Where file and windows are not of the same walkers, which windows these were and which option scores the rest.
+fn named(error: foreign::ForeignError, windows: &TestWindows) -> anyhow::Error {
+    let differ = matches!(
+        error,
+        foreign::ForeignError::Missing { .. } | foreign::ForeignError::Unknown { .. }
+    );
+    if differ {
+        anyhow::anyhow!(
+            "{error} (the windows are those of --convention {} --fold {}, rule {}; --intersection scores the walkers \
+             in both)",
+            windows.convention,
+            windows.fold.as_deref().unwrap_or_default(),
+            windows.rule()
+        )
+    } else {
+        error.into()
+    }
+}

@@ -1,0 +1,45 @@
+//! Which test windows to take, where no model says it.
+
+use super::dataset;
+use clap::Args;
+use ddl::data::{Convention, Window, WindowRule};
+use std::path::Path;
+
+/// The test windows of a fold.
+#[derive(Debug, Args)]
+pub(crate) struct TestWindows {
+    /// Data convention: star, social-gan or simulated
+    #[arg(long, default_value = "star")]
+    pub(crate) convention: Convention,
+    /// Scene to test on: eth, hotel, univ, zara1, zara2 (simulated: corridor, crossing, plaza, bottleneck,
+    /// doorway)
+    #[arg(long)]
+    pub(crate) fold: Option<String>,
+    /// Which stretches count as windows: published, complete, social-gan (at least 2 pedestrians) or social-gan-1
+    /// [default: that of the convention's headline tables: published, social-gan, complete]
+    #[arg(long)]
+    window_rule: Option<WindowRule>,
+}
+
+impl TestWindows {
+    /// The rule asked for, or the headline's.
+    pub(crate) fn rule(&self) -> WindowRule {
+        self.window_rule
+            .unwrap_or_else(|| self.convention.headline_rule())
+    }
+
+    /// The fold's name.
+    pub(crate) fn fold(&self) -> anyhow::Result<&str> {
+        let known: Vec<&str> = self.convention.fold_names().collect();
+        self.fold.as_deref().ok_or_else(|| {
+            anyhow::anyhow!("give the --fold to test on, one of {}", known.join(", "))
+        })
+    }
+
+    /// The windows, read from a folder of recordings or simulated.
+    pub(crate) fn windows(&self, data: Option<&Path>) -> anyhow::Result<Vec<Window>> {
+        let fold = self.fold()?;
+        let dataset = dataset(self.convention, data)?;
+        Ok(dataset.fold(fold)?.test_windows(self.rule()))
+    }
+}

@@ -1,0 +1,36 @@
+//! `ddl windows`.
+
+use super::test_windows::TestWindows;
+use crate::tracks::write_output;
+use clap::Args;
+use ddl::eval::foreign;
+use std::path::PathBuf;
+
+/// Write what is observed in the test windows of a fold, for another program to forecast
+///
+/// JSON lines, an object for each walker of each window: recording, `observed_until` (the last observed raw frame),
+/// pedestrian, and the 8 observed positions in metres, 0.4 s apart. Nothing of the future is in them. `ddl evaluate
+/// --forecasts` scores what the other program makes of them.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example:\n  ddl windows --convention star --fold zara1 --output windows.jsonl"
+)]
+pub(crate) struct Windows {
+    #[command(flatten)]
+    of: TestWindows,
+    /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
+    #[arg(long)]
+    data: Option<PathBuf>,
+    /// File to write [default: standard output]
+    #[arg(long, short)]
+    output: Option<PathBuf>,
+}
+
+impl Windows {
+    pub(crate) fn run(self) -> anyhow::Result<()> {
+        let windows = self.of.windows(self.data.as_deref())?;
+        let mut text = Vec::new();
+        foreign::write_windows(&windows, &mut text)?;
+        write_output(self.output.as_deref(), std::str::from_utf8(&text)?)
+    }
+}

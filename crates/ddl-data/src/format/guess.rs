@@ -1,0 +1,101 @@
+//! Which format a file of tracks is written in.
+
+use std::path::Path;
+
+use super::Format;
+
+impl Format {
+    /// The format of a file, told by its extension and its first lines.
+    ///
+    /// - `.ndjson` and `.jsonl`, or a first line that begins with `{`: [`TrajNet`](Self::TrajNet);
+    /// - `.txt`, or no comma in the first line of what is not called `.csv`: [`Obsmat`](Self::Obsmat) where it has 8 fields, else
+    ///   [`SocialGan`](Self::SocialGan);
+    /// - anything else: [`StarCsv`](Self::StarCsv) where it is four lines of numbers that are longer than four
+    ///   fields, else [`Table`](Self::Table).
+    ///
+    /// It is a guess for those who did not say: reading with the format guessed still checks everything.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_data::Format;
+    /// let obsmat = b"7.8e+02 1.0e+00 8.45 0.0 3.59 1.67 0.0 0.19\n";
+    /// assert_eq!(Format::guess("obsmat.txt".as_ref(), obsmat), Format::Obsmat);
+    /// assert_eq!(Format::guess("tracks.csv".as_ref(), b"frame,pedestrian,x,y\n"), Format::Table);
+    /// ```
+    #[must_use]
+    pub fn guess(path: &Path, bytes: &[u8]) -> Self {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+        let lines: Vec<&[u8]> = bytes.split(|&byte| byte == b'\n').take(6).collect();
+        let first = lines
+            .iter()
+            .find(|line| !line.trim_ascii().is_empty())
+            .map_or(&b""[..], |line| line.trim_ascii());
+        if ["ndjson", "jsonl"].contains(&extension) || first.starts_with(b"{") {
+            Self::TrajNet
+        } else if extension == "txt"
+            || (extension != "csv" && !first.is_empty() && !first.contains(&b','))
+        {
+            let fields = first
+                .split(u8::is_ascii_whitespace)
+                .filter(|field| !field.is_empty());
+            if fields.count() == 8 {
+                Self::Obsmat
+            } else {
+                Self::SocialGan
+            }
+        } else if is_star(&lines) {
+            Self::StarCsv
+        } else {
+            Self::Table
+        }
+    }
+}
+
+/// Four lines of numbers. Four lines of four numbers may as well be a table whose header was forgotten, which had
+/// better be refused than read the wrong way round.
+fn is_star(lines: &[&[u8]]) -> bool {
+    let filled = lines.iter().filter(|line| !line.trim_ascii().is_empty());
+    let number = |field: &[u8]| {
+        let text = std::str::from_utf8(field).unwrap_or("");
+        text.trim().parse::<f64>().is_ok()
+    };
+    filled.clone().count() == 4
+        && filled.into_iter().all(|line| {
+            line.split(|&byte| byte == b',').count() != 4
+                && line.split(|&byte| byte == b',').next().is_some_and(number)
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_format_is_told_from_the_others() {
+        for (name, text, format) in [
+            ("a.ndjson", "", Format::TrajNet),
+            ("a", "\n {\"scene\": {}}", Format::TrajNet),
+            ("a.txt", "0 1 2 3 4 5 6 7\n", Format::Obsmat),
+            ("a.txt", "0\t1\t2\t3\n", Format::SocialGan),
+            ("a", "0 1 2 3\n", Format::SocialGan),
+            (
+                "a.csv",
+                "0,1,2,3,4\n1,1,1,1,1\n0,0,0,0,0\n1,1,1,1,1\n",
+                Format::StarCsv,
+            ),
+            ("a.csv", "frame,pedestrian,x,y\n0,1,2,3\n", Format::Table),
+            (
+                "a.csv",
+                "0,1,2,3\n0,1,2,3\n0,1,2,3\n0,1,2,3\n",
+                Format::Table,
+            ),
+            ("a.csv", "", Format::Table),
+        ] {
+            assert_eq!(
+                Format::guess(name.as_ref(), text.as_bytes()),
+                format,
+                "{name} {text:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Forecasts of nobody: whose they are, and what may be the reason.
+
+use super::walkers::{Walkers, Who, last_observed, named};
+
+/// How many are named in a message.
+pub(super) const NAMED: usize = 3;
+
+/// Forecasts that belong to no walker of the windows.
+#[derive(Debug, Default)]
+pub(super) struct Unknown {
+    pub(super) count: usize,
+    pub(super) first: Vec<String>,
+    /// The first recordings that the windows do not have.
+    recordings: Vec<String>,
+    /// How many would fit if the frame named were the first of the window.
+    as_first_frame: usize,
+    /// How many would fit if it were the first to forecast.
+    as_next_frame: usize,
+    frames: Option<(i64, i64)>,
+}
+
+impl Unknown {
+    pub(super) fn remember(
+        &mut self,
+        who: &Who,
+        recording: Option<&str>,
+        as_first_frame: bool,
+        as_next_frame: bool,
+    ) {
+        self.count += 1;
+        let name = who.recording.as_deref().or(recording);
+        if self.first.len() < NAMED {
+            let text = named(name, who.observed_until, who.pedestrian);
+            self.first.push(text);
+        }
+        if let (None, Some(name)) = (recording, name)
+            && self.recordings.len() < NAMED
+            && !self.recordings.iter().any(|known| known == name)
+        {
+            self.recordings.push(name.to_owned());
+        }
+        self.as_first_frame += usize::from(as_first_frame);
+        self.as_next_frame += usize::from(as_next_frame);
+        let frame = who.observed_until;
+        let (least, greatest) = self.frames.unwrap_or((frame, frame));
+        self.frames = Some((least.min(frame), greatest.max(frame)));
+    }
+}
+
+impl Walkers<'_> {
+    /// What may be the reason that forecasts are of nobody.
+    pub(super) fn hint(&self) -> String {
+        let unknown = &self.unknown;
+        if !unknown.recordings.is_empty() {
+            return format!(
+                "the windows are of {}, the file also of {}; is it of another fold?",
+                self.recordings.join(" and "),
+                unknown.recordings.join(" and ")
+            );
+        }
+        let most = unknown.count / 2;
+        if unknown.as_first_frame > most {
+            return "most would fit if observed_until were the first frame of a window; it is the last observed one"
+                .to_owned();
+        }
+        if unknown.as_next_frame > most {
+            return "most would fit if observed_until were the first frame forecast; it is the last observed one"
+                .to_owned();
+        }
+        let of_windows = self.windows.iter().map(last_observed);
+        let (least, greatest) = (of_windows.clone().min(), of_windows.max());
+        match (unknown.frames, least, greatest) {
+            (Some((from, to)), Some(least), Some(greatest)) => format!(
+                "their frames run from {from} to {to}, those of the windows from {least} to {greatest}; is the \
+                 file of another fold, data convention or window rule?"
+            ),
+            _ => "is the file of another fold, data convention or window rule?".to_owned(),
+        }
+    }
+}

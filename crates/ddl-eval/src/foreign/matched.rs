@@ -1,0 +1,186 @@
+//! Forecasts in the order of the windows.
+
+use ddl_data::{HORIZON, Position, Window};
+
+use super::error::{ForeignError, ForeignProblem};
+use super::hint::NAMED;
+use super::lines::whole_line;
+use super::walkers::{Slot, Walkers, last_observed, named};
+use crate::Forecast;
+
+/// What to do where a file and the windows are not of the same walkers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Coverage {
+    /// It is an error: every walker must be forecast, and nobody else.
+    #[default]
+    Whole,
+    /// The walkers that are in both are scored, and the result says how many they are of how many.
+    Intersection,
+}
+
+/// Windows and the forecasts of a file for them, one each, in the order of the windows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Matched {
+    /// The windows, reduced to the walkers who are forecast.
+    pub windows: Vec<Window>,
+    /// Their forecasts.
+    pub forecasts: Vec<Forecast>,
+    file: String,
+    walkers: usize,
+}
+
+impl Matched {
+    pub(super) fn named_after(self, file: String) -> Self {
+        Self { file, ..self }
+    }
+
+    /// The name of the file, without its folder.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Walkers who are forecast, counted once for each window.
+    #[must_use]
+    pub fn forecast_walkers(&self) -> usize {
+        self.windows.iter().map(Window::len).sum()
+    }
+
+    /// Walkers that the windows asked for.
+    #[must_use]
+    pub fn walkers(&self) -> usize {
+        self.walkers
+    }
+
+    /// The words by which a result names that it is of a part of the walkers; `None` where it is of all.
+    ///
+    /// They name the file and both counts: such a result is comparable with nothing but the rows measured with it.
+    #[must_use]
+    pub fn test_subset(&self) -> Option<String> {
+        let scored = self.forecast_walkers();
+        (scored < self.walkers).then(|| {
+            format!(
+                "walkers forecast by {}: {scored} of {}",
+                self.file, self.walkers
+            )
+        })
+    }
+}
+
+impl Walkers<'_> {
+    /// The forecasts, once the whole file is read.
+    pub(super) fn matched(self, coverage: Coverage) -> Result<Matched, ForeignError> {
+        let all: usize = self.windows.iter().map(Window::len).sum();
+        let found = self.slots.iter().flatten().flatten().count();
+        if self.forecasts == 0 {
+            return Err(self.wrong(1, ForeignProblem::Empty));
+        }
+        let refused = match coverage {
+            Coverage::Whole => self.unknown.count > 0,
+            Coverage::Intersection => found == 0,
+        };
+        if refused {
+            return Err(ForeignError::Unknown {
+                hint: self.hint(),
+                origin: self.origin,
+                unknown: self.unknown.count,
+                forecasts: self.forecasts,
+                first: self.unknown.first,
+            });
+        }
+        if coverage == Coverage::Whole && found < all {
+            return Err(ForeignError::Missing {
+                missing: all - found,
+                walkers: all,
+                first: self.first_missing(),
+                origin: self.origin,
+            });
+        }
+        self.refuse_conflicts()?;
+        let mut matched = Matched {
+            windows: Vec::with_capacity(self.windows.len()),
+            forecasts: Vec::with_capacity(self.windows.len()),
+            file: self.origin.clone(),
+            walkers: all,
+        };
+        for (window, slots) in self.windows.iter().zip(self.slots) {
+            let Some(kept) = window.keeping(|i| slots[i].is_some()) else {
+                continue;
+            };
+            let slots: Vec<Slot> = slots.into_iter().flatten().collect();
+            matched.windows.push(kept);
+            let forecast = forecast(slots).map_err(|source| ForeignError::Shape {
+                origin: self.origin.clone(),
+                source,
+            })?;
+            matched.forecasts.push(forecast);
+        }
+        Ok(matched)
+    }
+
+    fn first_missing(&self) -> Vec<String> {
+        let rows = self.windows.iter().zip(&self.slots);
+        rows.flat_map(|(window, slots)| {
+            let people = window.pedestrians().iter().zip(slots);
+            people.map(move |(pedestrian, slot)| (window, pedestrian, slot))
+        })
+        .filter(|(_, _, slot)| slot.is_none())
+        .take(NAMED)
+        .map(|(window, pedestrian, _)| {
+            named(
+                Some(window.recording()),
+                last_observed(window),
+                pedestrian.0,
+            )
+        })
+        .collect()
+    }
+
+    fn refuse_conflicts(&self) -> Result<(), ForeignError> {
+        for (window, slots) in self.windows.iter().zip(&self.slots) {
+            for (pedestrian, slot) in window.pedestrians().iter().zip(slots) {
+                if let Some(slot) = slot
+                    && let Some(line) = slot.conflict
+                {
+                    let problem = ForeignProblem::Neighbours {
+                        pedestrian: pedestrian.0,
+                        first_line: slot.line,
+                    };
+                    return Err(self.wrong(line, problem));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn wrong(&self, line: usize, problem: ForeignProblem) -> ForeignError {
+        let (field, problem) = whole_line(problem);
+        ForeignError::Line {
+            origin: self.origin.clone(),
+            line,
+            field,
+            problem,
+        }
+    }
+}
+
+/// One window's forecast from those of its walkers.
+fn forecast(slots: Vec<Slot>) -> Result<Forecast, crate::ForecastShapeError> {
+    let pedestrians = slots.len();
+    let hypotheses = slots.first().map_or(0, |slot| slot.forecast.hypotheses());
+    let mut positions: Vec<Position> = Vec::with_capacity(pedestrians * hypotheses * HORIZON);
+    let mut weights = Vec::with_capacity(pedestrians * hypotheses);
+    let mut goals: Option<Vec<Position>> = None;
+    for slot in slots {
+        let walker = slot.forecast;
+        positions.extend(walker.positions);
+        match walker.weights {
+            Some(own) => weights.extend(own),
+            None => weights.extend(std::iter::repeat_n(1.0 / hypotheses as f64, hypotheses)),
+        }
+        if let Some(own) = walker.goals {
+            goals.get_or_insert_default().extend(own);
+        }
+    }
+    Forecast::new(pedestrians, hypotheses, positions, weights, goals)
+}

@@ -1,0 +1,300 @@
+//! TrajNet++ ndjson: scenes of 8 observed and 12 forecast frames, and the tracks that were forecast in them.
+//!
+//! A scene stands for the window of its recording that starts at its first frame. Its primary pedestrian is forecast
+//! for its own sake; a neighbour's forecast counts where no scene of the window has that walker as its primary
+//! one. Neighbours who are not in the window (they left before its end) are not scored, and left out.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::io::BufRead;
+
+use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use serde::Deserialize;
+use serde_json::{Map, Value};
+
+use super::error::{ForeignError, ForeignProblem};
+use super::lines::{Lines, Wrong, in_field, whole_line};
+use super::repair::{self, finite, kind, optional, required, whole};
+use super::walkers::{WalkerForecast, Walkers, Who, frames_ahead, in_short};
+
+/// Lines and fields of other names may stand between.
+#[derive(Debug, Deserialize)]
+struct Line {
+    scene: Option<Scene>,
+    track: Option<Track>,
+}
+
+/// `recording` is an addition of ours, for folds of several recordings.
+#[derive(Debug, Clone, Deserialize)]
+struct Scene {
+    id: i64,
+    p: i64,
+    s: i64,
+    e: i64,
+    recording: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Track {
+    f: i64,
+    p: i64,
+    x: f64,
+    y: f64,
+    prediction_number: Option<i64>,
+    scene_id: Option<i64>,
+}
+
+/// What one pedestrian of a scene is forecast to do: for each prediction number, frames and positions.
+type Predictions = BTreeMap<i64, Vec<(i64, Position)>>;
+
+/// The scene whose tracks are being read.
+#[derive(Debug)]
+struct Open {
+    id: i64,
+    /// By pedestrian, with the line of the first row.
+    tracks: BTreeMap<i64, (usize, Predictions)>,
+}
+
+pub(super) fn read(
+    mut lines: Lines<impl BufRead>,
+    walkers: &mut Walkers<'_>,
+) -> Result<(), ForeignError> {
+    let mut reading = Reading::new(walkers);
+    while let Some((number, text)) = lines.next_line()? {
+        let line = serde_json::from_str(text).or_else(|_| field_by_field(text));
+        let taken = line
+            .map_err(|wrong| (number, wrong))
+            .and_then(|line: Line| reading.take(line, number));
+        if let Err((number, wrong)) = taken {
+            return Err(lines.wrong(number, wrong));
+        }
+    }
+    let closed = reading.close();
+    closed.map_err(|(number, wrong)| lines.wrong(number, wrong))
+}
+
+#[derive(Debug)]
+struct Reading<'w, 'a> {
+    walkers: &'w mut Walkers<'a>,
+    /// Window of a recording's index and a first frame.
+    by_start: HashMap<(usize, i64), usize>,
+    scenes: HashMap<i64, Scene>,
+    finished: HashSet<i64>,
+    open: Option<Open>,
+}
+
+impl<'w, 'a> Reading<'w, 'a> {
+    fn new(walkers: &'w mut Walkers<'a>) -> Self {
+        let windows = walkers.windows.iter().enumerate();
+        let by_start = windows
+            .filter_map(|(index, window)| {
+                let recording = walkers
+                    .recordings
+                    .iter()
+                    .position(|&r| r == window.recording())?;
+                Some(((recording, window.start_frame()), index))
+            })
+            .collect();
+        Self {
+            walkers,
+            by_start,
+            scenes: HashMap::new(),
+            finished: HashSet::new(),
+            open: None,
+        }
+    }
+
+    fn take(&mut self, line: Line, number: usize) -> Result<(), (usize, Wrong)> {
+        if let Some(scene) = line.scene {
+            let id = scene.id;
+            if self.scenes.insert(id, scene).is_some() {
+                let problem = ForeignProblem::ScatteredScene { scene: id };
+                return Err((number, in_field("scene.id", problem)));
+            }
+        }
+        let Some(track) = line.track else {
+            return Ok(());
+        };
+        // Tracks without a number were observed.
+        let Some(prediction) = track.prediction_number else {
+            return Ok(());
+        };
+        let missing = || in_field("track.scene_id", ForeignProblem::Missing);
+        let id = track.scene_id.ok_or_else(|| (number, missing()))?;
+        if self.open.as_ref().is_none_or(|open| open.id != id) {
+            self.close()?;
+            let wrong = |problem| Err((number, in_field("track.scene_id", problem)));
+            if self.finished.contains(&id) {
+                return wrong(ForeignProblem::ScatteredScene { scene: id });
+            }
+            if !self.scenes.contains_key(&id) {
+                return wrong(ForeignProblem::UnknownScene { scene: id });
+            }
+            let tracks = BTreeMap::new();
+            self.open = Some(Open { id, tracks });
+        }
+        if let Some(open) = &mut self.open {
+            let (_, predictions) = open
+                .tracks
+                .entry(track.p)
+                .or_insert_with(|| (number, Predictions::new()));
+            let rows = predictions.entry(prediction).or_default();
+            rows.push((track.f, [track.x, track.y]));
+        }
+        Ok(())
+    }
+
+    /// Hands over the walkers of the open scene, whose tracks are complete.
+    fn close(&mut self) -> Result<(), (usize, Wrong)> {
+        let Some(open) = self.open.take() else {
+            return Ok(());
+        };
+        self.finished.insert(open.id);
+        let Some(scene) = self.scenes.get(&open.id).cloned() else {
+            return Ok(());
+        };
+        let first_line = open
+            .tracks
+            .values()
+            .map(|(line, _)| *line)
+            .min()
+            .unwrap_or(1);
+        let recording = self.walkers.recording(scene.recording.as_deref());
+        let recording = recording.map_err(|wrong| (first_line, wrong))?;
+        let window = recording.and_then(|r| self.by_start.get(&(r, scene.s)));
+        let window: Option<&'a Window> = window.map(|&index| &self.walkers.windows[index]);
+        if let Some(window) = window {
+            check_end(window, &scene).map_err(|wrong| (first_line, wrong))?;
+        }
+        for (pedestrian, (line, predictions)) in open.tracks {
+            let primary = pedestrian == scene.p;
+            let in_window =
+                window.is_some_and(|w| w.pedestrians().iter().any(|p| p.0 == pedestrian));
+            if !primary && !in_window {
+                continue;
+            }
+            let observed_until =
+                window.map_or_else(|| self.unknown_last(&scene), |w| w.frames()[OBSERVED - 1]);
+            let who = Who {
+                recording: scene.recording.clone(),
+                observed_until,
+                pedestrian,
+            };
+            let forecast = forecast(predictions, window).map_err(|wrong| (line, wrong))?;
+            let put = self.walkers.put(&who, forecast, line, primary);
+            put.map_err(|wrong| (line, wrong))?;
+        }
+        Ok(())
+    }
+
+    /// The last observed frame of a scene that is no window, for messages.
+    fn unknown_last(&self, scene: &Scene) -> i64 {
+        let step = self.walkers.windows.first().map_or(1, Window::frame_step);
+        scene.s.saturating_add((OBSERVED as i64 - 1) * step)
+    }
+}
+
+/// A scene of 9 + 12 frames, or of another step, is not the window.
+fn check_end(window: &Window, scene: &Scene) -> Result<(), Wrong> {
+    let last = frames_ahead(window).map(|frames| frames.last().copied());
+    if last.contains(&Some(scene.e)) {
+        return Ok(());
+    }
+    let problem = ForeignProblem::Frames {
+        expected: format!("{} to {}", scene.s, last[0].unwrap_or_default()),
+        found: format!("{} to {}", scene.s, scene.e),
+    };
+    Err(in_field(format!("scene {}", scene.id), problem))
+}
+
+/// All hypotheses of a pedestrian, by their numbers.
+fn forecast(predictions: Predictions, window: Option<&Window>) -> Result<WalkerForecast, Wrong> {
+    let mut forecast = WalkerForecast::default();
+    for (number, mut rows) in predictions {
+        let path = || format!("prediction_number {number}");
+        rows.sort_by_key(|&(frame, _)| frame);
+        if rows.len() != HORIZON {
+            let (expected, found) = (HORIZON, rows.len());
+            return Err(in_field(path(), ForeignProblem::Length { expected, found }));
+        }
+        let frames: Vec<i64> = rows.iter().map(|&(frame, _)| frame).collect();
+        if let Some(window) = window {
+            let ahead = frames_ahead(window);
+            if !ahead.contains(&frames) {
+                let problem = ForeignProblem::Frames {
+                    expected: in_short(&ahead[0]),
+                    found: in_short(&frames),
+                };
+                return Err(in_field(path(), problem));
+            }
+        }
+        forecast
+            .positions
+            .extend(rows.into_iter().map(|(_, position)| position));
+    }
+    if forecast.positions.is_empty() {
+        return Err(whole_line(ForeignProblem::NoHypothesis));
+    }
+    Ok(forecast)
+}
+
+fn field_by_field(text: &str) -> Result<Line, Wrong> {
+    let object = repair::object(text)?;
+    Ok(Line {
+        scene: section(&object, "scene", scene)?,
+        track: section(&object, "track", track)?,
+    })
+}
+
+fn section<T>(
+    object: &Map<String, Value>,
+    key: &str,
+    read: impl Fn(&Map<String, Value>) -> Result<T, Wrong>,
+) -> Result<Option<T>, Wrong> {
+    match optional(object, key) {
+        None => Ok(None),
+        Some(Value::Object(section)) => read(section).map(Some),
+        Some(other) => Err(in_field(key, kind("an object", other))),
+    }
+}
+
+fn scene(object: &Map<String, Value>) -> Result<Scene, Wrong> {
+    let number = |key: &str| {
+        let path = format!("scene.{key}");
+        whole(required(object, key, &path)?, &path)
+    };
+    let recording = match optional(object, "recording") {
+        None => None,
+        Some(Value::String(name)) => Some(name.clone()),
+        Some(other) => return Err(in_field("scene.recording", kind("a name in quotes", other))),
+    };
+    Ok(Scene {
+        id: number("id")?,
+        p: number("p")?,
+        s: number("s")?,
+        e: number("e")?,
+        recording,
+    })
+}
+
+fn track(object: &Map<String, Value>) -> Result<Track, Wrong> {
+    let number = |key: &str| {
+        let path = format!("track.{key}");
+        whole(required(object, key, &path)?, &path)
+    };
+    let or_none = |key: &str| match optional(object, key) {
+        None => Ok(None),
+        Some(value) => whole(value, &format!("track.{key}")).map(Some),
+    };
+    let coordinate = |key: &str| {
+        let path = format!("track.{key}");
+        finite(required(object, key, &path)?, &path)
+    };
+    Ok(Track {
+        f: number("f")?,
+        p: number("p")?,
+        x: coordinate("x")?,
+        y: coordinate("y")?,
+        prediction_number: or_none("prediction_number")?,
+        scene_id: or_none("scene_id")?,
+    })
+}

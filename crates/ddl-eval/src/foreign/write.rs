@@ -1,0 +1,117 @@
+//! What another program reads, and our own forecasts in the same words.
+
+use std::io::Write;
+
+use ddl_data::{Position, Window};
+use serde::Serialize;
+
+use super::error::ForeignError;
+use super::walkers::last_observed;
+use crate::Forecast;
+
+#[derive(Serialize)]
+struct Walker<'a> {
+    recording: &'a str,
+    observed_until: i64,
+    pedestrian: i64,
+    observed: &'a [Position],
+}
+
+#[derive(Serialize)]
+struct Forecasts<'a> {
+    recording: &'a str,
+    observed_until: i64,
+    pedestrian: i64,
+    hypotheses: Vec<Hypothesis<'a>>,
+}
+
+#[derive(Serialize)]
+struct Hypothesis<'a> {
+    weight: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    goal: Option<Position>,
+    positions: &'a [Position],
+}
+
+/// Writes what was observed, and nothing of the future, as JSON lines: an object for each walker of each window.
+///
+/// The lines of a window stand together: those who are seen together have the same `recording` and
+/// `observed_until`. Positions are `[x, y]` in metres, 0.4 s apart, the last one at `observed_until`; reading them
+/// back gives the same bits.
+///
+/// ```text
+/// {"recording":"zara01","observed_until":70,"pedestrian":3,"observed":[[x,y], ... 8 of them]}
+/// ```
+///
+/// # Errors
+/// [`ForeignError::Io`] when it cannot be written.
+pub fn write_windows(windows: &[Window], mut writer: impl Write) -> Result<(), ForeignError> {
+    for window in windows {
+        for (i, pedestrian) in window.pedestrians().iter().enumerate() {
+            let line = Walker {
+                recording: window.recording(),
+                observed_until: last_observed(window),
+                pedestrian: pedestrian.0,
+                observed: window.observed(i),
+            };
+            write_line(&mut writer, &line)?;
+        }
+    }
+    writer.flush().map_err(cannot_write)
+}
+
+/// Writes forecasts as the JSON lines that [`read`](super::read) takes back, bit by bit; verdicts of certificates are
+/// left out.
+///
+/// # Errors
+/// Windows and forecasts are not of the same pedestrians, or it cannot be written.
+pub fn write_forecasts(
+    windows: &[Window],
+    forecasts: &[Forecast],
+    mut writer: impl Write,
+) -> Result<(), ForeignError> {
+    if windows.len() != forecasts.len() {
+        let (windows, forecasts) = (windows.len(), forecasts.len());
+        return Err(ForeignError::Count { windows, forecasts });
+    }
+    for (window, forecast) in windows.iter().zip(forecasts) {
+        if window.len() != forecast.pedestrians() {
+            return Err(crate::EvaluationError::Pedestrians {
+                recording: window.recording().to_owned(),
+                start_frame: window.start_frame(),
+                expected: window.len(),
+                found: forecast.pedestrians(),
+            }
+            .into());
+        }
+        for (i, pedestrian) in window.pedestrians().iter().enumerate() {
+            let hypotheses = (0..forecast.hypotheses())
+                .map(|k| Hypothesis {
+                    weight: forecast.weight(i, k),
+                    goal: forecast.goal(i, k),
+                    positions: forecast.hypothesis(i, k),
+                })
+                .collect();
+            let line = Forecasts {
+                recording: window.recording(),
+                observed_until: last_observed(window),
+                pedestrian: pedestrian.0,
+                hypotheses,
+            };
+            write_line(&mut writer, &line)?;
+        }
+    }
+    writer.flush().map_err(cannot_write)
+}
+
+fn write_line(writer: &mut impl Write, line: &impl Serialize) -> Result<(), ForeignError> {
+    serde_json::to_writer(&mut *writer, line).map_err(|error| cannot_write(error.into()))?;
+    writer.write_all(b"\n").map_err(cannot_write)
+}
+
+fn cannot_write(source: std::io::Error) -> ForeignError {
+    ForeignError::Io {
+        origin: "cannot write".to_owned(),
+        source,
+    }
+}

@@ -1,0 +1,236 @@
+//! What must hold of files of forecasts, whatever is in them.
+
+use std::fmt::Write as _;
+
+use ddl_data::{HORIZON, OBSERVED, PedestrianId, Position, Window};
+use ddl_eval::Forecast;
+use ddl_eval::foreign::{self, Coverage, ForeignFormat};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use serde_json::{Value, json};
+
+/// Any finite number, as other programs print them.
+fn coordinate() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        -1e3..1e3_f64,
+        prop::num::f64::NORMAL,
+        prop::num::f64::SUBNORMAL,
+        Just(-0.0)
+    ]
+}
+
+fn position() -> impl Strategy<Value = Position> {
+    (coordinate(), coordinate()).prop_map(|(x, y)| [x, y])
+}
+
+/// Windows of two recordings, and forecasts of them with K hypotheses, with goals or without.
+fn forecast_windows() -> impl Strategy<Value = (Vec<Window>, Vec<Forecast>)> {
+    let shapes = (vec(1..4_usize, 1..5), 1..4_usize, any::<bool>());
+    shapes.prop_flat_map(|(sizes, k, with_goals)| {
+        let windows: Vec<_> = sizes
+            .into_iter()
+            .enumerate()
+            .map(|(index, n)| {
+                let tracks = vec(vec(position(), 20), n);
+                let positions = vec(position(), n * k * HORIZON);
+                let (weights, goals) = (vec(0.01..1.0_f64, n * k), vec(position(), n * k));
+                (tracks, positions, weights, goals).prop_map(move |parts| {
+                    let (tracks, positions, mut weights, goals) = parts;
+                    for row in weights.chunks_mut(k) {
+                        let sum: f64 = row.iter().sum();
+                        for weight in row {
+                            *weight /= sum;
+                        }
+                    }
+                    let ids = (0..).take(n).map(|id| PedestrianId(7 * id - 3)).collect();
+                    let name = if index % 2 == 0 {
+                        "yard"
+                    } else {
+                        "a \"quoted\" ünusual name"
+                    };
+                    let start = 6 * index as i64 - 9;
+                    let window = Window::new(name, start, 6, ids, tracks).unwrap();
+                    let goals = with_goals.then_some(goals);
+                    (
+                        window,
+                        Forecast::new(n, k, positions, weights, goals).unwrap(),
+                    )
+                })
+            })
+            .collect();
+        windows.prop_map(|pairs| pairs.into_iter().unzip())
+    })
+}
+
+fn written(windows: &[Window], forecasts: &[Forecast]) -> String {
+    let mut bytes = Vec::new();
+    foreign::write_forecasts(windows, forecasts, &mut bytes).unwrap();
+    String::from_utf8(bytes).unwrap()
+}
+
+proptest! {
+    #[test]
+    fn what_is_written_is_read_back_to_the_bit_in_any_order(
+        (windows, forecasts) in forecast_windows(),
+        seed in any::<prop::sample::Index>(),
+    ) {
+        let text = written(&windows, &forecasts);
+        let mut lines: Vec<&str> = text.lines().collect();
+        let by = seed.index(lines.len());
+        lines.rotate_left(by);
+        let text = lines.join("\n");
+        let matched = foreign::read_from(
+            text.as_bytes(), "f", ForeignFormat::JsonLines, &windows, Coverage::Whole,
+        ).unwrap();
+        prop_assert_eq!(&matched.forecasts, &forecasts);
+        prop_assert_eq!(&matched.windows, &windows);
+        // equal numbers may differ in the sign of zero; their text does not
+        prop_assert_eq!(written(&matched.windows, &matched.forecasts), written(&windows, &forecasts));
+    }
+
+    #[test]
+    fn windows_are_written_without_their_future((windows, _) in forecast_windows()) {
+        let (mut whole, mut observed) = (Vec::new(), Vec::new());
+        foreign::write_windows(&windows, &mut whole).unwrap();
+        let blind: Vec<Window> = windows.iter().map(Window::without_future).collect();
+        foreign::write_windows(&blind, &mut observed).unwrap();
+        prop_assert_eq!(&whole, &observed);
+        let text = String::from_utf8(whole).unwrap();
+        let mut lines = text.lines();
+        for window in &windows {
+            for (i, pedestrian) in window.pedestrians().iter().enumerate() {
+                let line: Value = serde_json::from_str(lines.next().unwrap()).unwrap();
+                prop_assert_eq!(line["recording"].as_str(), Some(window.recording()));
+                prop_assert_eq!(line["observed_until"].as_i64(), Some(window.frames()[OBSERVED - 1]));
+                prop_assert_eq!(line["pedestrian"].as_i64(), Some(pedestrian.0));
+                let read: Vec<Position> = serde_json::from_value(line["observed"].clone()).unwrap();
+                prop_assert_eq!(&read[..], window.observed(i));
+                prop_assert_eq!(line.as_object().unwrap().len(), 4);
+            }
+        }
+        prop_assert_eq!(lines.next(), None);
+    }
+
+    #[test]
+    fn no_bytes_make_a_reader_panic(bytes in vec(any::<u8>(), 0..300), (windows, _) in forecast_windows()) {
+        for format in ForeignFormat::ALL {
+            for coverage in [Coverage::Whole, Coverage::Intersection] {
+                let _ = foreign::read_from(&bytes[..], "f", format, &windows, coverage);
+            }
+        }
+    }
+
+    #[test]
+    fn no_text_of_the_right_words_makes_a_reader_panic(
+        text in "(\\{|\\}|\\[|\\]|,|:|\"|\n|[-0-9.e]|NaN|null|-Infinity|\"track\":|\"scene\":|\"p\":|\"scene_id\":0|\"prediction_number\":0|\"observed_until\":|\"pedestrian\":|\"hypotheses\":|\"positions\":|observed_until|pedestrian|frame|x|y){0,80}",
+        (windows, _) in forecast_windows(),
+    ) {
+        for format in ForeignFormat::ALL {
+            let _ = foreign::read_from(text.as_bytes(), "f", format, &windows, Coverage::Intersection);
+        }
+    }
+
+    /// A file with a few bytes changed is read, or refused, and what is read makes forecasts.
+    #[test]
+    fn no_change_of_a_valid_file_makes_a_reader_panic(
+        (windows, forecasts) in forecast_windows(),
+        changes in vec((any::<prop::sample::Index>(), any::<u8>(), 0..3), 1..5),
+    ) {
+        for (format, text) in [
+            (ForeignFormat::JsonLines, written(&windows, &forecasts)),
+            (ForeignFormat::Table, as_table(&windows, &forecasts)),
+            (ForeignFormat::TrajNet, as_trajnet(&windows, &forecasts)),
+        ] {
+            let mut bytes = text.into_bytes();
+            let whole = foreign::read_from(&bytes[..], "f", format, &windows, Coverage::Whole);
+            prop_assert_eq!(whole.unwrap().forecasts.len(), windows.len());
+            for (place, byte, kind) in &changes {
+                let index = place.index(bytes.len());
+                match kind {
+                    0 => bytes[index] = *byte,
+                    1 => bytes.insert(index, *byte),
+                    _ => bytes.truncate(index.max(1)),
+                }
+            }
+            if let Ok(matched) = foreign::read_from(&bytes[..], "f", format, &windows, Coverage::Intersection) {
+                for (window, forecast) in matched.windows.iter().zip(&matched.forecasts) {
+                    prop_assert_eq!(window.len(), forecast.pedestrians());
+                }
+            }
+        }
+    }
+
+    /// Tables and TrajNet++ carry the same positions, bit by bit.
+    #[test]
+    fn the_other_formats_carry_the_same_positions((windows, forecasts) in forecast_windows()) {
+        for (format, text) in [
+            (ForeignFormat::Table, as_table(&windows, &forecasts)),
+            (ForeignFormat::TrajNet, as_trajnet(&windows, &forecasts)),
+        ] {
+            let matched = foreign::read_from(text.as_bytes(), "f", format, &windows, Coverage::Whole).unwrap();
+            for (read, forecast) in matched.forecasts.iter().zip(&forecasts) {
+                for (i, k) in pairs(forecast) {
+                    prop_assert_eq!(read.hypothesis(i, k), forecast.hypothesis(i, k));
+                    if format == ForeignFormat::Table {
+                        prop_assert_eq!(read.weight(i, k).to_bits(), forecast.weight(i, k).to_bits());
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn pairs(forecast: &Forecast) -> Vec<(usize, usize)> {
+    let hypotheses = forecast.hypotheses();
+    (0..forecast.pedestrians())
+        .flat_map(|i| (0..hypotheses).map(move |k| (i, k)))
+        .collect()
+}
+
+fn as_table(windows: &[Window], forecasts: &[Forecast]) -> String {
+    let mut text = "recording,observed_until,pedestrian,hypothesis,weight,frame,x,y\n".to_owned();
+    for (window, forecast) in windows.iter().zip(forecasts) {
+        for (i, k) in pairs(forecast) {
+            let positions = forecast
+                .hypothesis(i, k)
+                .iter()
+                .zip(&window.frames()[OBSERVED..]);
+            for ([x, y], frame) in positions {
+                writeln!(
+                    text,
+                    "{},{},{},{k},{},{frame},{x:?},{y:?}",
+                    window.recording(),
+                    window.frames()[OBSERVED - 1],
+                    window.pedestrians()[i],
+                    forecast.weight(i, k)
+                )
+                .unwrap();
+            }
+        }
+    }
+    text
+}
+
+/// Every walker is the primary one of a scene of its own.
+fn as_trajnet(windows: &[Window], forecasts: &[Forecast]) -> String {
+    let (mut text, mut id) = (String::new(), 0);
+    for (window, forecast) in windows.iter().zip(forecasts) {
+        let frames = window.frames();
+        for (i, pedestrian) in window.pedestrians().iter().enumerate() {
+            let (s, e) = (frames[0], frames[19]);
+            let scene = json!({"id": id, "p": pedestrian.0, "s": s, "e": e, "recording": window.recording()});
+            writeln!(text, "{}", json!({"scene": scene})).unwrap();
+            for k in 0..forecast.hypotheses() {
+                let positions = forecast.hypothesis(i, k).iter().zip(&frames[OBSERVED..]);
+                for ([x, y], f) in positions {
+                    let track = json!({
+                        "f": f, "p": pedestrian.0, "x": x, "y": y, "prediction_number": k, "scene_id": id,
+                    });
+                    writeln!(text, "{}", json!({"track": track})).unwrap();
+                }
+            }
+            id += 1;
+        }
+    }
+    text
+}
