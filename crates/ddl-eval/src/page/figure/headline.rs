@@ -48,13 +48,16 @@ fn columns(line: &StandingLine) -> Vec<Option<[f64; 2]>> {
 }
 
 fn wide(lines: &[StandingLine], names: &[String], largest: f64, title: &str) -> Drawing {
-    let (width, left, gap, top) = (1080.0, 250.0, 22.0, 44.0);
+    let (width, left, gap, top) = (1080.0, 312.0, 20.0, 34.0);
     let column = (width - left - gap * names.len() as f64) / names.len() as f64;
     let bottom = top + LINE * lines.len() as f64;
     let mut drawing = Drawing::new(width, bottom + 44.0, title);
     for (row, line) in lines.iter().enumerate() {
         let y = top + LINE * (row as f64 + 0.5);
-        drawing.text(name_class(row), [0.0, y + 4.0], shortened(&line.label, 36));
+        let class = format!("small {}", name_class(row));
+        drawing.text(&class, [0.0, y + 4.0], shortened(&line.label, 44));
+        let guesses = format!("K = {}", line.hypotheses);
+        drawing.text("small end", [left, y + 4.0], guesses);
     }
     for (at, name) in names.iter().enumerate() {
         let x = left + gap + (column + gap) * at as f64;
@@ -98,7 +101,7 @@ fn narrow(lines: &[StandingLine], names: &[String], largest: f64, title: &str) -
             drawing.text(
                 &format!("small halo {}", name_class(row)),
                 [0.0, y - 4.0],
-                shortened(&line.label, 40),
+                format!("{}, K = {}", shortened(&line.label, 44), line.hypotheses),
             );
             dumbbell(
                 &mut drawing,
@@ -127,7 +130,6 @@ fn axis(
     for (at, (value, label)) in ticks.iter().enumerate() {
         let x = scale.at(*value);
         drawing.line(if at == 0 { "axis" } else { "grid" }, [x, top], [x, bottom]);
-        let unit = if at == 0 { " m" } else { "" };
         let class = match at {
             0 => "small",
             _ if at + 1 == ticks.len() && right - x < 14.0 => "small end",
@@ -138,7 +140,7 @@ fn axis(
         } else {
             x.max(left)
         };
-        drawing.text(class, [x, bottom + 14.0], format!("{label}{unit}"));
+        drawing.text(class, [x, bottom + 14.0], label);
     }
 }
 
