@@ -117,10 +117,10 @@ fn panel(fold: &str, quantity: &str, series: &[Series<'_>], all: &[f64]) -> Opti
         },
     );
     drawing.data("loss", quantity);
-    drawing.data("left", LEFT);
-    drawing.data("right", right);
-    drawing.data("first", first);
-    drawing.data("last", last);
+    drawing.data("left", LEFT.to_string());
+    drawing.data("right", right.to_string());
+    drawing.data("first", first.to_string());
+    drawing.data("last", last.to_string());
     drawing.text("title", [0.0, 14.0], fold);
     for (value, label) in up.ticks() {
         let y = up.at(value);
