@@ -119,12 +119,12 @@ fn choose(generated: &Path, request: &Request) -> Result<(PathBuf, Origin)> {
 }
 
 /// `$XDG_CACHE_HOME/ddl`, or `~/.cache/ddl`.
-fn user_cache() -> Result<PathBuf> {
+pub(crate) fn user_cache() -> Result<PathBuf> {
     let base = env::var_os("XDG_CACHE_HOME")
         .map(PathBuf::from)
         .filter(|path| path.is_absolute())
         .or_else(|| env::home_dir().map(|home| home.join(".cache")))
-        .context("no home folder: give a folder for libtorch with `cargo xtask setup --cache`")?;
+        .context("no home folder: set XDG_CACHE_HOME, or give a folder for libtorch with `cargo xtask setup --cache`")?;
     Ok(base.join("ddl"))
 }
 

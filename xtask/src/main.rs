@@ -9,6 +9,7 @@
 //! | `libtorch` | which libtorch is pinned, where it lies, how to get it, how cargo is told |
 //! | `data` | which recordings are pinned, where they lie, how to get them |
 //! | `benchmark` | profiles, the plan, the executor that works it off, progress |
+//! | `browser` | where a browser is or how to get one, and what drives it |
 //! | `tidy` | the invariants of `docs/architecture.md`, as checks |
 #![allow(
     clippy::print_stdout,
@@ -16,6 +17,7 @@
 )]
 
 mod benchmark;
+mod browser;
 mod command;
 mod data;
 mod digest;

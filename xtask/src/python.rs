@@ -76,6 +76,13 @@ impl Python {
         command
     }
 
+    /// A command that runs a script file.
+    pub(crate) fn file(&self, script: &Path) -> Command {
+        let mut command = Command::new(&self.program);
+        command.arg(script).stdin(Stdio::null());
+        command
+    }
+
     /// A command that runs a module of Python's.
     pub(crate) fn module(&self, module: &str) -> Command {
         let mut command = Command::new(&self.program);

@@ -218,12 +218,19 @@ fn variables_to_remove() -> Vec<OsString> {
 
 /// Whether `name` is a program on the search path (or a path to one).
 pub(crate) fn program_on_path(name: &OsStr) -> bool {
+    find_on_path(name).is_some()
+}
+
+/// The program of this name on the search path (or the path itself, if it is one).
+pub(crate) fn find_on_path(name: &OsStr) -> Option<PathBuf> {
     let direct = Path::new(name);
     if direct.components().count() > 1 {
-        return direct.is_file();
+        return direct.is_file().then(|| direct.to_path_buf());
     }
-    env::var_os("PATH")
-        .is_some_and(|path| env::split_paths(&path).any(|folder| folder.join(name).is_file()))
+    let path = env::var_os("PATH")?;
+    env::split_paths(&path)
+        .map(|folder| folder.join(name))
+        .find(|program| program.is_file())
 }
 
 /// Runs a command of the workspace; on failure, says which step it was and what to do.

@@ -159,23 +159,20 @@ fn rows(
     Ok(rows)
 }
 
-/// Moments spread over the fold, and the first that shows each thing.
-fn moments(fold: &str, windows: &[Window]) -> Result<Vec<Moment>, Box<dyn Error>> {
+/// Moments spread over the fold, and the first that shows the case.
+fn moments(fold: &str, case: Show, windows: &[Window]) -> Result<Vec<Moment>, Box<dyn Error>> {
     let moment = |window: &Window| -> Result<Moment, Box<dyn Error>> {
         let forecast = Bending.forecast(&window.without_future())?;
         Ok(Moment::new(fold, Bending.name(), window, &forecast)?)
     };
     let mut moments = Vec::new();
-    for show in Show::ALL {
-        let found = windows
-            .iter()
-            .find_map(|window| Some((window, shown(show, window)?)));
-        if let Some((window, walkers)) = found {
-            let rule =
-                "by hand for this example, the first moment of the recording where it is seen";
-            let pick = Pick::new(show, walkers, rule);
-            moments.push(moment(window)?.picked(vec![pick]));
-        }
+    let found = windows
+        .iter()
+        .find_map(|window| Some((window, shown(case, window)?)));
+    if let Some((window, walkers)) = found {
+        let rule = "by hand for this example, the first moment of the recording where it is seen";
+        let pick = Pick::new(case, walkers, rule);
+        moments.push(moment(window)?.picked(vec![pick]));
     }
     for window in windows.iter().step_by((windows.len() / MOMENTS).max(1)) {
         moments.push(moment(window)?);
@@ -269,12 +266,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = Path::new(folder);
     let dataset = Dataset::simulated(1);
     let (mut results, mut shown) = (Vec::new(), Vec::new());
-    for fold in dataset.folds() {
+    for (fold, case) in dataset.folds().iter().zip(Show::ALL) {
         let windows = fold.test_windows(WindowRule::Published);
         results.extend(rows(fold.name(), &windows, WindowRule::Published)?);
         let complete = fold.test_windows(WindowRule::Complete);
         results.extend(rows(fold.name(), &complete, WindowRule::Complete)?);
-        shown.extend(moments(fold.name(), &windows)?);
+        shown.extend(moments(fold.name(), case, &windows)?);
     }
     let report = Report::new("Stand-in forecasters on simulated crowds", results)?;
     let curves = made_up(&dataset.fold_names());

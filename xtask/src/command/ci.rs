@@ -5,14 +5,14 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 
-use super::{benchmark, data, set_up, test, tidy};
+use super::{benchmark, data, page, set_up, test, tidy};
 use crate::data::Convention;
 use crate::workspace::{Workspace, step};
 
 /// A named check of `ci`.
 type Check = (&'static str, fn(&Workspace) -> Result<()>);
 
-const CHECKS: [Check; 8] = [
+const CHECKS: [Check; 9] = [
     ("format", format),
     ("tidy", tidy::run),
     ("recordings from the package index", recordings),
@@ -20,6 +20,7 @@ const CHECKS: [Check; 8] = [
     ("lints", lints),
     ("documentation", documentation),
     ("benchmark", smoke),
+    ("report page in a browser", page::check),
     // Last, and the last to print: what a reader of the log looks for is the test results.
     ("tests", test::run_all),
 ];

@@ -181,7 +181,14 @@ mod tests {
         let html = body(&document);
         assert!(html.contains("a &lt; b &amp; <code>c &lt; d</code>"));
         assert!(html.contains("<section id=\"one-x\">\n<h2>One: <code>x</code></h2>\n</section>"));
-        assert!(html.contains("<section id=\"one-x-2\">"));
+        assert!(html.contains("<section id=\"one-x-2\" class=\"warned\">"));
+        let contents = contents(&document);
+        assert_eq!(
+            (contents[1].id.as_str(), contents[1].warned),
+            ("one-x-2", true)
+        );
+        assert_eq!(contents[0].heading, "One: <code>x</code>");
+        assert!(!contents[0].warned);
         assert!(html.contains("&lt;script&gt;") && !html.contains("<script>"));
     }
 

@@ -23,11 +23,13 @@ fn cases(moments: &[Moment]) -> Vec<(usize, &Moment, &Pick)> {
 /// What a case shows, in a sentence.
 fn meaning(show: Show) -> &'static str {
     match show {
-        Show::Convergence => "The likeliest hypothesis walks to its goal, and so does the walker.",
-        Show::Group => "People who walk together are forecast to stay together.",
-        Show::SlowingDown => "The arrows grow shorter: the walker is forecast to slow down.",
-        Show::KeepingDistance => "People pass each other; the forecasts keep their distance.",
-        Show::Turning => "The way bends towards the goal.",
+        Show::Convergence => "A walker who reaches the goal of the likeliest hypothesis.",
+        Show::Group => "People who walk together.",
+        Show::SlowingDown => {
+            "A walker who slows down; where the forecast does too, its arrows grow shorter."
+        }
+        Show::KeepingDistance => "People who pass each other and keep their distance.",
+        Show::Turning => "A walker who turns.",
     }
 }
 
@@ -45,17 +47,22 @@ pub(super) fn html(moments: &[Moment]) -> String {
             .iter()
             .map(|&walker| moment.walkers[walker].pedestrian.to_string())
             .collect();
+        let fold = if moment.fold == moment.recording {
+            String::new()
+        } else {
+            format!(" (fold <code>{}</code>)", escape(&moment.fold))
+        };
         let plural = if who.len() == 1 { "walker" } else { "walkers" };
         let _ = write!(
             html,
-            "<figure>\n{figure}\n<figcaption>\n<h3>{}</h3>\n<p>{} {} of recording <code>{}</code> (fold <code>{}</code>), \
-             frame {}; forecast by {}.</p>\n<p class=\"rule\">Picked by rule: {}.</p>\n<button type=\"button\" \
+            "<figure>\n{figure}\n<figcaption>\n<h3>{}</h3>\n<p>{} {} of recording <code>{}</code>{}, \
+             frame {}; forecast by {}.</p>\n<p class=\"rule\">Why this one: {}.</p>\n<button type=\"button\" \
              data-moment=\"{at}\" data-walker=\"{walker}\">Play this moment</button>\n</figcaption>\n</figure>\n",
             capitalised(&pick.show.to_string()),
             meaning(pick.show),
             capitalised(&format!("{plural} {}", who.join(", "))),
             escape(&moment.recording),
-            escape(&moment.fold),
+            fold,
             moment.frame,
             escape(&moment.forecaster),
             inline(pick.rule.trim_end_matches('.')),

@@ -16,10 +16,8 @@ pub(super) fn headline(report: &Report) -> String {
     let Some(standing) = standing(report) else {
         return "<p class=\"nothing\">This report holds no results.</p>\n".to_owned();
     };
-    let mut html = String::new();
-    if let Some(best) = standing.lines.first() {
-        html.push_str(&figures_of(&standing, best));
-    }
+    let best = standing.lines.first();
+    let mut html = best.map_or(String::new(), |best| verdict(&standing, best));
     if let Some(warning) = standing.shared.protocol.warning() {
         let _ = writeln!(
             html,
@@ -28,8 +26,7 @@ pub(super) fn headline(report: &Report) -> String {
         );
     }
     let caption = format!(
-        "minADE and minFDE in metres, less is better; the number is minADE. {} Lines with K = 1 have one guess, lines with \
-         K = 20 twenty. Every number stands in the tables below.",
+        "minADE and minFDE in metres, less is better; the number is minADE. {} K: hypotheses a walker, the best of which is scored. Every number stands in the tables below.",
         conditions_in_words(&standing)
     );
     let _ = write!(
@@ -39,6 +36,7 @@ pub(super) fn headline(report: &Report) -> String {
         headline_chart(&standing, Shape::Narrow).inline("narrow"),
         inline(&caption)
     );
+    html.extend(best.map(|best| facts(&standing, best)));
     html
 }
 
@@ -53,7 +51,7 @@ fn conditions_in_words(standing: &Standing) -> String {
     )
 }
 
-fn figures_of(standing: &Standing, best: &StandingLine) -> String {
+fn verdict(standing: &Standing, best: &StandingLine) -> String {
     let Some([ade, fde]) = best
         .mean
         .or_else(|| best.folds.iter().copied().find_map(|pair| pair))
@@ -84,7 +82,15 @@ fn figures_of(standing: &Standing, best: &StandingLine) -> String {
         inline(&over),
         inline(&format!("convention `{}`", standing.shared.convention)),
     );
-    let [walkers, windows] = best.scored;
+    format!(
+        "<div class=\"best\">\n<p class=\"verdict\">{lead}</p>\n<div class=\"numbers\">\n{}{}</div>\n</div>\n",
+        number("minADE", ade),
+        number("minFDE", fde)
+    )
+}
+
+fn facts(standing: &Standing, best: &StandingLine) -> String {
+    let [walkers, windows] = best.scored.map(grouped);
     let facts = [
         (
             "Measured",
@@ -107,11 +113,7 @@ fn figures_of(standing: &Standing, best: &StandingLine) -> String {
         ),
         ("Conditions", conditions_of(best)),
     ];
-    let mut html = format!(
-        "<div class=\"best\">\n<p class=\"verdict\">{lead}</p>\n<div class=\"numbers\">\n{}{}</div>\n</div>\n<dl class=\"facts\">\n",
-        number("minADE", ade),
-        number("minFDE", fde)
-    );
+    let mut html = "<dl class=\"facts\">\n".to_owned();
     for (name, words) in facts {
         let _ = writeln!(
             html,
@@ -120,6 +122,19 @@ fn figures_of(standing: &Standing, best: &StandingLine) -> String {
         );
     }
     html + "</dl>\n"
+}
+
+/// 14968 as 14,968.
+fn grouped(count: usize) -> String {
+    let digits = count.to_string();
+    let mut words = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            words.push(',');
+        }
+        words.push(digit);
+    }
+    words
 }
 
 fn forecasters(count: usize) -> String {
@@ -161,4 +176,15 @@ fn conditions_of(line: &StandingLine) -> String {
     words.push(format!("device {}", known(&c.device)));
     words.push(format!("commit `{}`", known(&c.commit)));
     words.join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn digits_are_grouped() {
+        assert_eq!(
+            [0, 999, 1000, 1_234_567].map(super::grouped),
+            ["0", "999", "1,000", "1,234,567"]
+        );
+    }
 }

@@ -15,7 +15,10 @@ mod training_section;
 
 pub use error::{MomentProblem, PageError};
 
-use crate::{Moment, Report, TrainingCurve, document::escape};
+use crate::{
+    Moment, Report, TrainingCurve,
+    document::{ContentsEntry, escape, inline},
+};
 use figure::{Drawing, Shape};
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -92,21 +95,7 @@ impl<'a> Page<'a> {
     pub fn to_html(&self) -> Result<String, PageError> {
         self.check()?;
         let document = self.report.document();
-        let tables: String = document
-            .contents()
-            .iter()
-            .map(|entry| {
-                let class = if entry.warned {
-                    " class=\"warned\""
-                } else {
-                    ""
-                };
-                format!(
-                    "<li{class}><a href=\"#{}\">{}</a></li>\n",
-                    entry.id, entry.heading
-                )
-            })
-            .collect();
+        let contents: Vec<String> = document.contents().iter().map(item).collect();
         let report = embed::json_in_script(&self.report.to_json()?);
         let moments = embed::json_in_script(&moment_data::to_json(&self.moments)?);
         let curves = embed::json_in_script(&serde_json::to_string(&self.curves)?);
@@ -115,7 +104,7 @@ impl<'a> Page<'a> {
             TEMPLATE,
             &[
                 ("title", &escape(&document.title)),
-                ("lead", &crate::document::inline(&document.lead)),
+                ("lead", &inline(&document.lead)),
                 ("style", STYLE),
                 ("figure-style", figure::STYLE),
                 ("headline", &headline::headline(self.report)),
@@ -129,7 +118,7 @@ impl<'a> Page<'a> {
                 ),
                 ("gallery", &gallery_section::html(&self.moments)),
                 ("training", &training_section::html(&self.curves)),
-                ("contents", &tables),
+                ("contents", &contents.concat()),
                 ("tables", &document.sections_html()),
                 ("report-json", &report),
                 ("moments-json", &moments),
@@ -173,6 +162,19 @@ impl<'a> Page<'a> {
         moment_data::check(&self.moments)?;
         training_section::check(&self.curves)
     }
+}
+
+/// A line of the list of tables.
+fn item(entry: &ContentsEntry) -> String {
+    let class = if entry.warned {
+        " class=\"warned\""
+    } else {
+        ""
+    };
+    format!(
+        "<li{class}><a href=\"#{}\">{}</a></li>\n",
+        entry.id, entry.heading
+    )
 }
 
 /// Small letters, digits and dashes, which every file system takes.

@@ -72,10 +72,9 @@ fn problem(moment: &Moment) -> Option<MomentProblem> {
             walkers: people,
         })
     };
-    let of_walkers = moment.walkers.iter().enumerate();
+    let mut of_walkers = moment.walkers.iter().enumerate();
     of_walkers
-        .filter_map(|(walker, who)| of_walker(walker, who))
-        .next()
+        .find_map(|(walker, who)| of_walker(walker, who))
         .or_else(|| moment.picks.iter().find_map(absent))
 }
 
@@ -118,7 +117,7 @@ fn place(walker: usize, field: &'static str, path: &[Position]) -> Option<Moment
     let value = *path
         .as_flattened()
         .iter()
-        .find(|value| !(value.abs() <= REACH))?;
+        .find(|value| value.is_nan() || value.abs() > REACH)?;
     Some(MomentProblem::Coordinate {
         walker,
         field,

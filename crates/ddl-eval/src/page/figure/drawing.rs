@@ -31,8 +31,8 @@ impl Drawing {
     }
 
     /// Something a script wants to know of the picture: the attribute `data-NAME`.
-    pub(crate) fn data(&mut self, name: &str, value: impl ToString) {
-        self.data.push((format!("data-{name}"), value.to_string()));
+    pub(crate) fn data(&mut self, name: &str, value: impl Into<String>) {
+        self.data.push((format!("data-{name}"), value.into()));
     }
 
     fn add(&mut self, shape: impl Into<Box<dyn Node>>) {

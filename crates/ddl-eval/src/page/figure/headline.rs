@@ -8,6 +8,11 @@ const MOST_LINES: usize = 10;
 /// Height of a line, px.
 const LINE: f64 = 26.0;
 
+/// Room behind the dots for the number, px.
+const NUMBER: f64 = 46.0;
+/// Ticks are at least so far apart, px.
+const TICKS_APART: f64 = 26.0;
+
 /// Which page the chart is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shape {
@@ -48,30 +53,25 @@ fn columns(line: &StandingLine) -> Vec<Option<[f64; 2]>> {
 }
 
 fn wide(lines: &[StandingLine], names: &[String], largest: f64, title: &str) -> Drawing {
-    let (width, left, gap, top) = (1080.0, 250.0, 22.0, 44.0);
+    let (width, left, gap, top) = (1080.0, 312.0, 20.0, 34.0);
     let column = (width - left - gap * names.len() as f64) / names.len() as f64;
     let bottom = top + LINE * lines.len() as f64;
     let mut drawing = Drawing::new(width, bottom + 44.0, title);
     for (row, line) in lines.iter().enumerate() {
         let y = top + LINE * (row as f64 + 0.5);
-        drawing.text(name_class(row), [0.0, y + 4.0], shortened(&line.label, 36));
+        let class = format!("small {}", name_class(row));
+        drawing.text(&class, [0.0, y + 4.0], shortened(&line.label, 44));
+        let guesses = format!("K = {}", line.hypotheses);
+        drawing.text("small end", [left, y + 4.0], guesses);
     }
     for (at, name) in names.iter().enumerate() {
         let x = left + gap + (column + gap) * at as f64;
-        // The number stands behind the dots, within the column.
-        let scale = ChartScale::from_zero(largest, [x, x + column - 8.0]);
+        let scale = ChartScale::from_zero(largest, [x, x + column - NUMBER]);
         drawing.text("title", [x, 16.0], name);
-        axis(&mut drawing, &scale, [top, bottom], [x, x + column]);
+        axis(&mut drawing, &scale, [top, bottom]);
         for (row, line) in lines.iter().enumerate() {
             let y = top + LINE * (row as f64 + 0.5);
-            dumbbell(
-                &mut drawing,
-                &scale,
-                columns(line)[at],
-                row,
-                [x, y],
-                x + column,
-            );
+            dumbbell(&mut drawing, &scale, columns(line)[at], row, y);
         }
     }
     key(&mut drawing, [left + gap, bottom + 38.0]);
@@ -83,31 +83,27 @@ fn narrow(lines: &[StandingLine], names: &[String], largest: f64, title: &str) -
     let block = 56.0 + line_height * lines.len() as f64;
     let mut drawing = Drawing::new(width, 28.0 + block * names.len() as f64, title);
     key(&mut drawing, [0.0, 12.0]);
-    for (at, name) in names.iter().enumerate() {
-        let top = 28.0 + block * at as f64;
-        let scale = ChartScale::from_zero(largest, [0.0, width - 8.0]);
+    // The mean first: the folds are a long way to scroll.
+    for (place, name) in names
+        .iter()
+        .cycle()
+        .skip(names.len() - 1)
+        .take(names.len())
+        .enumerate()
+    {
+        let at = (place + names.len() - 1) % names.len();
+        let top = 28.0 + block * place as f64;
+        let scale = ChartScale::from_zero(largest, [6.0, width - NUMBER]);
         drawing.text("title", [0.0, top + 14.0], name);
-        axis(
-            &mut drawing,
-            &scale,
-            [top + 24.0, top + block - 30.0],
-            [0.0, width],
-        );
+        axis(&mut drawing, &scale, [top + 24.0, top + block - 30.0]);
         for (row, line) in lines.iter().enumerate() {
             let y = top + 26.0 + line_height * (row as f64 + 0.5);
             drawing.text(
                 &format!("small halo {}", name_class(row)),
                 [0.0, y - 4.0],
-                shortened(&line.label, 40),
+                format!("{}, K = {}", shortened(&line.label, 44), line.hypotheses),
             );
-            dumbbell(
-                &mut drawing,
-                &scale,
-                columns(line)[at],
-                row,
-                [0.0, y + 8.0],
-                width,
-            );
+            dumbbell(&mut drawing, &scale, columns(line)[at], row, y + 8.0);
         }
     }
     drawing
@@ -117,41 +113,23 @@ fn name_class(row: usize) -> &'static str {
     if row == 0 { "best" } else { "name" }
 }
 
-fn axis(
-    drawing: &mut Drawing,
-    scale: &ChartScale,
-    [top, bottom]: [f64; 2],
-    [left, right]: [f64; 2],
-) {
-    let ticks = scale.ticks();
-    for (at, (value, label)) in ticks.iter().enumerate() {
-        let x = scale.at(*value);
+fn axis(drawing: &mut Drawing, scale: &ChartScale, [top, bottom]: [f64; 2]) {
+    let mut last = f64::NEG_INFINITY;
+    for (at, (value, label)) in scale.ticks().into_iter().enumerate() {
+        let x = scale.at(value);
+        if x - last < TICKS_APART {
+            continue;
+        }
+        last = x;
         drawing.line(if at == 0 { "axis" } else { "grid" }, [x, top], [x, bottom]);
-        let unit = if at == 0 { " m" } else { "" };
-        let class = match at {
-            0 => "small",
-            _ if at + 1 == ticks.len() && right - x < 14.0 => "small end",
-            _ => "small middle",
-        };
-        let x = if class == "small end" {
-            right
-        } else {
-            x.max(left)
-        };
-        drawing.text(class, [x, bottom + 14.0], format!("{label}{unit}"));
+        drawing.text("small middle", [x, bottom + 14.0], label);
     }
 }
 
-fn dumbbell(
-    drawing: &mut Drawing,
-    scale: &ChartScale,
-    pair: Option<[f64; 2]>,
-    row: usize,
-    [left, y]: [f64; 2],
-    right: f64,
-) {
+fn dumbbell(drawing: &mut Drawing, scale: &ChartScale, pair: Option<[f64; 2]>, row: usize, y: f64) {
     let Some([ade, fde]) = pair else {
-        drawing.text("small", [left + 4.0, y + 4.0], "not measured");
+        let x = scale.at(0.0) + 4.0;
+        drawing.text("small", [x, y + 4.0], "not measured");
         return;
     };
     let first = if row == 0 { " first" } else { "" };
@@ -159,24 +137,12 @@ fn dumbbell(
     drawing.line(&format!("stem{first}"), [a, y], [b, y]);
     drawing.circle(&format!("fde{first}"), [b, y], 3.6);
     drawing.circle(&format!("ade{first}"), [a, y], 4.4);
-    // The number stands on the side that has room.
-    let words = format!("{ade:.3}");
     let class = if row == 0 {
         "small halo best"
     } else {
         "small halo"
     };
-    if right - b > 44.0 {
-        drawing.text(class, [b + 9.0, y + 4.0], words);
-    } else if a - left > 42.0 {
-        drawing.text(&format!("{class} end"), [a - 9.0, y + 4.0], words);
-    } else {
-        drawing.text(
-            &format!("{class} middle"),
-            [f64::midpoint(a, b), y - 6.0],
-            words,
-        );
-    }
+    drawing.text(class, [b + 9.0, y + 4.0], format!("{ade:.3}"));
 }
 
 fn key(drawing: &mut Drawing, [x, y]: [f64; 2]) {

@@ -1,7 +1,7 @@
 //! Training curves: a panel for each fold and quantity, variants named at the ends of their lines.
 
 use super::{Drawing, chart_scale::ChartScale};
-use crate::TrainingCurve;
+use crate::{EpochPoint, TrainingCurve};
 
 const SIZE: [f64; 2] = [360.0, 230.0];
 const LEFT: f64 = 46.0;
@@ -37,18 +37,30 @@ struct Series<'a> {
 /// Losses in one panel a fold and kind of loss, then validation errors where there are any.
 pub(crate) fn training_panels(curves: &[TrainingCurve]) -> Vec<TrainingPanel> {
     let variants = distinct(curves.iter().map(|curve| curve.variant.as_str()));
+    let validation = values(curves.iter(), |point| point.validation);
     let mut panels = Vec::new();
     for fold in distinct(curves.iter().map(|curve| curve.fold.as_str())) {
         let of_fold = || curves.iter().filter(move |curve| curve.fold == fold);
         for loss in distinct(of_fold().map(|curve| curve.loss.as_str())) {
             let of_loss = of_fold().filter(|curve| curve.loss == loss);
+            // All folds share one scale.
+            let same_loss = curves.iter().filter(|curve| curve.loss == loss);
+            let all = values(same_loss, |point| Some(point.loss));
             let series = series(of_loss, &variants, |point| Some(point.loss));
-            panels.extend(panel(fold, loss, &series));
+            panels.extend(panel(fold, loss, &series, &all));
         }
         let series = series(of_fold(), &variants, |point| point.validation);
-        panels.extend(panel(fold, VALIDATION, &series));
+        panels.extend(panel(fold, VALIDATION, &series, &validation));
     }
     panels
+}
+
+fn values<'a>(
+    curves: impl Iterator<Item = &'a TrainingCurve>,
+    of: fn(&EpochPoint) -> Option<f64>,
+) -> Vec<f64> {
+    let points = curves.flat_map(|curve| &curve.epochs).filter_map(of);
+    points.filter(|value| value.is_finite()).collect()
 }
 
 fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
@@ -64,11 +76,10 @@ fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 fn series<'a>(
     curves: impl Iterator<Item = &'a TrainingCurve>,
     variants: &[&str],
-    of: fn(&crate::EpochPoint) -> Option<f64>,
+    of: fn(&EpochPoint) -> Option<f64>,
 ) -> Vec<Series<'a>> {
     let one = |curve: &'a TrainingCurve| {
-        let finite =
-            |point: &crate::EpochPoint| Some((point.epoch, of(point).filter(|v| v.is_finite())?));
+        let finite = |point: &EpochPoint| Some((point.epoch, of(point).filter(|v| v.is_finite())?));
         let points: Vec<(usize, f64)> = curve.epochs.iter().filter_map(finite).collect();
         let colour = variants
             .iter()
@@ -83,19 +94,15 @@ fn series<'a>(
     curves.filter_map(one).collect()
 }
 
-fn panel(fold: &str, quantity: &str, series: &[Series<'_>]) -> Option<TrainingPanel> {
+fn panel(fold: &str, quantity: &str, series: &[Series<'_>], all: &[f64]) -> Option<TrainingPanel> {
     let epochs = || {
         series
             .iter()
             .flat_map(|s| s.points.iter().map(|(epoch, _)| *epoch))
     };
     let (first, last) = (epochs().min()?, epochs().max()?);
-    let values: Vec<f64> = series
-        .iter()
-        .flat_map(|s| s.points.iter().map(|(_, value)| *value))
-        .collect();
     let (right, bottom) = (SIZE[0] - RIGHT, SIZE[1] - BOTTOM);
-    let up = ChartScale::of(&values, [bottom, TOP]);
+    let up = ChartScale::of(all, [bottom, TOP]);
     let span = (last - first).max(1) as f64;
     let across = |epoch: usize| LEFT + (epoch - first) as f64 / span * (right - LEFT);
 
@@ -110,10 +117,10 @@ fn panel(fold: &str, quantity: &str, series: &[Series<'_>]) -> Option<TrainingPa
         },
     );
     drawing.data("loss", quantity);
-    drawing.data("left", LEFT);
-    drawing.data("right", right);
-    drawing.data("first", first);
-    drawing.data("last", last);
+    drawing.data("left", LEFT.to_string());
+    drawing.data("right", right.to_string());
+    drawing.data("first", first.to_string());
+    drawing.data("last", last.to_string());
     drawing.text("title", [0.0, 14.0], fold);
     for (value, label) in up.ticks() {
         let y = up.at(value);

@@ -27,7 +27,7 @@ function makeHypothesisList(table, choose) {
     weight.className = "weight";
     const bar = document.createElement("span");
     bar.className = "bar-of-weight";
-    bar.style.width = `${((5 * item.weight) / heaviest).toFixed(2)}rem`;
+    bar.style.setProperty("--share", (item.weight / heaviest).toFixed(3));
     weight.append(bar, item.weight.toFixed(3));
     tr.append(head, weight);
     for (const text of [item.ade.toFixed(3), item.fde.toFixed(3)]) {

@@ -1,5 +1,8 @@
 // The player: what is chosen, and everything that follows from it.
 
+// The close-up shows a little more than the walker, so that neighbours are seen.
+const CLOSE_UP_ROOM = 1.25;
+
 const byId = (id) => document.getElementById(id);
 
 function makePlayer(moments) {
@@ -7,6 +10,7 @@ function makePlayer(moments) {
   const canvas = byId("scene");
   const context = canvas.getContext("2d");
   const decoded = new Map();
+  const forecasters = new Set(moments.map((moment) => moment.forecaster));
   const recordings = [];
   for (const moment of moments) {
     const name = recordingName(moment);
@@ -17,8 +21,7 @@ function makePlayer(moments) {
     walker: 0,
     hypothesis: null,
     time: OBSERVED - 1,
-    zoom: false,
-    show: { truth: true, hypotheses: true, goals: true, others: true, everything: false },
+    show: { truth: true, hypotheses: true, goals: true, others: true, everything: false, whole: false },
   };
   let palette = readPalette();
   let size = { width: 0, height: 0, ratio: 1 };
@@ -33,7 +36,8 @@ function makePlayer(moments) {
 
   function recordingName(moment) {
     const fold = moment.fold === moment.recording ? "" : ` (fold ${moment.fold})`;
-    return `${moment.recording}${fold}, ${moment.forecaster}`;
+    const who = forecasters.size > 1 ? `, ${moment.forecaster}` : "";
+    return `${moment.recording}${fold}${who}`;
   }
 
   function momentAt(at) {
@@ -76,9 +80,9 @@ function makePlayer(moments) {
     canvas.width = Math.round(box.width * ratio);
     canvas.height = Math.round(box.height * ratio);
     const places = [];
-    if (state.zoom) places.push(...placesOf(walker(), true));
-    else current().walkers.forEach((who, at) => places.push(...placesOf(who, at === state.walker || current().walkers.length <= 30)));
-    view = viewOf(places, size.width, size.height);
+    if (state.show.whole) current().walkers.forEach((who, at) => places.push(...placesOf(who, at === state.walker)));
+    else places.push(...placesOf(walker(), true));
+    view = viewOf(places, size.width, size.height, state.show.whole ? 1 : CLOSE_UP_ROOM);
     redraw();
   }
 
@@ -114,7 +118,7 @@ function makePlayer(moments) {
     const count = who.hypotheses.length;
     byId("convention-words").textContent =
       `${count === 1 ? "One hypothesis" : `Best of ${count} hypotheses`}, two minima of their own; from positions rounded to the millimetre. ` +
-      `${moment.recording}, frame ${moment.frame}.`;
+      `Forecast by ${moment.forecaster}; ${moment.recording}, frame ${moment.frame}.`;
     canvas.setAttribute(
       "aria-label",
       `The scene from above: ${moment.walkers.length} walkers of ${moment.recording}, frame ${moment.frame}; walker ${who.pedestrian} is chosen`,
@@ -163,14 +167,11 @@ function makePlayer(moments) {
   }
 
   function setShow(name, on) {
-    if (name === "zoom") state.zoom = on;
-    else state.show[name] = on;
-    byId(name === "zoom" ? "zoom" : `show-${name}`).checked = on;
-    if (name === "zoom") fit();
+    state.show[name] = on;
+    byId(`show-${name}`).checked = on;
+    if (name === "whole") fit();
     redraw();
   }
-
-  const isShown = (name) => (name === "zoom" ? state.zoom : state.show[name]);
 
   // The walker whose way, up to now and ahead, passes nearest the pointer.
   function nearestWalker(event) {
@@ -196,10 +197,9 @@ function makePlayer(moments) {
   byId("choose-recording").addEventListener("change", (event) => chooseMoment(momentsOf(event.target.value)[0]));
   byId("choose-moment").addEventListener("change", (event) => chooseMoment(Number(event.target.value)));
   byId("choose-walker").addEventListener("change", (event) => chooseWalker(Number(event.target.value)));
-  for (const name of ["truth", "hypotheses", "goals", "others", "everything"]) {
+  for (const name of Object.keys(state.show)) {
     byId(`show-${name}`).addEventListener("change", (event) => setShow(name, event.target.checked));
   }
-  byId("zoom").addEventListener("change", (event) => setShow("zoom", event.target.checked));
   canvas.addEventListener("click", (event) => {
     const found = nearestWalker(event);
     if (found !== undefined) chooseWalker(found);
@@ -229,7 +229,7 @@ function makePlayer(moments) {
       const at = recordings.indexOf(recordingName(current()));
       chooseMoment(momentsOf(recordings[(at + 1) % recordings.length])[0]);
     },
-    toggle: (name) => setShow(name, !isShown(name)),
+    toggle: (name) => setShow(name, !state.show[name]),
     sortByWeight: () => list.sort("weight"),
     stage,
     // For measuring: the time of one drawing, in milliseconds, with everyone's hypotheses.

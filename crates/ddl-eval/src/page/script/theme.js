@@ -13,7 +13,7 @@ function applyTheme(theme) {
   if (theme === "auto") delete root.dataset.theme;
   else root.dataset.theme = theme;
   const button = document.getElementById("theme");
-  button.textContent = theme[0].toUpperCase() + theme.slice(1);
+  button.querySelector("span").textContent = theme[0].toUpperCase() + theme.slice(1);
   button.setAttribute("aria-label", `Colours: ${THEME_WORDS[theme]}; change`);
   themeListeners.forEach((listener) => listener());
 }

@@ -26,11 +26,11 @@ function* placesOf(walker, allHypotheses) {
   }
 }
 
-// The view that shows these places in a canvas of this size.
-function viewOf(places, width, height) {
+// The view that shows these places, and `room` times their extent, in a canvas of this size.
+function viewOf(places, width, height, room) {
   const { low, high } = boundsOf(places);
   const margin = Math.min(34, 0.09 * Math.min(width, height));
-  const fit = (axis, pixels) => (pixels - 2 * margin) / Math.max(high[axis] - low[axis], LEAST_SPAN);
+  const fit = (axis, pixels) => (pixels - 2 * margin) / Math.max(room * (high[axis] - low[axis]), LEAST_SPAN);
   // The stamp above and the scale below keep a little more room.
   const scale = Math.min(fit(0, width), fit(1, height - 40));
   const centre = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];

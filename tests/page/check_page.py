@@ -1,0 +1,383 @@
+"""Opens the example's report page in a browser and checks that it shows what report.json and moments.json hold.
+
+    check_page.py FOLDER --browser /path/to/chromium [--screenshots FOLDER]
+
+FOLDER is what the example `report_page` of ddl-eval wrote. The page is opened from the file system, in light and dark,
+wide and narrow, and nothing may be asked of a network.
+"""
+
+import argparse
+import json
+import math
+import pathlib
+import sys
+import tempfile
+
+from playwright.sync_api import sync_playwright
+
+from expected_tables import Group, expected, spread
+
+HERE = pathlib.Path(__file__).parent
+WIDE = {"width": 1280, "height": 800}
+NARROW = {"width": 390, "height": 844}
+
+
+class Opened:
+    """A page in a browser, with everything it complained of or asked for."""
+
+    def __init__(self, browser, path, viewport=WIDE, scheme="light", motion="no-preference"):
+        self.context = browser.new_context(viewport=viewport, color_scheme=scheme, reduced_motion=motion, has_touch=viewport is NARROW)
+        self.page = self.context.new_page()
+        self.faults = []
+        self.page.on("console", lambda m: m.type in ("error", "warning") and self.faults.append(f"console: {m.text}"))
+        self.page.on("pageerror", lambda e: self.faults.append(f"page error: {e}"))
+        address = path.as_uri()
+        self.page.on("request", lambda r: r.url not in (address, "data:,") and self.faults.append(f"request: {r.url[:200]}"))
+        self.page.set_default_timeout(20_000)
+        self.page.goto(address)
+        self.page.evaluate("document.documentElement.style.scrollBehavior = 'auto'")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, *_):
+        if kind is None:
+            assert not self.faults, self.faults
+        self.context.close()
+
+    def text(self, selector):
+        return self.page.locator(selector).inner_text()
+
+    def time(self):
+        return float(self.page.locator("#scene").get_attribute("data-time"))
+
+    def picture(self):
+        self.page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        return self.page.evaluate("document.getElementById('scene').toDataURL()")
+
+
+def embedded(opened, name):
+    return opened.page.evaluate("(id) => document.getElementById(id).textContent", name)
+
+
+def check_tables(opened, report):
+    tables = opened.page.evaluate(
+        """() => [...document.querySelectorAll(".tables table")].map((table) => ({
+            caption: table.caption?.textContent ?? "",
+            codes: [...(table.caption?.querySelectorAll("code") ?? [])].map((code) => code.textContent),
+            header: [...table.tHead.rows[0].cells].map((cell) => cell.textContent),
+            rows: [...table.tBodies[0].rows].map((row) => [...row.cells].map((cell) => cell.textContent)),
+            section: table.closest("section").className,
+            warnings: table.closest("section").querySelectorAll(".warning").length,
+        }))"""
+    )
+    folds, compared = [], 0
+    for table in tables:
+        if table["caption"].startswith("minADE/minFDE in metres. "):
+            folds = table["header"][1:-1]
+        rows = expected(table | {"folds": folds}, report)
+        if "published" in table["codes"][2:3] or "by protocol" in table["caption"]:
+            assert table["warnings"] == 1 and table["section"] == "warned", f"no warning at `{table['caption']}`"
+        if rows is None:
+            continue
+        assert rows == table["rows"], f"`{table['caption']}`\nexpected {rows}\nfound    {table['rows']}"
+        compared += sum(len(row) - 1 for row in rows)
+    groups = {
+        (c["convention"], json.dumps(c["window_rule"]), c["protocol"], c["test_subset"])
+        for c in (row["conditions"] for row in report["rows"])
+    }
+    shown = sum(table["caption"].startswith("minADE/minFDE in metres. ") for table in tables)
+    assert shown == len(groups), f"{shown} headline tables for {len(groups)} groups"
+    return compared
+
+
+def check_headline(opened, report):
+    group = Group(report["rows"], "simulated", "published", "fair", None)
+    folds = list(dict.fromkeys(row["conditions"]["fold"] for row in report["rows"]))
+    means = [(group.over(line, folds, lambda s: s["min_ade"]), line) for line in group.lines]
+    best = min(means, key=lambda pair: sum(pair[0]) / len(pair[0]))[1]
+    for name, of in (("minADE", "min_ade"), ("minFDE", "min_fde")):
+        values = group.over(best, folds, lambda s: s[of])
+        shown = opened.text(f"[data-number={name}]")
+        assert shown == spread([sum(values) / len(values)], 3), (name, shown)
+    assert best["label"] in opened.text(".verdict")
+    chart = [text.strip() for text in opened.page.locator(".comparison .wide text").all_text_contents()]
+    for line in group.lines:
+        for fold in folds:
+            values = group.on(line, fold, lambda s: s["min_ade"])
+            assert f"{sum(values) / len(values):.3f}" in chart, (line["label"], fold)
+
+
+def decoded(data):
+    """The compact moments as moments.json has them."""
+    for moment in data:
+        walkers = []
+        for w in moment["walkers"]:
+            observed, last = path([0, 0], w["observed"])
+            hypotheses = []
+            for k, steps in enumerate(w["paths"]):
+                h = {"weight": w["weights"][k] / 1000, "positions": path(last, steps)[0]}
+                if w["goals"][k]:
+                    h["goal"] = [(last[axis] + w["goals"][k][axis]) / 1000 for axis in (0, 1)]
+                for name, letters in (("decreasing", w["falls"]), ("certified", w["certified"])):
+                    if letters[k] != "-":
+                        h[name] = letters[k] == "y"
+                hypotheses.append(h)
+            truth = path(last, w["truth"])[0]
+            walkers.append({"pedestrian": w["pedestrian"], "observed": observed, "truth": truth, "hypotheses": hypotheses})
+        out = {key: moment[key] for key in ("fold", "forecaster", "recording", "frame")}
+        out |= {"frame_step": moment["frameStep"], "walkers": walkers}
+        yield out | ({"picks": moment["picks"]} if moment["picks"] else {})
+
+
+def path(start, steps):
+    x, y = start
+    places = []
+    for dx, dy in zip(steps[::2], steps[1::2]):
+        x, y = x + dx, y + dy
+        places.append([x / 1000, y / 1000])
+    return places, (x, y)
+
+
+def errors(walker):
+    distances = [[math.dist(p, q) for p, q in zip(h["positions"], walker["truth"])] for h in walker["hypotheses"]]
+    return [sum(d) / 12 for d in distances], [d[-1] for d in distances]
+
+
+def same(shown, value):
+    """Printed to a millimetre, and not off by more than its last digit: sums may differ in their last bit."""
+    return abs(float(shown) - value) <= 0.000_501
+
+
+def check_walker(opened, moment, at):
+    walker = moment["walkers"][at]
+    ade, fde = errors(walker)
+    assert opened.text("#walker-name") == f"Walker {walker['pedestrian']}"
+    assert same(opened.text("#min-ade"), min(ade)) and same(opened.text("#min-fde"), min(fde)), moment["frame"]
+    rows = opened.page.evaluate(
+        "[...document.querySelectorAll('#hypotheses tbody tr')].map((row) => [...row.cells].map((cell) => cell.textContent))"
+    )
+    assert len(rows) == len(walker["hypotheses"])
+    weights = [float(row[1]) for row in rows]
+    assert weights == sorted(weights, reverse=True)
+    for row in rows:
+        k = int(row[0]) - 1
+        h = walker["hypotheses"][k]
+        assert float(row[1]) == h["weight"] and same(row[2], ade[k]) and same(row[3], fde[k]), row
+        if h.get("goal") is None:
+            assert row[4].startswith("no goal"), row
+        else:
+            assert ("falls at each of 12 steps" in row[4]) == h["decreasing"], row
+            verdict = {True: "; certified", False: "; not certified", None: "steps"}[h.get("certified")]
+            assert row[4].endswith(verdict) or h.get("certified") is None, row
+
+
+def check_player(opened, moments):
+    page = opened.page
+    page.locator("#player").scroll_into_view_if_needed()
+    first = moments[0]
+    start = first["picks"][0]["walkers"][0] if first.get("picks") else 0
+    check_walker(opened, first, start)
+
+    # It plays, by button and by key.
+    before, picture, words = opened.time(), opened.picture(), opened.text("#now-words")
+    page.click("#play")
+    page.wait_for_function("(t) => Number(document.getElementById('scene').dataset.time) > t + 0.5", arg=before)
+    page.click("#play")
+    assert opened.time() > before and opened.picture() != picture and opened.text("#now-words") != words
+    page.focus(".stage")
+    page.keyboard.press("Home")
+    assert opened.time() == 0 and "observed frame 1 of 8" in opened.text("#time-words")
+    for step in range(1, 20):
+        page.keyboard.press("ArrowRight")
+        assert opened.time() == step
+    assert "forecast frame 12 of 12" in opened.text("#time-words")
+    page.keyboard.press("ArrowLeft")
+    assert opened.time() == 18 and page.input_value("#time") == "19"
+    page.keyboard.press("End")
+    best = max(first["walkers"][start]["hypotheses"], key=lambda h: h["weight"])
+    x, y = best["positions"][11]
+    assert f"({x:.2f}, {y:.2f})" in opened.text("#now-words"), opened.text("#now-words")
+    page.keyboard.press("Home")
+    page.keyboard.press(" ")
+    page.wait_for_function("Number(document.getElementById('scene').dataset.time) > 0.2")
+    assert page.get_attribute("#play", "aria-label") == "Pause"
+    page.keyboard.press(" ")
+    stopped = opened.time()
+    opened.picture()
+    assert opened.time() == stopped and page.get_attribute("#play", "aria-pressed") == "false"
+
+    # The slider scrubs.
+    page.locator("#time").fill("20")
+    assert opened.time() == 19
+
+    # Walkers, moments and recordings, by key and by choice.
+    page.focus(".stage")
+    count = len(first["walkers"])
+    page.keyboard.press("ArrowDown")
+    check_walker(opened, first, (start + 1) % count)
+    page.keyboard.press("ArrowUp")
+    page.keyboard.press("ArrowUp")
+    check_walker(opened, first, (start - 1) % count)
+    page.keyboard.press("n")
+    assert page.input_value("#choose-moment") == "1"
+    page.keyboard.press("p")
+    assert page.input_value("#choose-moment") == "0"
+    recording = page.input_value("#choose-recording")
+    page.keyboard.press("r")
+    assert page.input_value("#choose-recording") != recording
+    page.select_option("#choose-recording", recording)
+    assert page.input_value("#choose-recording") == recording
+    for at in range(0, len(moments), 7):
+        moment = moments[at]
+        page.select_option("#choose-recording", label=page.evaluate("(at) => JSON.parse(document.getElementById('moments-json').textContent)[at].recording", at))
+        page.select_option("#choose-moment", str(at))
+        who = at % len(moment["walkers"])
+        page.select_option("#choose-walker", str(who))
+        check_walker(opened, moment, who)
+
+    # Switches change the picture.
+    page.focus(".stage")
+    for key in "thgoez":
+        before = opened.picture()
+        page.keyboard.press(key)
+        assert opened.picture() != before, f"key {key} changes nothing"
+        page.keyboard.press(key)
+        assert opened.picture() == before, f"key {key} pressed twice is not as before"
+    page.click("#hypotheses button[data-sort=ade]")
+    ades = page.evaluate("[...document.querySelectorAll('#hypotheses tbody tr')].map((row) => Number(row.cells[2].textContent))")
+    assert ades == sorted(ades)
+    page.focus(".stage")
+    page.keyboard.press("w")
+    before = opened.text("#certificate-words")
+    page.locator("#hypotheses tbody tr").nth(1).click()
+    assert opened.text("#certificate-words") != before
+    page.keyboard.press("?")
+    assert page.locator("#keys").is_visible()
+    page.keyboard.press("Escape")
+    assert not page.locator("#keys").is_visible()
+
+    # A case starts its moment.
+    button = page.locator("button[data-moment]").last
+    at = int(button.get_attribute("data-moment"))
+    button.click()
+    page.wait_for_function("Number(document.getElementById('scene').dataset.time) > 0.2")
+    check_walker(opened, moments[at], int(button.get_attribute("data-walker")))
+
+
+def check_focus(opened):
+    """Every stop of the tab key shows that it has the focus."""
+    seen = []
+    for _ in range(40):
+        opened.page.keyboard.press("Tab")
+        style, name = opened.page.evaluate(
+            "[getComputedStyle(document.activeElement).outlineStyle, document.activeElement.id || document.activeElement.className]"
+        )
+        assert style != "none" or name == "time", f"the focus on {name} cannot be seen"
+        seen.append(name)
+    assert {"stage", "play", "time", "choose-walker", "theme"} <= set(seen), seen
+
+
+def check_reduced_motion(opened):
+    opened.page.focus(".stage")
+    opened.page.keyboard.press("Home")
+    opened.page.evaluate(
+        """() => {
+            window.times = [];
+            new MutationObserver(() => window.times.push(Number(document.getElementById("scene").dataset.time)))
+                .observe(document.getElementById("scene"), { attributes: true });
+        }"""
+    )
+    opened.page.keyboard.press(" ")
+    opened.page.wait_for_function("Math.max(...window.times) >= 3")
+    opened.page.keyboard.press(" ")
+    times = opened.page.evaluate("window.times")
+    assert all(time == int(time) for time in times), times
+
+
+def check_looks(opened, width):
+    overflow = opened.page.evaluate("Math.max(document.documentElement.scrollWidth, document.body.scrollWidth)")
+    assert overflow <= width, f"the body is {overflow} px wide in a window of {width}"
+    found = opened.page.evaluate((HERE / "contrast.js").read_text())
+    assert found["seen"] > 50 and not found["faults"], found
+    ids = opened.page.evaluate("[...document.querySelectorAll('[id]')].map((element) => element.id)")
+    assert len(ids) == len(set(ids)), "an id is used twice"
+    unnamed = opened.page.evaluate(
+        """[...document.querySelectorAll("button, select, input")].filter((e) =>
+            !e.textContent.trim() && !e.getAttribute("aria-label") && !e.labels?.length).map((e) => e.outerHTML)"""
+    )
+    assert not unnamed, unnamed
+
+
+def variant(html, folder, name, moments):
+    """The page with other moments in it."""
+    start = html.index('id="moments-json">') + len('id="moments-json">')
+    end = html.index("</script>", start)
+    page = folder / f"{name}.html"
+    page.write_text(html[:start] + json.dumps(moments) + html[end:])
+    return page
+
+
+def variants(html, data, folder):
+    one = json.loads(json.dumps(data[0]))
+    for walker in one["walkers"]:
+        for name in ("paths", "goals", "weights", "falls", "certified"):
+            walker[name] = walker[name][:1]
+        walker["goals"], walker["weights"], walker["falls"], walker["certified"] = [None], [1000], "-", "-"
+    one["picks"], one["walkers"] = [], one["walkers"][:1]
+    yield variant(html, folder, "one-hypothesis", [one])
+    crowd = max(data, key=lambda moment: len(moment["walkers"]))
+    for count in (25, 60):
+        walkers = []
+        for at in range(count):
+            walker = json.loads(json.dumps(crowd["walkers"][at % len(crowd["walkers"])]))
+            walker["pedestrian"] = at
+            walker["observed"][0] += 700 * (at // len(crowd["walkers"]))
+            walkers.append(walker)
+        yield variant(html, folder, f"{count}-walkers", [crowd | {"walkers": walkers, "picks": []}])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--browser", required=True)
+    parser.add_argument("--screenshots", type=pathlib.Path)
+    arguments = parser.parse_args()
+    folder = arguments.folder.resolve()
+    path_of_page, report_text = folder / "page.html", (folder / "report.json").read_text()
+    report, moments = json.loads(report_text), json.loads((folder / "moments.json").read_text())
+
+    with sync_playwright() as playwright, tempfile.TemporaryDirectory() as temporary:
+        browser = playwright.chromium.launch(executable_path=arguments.browser, args=["--no-sandbox"])
+        with Opened(browser, path_of_page) as opened:
+            assert embedded(opened, "report-json") == report_text, "the embedded report.json is another"
+            data = json.loads(embedded(opened, "moments-json"))
+            assert list(decoded(data)) == moments, "the compact moments are not moments.json"
+            compared = check_tables(opened, report)
+            check_headline(opened, report)
+            print(f"tables: {compared} cells are those of report.json")
+        with Opened(browser, path_of_page) as opened:
+            check_player(opened, moments)
+            print(f"player: {len(moments)} moments, numbers as computed from moments.json")
+        with Opened(browser, path_of_page, motion="reduce") as opened:
+            check_focus(opened)
+            check_reduced_motion(opened)
+        pages = {"page": path_of_page}
+        pages |= {page.stem: page for page in variants(path_of_page.read_text(), data, pathlib.Path(temporary))}
+        for name, page in pages.items():
+            for size, viewport in (("wide", WIDE), ("narrow", NARROW)):
+                for scheme in ("light", "dark"):
+                    with Opened(browser, page, viewport, scheme) as opened:
+                        check_looks(opened, viewport["width"])
+                        if size == "wide" and scheme == "light":
+                            spent = opened.page.evaluate("window.ddlPlayer.measure(50)")
+                            print(f"{name}: a picture with everyone's hypotheses takes {spent:.1f} ms")
+                        if arguments.screenshots:
+                            arguments.screenshots.mkdir(parents=True, exist_ok=True)
+                            opened.page.screenshot(path=arguments.screenshots / f"{name}-{size}-{scheme}.png", full_page=True)
+        browser.close()
+    print("the page is as it should be")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,177 @@
+"""The tables of a report page, computed again from report.json."""
+
+import math
+
+# What heads the first column of tables of the literature.
+UNCAPTIONED = {"method", "variant", "baseline"}
+
+
+def add(values):
+    """The plain sum in order, as Rust adds; Python's own `sum` compensates."""
+    total = 0.0
+    for value in values:
+        total += value
+    return total
+
+
+def spread(values, decimals):
+    """Mean, and the sample deviation of several."""
+    mean = add(values) / len(values)
+    text = f"{mean:.{decimals}f}"
+    if len(values) > 1:
+        squares = add((value - mean) * (value - mean) for value in values)
+        text += f"±{math.sqrt(squares / (len(values) - 1)):.{decimals}f}"
+    return text
+
+
+def rule_name(rule):
+    if isinstance(rule, str):
+        return rule
+    ((name, fields),) = rule.items()
+    return f"{name}-{fields['min_pedestrians']}"
+
+
+class Group:
+    """Rows of one convention, window rule, protocol and scored part."""
+
+    def __init__(self, rows, convention, rule, protocol, subset):
+        wanted = (convention, rule, protocol, subset)
+        self.protocol = protocol
+        self.lines = []
+        for row in rows:
+            c = row["conditions"]
+            of = (c["convention"], rule_name(c["window_rule"]), c["protocol"], c["test_subset"])
+            if of != wanted:
+                continue
+            alike = {key: value for key, value in c.items() if key not in ("fold", "seed")}
+            for line in self.lines:
+                if line["alike"] == alike:
+                    line["rows"].append(row)
+                    break
+            else:
+                self.lines.append({"alike": alike, "rows": [row]})
+        names = []
+        for line in self.lines:
+            c = line["alike"]
+            variant = c["variant"]
+            names.append(c["forecaster"] if variant in (None, "full") else f"{c['forecaster']} ({variant})")
+        for at, line in enumerate(self.lines):
+            name = names[at]
+            line["label"] = f"{name} #{names[: at + 1].count(name)}" if names.count(name) > 1 else name
+
+    def on(self, line, fold, of):
+        return [of(row["scores"]) for row in line["rows"] if row["conditions"]["fold"] == fold]
+
+    def over(self, line, folds, of):
+        """One mean over the folds for each seed; None unless every seed has every fold."""
+        seeds = sorted({row["conditions"]["seed"] for row in line["rows"]}, key=lambda s: (s is not None, s or 0))
+        means = []
+        for seed in seeds:
+            values = []
+            for fold in folds:
+                found = [
+                    row["scores"]
+                    for row in line["rows"]
+                    if row["conditions"]["fold"] == fold and row["conditions"]["seed"] == seed
+                ]
+                if not found:
+                    return None
+                values.append(of(found[0]))
+            means.append(add(values) / len(folds))
+        return means
+
+    def cells(self, line, folds):
+        """minADE/minFDE on each fold, and their mean."""
+        ade, fde = (lambda s: s["min_ade"]), (lambda s: s["min_fde"])
+        cells = []
+        for fold in folds:
+            pair = self.on(line, fold, ade), self.on(line, fold, fde)
+            cells.append("/".join(spread(values, 3) for values in pair) if pair[0] else "-")
+        means = self.over(line, folds, ade), self.over(line, folds, fde)
+        cells.append("/".join(spread(values, 3) for values in means) if means[0] else "-")
+        return cells
+
+
+def stability(name, factor=1.0):
+    return lambda s: None if s["stability"] is None or s["stability"][name] is None else factor * s["stability"][name]
+
+
+FURTHER = {
+    "FDE@minADE m": (3, lambda s: s["fde_at_min_ade"]),
+    "JADE m": (3, lambda s: s["joint_ade"]),
+    "JFDE m": (3, lambda s: s["joint_fde"]),
+    "missed %": (1, lambda s: 100.0 * s["miss_rate"]),
+    "collide %": (1, lambda s: 100.0 * s["collision_rate"]),
+    "(true %)": (1, lambda s: 100.0 * s["true_collision_rate"]),
+    "goal FDE m": (3, lambda s: s["goal_fde"]),
+    "Phi falls %": (1, stability("decreasing", 100.0)),
+    "certified %": (1, stability("certified", 100.0)),
+    "to goal m": (3, stability("end_distance")),
+    "turn deg": (1, stability("largest_turn")),
+    "reverse %": (1, stability("reversing", 100.0)),
+    "K": (0, lambda s: float(s["hypotheses"])),
+}
+
+
+def headline(group, header):
+    folds = header[1:-1]
+    walkers = []
+    for fold in folds:
+        counts = sorted({n for line in group.lines for n in group.on(line, fold, lambda s: s["pedestrians"])})
+        walkers.append(" or ".join(map(str, counts)) or "-")
+    rows = [["walkers scored", *walkers, ""]]
+    return rows + [[line["label"], *group.cells(line, folds)] for line in group.lines]
+
+
+def further(group, header, folds):
+    unknown = [name for name in header[2:] if name not in FURTHER]
+    assert not unknown, f"columns {unknown} of the further metrics are unknown here: add them to FURTHER"
+    rows = []
+    for line in group.lines:
+        present = [fold for fold in folds if group.on(line, fold, lambda s: 0)]
+        row = [line["label"], "all" if present == folds else ", ".join(present)]
+        for name in header[2:]:
+            decimals, of = FURTHER[name]
+            known = all(of(r["scores"]) is not None for r in line["rows"])
+            means = group.over(line, present, of) if known else None
+            row.append(spread(means, decimals) if means else "-")
+        rows.append(row)
+    return rows
+
+
+def by_protocol(groups, header):
+    rows = []
+    for group in groups:
+        for line in group.lines:
+            c = line["alike"]
+            trained = c["epochs"] is not None
+            goals = line["rows"][0]["scores"]["goal_fde"] is not None
+            name = c["forecaster"]
+            if not (trained or (goals and "the TRUE end" not in name) or "nearest the TRUE end" in name):
+                continue
+            if group.protocol == "published":
+                candidates = "20 goals x 20 samples" if trained else "20 goals"
+            else:
+                candidates = str(line["rows"][0]["scores"]["hypotheses"])
+            rows.append([line["label"], group.protocol, candidates, *group.cells(line, header[3:-1])])
+    return rows
+
+
+def expected(table, report):
+    """The rows that a table must have; None for tables of the literature, which no report holds."""
+    caption, header, codes = table["caption"], table["header"], table["codes"]
+    if not caption:
+        assert header[0] in UNCAPTIONED, f"the table headed {header} is unknown here"
+        return None
+    rows = report["rows"]
+    scored = caption.split("scored: ")[1].rstrip(".") if "scored: " in caption else None
+    subset = None if scored == "all test windows" else scored
+    if caption.startswith("minADE/minFDE in metres. "):
+        return headline(Group(rows, *codes[:3], subset), header)
+    if caption.startswith("Further metrics. "):
+        group = Group(rows, *codes[:3], subset)
+        return further(group, header, table["folds"])
+    if caption.startswith("minADE/minFDE in metres by protocol."):
+        groups = [Group(rows, codes[0], codes[1], protocol, subset) for protocol in ("fair", "single", "published")]
+        return by_protocol(groups, header)
+    raise AssertionError(f"the table `{caption}` is unknown here")
