@@ -12,7 +12,7 @@ use anyhow::{Context, Result};
 use crate::python::Python;
 
 /// The check takes a minute or two; beyond this something hangs.
-const LIMIT: Duration = Duration::from_secs(900);
+const LIMIT: Duration = Duration::from_mins(15);
 
 /// Runs a Python script that drives a browser with Playwright: `script FOLDER --browser PROGRAM MORE...`.
 pub(crate) fn run_check<'a>(
