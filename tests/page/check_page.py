@@ -265,6 +265,35 @@ def check_player(opened, moments):
     check_walker(opened, moments[at], int(button.get_attribute("data-walker")))
 
 
+def check_theme(opened):
+    """The button goes from the system's colours to light and to dark, and the picture with it."""
+    paper = "getComputedStyle(document.body).backgroundColor"
+    light, picture = opened.page.evaluate(paper), opened.picture()
+    opened.page.click("#theme")
+    assert opened.page.evaluate(paper) == light
+    opened.page.click("#theme")
+    assert opened.page.evaluate(paper) != light and opened.picture() != picture
+    opened.page.click("#theme")
+    assert opened.page.evaluate(paper) == light and opened.picture() == picture
+
+
+def check_touch(opened, moments):
+    """A finger plays, stops, and chooses a walker."""
+    before = opened.time()
+    opened.page.tap("#play")
+    opened.page.wait_for_function("(t) => Number(document.getElementById('scene').dataset.time) > t + 0.5", arg=before)
+    opened.page.tap("#play")
+    opened.page.check("#show-whole")
+    chosen = {opened.text("#walker-name")}
+    box = opened.page.locator("#scene").bounding_box()
+    for across in range(1, 12):
+        for down in (0.35, 0.45, 0.5, 0.55, 0.65):
+            opened.page.locator("#scene").tap(position={"x": box["width"] * across / 12, "y": box["height"] * down})
+            chosen.add(opened.text("#walker-name"))
+    names = {f"Walker {walker['pedestrian']}" for walker in moments[0]["walkers"]}
+    assert 1 < len(chosen) and chosen <= names, chosen
+
+
 def check_focus(opened):
     """Every stop of the tab key shows that it has the focus."""
     seen = []
@@ -292,7 +321,7 @@ def check_reduced_motion(opened):
     opened.page.wait_for_function("Math.max(...window.times) >= 3")
     opened.page.keyboard.press(" ")
     times = opened.page.evaluate("window.times")
-    assert all(time == int(time) for time in times), times
+    assert all(time == int(time) and 0 <= time <= 19 for time in times), times
 
 
 def check_looks(opened, width):
@@ -359,6 +388,10 @@ def main():
         with Opened(browser, path_of_page) as opened:
             check_player(opened, moments)
             print(f"player: {len(moments)} moments, numbers as computed from moments.json")
+        with Opened(browser, path_of_page) as opened:
+            check_theme(opened)
+        with Opened(browser, path_of_page, NARROW) as opened:
+            check_touch(opened, moments)
         with Opened(browser, path_of_page, motion="reduce") as opened:
             check_focus(opened)
             check_reduced_motion(opened)

@@ -4,7 +4,7 @@ mod chromium;
 mod patience;
 mod playwright;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::{Context, Result};
@@ -12,26 +12,45 @@ use anyhow::{Context, Result};
 use crate::python::Python;
 
 /// The check takes a minute or two; beyond this something hangs.
-const LIMIT: Duration = Duration::from_secs(900);
+const LIMIT: Duration = Duration::from_mins(15);
 
-/// Runs a Python script that drives a browser with Playwright: `script FOLDER --browser PROGRAM MORE...`.
-pub(crate) fn run_check<'a>(
-    script: &Path,
-    folder: &Path,
-    more: impl IntoIterator<Item = &'a Path>,
-) -> Result<()> {
-    let browser = chromium::find_or_install()?;
-    let python = Python::find()?;
-    let modules = playwright::ensure(&python)?;
-    let mut command = python.file(script);
-    command
-        .arg(folder)
-        .arg("--browser")
-        .arg(&browser)
-        .args(more);
-    command
-        .env("PYTHONPATH", &modules)
-        .env("PYTHONDONTWRITEBYTECODE", "1");
-    patience::run_within(&mut command, LIMIT)
-        .with_context(|| format!("the check with {} failed (above)", browser.display()))
+/// A browser and the Python that drives it, both there.
+#[derive(Debug)]
+pub(crate) struct Browser {
+    program: PathBuf,
+    python: Python,
+    modules: PathBuf,
+}
+
+impl Browser {
+    /// Finds both; what is missing is installed where that is possible, or the error says what to install.
+    pub(crate) fn ready() -> Result<Self> {
+        let program = chromium::find_or_install()?;
+        let python = Python::find()?;
+        let modules = playwright::ensure(&python)?;
+        Ok(Self {
+            program,
+            python,
+            modules,
+        })
+    }
+
+    /// Runs a Python script that drives the browser with Playwright: `script FOLDER --browser PROGRAM MORE...`.
+    pub(crate) fn run_check<'a>(
+        &self,
+        script: &Path,
+        folder: &Path,
+        more: impl IntoIterator<Item = &'a Path>,
+    ) -> Result<()> {
+        let mut command = self.python.file(script);
+        command
+            .arg(folder)
+            .arg("--browser")
+            .arg(&self.program)
+            .args(more)
+            .env("PYTHONPATH", &self.modules)
+            .env("PYTHONDONTWRITEBYTECODE", "1");
+        patience::run_within(&mut command, LIMIT)
+            .with_context(|| format!("the check with {} failed (above)", self.program.display()))
+    }
 }

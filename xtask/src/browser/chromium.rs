@@ -22,7 +22,7 @@ const NAMES: [&str; 5] = [
 /// What is installed where a machine lets us: the browser, and letters for it to write with.
 const PACKAGES: [&str; 2] = ["chromium", "fonts-dejavu-core"];
 /// A slow mirror is given this time for each of its two steps.
-const LIMIT: Duration = Duration::from_secs(600);
+const LIMIT: Duration = Duration::from_mins(10);
 /// What to do where we cannot.
 const ADVICE: &str = "install Chromium, on Debian with `apt install chromium fonts-dejavu-core`, or name one with \
     DDL_BROWSER=/path/to/program";

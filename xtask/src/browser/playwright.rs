@@ -17,7 +17,7 @@ use crate::python::{self, Python};
 /// The version the check was written with.
 const REQUIREMENT: &str = "playwright==1.65.2";
 /// Some 50 MB.
-const LIMIT: Duration = Duration::from_secs(600);
+const LIMIT: Duration = Duration::from_mins(10);
 
 /// The folder for Python's search path; the package is fetched when it is not there.
 pub(super) fn ensure(python: &Python) -> Result<PathBuf> {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::Args;
 
-use crate::browser;
+use crate::browser::Browser;
 use crate::workspace::{Workspace, absolute, step};
 
 /// Where the page goes, and whether pictures of it are kept.
@@ -33,6 +33,7 @@ pub(crate) fn check(workspace: &Workspace) -> Result<()> {
 }
 
 fn make_and_check(workspace: &Workspace, out: &Path, screenshots: Option<&Path>) -> Result<()> {
+    let browser = Browser::ready()?;
     let build = [
         "run",
         "--quiet",
@@ -48,7 +49,7 @@ fn make_and_check(workspace: &Workspace, out: &Path, screenshots: Option<&Path>)
     )?;
     let script = workspace.path("tests/page/check_page.py");
     let pictures = screenshots.map(|folder| [Path::new("--screenshots"), folder]);
-    browser::run_check(&script, out, pictures.into_iter().flatten())?;
+    browser.run_check(&script, out, pictures.into_iter().flatten())?;
     println!("{}", out.join("page.html").display());
     Ok(())
 }

@@ -13,7 +13,8 @@ function makeClock(onTime, onPlaying) {
 
   function tick(now) {
     if (!playing) return;
-    const seconds = Math.min((now - last) / 1000, 0.25);
+    // The first picture may have been begun before the clock was started; one after a long pause is no leap.
+    const seconds = Math.min(Math.max((now - last) / 1000, 0), 0.25);
     last = now;
     if (rest > 0) {
       rest -= seconds;

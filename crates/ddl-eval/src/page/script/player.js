@@ -117,7 +117,7 @@ function makePlayer(moments) {
     byId("min-fde").textContent = errors.minFde.toFixed(3);
     const count = who.hypotheses.length;
     byId("convention-words").textContent =
-      `${count === 1 ? "One hypothesis" : `Best of ${count} hypotheses`}, two minima of their own; from positions rounded to the millimetre. ` +
+      `${count === 1 ? "Of its one hypothesis" : `Best of ${count} hypotheses, two minima of their own`}; from positions rounded to the millimetre. ` +
       `Forecast by ${moment.forecaster}; ${moment.recording}, frame ${moment.frame}.`;
     canvas.setAttribute(
       "aria-label",
