@@ -16,8 +16,8 @@ pub(super) fn headline(report: &Report) -> String {
     let Some(standing) = standing(report) else {
         return "<p class=\"nothing\">This report holds no results.</p>\n".to_owned();
     };
-    let best = standing.lines.first();
-    let mut html = best.map_or(String::new(), |best| verdict(&standing, best));
+    let subject = standing.subject();
+    let mut html = subject.map_or(String::new(), |line| verdict(&standing, line));
     if let Some(warning) = standing.shared.protocol.warning() {
         let _ = writeln!(
             html,
@@ -36,7 +36,7 @@ pub(super) fn headline(report: &Report) -> String {
         headline_chart(&standing, Shape::Narrow).inline("narrow"),
         inline(&caption)
     );
-    html.extend(best.map(|best| facts(&standing, best)));
+    html.extend(subject.map(|line| facts(&standing, line)));
     html
 }
 
@@ -51,11 +51,8 @@ fn conditions_in_words(standing: &Standing) -> String {
     )
 }
 
-fn verdict(standing: &Standing, best: &StandingLine) -> String {
-    let Some([ade, fde]) = best
-        .mean
-        .or_else(|| best.folds.iter().copied().find_map(|pair| pair))
-    else {
+fn verdict(standing: &Standing, subject: &StandingLine) -> String {
+    let Some([ade, fde]) = number_of(subject) else {
         return String::new();
     };
     let over = match standing.folds.as_slice() {
@@ -71,22 +68,44 @@ fn verdict(standing: &Standing, best: &StandingLine) -> String {
         format!(
             "<div class=\"number\"><b data-number=\"{name}\">{value:.3}</b><span class=\"unit\">m</span>\
              <span class=\"name\">{name}, best of {}</span></div>\n",
-            best.hypotheses
+            subject.hypotheses
         )
     };
     let lead = format!(
-        "<strong>{}</strong> errs least of the {} measured under protocol <code>{}</code>: {}, {}.",
-        escape(&best.label),
-        forecasters(standing.lines.len()),
+        "<strong>{}</strong> under protocol <code>{}</code>: {}, {}. {}",
+        escape(&subject.label),
         standing.shared.protocol,
         inline(&over),
         inline(&format!("convention `{}`", standing.shared.convention)),
+        rank(standing, subject),
     );
     format!(
         "<div class=\"best\">\n<p class=\"verdict\">{lead}</p>\n<div class=\"numbers\">\n{}{}</div>\n</div>\n",
         number("minADE", ade),
         number("minFDE", fde)
     )
+}
+
+/// minADE and minFDE: the mean over the folds, or of the first fold there is.
+fn number_of(line: &StandingLine) -> Option<[f64; 2]> {
+    let first = || line.folds.iter().copied().find_map(|pair| pair);
+    line.mean.or_else(first)
+}
+
+/// Where the line stands among all that are comparable, by minADE.
+fn rank(standing: &Standing, subject: &StandingLine) -> String {
+    let measured = forecasters(standing.lines.len());
+    match standing.lines.first() {
+        Some(best) if best.label != subject.label => {
+            let numbers = number_of(best).map_or(String::new(), |[ade, fde]| {
+                format!(" ({ade:.3}/{fde:.3} m)")
+            });
+            let label = escape(&best.label);
+            format!("Of the {measured} measured, {label} errs least{numbers}.")
+        }
+        _ if standing.lines.len() > 1 => format!("It errs least of the {measured} measured."),
+        _ => String::new(),
+    }
 }
 
 fn facts(standing: &Standing, best: &StandingLine) -> String {

@@ -1,8 +1,11 @@
 //! The comparison at the head of the page: rows that may be compared, and which of them is best.
 
-use ddl_data::{Convention, WindowRule};
+use ddl_data::WindowRule;
 
-use crate::{Conditions, Protocol, Report, ResultRow, Scores};
+use crate::{
+    Conditions, Protocol, Report, Scores,
+    report::{Group, Line, groups},
+};
 
 /// Comparable lines of a report: one convention, window rule, protocol and scored part.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,149 +39,73 @@ pub(super) struct StandingLine {
     pub(super) scored: [usize; 2],
 }
 
+impl Standing {
+    /// The forecaster that the report is about: the best trained one, or the best of all where none is trained.
+    pub(super) fn subject(&self) -> Option<&StandingLine> {
+        let trained = |line: &&StandingLine| line.conditions.epochs.is_some();
+        self.lines.iter().find(trained).or(self.lines.first())
+    }
+}
+
 /// The results that the page begins with: under `fair` if there are any, else `single`, else `published`; of these, those
 /// by the published window rule on all test windows if there are any.
 pub(super) fn standing(report: &Report) -> Option<Standing> {
-    let place = |c: &Conditions| {
-        let convention = Convention::ALL
-            .iter()
-            .position(|known| *known == c.convention);
-        let protocol = match c.protocol {
+    let groups = groups(report.rows());
+    // Groups stand in the order of conventions and rules already; the first of equals is taken.
+    let group = groups.iter().min_by_key(|group| {
+        let protocol = match group.protocol {
             Protocol::Fair => 0,
             Protocol::Single => 1,
             Protocol::Published => 2,
         };
-        let rule = (
-            c.window_rule != WindowRule::Published,
-            c.window_rule.to_string(),
-        );
-        (protocol, convention, rule, c.test_subset.clone())
-    };
-    let first = report
-        .rows()
+        (
+            protocol,
+            group.convention,
+            group.window_rule != WindowRule::Published,
+        )
+    })?;
+    let measured = |fold: &&str| !group.walkers(fold).is_empty();
+    let folds: Vec<&str> = group.folds().into_iter().filter(measured).collect();
+    let mut lines: Vec<StandingLine> = group
+        .lines
         .iter()
-        .min_by_key(|row| place(&row.conditions))?;
-    let shared = first.conditions.clone();
-    let rows: Vec<&ResultRow> = report
-        .rows()
-        .iter()
-        .filter(|row| place(&row.conditions) == place(&shared))
-        .collect();
-
-    let named: Vec<&str> = shared.convention.fold_names().collect();
-    let mut folds: Vec<String> = named.iter().map(ToString::to_string).collect();
-    folds.extend(rows.iter().map(|row| row.conditions.fold.clone()));
-    let mut seen: Vec<String> = Vec::new();
-    folds.retain(|fold| {
-        let new = !seen.contains(fold) && rows.iter().any(|row| row.conditions.fold == *fold);
-        seen.push(fold.clone());
-        new
-    });
-    let all_folds = named
-        .iter()
-        .all(|name| folds.iter().any(|fold| fold == name));
-
-    let mut lines: Vec<Vec<&ResultRow>> = Vec::new();
-    for row in rows {
-        match lines.iter_mut().find(|line| alike(line[0], row)) {
-            Some(line) => line.push(row),
-            None => lines.push(vec![row]),
-        }
-    }
-    let labels = labels(&lines);
-    let mut lines: Vec<StandingLine> = lines
-        .iter()
-        .zip(labels)
-        .map(|(rows, label)| StandingLine::of(rows, label, &folds))
+        .zip(group.labels())
+        .map(|(line, label)| StandingLine::of(line, label, &folds))
         .collect();
     // Lines without a mean stand last; the sort is stable.
     let order = |line: &StandingLine| line.mean.map_or(f64::INFINITY, |mean| mean[0]);
     lines.sort_by(|a, b| order(a).total_cmp(&order(b)));
     Some(Standing {
-        shared,
-        folds,
-        all_folds,
+        shared: group.lines.first()?.conditions().clone(),
+        all_folds: all_folds(group, &folds),
+        folds: folds.into_iter().map(str::to_owned).collect(),
         lines,
     })
 }
 
-/// Whether two rows differ in fold and seed alone.
-fn alike(a: &ResultRow, b: &ResultRow) -> bool {
-    let same = Conditions {
-        fold: a.conditions.fold.clone(),
-        seed: a.conditions.seed,
-        ..b.conditions.clone()
-    };
-    a.conditions == same
-}
-
-fn labels(lines: &[Vec<&ResultRow>]) -> Vec<String> {
-    let plain: Vec<String> = lines
-        .iter()
-        .map(|line| line[0].conditions.label())
-        .collect();
-    let numbered = |(at, label): (usize, &String)| {
-        let same = plain.iter().filter(|other| *other == label).count();
-        let before = plain[..at].iter().filter(|other| *other == label).count();
-        if same > 1 {
-            format!("{label} #{}", before + 1)
-        } else {
-            label.clone()
-        }
-    };
-    plain.iter().enumerate().map(numbered).collect()
+fn all_folds(group: &Group<'_>, measured: &[&str]) -> bool {
+    let mut named = group.convention.fold_names();
+    named.all(|name| measured.contains(&name))
 }
 
 impl StandingLine {
-    fn of(rows: &[&ResultRow], label: String, folds: &[String]) -> Self {
-        let mut seeds: Vec<Option<u64>> = rows.iter().map(|row| row.conditions.seed).collect();
-        seeds.sort_unstable();
-        seeds.dedup();
-        let pair = |of: fn(&Scores) -> f64, fold: &String| {
-            mean(of_fold(rows, fold).map(|row| of(&row.scores)))
+    fn of(line: &Line<'_>, label: String, folds: &[&str]) -> Self {
+        let both = |of: &dyn Fn(fn(&Scores) -> f64) -> Option<f64>| {
+            Some([of(|s| s.min_ade)?, of(|s| s.min_fde)?])
         };
-        let both = |fold: &String| Some([pair(|s| s.min_ade, fold)?, pair(|s| s.min_fde, fold)?]);
-        // The mean over folds is taken seed by seed, as the tables take it.
-        let of_seed = |of: fn(&Scores) -> f64, seed: &Option<u64>| {
-            let values: Option<Vec<f64>> = folds
-                .iter()
-                .map(|fold| {
-                    Some(of(&of_fold(rows, fold)
-                        .find(|row| row.conditions.seed == *seed)?
-                        .scores))
-                })
-                .collect();
-            mean(values?.into_iter())
-        };
-        let over_seeds = |of: fn(&Scores) -> f64| {
-            let means: Option<Vec<f64>> = seeds.iter().map(|seed| of_seed(of, seed)).collect();
-            mean(means?.into_iter())
-        };
-        let whole = over_seeds(|s| s.min_ade).zip(over_seeds(|s| s.min_fde));
+        let on_fold = |fold: &&str| both(&|of| Some(line.on_fold(fold, of)?.mean()));
         let count = |of: fn(&Scores) -> usize| -> usize {
-            let first = folds.iter().filter_map(|fold| of_fold(rows, fold).next());
+            let first = folds.iter().filter_map(|fold| line.on(fold).next());
             first.map(|row| of(&row.scores)).sum()
         };
         Self {
             label,
-            conditions: rows[0].conditions.clone(),
-            seeds: seeds.iter().flatten().copied().collect(),
-            hypotheses: rows[0].scores.hypotheses,
-            folds: folds.iter().map(both).collect(),
-            mean: whole.map(|(ade, fde)| [ade, fde]),
+            conditions: line.conditions().clone(),
+            seeds: line.seeds().into_iter().flatten().collect(),
+            hypotheses: line.rows[0].scores.hypotheses,
+            folds: folds.iter().map(on_fold).collect(),
+            mean: both(&|of| Some(line.over_folds(folds, of)?.mean())),
             scored: [count(|s| s.pedestrians), count(|s| s.windows)],
         }
     }
-}
-
-fn of_fold<'a>(rows: &'a [&'a ResultRow], fold: &'a str) -> impl Iterator<Item = &'a ResultRow> {
-    rows.iter()
-        .copied()
-        .filter(move |row| row.conditions.fold == fold)
-}
-
-/// `None` of nothing. Summed in order, as the tables do.
-fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let values: Vec<f64> = values.collect();
-    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }

@@ -6,22 +6,22 @@ use super::spread::Spread;
 use crate::{Protocol, ResultRow, Scores, conditions::Conditions, significance::BlockErrors};
 
 /// Rows whose numbers are comparable: one table.
-pub(super) struct Group<'a> {
-    pub(super) convention: Convention,
-    pub(super) window_rule: WindowRule,
-    pub(super) protocol: Protocol,
-    pub(super) test_subset: Option<&'a str>,
-    pub(super) lines: Vec<Line<'a>>,
+pub(crate) struct Group<'a> {
+    pub(crate) convention: Convention,
+    pub(crate) window_rule: WindowRule,
+    pub(crate) protocol: Protocol,
+    pub(crate) test_subset: Option<&'a str>,
+    pub(crate) lines: Vec<Line<'a>>,
 }
 
 /// Results that differ in fold and seed alone: one line of a table.
-pub(super) struct Line<'a> {
-    pub(super) rows: Vec<&'a ResultRow>,
+pub(crate) struct Line<'a> {
+    pub(crate) rows: Vec<&'a ResultRow>,
 }
 
 /// Sorts rows into tables: by convention, then the published window rule before others, then the
 /// headline protocol first. Lines stand in the order in which their first row was given.
-pub(super) fn groups(rows: &[ResultRow]) -> Vec<Group<'_>> {
+pub(crate) fn groups(rows: &[ResultRow]) -> Vec<Group<'_>> {
     let mut groups: Vec<Group<'_>> = Vec::new();
     for row in rows {
         let c = &row.conditions;
@@ -76,13 +76,13 @@ impl Group<'_> {
     }
 
     /// Whether both groups score the same windows of the same data, under whatever protocol.
-    pub(super) fn same_windows(&self, other: &Self) -> bool {
+    pub(crate) fn same_windows(&self, other: &Self) -> bool {
         (self.convention, self.window_rule, self.test_subset)
             == (other.convention, other.window_rule, other.test_subset)
     }
 
     /// What the table is of.
-    pub(super) fn title(&self) -> String {
+    pub(crate) fn title(&self) -> String {
         format!(
             "Protocol `{}`, window rule `{}`, convention `{}`",
             self.protocol, self.window_rule, self.convention
@@ -90,7 +90,7 @@ impl Group<'_> {
     }
 
     /// Protocol, window rule, convention and scored part: what a caption must name.
-    pub(super) fn conditions_in_words(&self) -> String {
+    pub(crate) fn conditions_in_words(&self) -> String {
         format!(
             "Data convention `{}`, window rule `{}`, protocol `{}`; scored: {}.",
             self.convention,
@@ -101,7 +101,7 @@ impl Group<'_> {
     }
 
     /// The columns: the folds of the convention, and any other fold that a row names.
-    pub(super) fn folds(&self) -> Vec<&str> {
+    pub(crate) fn folds(&self) -> Vec<&str> {
         let mut folds: Vec<&str> = self.convention.fold_names().collect();
         for row in self.lines.iter().flat_map(|line| &line.rows) {
             if !folds.contains(&row.conditions.fold.as_str()) {
@@ -112,7 +112,7 @@ impl Group<'_> {
     }
 
     /// The name of each line; equal names of different settings are numbered.
-    pub(super) fn labels(&self) -> Vec<String> {
+    pub(crate) fn labels(&self) -> Vec<String> {
         let labels: Vec<String> = self.lines.iter().map(|l| l.conditions().label()).collect();
         let numbered = |(at, label): (usize, &String)| {
             let same = labels.iter().filter(|other| *other == label).count();
@@ -127,7 +127,7 @@ impl Group<'_> {
     }
 
     /// The numbers of walkers scored on a fold; more than one when the lines disagree.
-    pub(super) fn walkers(&self, fold: &str) -> Vec<usize> {
+    pub(crate) fn walkers(&self, fold: &str) -> Vec<usize> {
         let mut counts: Vec<usize> = self
             .lines
             .iter()
@@ -152,11 +152,12 @@ impl<'a> Line<'a> {
     }
 
     /// The conditions of the line; fold and seed are those of its first row only.
-    pub(super) fn conditions(&self) -> &'a Conditions {
+    pub(crate) fn conditions(&self) -> &'a Conditions {
         &self.rows[0].conditions
     }
 
-    fn on<'b>(&'b self, fold: &'b str) -> impl Iterator<Item = &'a ResultRow> + 'b {
+    /// The rows of one fold, one a seed.
+    pub(crate) fn on<'b>(&'b self, fold: &'b str) -> impl Iterator<Item = &'a ResultRow> + 'b {
         self.rows
             .iter()
             .copied()
@@ -165,7 +166,7 @@ impl<'a> Line<'a> {
 
     /// The errors by block on one fold, mean over the seeds; `None` where a row has none, or the seeds were not measured on
     /// the same windows.
-    pub(super) fn blocks(&self, fold: &str) -> Option<Vec<BlockErrors>> {
+    pub(crate) fn blocks(&self, fold: &str) -> Option<Vec<BlockErrors>> {
         let rows: Vec<&ResultRow> = self.on(fold).collect();
         let count = rows.len() as f64;
         let mut mean = rows.first()?.blocks.clone();
@@ -189,7 +190,7 @@ impl<'a> Line<'a> {
     }
 
     /// The seeds, sorted; `None` stands for results that have no seed.
-    pub(super) fn seeds(&self) -> Vec<Option<u64>> {
+    pub(crate) fn seeds(&self) -> Vec<Option<u64>> {
         let mut seeds: Vec<_> = self.rows.iter().map(|row| row.conditions.seed).collect();
         seeds.sort_unstable();
         seeds.dedup();
@@ -197,12 +198,12 @@ impl<'a> Line<'a> {
     }
 
     /// A number on one fold, over the seeds.
-    pub(super) fn on_fold(&self, fold: &str, of: impl Fn(&Scores) -> f64) -> Option<Spread> {
+    pub(crate) fn on_fold(&self, fold: &str, of: impl Fn(&Scores) -> f64) -> Option<Spread> {
         Spread::of(&self.on(fold).map(|row| of(&row.scores)).collect::<Vec<_>>())
     }
 
     /// The plain mean over the folds, over the seeds; `None` unless every seed has every fold.
-    pub(super) fn over_folds(&self, folds: &[&str], of: impl Fn(&Scores) -> f64) -> Option<Spread> {
+    pub(crate) fn over_folds(&self, folds: &[&str], of: impl Fn(&Scores) -> f64) -> Option<Spread> {
         let mean_of_seed = |seed: Option<u64>| {
             let on_fold = |fold: &&str| {
                 let row = self.on(fold).find(|row| row.conditions.seed == seed)?;
@@ -216,7 +217,7 @@ impl<'a> Line<'a> {
     }
 
     /// The folds that the line has, in the order of `folds`.
-    pub(super) fn present<'f>(&self, folds: &[&'f str]) -> Vec<&'f str> {
+    pub(crate) fn present<'f>(&self, folds: &[&'f str]) -> Vec<&'f str> {
         folds
             .iter()
             .copied()

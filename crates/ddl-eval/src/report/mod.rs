@@ -18,6 +18,8 @@ mod significance;
 mod spread;
 mod whole_forecast;
 
+pub(crate) use group::{Group, Line, groups};
+
 /// Version of the JSON file.
 const FORMAT: u32 = 1;
 

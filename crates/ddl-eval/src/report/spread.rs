@@ -4,7 +4,7 @@ use std::fmt;
 
 /// Mean and spread of one number over the seeds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Spread {
+pub(crate) struct Spread {
     mean: f64,
     /// Sample standard deviation (n - 1); `None` for one seed.
     deviation: Option<f64>,
@@ -12,7 +12,7 @@ pub(super) struct Spread {
 
 impl Spread {
     /// `None` when there are no values.
-    pub(super) fn of(values: &[f64]) -> Option<Self> {
+    pub(crate) fn of(values: &[f64]) -> Option<Self> {
         let n = values.len() as f64;
         if values.is_empty() {
             return None;
@@ -21,6 +21,13 @@ impl Spread {
         let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
         let deviation = (values.len() > 1).then(|| (squares / (n - 1.0)).sqrt());
         Some(Self { mean, deviation })
+    }
+}
+
+impl Spread {
+    /// The mean alone.
+    pub(crate) fn mean(self) -> f64 {
+        self.mean
     }
 }
 
