@@ -88,7 +88,7 @@ impl Results {
     }
 
     /// Writes `report.md`, `report.tex`, `report.json`, `moments.json`, the page `report.html` and each of its figures as `figures/NAME.svg` into
-    /// `folder`, which is made if need be. A file that is there is replaced as a whole.
+    /// `folder`, which is made if need be. A file that is there is replaced as a whole; other `.svg` files in `figures` are removed.
     ///
     /// # Errors
     /// When the folder or a file cannot be written, or a figure cannot be drawn.
@@ -100,9 +100,25 @@ impl Results {
             .curves(self.curves.clone());
         let figures = folder.join("figures");
         std::fs::create_dir_all(&figures).map_err(|error| DdlError::io(&figures, error))?;
-        for (name, svg) in page.figures()? {
+        let drawn = page.figures()?;
+        for (name, svg) in &drawn {
             write_atomically(&figures.join(name), svg.as_bytes())?;
         }
+        // Figures of an earlier report would be taken for this one's.
+        remove_others(&figures, &drawn)?;
         write_atomically(&folder.join("report.html"), page.to_html()?.as_bytes())
     }
+}
+
+/// Removes the `.svg` files of a folder that are not among these.
+fn remove_others(folder: &Path, kept: &[(String, String)]) -> Result<(), DdlError> {
+    let failed = |error| DdlError::io(folder, error);
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let is_kept = kept.iter().any(|(name, _)| path.ends_with(name));
+        if path.extension().is_some_and(|e| e == "svg") && !is_kept {
+            std::fs::remove_file(&path).map_err(|error| DdlError::io(&path, error))?;
+        }
+    }
+    Ok(())
 }

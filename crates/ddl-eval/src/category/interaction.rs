@@ -81,23 +81,33 @@ impl Interaction {
             return Vec::new();
         }
         let me = window.track(i);
-        let (mut ahead, mut leader, mut oncoming, mut group) = (false, false, false, false);
+        let (mut ahead, mut kinds) = (false, Vec::new());
         for j in (0..window.len()).filter(|&j| j != i) {
             let seen = Encounter::of(me, window.track(j));
             ahead |= seen.ahead > 0;
-            leader |= seen.followed >= FOLLOWED;
-            oncoming |= seen.oncoming > 0;
-            group |= seen.beside > 0 && keeps_close(me, window.track(j));
+            kinds.extend(seen.kinds(me, window.track(j)));
         }
-        if !ahead && !group {
-            return Vec::new();
+        if kinds.is_empty() && ahead {
+            return vec![Self::Other];
         }
-        let other = !leader && !oncoming && !group;
         Self::ALL
             .into_iter()
-            .zip([leader, oncoming, group, other])
-            .filter_map(|(kind, holds)| holds.then_some(kind))
+            .filter(|kind| kinds.contains(kind))
             .collect()
+    }
+
+    /// What walker `i` has to do with walker `j` in particular: the kinds but for [`Interaction::Other`]. Empty without a
+    /// future, and of a walker with itself.
+    ///
+    /// # Panics
+    /// When `i` or `j` is out of range.
+    #[must_use]
+    pub fn between(window: &Window, i: usize, j: usize) -> Vec<Self> {
+        if i == j || !window.has_future() {
+            return Vec::new();
+        }
+        let (me, other) = (window.track(i), window.track(j));
+        Encounter::of(me, other).kinds(me, other)
     }
 }
 
@@ -147,6 +157,21 @@ impl Encounter {
             }
         }
         seen
+    }
+}
+
+impl Encounter {
+    /// The kinds that this encounter makes, in the order of [`Interaction::ALL`].
+    fn kinds(&self, me: &[Position], other: &[Position]) -> Vec<Interaction> {
+        let group = self.beside > 0 && keeps_close(me, other);
+        [
+            (Interaction::LeaderFollower, self.followed >= FOLLOWED),
+            (Interaction::CollisionAvoidance, self.oncoming > 0),
+            (Interaction::Group, group),
+        ]
+        .into_iter()
+        .filter_map(|(kind, holds)| holds.then_some(kind))
+        .collect()
     }
 }
 

@@ -14,7 +14,10 @@ fn render(part: &Part) -> String {
         Part::Paragraph(text) => format!("{text}\n"),
         Part::Warning(text) => format!("> **Warning.** {text}\n"),
         Part::List(items) => items.iter().flat_map(|item| ["- ", item, "\n"]).collect(),
-        Part::Table(table) => table.to_string(),
+        Part::Table(table) => match table.caption() {
+            Some(caption) => format!("{caption}\n\n{table}"),
+            None => table.to_string(),
+        },
     }
 }
 
@@ -36,13 +39,13 @@ mod tests {
                 Part::Warning("Mind.".to_owned()),
                 Part::subheading("Two"),
                 Part::Paragraph("Words.".to_owned()),
-                Part::Table(table),
+                Part::Table(table.captioned("In metres.")),
             ],
         };
         assert_eq!(
             page(&document),
             "First.\n\n# Title\n\n## One\n\n- x\n- `y`\n\n> **Warning.** Mind.\n\n### Two\n\nWords.\n\n\
-             | a |\n|---|\n| 1 |\n"
+             In metres.\n\n| a |\n|---|\n| 1 |\n"
         );
     }
 }

@@ -125,14 +125,11 @@ fn shows(scene: &Scene<'_>, i: usize) -> Vec<(Show, Vec<usize>)> {
         }
         _ => {}
     }
-    let interactions = Interaction::of(window, i);
-    if interactions.contains(&Interaction::Group)
-        && let Some((other, _)) = nearest(window, i, mean_distance)
-    {
+    if let Some((other, _)) = nearest(window, i, Interaction::Group, mean_distance) {
         shows.push((Show::Group, vec![i, other]));
     }
-    if interactions.contains(&Interaction::CollisionAvoidance)
-        && let Some((other, apart)) = nearest(window, i, closest_approach)
+    let passed = nearest(window, i, Interaction::CollisionAvoidance, closest_approach);
+    if let Some((other, apart)) = passed
         && apart >= APART
     {
         shows.push((Show::KeepingDistance, vec![i, other]));
@@ -151,14 +148,15 @@ fn converges(scene: &Scene<'_>, i: usize) -> bool {
             .is_some_and(|goal| distance(end, goal) <= ARRIVED)
 }
 
-/// The other whose true future is nearest to that of walker `i`, and how near.
+/// Of those with whom walker `i` has an interaction of this kind the one whose true future is nearest, and how near.
 fn nearest(
     window: &Window,
     i: usize,
+    kind: Interaction,
     apart: fn(&[Position], &[Position]) -> f64,
 ) -> Option<(usize, f64)> {
     (0..window.len())
-        .filter(|&j| j != i)
+        .filter(|&j| Interaction::between(window, i, j).contains(&kind))
         .map(|j| (j, apart(window.future(i), window.future(j))))
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }

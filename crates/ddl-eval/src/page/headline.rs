@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{
-    figure::{Shape, headline_chart},
+    figure::{MOST_LINES, Shape, headline_chart},
     standing::{Standing, StandingLine, standing},
 };
 use crate::{
@@ -26,8 +26,9 @@ pub(super) fn headline(report: &Report) -> String {
         );
     }
     let caption = format!(
-        "minADE and minFDE in metres, less is better; the number is minADE. {} K: hypotheses a walker, the best of which is scored. Every number stands in the tables below.",
-        conditions_in_words(&standing)
+        "minADE and minFDE in metres, less is better; the number is minADE. {} K: hypotheses a walker, the best of which is scored. {} Every number stands in the tables below.",
+        conditions_in_words(&standing),
+        shown_of(standing.lines.len())
     );
     let _ = write!(
         html,
@@ -38,6 +39,15 @@ pub(super) fn headline(report: &Report) -> String {
     );
     html.extend(subject.map(|line| facts(&standing, line)));
     html
+}
+
+/// Says so where the chart leaves lines out.
+fn shown_of(lines: usize) -> String {
+    if lines > MOST_LINES {
+        format!("The first {MOST_LINES} of {lines} are drawn.")
+    } else {
+        String::new()
+    }
 }
 
 fn conditions_in_words(standing: &Standing) -> String {
@@ -52,17 +62,26 @@ fn conditions_in_words(standing: &Standing) -> String {
 }
 
 fn verdict(standing: &Standing, subject: &StandingLine) -> String {
-    let Some([ade, fde]) = number_of(subject) else {
-        return String::new();
-    };
-    let over = match standing.folds.as_slice() {
-        [one] => format!("on `{one}`"),
-        all if standing.all_folds => format!("plain mean of the {} folds", all.len()),
-        some => format!(
-            "plain mean of the {} folds measured: {}",
-            some.len(),
-            some.join(", ")
+    let mut measured = standing.folds.iter().zip(&subject.folds);
+    let first = measured.find_map(|(fold, pair)| Some((fold, (*pair)?)));
+    let ([ade, fde], over) = match (subject.mean, standing.folds.as_slice(), first) {
+        (Some(mean), [one], _) => (mean, format!("on `{one}`")),
+        (Some(mean), all, _) if standing.all_folds => {
+            (mean, format!("plain mean of the {} folds", all.len()))
+        }
+        (Some(mean), some, _) => (
+            mean,
+            format!(
+                "plain mean of the {} folds measured: {}",
+                some.len(),
+                some.join(", ")
+            ),
         ),
+        (None, _, Some((fold, pair))) => (
+            pair,
+            format!("on `{fold}`, for it lacks other folds that are measured here"),
+        ),
+        (None, _, None) => return String::new(),
     };
     let number = |name: &str, value: f64| {
         format!(
@@ -86,30 +105,30 @@ fn verdict(standing: &Standing, subject: &StandingLine) -> String {
     )
 }
 
-/// minADE and minFDE: the mean over the folds, or of the first fold there is.
-fn number_of(line: &StandingLine) -> Option<[f64; 2]> {
-    let first = || line.folds.iter().copied().find_map(|pair| pair);
-    line.mean.or_else(first)
-}
-
-/// Where the line stands among all that are comparable, by minADE.
+/// Where the line stands by minADE among all that have the same folds.
 fn rank(standing: &Standing, subject: &StandingLine) -> String {
-    let measured = forecasters(standing.lines.len());
-    match standing.lines.first() {
-        Some(best) if best.label != subject.label => {
-            let numbers = number_of(best).map_or(String::new(), |[ade, fde]| {
-                format!(" ({ade:.3}/{fde:.3} m)")
-            });
+    let ranked: Vec<&StandingLine> = standing.ranked().collect();
+    let (Some(best), Some(_)) = (ranked.first(), subject.mean) else {
+        return String::new();
+    };
+    let measured = forecasters(ranked.len());
+    let of_all = if ranked.len() == standing.lines.len() {
+        format!("the {measured} measured")
+    } else {
+        format!("the {measured} measured on the same folds")
+    };
+    match best.mean {
+        Some([ade, fde]) if best.label != subject.label => {
             let label = escape(&best.label);
-            format!("Of the {measured} measured, {label} errs least{numbers}.")
+            format!("Of {of_all}, {label} errs least ({ade:.3}/{fde:.3} m).")
         }
-        _ if standing.lines.len() > 1 => format!("It errs least of the {measured} measured."),
+        _ if ranked.len() > 1 => format!("It errs least of {of_all}."),
         _ => String::new(),
     }
 }
 
-fn facts(standing: &Standing, best: &StandingLine) -> String {
-    let [walkers, windows] = best.scored.map(grouped);
+fn facts(standing: &Standing, subject: &StandingLine) -> String {
+    let [walkers, windows] = subject.scored.map(grouped);
     let facts = [
         (
             "Measured",
@@ -130,7 +149,7 @@ fn facts(standing: &Standing, best: &StandingLine) -> String {
                     .unwrap_or("all test windows")
             ),
         ),
-        ("Conditions", conditions_of(best)),
+        ("Conditions", subject.settings.clone()),
     ];
     let mut html = "<dl class=\"facts\">\n".to_owned();
     for (name, words) in facts {
@@ -160,50 +179,5 @@ fn forecasters(count: usize) -> String {
     match count {
         1 => "one forecaster".to_owned(),
         several => format!("{several} forecasters"),
-    }
-}
-
-/// Under what conditions a line came about.
-fn conditions_of(line: &StandingLine) -> String {
-    let c = &line.conditions;
-    let seeds: Vec<String> = line.seeds.iter().map(u64::to_string).collect();
-    let mut words = vec![match seeds.as_slice() {
-        [] => "no seed (nothing random)".to_owned(),
-        [one] => format!("seed {one}"),
-        several => format!("mean of seeds {}", several.join(", ")),
-    }];
-    match c.epochs {
-        None => words.push("not trained".to_owned()),
-        Some(epochs) => {
-            words.push(format!("{epochs} epochs"));
-            words.extend(c.selection.clone());
-            words.extend(c.recipe.clone());
-            let subset = c
-                .training_subset
-                .as_deref()
-                .unwrap_or("all training windows");
-            words.push(format!("trained on {subset}"));
-        }
-    }
-    let known = |text: &str| {
-        if text.is_empty() {
-            "unknown".to_owned()
-        } else {
-            text.to_owned()
-        }
-    };
-    words.push(format!("device {}", known(&c.device)));
-    words.push(format!("commit `{}`", known(&c.commit)));
-    words.join("; ")
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn digits_are_grouped() {
-        assert_eq!(
-            [0, 999, 1000, 1_234_567].map(super::grouped),
-            ["0", "999", "1,000", "1,234,567"]
-        );
     }
 }

@@ -27,8 +27,8 @@ pub(super) struct StandingLine {
     pub(super) label: String,
     /// Conditions of its first row.
     pub(super) conditions: Conditions,
-    /// Its seeds.
-    pub(super) seeds: Vec<u64>,
+    /// Under what conditions it came about, in words.
+    pub(super) settings: String,
     /// Hypotheses a walker.
     pub(super) hypotheses: usize,
     /// minADE and minFDE on each fold, m, mean over seeds; `None` where it was not measured.
@@ -40,10 +40,20 @@ pub(super) struct StandingLine {
 }
 
 impl Standing {
-    /// The forecaster that the report is about: the best trained one, or the best of all where none is trained.
+    /// The forecaster that the report is about: the best trained one; else that of another program; else the best of all.
     pub(super) fn subject(&self) -> Option<&StandingLine> {
         let trained = |line: &&StandingLine| line.conditions.epochs.is_some();
-        self.lines.iter().find(trained).or(self.lines.first())
+        let foreign = |line: &&StandingLine| line.conditions.selection.is_some();
+        let lines = || self.lines.iter();
+        lines()
+            .find(trained)
+            .or_else(|| lines().find(foreign))
+            .or(self.lines.first())
+    }
+
+    /// The lines that have every fold measured, the best first: those that can be ranked.
+    pub(super) fn ranked(&self) -> impl Iterator<Item = &StandingLine> {
+        self.lines.iter().filter(|line| line.mean.is_some())
     }
 }
 
@@ -101,7 +111,7 @@ impl StandingLine {
         Self {
             label,
             conditions: line.conditions().clone(),
-            seeds: line.seeds().into_iter().flatten().collect(),
+            settings: line.settings(),
             hypotheses: line.rows[0].scores.hypotheses,
             folds: folds.iter().map(on_fold).collect(),
             mean: both(&|of| Some(line.over_folds(folds, of)?.mean())),

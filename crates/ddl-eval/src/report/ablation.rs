@@ -5,6 +5,7 @@ use super::{
     section::pair,
 };
 use crate::{
+    Conditions,
     document::{Part, Table},
     literature::{ABLATION, ablation_table},
 };
@@ -18,9 +19,9 @@ pub(super) fn parts(groups: &[Group<'_>]) -> Vec<Part> {
     let mut parts = vec![
         Part::heading("Ablation: goal shift and dynamics"),
         Part::Paragraph(
-            "Goal shift: positions enter the network relative to the goal. Dynamics: the network shapes a flow to the goal \
-             instead of emitting positions. The variants differ in nothing else: folds, windows, seeds, recipe and goals are \
-             the same."
+            "Goal shift: positions enter the network relative to the goal, which they do not know otherwise. Dynamics: the network \
+             shapes a flow to the goal instead of emitting positions. Without either it is plain STAR, which has no goals and draws 20 \
+             noise samples."
                 .to_owned(),
         ),
     ];
@@ -29,6 +30,13 @@ pub(super) fn parts(groups: &[Group<'_>]) -> Vec<Part> {
         if let Some(warning) = group.protocol.warning() {
             parts.push(Part::Warning(warning.to_owned()));
         }
+        parts.push(Part::Paragraph(if alike(group) {
+            "The variants have the same folds, seeds, epochs, recipe and commit.".to_owned()
+        } else {
+            "The variants were NOT made alike: folds, seeds, epochs, recipe or commit differ (see the conditions beside the table of this \
+             protocol), and so differences are not those of the components alone."
+                .to_owned()
+        }));
         parts.push(Part::Table(measured(group).captioned(format!(
             "Ablation, minADE/minFDE in metres; FDE@minADE of the mean is what the paper prints as FDE. {}",
             group.conditions_in_words()
@@ -50,6 +58,28 @@ pub(super) fn parts(groups: &[Group<'_>]) -> Vec<Part> {
 fn has_ablated_variant(group: &Group<'_>) -> bool {
     let ablated = |line: &Line<'_>| variant(line).is_some_and(|row| row.variant != "full");
     group.lines.iter().any(ablated)
+}
+
+/// Whether the variants of a group differ in the variant alone.
+fn alike(group: &Group<'_>) -> bool {
+    let made = |line: &Line<'_>| {
+        let rows = line
+            .rows
+            .iter()
+            .map(|row| (row.conditions.fold.clone(), row.conditions.seed));
+        let mut rows: Vec<_> = rows.collect();
+        rows.sort_unstable();
+        let conditions = Conditions {
+            variant: None,
+            fold: String::new(),
+            seed: None,
+            ..line.conditions().clone()
+        };
+        (rows, conditions)
+    };
+    let mut lines = group.lines.iter().filter(|line| variant(line).is_some());
+    let first = lines.next().map(made);
+    lines.all(|line| Some(made(line)) == first)
 }
 
 /// The row of Table II that a line corresponds to: a variant as it is, walked as the protocol has it.

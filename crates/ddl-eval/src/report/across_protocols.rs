@@ -11,9 +11,12 @@ use crate::{
     document::{Part, Table},
 };
 
-const NOTE: &str = "The same data, windows, folds and code in every line. Only what is chosen with the true future \
-    differs: under `published` the goal of each pedestrian, then the best of 20 samples on it, and the epoch; under \
-    `fair` the best of 20 hypotheses; under `single` nothing. The differences are the protocol's, not a model's.";
+const NOTE: &str = "The same windows and folds in every line, from the published pipeline to the honest one. Under `published` the goal of \
+    each pedestrian is chosen with the true end among those of the published estimator, whose query reads one future frame; then the \
+    best of 20 noise samples on it is kept, of the epoch that is best on test walkers; steps are plain Euler's. The line with the \
+    published goals, all 20 kept, under `fair` has the same estimator without that frame, and nothing is chosen but the best of its 20 \
+    hypotheses. The other lines under `fair` go to the forecaster's own goals, and under `single` to the likeliest of them. Which \
+    training each line had stands beside the tables above.";
 
 /// For each convention, window rule and scored part that has results under `published` and another protocol, the lines
 /// of trained forecasters and of straight lines to goals, protocol by protocol.
@@ -61,10 +64,12 @@ fn table(groups: &[&Group<'_>]) -> Table {
                 continue;
             }
             let candidates = match group.protocol {
-                Protocol::Published if line.conditions().epochs.is_some() => {
-                    "20 goals x 20 samples".to_owned()
+                Protocol::Published => {
+                    let goals = line.rows[0].scores.goal_fde.map(|_| "20 goals");
+                    let samples = line.conditions().epochs.map(|_| "20 samples");
+                    let both: Vec<&str> = goals.into_iter().chain(samples).collect();
+                    both.join(" x ")
                 }
-                Protocol::Published => "20 goals".to_owned(),
                 _ => line.rows[0].scores.hypotheses.to_string(),
             };
             let cells = folds.iter().map(|fold| {

@@ -216,6 +216,50 @@ impl<'a> Line<'a> {
         Spread::of(&means?)
     }
 
+    /// Under what conditions the line came about, in words: seeds, training, device, commit.
+    pub(crate) fn settings(&self) -> String {
+        let c: &Conditions = self.conditions();
+        let known = |text: &str| {
+            if text.is_empty() {
+                "unknown".to_owned()
+            } else {
+                text.to_owned()
+            }
+        };
+        let commit = known(&c.commit);
+        // What made the forecasts of another program is known to it alone.
+        if let (None, Some(origin)) = (c.epochs, &c.selection) {
+            return format!(
+                "{origin}; its seed, its training and what it saw of the future are not known here; scored at commit {commit}"
+            );
+        }
+        let seeds: Vec<String> = self.seeds().iter().flatten().map(u64::to_string).collect();
+        let mut parts = vec![match seeds.len() {
+            0 => "no seed (nothing random)".to_owned(),
+            1 => format!("seed {}", seeds[0]),
+            _ => format!("seeds {}", seeds.join(", ")),
+        }];
+        match c.epochs {
+            None => parts.push("not trained".to_owned()),
+            Some(epochs) => {
+                let selection = c
+                    .selection
+                    .as_deref()
+                    .map_or(String::new(), |s| format!(" ({s})"));
+                parts.push(format!("{epochs} epochs{selection}"));
+                let subset = c
+                    .training_subset
+                    .as_deref()
+                    .unwrap_or("all training windows");
+                parts.push(format!("trained on {subset}"));
+                parts.extend(c.recipe.clone());
+            }
+        }
+        parts.push(format!("device {}", known(&c.device)));
+        parts.push(format!("commit {commit}"));
+        parts.join("; ")
+    }
+
     /// The folds that the line has, in the order of `folds`.
     pub(crate) fn present<'f>(&self, folds: &[&'f str]) -> Vec<&'f str> {
         folds

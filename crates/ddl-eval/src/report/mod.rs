@@ -158,9 +158,10 @@ impl Report {
     /// The folder or a file cannot be written.
     pub fn save(&self, folder: &Path) -> Result<(), ReportError> {
         std::fs::create_dir_all(folder).map_err(|source| in_file(folder, source))?;
+        let document = self.document();
         for (name, text) in [
-            ("report.md", self.to_markdown()),
-            ("report.tex", self.document().to_latex()),
+            ("report.md", document.to_markdown()),
+            ("report.tex", document.to_latex()),
             ("report.json", self.to_json()?),
         ] {
             let path = folder.join(name);

@@ -2,15 +2,8 @@
 
 use ddl_data::WindowRule;
 
-use super::{
-    categories, further,
-    group::{Group, Line},
-    significance, whole_forecast,
-};
-use crate::{
-    Conditions,
-    document::{Part, Table},
-};
+use super::{categories, further, group::Group, significance, whole_forecast};
+use crate::document::{Part, Table};
 
 /// What a table shows where there is nothing to show.
 pub(super) const NOTHING: &str = "-";
@@ -111,7 +104,7 @@ pub(super) fn pair<T: std::fmt::Display>(ade: Option<T>, fde: Option<T>) -> Stri
 fn conditions(group: &Group<'_>) -> Vec<String> {
     let mut alike: Vec<(String, Vec<String>)> = Vec::new();
     for (line, label) in group.lines.iter().zip(group.labels()) {
-        let settings = settings(line);
+        let settings = line.settings();
         match alike.iter_mut().find(|(known, _)| *known == settings) {
             Some((_, labels)) => labels.push(label),
             None => alike.push((settings, vec![label])),
@@ -121,45 +114,4 @@ fn conditions(group: &Group<'_>) -> Vec<String> {
         .iter()
         .map(|(settings, labels)| format!("{}: {settings}.", labels.join(", ")))
         .collect()
-}
-
-fn settings(line: &Line<'_>) -> String {
-    let c: &Conditions = line.conditions();
-    let seeds: Vec<String> = line.seeds().iter().flatten().map(u64::to_string).collect();
-    let known = |text: &str| {
-        if text.is_empty() {
-            "unknown".to_owned()
-        } else {
-            text.to_owned()
-        }
-    };
-    let mut parts = vec![match seeds.len() {
-        0 => "no seed (nothing random)".to_owned(),
-        1 => format!("seed {}", seeds[0]),
-        _ => format!("seeds {}", seeds.join(", ")),
-    }];
-    match c.epochs {
-        // What made the forecasts of another program is known to it alone.
-        None if c.selection.is_some() => {
-            parts.extend(c.selection.clone());
-            return parts.join("; ");
-        }
-        None => parts.push("not trained".to_owned()),
-        Some(epochs) => {
-            let selection = c
-                .selection
-                .as_deref()
-                .map_or(String::new(), |s| format!(" ({s})"));
-            parts.push(format!("{epochs} epochs{selection}"));
-            let subset = c
-                .training_subset
-                .as_deref()
-                .unwrap_or("all training windows");
-            parts.push(format!("trained on {subset}"));
-            parts.extend(c.recipe.clone());
-        }
-    }
-    parts.push(format!("device {}", known(&c.device)));
-    parts.push(format!("commit {}", known(&c.commit)));
-    parts.join("; ")
 }

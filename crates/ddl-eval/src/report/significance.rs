@@ -1,5 +1,7 @@
 //! How sure the numbers of a table are, and the differences between its lines.
 
+use rayon::prelude::*;
+
 use super::{
     group::{Group, Line},
     section::NOTHING,
@@ -11,12 +13,13 @@ use crate::{
 
 /// What the intervals and p-values are.
 pub(super) const LEGEND: &str = "How sure the means are: in brackets the 95 % interval over 10,000 resamples of 20 s of recording \
-    (windows overlap and are no independent samples); p: how often chance alone would make as large a difference from the first \
-    trained forecaster, by changing the sign of the difference of every 20 s at random; not corrected for the number of \
-    comparisons. Seeds are averaged first. The intervals speak of other moments in the same places, not of other places: for that, \
-    look at how much the folds differ.";
+    (windows overlap and are no independent samples); p: how often chance alone would make as large a difference from the \
+    forecaster named in the head of the column, by changing the sign of the difference of every 20 s at random; not corrected for the \
+    number of comparisons. Nothing is said where a fold has fewer than 10 such stretches. Seeds are averaged first: how much they \
+    differ is the ± of the first table and not in these intervals. The intervals speak of other moments in the same places, not of \
+    other places: for that, look at how much the folds differ.";
 
-/// Intervals of every line that has errors by block, and its differences from the first trained one.
+/// Intervals of every line that has errors by block, and its differences from the first trained one of those with the most folds.
 pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
     let folds = group.folds();
     let lines: Vec<(Measured<'_>, String)> = group
@@ -25,11 +28,11 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
         .zip(group.labels())
         .filter_map(|(line, label)| Some((Measured::of(line, &folds)?, label)))
         .collect();
-    let Some((reference, name)) = lines
-        .iter()
-        .find(|(measured, _)| measured.line.conditions().epochs.is_some())
-        .or(lines.first())
-    else {
+    let most = lines.iter().map(|(m, _)| m.folds.len()).max();
+    let mut candidates = lines.iter().filter(|(m, _)| Some(m.folds.len()) == most);
+    let first = candidates.clone().next();
+    let trained = candidates.find(|(m, _)| m.line.conditions().epochs.is_some());
+    let Some((reference, name)) = trained.or(first) else {
         return Vec::new();
     };
     let mut table = Table::new([
@@ -43,16 +46,22 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
         "p".to_owned(),
     ])
     .text_column("folds");
-    for (measured, label) in &lines {
-        let mut cells = vec![label.clone(), measured.folds_in_words(&folds)];
-        for metric in [BlockMetric::MinAde, BlockMetric::MinFde] {
-            let interval = mean_interval(&measured.slices(), metric);
-            cells.push(interval.map_or(NOTHING.to_owned(), in_words));
-        }
-        for metric in [BlockMetric::MinAde, BlockMetric::MinFde] {
-            cells.extend(difference(measured, reference, metric));
-        }
-        table.row(cells);
+    let rows: Vec<Vec<String>> = lines
+        .par_iter()
+        .map(|(measured, label)| {
+            let mut cells = vec![label.clone(), measured.folds_in_words(&folds)];
+            for metric in [BlockMetric::MinAde, BlockMetric::MinFde] {
+                let interval = mean_interval(&measured.slices(), metric);
+                cells.push(interval.map_or(NOTHING.to_owned(), in_words));
+            }
+            for metric in [BlockMetric::MinAde, BlockMetric::MinFde] {
+                cells.extend(difference(measured, reference, metric));
+            }
+            cells
+        })
+        .collect();
+    for row in rows {
+        table.row(row);
     }
     vec![
         Part::subheading("How sure the means are"),

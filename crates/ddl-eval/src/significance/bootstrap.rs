@@ -8,6 +8,9 @@ use super::{BlockErrors, BlockMetric};
 /// Resamples drawn for an interval, and sign changes for a test.
 pub const RESAMPLES: usize = 10_000;
 
+/// Fewest blocks of a fold: fewer know too little of their own spread, and their resamples pretend to a certainty that is not there.
+pub const FEWEST_BLOCKS: usize = 10;
+
 /// Seed of the resamples: the same in every report, so that it is made again bit by bit.
 const SEED: u64 = 0;
 
@@ -25,10 +28,7 @@ pub struct Interval {
 /// The plain mean over the folds of the mean error of each, with its 95 % percentile interval over resampled blocks, m.
 ///
 /// `folds[f]` are the blocks of fold f. In each of [`RESAMPLES`] resamples every fold draws as many of its blocks as it has, with
-/// replacement; its mean is that of the pedestrians in them. `None` when there is no fold, or one without pedestrians.
-///
-/// # Numerics
-/// A fold of a few blocks knows little of its own spread: below about ten of them the interval is too narrow.
+/// replacement; its mean is that of the pedestrians in them. `None` when there is no fold, or one of fewer than [`FEWEST_BLOCKS`].
 #[must_use]
 pub fn mean_interval(folds: &[&[BlockErrors]], metric: BlockMetric) -> Option<Interval> {
     let folds: Vec<Vec<Part>> = folds
@@ -55,6 +55,9 @@ impl Part {
 }
 
 pub(super) fn interval(folds: &[Vec<Part>]) -> Option<Interval> {
+    if folds.iter().any(|fold| fold.len() < FEWEST_BLOCKS) {
+        return None;
+    }
     let whole = |fold: &Vec<Part>| mean(fold.iter().copied());
     let means: Option<Vec<f64>> = folds.iter().map(whole).collect();
     let mean_of = |means: &[f64]| means.iter().sum::<f64>() / means.len() as f64;
@@ -159,9 +162,12 @@ mod tests {
     }
 
     #[test]
-    fn without_blocks_there_is_no_interval() {
+    fn few_blocks_have_no_interval() {
         assert_eq!(mean_interval(&[], BlockMetric::MinAde), None);
-        let fold = blocks(&[0.1]);
-        assert_eq!(mean_interval(&[&fold, &[]], BlockMetric::MinAde), None);
+        let fold = blocks(&[0.1; 10]);
+        assert!(mean_interval(&[&fold], BlockMetric::MinAde).is_some());
+        for few in [&fold[..9], &[]] {
+            assert_eq!(mean_interval(&[&fold, few], BlockMetric::MinAde), None);
+        }
     }
 }

@@ -14,7 +14,7 @@ mod bootstrap;
 mod paired;
 
 pub use blocks::{BLOCK_STEPS, BlockErrors, block_errors};
-pub use bootstrap::{Interval, RESAMPLES, mean_interval};
+pub use bootstrap::{FEWEST_BLOCKS, Interval, RESAMPLES, mean_interval};
 pub use paired::{PairedDifference, UnpairedError, paired_difference};
 
 /// Which of the errors of a block is looked at.

@@ -30,7 +30,8 @@ pub struct UnpairedError {
 /// Compares two forecasters on the same blocks, fold by fold.
 ///
 /// The test: were the two alike, the difference of every block might as well have the other sign. What is compared is the plain mean
-/// over the folds of the mean difference of their pedestrians. `None` when there is no fold, or one without pedestrians.
+/// over the folds of the mean difference of their pedestrians. `None` when there is no fold, or one of fewer than
+/// [`FEWEST_BLOCKS`](super::FEWEST_BLOCKS).
 ///
 /// # Errors
 /// The blocks of the two differ in number, place or pedestrians.
@@ -134,7 +135,7 @@ mod tests {
 
     #[test]
     fn a_forecaster_does_not_differ_from_itself() {
-        let errors = [0.1, 0.5, 0.2, 0.4];
+        let errors = [0.1, 0.5, 0.2, 0.4, 0.3, 0.1, 0.5, 0.2, 0.4, 0.3];
         let compared = compare(&errors, &errors);
         assert_relative_eq!(compared.difference.mean, 0.0);
         assert_relative_eq!(compared.p_value, 1.0);
@@ -143,7 +144,7 @@ mod tests {
     /// Differences +1, -1, +1, -1: their mean is 0, which every pattern reaches.
     #[test]
     fn differences_that_cancel_are_chance() {
-        let compared = compare(&[1.0, 0.0, 1.0, 0.0], &[0.0, 1.0, 0.0, 1.0]);
+        let compared = compare(&[1.0, 0.0].repeat(5), &[0.0, 1.0].repeat(5));
         assert_relative_eq!(compared.p_value, 1.0);
         assert!(compared.difference.low < 0.0 && compared.difference.high > 0.0);
     }
@@ -151,6 +152,7 @@ mod tests {
     #[test]
     fn swapping_the_two_changes_the_sign_alone() {
         let (a, b) = ([0.2, 0.4, 0.3, 0.6, 0.1], [0.3, 0.3, 0.5, 0.6, 0.4]);
+        let (a, b) = (a.repeat(2), b.repeat(2));
         let (there, back) = (compare(&a, &b), compare(&b, &a));
         assert_relative_eq!(there.difference.mean, -back.difference.mean);
         assert_relative_eq!(there.difference.low, -back.difference.high, epsilon = 1e-12);

@@ -4,7 +4,7 @@ use super::{Drawing, chart_scale::ChartScale};
 use crate::page::standing::{Standing, StandingLine};
 
 /// At most this many lines: more are in the tables.
-const MOST_LINES: usize = 10;
+pub(crate) const MOST_LINES: usize = 10;
 /// Height of a line, px.
 const LINE: f64 = 26.0;
 

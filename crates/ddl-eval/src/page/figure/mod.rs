@@ -12,5 +12,5 @@ mod training;
 
 pub(super) use case::case_figure;
 pub(super) use drawing::{Drawing, STYLE};
-pub(super) use headline::{Shape, headline_chart};
+pub(super) use headline::{MOST_LINES, Shape, headline_chart};
 pub(super) use training::{TrainingPanel, training_panels};

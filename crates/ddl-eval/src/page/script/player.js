@@ -31,6 +31,8 @@ function makePlayer(moments) {
   const list = makeHypothesisList(byId("hypotheses"), chooseHypothesis);
   const clock = makeClock(showTime, (playing) => {
     byId("play").setAttribute("aria-pressed", playing);
+    // A screen reader is told where the time stands, not every frame on the way there.
+    for (const id of ["time-words", "now-words"]) byId(id).setAttribute("aria-live", playing ? "off" : "polite");
     byId("play").setAttribute("aria-label", playing ? "Pause" : "Play");
   });
 

@@ -6,5 +6,6 @@ document.getElementById("save-report").addEventListener("click", () => {
   link.href = URL.createObjectURL(new Blob([text], { type: "application/json" }));
   link.download = "report.json";
   link.click();
-  URL.revokeObjectURL(link.href);
+  // The browser reads the address after this click is over.
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 });
