@@ -1,9 +1,33 @@
 """The tables of a report page, computed again from report.json."""
 
+import json
 import math
 
 # What heads the first column of tables of the literature.
 UNCAPTIONED = {"method", "variant", "baseline"}
+
+CATEGORIES = {
+    "motion": {
+        "standing": "standing",
+        "straight": "straight on",
+        "turning-left": "turning left",
+        "turning-right": "turning right",
+        "slowing-down": "slowing down",
+        "speeding-up": "speeding up",
+    },
+    "type": {
+        "static": "I static",
+        "linear": "II linear",
+        "interacting": "III interacting",
+        "non-interacting": "IV non-interacting",
+    },
+    "interaction": {
+        "leader-follower": "leader-follower",
+        "collision-avoidance": "collision avoidance",
+        "group": "group",
+        "other": "other interaction",
+    },
+}
 
 
 def add(values):
@@ -112,6 +136,25 @@ FURTHER = {
     "K": (0, lambda s: float(s["hypotheses"])),
 }
 
+WHOLE_FORECAST = {
+    "ADE@minFDE m": (3, lambda s: s["ade_at_min_fde"]),
+    "expected ADE m": (3, lambda s: s["expected_ade"]),
+    "expected FDE m": (3, lambda s: s["expected_fde"]),
+    "likely ADE m": (3, lambda s: s["most_likely_ade"]),
+    "likely FDE m": (3, lambda s: s["most_likely_fde"]),
+    "missed 1 m %": (1, lambda s: 100.0 * s["miss_rate_1m"]),
+    "missed 2 m %": (1, lambda s: 100.0 * s["miss_rate_2m"]),
+    "runs into %": (1, lambda s: 100.0 * s["true_neighbour_collision_rate"]),
+    "KDE NLL nats": (3, lambda s: s["kde_nll"]),
+    "AMD": (3, lambda s: s["amd"]),
+    "AMV m²": (3, lambda s: s["amv"]),
+    "APD m": (3, lambda s: s["diversity"]),
+    "FPD m": (3, lambda s: s["end_diversity"]),
+}
+
+# Fewest stretches of 20 s a fold from which an interval is told.
+FEWEST_BLOCKS = 10
+
 
 def headline(group, header):
     folds = header[1:-1]
@@ -123,19 +166,102 @@ def headline(group, header):
     return rows + [[line["label"], *group.cells(line, folds)] for line in group.lines]
 
 
-def further(group, header, folds):
-    unknown = [name for name in header[2:] if name not in FURTHER]
-    assert not unknown, f"columns {unknown} of the further metrics are unknown here: add them to FURTHER"
+def further(group, header, folds, columns):
+    unknown = [name for name in header[2:] if name not in columns]
+    assert not unknown, f"columns {unknown} are unknown here: add them"
     rows = []
     for line in group.lines:
         present = [fold for fold in folds if group.on(line, fold, lambda s: 0)]
         row = [line["label"], "all" if present == folds else ", ".join(present)]
         for name in header[2:]:
-            decimals, of = FURTHER[name]
+            decimals, of = columns[name]
             known = all(of(r["scores"]) is not None for r in line["rows"])
             means = group.over(line, present, of) if known else None
             row.append(spread(means, decimals) if means else "-")
         rows.append(row)
+    return rows
+
+
+def of_fold(line, fold):
+    return [row for row in line["rows"] if row["conditions"]["fold"] == fold]
+
+
+def block_mean(line, folds, error):
+    """Mean over the folds of the mean error over blocks, seeds averaged; None where a fold has too few blocks."""
+    means = []
+    for fold in folds:
+        rows = of_fold(line, fold)
+        blocks = [row.get("blocks", []) for row in rows]
+        if any(len(of_seed) < FEWEST_BLOCKS for of_seed in blocks):
+            return None
+        total = sum(block[error] for of_seed in blocks for block in of_seed) / len(blocks)
+        means.append(total / sum(block["pedestrians"] for block in blocks[0]))
+    return sum(means) / len(means)
+
+
+def intervals(group, table):
+    """The rows as they are found, once their means are seen to be right and their intervals to hold them."""
+    reference = table["header"][4].removeprefix("minADE - ").removesuffix(" m")
+    lines = {line["label"]: line for line in group.lines}
+    for row in table["rows"]:
+        line = lines[row[0]]
+        folds = [fold for fold in table["folds"] if of_fold(line, fold)]
+        alike = folds == [fold for fold in table["folds"] if of_fold(lines[reference], fold)]
+        for at, error in ((2, "min_ade"), (3, "min_fde")):
+            mean = block_mean(line, folds, error)
+            check_interval(row[at], mean)
+            if mean is None or not alike or row[0] == reference:
+                assert row[2 * at : 2 * at + 2] == ["-", "-"], row
+                continue
+            check_interval(row[2 * at], mean - block_mean(lines[reference], folds, error))
+            assert 0.0 < float(row[2 * at + 1].replace("<0.001", "0.0005")) <= 1.0, row
+    return table["rows"]
+
+
+def check_interval(cell, mean):
+    if mean is None:
+        assert cell == "-", cell
+        return
+    shown, low, high = (float(part.strip("[],")) for part in cell.split())
+    assert abs(shown - mean) < 0.00051 and low <= shown <= high, (cell, mean)
+
+
+def categories(group, header, caption):
+    """Pooled over the walkers of the folds that all forecasters have."""
+    folds = caption.split("pooled over ")[1].split(". ")[0].split(", ")
+    lines = [line for line in group.lines if all(row["scores"]["categories"] for row in line["rows"])]
+    assert header[2:] == [line["label"] for line in lines], header
+    order = {}
+    for line in lines:
+        for row in line["rows"]:
+            for scores in row["scores"]["categories"]:
+                order.setdefault(json.dumps(scores["category"]), None)
+    names = [(kind, name) for kind in ("motion", "type", "interaction") for name in CATEGORIES[kind]]
+    rows = []
+    for kind, name in names:
+        if json.dumps({kind: name}) not in order:
+            continue
+        cells, walkers = [], set()
+        for line in lines:
+            count, ade, fde = 0, 0.0, 0.0
+            for fold in folds:
+                found = [
+                    scores
+                    for row in of_fold(line, fold)
+                    for scores in row["scores"]["categories"]
+                    if scores["category"] == {kind: name}
+                ]
+                if found:
+                    weight = found[0]["pedestrians"]
+                    count += weight
+                    ade += weight * sum(s["min_ade"] for s in found) / len(found)
+                    fde += weight * sum(s["min_fde"] for s in found) / len(found)
+            if count:
+                walkers.add(count)
+                cells.append(f"{ade / count:.3f}/{fde / count:.3f}")
+            else:
+                cells.append("-")
+        rows.append([CATEGORIES[kind][name], " or ".join(map(str, sorted(walkers))), *cells])
     return rows
 
 
@@ -150,7 +276,7 @@ def by_protocol(groups, header):
             if not (trained or (goals and "the TRUE end" not in name) or "nearest the TRUE end" in name):
                 continue
             if group.protocol == "published":
-                candidates = "20 goals x 20 samples" if trained else "20 goals"
+                candidates = " x ".join(["20 goals"] * goals + ["20 samples"] * trained)
             else:
                 candidates = str(line["rows"][0]["scores"]["hypotheses"])
             rows.append([line["label"], group.protocol, candidates, *group.cells(line, header[3:-1])])
@@ -170,7 +296,13 @@ def expected(table, report):
         return headline(Group(rows, *codes[:3], subset), header)
     if caption.startswith("Further metrics. "):
         group = Group(rows, *codes[:3], subset)
-        return further(group, header, table["folds"])
+        return further(group, header, table["folds"], FURTHER)
+    if caption.startswith("The forecast as a whole. "):
+        return further(Group(rows, *codes[:3], subset), header, table["folds"], WHOLE_FORECAST)
+    if caption.startswith("95 % intervals and paired differences. "):
+        return intervals(Group(rows, *codes[:3], subset), table)
+    if caption.startswith("minADE/minFDE in metres by category of walker"):
+        return categories(Group(rows, *codes[:3], subset), header, caption)
     if caption.startswith("minADE/minFDE in metres by protocol."):
         groups = [Group(rows, codes[0], codes[1], protocol, subset) for protocol in ("fair", "single", "published")]
         return by_protocol(groups, header)

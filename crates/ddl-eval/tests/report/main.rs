@@ -5,6 +5,8 @@
     reason = "a helper that fails is a test that fails"
 )]
 
+mod wording;
+
 use ddl_data::{Convention, WindowRule};
 use ddl_eval::significance::BlockErrors;
 use ddl_eval::{
