@@ -36,6 +36,8 @@ class Opened:
         self.page.set_default_timeout(20_000)
         self.page.goto(address)
         self.page.evaluate("document.documentElement.style.scrollBehavior = 'auto'")
+        # What is folded away must be as it should be too.
+        self.page.evaluate("document.querySelectorAll('details').forEach((details) => (details.open = true))")
 
     def __enter__(self):
         return self

@@ -1,6 +1,6 @@
 //! A document as the body of an HTML page.
 
-use super::{ContentsEntry, Document, Part, Span, Table, spans};
+use super::{ContentsEntry, Document, Part, Span, Table, spans, unfolded};
 
 pub(super) fn body(document: &Document) -> String {
     format!(
@@ -32,21 +32,15 @@ pub(super) fn sections(document: &Document) -> String {
                     inline(text)
                 )
             }
-            Part::Heading { level, text } => {
-                let level = (level + 1).min(6);
-                let id = unused(identifier(text), &mut used);
-                format!("<h{level} id=\"{id}\">{}</h{level}>\n", inline(text))
+            Part::Details { summary, parts } => {
+                let parts: Vec<String> = parts.iter().map(|part| plain(part, &mut used)).collect();
+                format!(
+                    "<details>\n<summary>{}</summary>\n{}</details>\n",
+                    inline(summary),
+                    parts.concat()
+                )
             }
-            Part::Paragraph(text) => format!("<p>{}</p>\n", inline(text)),
-            Part::Warning(text) => format!(
-                "<p class=\"warning\" role=\"note\"><strong>Warning.</strong> {}</p>\n",
-                inline(text)
-            ),
-            Part::List(items) => {
-                let items: Vec<String> = items.iter().map(|item| inline(item)).collect();
-                format!("<ul>\n<li>{}</li>\n</ul>\n", items.join("</li>\n<li>"))
-            }
-            Part::Table(table) => render(table),
+            other => plain(other, &mut used),
         };
         body.push_str(&rendered);
     }
@@ -54,6 +48,29 @@ pub(super) fn sections(document: &Document) -> String {
         body.push_str("</section>\n");
     }
     body
+}
+
+/// A part that neither begins a section nor holds others.
+fn plain(part: &Part, used: &mut Vec<String>) -> String {
+    match part {
+        Part::Heading { level, text } => {
+            let level = (level + 1).min(6);
+            let id = unused(identifier(text), used);
+            format!("<h{level} id=\"{id}\">{}</h{level}>\n", inline(text))
+        }
+        Part::Paragraph(text) => format!("<p>{}</p>\n", inline(text)),
+        Part::Warning(text) => format!(
+            "<p class=\"warning\" role=\"note\"><strong>Warning.</strong> {}</p>\n",
+            inline(text)
+        ),
+        Part::List(items) => {
+            let items: Vec<String> = items.iter().map(|item| inline(item)).collect();
+            format!("<ul>\n<li>{}</li>\n</ul>\n", items.join("</li>\n<li>"))
+        }
+        Part::Table(table) => render(table),
+        // Details do not nest.
+        Part::Details { .. } => String::new(),
+    }
 }
 
 /// Whether a warning stands before the next section begins.
@@ -69,7 +86,10 @@ pub(super) fn contents(document: &Document) -> Vec<ContentsEntry> {
     let mut used: Vec<String> = Vec::new();
     let mut entries = Vec::new();
     for (at, part) in document.parts.iter().enumerate() {
-        if let Part::Heading { level, text } = part {
+        for part in unfolded(std::slice::from_ref(part)) {
+            let Part::Heading { level, text } = part else {
+                continue;
+            };
             let id = unused(identifier(text), &mut used);
             if *level == 1 {
                 entries.push(ContentsEntry {

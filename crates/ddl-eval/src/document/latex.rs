@@ -1,6 +1,6 @@
 //! The tables of a document for a paper.
 
-use super::{Document, Part, Span, Table, spans};
+use super::{Document, Part, Span, Table, spans, unfolded};
 
 pub(super) fn tables(document: &Document) -> String {
     let mut text = format!(
@@ -10,7 +10,7 @@ pub(super) fn tables(document: &Document) -> String {
     );
     let mut headings: Vec<&str> = Vec::new();
     let mut warning = None;
-    for part in &document.parts {
+    for part in unfolded(&document.parts) {
         match part {
             Part::Heading { level, text: words } => {
                 if *level == 1 {
@@ -29,7 +29,7 @@ pub(super) fn tables(document: &Document) -> String {
                 let float = float(table, &caption, warning);
                 text.extend(["\n% ", &comment, "\n", &float]);
             }
-            Part::Paragraph(_) | Part::List(_) => {}
+            Part::Paragraph(_) | Part::List(_) | Part::Details { .. } => {}
         }
     }
     text

@@ -1,10 +1,10 @@
 //! A document as markdown.
 
-use super::{Document, Part};
+use super::{Document, Part, unfolded};
 
 pub(super) fn page(document: &Document) -> String {
     let head = format!("{}\n\n# {}\n", document.lead, document.title);
-    let parts = document.parts.iter().map(render);
+    let parts = unfolded(&document.parts).map(render);
     parts.fold(head, |page, part| page + "\n" + &part)
 }
 
@@ -14,6 +14,8 @@ fn render(part: &Part) -> String {
         Part::Paragraph(text) => format!("{text}\n"),
         Part::Warning(text) => format!("> **Warning.** {text}\n"),
         Part::List(items) => items.iter().flat_map(|item| ["- ", item, "\n"]).collect(),
+        // Unfolded above.
+        Part::Details { .. } => String::new(),
         Part::Table(table) => match table.caption() {
             Some(caption) => format!("{caption}\n\n{table}"),
             None => table.to_string(),

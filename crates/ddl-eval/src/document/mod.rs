@@ -56,6 +56,13 @@ pub enum Part {
     Warning(String),
     /// Numbers.
     Table(Table),
+    /// Parts for those who want to know more: folded away where the form allows it.
+    Details {
+        /// What is in them.
+        summary: String,
+        /// The parts; not of level 1, and no details themselves.
+        parts: Vec<Part>,
+    },
 }
 
 impl Part {
@@ -117,6 +124,14 @@ pub(crate) struct ContentsEntry {
     pub(crate) heading: String,
     /// Whether it holds a warning.
     pub(crate) warned: bool,
+}
+
+/// All parts in the order in which they are read, details unfolded.
+fn unfolded(parts: &[Part]) -> impl Iterator<Item = &Part> {
+    parts.iter().flat_map(|part| match part {
+        Part::Details { parts, .. } => parts.iter(),
+        other => std::slice::from_ref(other).iter(),
+    })
 }
 
 /// A piece of a text: as it is, or between backticks.

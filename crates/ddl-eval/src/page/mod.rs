@@ -24,8 +24,9 @@ use figure::{Drawing, Shape};
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("style.css");
 /// Run in this order, inside one function.
-const SCRIPTS: [&str; 13] = [
+const SCRIPTS: [&str; 14] = [
     include_str!("script/theme.js"),
+    include_str!("script/print.js"),
     include_str!("script/moments.js"),
     include_str!("script/metrics.js"),
     include_str!("script/palette.js"),

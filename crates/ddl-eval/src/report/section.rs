@@ -39,10 +39,15 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
         let table = further::table(group, columns).captioned(caption);
         [Part::subheading(name), Part::Table(table)]
     };
-    parts.extend(metrics("Further metrics", &further::COLUMNS));
-    parts.extend(metrics("The forecast as a whole", &whole_forecast::COLUMNS));
-    parts.extend(significance::parts(group));
-    parts.extend(categories::parts(group));
+    let mut more: Vec<Part> = Vec::new();
+    more.extend(metrics("Further metrics", &further::COLUMNS));
+    more.extend(metrics("The forecast as a whole", &whole_forecast::COLUMNS));
+    more.extend(significance::parts(group));
+    more.extend(categories::parts(group));
+    parts.push(Part::Details {
+        summary: "Further metrics, the forecast as a whole, how sure the means are, by category of walker".to_owned(),
+        parts: more,
+    });
     parts
 }
 

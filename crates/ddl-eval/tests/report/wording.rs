@@ -6,7 +6,7 @@ use super::{cells, five_folds, line, row};
 
 fn of_forecaster(mut rows: Vec<ResultRow>, name: &str) -> Vec<ResultRow> {
     for row in &mut rows {
-        row.conditions.forecaster = name.to_owned();
+        name.clone_into(&mut row.conditions.forecaster);
         row.conditions.variant = None;
         row.conditions.epochs = None;
         row.conditions.selection = None;

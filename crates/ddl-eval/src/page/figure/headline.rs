@@ -25,8 +25,11 @@ pub(crate) enum Shape {
 /// For each fold a column of dumbbells: the full dot is minADE, the hollow one minFDE, m.
 pub(crate) fn headline_chart(standing: &Standing, shape: Shape) -> Drawing {
     let lines = &standing.lines[..standing.lines.len().min(MOST_LINES)];
-    let values = lines.iter().flat_map(columns).flatten().map(|pair| pair[1]);
-    let largest = values.filter(|v| v.is_finite()).fold(0.0, f64::max);
+    let chart = Chart {
+        lines,
+        subject: standing.subject().map(|line| line.label.as_str()),
+        values: lines.iter().flat_map(columns).flatten().flatten().collect(),
+    };
     let mut names: Vec<String> = standing.folds.clone();
     if standing.folds.len() > 1 {
         names.push("mean".to_owned());
@@ -40,8 +43,23 @@ pub(crate) fn headline_chart(standing: &Standing, shape: Shape) -> Drawing {
         standing.shared.protocol
     );
     match shape {
-        Shape::Wide => wide(lines, &names, largest, &title),
-        Shape::Narrow => narrow(lines, &names, largest, &title),
+        Shape::Wide => wide(&chart, &names, &title),
+        Shape::Narrow => narrow(&chart, &names, &title),
+    }
+}
+
+/// What is drawn.
+struct Chart<'a> {
+    lines: &'a [StandingLine],
+    /// The line that the page is about, by its label.
+    subject: Option<&'a str>,
+    /// Every value drawn, from which the axis is made.
+    values: Vec<f64>,
+}
+
+impl Chart<'_> {
+    fn is_subject(&self, line: &StandingLine) -> bool {
+        self.subject == Some(&line.label)
     }
 }
 
@@ -52,33 +70,41 @@ fn columns(line: &StandingLine) -> Vec<Option<[f64; 2]>> {
     line.folds.iter().copied().chain(mean).collect()
 }
 
-fn wide(lines: &[StandingLine], names: &[String], largest: f64, title: &str) -> Drawing {
+fn wide(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
+    let lines = chart.lines;
     let (width, left, gap, top) = (1080.0, 312.0, 20.0, 34.0);
     let column = (width - left - gap * names.len() as f64) / names.len() as f64;
     let bottom = top + LINE * lines.len() as f64;
     let mut drawing = Drawing::new(width, bottom + 44.0, title);
     for (row, line) in lines.iter().enumerate() {
         let y = top + LINE * (row as f64 + 0.5);
-        let class = format!("small {}", name_class(row));
+        let class = format!("small {}", name_class(chart.is_subject(line)));
         drawing.text(&class, [0.0, y + 4.0], shortened(&line.label, 44));
         let guesses = format!("K = {}", line.hypotheses);
         drawing.text("small end", [left, y + 4.0], guesses);
     }
     for (at, name) in names.iter().enumerate() {
         let x = left + gap + (column + gap) * at as f64;
-        let scale = ChartScale::from_zero(largest, [x, x + column - NUMBER]);
+        let scale = ChartScale::of(&chart.values, [x, x + column - NUMBER]);
         drawing.text("title", [x, 16.0], name);
         axis(&mut drawing, &scale, [top, bottom]);
         for (row, line) in lines.iter().enumerate() {
             let y = top + LINE * (row as f64 + 0.5);
-            dumbbell(&mut drawing, &scale, columns(line)[at], row, y);
+            dumbbell(
+                &mut drawing,
+                &scale,
+                columns(line)[at],
+                chart.is_subject(line),
+                y,
+            );
         }
     }
     key(&mut drawing, [left + gap, bottom + 38.0]);
     drawing
 }
 
-fn narrow(lines: &[StandingLine], names: &[String], largest: f64, title: &str) -> Drawing {
+fn narrow(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
+    let lines = chart.lines;
     let (width, line_height) = (358.0, 38.0);
     let block = 56.0 + line_height * lines.len() as f64;
     let mut drawing = Drawing::new(width, 28.0 + block * names.len() as f64, title);
@@ -93,24 +119,30 @@ fn narrow(lines: &[StandingLine], names: &[String], largest: f64, title: &str) -
     {
         let at = (place + names.len() - 1) % names.len();
         let top = 28.0 + block * place as f64;
-        let scale = ChartScale::from_zero(largest, [6.0, width - NUMBER]);
+        let scale = ChartScale::of(&chart.values, [6.0, width - NUMBER]);
         drawing.text("title", [0.0, top + 14.0], name);
         axis(&mut drawing, &scale, [top + 24.0, top + block - 30.0]);
         for (row, line) in lines.iter().enumerate() {
             let y = top + 26.0 + line_height * (row as f64 + 0.5);
             drawing.text(
-                &format!("small halo {}", name_class(row)),
+                &format!("small halo {}", name_class(chart.is_subject(line))),
                 [0.0, y - 4.0],
                 format!("{}, K = {}", shortened(&line.label, 44), line.hypotheses),
             );
-            dumbbell(&mut drawing, &scale, columns(line)[at], row, y + 8.0);
+            dumbbell(
+                &mut drawing,
+                &scale,
+                columns(line)[at],
+                chart.is_subject(line),
+                y + 8.0,
+            );
         }
     }
     drawing
 }
 
-fn name_class(row: usize) -> &'static str {
-    if row == 0 { "best" } else { "name" }
+fn name_class(subject: bool) -> &'static str {
+    if subject { "subject" } else { "name" }
 }
 
 fn axis(drawing: &mut Drawing, scale: &ChartScale, [top, bottom]: [f64; 2]) {
@@ -126,19 +158,25 @@ fn axis(drawing: &mut Drawing, scale: &ChartScale, [top, bottom]: [f64; 2]) {
     }
 }
 
-fn dumbbell(drawing: &mut Drawing, scale: &ChartScale, pair: Option<[f64; 2]>, row: usize, y: f64) {
+fn dumbbell(
+    drawing: &mut Drawing,
+    scale: &ChartScale,
+    pair: Option<[f64; 2]>,
+    subject: bool,
+    y: f64,
+) {
     let Some([ade, fde]) = pair else {
         let x = scale.at(0.0) + 4.0;
         drawing.text("small", [x, y + 4.0], "not measured");
         return;
     };
-    let first = if row == 0 { " first" } else { "" };
+    let first = if subject { " first" } else { "" };
     let [a, b] = [scale.at(ade), scale.at(fde)];
     drawing.line(&format!("stem{first}"), [a, y], [b, y]);
     drawing.circle(&format!("fde{first}"), [b, y], 3.6);
     drawing.circle(&format!("ade{first}"), [a, y], 4.4);
-    let class = if row == 0 {
-        "small halo best"
+    let class = if subject {
+        "small halo subject"
     } else {
         "small halo"
     };
