@@ -2,7 +2,8 @@
 //!
 //! A scene stands for the window of its recording that starts at its first frame. Its primary pedestrian is forecast
 //! for its own sake; a neighbour's forecast counts where no scene of the window has that walker as its primary
-//! one. Neighbours who are not in the window (they left before its end) are not scored, and left out.
+//! one. Neighbours who are not in the window (they left before its end) are not scored, and left out. Walkers that are
+//! forecast in several scenes have no joint future: hypothesis k of a window is then put together from those scenes.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::BufRead;
@@ -13,8 +14,10 @@ use serde_json::{Map, Value};
 
 use super::error::{ForeignError, ForeignProblem};
 use super::lines::{Lines, Wrong, in_field, whole_line};
+use super::numbering::Numbering;
 use super::repair::{self, finite, kind, optional, required, whole};
 use super::walkers::{WalkerForecast, Walkers, Who, frames_ahead, in_short};
+use crate::Protocol;
 
 /// Lines and fields of other names may stand between.
 #[derive(Debug, Deserialize)]
@@ -46,10 +49,28 @@ struct Track {
 /// What one pedestrian of a scene is forecast to do: for each prediction number, frames and positions.
 type Predictions = BTreeMap<i64, Vec<(i64, Position)>>;
 
+/// The fields that are read.
+const FIELDS: [&str; 12] = [
+    "scene",
+    "track",
+    "id",
+    "p",
+    "s",
+    "e",
+    "recording",
+    "f",
+    "x",
+    "y",
+    "prediction_number",
+    "scene_id",
+];
+
 /// The scene whose tracks are being read.
 #[derive(Debug)]
-struct Open {
-    id: i64,
+struct Open<'a> {
+    scene: Scene,
+    /// The window it stands for.
+    window: Option<&'a Window>,
     /// By pedestrian, with the line of the first row.
     tracks: BTreeMap<i64, (usize, Predictions)>,
 }
@@ -79,7 +100,8 @@ struct Reading<'w, 'a> {
     by_start: HashMap<(usize, i64), usize>,
     scenes: HashMap<i64, Scene>,
     finished: HashSet<i64>,
-    open: Option<Open>,
+    open: Option<Open<'a>>,
+    numbering: Numbering,
 }
 
 impl<'w, 'a> Reading<'w, 'a> {
@@ -100,6 +122,7 @@ impl<'w, 'a> Reading<'w, 'a> {
             scenes: HashMap::new(),
             finished: HashSet::new(),
             open: None,
+            numbering: Numbering::default(),
         }
     }
 
@@ -120,27 +143,80 @@ impl<'w, 'a> Reading<'w, 'a> {
         };
         let missing = || in_field("track.scene_id", ForeignProblem::Missing);
         let id = track.scene_id.ok_or_else(|| (number, missing()))?;
-        if self.open.as_ref().is_none_or(|open| open.id != id) {
+        if self.open.as_ref().is_none_or(|open| open.scene.id != id) {
             self.close()?;
             let wrong = |problem| Err((number, in_field("track.scene_id", problem)));
             if self.finished.contains(&id) {
                 return wrong(ForeignProblem::ScatteredScene { scene: id });
             }
-            if !self.scenes.contains_key(&id) {
+            let Some(scene) = self.scenes.get(&id).cloned() else {
                 return wrong(ForeignProblem::UnknownScene { scene: id });
-            }
-            let tracks = BTreeMap::new();
-            self.open = Some(Open { id, tracks });
+            };
+            let open = self.open(scene).map_err(|wrong| (number, wrong))?;
+            self.open = Some(open);
         }
-        if let Some(open) = &mut self.open {
-            let (_, predictions) = open
-                .tracks
-                .entry(track.p)
-                .or_insert_with(|| (number, Predictions::new()));
-            let rows = predictions.entry(prediction).or_default();
-            rows.push((track.f, [track.x, track.y]));
+        let Some(mut open) = self.open.take() else {
+            return Ok(());
+        };
+        let added = self.add(&mut open, &track, prediction, number);
+        self.open = Some(open);
+        added.map_err(|wrong| (number, wrong))
+    }
+
+    /// Finds the window of a scene.
+    fn open(&self, scene: Scene) -> Result<Open<'a>, Wrong> {
+        let recording = self.walkers.recording(scene.recording.as_deref())?;
+        let window = recording.and_then(|r| self.by_start.get(&(r, scene.s)));
+        let window: Option<&'a Window> = window.map(|&index| &self.walkers.windows[index]);
+        if let Some(window) = window {
+            check_end(window, &scene)?;
         }
+        let tracks = BTreeMap::new();
+        Ok(Open {
+            scene,
+            window,
+            tracks,
+        })
+    }
+
+    fn add(
+        &self,
+        open: &mut Open<'a>,
+        track: &Track,
+        prediction: i64,
+        number: usize,
+    ) -> Result<(), Wrong> {
+        let in_window = |w: &Window| w.pedestrians().iter().any(|p| p.0 == track.p);
+        if track.p != open.scene.p && !open.window.is_some_and(in_window) {
+            return Ok(());
+        }
+        let who = || self.who(&open.scene, open.window, track.p);
+        let (_, predictions) = open
+            .tracks
+            .entry(track.p)
+            .or_insert_with(|| (number, Predictions::new()));
+        if predictions.len() == Protocol::MOST_HYPOTHESES && !predictions.contains_key(&prediction)
+        {
+            let problem = who().too_many_hypotheses();
+            return Err(in_field("track.prediction_number", problem));
+        }
+        let rows = predictions.entry(prediction).or_default();
+        if rows.len() == HORIZON {
+            let (expected, found) = (HORIZON, HORIZON + 1);
+            let path = format!("prediction_number {prediction}");
+            return Err(in_field(path, ForeignProblem::Length { expected, found }));
+        }
+        rows.push((track.f, [track.x, track.y]));
         Ok(())
+    }
+
+    fn who(&self, scene: &Scene, window: Option<&Window>, pedestrian: i64) -> Who {
+        Who {
+            recording: scene.recording.clone(),
+            observed_until: window
+                .map_or_else(|| self.unknown_last(scene), |w| w.frames()[OBSERVED - 1]),
+            pedestrian,
+        }
     }
 
     /// Hands over the walkers of the open scene, whose tracks are complete.
@@ -148,37 +224,18 @@ impl<'w, 'a> Reading<'w, 'a> {
         let Some(open) = self.open.take() else {
             return Ok(());
         };
-        self.finished.insert(open.id);
-        let Some(scene) = self.scenes.get(&open.id).cloned() else {
-            return Ok(());
-        };
-        let first_line = open
-            .tracks
-            .values()
-            .map(|(line, _)| *line)
-            .min()
-            .unwrap_or(1);
-        let recording = self.walkers.recording(scene.recording.as_deref());
-        let recording = recording.map_err(|wrong| (first_line, wrong))?;
-        let window = recording.and_then(|r| self.by_start.get(&(r, scene.s)));
-        let window: Option<&'a Window> = window.map(|&index| &self.walkers.windows[index]);
-        if let Some(window) = window {
-            check_end(window, &scene).map_err(|wrong| (first_line, wrong))?;
-        }
-        for (pedestrian, (line, predictions)) in open.tracks {
+        let Open {
+            scene,
+            window,
+            tracks,
+        } = open;
+        self.finished.insert(scene.id);
+        for (pedestrian, (line, predictions)) in tracks {
             let primary = pedestrian == scene.p;
-            let in_window =
-                window.is_some_and(|w| w.pedestrians().iter().any(|p| p.0 == pedestrian));
-            if !primary && !in_window {
-                continue;
-            }
-            let observed_until =
-                window.map_or_else(|| self.unknown_last(&scene), |w| w.frames()[OBSERVED - 1]);
-            let who = Who {
-                recording: scene.recording.clone(),
-                observed_until,
-                pedestrian,
-            };
+            let who = self.who(&scene, window, pedestrian);
+            let numbers: Vec<i64> = predictions.keys().copied().collect();
+            let numbered = self.numbering.check(&numbers, &who.named());
+            numbered.map_err(|problem| (line, in_field("prediction_number", problem)))?;
             let forecast = forecast(predictions, window).map_err(|wrong| (line, wrong))?;
             let put = self.walkers.put(&who, forecast, line, primary);
             put.map_err(|wrong| (line, wrong))?;
@@ -238,7 +295,7 @@ fn forecast(predictions: Predictions, window: Option<&Window>) -> Result<WalkerF
 }
 
 fn field_by_field(text: &str) -> Result<Line, Wrong> {
-    let object = repair::object(text)?;
+    let object = repair::object(text, &FIELDS)?;
     Ok(Line {
         scene: section(&object, "scene", scene)?,
         track: section(&object, "track", track)?,

@@ -2,7 +2,7 @@
 
 use ddl_data::{Convention, PedestrianId, Window, WindowRule};
 use ddl_eval::foreign::{self, Coverage, ForeignError, ForeignFormat};
-use ddl_eval::{Conditions, Protocol, Scores};
+use ddl_eval::{Conditions, Protocol, Scores, baseline};
 
 use crate::files::{
     complaint, expected, hypothesis, line, ndjson, read, scene, still, table, tracks, whole,
@@ -84,7 +84,7 @@ fn the_intersection_names_itself_and_scores_those_alone() {
         "yard",
         "mine",
     );
-    let rows = foreign::measure(&conditions, &matched, foreign::NOISE_SEED).unwrap();
+    let rows = foreign::measure(&conditions, &matched, baseline::NOISE_SEED).unwrap();
     for row in &rows {
         assert_eq!(row.scores.pedestrians, 1);
         assert_eq!(row.conditions.test_subset, matched.test_subset());

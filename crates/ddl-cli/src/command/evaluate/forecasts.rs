@@ -4,7 +4,7 @@ use super::super::test_windows::TestWindows;
 use anyhow::Context as _;
 use clap::Args;
 use ddl::eval::foreign::{self, Coverage, ForeignFormat};
-use ddl::eval::{Conditions, Report, gallery};
+use ddl::eval::{Conditions, Report, baseline, gallery};
 use ddl::{Protocol, Results};
 use std::path::{Path, PathBuf};
 
@@ -66,7 +66,7 @@ impl OtherProgram {
             rows.extend(foreign::measure(
                 &conditions,
                 &matched,
-                foreign::NOISE_SEED,
+                baseline::NOISE_SEED,
             )?);
         }
         let report = Report::new(format!("{name} on {fold}"), rows)?;
