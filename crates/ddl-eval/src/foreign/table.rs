@@ -1,27 +1,22 @@
 //! The comma-separated table: a row for each position.
 
-use std::cell::RefCell;
 use std::collections::HashSet;
 use std::io::BufRead;
-use std::rc::Rc;
 
 use csv::StringRecord;
 use ddl_data::{HORIZON, Position};
 
 use super::error::{ForeignError, ForeignProblem};
-use super::lines::{self, Lines, Wrong, in_field, whole_line};
+use super::lines::{Lines, Wrong, in_field, whole_line};
 use super::numbering::Numbering;
-use super::one_line::{OneLine, Reached};
 use super::repair::quoted;
+use super::table_rows::{AtLine, TableRows};
 use super::walkers::{WalkerForecast, Walkers, Who, in_short};
 use crate::Protocol;
 
 const REQUIRED: [&str; 5] = ["observed_until", "pedestrian", "frame", "x", "y"];
 /// Whole numbers are below this in size: exact in an `f64`.
 const LIMIT: f64 = 9_007_199_254_740_992.0;
-
-/// A value with the number of its line.
-type AtLine<T> = (usize, T);
 
 pub(super) fn read(
     lines: Lines<impl BufRead>,
@@ -44,64 +39,6 @@ pub(super) fn read(
         group.add(&row, number).map_err(|wrong| rows.wrong(wrong))?;
     }
     put(group, walkers, &mut numbering).map_err(|wrong| rows.wrong_at(wrong))
-}
-
-/// The rows of a table, with the numbers of their lines.
-#[derive(Debug)]
-struct TableRows<R> {
-    reader: csv::Reader<OneLine<R>>,
-    reached: Rc<RefCell<Reached>>,
-    origin: String,
-}
-
-impl<R: BufRead> TableRows<R> {
-    fn new(lines: Lines<R>) -> Self {
-        let reached = Rc::new(RefCell::new(Reached::default()));
-        let origin = lines.origin().to_owned();
-        let reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .trim(csv::Trim::All)
-            .from_reader(OneLine::new(lines, Rc::clone(&reached)));
-        Self {
-            reader,
-            reached,
-            origin,
-        }
-    }
-
-    /// Reads the next row, and says which line it is; `None` at the end of the file.
-    fn next(&mut self, record: &mut StringRecord) -> Result<Option<usize>, ForeignError> {
-        self.reached.borrow_mut().may_go_on = true;
-        let read = self.reader.read_record(record);
-        let mut reached = self.reached.borrow_mut();
-        match read {
-            Ok(true) => Ok(Some(reached.line)),
-            Ok(false) => Ok(None),
-            Err(error) => Err(match reached.wrong.take() {
-                Some(wrong) => wrong,
-                None => {
-                    let problem = if reached.asked_for_more {
-                        ForeignProblem::OpenQuote
-                    } else {
-                        ForeignProblem::Row {
-                            detail: error.to_string(),
-                        }
-                    };
-                    lines::wrong(&self.origin, reached.line, whole_line(problem))
-                }
-            }),
-        }
-    }
-
-    /// The error that something is wrong with the row just read.
-    fn wrong(&self, wrong: Wrong) -> ForeignError {
-        lines::wrong(&self.origin, self.reached.borrow().line, wrong)
-    }
-
-    fn wrong_at(&self, (line, wrong): AtLine<Wrong>) -> ForeignError {
-        lines::wrong(&self.origin, line, wrong)
-    }
 }
 
 /// Hands over a walker whose rows are complete; an error with its line.

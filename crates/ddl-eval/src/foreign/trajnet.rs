@@ -8,62 +8,16 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::BufRead;
 
-use ddl_data::{HORIZON, OBSERVED, Position, Window};
-use serde::Deserialize;
-use serde_json::{Map, Value};
-
 use super::error::{ForeignError, ForeignProblem};
 use super::lines::{Lines, Wrong, in_field, whole_line};
 use super::numbering::Numbering;
-use super::repair::{self, finite, kind, optional, required, whole};
+use super::trajnet_line::{Line, Scene, Track};
 use super::walkers::{WalkerForecast, Walkers, Who, frames_ahead, in_short};
 use crate::Protocol;
-
-/// Lines and fields of other names may stand between.
-#[derive(Debug, Deserialize)]
-struct Line {
-    scene: Option<Scene>,
-    track: Option<Track>,
-}
-
-/// `recording` is an addition of ours, for folds of several recordings.
-#[derive(Debug, Clone, Deserialize)]
-struct Scene {
-    id: i64,
-    p: i64,
-    s: i64,
-    e: i64,
-    recording: Option<String>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Track {
-    f: i64,
-    p: i64,
-    x: f64,
-    y: f64,
-    prediction_number: Option<i64>,
-    scene_id: Option<i64>,
-}
+use ddl_data::{HORIZON, OBSERVED, Position, Window};
 
 /// What one pedestrian of a scene is forecast to do: for each prediction number, frames and positions.
 type Predictions = BTreeMap<i64, Vec<(i64, Position)>>;
-
-/// The fields that are read.
-const FIELDS: [&str; 12] = [
-    "scene",
-    "track",
-    "id",
-    "p",
-    "s",
-    "e",
-    "recording",
-    "f",
-    "x",
-    "y",
-    "prediction_number",
-    "scene_id",
-];
 
 /// The scene whose tracks are being read.
 #[derive(Debug)]
@@ -81,10 +35,9 @@ pub(super) fn read(
 ) -> Result<(), ForeignError> {
     let mut reading = Reading::new(walkers);
     while let Some((number, text)) = lines.next_line()? {
-        let line = serde_json::from_str(text).or_else(|_| field_by_field(text));
-        let taken = line
+        let taken = Line::read(text)
             .map_err(|wrong| (number, wrong))
-            .and_then(|line: Line| reading.take(line, number));
+            .and_then(|line| reading.take(line, number));
         if let Err((number, wrong)) = taken {
             return Err(lines.wrong(number, wrong));
         }
@@ -292,66 +245,4 @@ fn forecast(predictions: Predictions, window: Option<&Window>) -> Result<WalkerF
         return Err(whole_line(ForeignProblem::NoHypothesis));
     }
     Ok(forecast)
-}
-
-fn field_by_field(text: &str) -> Result<Line, Wrong> {
-    let object = repair::object(text, &FIELDS)?;
-    Ok(Line {
-        scene: section(&object, "scene", scene)?,
-        track: section(&object, "track", track)?,
-    })
-}
-
-fn section<T>(
-    object: &Map<String, Value>,
-    key: &str,
-    read: impl Fn(&Map<String, Value>) -> Result<T, Wrong>,
-) -> Result<Option<T>, Wrong> {
-    match optional(object, key) {
-        None => Ok(None),
-        Some(Value::Object(section)) => read(section).map(Some),
-        Some(other) => Err(in_field(key, kind("an object", other))),
-    }
-}
-
-fn scene(object: &Map<String, Value>) -> Result<Scene, Wrong> {
-    let number = |key: &str| {
-        let path = format!("scene.{key}");
-        whole(required(object, key, &path)?, &path)
-    };
-    let recording = match optional(object, "recording") {
-        None => None,
-        Some(Value::String(name)) => Some(name.clone()),
-        Some(other) => return Err(in_field("scene.recording", kind("a name in quotes", other))),
-    };
-    Ok(Scene {
-        id: number("id")?,
-        p: number("p")?,
-        s: number("s")?,
-        e: number("e")?,
-        recording,
-    })
-}
-
-fn track(object: &Map<String, Value>) -> Result<Track, Wrong> {
-    let number = |key: &str| {
-        let path = format!("track.{key}");
-        whole(required(object, key, &path)?, &path)
-    };
-    let or_none = |key: &str| match optional(object, key) {
-        None => Ok(None),
-        Some(value) => whole(value, &format!("track.{key}")).map(Some),
-    };
-    let coordinate = |key: &str| {
-        let path = format!("track.{key}");
-        finite(required(object, key, &path)?, &path)
-    };
-    Ok(Track {
-        f: number("f")?,
-        p: number("p")?,
-        x: coordinate("x")?,
-        y: coordinate("y")?,
-        prediction_number: or_none("prediction_number")?,
-        scene_id: or_none("scene_id")?,
-    })
 }
