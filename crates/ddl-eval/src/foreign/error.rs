@@ -217,16 +217,14 @@ pub enum ForeignProblem {
     },
     /// The numbers of a walker's hypotheses are not those that every walker has.
     #[error(
-        "the hypotheses of {walker} have the numbers {found}, expected {expected}: those of one number are one joint \
+        "the hypotheses of {walker} have the numbers {numbers}: those of one number are one joint \
          future, so number them alike for all walkers"
     )]
     Numbers {
         /// Whom they are of.
         walker: String,
-        /// The numbers that it should have.
-        expected: String,
-        /// The numbers that it has.
-        found: String,
+        /// The numbers that it has, and those that it should have.
+        numbers: String,
     },
     /// A field of a JSON object twice.
     #[error("is there twice; keep one")]

@@ -28,8 +28,7 @@ impl Numbering {
         let found: Vec<String> = sorted.iter().map(i64::to_string).collect();
         Err(ForeignProblem::Numbers {
             walker: walker.to_owned(),
-            expected,
-            found: found.join(", "),
+            numbers: format!("{}, expected {expected}", found.join(", ")),
         })
     }
 }

@@ -47,19 +47,19 @@ impl<R: BufRead> TableRows<R> {
         match read {
             Ok(true) => Ok(Some(reached.line)),
             Ok(false) => Ok(None),
-            Err(error) => Err(match reached.wrong.take() {
-                Some(wrong) => wrong,
-                None => {
-                    let problem = if reached.asked_for_more {
-                        ForeignProblem::OpenQuote
-                    } else {
-                        ForeignProblem::Row {
-                            detail: error.to_string(),
-                        }
-                    };
-                    lines::wrong(&self.origin, reached.line, whole_line(problem))
+            Err(error) => {
+                if let Some(wrong) = reached.wrong.take() {
+                    return Err(wrong);
                 }
-            }),
+                let problem = if reached.asked_for_more {
+                    ForeignProblem::OpenQuote
+                } else {
+                    let detail = error.to_string();
+                    ForeignProblem::Row { detail }
+                };
+                let wrong = whole_line(problem);
+                Err(lines::wrong(&self.origin, reached.line, wrong))
+            }
         }
     }
 

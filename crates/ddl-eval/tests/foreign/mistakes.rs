@@ -161,6 +161,7 @@ fn every_mistake_of_json_lines_is_named_with_its_place() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of mistakes")]
 fn every_mistake_of_a_table_is_named_with_its_place() {
     let first = HEADER.to_owned() + &rows("yard", 70, 3, 0, 1.0, 1.0);
     let second = rows("yard", 70, 5, 0, 1.0, 2.0);
