@@ -14,6 +14,30 @@ fn ddl(argument: &str) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
+/// Options that only a model heeds are refused beside a file of forecasts, and not ignored.
+#[test]
+fn options_of_the_network_do_not_go_with_forecasts_of_another_program() {
+    for option in [
+        ["--device", "cpu"],
+        ["--threads", "1"],
+        ["--precision", "f32"],
+        ["--keep-clear", "0.4"],
+    ] {
+        let output = Command::new(env!("CARGO_BIN_EXE_ddl"))
+            .args(["evaluate", "--fold", "plaza", "--convention", "simulated"])
+            .args(["--forecasts", "no such file.jsonl"])
+            .args(option)
+            .output()
+            .unwrap();
+        let complaint = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{complaint}");
+        assert!(
+            complaint.contains("cannot be used with") && complaint.contains(option[0]),
+            "{complaint}"
+        );
+    }
+}
+
 #[test]
 fn it_names_its_version_and_commands() {
     assert_eq!(

@@ -98,6 +98,14 @@ pub enum FormatProblem {
         /// The reader's own words.
         detail: String,
     },
+    /// A part of a JSON line that must be an object is something else.
+    #[error("{name} must be a JSON object, found {found}")]
+    NotObject {
+        /// The part: `track` or `scene`.
+        name: &'static str,
+        /// What it is, shortened.
+        found: String,
+    },
     /// A JSON object lacks a field.
     #[error("{name} is missing")]
     MissingField {

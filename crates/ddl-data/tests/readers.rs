@@ -227,7 +227,11 @@ fn every_mistake_of_a_trajnet_file_is_named_with_its_place() {
         ),
         (
             second(r#"{"track": [1, 2, 3, 4]}"#),
-            "f, line 2: track.f is missing",
+            "f, line 2: track must be a JSON object, found [1,2,3,4]",
+        ),
+        (
+            second(r#"{"scene": "crowded"}"#),
+            "f, line 2: scene must be a JSON object, found \"crowded\"",
         ),
         (
             second(r#"{"track": {"f": 1.5, "p": 2, "x": 1, "y": 3.0}}"#),

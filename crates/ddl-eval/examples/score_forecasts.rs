@@ -14,7 +14,7 @@ use std::path::Path;
 
 use ddl_data::{Convention, Dataset, locate};
 use ddl_eval::foreign::{self, Coverage, ForeignFormat};
-use ddl_eval::{Conditions, Protocol, Report};
+use ddl_eval::{Conditions, Protocol, Report, baseline};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         rows.extend(foreign::measure(
             &conditions,
             &matched,
-            foreign::NOISE_SEED,
+            baseline::NOISE_SEED,
         )?);
     }
     let report = Report::new(format!("{name} on {fold}"), rows)?;

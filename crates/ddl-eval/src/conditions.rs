@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     EvaluationError, Forecast, Forecaster, MeasureError, Protocol, Scores,
+    scene::places,
     significance::{BlockErrors, block_errors},
 };
 
@@ -128,8 +129,33 @@ impl ResultRow {
         forecaster: &(impl Forecaster + ?Sized),
         windows: &[Window],
     ) -> Result<Self, MeasureError> {
-        let forecasts = conditions.protocol.forecast(forecaster, windows)?;
-        Ok(Self::score(conditions, windows, &forecasts)?)
+        Self::measure_among(conditions, forecaster, windows, windows)
+    }
+
+    /// The same for windows that are reduced to a part of their pedestrians: the forecaster is shown everybody of the whole
+    /// windows, one each, and what it forecasts of that part is scored among everybody.
+    ///
+    /// # Errors
+    /// As [`ResultRow::measure`]; or a whole window is not that of the reduced one.
+    pub fn measure_among(
+        conditions: Conditions,
+        forecaster: &(impl Forecaster + ?Sized),
+        windows: &[Window],
+        everybody: &[Window],
+    ) -> Result<Self, MeasureError> {
+        let mut forecasts = conditions.protocol.forecast(forecaster, everybody)?;
+        for (forecast, (window, whole)) in forecasts.iter_mut().zip(windows.iter().zip(everybody)) {
+            // Whatever does not belong together is reported when it is scored.
+            if let Some(places) = places(window, whole)
+                && places.len() < forecast.pedestrians()
+                && forecast.pedestrians() == whole.len()
+            {
+                *forecast = forecast.keeping(&places);
+            }
+        }
+        Ok(Self::score_among(
+            conditions, windows, everybody, &forecasts,
+        )?)
     }
 
     /// Scores forecasts that are there already, one a window.
@@ -143,9 +169,22 @@ impl ResultRow {
         windows: &[Window],
         forecasts: &[Forecast],
     ) -> Result<Self, EvaluationError> {
+        Self::score_among(conditions, windows, windows, forecasts)
+    }
+
+    /// The same for windows that are reduced to a part of their pedestrians.
+    ///
+    /// # Errors
+    /// As [`Scores::evaluate_among`].
+    pub fn score_among(
+        conditions: Conditions,
+        windows: &[Window],
+        everybody: &[Window],
+        forecasts: &[Forecast],
+    ) -> Result<Self, EvaluationError> {
         Ok(Self {
             conditions,
-            scores: Scores::evaluate(windows, forecasts)?,
+            scores: Scores::evaluate_among(windows, everybody, forecasts)?,
             blocks: block_errors(windows, forecasts)?,
         })
     }

@@ -160,6 +160,25 @@ pub enum EvaluationError {
         /// Pedestrians in the forecast.
         found: usize,
     },
+    /// A reduced window is not a part of the whole one it is scored among.
+    #[error(
+        "window of `{recording}` starting at frame {start_frame}: the whole window given is of other frames or lacks \
+         some of its pedestrians"
+    )]
+    Everybody {
+        /// Name of the recording.
+        recording: String,
+        /// First frame of the window.
+        start_frame: i64,
+    },
+    /// Not one whole window for each reduced one.
+    #[error("{windows} windows but {everybody} whole ones; there must be one each")]
+    EverybodyCount {
+        /// Number of windows.
+        windows: usize,
+        /// Number of whole windows.
+        everybody: usize,
+    },
     /// The window has no future to compare with.
     #[error(
         "window of `{recording}` starting at frame {start_frame} has no true future: it can be \

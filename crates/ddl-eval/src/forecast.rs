@@ -219,6 +219,26 @@ impl Forecast {
         }
     }
 
+    /// The forecasts of some of the pedestrians alone, in the order asked for; at least one must be.
+    ///
+    /// # Panics
+    /// When one of them is out of range.
+    pub(crate) fn keeping(&self, pedestrians: &[usize]) -> Self {
+        fn rows<T: Copy>(all: &[T], per_pedestrian: usize, pedestrians: &[usize]) -> Vec<T> {
+            let row = |&i: &usize| &all[i * per_pedestrian..(i + 1) * per_pedestrian];
+            pedestrians.iter().flat_map(row).copied().collect()
+        }
+        let k = self.hypotheses;
+        Self {
+            pedestrians: pedestrians.len(),
+            hypotheses: k,
+            positions: rows(&self.positions, k * HORIZON, pedestrians),
+            weights: rows(&self.weights, k, pedestrians),
+            goals: self.goals.as_ref().map(|all| rows(all, k, pedestrians)),
+            certified: self.certified.as_ref().map(|all| rows(all, k, pedestrians)),
+        }
+    }
+
     fn pair(&self, i: usize, k: usize) -> usize {
         assert!(
             i < self.pedestrians && k < self.hypotheses,

@@ -30,6 +30,9 @@ pub enum Protocol {
 }
 
 impl Protocol {
+    /// The greatest number of hypotheses that any protocol allows: 20.
+    pub const MOST_HYPOTHESES: usize = 20;
+
     /// Every protocol, in the order of printing.
     pub const ALL: [Self; 3] = [Self::Published, Self::Fair, Self::Single];
 
@@ -83,7 +86,7 @@ impl Protocol {
     #[must_use]
     pub const fn hypotheses(self) -> usize {
         match self {
-            Self::Published | Self::Fair => 20,
+            Self::Published | Self::Fair => Self::MOST_HYPOTHESES,
             Self::Single => 1,
         }
     }

@@ -1,14 +1,15 @@
 //! A window and its forecast, checked to belong together: what every metric is computed on.
 
-use ddl_data::{OBSERVED, Position, Window};
+use ddl_data::{OBSERVED, PedestrianId, Position, Window};
 
 use crate::{Forecast, error::EvaluationError};
 
-/// A window with a true future and the forecast of the same pedestrians.
+/// A window with a true future and the forecast of the same pedestrians, among everybody who was there.
 #[derive(Debug, Clone, Copy)]
 pub struct Scene<'a> {
     window: &'a Window,
     forecast: &'a Forecast,
+    everybody: &'a Window,
 }
 
 impl<'a> Scene<'a> {
@@ -33,13 +34,52 @@ impl<'a> Scene<'a> {
                 found: forecast.pedestrians(),
             });
         }
-        Ok(Self { window, forecast })
+        Ok(Self {
+            window,
+            forecast,
+            everybody: window,
+        })
+    }
+
+    /// The same, where the window and its forecast are of a part of the pedestrians of another window: metrics that
+    /// look at the others' true futures see everybody in it.
+    ///
+    /// # Errors
+    /// That window has no future, or is not of the same frames of the same recording with all these pedestrians.
+    pub fn among(self, everybody: &'a Window) -> Result<Self, EvaluationError> {
+        let window = self.window;
+        let same_frames =
+            window.recording() == everybody.recording() && window.frames() == everybody.frames();
+        if !same_frames || places(window, everybody).is_none() {
+            return Err(EvaluationError::Everybody {
+                recording: window.recording().to_owned(),
+                start_frame: window.start_frame(),
+            });
+        }
+        Ok(Self { everybody, ..self })
     }
 
     /// The window.
     #[must_use]
     pub fn window(&self) -> &'a Window {
         self.window
+    }
+
+    /// The window with everybody who was there, forecast or not; the [`window`](Self::window) itself, but after
+    /// [`among`](Self::among).
+    #[must_use]
+    pub fn everybody(&self) -> &'a Window {
+        self.everybody
+    }
+
+    /// Which of [`everybody`](Self::everybody) pedestrian `i` is.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn place(&self, i: usize) -> usize {
+        // `among` has seen that everybody includes them; in the window itself each is at its own place.
+        place(self.everybody, self.window.pedestrians()[i]).unwrap_or(i)
     }
 
     /// The forecast.
@@ -105,4 +145,14 @@ impl<'a> Scene<'a> {
             .map(|k| self.forecast.hypothesis(i, k)[t])
             .collect()
     }
+}
+
+fn place(window: &Window, pedestrian: PedestrianId) -> Option<usize> {
+    window.pedestrians().iter().position(|&p| p == pedestrian)
+}
+
+/// Which pedestrians of `everybody` those of a window are; `None` if one of them is not there.
+pub(crate) fn places(window: &Window, everybody: &Window) -> Option<Vec<usize>> {
+    let pedestrians = window.pedestrians().iter();
+    pedestrians.map(|&p| place(everybody, p)).collect()
 }

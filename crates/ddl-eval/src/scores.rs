@@ -108,6 +108,27 @@ impl Scores {
     /// There is no window, a window has no future, a forecast does not belong to its window, or the
     /// forecasts differ in their number of hypotheses, in having goals or in having certificates.
     pub fn evaluate(windows: &[Window], forecasts: &[Forecast]) -> Result<Self, EvaluationError> {
+        Self::evaluate_among(windows, windows, forecasts)
+    }
+
+    /// The same for windows that are reduced to a part of their pedestrians, who are among everybody of the whole windows, one
+    /// each.
+    ///
+    /// Means are over the part alone. Collisions with true futures, and the interactions of the categories, are with
+    /// everybody; what compares forecasts with one another (the collision rate, JADE and JFDE) is among those
+    /// forecast.
+    ///
+    /// # Errors
+    /// As [`Scores::evaluate`]; or a whole window is not that of the reduced one.
+    pub fn evaluate_among(
+        windows: &[Window],
+        everybody: &[Window],
+        forecasts: &[Forecast],
+    ) -> Result<Self, EvaluationError> {
+        if everybody.len() != windows.len() {
+            let (windows, everybody) = (windows.len(), everybody.len());
+            return Err(EvaluationError::EverybodyCount { windows, everybody });
+        }
         if windows.len() != forecasts.len() {
             let (windows, forecasts) = (windows.len(), forecasts.len());
             return Err(EvaluationError::Count { windows, forecasts });
@@ -115,10 +136,12 @@ impl Scores {
         let first = forecasts.first().ok_or(EvaluationError::NoWindows)?;
         let scenes: Vec<SceneScores> = windows
             .par_iter()
+            .zip(everybody)
             .zip(forecasts)
-            .map(|(window, forecast)| {
+            .map(|((window, everybody), forecast)| {
                 check_alike(window, forecast, first)?;
-                Ok(SceneScores::of(&Scene::new(window, forecast)?))
+                let scene = Scene::new(window, forecast)?.among(everybody)?;
+                Ok(SceneScores::of(&scene))
             })
             .collect::<Result<_, EvaluationError>>()?;
         Ok(Self::mean(&scenes, first))

@@ -43,7 +43,7 @@ impl WalkerScores {
     pub(crate) fn of(scene: &Scene<'_>, errors: &DisplacementErrors) -> Vec<Self> {
         let forecast = scene.forecast();
         let collides_forecast = collides(&collision::most_likely_tracks(scene), DISC_RADIUS);
-        let collides_truly = collides(&collision::true_tracks(scene), DISC_RADIUS);
+        let collides_truly = collision::collides_truly(scene, DISC_RADIUS);
         let collides_with_truth = collides_with_truth(scene, DISC_RADIUS);
         (0..scene.pedestrians())
             .map(|i| Self {
@@ -64,7 +64,7 @@ impl WalkerScores {
                 kde_nll: kde_nll(scene, i),
                 distribution: DistributionErrors::of(scene, i),
                 diversity: Diversity::of(scene, i),
-                categories: Category::of(scene.window(), i),
+                categories: Category::of(scene.everybody(), scene.place(i)),
             })
             .collect()
     }

@@ -1,7 +1,6 @@
 //! The baselines alone, on any convention's test windows: what every model is read against.
 
 use crate::DdlError;
-use crate::result_rows::NOISE_SEED;
 use crate::test_set::TestSet;
 use ddl_data::{Dataset, Window};
 use ddl_eval::{Conditions, Protocol, ResultRow, baseline};
@@ -36,7 +35,11 @@ pub fn measure_baselines(
                     test_subset: test.subset.clone(),
                     ..Conditions::new(convention, *rule, protocol, name, "")
                 };
-                rows.extend(baseline::measure(&conditions, &windows, NOISE_SEED)?);
+                rows.extend(baseline::measure(
+                    &conditions,
+                    &windows,
+                    baseline::NOISE_SEED,
+                )?);
             }
         }
     }

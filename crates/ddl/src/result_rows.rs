@@ -7,9 +7,6 @@ use crate::training_words::{recipe, subset};
 use ddl_data::{Window, WindowRule};
 use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, baseline};
 
-/// Seed of constant velocity with angular noise: the same in every run, so that runs agree.
-pub(crate) const NOISE_SEED: u64 = 1;
-
 /// Forecasts of one forecaster, one a window of the test set.
 #[derive(Debug)]
 pub(crate) struct Forecasted {
@@ -77,7 +74,7 @@ impl ResultRows<'_> {
                 conditions.forecaster.clone_from(&one.forecaster);
                 rows.push(ResultRow::score(conditions, &windows, &of_rule)?);
             }
-            rows.extend(baseline::measure(&plain, &windows, NOISE_SEED)?);
+            rows.extend(baseline::measure(&plain, &windows, baseline::NOISE_SEED)?);
         }
         Ok(rows)
     }

@@ -212,12 +212,11 @@ impl TestSet {
 
 /// The rule of the headline tables, then the one printed beside it.
 fn rules(convention: Convention) -> Vec<WindowRule> {
-    match convention {
-        Convention::Star => vec![WindowRule::Published, WindowRule::Complete],
-        Convention::SocialGan => vec![
-            WindowRule::SocialGan { min_pedestrians: 2 },
-            WindowRule::SocialGan { min_pedestrians: 1 },
-        ],
-        Convention::Simulated => vec![WindowRule::Complete],
-    }
+    let beside = match convention {
+        Convention::Star => Some(WindowRule::Complete),
+        Convention::SocialGan => Some(WindowRule::SocialGan { min_pedestrians: 1 }),
+        Convention::Simulated => None,
+    };
+    let headline = convention.headline_rule();
+    [headline].into_iter().chain(beside).collect()
 }

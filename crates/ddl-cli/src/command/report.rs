@@ -4,7 +4,8 @@ use clap::Args;
 use ddl::Results;
 use std::path::PathBuf;
 
-/// Put the results of evaluated runs together into report.md and report.json
+/// Put the results of evaluated runs together: report.html to look at, report.md, report.tex, report.json, moments.json and
+/// figures
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  ddl report runs/eth runs/hotel --out runs")]
 pub(crate) struct Report {

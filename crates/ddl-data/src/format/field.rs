@@ -44,7 +44,8 @@ pub(super) fn number(text: &str, name: &'static str) -> Result<(), FormatProblem
         })
 }
 
-fn quoted(text: &str) -> String {
+/// A piece of a file, shortened for a message.
+pub(super) fn quoted(text: &str) -> String {
     match text.char_indices().nth(QUOTED) {
         Some((end, _)) => format!("{}...", &text[..end]),
         None => text.to_owned(),

@@ -8,12 +8,12 @@ impl Format {
     /// The format of a file, told by its extension and its first lines.
     ///
     /// - `.ndjson` and `.jsonl`, or a first line that begins with `{`: [`TrajNet`](Self::TrajNet);
-    /// - `.txt`, or no comma in the first line of what is not called `.csv`: [`Obsmat`](Self::Obsmat) where it has 8 fields, else
+    /// - no comma in the first line of what is not called `.csv`: [`Obsmat`](Self::Obsmat) where it has 8 fields, else
     ///   [`SocialGan`](Self::SocialGan);
     /// - anything else: [`StarCsv`](Self::StarCsv) where it is four lines of numbers that are longer than four
     ///   fields, else [`Table`](Self::Table).
     ///
-    /// It is a guess for those who did not say: reading with the format guessed still checks everything.
+    /// Extensions count in capital letters too. It is a guess for those who did not say: reading with the format guessed still checks everything.
     ///
     /// # Examples
     /// ```
@@ -25,16 +25,15 @@ impl Format {
     #[must_use]
     pub fn guess(path: &Path, bytes: &[u8]) -> Self {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+        let named = |name: &str| extension.eq_ignore_ascii_case(name);
         let lines: Vec<&[u8]> = bytes.split(|&byte| byte == b'\n').take(6).collect();
         let first = lines
             .iter()
             .find(|line| !line.trim_ascii().is_empty())
             .map_or(&b""[..], |line| line.trim_ascii());
-        if ["ndjson", "jsonl"].contains(&extension) || first.starts_with(b"{") {
+        if named("ndjson") || named("jsonl") || first.starts_with(b"{") {
             Self::TrajNet
-        } else if extension == "txt"
-            || (extension != "csv" && !first.is_empty() && !first.contains(&b','))
-        {
+        } else if !first.contains(&b',') && (named("txt") || !(named("csv") || first.is_empty())) {
             let fields = first
                 .split(u8::is_ascii_whitespace)
                 .filter(|field| !field.is_empty());
@@ -90,6 +89,12 @@ mod tests {
                 Format::Table,
             ),
             ("a.csv", "", Format::Table),
+            ("a.txt", "", Format::SocialGan),
+            ("a.txt", "frame,pedestrian,x,y\n0,1,2,3\n", Format::Table),
+            ("a.NDJSON", "", Format::TrajNet),
+            ("a.Jsonl", "", Format::TrajNet),
+            ("a.TXT", "0\t1\t2\t3\n", Format::SocialGan),
+            ("a.CSV", "frame pedestrian x y\n", Format::Table),
         ] {
             assert_eq!(
                 Format::guess(name.as_ref(), text.as_bytes()),

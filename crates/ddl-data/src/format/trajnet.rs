@@ -60,10 +60,10 @@ fn observation(text: &str) -> Result<Option<(i64, i64, Position)>, FormatProblem
         serde_json::from_str(text).map_err(|error| FormatProblem::Json {
             detail: error.to_string(),
         })?;
-    let track = match line.get("track") {
-        None | Some(Value::Null) => return Ok(None),
-        Some(Value::Object(track)) => track,
-        Some(_) => return Err(FormatProblem::MissingField { name: "track.f" }),
+    // A scene is not used, but one that is no object shows that the file is not what it seems.
+    section(&line, "scene")?;
+    let Some(track) = section(&line, "track")? else {
+        return Ok(None);
     };
     if track.get("prediction_number").is_some_and(|n| !n.is_null()) {
         return Ok(None);
@@ -78,4 +78,19 @@ fn observation(text: &str) -> Result<Option<(i64, i64, Position)>, FormatProblem
     let x = field::coordinate(&text("x", "track.x")?, "track.x")?;
     let y = field::coordinate(&text("y", "track.y")?, "track.y")?;
     Ok(Some((frame, pedestrian, [x, y])))
+}
+
+/// The object of that name; `None` where there is none, or null.
+fn section<'a>(
+    line: &'a Map<String, Value>,
+    name: &'static str,
+) -> Result<Option<&'a Map<String, Value>>, FormatProblem> {
+    match line.get(name) {
+        None | Some(Value::Null) => Ok(None),
+        Some(Value::Object(section)) => Ok(Some(section)),
+        Some(other) => Err(FormatProblem::NotObject {
+            name,
+            found: field::quoted(&other.to_string()),
+        }),
+    }
 }

@@ -14,6 +14,9 @@ pub use straight_line::{GoalSource, StraightLine, TrueEnd, WeightedGoals};
 
 use crate::{Conditions, Forecaster, MeasureError, Protocol, ResultRow};
 
+/// Seed of the baseline with angular noise: the same everywhere, so that its rows agree.
+pub const NOISE_SEED: u64 = 1;
+
 /// Measures the baselines that a protocol admits on the windows of one fold.
 ///
 /// These are constant velocity (last step, mean observed), with angular noise where the protocol
@@ -25,6 +28,20 @@ use crate::{Conditions, Forecaster, MeasureError, Protocol, ResultRow};
 pub fn measure(
     conditions: &Conditions,
     windows: &[Window],
+    noise_seed: u64,
+) -> Result<Vec<ResultRow>, MeasureError> {
+    measure_among(conditions, windows, windows, noise_seed)
+}
+
+/// The same for windows that are reduced to a part of their pedestrians: the baselines see everybody of the whole windows, one
+/// each, and are scored on that part.
+///
+/// # Errors
+/// As [`measure`]; or a whole window is not that of the reduced one.
+pub fn measure_among(
+    conditions: &Conditions,
+    windows: &[Window],
+    everybody: &[Window],
     noise_seed: u64,
 ) -> Result<Vec<ResultRow>, MeasureError> {
     let row = |forecaster: &dyn Forecaster, seed| {
@@ -39,7 +56,7 @@ pub fn measure(
             training_subset: None,
             ..conditions.clone()
         };
-        ResultRow::measure(conditions, forecaster, windows)
+        ResultRow::measure_among(conditions, forecaster, windows, everybody)
     };
     let mut rows = vec![
         row(&ConstantVelocity::last_step(), None)?,

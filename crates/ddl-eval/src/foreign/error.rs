@@ -204,6 +204,40 @@ pub enum ForeignProblem {
         /// Line of the first walker.
         first_line: usize,
     },
+    /// More hypotheses than any protocol allows.
+    #[error(
+        "more than {allowed} hypotheses of {walker}; the protocols allow {allowed}: choose before you write, without \
+         the true future"
+    )]
+    TooManyHypotheses {
+        /// Whom they are of.
+        walker: String,
+        /// Hypotheses allowed.
+        allowed: usize,
+    },
+    /// The numbers of a walker's hypotheses are not those that every walker has.
+    #[error(
+        "the hypotheses of {walker} have the numbers {numbers}: those of one number are one joint \
+         future, so number them alike for all walkers"
+    )]
+    Numbers {
+        /// Whom they are of.
+        walker: String,
+        /// The numbers that it has, and those that it should have.
+        numbers: String,
+    },
+    /// A field of a JSON object twice.
+    #[error("is there twice; keep one")]
+    TwiceNamed,
+    /// A quote is opened and not closed.
+    #[error("a quote is opened and not closed on this line")]
+    OpenQuote,
+    /// The table cannot be taken apart.
+    #[error("not a row of a table: {detail}")]
+    Row {
+        /// The reader's own words.
+        detail: String,
+    },
     /// No hypothesis.
     #[error("at least one hypothesis is needed")]
     NoHypothesis,

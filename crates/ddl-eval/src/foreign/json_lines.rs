@@ -3,13 +3,14 @@
 use std::io::BufRead;
 
 use ddl_data::{HORIZON, Position};
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
 use super::error::{ForeignError, ForeignProblem};
 use super::lines::{Lines, Wrong, in_field};
 use super::repair::{self, finite, kind, list, optional, position, required, whole};
 use super::walkers::{WalkerForecast, Walkers, Who};
+use crate::Protocol;
 
 /// Fields of other names may stand beside these.
 #[derive(Debug, Deserialize)]
@@ -23,9 +24,28 @@ struct Line {
 
 #[derive(Debug, Deserialize)]
 struct Hypothesis {
+    #[serde(default, deserialize_with = "number")]
     weight: Option<f64>,
+    /// `null` is no goal: what programs make of NaN is `[null, null]`, and refused.
     goal: Option<Position>,
     positions: Vec<Position>,
+}
+
+/// The fields that are read.
+const FIELDS: [&str; 8] = [
+    "recording",
+    "observed_until",
+    "pedestrian",
+    "frames",
+    "hypotheses",
+    "weight",
+    "goal",
+    "positions",
+];
+
+/// A field that is there must be a number: `null` is what programs make of NaN, and not nothing.
+fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    f64::deserialize(deserializer).map(Some)
 }
 
 pub(super) fn read(
@@ -49,6 +69,14 @@ pub(super) fn read(
 impl Line {
     fn taken_apart(self) -> Result<(Who, WalkerForecast), Wrong> {
         let count = self.hypotheses.len();
+        let who = Who {
+            recording: self.recording,
+            observed_until: self.observed_until,
+            pedestrian: self.pedestrian,
+        };
+        if count > Protocol::MOST_HYPOTHESES {
+            return Err(in_field("hypotheses", who.too_many_hypotheses()));
+        }
         let weighted = self
             .hypotheses
             .iter()
@@ -80,17 +108,12 @@ impl Line {
                 goals.push(hypothesis.goal.ok_or_else(missing)?);
             }
         }
-        let who = Who {
-            recording: self.recording,
-            observed_until: self.observed_until,
-            pedestrian: self.pedestrian,
-        };
         Ok((who, forecast))
     }
 }
 
 fn field_by_field(text: &str) -> Result<Line, Wrong> {
-    let object = repair::object(text)?;
+    let object = repair::object(text, &FIELDS)?;
     let recording = match optional(&object, "recording") {
         None => None,
         Some(Value::String(name)) => Some(name.clone()),

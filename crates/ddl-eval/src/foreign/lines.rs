@@ -4,8 +4,8 @@ use std::io::{BufRead, Read as _};
 
 use super::error::{ForeignError, ForeignProblem};
 
-/// Longest line, bytes: 20 hypotheses with certificates take a hundred times less.
-const LIMIT: usize = 16 << 20;
+/// Longest line, bytes: 20 hypotheses with certificates take twenty times less.
+const LIMIT: usize = 4 << 20;
 
 /// The lines of a file that hold something, with their numbers.
 #[derive(Debug)]
@@ -71,13 +71,23 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
+    /// The file's name in messages.
+    pub(super) fn origin(&self) -> &str {
+        &self.origin
+    }
+
     /// The error that something is wrong on a line.
-    pub(super) fn wrong(&self, line: usize, (field, problem): Wrong) -> ForeignError {
-        ForeignError::Line {
-            origin: self.origin.clone(),
-            line,
-            field,
-            problem,
-        }
+    pub(super) fn wrong(&self, line: usize, what: Wrong) -> ForeignError {
+        wrong(&self.origin, line, what)
+    }
+}
+
+/// The error that something is wrong on a line of a file.
+pub(super) fn wrong(origin: &str, line: usize, (field, problem): Wrong) -> ForeignError {
+    ForeignError::Line {
+        origin: origin.to_owned(),
+        line,
+        field,
+        problem,
     }
 }

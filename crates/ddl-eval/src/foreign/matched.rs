@@ -1,6 +1,10 @@
 //! Forecasts in the order of the windows.
 
+use std::fmt::Write as _;
+
 use ddl_data::{HORIZON, Position, Window};
+
+use sha2::{Digest as _, Sha256};
 
 use super::error::{ForeignError, ForeignProblem};
 use super::hint::NAMED;
@@ -14,7 +18,11 @@ pub enum Coverage {
     /// It is an error: every walker must be forecast, and nobody else.
     #[default]
     Whole,
-    /// The walkers that are in both are scored, and the result says how many they are of how many.
+    /// The walkers that are in both are scored, and the result says which part of all they are.
+    ///
+    /// They are scored among everybody: the others of their windows are still there for collisions with true futures, for
+    /// interactions, and for baselines that look at others. The collision rate, JADE and JFDE compare forecasts with
+    /// one another, and are among those forecast.
     Intersection,
 }
 
@@ -23,6 +31,8 @@ pub enum Coverage {
 pub struct Matched {
     /// The windows, reduced to the walkers who are forecast.
     pub windows: Vec<Window>,
+    /// The same windows with everybody in them.
+    pub everybody: Vec<Window>,
     /// Their forecasts.
     pub forecasts: Vec<Forecast>,
     file: String,
@@ -54,15 +64,38 @@ impl Matched {
 
     /// The words by which a result names that it is of a part of the walkers; `None` where it is of all.
     ///
-    /// They name the file and both counts: such a result is comparable with nothing but the rows measured with it.
+    /// They name the file, both counts and a digest of who the walkers are: such a result is comparable with nothing but
+    /// results of the very same walkers.
     #[must_use]
     pub fn test_subset(&self) -> Option<String> {
         let scored = self.forecast_walkers();
         (scored < self.walkers).then(|| {
             format!(
-                "walkers forecast by {}: {scored} of {}",
-                self.file, self.walkers
+                "walkers forecast by {}: {scored} of {}, digest {}",
+                self.file,
+                self.walkers,
+                self.digest()
             )
+        })
+    }
+
+    /// The first 8 hexadecimal digits of the SHA-256 of recording, last observed frame and pedestrian of all walkers.
+    fn digest(&self) -> String {
+        let mut hash = Sha256::new();
+        for window in &self.windows {
+            let recording = window.recording();
+            for pedestrian in window.pedestrians() {
+                // The length first: no two lists of walkers make the same bytes.
+                hash.update((recording.len() as u64).to_le_bytes());
+                hash.update(recording);
+                hash.update(last_observed(window).to_le_bytes());
+                hash.update(pedestrian.0.to_le_bytes());
+            }
+        }
+        let digest = hash.finalize();
+        digest[..4].iter().fold(String::new(), |mut text, byte| {
+            let _ = write!(text, "{byte:02x}");
+            text
         })
     }
 }
@@ -99,6 +132,7 @@ impl Walkers<'_> {
         self.refuse_conflicts()?;
         let mut matched = Matched {
             windows: Vec::with_capacity(self.windows.len()),
+            everybody: Vec::with_capacity(self.windows.len()),
             forecasts: Vec::with_capacity(self.windows.len()),
             file: self.origin.clone(),
             walkers: all,
@@ -109,6 +143,7 @@ impl Walkers<'_> {
             };
             let slots: Vec<Slot> = slots.into_iter().flatten().collect();
             matched.windows.push(kept);
+            matched.everybody.push(window.clone());
             let forecast = forecast(slots).map_err(|source| ForeignError::Shape {
                 origin: self.origin.clone(),
                 source,

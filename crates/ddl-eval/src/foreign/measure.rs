@@ -4,13 +4,12 @@ use super::error::ForeignError;
 use super::matched::Matched;
 use crate::{Conditions, Protocol, ResultRow, baseline};
 
-/// Seed of the baseline with angular noise that `ddl evaluate` takes, so that its rows are the same everywhere.
-pub const NOISE_SEED: u64 = 1;
-
 /// Scores forecasts of a file under the protocol of the conditions, then the baselines on the same walkers.
 ///
-/// The conditions are taken at their word for the fold and the rule, as by [`ResultRow::measure`]; the test subset is
-/// set to [`Matched::test_subset`], and the selection to where the forecasts are from. Under `single` the hypothesis of greatest weight is scored, of equals the first.
+/// The conditions are taken at their word for the fold and the rule, as by [`ResultRow::measure`]; to their test
+/// subset [`Matched::test_subset`] is added, and the selection is set to where the forecasts are from. Under `single`
+/// the hypothesis of greatest weight is scored, of equals the first. Where a part of the walkers is scored, it is
+/// among everybody, as by [`Scores::evaluate_among`](crate::Scores::evaluate_among), and so are the baselines.
 ///
 /// # Errors
 /// [`ForeignError::Published`] under the protocol `published`; more hypotheses than the protocol allows; windows that
@@ -23,8 +22,14 @@ pub fn measure(
     if conditions.protocol == Protocol::Published {
         return Err(ForeignError::Published);
     }
+    let subsets: Vec<String> = conditions
+        .test_subset
+        .iter()
+        .cloned()
+        .chain(matched.test_subset())
+        .collect();
     let conditions = Conditions {
-        test_subset: matched.test_subset(),
+        test_subset: (!subsets.is_empty()).then(|| subsets.join("; ")),
         selection: Some(format!(
             "made by another program, read from {}",
             matched.file()
@@ -34,14 +39,16 @@ pub fn measure(
     let forecasts = conditions
         .protocol
         .admit(matched.forecasts.clone(), &conditions.forecaster)?;
-    let mut rows = vec![ResultRow::score(
+    let mut rows = vec![ResultRow::score_among(
         conditions.clone(),
         &matched.windows,
+        &matched.everybody,
         &forecasts,
     )?];
-    rows.extend(baseline::measure(
+    rows.extend(baseline::measure_among(
         &conditions,
         &matched.windows,
+        &matched.everybody,
         noise_seed,
     )?);
     Ok(rows)

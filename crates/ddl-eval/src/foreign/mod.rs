@@ -33,9 +33,13 @@ mod json_lines;
 mod lines;
 mod matched;
 mod measure;
+mod numbering;
 mod repair;
 mod table;
+mod table_rows;
 mod trajnet;
+mod trajnet_line;
+mod unique;
 mod walkers;
 mod write;
 
@@ -49,7 +53,7 @@ use ddl_data::{UnknownName, Window};
 
 pub use error::{ForeignError, ForeignProblem};
 pub use matched::{Coverage, Matched};
-pub use measure::{NOISE_SEED, measure};
+pub use measure::measure;
 pub use write::{write_forecasts, write_windows};
 
 use walkers::Walkers;
@@ -80,11 +84,12 @@ impl ForeignFormat {
         }
     }
 
-    /// The format that the extension of a file names; JSON lines where it names none.
+    /// The format that the extension of a file names, in small letters or capitals; JSON lines where it names none.
     #[must_use]
     pub fn of_file(path: &Path) -> Self {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-        extension.parse().unwrap_or(Self::JsonLines)
+        let named = extension.to_ascii_lowercase().parse();
+        named.unwrap_or(Self::JsonLines)
     }
 }
 

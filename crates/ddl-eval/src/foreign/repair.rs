@@ -6,6 +6,8 @@ use std::borrow::Cow;
 use ddl_data::Position;
 use serde_json::{Map, Value};
 
+use super::unique;
+
 use super::error::ForeignProblem;
 use super::lines::{Wrong, in_field, whole_line};
 
@@ -16,13 +18,16 @@ const LIMIT: f64 = 9_007_199_254_740_992.0;
 /// Words for numbers that JSON does not have and several programs write all the same.
 const NO_NUMBERS: [&str; 3] = ["NaN", "-Infinity", "Infinity"];
 
-/// The object of a line. `NaN` and the infinities are read as `null`, so that their field can be named.
-pub(super) fn object(text: &str) -> Result<Map<String, Value>, Wrong> {
-    serde_json::from_str(&without_no_numbers(text)).map_err(|error| {
-        whole_line(ForeignProblem::Json {
-            detail: error.to_string(),
-        })
-    })
+/// The object of a line, each of the `known` fields there once. `NaN` and the infinities are read as `null`, so that
+/// their field can be named.
+pub(super) fn object(text: &str, known: &[&str]) -> Result<Map<String, Value>, Wrong> {
+    match unique::value(&without_no_numbers(text), known)? {
+        Value::Object(object) => Ok(object),
+        other => {
+            let detail = format!("found {}", quoted(&other.to_string()));
+            Err(whole_line(ForeignProblem::Json { detail }))
+        }
+    }
 }
 
 /// The text with `null` for every word outside quotes that stands for no number.

@@ -1,51 +1,55 @@
 //! The comma-separated table: a row for each position.
 
+use std::collections::HashSet;
 use std::io::BufRead;
 
+use csv::StringRecord;
 use ddl_data::{HORIZON, Position};
 
 use super::error::{ForeignError, ForeignProblem};
 use super::lines::{Lines, Wrong, in_field, whole_line};
+use super::numbering::Numbering;
 use super::repair::quoted;
+use super::table_rows::{AtLine, TableRows};
 use super::walkers::{WalkerForecast, Walkers, Who, in_short};
+use crate::Protocol;
 
 const REQUIRED: [&str; 5] = ["observed_until", "pedestrian", "frame", "x", "y"];
 /// Whole numbers are below this in size: exact in an `f64`.
 const LIMIT: f64 = 9_007_199_254_740_992.0;
 
 pub(super) fn read(
-    mut lines: Lines<impl BufRead>,
+    lines: Lines<impl BufRead>,
     walkers: &mut Walkers<'_>,
 ) -> Result<(), ForeignError> {
-    let Some((number, header)) = lines.next_line()? else {
+    let mut rows = TableRows::new(lines);
+    let mut record = StringRecord::new();
+    if rows.next(&mut record)?.is_none() {
         return Ok(());
-    };
-    let columns = match Columns::of(header) {
-        Ok(columns) => columns,
-        Err(wrong) => return Err(lines.wrong(number, wrong)),
-    };
+    }
+    let columns = Columns::of(&record).map_err(|wrong| rows.wrong(wrong))?;
+    let mut numbering = Numbering::default();
     let mut group: Option<Group> = None;
-    while let Some((number, text)) = lines.next_line()? {
-        let row = match columns.row(text) {
-            Ok(row) => row,
-            Err(wrong) => return Err(lines.wrong(number, wrong)),
-        };
+    while let Some(number) = rows.next(&mut record)? {
+        let row = columns.row(&record).map_err(|wrong| rows.wrong(wrong))?;
         if group.as_ref().is_some_and(|group| group.who != row.who) {
-            put(group.take(), walkers).map_err(|(line, wrong)| lines.wrong(line, wrong))?;
+            put(group.take(), walkers, &mut numbering).map_err(|wrong| rows.wrong_at(wrong))?;
         }
         let group = group.get_or_insert_with(|| Group::new(row.who.clone(), number));
-        if let Err(wrong) = group.add(&row, number) {
-            return Err(lines.wrong(number, wrong));
-        }
+        group.add(&row, number).map_err(|wrong| rows.wrong(wrong))?;
     }
-    put(group, walkers).map_err(|(line, wrong)| lines.wrong(line, wrong))
+    put(group, walkers, &mut numbering).map_err(|wrong| rows.wrong_at(wrong))
 }
 
 /// Hands over a walker whose rows are complete; an error with its line.
-fn put(group: Option<Group>, walkers: &mut Walkers<'_>) -> Result<(), (usize, Wrong)> {
+fn put(
+    group: Option<Group>,
+    walkers: &mut Walkers<'_>,
+    numbering: &mut Numbering,
+) -> Result<(), AtLine<Wrong>> {
     let Some(group) = group else { return Ok(()) };
     let line = group.line;
-    let (who, forecast) = group.forecast()?;
+    let (who, forecast) = group.forecast(numbering)?;
     let put = walkers.put(&who, forecast, line, true);
     put.map_err(|wrong| (line, wrong))
 }
@@ -71,8 +75,8 @@ struct Row {
 }
 
 impl Columns {
-    fn of(header: &str) -> Result<Self, Wrong> {
-        let names: Vec<&str> = header.split(',').map(bare).collect();
+    fn of(header: &StringRecord) -> Result<Self, Wrong> {
+        let names: Vec<&str> = header.iter().collect();
         let wrong = |detail: String| whole_line(ForeignProblem::Header { detail });
         let find = |name: &str| {
             let mut places = (0..names.len()).filter(|&i| names[i] == name);
@@ -95,17 +99,16 @@ impl Columns {
         })
     }
 
-    fn row(&self, text: &str) -> Result<Row, Wrong> {
-        let fields: Vec<&str> = text.split(',').map(bare).collect();
+    fn row(&self, fields: &StringRecord) -> Result<Row, Wrong> {
         if fields.len() != self.count {
             let (expected, found) = (self.count, fields.len());
             return Err(whole_line(ForeignProblem::FieldCount { expected, found }));
         }
-        let [observed_until, pedestrian, frame, x, y] = self.required.map(|place| fields[place]);
+        let [observed_until, pedestrian, frame, x, y] = self.required.map(|place| &fields[place]);
         let who = Who {
             recording: self
                 .recording
-                .map(|place| fields[place])
+                .map(|place| &fields[place])
                 .filter(|name| !name.is_empty())
                 .map(str::to_owned),
             observed_until: whole(observed_until, REQUIRED[0])?,
@@ -113,11 +116,11 @@ impl Columns {
         };
         let hypothesis = match self.hypothesis {
             None => 0,
-            Some(place) => whole(fields[place], "hypothesis")?,
+            Some(place) => whole(&fields[place], "hypothesis")?,
         };
         let weight = match self.weight {
             None => None,
-            Some(place) => Some(finite(fields[place], "weight")?),
+            Some(place) => Some(finite(&fields[place], "weight")?),
         };
         Ok(Row {
             who,
@@ -134,7 +137,9 @@ impl Columns {
 struct Group {
     who: Who,
     line: usize,
+    /// In the order of the file.
     hypotheses: Vec<Rows>,
+    numbers: HashSet<i64>,
 }
 
 #[derive(Debug)]
@@ -152,6 +157,7 @@ impl Group {
             who,
             line,
             hypotheses: Vec::new(),
+            numbers: HashSet::new(),
         }
     }
 
@@ -162,12 +168,12 @@ impl Group {
             .last()
             .is_none_or(|last| last.hypothesis != hypothesis)
         {
-            if self
-                .hypotheses
-                .iter()
-                .any(|rows| rows.hypothesis == hypothesis)
-            {
+            if !self.numbers.insert(hypothesis) {
                 let problem = ForeignProblem::Scattered { hypothesis };
+                return Err(in_field("hypothesis", problem));
+            }
+            if self.hypotheses.len() == Protocol::MOST_HYPOTHESES {
+                let problem = self.who.too_many_hypotheses();
                 return Err(in_field("hypothesis", problem));
             }
             self.hypotheses.push(Rows {
@@ -197,7 +203,15 @@ impl Group {
     }
 
     /// The forecast, or what is wrong with it and on which line.
-    fn forecast(self) -> Result<(Who, WalkerForecast), (usize, Wrong)> {
+    fn forecast(
+        mut self,
+        numbering: &mut Numbering,
+    ) -> Result<(Who, WalkerForecast), AtLine<Wrong>> {
+        self.hypotheses.sort_by_key(|rows| rows.hypothesis);
+        let numbers: Vec<i64> = self.hypotheses.iter().map(|rows| rows.hypothesis).collect();
+        numbering
+            .check(&numbers, &self.who.named())
+            .map_err(|problem| (self.line, in_field("hypothesis", problem)))?;
         let mut forecast = WalkerForecast::default();
         for rows in self.hypotheses {
             let found = rows.positions.len();
@@ -221,13 +235,6 @@ impl Group {
         }
         Ok((self.who, forecast))
     }
-}
-
-/// A field without blanks and quotes around it. No field of these tables holds a comma.
-fn bare(field: &str) -> &str {
-    let field = field.trim();
-    let inner = field.strip_prefix('"').and_then(|f| f.strip_suffix('"'));
-    inner.unwrap_or(field)
 }
 
 fn whole(text: &str, name: &'static str) -> Result<i64, Wrong> {

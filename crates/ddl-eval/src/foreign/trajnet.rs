@@ -2,54 +2,29 @@
 //!
 //! A scene stands for the window of its recording that starts at its first frame. Its primary pedestrian is forecast
 //! for its own sake; a neighbour's forecast counts where no scene of the window has that walker as its primary
-//! one. Neighbours who are not in the window (they left before its end) are not scored, and left out.
+//! one. Neighbours who are not in the window (they left before its end) are not scored, and left out. Walkers that are
+//! forecast in several scenes have no joint future: hypothesis k of a window is then put together from those scenes.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::BufRead;
 
-use ddl_data::{HORIZON, OBSERVED, Position, Window};
-use serde::Deserialize;
-use serde_json::{Map, Value};
-
 use super::error::{ForeignError, ForeignProblem};
 use super::lines::{Lines, Wrong, in_field, whole_line};
-use super::repair::{self, finite, kind, optional, required, whole};
+use super::numbering::Numbering;
+use super::trajnet_line::{Line, Scene, Track};
 use super::walkers::{WalkerForecast, Walkers, Who, frames_ahead, in_short};
-
-/// Lines and fields of other names may stand between.
-#[derive(Debug, Deserialize)]
-struct Line {
-    scene: Option<Scene>,
-    track: Option<Track>,
-}
-
-/// `recording` is an addition of ours, for folds of several recordings.
-#[derive(Debug, Clone, Deserialize)]
-struct Scene {
-    id: i64,
-    p: i64,
-    s: i64,
-    e: i64,
-    recording: Option<String>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Track {
-    f: i64,
-    p: i64,
-    x: f64,
-    y: f64,
-    prediction_number: Option<i64>,
-    scene_id: Option<i64>,
-}
+use crate::Protocol;
+use ddl_data::{HORIZON, OBSERVED, Position, Window};
 
 /// What one pedestrian of a scene is forecast to do: for each prediction number, frames and positions.
 type Predictions = BTreeMap<i64, Vec<(i64, Position)>>;
 
 /// The scene whose tracks are being read.
 #[derive(Debug)]
-struct Open {
-    id: i64,
+struct Open<'a> {
+    scene: Scene,
+    /// The window it stands for.
+    window: Option<&'a Window>,
     /// By pedestrian, with the line of the first row.
     tracks: BTreeMap<i64, (usize, Predictions)>,
 }
@@ -60,10 +35,9 @@ pub(super) fn read(
 ) -> Result<(), ForeignError> {
     let mut reading = Reading::new(walkers);
     while let Some((number, text)) = lines.next_line()? {
-        let line = serde_json::from_str(text).or_else(|_| field_by_field(text));
-        let taken = line
+        let taken = Line::read(text)
             .map_err(|wrong| (number, wrong))
-            .and_then(|line: Line| reading.take(line, number));
+            .and_then(|line| reading.take(line, number));
         if let Err((number, wrong)) = taken {
             return Err(lines.wrong(number, wrong));
         }
@@ -79,7 +53,8 @@ struct Reading<'w, 'a> {
     by_start: HashMap<(usize, i64), usize>,
     scenes: HashMap<i64, Scene>,
     finished: HashSet<i64>,
-    open: Option<Open>,
+    open: Option<Open<'a>>,
+    numbering: Numbering,
 }
 
 impl<'w, 'a> Reading<'w, 'a> {
@@ -100,6 +75,7 @@ impl<'w, 'a> Reading<'w, 'a> {
             scenes: HashMap::new(),
             finished: HashSet::new(),
             open: None,
+            numbering: Numbering::default(),
         }
     }
 
@@ -120,27 +96,80 @@ impl<'w, 'a> Reading<'w, 'a> {
         };
         let missing = || in_field("track.scene_id", ForeignProblem::Missing);
         let id = track.scene_id.ok_or_else(|| (number, missing()))?;
-        if self.open.as_ref().is_none_or(|open| open.id != id) {
+        if self.open.as_ref().is_none_or(|open| open.scene.id != id) {
             self.close()?;
             let wrong = |problem| Err((number, in_field("track.scene_id", problem)));
             if self.finished.contains(&id) {
                 return wrong(ForeignProblem::ScatteredScene { scene: id });
             }
-            if !self.scenes.contains_key(&id) {
+            let Some(scene) = self.scenes.get(&id).cloned() else {
                 return wrong(ForeignProblem::UnknownScene { scene: id });
-            }
-            let tracks = BTreeMap::new();
-            self.open = Some(Open { id, tracks });
+            };
+            let open = self.open(scene).map_err(|wrong| (number, wrong))?;
+            self.open = Some(open);
         }
-        if let Some(open) = &mut self.open {
-            let (_, predictions) = open
-                .tracks
-                .entry(track.p)
-                .or_insert_with(|| (number, Predictions::new()));
-            let rows = predictions.entry(prediction).or_default();
-            rows.push((track.f, [track.x, track.y]));
+        let Some(mut open) = self.open.take() else {
+            return Ok(());
+        };
+        let added = self.add(&mut open, &track, prediction, number);
+        self.open = Some(open);
+        added.map_err(|wrong| (number, wrong))
+    }
+
+    /// Finds the window of a scene.
+    fn open(&self, scene: Scene) -> Result<Open<'a>, Wrong> {
+        let recording = self.walkers.recording(scene.recording.as_deref())?;
+        let window = recording.and_then(|r| self.by_start.get(&(r, scene.s)));
+        let window: Option<&'a Window> = window.map(|&index| &self.walkers.windows[index]);
+        if let Some(window) = window {
+            check_end(window, &scene)?;
         }
+        let tracks = BTreeMap::new();
+        Ok(Open {
+            scene,
+            window,
+            tracks,
+        })
+    }
+
+    fn add(
+        &self,
+        open: &mut Open<'a>,
+        track: &Track,
+        prediction: i64,
+        number: usize,
+    ) -> Result<(), Wrong> {
+        let in_window = |w: &Window| w.pedestrians().iter().any(|p| p.0 == track.p);
+        if track.p != open.scene.p && !open.window.is_some_and(in_window) {
+            return Ok(());
+        }
+        let who = || self.who(&open.scene, open.window, track.p);
+        let (_, predictions) = open
+            .tracks
+            .entry(track.p)
+            .or_insert_with(|| (number, Predictions::new()));
+        if predictions.len() == Protocol::MOST_HYPOTHESES && !predictions.contains_key(&prediction)
+        {
+            let problem = who().too_many_hypotheses();
+            return Err(in_field("track.prediction_number", problem));
+        }
+        let rows = predictions.entry(prediction).or_default();
+        if rows.len() == HORIZON {
+            let (expected, found) = (HORIZON, HORIZON + 1);
+            let path = format!("prediction_number {prediction}");
+            return Err(in_field(path, ForeignProblem::Length { expected, found }));
+        }
+        rows.push((track.f, [track.x, track.y]));
         Ok(())
+    }
+
+    fn who(&self, scene: &Scene, window: Option<&Window>, pedestrian: i64) -> Who {
+        Who {
+            recording: scene.recording.clone(),
+            observed_until: window
+                .map_or_else(|| self.unknown_last(scene), |w| w.frames()[OBSERVED - 1]),
+            pedestrian,
+        }
     }
 
     /// Hands over the walkers of the open scene, whose tracks are complete.
@@ -148,37 +177,18 @@ impl<'w, 'a> Reading<'w, 'a> {
         let Some(open) = self.open.take() else {
             return Ok(());
         };
-        self.finished.insert(open.id);
-        let Some(scene) = self.scenes.get(&open.id).cloned() else {
-            return Ok(());
-        };
-        let first_line = open
-            .tracks
-            .values()
-            .map(|(line, _)| *line)
-            .min()
-            .unwrap_or(1);
-        let recording = self.walkers.recording(scene.recording.as_deref());
-        let recording = recording.map_err(|wrong| (first_line, wrong))?;
-        let window = recording.and_then(|r| self.by_start.get(&(r, scene.s)));
-        let window: Option<&'a Window> = window.map(|&index| &self.walkers.windows[index]);
-        if let Some(window) = window {
-            check_end(window, &scene).map_err(|wrong| (first_line, wrong))?;
-        }
-        for (pedestrian, (line, predictions)) in open.tracks {
+        let Open {
+            scene,
+            window,
+            tracks,
+        } = open;
+        self.finished.insert(scene.id);
+        for (pedestrian, (line, predictions)) in tracks {
             let primary = pedestrian == scene.p;
-            let in_window =
-                window.is_some_and(|w| w.pedestrians().iter().any(|p| p.0 == pedestrian));
-            if !primary && !in_window {
-                continue;
-            }
-            let observed_until =
-                window.map_or_else(|| self.unknown_last(&scene), |w| w.frames()[OBSERVED - 1]);
-            let who = Who {
-                recording: scene.recording.clone(),
-                observed_until,
-                pedestrian,
-            };
+            let who = self.who(&scene, window, pedestrian);
+            let numbers: Vec<i64> = predictions.keys().copied().collect();
+            let numbered = self.numbering.check(&numbers, &who.named());
+            numbered.map_err(|problem| (line, in_field("prediction_number", problem)))?;
             let forecast = forecast(predictions, window).map_err(|wrong| (line, wrong))?;
             let put = self.walkers.put(&who, forecast, line, primary);
             put.map_err(|wrong| (line, wrong))?;
@@ -235,66 +245,4 @@ fn forecast(predictions: Predictions, window: Option<&Window>) -> Result<WalkerF
         return Err(whole_line(ForeignProblem::NoHypothesis));
     }
     Ok(forecast)
-}
-
-fn field_by_field(text: &str) -> Result<Line, Wrong> {
-    let object = repair::object(text)?;
-    Ok(Line {
-        scene: section(&object, "scene", scene)?,
-        track: section(&object, "track", track)?,
-    })
-}
-
-fn section<T>(
-    object: &Map<String, Value>,
-    key: &str,
-    read: impl Fn(&Map<String, Value>) -> Result<T, Wrong>,
-) -> Result<Option<T>, Wrong> {
-    match optional(object, key) {
-        None => Ok(None),
-        Some(Value::Object(section)) => read(section).map(Some),
-        Some(other) => Err(in_field(key, kind("an object", other))),
-    }
-}
-
-fn scene(object: &Map<String, Value>) -> Result<Scene, Wrong> {
-    let number = |key: &str| {
-        let path = format!("scene.{key}");
-        whole(required(object, key, &path)?, &path)
-    };
-    let recording = match optional(object, "recording") {
-        None => None,
-        Some(Value::String(name)) => Some(name.clone()),
-        Some(other) => return Err(in_field("scene.recording", kind("a name in quotes", other))),
-    };
-    Ok(Scene {
-        id: number("id")?,
-        p: number("p")?,
-        s: number("s")?,
-        e: number("e")?,
-        recording,
-    })
-}
-
-fn track(object: &Map<String, Value>) -> Result<Track, Wrong> {
-    let number = |key: &str| {
-        let path = format!("track.{key}");
-        whole(required(object, key, &path)?, &path)
-    };
-    let or_none = |key: &str| match optional(object, key) {
-        None => Ok(None),
-        Some(value) => whole(value, &format!("track.{key}")).map(Some),
-    };
-    let coordinate = |key: &str| {
-        let path = format!("track.{key}");
-        finite(required(object, key, &path)?, &path)
-    };
-    Ok(Track {
-        f: number("f")?,
-        p: number("p")?,
-        x: coordinate("x")?,
-        y: coordinate("y")?,
-        prediction_number: or_none("prediction_number")?,
-        scene_id: or_none("scene_id")?,
-    })
 }

@@ -7,6 +7,7 @@ use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use super::error::{ForeignError, ForeignProblem};
 use super::hint::Unknown;
 use super::lines::{Wrong, in_field, whole_line};
+use crate::Protocol;
 use crate::forecast::WEIGHT_TOLERANCE;
 
 /// Whom a forecast is of.
@@ -16,6 +17,25 @@ pub(super) struct Who {
     /// Raw frame number of the last observed frame.
     pub(super) observed_until: i64,
     pub(super) pedestrian: i64,
+}
+
+impl Who {
+    /// The walker, for messages.
+    pub(super) fn named(&self) -> String {
+        named(
+            self.recording.as_deref(),
+            self.observed_until,
+            self.pedestrian,
+        )
+    }
+
+    /// That the walker has more hypotheses than any protocol allows.
+    pub(super) fn too_many_hypotheses(&self) -> ForeignProblem {
+        ForeignProblem::TooManyHypotheses {
+            walker: self.named(),
+            allowed: Protocol::MOST_HYPOTHESES,
+        }
+    }
 }
 
 /// What is forecast of one walker, as the file has it.

@@ -98,10 +98,18 @@ pub fn most_likely_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
         .collect()
 }
 
-/// The true future of each pedestrian, metres.
+/// Which pedestrians' true futures collide with that of anybody who was there, forecast or not.
+///
+/// # Shapes
+/// `[N]`.
 #[must_use]
-pub fn true_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
-    (0..scene.pedestrians()).map(|i| scene.truth(i)).collect()
+pub fn collides_truly(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
+    let everybody = scene.everybody();
+    let tracks: Vec<&[Position]> = (0..everybody.len()).map(|j| everybody.future(j)).collect();
+    let hit = collides(&tracks, radius);
+    (0..scene.pedestrians())
+        .map(|i| hit[scene.place(i)])
+        .collect()
 }
 
 /// Number of pedestrians whose most likely forecast collides with another's.
@@ -113,7 +121,8 @@ pub fn forecast_collisions(scene: &Scene<'_>, radius: f64) -> usize {
 /// Number of pedestrians whose true future collides with another's: what real people do.
 #[must_use]
 pub fn true_collisions(scene: &Scene<'_>, radius: f64) -> usize {
-    colliding(&true_tracks(scene), radius)
+    let hit = collides_truly(scene, radius);
+    hit.into_iter().filter(|&h| h).count()
 }
 
 #[cfg(test)]

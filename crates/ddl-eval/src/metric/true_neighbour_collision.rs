@@ -2,7 +2,7 @@
 //!
 //! As in [`collision`](super::collision), pedestrians are discs of radius r = 0.2 m, and tracks are
 //! straight from frame to frame, with the exact minimum over time. Pedestrian i follows its most likely
-//! hypothesis `x_i`, everybody else j its TRUE future `p_j`:
+//! hypothesis `x_i`, everybody else j, forecast or not, its TRUE future `p_j`:
 //!
 //! ```text
 //! i collides when min over j and t in [1, 12] of |x_i(t) - p_j(t)| < 2 r = 0.4 m
@@ -27,12 +27,14 @@ use crate::Scene;
 /// `[N]`.
 #[must_use]
 pub fn collides_with_truth(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
-    let (forecast, n) = (scene.forecast(), scene.pedestrians());
+    let (forecast, everybody) = (scene.forecast(), scene.everybody());
     let runs_into_another = |i: usize| {
         let track = forecast.hypothesis(i, forecast.most_likely(i));
-        (0..n).any(|j| j != i && closest_approach(track, scene.truth(j)) < 2.0 * radius)
+        let own = scene.place(i);
+        (0..everybody.len())
+            .any(|j| j != own && closest_approach(track, everybody.future(j)) < 2.0 * radius)
     };
-    (0..n).map(runs_into_another).collect()
+    (0..scene.pedestrians()).map(runs_into_another).collect()
 }
 
 #[cfg(test)]

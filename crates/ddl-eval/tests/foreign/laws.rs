@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use ddl_data::{HORIZON, OBSERVED, PedestrianId, Position, Window};
-use ddl_eval::Forecast;
 use ddl_eval::foreign::{self, Coverage, ForeignFormat};
+use ddl_eval::{Forecast, Scores};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use serde_json::{Value, json};
@@ -158,6 +158,26 @@ proptest! {
                 }
             }
         }
+    }
+
+    /// Whoever is scored alone among everybody sees what it sees where all are scored.
+    #[test]
+    fn what_looks_at_others_is_the_same_for_a_part((windows, forecasts) in forecast_windows()) {
+        let whole = Scores::evaluate(&windows, &forecasts).unwrap();
+        let (mut truly, mut into_truth, mut categories) = (0.0, 0.0, 0);
+        for line in written(&windows, &forecasts).lines() {
+            let matched = foreign::read_from(
+                line.as_bytes(), "f", ForeignFormat::JsonLines, &windows, Coverage::Intersection,
+            ).unwrap();
+            let alone = Scores::evaluate_among(&matched.windows, &matched.everybody, &matched.forecasts).unwrap();
+            truly += alone.true_collision_rate;
+            into_truth += alone.true_neighbour_collision_rate.unwrap();
+            categories += alone.categories.iter().map(|c| c.pedestrians).sum::<usize>();
+        }
+        let n = whole.pedestrians as f64;
+        prop_assert!((truly / n - whole.true_collision_rate).abs() < 1e-12);
+        prop_assert!((into_truth / n - whole.true_neighbour_collision_rate.unwrap()).abs() < 1e-12);
+        prop_assert_eq!(categories, whole.categories.iter().map(|c| c.pedestrians).sum::<usize>());
     }
 
     /// Tables and TrajNet++ carry the same positions, bit by bit.

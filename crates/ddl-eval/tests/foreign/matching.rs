@@ -1,12 +1,14 @@
 //! What is read, matched with windows, and scored.
 
 use ddl_data::{Convention, PedestrianId, Window, WindowRule};
+use ddl_eval::baseline::{self, SocialForce};
+use ddl_eval::category::TrajectoryType;
 use ddl_eval::foreign::{self, Coverage, ForeignError, ForeignFormat};
-use ddl_eval::{Conditions, Protocol, Scores};
+use ddl_eval::{Category, Conditions, Forecaster as _, Protocol, Scores};
 
 use crate::files::{
-    complaint, expected, hypothesis, line, ndjson, read, scene, still, table, tracks, whole,
-    windows,
+    HEADER, complaint, expected, hypothesis, line, ndjson, read, rows, scene, still, table, tracks,
+    whole, windows,
 };
 
 #[test]
@@ -73,7 +75,8 @@ fn the_intersection_names_itself_and_scores_those_alone() {
     let matched = read(&text, ForeignFormat::JsonLines, Coverage::Intersection).unwrap();
     assert_eq!(
         matched.test_subset().unwrap(),
-        "walkers forecast by f: 1 of 3"
+        // of "yard", 70 and 5, computed with Python's hashlib
+        "walkers forecast by f: 1 of 3, digest f5c3a037"
     );
     assert_eq!(matched.windows.len(), 1);
     assert_eq!(matched.windows[0].pedestrians(), [PedestrianId(5)]);
@@ -84,7 +87,7 @@ fn the_intersection_names_itself_and_scores_those_alone() {
         "yard",
         "mine",
     );
-    let rows = foreign::measure(&conditions, &matched, foreign::NOISE_SEED).unwrap();
+    let rows = foreign::measure(&conditions, &matched, baseline::NOISE_SEED).unwrap();
     for row in &rows {
         assert_eq!(row.scores.pedestrians, 1);
         assert_eq!(row.conditions.test_subset, matched.test_subset());
@@ -97,6 +100,123 @@ fn the_intersection_names_itself_and_scores_those_alone() {
     // he goes on from x = 4 to 9.5 at y = 2, and is forecast at (2, 0)
     let end = f64::hypot(7.5, 2.0);
     assert!((rows[0].scores.min_fde - end).abs() < 1e-12);
+}
+
+#[test]
+fn the_same_number_of_other_walkers_is_another_subset() {
+    let of = |pedestrian| {
+        let text = line(70, pedestrian, &hypothesis(2.0));
+        let matched = read(&text, ForeignFormat::JsonLines, Coverage::Intersection).unwrap();
+        matched.test_subset().unwrap()
+    };
+    assert_eq!(of(3), "walkers forecast by f: 1 of 3, digest 0f80b53d");
+    assert_ne!(of(3), of(5));
+}
+
+#[test]
+fn the_subset_of_the_caller_is_kept() {
+    let subset = |text: &str, coverage| {
+        let matched = read(text, ForeignFormat::JsonLines, coverage).unwrap();
+        let (rule, protocol) = (WindowRule::Complete, Protocol::Single);
+        let conditions = Conditions {
+            test_subset: Some("every second window".to_owned()),
+            ..Conditions::new(Convention::Star, rule, protocol, "yard", "mine")
+        };
+        let rows = foreign::measure(&conditions, &matched, 1).unwrap();
+        rows[1].conditions.test_subset.clone().unwrap()
+    };
+    assert_eq!(subset(&whole(), Coverage::Whole), "every second window");
+    assert_eq!(
+        subset(&line(70, 5, &hypothesis(2.0)), Coverage::Intersection),
+        "every second window; walkers forecast by f: 1 of 3, digest f5c3a037"
+    );
+}
+
+#[test]
+fn hypotheses_of_a_table_are_ordered_by_their_numbers() {
+    for first in [0, 1] {
+        let (second, last) = (first + 1, rows("yard", 80, 5, first, 0.25, 5.0));
+        let text = HEADER.to_owned()
+            + &rows("yard", 70, 3, first, 0.75, 1.0)
+            + &rows("yard", 70, 3, second, 0.25, 2.0)
+            + &rows("yard", 70, 5, second, 0.625, 4.0)
+            + &rows("yard", 70, 5, first, 0.375, 3.0)
+            + &last
+            + &rows("yard", 80, 5, second, 0.75, 6.0);
+        let matched = read(&text, ForeignFormat::Table, Coverage::Whole).unwrap();
+        let forecast = &matched.forecasts[0];
+        for (i, k, x) in [(0, 0, 1.0), (0, 1, 2.0), (1, 0, 3.0), (1, 1, 4.0)] {
+            assert_eq!(forecast.hypothesis(i, k), still(x, 0.0), "{i} {k}");
+        }
+        assert!((forecast.weight(1, 0) - 0.375).abs() < f64::EPSILON);
+    }
+}
+
+#[test]
+fn extensions_name_the_format_in_capitals_too() {
+    for (name, format) in [
+        ("a.csv", ForeignFormat::Table),
+        ("a.CSV", ForeignFormat::Table),
+        ("a.NdJson", ForeignFormat::TrajNet),
+        ("a.JSONL", ForeignFormat::JsonLines),
+        ("a", ForeignFormat::JsonLines),
+    ] {
+        assert_eq!(ForeignFormat::of_file(name.as_ref()), format, "{name}");
+    }
+}
+
+/// 1 goes east, meets 2, who goes west and whom nobody forecast, at frame 15, and turns; 3 is far away.
+#[test]
+fn who_is_not_forecast_is_still_there() {
+    let track = |at: fn(f64) -> [f64; 2]| (0..20).map(|t| at(f64::from(t))).collect::<Vec<_>>();
+    let tracks = vec![
+        track(|t| [0.5 * t, -0.5 * (t - 15.0).max(0.0)]),
+        track(|t| [15.0 - 0.5 * t, 0.125]),
+        track(|t| [0.5 * t, 50.0]),
+    ];
+    let ids = vec![PedestrianId(1), PedestrianId(2), PedestrianId(3)];
+    let windows = [Window::new("yard", 0, 10, ids, tracks).unwrap()];
+    let straight_on = |y: f64| {
+        let positions: Vec<_> = (8..20).map(|t| [0.5 * f64::from(t), y]).collect();
+        format!("{{\"positions\":{positions:?}}}")
+    };
+    let text = line(70, 1, &straight_on(0.0)) + &line(70, 3, &straight_on(50.0));
+    let matched = foreign::read_from(
+        text.as_bytes(),
+        "f",
+        ForeignFormat::JsonLines,
+        &windows,
+        Coverage::Intersection,
+    )
+    .unwrap();
+    assert_eq!(matched.everybody, windows);
+    let (rule, protocol) = (WindowRule::Complete, Protocol::Single);
+    let conditions = Conditions::new(Convention::Star, rule, protocol, "yard", "mine");
+    let rows = foreign::measure(&conditions, &matched, 1).unwrap();
+    let mine = &rows[0].scores;
+    assert_eq!(mine.pedestrians, 2);
+    assert!((mine.true_collision_rate - 0.5).abs() < f64::EPSILON);
+    assert_eq!(mine.true_neighbour_collision_rate, Some(0.5));
+    // nobody forecast where 2 goes
+    assert!(mine.collision_rate.abs() < f64::EPSILON);
+    let interacting = Category::Type(TrajectoryType::Interacting);
+    assert!(Category::of(&windows[0], 0).contains(&interacting));
+    assert!(!Category::of(&matched.windows[0], 0).contains(&interacting));
+    let found = mine.categories.iter().find(|c| c.category == interacting);
+    assert_eq!(found.unwrap().pedestrians, 1);
+    // the social force model gives way to 2
+    let forces = rows
+        .iter()
+        .find(|r| r.conditions.forecaster == "social force");
+    let forced = SocialForce.forecast(&windows[0]).unwrap();
+    let error = |i: usize, t: usize| {
+        let ([x, y], [u, v]) = (forced.hypothesis(i, 0)[t], windows[0].future(i)[t]);
+        f64::hypot(x - u, y - v)
+    };
+    let ade = |i: usize| (0..12).map(|t| error(i, t)).sum::<f64>() / 12.0;
+    assert!(ade(0) > 0.01, "{}", ade(0));
+    let expected = f64::midpoint(ade(0), ade(2));
+    assert!((forces.unwrap().scores.min_ade - expected).abs() < 1e-12);
 }
 
 #[test]

@@ -106,6 +106,31 @@ fn every_mistake_of_json_lines_is_named_with_its_place() {
             "f, line 1, hypotheses[1].weight: must be a finite number",
         ),
         (
+            weighted("\"weight\":0.5,", "\"weight\":null,"),
+            "f, line 1, hypotheses[1].weight: must be a finite number, found null, NaN or infinity",
+        ),
+        (
+            // what programs write for a goal of NaN; a bare null is no goal
+            weighted("\"goal\":[null,null],", "\"goal\":[1,2],"),
+            "f, line 1, hypotheses[0].goal[0]: must be a finite number",
+        ),
+        (
+            weighted("\"goal\":[1,2],", "\"goal\":null,"),
+            "f, line 1, hypotheses[1].goal: is missing",
+        ),
+        (
+            bad(&first.replacen('{', "{\"pedestrian\":5,", 1)),
+            "f, line 2, pedestrian: is there twice; keep one",
+        ),
+        (
+            weighted("\"weight\":0.5,", "\"weight\":0.5,\"weight\":0.5,"),
+            "f, line 1, hypotheses[1].weight: is there twice",
+        ),
+        (
+            line(70, 5, &vec![hypothesis(1.0); 21].join(",")),
+            "f, line 1, hypotheses: more than 20 hypotheses of observed until 70 pedestrian 5; the protocols allow 20",
+        ),
+        (
             weighted("\"weight\":0.5,", "\"weight\":0.6,"),
             "f, line 1, weight: the weights sum to 1.1",
         ),
@@ -136,6 +161,7 @@ fn every_mistake_of_json_lines_is_named_with_its_place() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of mistakes")]
 fn every_mistake_of_a_table_is_named_with_its_place() {
     let first = HEADER.to_owned() + &rows("yard", 70, 3, 0, 1.0, 1.0);
     let second = rows("yard", 70, 5, 0, 1.0, 2.0);
@@ -202,6 +228,32 @@ fn every_mistake_of_a_table_is_named_with_its_place() {
             first.clone() + &rows("yard", 70, 5, 0, 0.5, 1.0),
             "f, line 14, weight: the weights sum to 0.5",
         ),
+        (
+            HEADER.to_owned()
+                + &rows("yard", 70, 5, 2, 0.5, 1.0)
+                + &rows("yard", 70, 5, 0, 0.5, 1.0),
+            "f, line 2, hypothesis: the hypotheses of `yard` observed until 70 pedestrian 5 have the numbers 0, 2, \
+             expected 0 to 1 or 1 to 2",
+        ),
+        (
+            first.clone() + &rows("yard", 70, 5, 1, 1.0, 1.0),
+            "f, line 14, hypothesis: the hypotheses of `yard` observed until 70 pedestrian 5 have the numbers 1, \
+             expected 0 as before",
+        ),
+        (
+            (0..1000).fold(HEADER.to_owned(), |text, k| {
+                text + &rows("yard", 70, 5, k, 0.001, 1.0)
+            }),
+            "f, line 242, hypothesis: more than 20 hypotheses of `yard` observed until 70 pedestrian 5",
+        ),
+        (
+            first.clone() + "\n\n\"yard\",70,5,0,\"1,80,2,0,ok\n" + &second,
+            "f, line 16: a quote is opened and not closed on this line",
+        ),
+        (
+            HEADER.to_owned() + "\"",
+            "f, line 2: a quote is opened and not closed on this line",
+        ),
     ];
     for (text, expected) in &cases {
         check(ForeignFormat::Table, text, expected);
@@ -248,7 +300,7 @@ fn every_mistake_of_trajnet_is_named_with_its_place() {
         ),
         (
             good.clone() + &own.lines().next().unwrap().replace("190", "200"),
-            "f, line 2, prediction_number 0: 13 positions",
+            "f, line 14, prediction_number 0: 13 positions",
         ),
         (
             good.replacen("\"p\": 3,", "", 1),
@@ -257,6 +309,19 @@ fn every_mistake_of_trajnet_is_named_with_its_place() {
         (
             good.replacen("{\"scene\": {", "{\"scene\": [{", 1),
             "f, line 1: not a JSON object",
+        ),
+        (
+            good.replacen("\"p\": 3, \"x\"", "\"p\": 3, \"p\": 5, \"x\"", 1),
+            "f, line 2, track.p: is there twice; keep one",
+        ),
+        (
+            good.clone() + &scene(1, 5, 0) + &tracks(1, 5, 1, 70, 1.0),
+            "f, line 15, prediction_number: the hypotheses of observed until 70 pedestrian 5 have the numbers 1, \
+             expected 0 as before",
+        ),
+        (
+            (0..1000).fold(scene(0, 3, 0), |text, k| text + &tracks(0, 3, k, 70, 1.0)),
+            "f, line 242, track.prediction_number: more than 20 hypotheses of observed until 70 pedestrian 3",
         ),
         (
             scene(0, 3, 0)

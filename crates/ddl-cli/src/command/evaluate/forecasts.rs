@@ -4,7 +4,7 @@ use super::super::test_windows::TestWindows;
 use anyhow::Context as _;
 use clap::Args;
 use ddl::eval::foreign::{self, Coverage, ForeignFormat};
-use ddl::eval::{Conditions, Report, gallery};
+use ddl::eval::{Conditions, Report, baseline, gallery};
 use ddl::{Protocol, Results};
 use std::path::{Path, PathBuf};
 
@@ -17,6 +17,8 @@ pub(crate) struct OtherProgram {
     #[arg(
         long,
         value_name = "FILE",
+        // no network runs
+        conflicts_with_all = ["device", "threads", "precision", "keep_clear"],
         help_heading = "Forecasts of another program"
     )]
     pub(crate) forecasts: Option<PathBuf>,
@@ -28,7 +30,8 @@ pub(crate) struct OtherProgram {
     /// Score the walkers that are both in the windows and in the file, and say so in the results
     #[arg(long, requires = "forecasts")]
     intersection: bool,
-    /// Folder to write the report to: report.html to look at, report.md, report.tex, report.json and figures
+    /// Folder to write the report to: report.html to look at, report.md, report.tex, report.json, moments.json and
+    /// figures
     #[arg(long, value_name = "FOLDER", requires = "forecasts")]
     out: Option<PathBuf>,
 }
@@ -66,7 +69,7 @@ impl OtherProgram {
             rows.extend(foreign::measure(
                 &conditions,
                 &matched,
-                foreign::NOISE_SEED,
+                baseline::NOISE_SEED,
             )?);
         }
         let report = Report::new(format!("{name} on {fold}"), rows)?;
