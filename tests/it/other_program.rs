@@ -2,7 +2,7 @@
 
 use ddl_data::{Convention, Dataset, WindowRule};
 use ddl_eval::foreign::{self, Coverage, ForeignFormat};
-use ddl_eval::{Conditions, Protocol};
+use ddl_eval::{Conditions, Protocol, baseline};
 use ddl_tests::{other_program, recordings};
 
 /// Constant velocity under the published rule, printed by an independent program; and the walkers.
@@ -35,7 +35,7 @@ fn the_python_example_has_the_numbers_of_constant_velocity() {
             fold,
             "python",
         );
-        let rows = foreign::measure(&conditions, &matched, foreign::NOISE_SEED).unwrap();
+        let rows = foreign::measure(&conditions, &matched, baseline::NOISE_SEED).unwrap();
         let (mine, baseline) = (&rows[0], &rows[1]);
         assert_eq!(mine.conditions.forecaster, "python");
         assert_eq!(
