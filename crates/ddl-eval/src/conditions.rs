@@ -48,7 +48,7 @@ pub struct Conditions {
     /// How the epoch scored was chosen, such as `last epoch`.
     #[serde(default)]
     pub selection: Option<String>,
-    /// Batch size and step size of the training, in words; `None` when nothing is trained.
+    /// How it was made, in words: batch size and step size of the training, where the goals are from; `None` when neither applies.
     #[serde(default)]
     pub recipe: Option<String>,
     /// Device the forecasts were computed on, such as `cpu`; empty when unknown.

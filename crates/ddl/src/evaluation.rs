@@ -168,7 +168,8 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 }
             }
             let lines = admit(&forecasts.lines, "straight line")?;
-            forecasted.push(Forecasted::lines_to(goal, lines));
+            let recipe = format!("goals {}", model.config().goals.words());
+            forecasted.push(Forecasted::lines_to(goal, recipe, lines));
             rows.extend(self.rows(protocol, "last epoch").of(&forecasted)?);
         }
         let moments = if self.asked(Protocol::Fair) {
@@ -234,7 +235,11 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let selection = format!("best kept epoch on up to {SELECTION_WALKERS} TEST walkers");
         self.rows(protocol, &selection).of(&[
             Forecasted::model(forecasts.model.remove(0), None),
-            Forecasted::lines_to(goal, forecasts.lines),
+            Forecasted::lines_to(
+                goal,
+                "goals of the published estimator".to_owned(),
+                forecasts.lines,
+            ),
         ])
     }
 

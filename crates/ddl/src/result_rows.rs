@@ -11,8 +11,7 @@ use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, baseline};
 #[derive(Debug)]
 pub(crate) struct Forecasted {
     forecaster: String,
-    /// Whether the conditions are those of a trained model.
-    trained: bool,
+    made_by: MadeBy,
     forecasts: Vec<Forecast>,
 }
 
@@ -24,19 +23,28 @@ impl Forecasted {
                 None => model::NAME.to_owned(),
                 Some(change) => format!("{} {change}", model::NAME),
             },
-            trained: true,
+            made_by: MadeBy::Model,
             forecasts,
         }
     }
 
-    /// Straight lines to the goals of that name.
-    pub(crate) fn lines_to(goal: &str, forecasts: Vec<Forecast>) -> Self {
+    /// Straight lines to the goals of that name, which were made as `recipe` says.
+    pub(crate) fn lines_to(goal: &str, recipe: String, forecasts: Vec<Forecast>) -> Self {
         Self {
             forecaster: format!("straight line to {goal}"),
-            trained: false,
+            made_by: MadeBy::Goals { recipe },
             forecasts,
         }
     }
+}
+
+/// What decided the forecasts, and so what their conditions must name.
+#[derive(Debug)]
+enum MadeBy {
+    /// The trained model.
+    Model,
+    /// The run's goals alone, which depend on its seed.
+    Goals { recipe: String },
 }
 
 /// What the conditions of all rows of a protocol have in common.
@@ -68,8 +76,12 @@ impl ResultRows<'_> {
                 let of_rule: Vec<Forecast> =
                     indices.iter().map(|&i| one.forecasts[i].clone()).collect();
                 let mut conditions = plain.clone();
-                if one.trained {
-                    conditions = self.of_the_model(conditions);
+                match &one.made_by {
+                    MadeBy::Model => conditions = self.of_the_model(conditions),
+                    MadeBy::Goals { recipe } => {
+                        conditions.seed = Some(self.model.config().training.seed);
+                        conditions.recipe = Some(recipe.clone());
+                    }
                 }
                 conditions.forecaster.clone_from(&one.forecaster);
                 rows.push(ResultRow::score(conditions, &windows, &of_rule)?);

@@ -76,7 +76,7 @@ struct Row {
 
 impl Columns {
     fn of(header: &StringRecord) -> Result<Self, Wrong> {
-        let names: Vec<&str> = header.iter().collect();
+        let names: Vec<&str> = header.iter().map(str::trim).collect();
         let wrong = |detail: String| whole_line(ForeignProblem::Header { detail });
         let find = |name: &str| {
             let mut places = (0..names.len()).filter(|&i| names[i] == name);
@@ -104,11 +104,12 @@ impl Columns {
             let (expected, found) = (self.count, fields.len());
             return Err(whole_line(ForeignProblem::FieldCount { expected, found }));
         }
-        let [observed_until, pedestrian, frame, x, y] = self.required.map(|place| &fields[place]);
+        let [observed_until, pedestrian, frame, x, y] =
+            self.required.map(|place| fields[place].trim());
         let who = Who {
             recording: self
                 .recording
-                .map(|place| &fields[place])
+                .map(|place| fields[place].trim())
                 .filter(|name| !name.is_empty())
                 .map(str::to_owned),
             observed_until: whole(observed_until, REQUIRED[0])?,
@@ -116,11 +117,11 @@ impl Columns {
         };
         let hypothesis = match self.hypothesis {
             None => 0,
-            Some(place) => whole(&fields[place], "hypothesis")?,
+            Some(place) => whole(fields[place].trim(), "hypothesis")?,
         };
         let weight = match self.weight {
             None => None,
-            Some(place) => Some(finite(&fields[place], "weight")?),
+            Some(place) => Some(finite(fields[place].trim(), "weight")?),
         };
         Ok(Row {
             who,

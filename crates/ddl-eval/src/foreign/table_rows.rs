@@ -27,7 +27,6 @@ impl<R: BufRead> TableRows<R> {
         let reader = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
-            .trim(csv::Trim::All)
             .from_reader(OneLine::new(lines, Rc::clone(&reached)));
         Self {
             reader,
@@ -36,7 +35,8 @@ impl<R: BufRead> TableRows<R> {
         }
     }
 
-    /// Reads the next row, and says which line it is; `None` at the end of the file.
+    /// Reads the next row, and says which line it is; `None` at the end of the file. Blanks around fields are left:
+    /// the csv reader would copy each row once more to cut them off.
     pub(super) fn next(
         &mut self,
         record: &mut StringRecord,
