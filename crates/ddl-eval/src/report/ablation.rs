@@ -19,7 +19,7 @@ pub(super) fn parts(groups: &[Group<'_>]) -> Vec<Part> {
     let mut parts = vec![
         Part::heading("Ablation: goal shift and dynamics"),
         Part::Paragraph(
-            "Goal shift: positions enter the network relative to the goal, which they do not know otherwise. Dynamics: the network \
+            "Goal shift: positions enter the network relative to the goal, which it does not see otherwise. Dynamics: the network \
              shapes a flow to the goal instead of emitting positions. Without either it is plain STAR, which has no goals and draws 20 \
              noise samples."
                 .to_owned(),
