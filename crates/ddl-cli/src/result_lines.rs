@@ -3,23 +3,36 @@
 use ddl::eval::Report;
 use std::io::Write as _;
 
-/// One line a result, under the conditions that tell it from the others.
+/// One line a result, under the conditions that tell it from the others; `rest` says where everything else is.
 pub(crate) fn print(report: &Report, rest: &str) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
-    writeln!(out, "minADE/minFDE in metres; everything else is in {rest}")?;
+    let mut above = None;
     for row in report.rows() {
         let (conditions, scores) = (&row.conditions, &row.scores);
+        let common = (
+            conditions.convention,
+            conditions.protocol,
+            conditions.window_rule,
+        );
+        if above != Some(common) {
+            let (convention, protocol, rule) = common;
+            writeln!(
+                out,
+                "\nconvention {convention}, protocol {protocol}, windows {rule}; minADE/minFDE in metres, best of K\n\
+                 {:10} {:>7} {:>3}  {:15}  forecaster",
+                "fold", "walkers", "K", "minADE/minFDE"
+            )?;
+            above = Some(common);
+        }
         writeln!(
             out,
-            "{:6} {:10} {:10} {:>6} walkers  {:.3}/{:.3}  {}",
+            "{:10} {:>7} {:>3}  {:15}  {}",
             conditions.fold,
-            conditions.protocol.name(),
-            conditions.window_rule.to_string(),
             scores.pedestrians,
-            scores.min_ade,
-            scores.min_fde,
+            scores.hypotheses,
+            format!("{:.3}/{:.3}", scores.min_ade, scores.min_fde),
             conditions.label()
         )?;
     }
-    Ok(())
+    writeln!(out, "\n{rest}")
 }

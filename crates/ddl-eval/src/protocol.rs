@@ -57,7 +57,7 @@ impl Protocol {
             }
             Self::Fair => {
                 "at most 20 weighted hypotheses a pedestrian from the 8 observed frames alone; the \
-                 best of them is scored; the model is the last epoch's, or chosen on a validation \
+                 best of them is scored; a trained model is that of the last epoch, or chosen on a validation \
                  split of the training scenes"
             }
             Self::Single => {

@@ -27,10 +27,10 @@ pub(crate) struct Baselines {
     /// published, fair or single; may be repeated
     #[arg(long = "protocol", default_values = ["fair", "single"])]
     protocols: Vec<Protocol>,
-    /// Measure a seeded part of the test windows with at least so many walkers a fold [default: all]
+    /// Measure a seeded part of the test windows with about so many walkers a fold by the widest window rule [default: all]
     #[arg(long, value_parser = at_least_one)]
     test_walkers: Option<usize>,
-    /// Folder to write report.json, report.md and report.tex to [default: only print]
+    /// Folder to write the report to: report.html to look at, report.md, report.tex, report.json and figures [default: only print]
     #[arg(long)]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -52,10 +52,10 @@ impl Baselines {
         let report = Report::new(format!("Baselines: {}", self.convention), rows)?;
         let rest = match &self.out {
             Some(folder) => {
-                report.save(folder)?;
-                folder.join("report.json").display().to_string()
+                ddl::Results::new(report.clone(), Vec::new()).save(folder)?;
+                format!("all metrics: {}", folder.join("report.html").display())
             }
-            None => "the report.json that --out writes".to_owned(),
+            None => "all metrics, as a page and as files: with --out FOLDER".to_owned(),
         };
         if self.telling.progress != ProgressMode::Json {
             result_lines::print(&report, &rest)?;

@@ -33,7 +33,7 @@ pub(crate) struct Evaluate {
     /// Measure on the validation part of the training recordings instead of the test scene
     #[arg(long, conflicts_with = "forecasts")]
     validation: bool,
-    /// Measure a seeded part of the test windows with at least so many walkers [default: all]
+    /// Measure a seeded part of the test windows with about so many walkers by the widest window rule [default: all]
     #[arg(long, value_parser = at_least_one, conflicts_with = "forecasts")]
     test_walkers: Option<usize>,
     #[command(flatten)]
@@ -52,7 +52,7 @@ impl Evaluate {
             (Some(file), _) => {
                 let (data, commit) = (self.data.as_deref(), &self.telling.commit);
                 let report = self.other.evaluate(file, &self.protocols, data, commit)?;
-                self.tell(&report)
+                self.tell(&report, &self.other.written())
             }
             (None, Some(run)) => self.measure(run),
             (None, None) => {
@@ -78,7 +78,7 @@ impl Evaluate {
             commit: self.telling.commit.clone(),
         };
         if ddl::is_evaluated(&model, &request) {
-            return self.tell(&Report::load(&model.run().report())?);
+            return self.tell(&Report::load(&model.run().report())?, &written(&model));
         }
         let dataset = dataset(model.config().data.convention, self.data.as_deref())?;
         let progress = Progress::new("evaluate", self.telling.progress);
@@ -95,14 +95,24 @@ impl Evaluate {
         );
         let report = Report::new(title, evaluation.rows)?;
         ddl::save_evaluation(&model, &request, &report, &evaluation.moments)?;
-        self.tell(&report)
+        self.tell(&report, &written(&model))
     }
 
     /// The results for people; programs read `report.json`.
-    fn tell(&self, report: &Report) -> anyhow::Result<()> {
+    fn tell(&self, report: &Report, rest: &str) -> anyhow::Result<()> {
         if self.telling.progress != ProgressMode::Json {
-            result_lines::print(report, "report.json")?;
+            result_lines::print(report, rest)?;
         }
         Ok(())
     }
+}
+
+/// Where the rest of a run's results is.
+fn written(model: &Ddl) -> String {
+    let (report, run) = (model.run().report(), model.run().path());
+    format!(
+        "all metrics: {}; as a page: ddl report {} --out FOLDER",
+        report.display(),
+        run.display()
+    )
 }

@@ -4,13 +4,15 @@ use super::{Document, Part, Span, Table, spans, unfolded};
 
 pub(super) fn tables(document: &Document) -> String {
     let mut text = format!(
-        "% {}\n% {}\n% Needs \\usepackage{{booktabs}}.\n",
+        "% {}\n% {}\n% Needs \\usepackage{{booktabs,adjustbox}}.\n",
         one_line(&document.title),
         one_line(&document.lead)
     );
     let mut headings: Vec<&str> = Vec::new();
     let mut warning = None;
-    for part in unfolded(&document.parts) {
+    let mut count = 0;
+    let mut parts = unfolded(&document.parts).peekable();
+    while let Some(part) = parts.next() {
         match part {
             Part::Heading { level, text: words } => {
                 if *level == 1 {
@@ -26,7 +28,13 @@ pub(super) fn tables(document: &Document) -> String {
                     None => format!("{}.", headings.join(": ")),
                 };
                 let comment = one_line(&headings.join(": "));
-                let float = float(table, &caption, warning);
+                // What follows a table at once is under which conditions its lines came about.
+                let notes = match parts.peek() {
+                    Some(Part::List(items)) => items.join(" "),
+                    _ => String::new(),
+                };
+                count += 1;
+                let float = float(table, &caption, warning, &notes, count);
                 text.extend(["\n% ", &comment, "\n", &float]);
             }
             Part::Paragraph(_) | Part::List(_) | Part::Details { .. } => {}
@@ -35,7 +43,13 @@ pub(super) fn tables(document: &Document) -> String {
     text
 }
 
-fn float(table: &Table, caption: &str, warning: Option<&str>) -> String {
+fn float(
+    table: &Table,
+    caption: &str,
+    warning: Option<&str>,
+    notes: &str,
+    number: usize,
+) -> String {
     let columns: String = (0..table.header().len())
         .map(|column| if table.is_text(column) { 'l' } else { 'r' })
         .collect();
@@ -46,9 +60,15 @@ fn float(table: &Table, caption: &str, warning: Option<&str>) -> String {
     let warning = warning.map_or(String::new(), |words| {
         format!(" \\textbf{{Warning.}} {}", inline(words))
     });
+    let notes = if notes.is_empty() {
+        String::new()
+    } else {
+        format!("  \\par\\smallskip\\footnotesize {}\n", inline(notes))
+    };
     format!(
-        "\\begin{{table*}}\n  \\centering\n  \\caption{{{}{warning}}}\n  \\begin{{tabular}}{{{columns}}}\n    \
-         \\toprule\n{}    \\midrule\n{}    \\bottomrule\n  \\end{{tabular}}\n\\end{{table*}}\n",
+        "\\begin{{table*}}\n  \\centering\\small\n  \\caption{{{}{warning}}}\\label{{tab:ddl-{number}}}\n  \
+         \\begin{{adjustbox}}{{max width=\\textwidth}}\n  \\begin{{tabular}}{{{columns}}}\n    \
+         \\toprule\n{}    \\midrule\n{}    \\bottomrule\n  \\end{{tabular}}\n  \\end{{adjustbox}}\n{notes}\\end{{table*}}\n",
         inline(caption),
         line(table.header()),
         table.rows().iter().map(|row| line(row)).collect::<String>(),
@@ -105,6 +125,7 @@ mod tests {
                 Part::heading("Protocol `published`"),
                 Part::Warning("The TRUE end is used.".to_owned()),
                 Part::Table(table.clone().captioned("In metres, `star`.")),
+                Part::List(vec!["DDL: seed 1.".to_owned(), "Others: none.".to_owned()]),
                 Part::heading("Protocol `fair`"),
                 Part::Table(table),
             ],
@@ -114,6 +135,8 @@ mod tests {
         assert!(first.contains(
             "\\caption{In metres, \\texttt{star}. \\textbf{Warning.} The TRUE end is used.}"
         ));
+        assert!(first.contains("\\footnotesize DDL: seed 1. Others: none.\n"));
+        assert!(first.contains("\\label{tab:ddl-1}") && second.contains("\\label{tab:ddl-2}"));
         assert!(first.contains("\\begin{tabular}{lr}"));
         assert!(first.contains("    forecaster & a\\_b \\% \\\\\n"));
         assert!(first.contains("    DDL \\& co & 0.1$\\pm$0.2 \\\\\n"));

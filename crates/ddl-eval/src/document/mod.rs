@@ -107,7 +107,8 @@ impl Document {
         html::contents(self)
     }
 
-    /// The tables for a paper, each a `table*` with its caption, to be included with `\input`; needs the package `booktabs`.
+    /// The tables for a paper, each a `table*` with its caption, to be included with `\input`; needs the packages `booktabs` and
+    /// `adjustbox`.
     /// The warnings of a section stand in the captions of its tables, so that they are copied with them.
     #[must_use]
     pub fn to_latex(&self) -> String {

@@ -70,6 +70,18 @@ pub enum ForeignError {
         /// What may be the reason.
         hint: String,
     },
+    /// The forecasts begin elsewhere than their walkers stand.
+    #[error(
+        "{origin}: half of the forecasts begin {metres:.1} m or more from the walker's last observed position; {hint}"
+    )]
+    OutOfPlace {
+        /// The file.
+        origin: String,
+        /// Median distance of the first forecast position from the last observed one, m.
+        metres: f64,
+        /// What may be the reason.
+        hint: &'static str,
+    },
     /// Windows and forecasts to be written differ in number.
     #[error("{windows} windows but {forecasts} forecasts; there must be one forecast a window")]
     Count {

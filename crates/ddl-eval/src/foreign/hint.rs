@@ -58,12 +58,13 @@ impl Walkers<'_> {
                 unknown.recordings.join(" and ")
             );
         }
-        let most = unknown.count / 2;
-        if unknown.as_first_frame > most {
+        // Where more fit as they are, the frame is not what is wrong.
+        let fit = self.forecasts - unknown.count;
+        if unknown.as_first_frame > fit.max(unknown.count / 2) {
             return "most would fit if observed_until were the first frame of a window; it is the last observed one"
                 .to_owned();
         }
-        if unknown.as_next_frame > most {
+        if unknown.as_next_frame > fit.max(unknown.count / 2) {
             return "most would fit if observed_until were the first frame forecast; it is the last observed one"
                 .to_owned();
         }

@@ -12,7 +12,8 @@ use crate::{Conditions, Protocol, ResultRow, baseline};
 /// among everybody, as by [`Scores::evaluate_among`](crate::Scores::evaluate_among), and so are the baselines.
 ///
 /// # Errors
-/// [`ForeignError::Published`] under the protocol `published`; more hypotheses than the protocol allows; windows that
+/// [`ForeignError::Published`] under the protocol `published`; [`ForeignError::OutOfPlace`] where half of the forecasts begin
+/// more than 3 m from their walkers; more hypotheses than the protocol allows; windows that
 /// cannot be scored.
 pub fn measure(
     conditions: &Conditions,
@@ -22,6 +23,7 @@ pub fn measure(
     if conditions.protocol == Protocol::Published {
         return Err(ForeignError::Published);
     }
+    matched.ensure_in_place()?;
     let subsets: Vec<String> = conditions
         .test_subset
         .iter()

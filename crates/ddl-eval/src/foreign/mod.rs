@@ -34,6 +34,7 @@ mod lines;
 mod matched;
 mod measure;
 mod numbering;
+mod place;
 mod repair;
 mod table;
 mod table_rows;

@@ -105,18 +105,17 @@ fn verdict(standing: &Standing, subject: &StandingLine) -> String {
     )
 }
 
-/// Where the line stands by minADE among all that have the same folds.
+/// Where the line stands by minADE among those of as many hypotheses that have the same folds.
 fn rank(standing: &Standing, subject: &StandingLine) -> String {
-    let ranked: Vec<&StandingLine> = standing.ranked().collect();
+    let ranked: Vec<&StandingLine> = standing.comparable(subject).collect();
     let (Some(best), Some(_)) = (ranked.first(), subject.mean) else {
         return String::new();
     };
-    let measured = forecasters(ranked.len());
-    let of_all = if ranked.len() == standing.lines.len() {
-        format!("the {measured} measured")
-    } else {
-        format!("the {measured} measured on the same folds")
+    let guesses = match subject.hypotheses {
+        1 => "one hypothesis".to_owned(),
+        several => format!("{several} hypotheses"),
     };
+    let of_all = format!("the {} measured with {guesses}", forecasters(ranked.len()));
     match best.mean {
         Some([ade, fde]) if best.label != subject.label => {
             let label = escape(&best.label);

@@ -51,9 +51,13 @@ impl Standing {
             .or(self.lines.first())
     }
 
-    /// The lines that have every fold measured, the best first: those that can be ranked.
-    pub(super) fn ranked(&self) -> impl Iterator<Item = &StandingLine> {
-        self.lines.iter().filter(|line| line.mean.is_some())
+    /// The lines that can be ranked against one: as many hypotheses, and every fold measured; the best first.
+    pub(super) fn comparable(&self, to: &StandingLine) -> impl Iterator<Item = &StandingLine> {
+        let hypotheses = to.hypotheses;
+        let mut lines = self.lines.iter();
+        std::iter::from_fn(move || {
+            lines.find(|line| line.mean.is_some() && line.hypotheses == hypotheses)
+        })
     }
 }
 

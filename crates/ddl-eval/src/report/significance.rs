@@ -14,7 +14,7 @@ use crate::{
 /// What the intervals and p-values are.
 pub(super) const LEGEND: &str = "How sure the means are: in brackets the 95 % interval over 10,000 resamples of 20 s of recording \
     (windows overlap and are no independent samples); p: how often chance alone would make as large a difference from the \
-    forecaster named in the head of the column, by changing the sign of the difference of every 20 s at random; not corrected for the \
+    forecaster named in the head of the column, by changing the sign of the difference of every 20 s at random (a cautious answer where the folds disagree); not corrected for the \
     number of comparisons. Nothing is said where a fold has fewer than 10 such stretches. Seeds are averaged first: how much they \
     differ is the ± of the first table and not in these intervals. The intervals speak of other moments in the same places, not of \
     other places: for that, look at how much the folds differ.";

@@ -267,8 +267,15 @@ fn walkers_that_are_missing_and_forecasts_of_nobody_are_counted_and_named() {
             "another fold, data convention or window rule?",
         ),
     ] {
-        assert!(hint(&text).contains(expected), "{}", hint(&text));
+        let alone = complaint(&text, ForeignFormat::JsonLines);
+        assert!(alone.contains(expected), "{alone}");
     }
+    // Where the others fit as they are, one that would fit if it were shifted says nothing of the frame.
+    let among_others = hint(&line(90, 5, &hypothesis(2.0)));
+    assert!(
+        !among_others.contains("first frame forecast"),
+        "{among_others}"
+    );
     let nothing = read(
         &line(9, 9, &hypothesis(0.0)),
         ForeignFormat::JsonLines,
@@ -303,4 +310,45 @@ fn the_recording_may_be_left_out_only_where_there_is_one() {
     let matched = read(&both).unwrap();
     assert_eq!(matched.forecasts.len(), 3);
     assert_eq!(matched.forecasts[2].hypothesis(0, 0), still(4.0, 0.0));
+}
+
+/// Half of the forecasts begin elsewhere than their walkers: the usual reasons are named, and no part of such a file is scored.
+#[test]
+fn forecasts_that_begin_elsewhere_are_refused_with_a_likely_reason() {
+    let at = |[x, y]: [f64; 2]| format!("{{\"positions\":{:?}}}", still(x, y));
+    let file = |first, second, third| {
+        line(70, 3, &at(first)) + &line(70, 5, &at(second)) + &line(80, 5, &at(third))
+    };
+    // The walkers were last seen at (3.5, 0), (3.5, 2) and (3.5, 2.5).
+    let swapped = file([0.2, 9.5], [2.0, 9.5], [2.5, 9.5]);
+    let mut far = windows();
+    for window in &mut far {
+        *window = window.map_positions(|_, _, [x, y]| [x + 6.0, y]);
+    }
+    let measure = |text: &str| {
+        let (format, coverage) = (ForeignFormat::JsonLines, Coverage::Intersection);
+        let matched = foreign::read_from(text.as_bytes(), "f", format, &far, coverage).unwrap();
+        let (convention, rule) = (Convention::Star, WindowRule::Published);
+        let conditions = Conditions::new(convention, rule, Protocol::Fair, "eth", "mine");
+        foreign::measure(&conditions, &matched, 1)
+    };
+    for (text, expected) in [
+        (swapped, "if x and y were exchanged"),
+        (
+            file([0.4, 0.0], [0.5, 0.1], [0.3, 0.0]),
+            "relative to the last observed position",
+        ),
+        (
+            file([90.0, 0.0], [91.0, 0.0], [92.0, 0.0]),
+            "in metres, and of the same data convention",
+        ),
+    ] {
+        let complaint = measure(&text).unwrap_err().to_string();
+        assert!(complaint.contains(expected), "{complaint}");
+        assert!(
+            complaint.starts_with("f: half of the forecasts begin "),
+            "{complaint}"
+        );
+    }
+    assert!(measure(&file([9.9, 0.0], [9.8, 2.0], [9.5, 2.5])).is_ok());
 }

@@ -37,6 +37,14 @@ pub(crate) struct OtherProgram {
 }
 
 impl OtherProgram {
+    /// Where the rest of the results is.
+    pub(crate) fn written(&self) -> String {
+        match &self.out {
+            Some(folder) => format!("all metrics: {}", folder.join("report.html").display()),
+            None => "all metrics, as a page and as files: with --out FOLDER".to_owned(),
+        }
+    }
+
     /// Scores the file under each protocol, and writes the report where asked to.
     pub(crate) fn evaluate(
         &self,

@@ -31,6 +31,10 @@ function bindKeys(player) {
     event.preventDefault();
     action();
   });
+  // Whoever has read the keys, or asked for the player, wants to use them there.
+  const toPlayer = () => document.getElementById("play").focus({ preventScroll: true });
+  dialog.addEventListener("close", toPlayer);
+  document.querySelector('a[href="#player"]')?.addEventListener("click", () => setTimeout(toPlayer));
   document.addEventListener("keydown", (event) => {
     if (event.key !== "?" || event.target.matches("select")) return;
     event.preventDefault();
