@@ -37,6 +37,10 @@ impl ChartScale {
         Self::from_zero(largest, pixels)
     }
 
+    pub(super) fn is_logarithmic(&self) -> bool {
+        self.logarithmic
+    }
+
     pub(super) fn at(&self, value: f64) -> f64 {
         let share = if self.logarithmic {
             (value.max(self.low) / self.low).ln() / (self.high / self.low).ln()

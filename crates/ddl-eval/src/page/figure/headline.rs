@@ -61,6 +61,18 @@ impl Chart<'_> {
     fn is_subject(&self, line: &StandingLine) -> bool {
         self.subject == Some(&line.label)
     }
+
+    fn key(&self, drawing: &mut Drawing, [x, y]: [f64; 2]) {
+        let axis = if ChartScale::of(&self.values, [0.0, 1.0]).is_logarithmic() {
+            "minFDE, metres, logarithmic; less is better"
+        } else {
+            "minFDE, metres; less is better"
+        };
+        drawing.circle("ade", [x + 5.0, y - 4.0], 4.4);
+        drawing.text("small", [x + 16.0, y], "minADE (printed)");
+        drawing.circle("fde", [x + 127.0, y - 4.0], 3.6);
+        drawing.text("small", [x + 137.0, y], axis);
+    }
 }
 
 /// The folds, then their mean where there are several.
@@ -99,7 +111,7 @@ fn wide(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
             );
         }
     }
-    key(&mut drawing, [left + gap, bottom + 38.0]);
+    chart.key(&mut drawing, [left + gap, bottom + 38.0]);
     drawing
 }
 
@@ -108,7 +120,7 @@ fn narrow(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
     let (width, line_height) = (358.0, 38.0);
     let block = 56.0 + line_height * lines.len() as f64;
     let mut drawing = Drawing::new(width, 28.0 + block * names.len() as f64, title);
-    key(&mut drawing, [0.0, 12.0]);
+    chart.key(&mut drawing, [0.0, 12.0]);
     // The mean first: the folds are a long way to scroll.
     for (place, name) in names
         .iter()
@@ -181,13 +193,6 @@ fn dumbbell(
         "small halo"
     };
     drawing.text(class, [b + 9.0, y + 4.0], format!("{ade:.3}"));
-}
-
-fn key(drawing: &mut Drawing, [x, y]: [f64; 2]) {
-    drawing.circle("ade", [x + 5.0, y - 4.0], 4.4);
-    drawing.text("small", [x + 16.0, y], "minADE (printed)");
-    drawing.circle("fde", [x + 127.0, y - 4.0], 3.6);
-    drawing.text("small", [x + 137.0, y], "minFDE, metres; less is better");
 }
 
 /// At most so many characters.
