@@ -139,15 +139,25 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let model = self.model;
         let manners = Manner::all(model, &self.request.protocols);
         let goal = "the estimated goals";
-        let published = model
-            .goal_model()
-            .published_estimator(QuerySpan::Observed)?;
+        // Its library is copied: only where it is asked for.
+        let given = |manner: &Manner| manner.goals == GivenGoals::Published;
+        let published = if manners.iter().any(given) {
+            Some(
+                model
+                    .goal_model()
+                    .published_estimator(QuerySpan::Observed)?,
+            )
+        } else {
+            None
+        };
         let forecasts = self.forecast(first, manners.len(), |windows| {
             let goals = model.goal_model().goals(windows)?;
             let towards = |manner: &Manner| {
-                let goals = match manner.goals {
-                    GivenGoals::Own => goals.clone(),
-                    GivenGoals::Published => goals::retrieved(&published, windows)?,
+                let goals = match (manner.goals, &published) {
+                    (GivenGoals::Published, Some(estimator)) => {
+                        goals::retrieved(estimator, windows)?
+                    }
+                    _ => goals.clone(),
                 };
                 model.forecast_towards(windows, goals, manner.gait)
             };

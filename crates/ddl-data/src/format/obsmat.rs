@@ -1,6 +1,6 @@
 //! The `obsmat` text of the ETH recordings: eight columns of floats, one observation a line.
 
-use super::rows::Row;
+use super::rows::{self, Row};
 use super::{Place, field};
 use crate::error::{FormatError, FormatProblem};
 
@@ -8,12 +8,7 @@ const COLUMNS: [&str; 8] = ["frame", "pedestrian", "x", "z", "y", "v_x", "v_z", 
 const NAMES: &str = "frame, pedestrian, x, z, y, v_x, v_z, v_y";
 
 pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
-    // Blank lines are an error between observations, and harmless after the last one.
-    text.trim_end()
-        .lines()
-        .enumerate()
-        .map(|(index, line)| row(line, index + 1, origin))
-        .collect()
+    rows::of_lines(text, origin, row)
 }
 
 fn row(text: &str, line: usize, origin: &str) -> Result<Row, FormatError> {

@@ -24,6 +24,20 @@ impl Row {
     }
 }
 
+/// The rows of a text of one observation a line: `row` reads a line, given its number and where it is from.
+pub(super) fn of_lines(
+    text: &str,
+    origin: &str,
+    row: fn(&str, usize, &str) -> Result<Row, FormatError>,
+) -> Result<Vec<Row>, FormatError> {
+    // Blank lines are an error between observations, and harmless after the last one.
+    text.trim_end()
+        .lines()
+        .enumerate()
+        .map(|(index, line)| row(line, index + 1, origin))
+        .collect()
+}
+
 /// The recording of all rows; its frame step is inferred.
 pub(super) fn into_recording(mut rows: Vec<Row>, origin: &str) -> Result<Recording, DataError> {
     if rows.is_empty() {

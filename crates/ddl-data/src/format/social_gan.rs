@@ -1,16 +1,11 @@
 //! The `social-gan` text: one observation a line, separated by tabs or blanks.
 
-use super::rows::{FIELDS, Row};
+use super::rows::{self, FIELDS, Row};
 use super::{Place, field};
 use crate::error::{FormatError, FormatProblem};
 
 pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
-    // Blank lines are an error between observations, and harmless after the last one.
-    text.trim_end()
-        .lines()
-        .enumerate()
-        .map(|(index, line)| row(line, index + 1, origin))
-        .collect()
+    rows::of_lines(text, origin, row)
 }
 
 fn row(text: &str, line: usize, origin: &str) -> Result<Row, FormatError> {

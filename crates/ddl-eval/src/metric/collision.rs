@@ -45,9 +45,9 @@ pub fn closest_approach(a: &[Position], b: &[Position]) -> f64 {
         return f64::INFINITY;
     };
     let mut least = before[0].hypot(before[1]);
-    for now in apart {
-        least = least.min(distance_to_origin(before, now));
-        before = now;
+    for next in apart {
+        least = least.min(distance_to_origin(before, next));
+        before = next;
     }
     least
 }

@@ -93,6 +93,22 @@ pub fn block_errors(
     Ok(blocks.into_values().collect())
 }
 
+/// Blocks of one recording with a mean minADE each, and twice as much minFDE.
+#[cfg(test)]
+pub(super) fn blocks_of(pedestrians: usize, errors: &[f64]) -> Vec<BlockErrors> {
+    let sum = pedestrians as f64;
+    (0..)
+        .zip(errors)
+        .map(|(block, &error)| BlockErrors {
+            recording: "a".to_owned(),
+            block,
+            pedestrians,
+            min_ade: sum * error,
+            min_fde: 2.0 * sum * error,
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;

@@ -109,18 +109,10 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
+    use crate::significance::blocks::blocks_of;
 
     fn blocks(errors: &[f64]) -> Vec<BlockErrors> {
-        (0..)
-            .zip(errors)
-            .map(|(block, &error)| BlockErrors {
-                recording: "a".to_owned(),
-                block,
-                pedestrians: 10,
-                min_ade: 10.0 * error,
-                min_fde: 20.0 * error,
-            })
-            .collect()
+        blocks_of(10, errors)
     }
 
     #[test]

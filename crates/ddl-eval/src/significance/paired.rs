@@ -102,18 +102,10 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
+    use crate::significance::blocks::blocks_of;
 
     fn blocks(errors: &[f64]) -> Vec<BlockErrors> {
-        (0..)
-            .zip(errors)
-            .map(|(block, &error)| BlockErrors {
-                recording: "a".to_owned(),
-                block,
-                pedestrians: 4,
-                min_ade: 4.0 * error,
-                min_fde: 4.0 * error,
-            })
-            .collect()
+        blocks_of(4, errors)
     }
 
     fn compare(a: &[f64], b: &[f64]) -> PairedDifference {
