@@ -29,7 +29,7 @@ fn growth([first, last, lost]: [u64; 3]) -> Option<u64> {
     let training = TrainingConfig {
         epochs: 1_000_000, // never done
         batch_walkers: 8,
-        ..TrainingConfig::default()
+        ..TrainingConfig::published()
     };
     let dataset = crowd::dataset();
     let fold = dataset.fold(crowd::FOLD).unwrap();

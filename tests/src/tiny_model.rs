@@ -109,7 +109,7 @@ pub fn request(fold: &str, variant: Variant, walkers: usize, out: &Path) -> Trai
         epochs: 1,
         walkers_per_epoch: Some(walkers),
         batch_walkers: batch_walkers(walkers),
-        ..TrainingConfig::default()
+        ..TrainingConfig::published()
     };
     TrainingRequest {
         fold: fold.to_owned(),

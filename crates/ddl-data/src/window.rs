@@ -277,6 +277,24 @@ impl Window {
         mapped
     }
 
+    /// The window as if time ran backwards: everybody walks its track from the end to the start, at the same frames.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_data::{Dataset, WindowRule};
+    /// let window = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete).remove(0);
+    /// assert_eq!(window.reversed().track(0)[0], window.track(0)[19]);
+    /// assert_eq!(window.reversed().reversed(), window);
+    /// ```
+    #[must_use]
+    pub fn reversed(&self) -> Window {
+        let mut reversed = self.clone();
+        for track in reversed.positions.chunks_exact_mut(self.steps()) {
+            track.reverse();
+        }
+        reversed
+    }
+
     /// The window turned about the world's origin.
     #[must_use]
     pub fn rotated(&self, rotation: Rotation) -> Window {

@@ -44,7 +44,7 @@ impl StarConfig {
     #[must_use]
     pub fn training_operations(&self, scenes: &[usize]) -> u64 {
         let steps = WINDOW as u64 - 1;
-        let output = self.product(self.model_width + self.noise_width, self.output_width());
+        let output = self.product(self.output_inputs() + self.noise_width, self.output_width());
         let of_scene = |&walkers: &usize| {
             let n = walkers as u64;
             let temporal: u64 = (0..WINDOW - 1).map(|t| self.step(t, n)).sum();
@@ -62,7 +62,7 @@ impl StarConfig {
     /// walkers, and what both temporal encoders remember of it.
     fn step(&self, t: usize, n: u64) -> u64 {
         let width = self.model_width;
-        self.product(2, width)
+        self.product(self.temporal_inputs(), width)
             + 2 * self.layer(t as u64 + 1)
             + self.product(2 * width, width)
             + self.spatial_layers as u64 * self.layer(n)

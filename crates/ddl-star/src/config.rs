@@ -76,12 +76,25 @@ impl std::str::FromStr for Variant {
     }
 }
 
+/// The frame in which the network reads where a walker is, and says how it goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Frame {
+    /// That of the recording, as published.
+    World,
+    /// The walker's own, whose first axis points from where it was last observed to its goal. Velocities are read beside
+    /// positions, and the output layer reads both beside the token.
+    Goal,
+}
+
 /// Size and constants of the network. [`StarConfig::published`] gives the paper's.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StarConfig {
     /// What the network reads and what its output means.
     pub variant: Variant,
+    /// The frame of what it reads of a walker and of what it emits.
+    pub frame: Frame,
     /// Width of a token.
     pub model_width: i64,
     /// Attention heads; must divide the width.
@@ -120,6 +133,7 @@ impl StarConfig {
     pub fn published(variant: Variant) -> Self {
         Self {
             variant,
+            frame: Frame::World,
             model_width: 32,
             heads: 8,
             feed_forward_width: 2048,
@@ -129,6 +143,40 @@ impl StarConfig {
             neighbour_box: 10.0,
             sigma: ddl_dynamics::PUBLISHED_SIGMA,
             time_step: ddl_data::TIME_STEP,
+        }
+    }
+
+    /// The network that the protocols `fair` and `single` are measured with by default: narrower feed-forward blocks, and
+    /// everything in the walkers' own frames where the variant has goals to read (`docs/accuracy.md`).
+    #[must_use]
+    pub fn recommended(variant: Variant) -> Self {
+        Self {
+            frame: if variant.goal_shift() {
+                Frame::Goal
+            } else {
+                Frame::World
+            },
+            feed_forward_width: 128,
+            ..Self::published(variant)
+        }
+    }
+
+    /// Numbers the temporal encoders read of a walker and step: where it is, and in its own frame its velocity too.
+    #[must_use]
+    pub(crate) fn temporal_inputs(&self) -> i64 {
+        match self.frame {
+            Frame::World => 2,
+            Frame::Goal => 4,
+        }
+    }
+
+    /// Numbers the output layer reads of a walker and step, without noise: its token and, in its own frame, where it is and how
+    /// fast, past the layer normalisations, which forget lengths.
+    #[must_use]
+    pub(crate) fn output_inputs(&self) -> i64 {
+        match self.frame {
+            Frame::World => self.model_width,
+            Frame::Goal => self.model_width + self.temporal_inputs(),
         }
     }
 
@@ -182,6 +230,12 @@ impl StarConfig {
             "heads",
             &self.heads,
             "must divide model_width",
+        )?;
+        require(
+            self.frame == Frame::World || self.variant.goal_shift(),
+            "frame",
+            &"goal",
+            "world for the variants without goal shift",
         )?;
         let dropout = self.spatial_dropout;
         require(

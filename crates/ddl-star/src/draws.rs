@@ -3,6 +3,7 @@
 use crate::StarError;
 use crate::schedule::Schedule;
 use crate::seed::{Stage, stream};
+use ddl_data::Rotation;
 use rand::{Rng as _, RngExt as _};
 use rand_distr::StandardNormal;
 use std::ops::Range;
@@ -36,19 +37,19 @@ pub(crate) struct StepDraw {
     pub(crate) kernels: u64,
     /// The noise vector that all walkers and frames share, `[1, noise]`.
     pub(crate) noise: Tensor,
-    /// The images of the axes under the step's rotation, `[2, 2]`.
+    /// The images of the axes under the step's rotation and mirror, `[2, 2]`.
     pub(crate) turn: Option<Tensor>,
 }
 
 impl StepDraws {
-    /// Draws for `steps`; `turned` where batches are to be rotated.
+    /// Draws for `steps`; `turned` and `mirrored` where batches are to be.
     ///
     /// # Errors
     /// [`StarError::Torch`] when the device cannot hold the numbers.
     pub(crate) fn new(
         steps: Range<u64>,
         schedule: &Schedule,
-        turned: bool,
+        (turned, mirrored): (bool, bool),
         noise_width: i64,
         device: Device,
         kind: Kind,
@@ -62,10 +63,19 @@ impl StepDraws {
             noise.extend((0..noise_width).map(|_| rng.sample::<f64, _>(StandardNormal)));
             let kernels = rng.next_u64();
             seeds.push(Seeds { libtorch, kernels });
-            if turned {
-                let rotation = schedule.rotation(step);
+            if turned || mirrored {
+                let rotation = if turned {
+                    schedule.rotation(step)
+                } else {
+                    Rotation::new(0.0)
+                };
+                let side = if mirrored && rng.random::<bool>() {
+                    -1.0
+                } else {
+                    1.0
+                };
                 turns.extend(rotation.apply([1.0, 0.0]));
-                turns.extend(rotation.apply([0.0, 1.0]));
+                turns.extend(rotation.apply([0.0, side]));
             }
         }
         let count = seeds.len() as i64;
@@ -75,7 +85,7 @@ impl StepDraws {
                 .f_reshape(shape)?
                 .f_to_device(device)
         };
-        let turns = if turned {
+        let turns = if turned || mirrored {
             Some(tensor(&turns, &[count, 2, 2])?)
         } else {
             None
@@ -121,9 +131,18 @@ mod tests {
     #[test]
     fn a_step_draws_the_same_whatever_it_is_drawn_with() {
         let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
-        let schedule = Schedule::new(&windows, &TrainingConfig::default());
-        let draws =
-            |steps| StepDraws::new(steps, &schedule, true, 16, Device::Cpu, Kind::Double).unwrap();
+        let schedule = Schedule::new(&windows, &TrainingConfig::published());
+        let draws = |steps| {
+            StepDraws::new(
+                steps,
+                &schedule,
+                (true, true),
+                16,
+                Device::Cpu,
+                Kind::Double,
+            )
+            .unwrap()
+        };
         let (whole, part) = (draws(0..9), draws(6..9));
         for step in 6..9 {
             let (one, other) = (whole.at(step).unwrap(), part.at(step).unwrap());

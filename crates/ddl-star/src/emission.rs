@@ -47,7 +47,7 @@ enum Prepared<'a> {
 
 impl<'a> Emission<'a> {
     pub(crate) fn new(output: &'a Linear, noise: &'a NoiseInput, config: &StarConfig) -> Self {
-        let (width, count) = (config.model_width, config.noise_width);
+        let (width, count) = (config.output_inputs(), config.noise_width);
         let noise = match noise {
             NoiseInput::Draws(draws) => Prepared::Draws(draws),
             NoiseInput::Expected => {

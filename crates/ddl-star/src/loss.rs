@@ -1,4 +1,4 @@
-//! The training loss (paper eq. 13).
+//! The training losses: squared distances (paper eq. 13), and distances.
 
 use tch::{Kind, Tensor};
 
@@ -11,5 +11,18 @@ pub fn mean_squared_distance(forecast: &Tensor, truth: &Tensor) -> Tensor {
     (forecast - truth)
         .square()
         .sum_dim_intlist([-1i64].as_slice(), false, None::<Kind>)
+        .mean(None::<Kind>)
+}
+
+/// Distance between forecast and true positions, averaged over walkers and steps: the average displacement error.
+///
+/// # Shapes
+/// Both `[T, P, 2]` -> scalar, in metres.
+///
+/// # Numerics
+/// Where both are the same the derivative is 0.
+pub fn mean_distance(forecast: &Tensor, truth: &Tensor) -> Tensor {
+    (forecast - truth)
+        .norm_scalaropt_dim(2, [-1i64].as_slice(), false)
         .mean(None::<Kind>)
 }

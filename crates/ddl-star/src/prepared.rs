@@ -2,9 +2,9 @@
 
 use crate::StarError;
 use crate::batch::SceneBatch;
-use ddl_data::{WINDOW, Window};
+use ddl_data::{Position, WINDOW, Window};
 use std::cell::OnceCell;
-use tch::{Device, Kind};
+use tch::{Device, Kind, Tensor};
 
 /// Training windows as batches that stay where the network computes.
 ///
@@ -14,16 +14,44 @@ use tch::{Device, Kind};
 #[derive(Debug)]
 pub(crate) struct PreparedBatches {
     windows: Vec<Window>,
+    /// One a walker of each window; `None` for the true ends.
+    goals: Option<Vec<Vec<Position>>>,
     neighbour_box: f64,
     device: Device,
     kind: Kind,
-    made: Vec<OnceCell<SceneBatch>>,
+    made: Vec<OnceCell<TrainingBatch>>,
+}
+
+/// A batch with its future, and where its walkers are led.
+#[derive(Debug)]
+pub(crate) struct TrainingBatch {
+    pub(crate) scenes: SceneBatch,
+    /// `[P, 2]`, metres.
+    pub(crate) goals: Tensor,
+}
+
+impl TrainingBatch {
+    /// The same with all positions turned as the axes are: `images` `[2, 2]`, one a row.
+    pub(crate) fn turned(&self, images: &Tensor) -> Self {
+        Self {
+            scenes: self.scenes.turned(images),
+            goals: self.goals.matmul(images),
+        }
+    }
+
+    /// The same, without copying.
+    pub(crate) fn shared(&self) -> Self {
+        Self {
+            scenes: self.scenes.shared(),
+            goals: self.goals.shallow_clone(),
+        }
+    }
 }
 
 impl PreparedBatches {
-    /// Room for `count` batches of `windows`, each with its future.
+    /// Room for `count` batches of `windows`, each with its future and, where they do not lead to the true ends, its goals.
     pub(crate) fn new(
-        windows: Vec<Window>,
+        (windows, goals): (Vec<Window>, Option<Vec<Vec<Position>>>),
         count: usize,
         neighbour_box: f64,
         device: Device,
@@ -31,6 +59,7 @@ impl PreparedBatches {
     ) -> Self {
         Self {
             windows,
+            goals,
             neighbour_box,
             device,
             kind,
@@ -50,21 +79,36 @@ impl PreparedBatches {
     ///
     /// # Errors
     /// Those of [`SceneBatch::new`].
-    pub(crate) fn batch(&self, index: usize, windows: &[usize]) -> Result<&SceneBatch, StarError> {
+    pub(crate) fn batch(
+        &self,
+        index: usize,
+        windows: &[usize],
+    ) -> Result<&TrainingBatch, StarError> {
         let place = &self.made[index];
         if let Some(batch) = place.get() {
             return Ok(batch);
         }
-        let windows: Vec<&Window> = windows.iter().map(|&index| &self.windows[index]).collect();
-        let batch = SceneBatch::new(
-            &windows,
+        let scenes: Vec<&Window> = windows.iter().map(|&index| &self.windows[index]).collect();
+        let scenes = SceneBatch::new(
+            &scenes,
             WINDOW,
             WINDOW - 1,
             self.neighbour_box,
             self.device,
             self.kind,
         )?;
-        Ok(place.get_or_init(|| batch))
+        let goals = match &self.goals {
+            None => scenes.positions.f_get(WINDOW as i64 - 1)?,
+            Some(goals) => {
+                let goals = windows.iter().flat_map(|&index| &goals[index]);
+                let goals: Vec<f64> = goals.flatten().copied().collect();
+                Tensor::f_from_slice(&goals)?
+                    .f_reshape([-1, 2])?
+                    .f_to_kind(self.kind)?
+                    .f_to_device(self.device)?
+            }
+        };
+        Ok(place.get_or_init(|| TrainingBatch { scenes, goals }))
     }
 }
 
@@ -80,11 +124,12 @@ mod tests {
         let dataset = Dataset::simulated(1);
         let windows = dataset.recordings()[0].windows(WindowRule::Complete);
         let (device, kind) = (Device::Cpu, Kind::Double);
-        let prepared = PreparedBatches::new(windows.clone(), 2, 10.0, device, kind);
+        let prepared = PreparedBatches::new((windows.clone(), None), 2, 10.0, device, kind);
         let first = prepared.batch(1, &[3, 0]).unwrap();
         let some = [&windows[3], &windows[0]];
         let fresh = SceneBatch::new(&some, WINDOW, WINDOW - 1, 10.0, device, kind).unwrap();
-        assert_eq!(first.positions(), fresh.positions());
+        assert_eq!(first.scenes.positions(), fresh.positions());
+        assert_eq!(first.goals, fresh.positions().get(19));
         assert!(std::ptr::eq(first, prepared.batch(1, &[3, 0]).unwrap()));
         assert_eq!(prepared.window(3).start_frame(), windows[3].start_frame());
         assert!(prepared.batch(0, &[]).is_err());

@@ -1,14 +1,18 @@
 //! From windows and goals to positions: teacher-forced for training, recurrent for forecasts.
 
+mod course;
 mod on_rows;
 
 use crate::batch::SceneBatch;
+use crate::config::Frame;
 use crate::emission::NoiseInput;
-use crate::flow::{FlowConstants, StepRule, natural_gradient_step};
+use crate::flow::{FlowConstants, StepRule};
+use crate::goal_frame::GoalFrame;
 use crate::layers::Mode;
 use crate::pass::Pass;
 use crate::star::{GraphMemory, StarNetwork};
 use crate::tokens::Tokens;
+use course::Course;
 use ddl_data::OBSERVED;
 use on_rows::OnRows;
 use std::ops::Range;
@@ -58,8 +62,15 @@ impl StarNetwork {
         let spatial = self
             .spatial_tokens(&centred, &seen(0..steps), pass)
             .each_entry(pass);
-        let reference = self.reference(batch, goals);
-        let relative = Tokens::of(&(&positions - &reference), pass).each_entry(pass);
+        let course = self.course(batch, goals);
+        let before = Tensor::cat(
+            &[
+                positions.narrow(0, 0, 1),
+                positions.narrow(0, 0, steps as i64 - 1),
+            ],
+            0,
+        );
+        let relative = Tokens::of(&course.seen(&positions, &before), pass).each_entry(pass);
         let mut memory = GraphMemory::default();
         let tokens: Vec<Tokens> = (0..steps)
             .map(|t| {
@@ -72,8 +83,8 @@ impl StarNetwork {
                 )
             })
             .collect();
-        let emitted = self.emission(noise).of(&Tokens::joined(&tokens, pass));
-        self.next_positions(&positions, goals, &reference, &emitted, StepRule::Euler)
+        let emitted = course.to_world(&self.emission(noise).of(&Tokens::joined(&tokens, pass)));
+        course.next_positions(&positions, goals, &emitted, self.flow(StepRule::Euler))
     }
 
     /// Forecast positions: 8 frames observed, then every forecast is the input of the next step.
@@ -92,11 +103,29 @@ impl StarNetwork {
         horizon: usize,
         rule: StepRule,
     ) -> Rollout {
-        let pass = &self.pass(Mode::Evaluate);
+        self.roll_out_in(
+            batch,
+            goals,
+            noise,
+            (horizon, rule),
+            &self.pass(Mode::Evaluate),
+        )
+    }
+
+    /// [`roll_out`](Self::roll_out) in a pass of its own. Gradients come back through the walk and through the memory of
+    /// tokens, not through the positions that the network reads: those are given, as observed ones are.
+    pub(crate) fn roll_out_in(
+        &self,
+        batch: &SceneBatch,
+        goals: &Tensor,
+        noise: &NoiseInput,
+        (horizon, rule): (usize, StepRule),
+        pass: &Pass,
+    ) -> Rollout {
         let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
         let last = OBSERVED as i64 - 1;
         let hypotheses = goals.size()[0].max(noise.count());
-        let reference = self.reference(batch, goals);
+        let course = self.course(batch, goals);
         let spatial = self.spatial_tokens(
             &Tokens::of(&centre(batch, &observed), pass),
             &batch.neighbours.during(0..OBSERVED),
@@ -106,7 +135,8 @@ impl StarNetwork {
         // `relative` has one batch entry a distinct reference.
         let mut memory = GraphMemory::default();
         let mut observe = |t: usize| {
-            let relative = Tokens::of(&(observed.get(t as i64) - &reference), pass);
+            let at = |t: usize| observed.get(t as i64);
+            let relative = Tokens::of(&course.seen(&at(t), &at(t.saturating_sub(1))), pass);
             let seen = batch.neighbours.during(t..t + 1);
             self.step(&mut memory, &relative, &spatial.entry(t, pass), &seen, pass)
         };
@@ -120,8 +150,8 @@ impl StarNetwork {
         }
         let seen = batch.neighbours.during(OBSERVED - 1..OBSERVED);
         let emission = self.emission(noise);
-        if let Tokens::Rows(_) = token {
-            return OnRows::new(batch, goals, &reference, hypotheses, rule).walk(
+        if let (Tokens::Rows(_), false) = (&token, pass.is_taped()) {
+            return OnRows::new(batch, goals, &course, hypotheses, rule).walk(
                 self,
                 batch,
                 &emission,
@@ -139,15 +169,17 @@ impl StarNetwork {
         let mut path = Vec::with_capacity(horizon);
         let mut factors = Vec::with_capacity(horizon);
         for t in OBSERVED..OBSERVED + horizon {
-            let emitted = emission.of(&Tokens::joined(from_ref(&token), pass));
-            position = self.next_positions(&position, goals, &reference, &emitted, rule);
+            let emitted = course.to_world(&emission.of(&Tokens::joined(from_ref(&token), pass)));
+            let before = position.detach();
+            position = course.next_positions(&position, goals, &emitted, self.flow(rule));
             path.push(position.shallow_clone());
             factors.push(emitted);
             if t + 1 < OBSERVED + horizon {
+                let position = position.detach();
                 sum = &sum + &position;
                 let centred = &position - batch.scene_means.of(&sum) / (t + 1) as f64;
                 let spatial = self.spatial_tokens(&Tokens::of(&centred, pass), &seen, pass);
-                let relative = Tokens::of(&(&position - &reference), pass);
+                let relative = Tokens::of(&course.seen(&position, &before), pass);
                 token = self.step(&mut memory, &relative, &spatial, &seen, pass);
             }
         }
@@ -158,40 +190,39 @@ impl StarNetwork {
         }
     }
 
-    /// What temporal positions are relative to: the goal, or the last observed position.
-    ///
     /// # Shapes
-    /// `goals` `[.., P, 2]` -> `[G or 1, P, 2]`.
-    fn reference(&self, batch: &SceneBatch, goals: &Tensor) -> Tensor {
-        if self.config().variant.goal_shift() {
-            if goals.dim() == 2 {
-                goals.unsqueeze(0)
-            } else {
-                goals.shallow_clone()
-            }
+    /// `goals` `[.., P, 2]`.
+    fn course(&self, batch: &SceneBatch, goals: &Tensor) -> Course {
+        let config = self.config();
+        let last = batch.positions.narrow(0, OBSERVED as i64 - 1, 1);
+        let goals = if goals.dim() == 2 {
+            goals.unsqueeze(0)
         } else {
-            batch.positions.narrow(0, OBSERVED as i64 - 1, 1)
+            goals.shallow_clone()
+        };
+        let frame = match config.frame {
+            Frame::World => None,
+            Frame::Goal => Some(GoalFrame::new(&last, &goals)),
+        };
+        Course {
+            reference: if config.variant.goal_shift() {
+                goals
+            } else {
+                last
+            },
+            frame,
+            dynamics: config.variant.dynamics(),
+            time_step: config.time_step,
         }
     }
 
-    fn next_positions(
-        &self,
-        positions: &Tensor,
-        goals: &Tensor,
-        reference: &Tensor,
-        emitted: &Tensor,
-        rule: StepRule,
-    ) -> Tensor {
-        if !self.config().variant.dynamics() {
-            return reference + emitted;
-        }
+    fn flow(&self, rule: StepRule) -> FlowConstants {
         let config = self.config();
-        let constants = FlowConstants {
+        FlowConstants {
             sigma: config.sigma,
             time_step: config.time_step,
             rule,
-        };
-        natural_gradient_step(positions, goals, emitted, constants)
+        }
     }
 }
 

@@ -6,7 +6,7 @@
 //! for later frames (the "graph memory") and gives, with the noise, the factor of the metric P.
 
 use crate::StarError;
-use crate::config::StarConfig;
+use crate::config::{Frame, StarConfig};
 use crate::device::ComputeDevice;
 use crate::emission::{Emission, NoiseInput};
 use crate::layers::{Linear, Mode};
@@ -84,9 +84,14 @@ impl StarNetwork {
         let spatial_encoder_2 = SpatialEncoder::new(init, "spatial_encoder_2", &config);
         let temporal_encoder_1 = TemporalEncoder::new(init, "temporal_encoder_1", &config);
         let temporal_encoder_2 = TemporalEncoder::new(init, "temporal_encoder_2", &config);
-        let temporal_embedding = Linear::new(init, "input_embedding_layer_temporal", 2, width);
+        let temporal_embedding = Linear::new(
+            init,
+            "input_embedding_layer_temporal",
+            config.temporal_inputs(),
+            width,
+        );
         let spatial_embedding = Linear::new(init, "input_embedding_layer_spatial", 2, width);
-        let output_inputs = width + config.noise_width;
+        let output_inputs = config.output_inputs() + config.noise_width;
         let output = Linear::new(init, "output_layer", output_inputs, config.output_width());
         let fusion = Linear::new(init, "fusion_layer", 2 * width, width);
         let parameters = initializer.finish();
@@ -171,7 +176,8 @@ impl StarNetwork {
     /// One frame: the walkers' new tokens, which are also remembered.
     ///
     /// # Shapes
-    /// `relative` `[B, P, 2]`, positions relative to the goal (or to the last observed position);
+    /// `relative` `[B, P, inputs]`, positions relative to the goal (or to the last observed position), in the walkers' own frames
+    /// with the velocity;
     /// `spatial` `[1 or B, P, width]`; `seen` during one frame -> `[B, P, width]`.
     pub(crate) fn step(
         &self,
@@ -199,7 +205,10 @@ impl StarNetwork {
         memory
             .second
             .push(self.temporal_encoder_2.remember(&token, pass));
-        token
+        match self.config.frame {
+            Frame::World => token,
+            Frame::Goal => token.beside(relative, pass),
+        }
     }
 
     /// What the output layer makes of tokens under this noise.

@@ -1,24 +1,24 @@
 //! The training loop, one step at a time, so that the caller decides when to report, save and stop.
 
 use crate::StarError;
-use crate::batch::SceneBatch;
 use crate::checkpoint::{self, Progress};
 use crate::draws::{StepDraw, StepDraws};
 use crate::emission::NoiseInput;
+use crate::flow::StepRule;
 use crate::gate::Gate;
 use crate::layers::Mode;
-use crate::loss::mean_squared_distance;
+use crate::loss::{mean_distance, mean_squared_distance};
 use crate::optimizer::Adam;
 use crate::origin::Origin;
 use crate::pass::Pass;
 use crate::precision::Precision;
-use crate::prepared::PreparedBatches;
+use crate::prepared::{PreparedBatches, TrainingBatch};
 use crate::schedule::Schedule;
 use crate::seed::GENERATOR;
 use crate::star::StarNetwork;
-use crate::training_config::TrainingConfig;
+use crate::training_config::{Objective, TrainingConfig};
 use crate::training_report::{EpochReport, StepReport};
-use ddl_data::{WINDOW, Window};
+use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
 use std::path::Path;
 use std::sync::PoisonError;
 use std::time::Instant;
@@ -55,6 +55,49 @@ impl Trainer {
         windows: Vec<Window>,
         config: TrainingConfig,
     ) -> Result<Self, StarError> {
+        let lessons = windows.into_iter().filter(Window::has_future).collect();
+        Self::of(network, lessons, None, config)
+    }
+
+    /// Prepares training of `network` on `windows`, whose walkers are led to `goals` instead of their true ends.
+    ///
+    /// # Shapes
+    /// `goals[w][i]` is that of pedestrian i of window w, metres.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); [`StarError::Shape`] when the goals do not fit the windows.
+    pub fn towards(
+        network: StarNetwork,
+        windows: Vec<Window>,
+        goals: Vec<Vec<Position>>,
+        config: TrainingConfig,
+    ) -> Result<Self, StarError> {
+        let fits = goals.len() == windows.len()
+            && goals
+                .iter()
+                .zip(&windows)
+                .all(|(goals, window)| goals.len() == window.len());
+        if !fits {
+            return Err(StarError::Shape {
+                operation: "training",
+                expected: format!("a goal for each walker of {} windows", windows.len()),
+                got: format!("goals of {} windows", goals.len()),
+            });
+        }
+        let (windows, goals) = windows
+            .into_iter()
+            .zip(goals)
+            .filter(|(window, _)| window.has_future())
+            .unzip();
+        Self::of(network, windows, Some(goals), config)
+    }
+
+    fn of(
+        network: StarNetwork,
+        windows: Vec<Window>,
+        goals: Option<Vec<Vec<Position>>>,
+        config: TrainingConfig,
+    ) -> Result<Self, StarError> {
         config.check()?;
         if network.precision() != Precision::F32 {
             return Err(StarError::Config {
@@ -63,13 +106,12 @@ impl Trainer {
                 rule: "f32 in training",
             });
         }
-        let windows: Vec<Window> = windows.into_iter().filter(Window::has_future).collect();
         let schedule = Schedule::new(&windows, &config);
         if schedule.is_empty() {
             return Err(StarError::NoTrainingWindows);
         }
         let batches = PreparedBatches::new(
-            windows,
+            (windows, goals),
             schedule.batches(),
             network.config().neighbour_box,
             network.device(),
@@ -169,9 +211,8 @@ impl Trainer {
             // Held from seeding to the last draw of dropout.
             let _generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
             tch::manual_seed(draw.libtorch);
-            let noise = NoiseInput::Draws(draw.noise);
             let pass = Pass::training(Mode::Train, draw.kernels, self.network.parameters());
-            (self.loss(&batch, &noise, &pass)?, pass)
+            (self.loss(&batch, draw.noise, &pass)?, pass)
         };
         let gradient = pass.gradient(&loss, self.network.parameters())?;
         let norm = gradient.norm();
@@ -235,21 +276,35 @@ impl Trainer {
         Ok(Some(sum / pairs.len() as f64))
     }
 
-    /// Loss of a batch with the true ends as goals (the goal estimator is never used in training).
-    fn loss(
-        &self,
-        batch: &SceneBatch,
-        noise: &NoiseInput,
-        pass: &Pass,
-    ) -> Result<Tensor, StarError> {
-        let goals = batch.positions().f_get(WINDOW as i64 - 1)?;
-        let forecast = self.network.teacher_forced_in(batch, &goals, noise, pass);
-        let truth = batch.positions().f_narrow(0, 1, WINDOW as i64 - 1)?;
-        Ok(mean_squared_distance(&forecast, &truth))
+    /// Loss of a batch.
+    fn loss(&self, batch: &TrainingBatch, noise: Tensor, pass: &Pass) -> Result<Tensor, StarError> {
+        let (scenes, goals) = (&batch.scenes, &batch.goals);
+        let after = |frames: usize| {
+            let count = (WINDOW - frames) as i64;
+            scenes.positions().f_narrow(0, frames as i64, count)
+        };
+        match self.config.objective {
+            Objective::NextStep => {
+                let noise = NoiseInput::Draws(noise);
+                let forecast = self.network.teacher_forced_in(scenes, goals, &noise, pass);
+                Ok(mean_squared_distance(&forecast, &after(1)?))
+            }
+            Objective::Walk => {
+                let (goals, steps) = (goals.unsqueeze(0), (HORIZON, StepRule::StableEuler));
+                let noise = NoiseInput::Expected;
+                let walk = self
+                    .network
+                    .roll_out_in(scenes, &goals, &noise, steps, pass);
+                Ok(mean_distance(
+                    &walk.positions.squeeze_dim(1),
+                    &after(OBSERVED)?,
+                ))
+            }
+        }
     }
 
     /// The batch of a step, turned as it draws.
-    fn batch(&self, step: u64, draw: &StepDraw) -> Result<SceneBatch, StarError> {
+    fn batch(&self, step: u64, draw: &StepDraw) -> Result<TrainingBatch, StarError> {
         let index = self.schedule.batch_index(step);
         let batch = self.batches.batch(index, self.schedule.batch(index))?;
         Ok(match &draw.turn {
@@ -268,7 +323,7 @@ impl Trainer {
             self.draws = Some(StepDraws::new(
                 step..(step / epoch + 1) * epoch,
                 &self.schedule,
-                self.config.rotate,
+                (self.config.rotate, self.config.mirror),
                 self.network.config().noise_width,
                 self.network.device(),
                 self.network.kind(),

@@ -22,7 +22,7 @@ fn trainer(kind: Kind, read_every: usize) -> Trainer {
         batch_walkers: 10,
         walkers_per_epoch: Some(70),
         seed: 5,
-        ..TrainingConfig::default()
+        ..TrainingConfig::published()
     };
     let windows = windows.into_iter().take(40).collect();
     let mut trainer = Trainer::new(network, windows, training).unwrap();

@@ -84,7 +84,7 @@ fn oracle(network: &ProposalNetwork, examples: &[ProposalExample]) -> f64 {
 }
 
 fn trained(steps: u64) -> ProposalNetwork {
-    let mut trainer = ProposalTrainer::new(network(), &examples(), training(steps)).unwrap();
+    let mut trainer = ProposalTrainer::new(network(), &examples(), &[], training(steps)).unwrap();
     while !trainer.is_finished() {
         trainer.step().unwrap();
     }
@@ -166,13 +166,13 @@ fn a_resumed_training_ends_with_the_same_weights() {
         folder.path().join("resumed.safetensors"),
     );
     save_parameters(trained(12).parameters(), &Origin::default(), &whole).unwrap();
-    let mut first = ProposalTrainer::new(network(), &examples(), training(12)).unwrap();
+    let mut first = ProposalTrainer::new(network(), &examples(), &[], training(12)).unwrap();
     for _ in 0..5 {
         first.step().unwrap();
     }
     first.save(&Origin::default(), &state).unwrap();
     drop(first);
-    let mut second = ProposalTrainer::new(network(), &examples(), training(12)).unwrap();
+    let mut second = ProposalTrainer::new(network(), &examples(), &[], training(12)).unwrap();
     second.resume(&Origin::default(), &state).unwrap();
     assert_eq!(second.steps(), (5, 12));
     while !second.is_finished() {
@@ -192,20 +192,20 @@ fn a_resumed_training_ends_with_the_same_weights() {
     assert_eq!(ours.to_bits(), theirs.to_bits());
     let bytes = std::fs::read(&state).unwrap();
     std::fs::write(&state, &bytes[..bytes.len() / 2]).unwrap();
-    let mut third = ProposalTrainer::new(network(), &examples(), training(12)).unwrap();
+    let mut third = ProposalTrainer::new(network(), &examples(), &[], training(12)).unwrap();
     let error = third.resume(&Origin::default(), &state).unwrap_err();
     assert!(matches!(error, StarError::Checkpoint { .. }), "{error}");
 }
 
 #[test]
 fn what_cannot_be_learned_from_is_refused() {
-    let nothing = ProposalTrainer::new(network(), &[], training(5));
+    let nothing = ProposalTrainer::new(network(), &[], &[], training(5));
     assert!(matches!(nothing, Err(StarError::NoTrainingWindows)));
     let mut broken = examples();
     for example in &mut broken {
         example.future[11] = [f64::NAN, 0.0];
     }
-    let mut trainer = ProposalTrainer::new(network(), &broken, training(5)).unwrap();
+    let mut trainer = ProposalTrainer::new(network(), &broken, &[], training(5)).unwrap();
     let error = trainer.step().unwrap_err();
     assert!(
         matches!(error, StarError::ProposalNonFinite { step: 0, .. }),

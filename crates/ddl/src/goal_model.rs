@@ -3,7 +3,7 @@
 use crate::run_config::RunConfig;
 use crate::run_directory::RunDirectory;
 use crate::{DdlError, GoalRecipe, experts, goals, views};
-use ddl_data::Window;
+use ddl_data::{Position, WINDOW, Window};
 use ddl_eval::ForecastError;
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
 use ddl_star::{ComputeDevice, DeviceChoice, ProposalNetwork, load_parameters};
@@ -142,6 +142,44 @@ impl GoalModel {
             .iter()
             .map(|window| sets.by_ref().take(window.len()).collect())
             .collect())
+    }
+
+    /// Where walkers whose future is known are led in training: to the proposed goal nearest the true end, or to the true
+    /// end where nothing is proposed. What is retrieved is left out: the library holds the very walkers that are learned from.
+    ///
+    /// # Errors
+    /// When libtorch fails.
+    pub(crate) fn lessons(&self, windows: &[Window]) -> Result<Vec<Vec<Position>>, ForecastError> {
+        let end = |window: &Window, i: usize| window.track(i)[WINDOW - 1];
+        let Some((network, _)) = &self.proposer else {
+            return Ok(windows
+                .iter()
+                .map(|window| (0..window.len()).map(|i| end(window, i)).collect())
+                .collect());
+        };
+        let clusters = self.estimator.params().clusters();
+        windows
+            .iter()
+            .map(|window| {
+                let seen = views::of_window(window, network.config().neighbours).map_err(failed)?;
+                let (frames, views): (Vec<_>, Vec<_>) =
+                    seen.into_iter().map(|seen| (seen.frame, seen.view)).unzip();
+                let proposed = network.propose(&views).map_err(failed)?;
+                frames
+                    .par_iter()
+                    .zip(proposed)
+                    .enumerate()
+                    .map(|(i, (frame, ends))| {
+                        let set = GoalSet::of_ends(frame, &ends.ends, &ends.weights, clusters)
+                            .map_err(failed)?;
+                        let [x, y] = end(window, i);
+                        let off = |g: &Position| (g[0] - x).hypot(g[1] - y);
+                        let nearest = set.goals().iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+                        Ok(nearest.copied().unwrap_or([x, y]))
+                    })
+                    .collect()
+            })
+            .collect()
     }
 
     /// The published estimator: under the protocol `published` its query reads the first future frame.

@@ -24,10 +24,15 @@ pub(crate) fn train(
     let Some(recipe) = recipe.filter(|_| !run.proposal().is_file()) else {
         return Ok(());
     };
-    let examples = views::examples(windows, recipe.network.neighbours).map_err(GoalError::from)?;
+    let seen = |windows: &[Window]| {
+        views::examples(windows, recipe.network.neighbours).map_err(GoalError::from)
+    };
+    let examples = seen(windows)?;
+    let whole = windows.iter().filter(|window| window.has_future());
+    let reversed = seen(&whole.map(Window::reversed).collect::<Vec<_>>())?;
     let network = ProposalNetwork::new(recipe.network.clone(), recipe.training.seed, device)?;
-    let mut trainer = ProposalTrainer::new(network, &examples, recipe.training.clone())?;
-    drop(examples);
+    let mut trainer = ProposalTrainer::new(network, &examples, &reversed, recipe.training.clone())?;
+    drop((examples, reversed));
     let state = run.proposal_state();
     if state.is_file() {
         trainer.resume(origin, &state)?;

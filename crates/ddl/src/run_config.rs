@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 /// Version of the run directory's layout.
-pub const FORMAT: u32 = 3;
+pub const FORMAT: u32 = 4;
 
 /// Everything that decides what a run computes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -112,7 +112,7 @@ mod tests {
             star: StarConfig::published(Variant::Full),
             training: TrainingConfig {
                 seed,
-                ..TrainingConfig::default()
+                ..TrainingConfig::published()
             },
             goals: GoalRecipe::proposed(1),
             data: TrainingData {

@@ -2,12 +2,12 @@
 
 use crate::run_config::{FORMAT, RunConfig, TrainingData};
 use crate::run_directory::{RunDirectory, SAVE_EVERY};
-use crate::{Ddl, DdlError, GoalRecipe, goal_training};
+use crate::{Ddl, DdlError, GoalModel, GoalRecipe, goal_training};
 use ddl_data::{Convention, Dataset, Window, WindowRule};
 use ddl_goal::RetrievalFrame;
 use ddl_star::{
-    ComputeDevice, DeviceChoice, LIBTORCH_VERSION, Origin, ProposalStep, StarConfig, StarError,
-    StarNetwork, StepReport, Trainer, TrainingConfig, save_parameters,
+    ComputeDevice, DeviceChoice, LIBTORCH_VERSION, Objective, Origin, ProposalStep, StarConfig,
+    StarError, StarNetwork, StepReport, Trainer, TrainingConfig, save_parameters,
 };
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
@@ -158,7 +158,15 @@ pub fn train(
     }
     let origin = config.network_origin();
     let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
-    let mut trainer = Trainer::new(network, windows, config.training.clone())?;
+    let mut trainer = match config.training.objective {
+        Objective::NextStep => Trainer::new(network, windows, config.training.clone())?,
+        Objective::Walk => {
+            let goals = GoalModel::of_run(run.clone(), config.clone(), device)?;
+            let with_future: Vec<Window> = windows.into_iter().filter(Window::has_future).collect();
+            let lessons = goals.lessons(&with_future)?;
+            Trainer::towards(network, with_future, lessons, config.training.clone())?
+        }
+    };
     if run.optimizer().is_file() {
         trainer.resume(&origin, &run.optimizer())?;
     }

@@ -27,28 +27,32 @@ pub(crate) struct Train {
     /// full, no-goal-shift, no-dynamics or star (neither)
     #[arg(long, default_value = "full")]
     variant: Variant,
+    /// How the network is made and trained: recommended (whole walks to estimated goals, minutes on a CPU) or published (the
+    /// paper's: single steps, 200 epochs, hours); the next options change parts of it
+    #[arg(long, value_enum, default_value_t = Recipe::Recommended)]
+    recipe: Recipe,
     /// Width of the hidden layer of each feed-forward block; narrower ones forecast faster
-    /// (docs/performance.md)
-    #[arg(long, default_value_t = 2048)]
-    feed_forward_width: i64,
+    /// (docs/performance.md) [default: 128, published 2048]
+    #[arg(long)]
+    feed_forward_width: Option<i64>,
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Epochs
-    #[arg(long, default_value_t = 200)]
-    epochs: usize,
-    /// Walkers an epoch, going round the training set [default: all]
+    /// Epochs [default: 60, published 200]
+    #[arg(long)]
+    epochs: Option<usize>,
+    /// Walkers an epoch, going round the training set [default: 5000, published all]
     #[arg(long = "train-walkers")]
     walkers_per_epoch: Option<usize>,
-    /// Walkers a batch; the published 256 learns slowly on few epochs
-    #[arg(long, default_value_t = 256)]
-    batch_walkers: usize,
-    /// Largest step size of Adam
-    #[arg(long, default_value_t = 1.5e-3)]
-    learning_rate: f64,
-    /// How the step size changes: constant (as published) or cosine
-    #[arg(long, default_value = "constant")]
-    learning_rate_schedule: LearningRateSchedule,
+    /// Walkers a batch [default: 64, published 256]
+    #[arg(long)]
+    batch_walkers: Option<usize>,
+    /// Largest step size of Adam [default: 3e-3, published 1.5e-3]
+    #[arg(long)]
+    learning_rate: Option<f64>,
+    /// How the step size changes: constant or cosine [default: cosine, published constant]
+    #[arg(long)]
+    learning_rate_schedule: Option<LearningRateSchedule>,
     /// Share of the training recordings' time, at their ends, kept for validation
     #[arg(long, default_value_t = 0.0)]
     validation: f64,
@@ -76,6 +80,12 @@ pub(crate) struct Train {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Recipe {
+    Recommended,
+    Published,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum GoalsFrom {
     Proposed,
     Retrieved,
@@ -87,21 +97,11 @@ impl Train {
         let interrupt = Interrupt::catch()?;
         let dataset = dataset(self.convention, self.data.as_deref())?;
         let goals = self.goal_recipe()?;
+        let (star, training) = self.recipe();
         let request = TrainingRequest {
             fold: self.fold,
-            star: StarConfig {
-                feed_forward_width: self.feed_forward_width,
-                ..StarConfig::published(self.variant)
-            },
-            training: TrainingConfig {
-                epochs: self.epochs,
-                walkers_per_epoch: self.walkers_per_epoch,
-                batch_walkers: self.batch_walkers,
-                learning_rate: self.learning_rate,
-                learning_rate_schedule: self.learning_rate_schedule,
-                seed: self.seed,
-                ..TrainingConfig::default()
-            },
+            star,
+            training,
             validation: self.validation,
             validation_recordings: self.validation_recordings,
             goals,
@@ -138,6 +138,38 @@ impl Train {
             interrupt.flow()
         })?;
         Ok(())
+    }
+
+    /// Network and training of the recipe, with what the options change of it.
+    fn recipe(&self) -> (StarConfig, TrainingConfig) {
+        let (mut star, mut training) = match self.recipe {
+            Recipe::Recommended => (
+                StarConfig::recommended(self.variant),
+                TrainingConfig::recommended(self.variant),
+            ),
+            Recipe::Published => (
+                StarConfig::published(self.variant),
+                TrainingConfig::published(),
+            ),
+        };
+        fn set<T>(place: &mut T, option: Option<T>) {
+            if let Some(value) = option {
+                *place = value;
+            }
+        }
+        set(&mut star.feed_forward_width, self.feed_forward_width);
+        set(&mut training.epochs, self.epochs);
+        set(&mut training.batch_walkers, self.batch_walkers);
+        set(&mut training.learning_rate, self.learning_rate);
+        set(
+            &mut training.learning_rate_schedule,
+            self.learning_rate_schedule,
+        );
+        if self.walkers_per_epoch.is_some() {
+            training.walkers_per_epoch = self.walkers_per_epoch;
+        }
+        training.seed = self.seed;
+        (star, training)
     }
 
     fn goal_recipe(&self) -> anyhow::Result<GoalRecipe> {

@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // How many walkers there are makes no difference to the number of operations.
     let training = TrainingConfig {
         batch_walkers: 16,
-        ..TrainingConfig::default()
+        ..TrainingConfig::published()
     };
     let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
     let mut trainer = Trainer::new(network, windows, training)?;

@@ -55,7 +55,7 @@ fn it_is_refused_in_double_precision_and_in_training() {
     let error = network(Kind::Double).in_precision(Precision::Bf16);
     assert!(error.unwrap_err().to_string().contains("on the CPU"));
     let network = network(Kind::Float).in_precision(Precision::Bf16).unwrap();
-    let error = Trainer::new(network, windows(), TrainingConfig::default());
+    let error = Trainer::new(network, windows(), TrainingConfig::published());
     assert!(error.unwrap_err().to_string().contains("f32 in training"));
 }
 

@@ -127,6 +127,8 @@ pub struct ProposalTraining {
     pub neighbour_jitter: f64,
     /// Share of the walkers that see no neighbours in a batch.
     pub blindness: f64,
+    /// Share of the walkers that walk backwards in time in a batch, where there are any to draw from.
+    pub reversed: f64,
     /// Seed of initial weights, batches and augmentation.
     pub seed: u64,
 }
@@ -147,6 +149,7 @@ impl Default for ProposalTraining {
             jitter: 0.03,
             neighbour_jitter: 0.3,
             blindness: 0.3,
+            reversed: 0.3,
             seed: 1,
         }
     }
@@ -181,6 +184,7 @@ impl ProposalTraining {
         for (field, value) in [
             ("relaxed_share", self.relaxed_share),
             ("blindness", self.blindness),
+            ("reversed", self.reversed),
         ] {
             require((0.0..=1.0).contains(&value), field, &value, "0 to 1")?;
         }

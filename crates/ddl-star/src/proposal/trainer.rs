@@ -44,14 +44,18 @@ pub struct ProposalTrainer {
     gate: Gate,
     /// Running mean of the weights, which is what is used in the end.
     average: Tensor,
+    /// Of the examples, then of the reversed ones.
     views: Views,
     future: Tensor,
+    /// Examples that are not reversed.
+    onward: usize,
     training: ProposalTraining,
     progress: Progress,
 }
 
 impl ProposalTrainer {
-    /// Prepares training on the examples.
+    /// Prepares training on the examples, and on `reversed` ones: walkers as if time ran backwards, who turn, start and stop
+    /// at other places than those who were seen; there may be none.
     ///
     /// # Errors
     /// [`StarError::Config`] for a bad configuration, [`StarError::NoTrainingWindows`] without
@@ -59,6 +63,7 @@ impl ProposalTrainer {
     pub fn new(
         network: ProposalNetwork,
         examples: &[ProposalExample],
+        reversed: &[ProposalExample],
         training: ProposalTraining,
     ) -> Result<Self, StarError> {
         training.check()?;
@@ -66,19 +71,20 @@ impl ProposalTrainer {
             return Err(StarError::NoTrainingWindows);
         }
         let (device, kind) = (network.device().torch(), network.kind());
+        let all: Vec<&ProposalExample> = examples.iter().chain(reversed).collect();
         let views = Views::new(
-            examples.iter().map(|example| &example.view),
+            all.iter().map(|example| &example.view),
             network.config(),
             device,
             kind,
         )?;
-        let future: Vec<f64> = examples
+        let future: Vec<f64> = all
             .iter()
             .flat_map(|example| example.future.as_flattened())
             .copied()
             .collect();
         let future = Tensor::f_from_slice(&future)?
-            .f_reshape([examples.len() as i64, -1, 2])?
+            .f_reshape([all.len() as i64, -1, 2])?
             .to_kind(kind)
             .to_device(device);
         Ok(Self {
@@ -88,6 +94,7 @@ impl ProposalTrainer {
             network,
             views,
             future,
+            onward: examples.len(),
             training,
             progress: Progress::default(),
         })
@@ -202,9 +209,17 @@ impl ProposalTrainer {
     fn batch(&self, step: u64) -> (Tensor, Views, Tensor) {
         let mut rng = stream(self.training.seed, Stage::ProposalStep, step);
         let (members, batch) = (self.network.config().members, self.training.batch);
-        let examples = self.future.size()[0];
+        let (onward, all) = (self.onward as i64, self.future.size()[0]);
+        let reversed = if all > onward {
+            self.training.reversed
+        } else {
+            0.0
+        };
         let rows: Vec<i64> = (0..members * batch)
-            .map(|_| rng.random_range(0..examples))
+            .map(|_| {
+                let backwards = rng.random::<f64>() < reversed;
+                rng.random_range(if backwards { onward..all } else { 0..onward })
+            })
             .collect();
         let rows = Tensor::from_slice(&rows)
             .reshape([members, batch])

@@ -10,9 +10,11 @@ use ddl_dynamics::{
 use nalgebra::Vector2;
 use tch::{Kind, Tensor};
 
+use super::Course;
 use crate::batch::SceneBatch;
 use crate::emission::Emission;
 use crate::flow::StepRule;
+use crate::goal_frame::FrameNumbers;
 use crate::kernel::Buffer;
 use crate::neighbours::Seen;
 use crate::numbers::{numbers, tensor};
@@ -25,11 +27,15 @@ use crate::tokens::{Rows, Tokens};
 #[derive(Debug)]
 pub(super) struct OnRows {
     positions: Buffer,
+    /// A step ago.
+    before: Buffer,
     /// Over all frames so far.
     sums: Buffer,
     goals: Buffer,
     /// What the network's temporal positions are relative to.
     references: Buffer,
+    /// The frame of everybody, `[H, P]`; `None` for that of the world.
+    frames: Option<Vec<FrameNumbers>>,
     rule: StepRule,
 }
 
@@ -37,11 +43,11 @@ impl OnRows {
     /// After the observed frames.
     ///
     /// # Shapes
-    /// `batch` of P walkers; `goals` `[G, P, 2]`, `reference` `[G or 1, P, 2]`, in `hypotheses` hypotheses.
+    /// `batch` of P walkers; `goals` `[G, P, 2]`, in `hypotheses` hypotheses.
     pub(super) fn new(
         batch: &SceneBatch,
         goals: &Tensor,
-        reference: &Tensor,
+        course: &Course,
         hypotheses: i64,
         rule: StepRule,
     ) -> Self {
@@ -51,9 +57,11 @@ impl OnRows {
         let each = |x: &Tensor| numbers(&x.expand([hypotheses, -1, -1], false));
         Self {
             positions: each(&last),
+            before: each(&last),
             sums: each(&sum),
             goals: each(goals),
-            references: each(reference),
+            references: each(&course.reference),
+            frames: course.frame.as_ref().map(|frame| frame.numbers(hypotheses)),
             rule,
         }
     }
@@ -73,7 +81,9 @@ impl OnRows {
         let shaped = network.config().variant.dynamics();
         let (mut path, mut factors) = (Vec::new(), Vec::new());
         for t in OBSERVED..OBSERVED + horizon {
-            let emitted = emission.of_rows(&token, &noise, pass);
+            let mut emitted = emission.of_rows(&token, &noise, pass);
+            self.turn_to_world(&mut emitted, shaped);
+            self.before.copy_from_slice(&self.positions);
             if shaped {
                 self.follow(&emitted, network);
                 factors.extend_from_slice(&emitted);
@@ -87,7 +97,9 @@ impl OnRows {
                 let shape = [hypotheses, walkers, 2];
                 let centred = rows(shape, self.centred(batch, t + 1));
                 let spatial = network.spatial_tokens(&centred, seen, pass);
-                let relative = rows(shape, self.relative());
+                let inputs = network.config().temporal_inputs() as usize;
+                let relative = self.relative(network.config().time_step as f32);
+                let relative = rows([hypotheses, walkers, inputs], relative);
                 token = network.step(&mut memory, &relative, &spatial, seen, pass);
             }
         }
@@ -101,6 +113,22 @@ impl OnRows {
     /// Each coordinate with that of its reference.
     fn places(&mut self) -> impl Iterator<Item = (&mut f32, &f32)> {
         self.positions.iter_mut().zip(self.references.iter())
+    }
+
+    /// What the output layer says, in the frame of the world: factors where the flow is `shaped`, vectors otherwise.
+    fn turn_to_world(&self, emitted: &mut [f32], shaped: bool) {
+        let Some(frames) = &self.frames else { return };
+        if shaped {
+            let (factors, _) = emitted.as_chunks_mut::<3>();
+            for (factor, frame) in factors.iter_mut().zip(frames) {
+                *factor = frame.factor_to_world(*factor);
+            }
+        } else {
+            let (vectors, _) = emitted.as_chunks_mut::<2>();
+            for (vector, frame) in vectors.iter_mut().zip(frames) {
+                *vector = frame.to_world(*vector);
+            }
+        }
     }
 
     /// One step of the dynamics for everybody, by the reference implementation.
@@ -143,12 +171,27 @@ impl OnRows {
         centred
     }
 
-    fn relative(&self) -> Buffer {
+    /// Where everybody is, as the temporal encoders read it.
+    fn relative(&self, time_step: f32) -> Buffer {
         let mut relative = Buffer::copy(&self.positions);
         for (x, reference) in relative.iter_mut().zip(self.references.iter()) {
             *x -= reference;
         }
-        relative
+        let Some(frames) = &self.frames else {
+            return relative;
+        };
+        let mut inputs = Buffer::any(2 * relative.len());
+        let (rows, _) = inputs.as_chunks_mut::<4>();
+        let (places, _) = relative.as_chunks::<2>();
+        let (positions, _) = self.positions.as_chunks::<2>();
+        let (before, _) = self.before.as_chunks::<2>();
+        let walkers = places.iter().zip(positions.iter().zip(before)).zip(frames);
+        for (row, ((place, (now, before)), frame)) in rows.iter_mut().zip(walkers) {
+            let velocity = [0, 1].map(|axis| (now[axis] - before[axis]) / time_step);
+            let ([x, y], [vx, vy]) = (frame.of_world(*place), frame.of_world(velocity));
+            *row = [x, y, vx, vy];
+        }
+        inputs
     }
 }
 

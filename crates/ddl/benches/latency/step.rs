@@ -10,7 +10,7 @@ use ddl::{DeviceChoice, Variant};
 pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Result<String> {
     let training = TrainingConfig {
         epochs: 1_000_000, // never done
-        ..TrainingConfig::default()
+        ..TrainingConfig::published()
     };
     let windows = one_batch(dataset, training.batch_walkers)?;
     let scenes: Vec<usize> = windows.iter().map(Window::len).collect();

@@ -23,7 +23,7 @@ pub(crate) fn run(dataset: &Dataset, folder: &Path) -> Result<RunDirectory> {
             epochs: 1,
             batch_walkers: 1,
             walkers_per_epoch: Some(1),
-            ..TrainingConfig::default()
+            ..TrainingConfig::published()
         },
         validation: 0.0,
         validation_recordings: Vec::new(),

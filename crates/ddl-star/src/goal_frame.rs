@@ -1,0 +1,191 @@
+//! A walker's own frame: the first axis points from where it was last observed to its goal.
+//!
+//! What the network reads and emits in this frame turns with the walker and its goal, so that one walk in one direction
+//! teaches it all directions.
+
+use crate::numbers::numbers;
+use tch::Tensor;
+
+/// Nearer to its goal than this (metres) a walker has the axes of the world.
+const SMALLEST_DISTANCE: f64 = 1e-6;
+/// Squares of pivots below this count as this, in m/s.
+const SMALLEST_PIVOT: f64 = 1e-12;
+
+/// The first axis of every walker in every hypothesis, as cosine and sine.
+///
+/// # Shapes
+/// `[G, P, 1]` each.
+#[derive(Debug)]
+pub(crate) struct GoalFrame {
+    cos: Tensor,
+    sin: Tensor,
+}
+
+/// The frame of one walker in one hypothesis, on plain numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FrameNumbers {
+    cos: f32,
+    sin: f32,
+}
+
+impl GoalFrame {
+    /// # Shapes
+    /// `last` `[1, P, 2]`, last observed positions; `goals` `[G, P, 2]`.
+    pub(crate) fn new(last: &Tensor, goals: &Tensor) -> Self {
+        let towards = goals - last;
+        let distance = towards.norm_scalaropt_dim(2, [-1i64].as_slice(), true);
+        let near = distance.lt(SMALLEST_DISTANCE);
+        let along = |axis: i64, near_goal: f64| {
+            (towards.narrow(-1, axis, 1) / &distance).masked_fill(&near, near_goal)
+        };
+        Self {
+            cos: along(0, 1.0),
+            sin: along(1, 0.0),
+        }
+    }
+
+    /// Vectors of the world in the walkers' axes.
+    ///
+    /// # Shapes
+    /// `[.., P, 2]`, broadcast with `[G, P, 1]`.
+    pub(crate) fn of_world(&self, vectors: &Tensor) -> Tensor {
+        let (x, y) = (vectors.narrow(-1, 0, 1), vectors.narrow(-1, 1, 1));
+        Tensor::cat(
+            &[
+                &self.cos * &x + &self.sin * &y,
+                &self.cos * &y - &self.sin * &x,
+            ],
+            -1,
+        )
+    }
+
+    /// The reverse of [`of_world`](Self::of_world).
+    pub(crate) fn to_world(&self, vectors: &Tensor) -> Tensor {
+        let (x, y) = (vectors.narrow(-1, 0, 1), vectors.narrow(-1, 1, 1));
+        Tensor::cat(
+            &[
+                &self.cos * &x - &self.sin * &y,
+                &self.cos * &y + &self.sin * &x,
+            ],
+            -1,
+        )
+    }
+
+    /// The lower-triangular factor of the same metric in the world: L' L'^T = R^T L L^T R.
+    ///
+    /// # Shapes
+    /// `factors` `[.., P, 3]` holds (a, b, c) of L = [[a, 0], [b, c]]; the same of L' comes back.
+    pub(crate) fn factors_to_world(&self, factors: &Tensor) -> Tensor {
+        let l = |i: i64| factors.narrow(-1, i, 1);
+        let (a, b, c) = (l(0), l(1), l(2));
+        let (x1, x2) = (&self.cos * &a - &self.sin * &b, -(&self.sin * &c));
+        let (y1, y2) = (&self.sin * &a + &self.cos * &b, &self.cos * &c);
+        let first = (x1.square() + x2.square()).clamp_min(SMALLEST_PIVOT).sqrt();
+        let below = (x1 * y1 + x2 * y2) / &first;
+        let rest = &a * &c / &first;
+        Tensor::cat(&[first, below, rest], -1)
+    }
+
+    /// The same on plain numbers, for every walker of every one of `hypotheses`.
+    pub(crate) fn numbers(&self, hypotheses: i64) -> Vec<FrameNumbers> {
+        let both = Tensor::cat(&[&self.cos, &self.sin], -1).expand([hypotheses, -1, -1], false);
+        let both = numbers(&both);
+        let (frames, _) = both.as_chunks::<2>();
+        frames
+            .iter()
+            .map(|&[cos, sin]| FrameNumbers { cos, sin })
+            .collect()
+    }
+}
+
+impl FrameNumbers {
+    /// [`GoalFrame::of_world`] of one vector.
+    pub(crate) fn of_world(self, [x, y]: [f32; 2]) -> [f32; 2] {
+        let Self { cos, sin } = self;
+        [cos * x + sin * y, cos * y - sin * x]
+    }
+
+    /// [`GoalFrame::to_world`] of one vector.
+    pub(crate) fn to_world(self, [x, y]: [f32; 2]) -> [f32; 2] {
+        let Self { cos, sin } = self;
+        [cos * x - sin * y, cos * y + sin * x]
+    }
+
+    /// [`GoalFrame::factors_to_world`] of one factor.
+    pub(crate) fn factor_to_world(self, [a, b, c]: [f32; 3]) -> [f32; 3] {
+        let Self { cos, sin } = self;
+        let (x1, x2) = (cos * a - sin * b, -(sin * c));
+        let (y1, y2) = (sin * a + cos * b, cos * c);
+        let first = (x1 * x1 + x2 * x2).max(SMALLEST_PIVOT as f32).sqrt();
+        [first, (x1 * y1 + x2 * y2) / first, a * c / first]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tch::{Device, Kind};
+
+    /// The metric itself is what turns, P' = R^T P R, on tensors and on plain numbers.
+    #[test]
+    fn the_metric_turns_with_the_frame() {
+        tch::manual_seed(5);
+        let options = (Kind::Double, Device::Cpu);
+        let (last, goals) = (
+            Tensor::randn([1, 40, 2], options),
+            Tensor::randn([3, 40, 2], options),
+        );
+        let frame = GoalFrame::new(&last, &goals);
+        let factors = Tensor::randn([3, 40, 3], options);
+        let u = Tensor::randn([3, 40, 2], options);
+        let turned = frame.factors_to_world(&factors);
+        let own = metric_times(&factors, &frame.of_world(&u));
+        let difference = (metric_times(&turned, &u) - frame.to_world(&own))
+            .abs()
+            .max();
+        assert!(difference.double_value(&[]) < 1e-12);
+
+        let [turned, factors, own, world] = [&turned, &factors, &frame.of_world(&u), &u].map(plain);
+        for (i, each) in frame.numbers(3).into_iter().enumerate() {
+            let factor = each.factor_to_world(std::array::from_fn(|j| factors[3 * i + j]));
+            for (j, number) in factor.into_iter().enumerate() {
+                assert!((number - turned[3 * i + j]).abs() < 1e-4, "{number}");
+            }
+            let vector = each.of_world([world[2 * i], world[2 * i + 1]]);
+            assert!((vector[0] - own[2 * i]).abs() < 1e-5);
+            let back = each.to_world(vector);
+            assert!((back[1] - world[2 * i + 1]).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn the_goal_lies_ahead_and_whoever_is_there_looks_along_x() {
+        let options = (Kind::Double, Device::Cpu);
+        let last = Tensor::from_slice(&[1.0, 2.0, 5.0, 5.0]).reshape([1, 2, 2]);
+        let goals = Tensor::from_slice(&[1.0, 4.0, 5.0, 5.0]).reshape([1, 2, 2]);
+        let frame = GoalFrame::new(&last, &goals);
+        let ahead = frame.of_world(&(&goals - &last));
+        assert_eq!(
+            Vec::<f64>::try_from(ahead.reshape([-1])).unwrap_or_default(),
+            [2.0, 0.0, 0.0, 0.0]
+        );
+        let east = frame.to_world(&Tensor::ones([1, 2, 2], options));
+        assert_eq!(
+            Vec::<f64>::try_from(east.reshape([-1])).unwrap_or_default(),
+            [-1.0, 1.0, 1.0, 1.0]
+        );
+    }
+
+    fn metric_times(factors: &Tensor, u: &Tensor) -> Tensor {
+        let l = |i: i64| factors.narrow(-1, i, 1);
+        let (w1, w2) = (
+            l(0) * u.narrow(-1, 0, 1) + l(1) * u.narrow(-1, 1, 1),
+            l(2) * u.narrow(-1, 1, 1),
+        );
+        Tensor::cat(&[l(0) * &w1, l(1) * &w1 + l(2) * w2], -1)
+    }
+
+    fn plain(tensor: &Tensor) -> Vec<f32> {
+        numbers(&tensor.to_kind(Kind::Float)).to_vec()
+    }
+}
