@@ -1,7 +1,7 @@
 //! Compares rules by which one forecast is made of a model's hypotheses, on the windows that its training kept for validation:
 //! `one_forecast RUN`. Mean ADE/FDE in metres of each recording, beside constant velocity. The table of docs/accuracy.md.
 
-use ddl::data::{Convention, Dataset, HORIZON, Position, Window, locate};
+use ddl::data::{Convention, Dataset, HORIZON, OBSERVED, Position, Window, locate};
 use ddl::eval::baseline::ConstantVelocity;
 use ddl::eval::metric::displacement::{average_displacement, final_displacement};
 use ddl::eval::representative::medoid;
@@ -66,6 +66,7 @@ fn compare(errors: &mut Errors, window: &Window, forecast: &Forecast, i: usize) 
     let fde = |k: usize, j: usize| final_displacement(path(k), path(j));
     let heaviest = forecast.most_likely(i);
     errors.add("greatest weight".to_owned(), window, i, path(heaviest));
+    straight_line(errors, window, forecast, i);
     for power in POWERS {
         let weights = raised(forecast, i, power);
         let mut one = |rule: &str, path: &[Position]| {
@@ -78,6 +79,26 @@ fn compare(errors: &mut Errors, window: &Window, forecast: &Forecast, i: usize) 
         one("mean path", &frames(|t| mean(forecast, i, t, &weights)));
         one("median path", &frames(|t| median(forecast, i, t, &weights)));
     }
+}
+
+/// The medoid by paths of straight lines at constant speed to the same goals.
+fn straight_line(errors: &mut Errors, window: &Window, forecast: &Forecast, i: usize) {
+    let start = window.observed(i)[OBSERVED - 1];
+    let goals: Option<Vec<Position>> = (0..forecast.hypotheses())
+        .map(|k| forecast.goal(i, k))
+        .collect();
+    let Some(goals) = goals else { return };
+    let line = |k: usize| {
+        frames(|t| {
+            let share = (t + 1) as f64 / HORIZON as f64;
+            [0, 1].map(|axis| start[axis] + share * (goals[k][axis] - start[axis]))
+        })
+    };
+    let lines: Vec<Vec<Position>> = (0..goals.len()).map(line).collect();
+    let weights = raised(forecast, i, 1.0);
+    let one = medoid(&weights, |k, j| average_displacement(&lines[k], &lines[j]));
+    let rule = "straight lines, medoid by paths, w^1".to_owned();
+    errors.add(rule, window, i, &lines[one]);
 }
 
 fn raised(forecast: &Forecast, i: usize, power: f64) -> Vec<f64> {
