@@ -118,6 +118,7 @@ pub fn request(fold: &str, variant: Variant, walkers: usize, out: &Path) -> Trai
         training,
         validation: 0.0,
         validation_recordings: Vec::new(),
+        last_epoch_only: false,
         until: TrainingStage::Network,
         out: RunDirectory::new(out),
         device: DeviceChoice::Cpu,

@@ -18,7 +18,7 @@ mod record;
 pub(crate) use executor::{End, Executor, Stop};
 pub(crate) use folds::fold_names;
 pub(crate) use local::Local;
-pub(crate) use plan::{Plan, Settings, Task, VARIANTS};
+pub(crate) use plan::{PROTOCOLS, PUBLISHED_PROTOCOL, Plan, Settings, Task, VARIANTS};
 #[cfg(test)]
 pub(crate) use profile::PUBLISHED;
 pub(crate) use profile::Profile;

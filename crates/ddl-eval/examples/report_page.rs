@@ -209,7 +209,10 @@ fn shown(show: Show, window: &Window) -> Option<Vec<usize>> {
             .find(|&i| {
                 let forecast = Bending.forecast(&window.without_future());
                 let best = |f: &Forecast| {
-                    distance(f.hypothesis(i, f.most_likely(i))[11], window.track(i)[19])
+                    distance(
+                        f.hypothesis(i, f.representative(i))[11],
+                        window.track(i)[19],
+                    )
                 };
                 let [x, y] = heading(i);
                 x.hypot(y) > 6.0 && forecast.is_ok_and(|f| best(&f) < 0.3)

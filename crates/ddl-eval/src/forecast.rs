@@ -188,6 +188,8 @@ impl Forecast {
 
     /// The hypothesis of greatest weight of pedestrian `i`; of equals, the first.
     ///
+    /// To act on one hypothesis, take the [representative](Self::representative) one.
+    ///
     /// # Panics
     /// When `i` is out of range.
     #[must_use]
@@ -201,11 +203,13 @@ impl Forecast {
         })
     }
 
-    /// The most likely hypothesis of each pedestrian alone, with the weight 1.
+    /// The [representative](Self::representative) hypothesis of each pedestrian alone, with the weight 1.
     #[must_use]
     pub fn single(&self) -> Self {
-        let best: Vec<usize> = (0..self.pedestrians).map(|i| self.most_likely(i)).collect();
-        let rows = || best.iter().enumerate();
+        let chosen: Vec<usize> = (0..self.pedestrians)
+            .map(|i| self.representative(i))
+            .collect();
+        let rows = || chosen.iter().enumerate();
         Self {
             pedestrians: self.pedestrians,
             hypotheses: 1,

@@ -17,6 +17,7 @@ mod moment;
 pub mod page;
 mod protocol;
 mod report;
+pub mod representative;
 mod scene;
 mod scores;
 pub mod significance;

@@ -4,7 +4,11 @@ use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Forecast, Scene, error::EvaluationError, gallery::Pick, metric::stability::RolloutStability,
+    Forecast, Scene,
+    error::EvaluationError,
+    gallery::Pick,
+    metric::{displacement::average_displacement, stability::RolloutStability},
+    representative::medoid,
 };
 
 /// Decimals of the positions and weights kept: a millimetre, a thousandth.
@@ -65,6 +69,15 @@ pub struct MomentHypothesis {
     /// Whether the forecaster's certificate holds; `None` where there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certified: Option<bool>,
+}
+
+impl MomentWalker {
+    /// The hypothesis shown as the forecast: [`Forecast::representative`], of the rounded paths and weights kept here.
+    pub(crate) fn representative(&self) -> usize {
+        let weights: Vec<f64> = self.hypotheses.iter().map(|h| h.weight).collect();
+        let path = |k: usize| &self.hypotheses[k].positions;
+        medoid(&weights, |k, j| average_displacement(path(k), path(j)))
+    }
 }
 
 impl Moment {

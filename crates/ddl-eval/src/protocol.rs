@@ -25,7 +25,7 @@ pub enum Protocol {
     Published,
     /// All goals, 20 hypotheses, nothing chosen with the truth but the usual best of 20.
     Fair,
-    /// One forecast: the most likely hypothesis.
+    /// One forecast: the [representative](Forecast::representative) hypothesis.
     Single,
 }
 
@@ -61,8 +61,9 @@ impl Protocol {
                  split of the training scenes"
             }
             Self::Single => {
-                "the one most likely hypothesis a pedestrian from the 8 observed frames alone; nothing \
-                 is chosen with the truth"
+                "one hypothesis a pedestrian from the 8 observed frames alone: of those forecast the one of \
+                 least expected ADE under their own weights (all alike where there are none); nothing is \
+                 chosen with the truth"
             }
         }
     }
@@ -110,7 +111,7 @@ impl Protocol {
     /// Forecasts the windows as this protocol demands.
     ///
     /// Under `fair` and `single` the futures are cut off before the forecaster is called, so that it
-    /// cannot read them; under `single` the most likely hypothesis is kept.
+    /// cannot read them; under `single` the representative hypothesis is kept.
     ///
     /// # Errors
     /// The forecaster failed, or made more hypotheses than the protocol allows.
@@ -124,7 +125,7 @@ impl Protocol {
     }
 
     /// Holds forecasts that were made on [visible](Self::visible) windows to the number of hypotheses
-    /// allowed: under `single` the most likely one is kept, otherwise too many are an error.
+    /// allowed: under `single` the representative one is kept, otherwise too many are an error.
     ///
     /// # Errors
     /// A forecast has more hypotheses than the protocol allows.

@@ -44,7 +44,7 @@ pub struct Scores {
     pub joint_fde: f64,
     /// Share of pedestrians whom every hypothesis misses by more than 0.5 m at the end, in [0, 1].
     pub miss_rate: f64,
-    /// Share of pedestrians whose most likely forecast collides with another's, in [0, 1].
+    /// Share of pedestrians whose representative forecast collides with another's, in [0, 1].
     pub collision_rate: f64,
     /// The same share of the true futures, in [0, 1].
     pub true_collision_rate: f64,
@@ -73,7 +73,7 @@ pub struct Scores {
     /// As [`miss_rate`](Self::miss_rate), by more than 2 m.
     #[serde(default)]
     pub miss_rate_2m: Option<f64>,
-    /// Share of pedestrians whose most likely forecast runs into another's true future, in [0, 1].
+    /// Share of pedestrians whose representative forecast runs into another's true future, in [0, 1].
     #[serde(default)]
     pub true_neighbour_collision_rate: Option<f64>,
     /// Negative log-likelihood of the truth under a kernel density of the hypotheses, nats; `None` for one

@@ -42,7 +42,7 @@ impl WalkerScores {
     /// Those of every pedestrian of a scene, in its order.
     pub(crate) fn of(scene: &Scene<'_>, errors: &DisplacementErrors) -> Vec<Self> {
         let forecast = scene.forecast();
-        let collides_forecast = collides(&collision::most_likely_tracks(scene), DISC_RADIUS);
+        let collides_forecast = collides(&collision::representative_tracks(scene), DISC_RADIUS);
         let collides_truly = collision::collides_truly(scene, DISC_RADIUS);
         let collides_with_truth = collides_with_truth(scene, DISC_RADIUS);
         (0..scene.pedestrians())
@@ -55,7 +55,6 @@ impl WalkerScores {
                 expected_fde: expected(forecast, i, errors.fde(i)),
                 most_likely_ade: most_likely_ade(forecast, errors, i),
                 most_likely_fde: most_likely_fde(forecast, errors, i),
-
                 missed: MISS_DISTANCES.map(|far| is_miss(errors, i, far)),
                 collides: collides_forecast[i],
                 truly_collides: collides_truly[i],

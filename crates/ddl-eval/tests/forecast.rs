@@ -115,7 +115,7 @@ fn certificates_are_one_a_hypothesis_and_follow_it() {
         [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, k)| forecast.certified(i, k)),
         [Some(true), Some(false), Some(true), Some(false)]
     );
-    // the most likely are hypothesis 1 of the first pedestrian and 0 of the second
+    // of two the heavier: hypothesis 1 of the first pedestrian and 0 of the second
     let single = forecast.single();
     assert_eq!(
         (single.certified(0, 0), single.certified(1, 0)),

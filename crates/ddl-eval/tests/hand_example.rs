@@ -127,7 +127,7 @@ fn misses_and_collisions() {
     check("missed by 0.5 m", s.miss_rate, 1.0 / 3.0);
     check("missed by 1 m", s.miss_rate_1m.unwrap(), 1.0 / 3.0);
     check("missed by 2 m", s.miss_rate_2m.unwrap(), 0.0);
-    // Most likely: A along y = 0.32, B at (10, 1.36), C along y = 1.26 from x = 12.72 to 7.22. C passes B
+    // The representatives, of two the heavier: A along y = 0.32, B at (10, 1.36), C along y = 1.26 from x = 12.72 to 7.22. C passes B
     // at 0.1 m; A stays 0.94 m from C and more than 1 m from B.
     check("collisions", s.collision_rate, 2.0 / 3.0);
     // In truth A and C pass each other at 0.3 m, and B is 2.26 m from C.

@@ -412,9 +412,9 @@ proptest! {
         prop_assert!(Forecast::new(1, 3, positions, normalised, None).is_ok());
     }
 
-    /// The single protocol keeps the most likely hypothesis and nothing else.
+    /// The single protocol keeps the representative hypothesis and nothing else.
     #[test]
-    fn single_is_the_most_likely((window, forecast) in any_scene()) {
+    fn single_is_the_representative((window, forecast) in any_scene()) {
         struct Fixed(Forecast);
         impl ddl_eval::Forecaster for Fixed {
             fn name(&self) -> String {
@@ -427,7 +427,7 @@ proptest! {
         }
         let single = Protocol::Single.forecast(&Fixed(forecast.clone()), &[window]).unwrap();
         for i in 0..forecast.pedestrians() {
-            let best = forecast.most_likely(i);
+            let best = forecast.representative(i);
             prop_assert_eq!(single[0].hypothesis(i, 0), forecast.hypothesis(i, best));
             prop_assert_eq!(single[0].goal(i, 0), forecast.goal(i, best));
         }

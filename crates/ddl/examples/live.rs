@@ -1,5 +1,5 @@
 //! Plays recorded tracks as if they were seen now: `live RUN TRACKS.csv [FRAME_STEP]` pushes one frame after the other, and prints
-//! where each walker most likely is in 4.8 s, with the evidence that the forecast goes to its goal, and how long it took.
+//! where each walker is forecast to be in 4.8 s, with the evidence that the forecast goes to its goal, and how long it took.
 
 use ddl::data::{Format, HORIZON, read_recording};
 use ddl::{Ddl, DeviceChoice, LiveForecaster};
@@ -49,7 +49,7 @@ fn play() -> Result<(), Box<dyn Error>> {
         writeln!(out, "frame {frame}: forecast in {took:.1} ms")?;
         let forecast = &now.forecast.forecast;
         for (i, pedestrian) in now.window.pedestrians().iter().enumerate() {
-            let k = forecast.most_likely(i);
+            let k = forecast.representative(i);
             let [x, y] = forecast.hypothesis(i, k)[HORIZON - 1];
             let certificate = now.forecast.certificate(i, k);
             let verdict = match certificate.holds() {

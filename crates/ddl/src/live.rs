@@ -43,7 +43,7 @@ use std::borrow::Borrow;
 ///     // every 0.4 s: who is where, in metres
 ///     let Some(now) = live.push(frame, people)? else { continue };
 ///     for (i, pedestrian) in now.window.pedestrians().iter().enumerate() {
-///         let k = now.forecast.most_likely(i);
+///         let k = now.forecast.representative(i);
 ///         let [x, y] = now.forecast.hypothesis(i, k)[11]; // in 4.8 s
 ///         println!("{pedestrian}: ({x:.1}, {y:.1}) m");
 ///     }

@@ -38,7 +38,7 @@ const NOISE_HYPOTHESES: usize = 20;
 /// # fn example(window: &ddl::data::Window) -> Result<(), Box<dyn std::error::Error>> {
 /// let model = Ddl::load("runs/eth".as_ref(), DeviceChoice::Cpu)?;
 /// let forecast = model.forecast(window)?;
-/// let likeliest = forecast.hypothesis(0, forecast.most_likely(0)); // 12 positions, metres
+/// let one = forecast.hypothesis(0, forecast.representative(0)); // 12 positions, metres
 /// # Ok(()) }
 /// ```
 #[derive(Debug)]

@@ -30,6 +30,15 @@ impl Published {
         windows: &[Window],
         mut tick: impl FnMut() -> Result<(), DdlError>,
     ) -> Result<Self, DdlError> {
+        let config = model.config();
+        // One epoch is no choice: a number that says "best kept epoch" must have had several to choose from.
+        if config.training.epochs > 1 && config.keep_every >= config.training.epochs {
+            return Err(DdlError::run(
+                model.run().path(),
+                "keeps the weights of its last epoch alone, and `published` chooses among several; train it \
+                 anew without --last-epoch-only",
+            ));
+        }
         let goals = goals::nearest_true_end(estimator, windows)?;
         let mut best: Option<(f64, Self)> = None;
         for epoch in model.run().kept_epochs()? {

@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-/// Weights of at most about this many epochs are kept.
+/// Weights of at most about this many epochs are kept for the protocol `published`.
 const KEPT_EPOCHS: usize = 20;
 
 /// What to train, and where to put it.
@@ -32,6 +32,8 @@ pub struct TrainingRequest {
     pub validation_recordings: Vec<String>,
     /// What the goals come from.
     pub goals: GoalRecipe,
+    /// Keep the weights of the last epoch alone, and not those of some 20 among which the protocol `published` chooses.
+    pub last_epoch_only: bool,
     /// The last stage to train; a later call may go on.
     pub until: TrainingStage,
     /// The run's directory.
@@ -133,7 +135,11 @@ pub fn train(
             walkers: windows.iter().map(Window::len).sum(),
             sha256: digest(&windows),
         },
-        keep_every: request.training.epochs.div_ceil(KEPT_EPOCHS),
+        keep_every: if request.last_epoch_only {
+            request.training.epochs
+        } else {
+            request.training.epochs.div_ceil(KEPT_EPOCHS)
+        },
         commit: request.commit.clone(),
         libtorch: LIBTORCH_VERSION.to_owned(),
         device: device.name().to_owned(),

@@ -14,7 +14,7 @@ while [ $# -gt 0 ]; do
   case "$1" in
     --out|--model) run=$2;;
     --fold) fold=$2;;
-    --json) shift; continue;;
+    --json|--last-epoch-only) shift; continue;;
   esac
   shift 2
 done
@@ -117,6 +117,7 @@ fn plan(folds: &[&str]) -> Plan {
         train_walkers: None,
         proposal_steps: None,
         test_walkers: None,
+        protocols: vec!["fair".to_owned()],
         recipe: crate::benchmark::PUBLISHED,
     };
     let folds: Vec<String> = folds.iter().map(|&fold| fold.to_owned()).collect();

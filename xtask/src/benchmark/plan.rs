@@ -16,10 +16,13 @@ use super::profile::Recipe;
 pub(crate) const VARIANTS: [&str; 4] = ["full", "no-goal-shift", "no-dynamics", "star"];
 
 /// How results are scored; each is reported beside the others.
-const PROTOCOLS: [&str; 3] = ["published", "fair", "single"];
+pub(crate) const PROTOCOLS: [&str; 3] = [PUBLISHED_PROTOCOL, "fair", "single"];
 
-/// Layout of `plan.json`.
-const FORMAT: u32 = 2;
+/// The protocol that chooses with the truth, and for which the weights of many epochs are kept.
+pub(crate) const PUBLISHED_PROTOCOL: &str = "published";
+
+/// Layout of `plan.json`; 3: `single` scores another hypothesis than before, and plans name their protocols.
+const FORMAT: u32 = 3;
 
 /// Everything to do, independent of who does it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -28,6 +31,12 @@ pub(crate) struct Plan {
     pub(crate) settings: Settings,
     /// Longest first.
     pub(crate) tasks: Vec<Task>,
+}
+
+/// What can be read of the plan of any version.
+#[derive(Deserialize)]
+struct Layout {
+    format: u32,
 }
 
 /// What all tasks of a plan share.
@@ -46,7 +55,18 @@ pub(crate) struct Settings {
     pub(crate) proposal_steps: Option<u32>,
     /// Test walkers scored; none is all.
     pub(crate) test_walkers: Option<u32>,
+    /// Protocols scored under, each once, in the order of [`PROTOCOLS`].
+    pub(crate) protocols: Vec<String>,
     pub(crate) recipe: Recipe,
+}
+
+impl Settings {
+    /// Whether a model's epoch is chosen with the truth under one of the protocols.
+    fn chooses_epochs(&self) -> bool {
+        self.protocols
+            .iter()
+            .any(|protocol| protocol == PUBLISHED_PROTOCOL)
+    }
 }
 
 /// One model: trained on all folds but one, scored on that one.
@@ -87,6 +107,10 @@ impl Plan {
         seeds: &[u64],
     ) -> Result<Self> {
         ensure!(settings.epochs > 0, "training needs at least one epoch");
+        ensure!(
+            !settings.protocols.is_empty(),
+            "there is nothing to do: no protocol"
+        );
         let mut tasks: Vec<Task> = Vec::new();
         for fold in folds {
             let cost = Cost::of(
@@ -151,6 +175,9 @@ impl Plan {
         push("--learning-rate-schedule", recipe.schedule.to_string());
         push("--out", task.run_folder(out).display().to_string());
         self.common_arguments(threads, &mut push);
+        if !self.settings.chooses_epochs() {
+            arguments.push("--last-epoch-only".to_owned());
+        }
         arguments
     }
 
@@ -167,8 +194,8 @@ impl Plan {
         if let Some(data) = &self.settings.data {
             push("--data", data.display().to_string());
         }
-        for protocol in PROTOCOLS {
-            push("--protocol", protocol.to_owned());
+        for protocol in &self.settings.protocols {
+            push("--protocol", protocol.clone());
         }
         if let Some(walkers) = self.settings.test_walkers {
             push("--test-walkers", walkers.to_string());
@@ -208,12 +235,20 @@ impl Plan {
         let file = out.join("plan.json");
         match fs::read(&file) {
             Ok(text) => {
-                let before: Self = serde_json::from_slice(&text).with_context(|| {
+                let damaged = || {
                     format!(
                         "{} is damaged: delete it or choose another --out",
                         file.display()
                     )
-                })?;
+                };
+                let Layout { format } = serde_json::from_slice(&text).with_context(damaged)?;
+                ensure!(
+                    format == FORMAT,
+                    "{} holds results that another version of the benchmark made (its plan has layout \
+                     {format}, this one {FORMAT}): choose another --out, or delete it",
+                    out.display()
+                );
+                let before: Self = serde_json::from_slice(&text).with_context(damaged)?;
                 self.check_same_settings(&before, out)?;
             }
             Err(error) if error.kind() == ErrorKind::NotFound => {}

@@ -13,6 +13,7 @@ pub(crate) fn settings() -> Settings {
         train_walkers: Some(800),
         proposal_steps: Some(30),
         test_walkers: None,
+        protocols: PROTOCOLS.map(str::to_owned).to_vec(),
         recipe: crate::benchmark::PUBLISHED,
     }
 }
@@ -82,6 +83,65 @@ fn the_arguments_are_those_the_program_knows() {
         "goals --json --model runs/x/eth-full-7/run --measure test --svg runs/x/eth-full-7/goals.svg \
          --output runs/x/eth-full-7/goals.json --device cpu --threads 2"
     );
+}
+
+/// Without `published` no epoch but the last is kept, and nothing is scored under it.
+#[test]
+fn published_is_neither_kept_nor_scored_unless_asked_for() {
+    let mut plan = plan(&["eth"], &["full"], &[7]).unwrap();
+    let out = Path::new("runs/x");
+    let train = |plan: &Plan| plan.train_arguments(&plan.tasks[0], out, 1).join(" ");
+    assert!(!train(&plan).contains("--last-epoch-only"));
+    plan.settings.protocols = vec!["fair".to_owned()];
+    assert!(train(&plan).ends_with(" --last-epoch-only"));
+    let evaluate = plan.evaluate_arguments(&plan.tasks[0], out, 2).join(" ");
+    assert_eq!(
+        evaluate,
+        "evaluate --model runs/x/eth-full-7/run --data /recordings --protocol fair --device cpu \
+         --threads 2 --progress json"
+    );
+    let goals = plan.goals_arguments(&plan.tasks[0], out, 2).join(" ");
+    assert!(!format!("{}{goals}", train(&plan)).contains("published"));
+    plan.settings.protocols.push("published".to_owned());
+    assert!(!train(&plan).contains("--last-epoch-only"));
+}
+
+#[test]
+fn a_plan_scores_under_some_protocol() {
+    let none = Settings {
+        protocols: Vec::new(),
+        ..settings()
+    };
+    let message = Plan::new(none, &["eth".to_owned()], &["full".to_owned()], &[1])
+        .unwrap_err()
+        .to_string();
+    assert_eq!(message, "there is nothing to do: no protocol");
+}
+
+#[test]
+fn results_of_other_protocols_or_of_another_version_do_not_mix() {
+    let folder = tempfile::tempdir().unwrap();
+    let before = plan(&["eth"], &["full"], &[1]).unwrap();
+    before.write(folder.path()).unwrap();
+    let mut other = before.clone();
+    other.settings.protocols = vec!["fair".to_owned()];
+    let message = other.write(folder.path()).unwrap_err().to_string();
+    assert!(
+        message.contains(r#"protocols ["fair"] instead of ["published","fair","single"]"#),
+        "{message}"
+    );
+    // As the version before wrote it: it knew no protocols.
+    let file = folder.path().join("plan.json");
+    let mut old = serde_json::to_value(&before).unwrap();
+    old["format"] = 2.into();
+    old["settings"].as_object_mut().unwrap().remove("protocols");
+    fs::write(&file, old.to_string()).unwrap();
+    let message = before.write(folder.path()).unwrap_err().to_string();
+    assert!(
+        message.contains("its plan has layout 2, this one 3"),
+        "{message}"
+    );
+    assert_eq!(fs::read_to_string(&file).unwrap(), old.to_string());
 }
 
 #[test]

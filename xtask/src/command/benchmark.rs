@@ -17,7 +17,8 @@ use clap::Args;
 use self::side_by_side::SideBySide;
 use super::set_up;
 use crate::benchmark::{
-    Display, End, Executor, Local, Plan, Profile, Settings, Stop, VARIANTS, fold_names, human,
+    Display, End, Executor, Local, PROTOCOLS, Plan, Profile, Settings, Stop, VARIANTS, fold_names,
+    human,
 };
 use crate::data::{self, Chosen, Convention};
 use crate::workspace::{Workspace, absolute};
@@ -48,6 +49,10 @@ pub(crate) struct Arguments {
         default_value = "full"
     )]
     variants: Vec<String>,
+    /// Protocols to score under: published, fair, single; without published the last epoch alone is kept
+    /// [default: all three]
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    protocol: Vec<String>,
     /// Seeds; the report gives means and standard deviations over them
     #[arg(
         long,
@@ -207,6 +212,7 @@ impl Arguments {
             train_walkers: self.train_walkers.or(self.profile.train_walkers),
             proposal_steps: self.profile.proposal_steps,
             test_walkers: self.test_walkers.or(self.profile.test_walkers),
+            protocols: protocols(&self.protocol)?,
             recipe: self.profile.recipe.clone(),
         };
         Plan::new(settings, &folds, &variants, &self.seeds)
@@ -241,6 +247,14 @@ fn work_off(executor: &dyn Executor, plan: &Plan, out: &Path) -> Result<Vec<End>
     ends
 }
 
+/// The protocols asked for, each once and in the usual order: how they were asked for makes no other results.
+fn protocols(asked: &[String]) -> Result<Vec<String>> {
+    let known = PROTOCOLS.map(str::to_owned);
+    check_names("protocol", asked, &known)?;
+    let wanted = |name: &String| asked.is_empty() || asked.contains(name);
+    Ok(known.into_iter().filter(wanted).collect())
+}
+
 fn check_names(what: &str, asked: &[String], known: &[String]) -> Result<()> {
     match asked.iter().find(|name| !known.contains(name)) {
         Some(name) => bail!(
@@ -264,6 +278,7 @@ pub(super) fn smoke(workspace: &Workspace) -> Result<()> {
         data: None,
         folds: Vec::new(),
         variants: vec!["full".to_owned()],
+        protocol: Vec::new(),
         seeds: vec![1],
         jobs: None,
         device: "cpu".to_owned(),

@@ -70,6 +70,9 @@ pub(crate) struct Train {
     /// Stop when the goals are trained; the same command without this goes on
     #[arg(long)]
     only_goals: bool,
+    /// Keep the weights of the last epoch alone: less on disk, and nothing for `--protocol published` to choose among
+    #[arg(long)]
+    last_epoch_only: bool,
     /// Directory of the run
     #[arg(long)]
     out: PathBuf,
@@ -105,6 +108,7 @@ impl Train {
             validation: self.validation,
             validation_recordings: self.validation_recordings,
             goals,
+            last_epoch_only: self.last_epoch_only,
             until: if self.only_goals {
                 TrainingStage::Goals
             } else {

@@ -25,7 +25,7 @@ pub struct CategoryScores {
     pub most_likely_ade: f64,
     /// FDE of the most likely hypothesis, metres.
     pub most_likely_fde: f64,
-    /// Share of pedestrians whose most likely forecast collides with another's, in [0, 1].
+    /// Share of pedestrians whose representative forecast collides with another's, in [0, 1].
     pub collision_rate: f64,
 }
 

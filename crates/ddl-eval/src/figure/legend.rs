@@ -28,8 +28,8 @@ pub(super) enum Entry {
     Truth,
     /// The only hypothesis.
     Forecast,
-    /// The most likely of several hypotheses.
-    MostLikely,
+    /// The one of several hypotheses that stands for them.
+    Representative,
     OtherHypotheses,
     /// Text alone.
     Note(&'static str),
@@ -47,7 +47,7 @@ impl Entry {
             Self::Observed => "observed, 3.2 s",
             Self::Truth => "truth, 4.8 s, and its end",
             Self::Forecast => "forecast",
-            Self::MostLikely => "most likely forecast",
+            Self::Representative => "representative forecast",
             Self::OtherHypotheses => "other hypotheses",
             Self::Note(text) | Self::Goals(text) => text,
             Self::WeightedGoals => "goals of 1, 5, 20 % probability",
@@ -78,7 +78,7 @@ impl Entry {
                 canvas.line(&[(left, y), (right, y)], TRUTH, 5)?;
                 canvas.dot((right, y), TRUTH, 9)
             }
-            Self::Forecast | Self::MostLikely => {
+            Self::Forecast | Self::Representative => {
                 canvas.dashes(&[(left, y), (right, y)], FORECAST, 5)?;
                 canvas.star((right, y), FORECAST, 15)
             }

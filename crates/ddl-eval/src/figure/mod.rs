@@ -1,8 +1,8 @@
 //! Pictures as SVG, which need neither a display nor a font file.
 //!
 //! - One scene ([`scene`], [`SceneFigure`]): what was observed (dark dots), what then happened (solid blue,
-//!   a full dot at the end), the hypotheses (orange, the more likely the more opaque; the most likely one
-//!   dashed and bold, a star at its end) and their goals (green rings).
+//!   a full dot at the end), the hypotheses (orange, the more likely the more opaque; the representative
+//!   one dashed and bold, a star at its end) and their goals (green rings).
 //! - Estimated goals ([`goals`], [`GoalCase`]): a walker in each panel, with the goals (green rings, the
 //!   more likely the larger; the one nearest the true end bold) and how the similar walkers went on whom
 //!   they come from (pale lines). [`typical_walkers`] picks walkers worth showing.

@@ -88,7 +88,7 @@ impl<'a> SceneFigure<'a> {
         legend::draw_column(&canvas, (right + 30, top), &self.entries())?;
         self.draw_hypotheses(&canvas, &axes)?;
         self.draw_tracks(&canvas, &axes)?;
-        self.draw_likeliest(&canvas, &axes)?;
+        self.draw_representative(&canvas, &axes)?;
         canvas.finish()?;
         Ok(svg)
     }
@@ -112,7 +112,7 @@ impl<'a> SceneFigure<'a> {
         }
         if several {
             let paler = Entry::Note("(the paler, the less likely)");
-            entries.extend([Entry::MostLikely, Entry::OtherHypotheses, paler]);
+            entries.extend([Entry::Representative, Entry::OtherHypotheses, paler]);
         } else {
             entries.push(Entry::Forecast);
         }
@@ -162,11 +162,12 @@ impl<'a> SceneFigure<'a> {
 
     fn draw_hypotheses(&self, canvas: &Canvas<'_>, axes: &Axes) -> Result<(), FigureError> {
         for i in self.drawn() {
+            let representative = self.forecast.representative(i);
             for k in 0..self.forecast.hypotheses() {
                 let opacity = self.opacity(i, k);
                 let path: Vec<_> = self.path(i, k).iter().map(|p| axes.pixel(*p)).collect();
-                // The most likely one is drawn later, on top of everything.
-                if k != self.forecast.most_likely(i) {
+                // The representative one is drawn later, on top of everything.
+                if k != representative {
                     canvas.line(&path, FORECAST.mix(opacity), 3)?;
                     canvas.dot(path[path.len() - 1], FORECAST.mix(opacity), 5)?;
                 }
@@ -191,10 +192,10 @@ impl<'a> SceneFigure<'a> {
         Ok(())
     }
 
-    fn draw_likeliest(&self, canvas: &Canvas<'_>, axes: &Axes) -> Result<(), FigureError> {
+    fn draw_representative(&self, canvas: &Canvas<'_>, axes: &Axes) -> Result<(), FigureError> {
         for i in self.drawn() {
-            let best = self.path(i, self.forecast.most_likely(i));
-            let path: Vec<_> = best.iter().map(|p| axes.pixel(*p)).collect();
+            let one = self.path(i, self.forecast.representative(i));
+            let path: Vec<_> = one.iter().map(|p| axes.pixel(*p)).collect();
             canvas.dashes(&path, FORECAST, 5)?;
             canvas.star(path[path.len() - 1], FORECAST, 15)?;
         }

@@ -137,9 +137,9 @@ fn shows(scene: &Scene<'_>, i: usize) -> Vec<(Show, Vec<usize>)> {
     shows
 }
 
-/// Whether the likeliest hypothesis goes a way and arrives.
+/// Whether the representative hypothesis goes a way and arrives.
 fn converges(scene: &Scene<'_>, i: usize) -> bool {
-    let k = scene.forecast().most_likely(i);
+    let k = scene.forecast().representative(i);
     let end = scene.forecast().hypothesis(i, k)[HORIZON - 1];
     distance(scene.last_observed(i), end) >= GONE
         && scene

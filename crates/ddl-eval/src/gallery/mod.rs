@@ -13,7 +13,7 @@ pub use choose::moments;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Show {
-    /// A walker who reaches the goal of the likeliest hypothesis.
+    /// A walker who reaches the goal of the representative hypothesis.
     Convergence,
     /// People who walk together.
     Group,

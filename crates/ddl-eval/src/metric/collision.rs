@@ -1,6 +1,6 @@
 //! Collisions between the forecasts of one scene.
 //!
-//! Each pedestrian is a disc of radius r = 0.2 m that follows its most likely hypothesis; between two
+//! Each pedestrian is a disc of radius r = 0.2 m that follows its representative hypothesis; between two
 //! frames it moves in a straight line at constant speed. Two pedestrians collide when their discs
 //! overlap at any time from the first to the last forecast frame:
 //!
@@ -89,12 +89,12 @@ pub fn colliding(tracks: &[&[Position]], radius: f64) -> usize {
     hit.into_iter().filter(|&h| h).count()
 }
 
-/// The most likely forecast of each pedestrian, metres.
+/// The [representative](crate::Forecast::representative) forecast of each pedestrian, metres.
 #[must_use]
-pub fn most_likely_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
+pub fn representative_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
     let forecast = scene.forecast();
     (0..scene.pedestrians())
-        .map(|i| forecast.hypothesis(i, forecast.most_likely(i)))
+        .map(|i| forecast.hypothesis(i, forecast.representative(i)))
         .collect()
 }
 
@@ -112,10 +112,10 @@ pub fn collides_truly(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
         .collect()
 }
 
-/// Number of pedestrians whose most likely forecast collides with another's.
+/// Number of pedestrians whose representative forecast collides with another's.
 #[must_use]
 pub fn forecast_collisions(scene: &Scene<'_>, radius: f64) -> usize {
-    colliding(&most_likely_tracks(scene), radius)
+    colliding(&representative_tracks(scene), radius)
 }
 
 /// Number of pedestrians whose true future collides with another's: what real people do.

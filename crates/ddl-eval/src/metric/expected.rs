@@ -6,9 +6,9 @@
 //! ```
 //!
 //! The expected error is that of a hypothesis drawn with its weight. A best of K does not see weights
-//! at all; with equal weights the expected error is the plain mean. The most likely hypothesis is what
-//! the protocol `single` scores, here of the same K hypotheses. With equal weights it is an arbitrary
-//! one, the first.
+//! at all; with equal weights the expected error is the plain mean. The most likely hypothesis says
+//! what the greatest weight is worth; it is not the one that the protocol `single` scores, which is the
+//! [representative](Forecast::representative) one. With equal weights it is an arbitrary one, the first.
 
 use super::displacement::DisplacementErrors;
 use crate::Forecast;

@@ -1,8 +1,8 @@
 //! Collisions of a forecast with where the others really went.
 //!
 //! As in [`collision`](super::collision), pedestrians are discs of radius r = 0.2 m, and tracks are
-//! straight from frame to frame, with the exact minimum over time. Pedestrian i follows its most likely
-//! hypothesis `x_i`, everybody else j, forecast or not, its TRUE future `p_j`:
+//! straight from frame to frame, with the exact minimum over time. Pedestrian i follows its
+//! representative hypothesis `x_i`, everybody else j, forecast or not, its TRUE future `p_j`:
 //!
 //! ```text
 //! i collides when min over j and t in [1, 12] of |x_i(t) - p_j(t)| < 2 r = 0.4 m
@@ -21,7 +21,7 @@
 use super::collision::closest_approach;
 use crate::Scene;
 
-/// Which pedestrians' most likely forecasts run into the true future of another.
+/// Which pedestrians' representative forecasts run into the true future of another.
 ///
 /// # Shapes
 /// `[N]`.
@@ -29,7 +29,7 @@ use crate::Scene;
 pub fn collides_with_truth(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
     let (forecast, everybody) = (scene.forecast(), scene.everybody());
     let runs_into_another = |i: usize| {
-        let track = forecast.hypothesis(i, forecast.most_likely(i));
+        let track = forecast.hypothesis(i, forecast.representative(i));
         let own = scene.place(i);
         (0..everybody.len())
             .any(|j| j != own && closest_approach(track, everybody.future(j)) < 2.0 * radius)

@@ -23,7 +23,7 @@ fn cases(moments: &[Moment]) -> Vec<(usize, &Moment, &Pick)> {
 /// What a case shows, in a sentence.
 fn meaning(show: Show) -> &'static str {
     match show {
-        Show::Convergence => "A walker who reaches the goal of the likeliest hypothesis.",
+        Show::Convergence => "A walker who reaches the goal of the representative hypothesis.",
         Show::Group => "People who walk together.",
         Show::SlowingDown => {
             "A walker who slows down; where the forecast does too, its arrows grow shorter."

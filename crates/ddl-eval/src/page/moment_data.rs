@@ -6,6 +6,7 @@
 //! paths     [[dx, dy, ...], ...]    the same, one a hypothesis                 mm
 //! goals     [[dx, dy] or null, ...] from the last observed position            mm
 //! weights   [...]                   thousandths
+//! representative                    index of the hypothesis that stands for all
 //! falls, certified                  one letter a hypothesis: y, n, - (nothing known)
 //! ```
 //!
@@ -40,6 +41,7 @@ struct WalkerData {
     paths: Vec<Vec<i64>>,
     goals: Vec<Option<[i64; 2]>>,
     weights: Vec<i64>,
+    representative: usize,
     falls: String,
     certified: String,
 }
@@ -167,6 +169,7 @@ impl WalkerData {
                 })
                 .collect(),
             weights: all.iter().map(|h| mm(h.weight)).collect(),
+            representative: walker.representative(),
             falls: letters(|h| h.decreasing),
             certified: letters(|h| h.certified),
         }

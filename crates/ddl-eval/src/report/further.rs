@@ -8,8 +8,8 @@ pub(super) type Column = (&'static str, usize, fn(&Scores) -> Option<f64>);
 
 pub(super) const LEGEND: &str = "Further metrics, mean over the folds named. FDE@minADE: FDE of the \
     hypothesis of least ADE; JADE, JFDE: one hypothesis index for the whole scene; missed: every \
-    hypothesis ends more than 0.5 m off; collide: discs of radius 0.2 m overlap between most likely \
-    forecasts (in brackets: between true futures); goal FDE: nearest goal from the true end; Phi \
+    hypothesis ends more than 0.5 m off; collide: discs of radius 0.2 m overlap between the \
+    forecasts that protocol `single` would take (in brackets: between true futures); goal FDE: nearest goal from the true end; Phi \
     falls: rollouts that come nearer to their goal at every step; certified: rollouts whose Lyapunov \
     certificate, the model's evidence of it step by step, holds; to goal: distance left at the end; \
     turn: largest angle between a step and the goal direction; reverse: rollouts that turn by more \

@@ -4,8 +4,8 @@ use super::further::Column;
 
 pub(super) const LEGEND: &str = "The forecast as a whole, mean over the folds named. ADE@minFDE: ADE of \
     the hypothesis of least FDE; expected: errors of all hypotheses, weighted; likely: errors of the \
-    most likely hypothesis; missed 1 m, 2 m: every hypothesis ends farther off; runs into: most likely \
-    forecasts that overlap the TRUE future of another (Col-II; discs of radius 0.2 m); KDE NLL: negative \
+    hypothesis of greatest weight; missed 1 m, 2 m: every hypothesis ends farther off; runs into: \
+    forecasts, those that protocol `single` would take, that overlap the TRUE future of another (Col-II; discs of radius 0.2 m); KDE NLL: negative \
     log-likelihood of the truth under a Gaussian kernel density of the weighted hypotheses, clipped at 20 \
     nats; AMD: Mahalanobis distance of the truth in deviations of the hypotheses; AMV: largest \
     eigenvalue of their mean covariance; APD, FPD: mean distance between two hypotheses, over the path and \

@@ -104,6 +104,7 @@ fn command(plan: &Plan, seeds: &[String]) -> String {
         format!("--convention {}", settings.convention),
         format!("--folds {}", unique(|task| &task.fold)),
         format!("--variants {}", unique(|task| &task.variant)),
+        format!("--protocol {}", settings.protocols.join(",")),
         format!("--seeds {}", seeds.join(",")),
         format!("--epochs {}", settings.epochs),
         format!("--device {}", settings.device),
@@ -144,6 +145,7 @@ mod tests {
             train_walkers: Some(800),
             proposal_steps: None,
             test_walkers: None,
+            protocols: vec!["fair".to_owned(), "single".to_owned()],
             recipe: crate::benchmark::PUBLISHED,
         };
         let names = |names: &[&str]| {
@@ -171,7 +173,7 @@ mod tests {
         assert!(text.ends_with("\n| a | table |\n"), "{text}");
         for piece in [
             "`cargo xtask benchmark --profile quick --convention star --folds eth,hotel --variants \
-             full --seeds 1,2 --epochs 4 --device cpu --cargo-profile release --train-walkers 800 \
+             full --protocol fair,single --seeds 1,2 --epochs 4 --device cpu --cargo-profile release --train-walkers 800 \
              --publish`",
             "| commit | 0123456789ab |",
             "| walkers trained on in an epoch / scored | 800 / all |",

@@ -6,7 +6,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
-use crate::benchmark::Plan;
+use crate::benchmark::{PUBLISHED_PROTOCOL, Plan};
 use crate::data::{self, Convention};
 use crate::workspace::Workspace;
 
@@ -54,7 +54,13 @@ fn baselines_elsewhere(
     out: &Path,
 ) -> Result<Option<PathBuf>> {
     let settings = &plan.settings;
-    if settings.convention == Convention::Simulated.name() {
+    // A choice with the truth says nothing about baselines: they are measured under the others.
+    let protocols = settings
+        .protocols
+        .iter()
+        .filter(|name| *name != PUBLISHED_PROTOCOL);
+    let protocols: Vec<&String> = protocols.collect();
+    if settings.convention == Convention::Simulated.name() || protocols.is_empty() {
         return Ok(None);
     }
     let others = Convention::RECORDED
@@ -73,6 +79,9 @@ fn baselines_elsewhere(
             .args(["--progress", "json", "--out"])
             .arg(&folder)
             .env("DDL_COMMIT", workspace.commit());
+        for protocol in &protocols {
+            command.args(["--protocol", protocol.as_str()]);
+        }
         if let Some(walkers) = settings.test_walkers {
             command.args(["--test-walkers", &walkers.to_string()]);
         }

@@ -36,6 +36,23 @@ fn a_given_program_is_taken_as_it_is_and_not_published() {
 }
 
 #[test]
+fn protocols_are_taken_once_in_the_usual_order() {
+    let chosen = |words: &[&str]| {
+        let line = Line::try_parse_from(std::iter::once(&"benchmark").chain(words)).unwrap();
+        protocols(&line.arguments.protocol)
+    };
+    assert_eq!(chosen(&[]).unwrap(), ["published", "fair", "single"]);
+    assert_eq!(chosen(&["--protocol", "fair"]).unwrap(), ["fair"]);
+    let words = ["--protocol", "single,fair", "--protocol", "fair"];
+    assert_eq!(chosen(&words).unwrap(), ["fair", "single"]);
+    let message = chosen(&["--protocol", "honest"]).unwrap_err().to_string();
+    assert_eq!(
+        message,
+        "there is no protocol \"honest\": choose from published, fair, single"
+    );
+}
+
+#[test]
 fn unknown_names_are_refused_with_the_known_ones() {
     let known = VARIANTS.map(str::to_owned);
     check_names("variant", &["star".to_owned()], &known).unwrap();

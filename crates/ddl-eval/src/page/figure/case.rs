@@ -23,8 +23,8 @@ const STRIPS: [f64; 2] = [30.0, 44.0];
 
 /// The walkers of the pick, and everybody else in grey; `alone` adds a title and a key, for a file.
 ///
-/// Dots are observed, the solid line is the truth, dashes are the likeliest forecast with a star at its end and the ring
-/// of its goal, thin lines the other hypotheses, and arrows velocities along the likeliest.
+/// Dots are observed, the solid line is the truth, dashes are the representative forecast with a star at its end and the ring
+/// of its goal, thin lines the other hypotheses, and arrows velocities along it.
 pub(crate) fn case_figure(moment: &Moment, pick: &Pick, alone: bool) -> Drawing {
     let title = format!(
         "{}: {}, frame {}",
@@ -45,7 +45,7 @@ pub(crate) fn case_figure(moment: &Moment, pick: &Pick, alone: bool) -> Drawing 
         others(&mut drawing, &view, walker);
     }
     for walker in &chosen {
-        likeliest(&mut drawing, &view, walker);
+        representative(&mut drawing, &view, walker);
     }
     for walker in &chosen {
         truth(&mut drawing, &view, walker);
@@ -75,7 +75,7 @@ impl View {
     fn of(moment: &Moment, pick: &Pick, above: f64) -> Self {
         let seen = pick.walkers.iter().flat_map(|&at| {
             let walker = &moment.walkers[at];
-            let best = &walker.hypotheses[best(walker)];
+            let shown = &walker.hypotheses[walker.representative()];
             let ends = walker
                 .hypotheses
                 .iter()
@@ -84,8 +84,8 @@ impl View {
                 .observed
                 .iter()
                 .chain(&walker.truth)
-                .chain(&best.positions);
-            paths.copied().chain(best.goal).chain(ends)
+                .chain(&shown.positions);
+            paths.copied().chain(shown.goal).chain(ends)
         });
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for place in seen {
@@ -126,17 +126,6 @@ impl View {
     }
 }
 
-/// The likeliest hypothesis; of equals, the first.
-fn best(walker: &MomentWalker) -> usize {
-    (1..walker.hypotheses.len()).fold(0, |best, k| {
-        if walker.hypotheses[k].weight > walker.hypotheses[best].weight {
-            k
-        } else {
-            best
-        }
-    })
-}
-
 fn from_last<'a>(
     walker: &'a MomentWalker,
     path: &'a [Position],
@@ -157,15 +146,16 @@ fn bystander(drawing: &mut Drawing, view: &View, walker: &MomentWalker) {
     drawing.circle("bystander-dot", view.px(walker.observed[OBSERVED - 1]), 2.6);
 }
 
-/// Every hypothesis but the likeliest: the heavier, the clearer.
+/// Every hypothesis but the representative: the heavier, the clearer.
 fn others(drawing: &mut Drawing, view: &View, walker: &MomentWalker) {
-    let best = best(walker);
-    let heaviest = walker.hypotheses[best].weight.max(1e-9);
+    let representative = walker.representative();
+    let weights = walker.hypotheses.iter().map(|h| h.weight);
+    let heaviest = weights.fold(1e-9, f64::max);
     for (_, hypothesis) in walker
         .hypotheses
         .iter()
         .enumerate()
-        .filter(|(k, _)| *k != best)
+        .filter(|(k, _)| *k != representative)
     {
         let share = (hypothesis.weight / heaviest).clamp(0.0, 1.0);
         let style = format!(
@@ -185,10 +175,10 @@ fn others(drawing: &mut Drawing, view: &View, walker: &MomentWalker) {
     }
 }
 
-fn likeliest(drawing: &mut Drawing, view: &View, walker: &MomentWalker) {
-    let hypothesis: &MomentHypothesis = &walker.hypotheses[best(walker)];
+fn representative(drawing: &mut Drawing, view: &View, walker: &MomentWalker) {
+    let hypothesis: &MomentHypothesis = &walker.hypotheses[walker.representative()];
     if let Some(goal) = hypothesis.goal {
-        drawing.circle("goal likeliest", view.px(goal), 8.0);
+        drawing.circle("goal representative", view.px(goal), 8.0);
     }
     let way: Vec<Position> = from_last(walker, &hypothesis.positions).copied().collect();
     drawing.path("forecast", &view.path(&way));
@@ -262,9 +252,9 @@ fn key(drawing: &mut Drawing, y: f64) {
     drawing.text("small", [118.0, y], "truth");
     drawing.path("forecast", &[[158.0, y - 4.0], [182.0, y - 4.0]]);
     drawing.polygon("star", &star([188.0, y - 4.0], 6.0));
-    drawing.text("small", [199.0, y], "likeliest forecast, its end");
+    drawing.text("small", [199.0, y], "representative, its end");
     let y = y + 18.0;
-    drawing.circle("goal likeliest", [20.0, y - 4.0], 5.5);
+    drawing.circle("goal representative", [20.0, y - 4.0], 5.5);
     drawing.text("small", [32.0, y], "goal");
     drawing.path("hypothesis", &[[92.0, y - 4.0], [112.0, y - 4.0]]);
     drawing.text("small", [118.0, y], "others");

@@ -45,7 +45,7 @@ function makeHypothesisList(table, choose) {
       ...errors.each[h.index],
       verdict: verdictWords(walker, h),
     }));
-    const heaviest = Math.max(walker.hypotheses[walker.likeliest].weight, 1e-9);
+    const { heaviest } = walker;
     body.replaceChildren(...order(items).map((item) => row(item, heaviest, chosen)));
     for (const button of table.tHead.querySelectorAll("button")) {
       const mine = button.dataset.sort === sortBy;

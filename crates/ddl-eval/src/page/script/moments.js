@@ -43,7 +43,8 @@ function decodeWalker(data) {
     observed: walked([0, 0], data.observed),
     truth: walked(last, data.truth),
     hypotheses,
-    likeliest: hypotheses.reduce((best, h) => (h.weight > best.weight ? h : best)).index,
+    representative: data.representative,
+    heaviest: Math.max(...hypotheses.map((h) => h.weight), 1e-9),
   };
 }
 

@@ -47,7 +47,7 @@ function makePhiChart(svg) {
       const place = t === HORIZON ? "end" : "middle";
       svg.append(svgElement("text", { class: `small ${place}`, x: t === HORIZON ? PHI.right + 6 : across(t), y: PHI.bottom + 16 }, label));
     }
-    const heaviest = Math.max(walker.hypotheses[walker.likeliest].weight, 1e-9);
+    const { heaviest } = walker;
     const order = walker.hypotheses.map((_, k) => k).filter((k) => k !== chosen && lines[k]);
     if (values) order.push(chosen);
     for (const k of order) {

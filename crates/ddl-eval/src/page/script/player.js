@@ -49,7 +49,7 @@ function makePlayer(moments) {
 
   const current = () => momentAt(state.moment);
   const walker = () => current().walkers[state.walker];
-  const chosenHypothesis = () => state.hypothesis ?? walker().likeliest;
+  const chosenHypothesis = () => state.hypothesis ?? walker().representative;
 
   function fillSelect(select, options, value) {
     select.replaceChildren(...options.map(([key, text]) => new Option(text, key, false, String(key) === String(value))));
@@ -133,7 +133,7 @@ function makePlayer(moments) {
   }
 
   function chooseHypothesis(index) {
-    // A second click goes back to the likeliest.
+    // A second click goes back to the representative.
     state.hypothesis = state.hypothesis === index ? null : index;
     const chosen = chosenHypothesis();
     list.mark(chosen);

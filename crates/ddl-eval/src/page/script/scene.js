@@ -125,17 +125,17 @@ function drawOther(context, view, walker, state, palette) {
   }
   if (show.everything) drawHypotheses(context, view, walker, state, palette, 0.5);
   else if (time >= now) {
-    const { path } = walker.hypotheses[walker.likeliest];
+    const { path } = walker.hypotheses[walker.representative];
     stroke(context, toPixels([walker.observed[now], ...path]), palette.accent, 1, 0.4, [3, 3]);
   }
-  const ahead = show.truth ? walker.truth : walker.hypotheses[walker.likeliest].path;
+  const ahead = show.truth ? walker.truth : walker.hypotheses[walker.representative].path;
   dot(context, view.px(placeAt(walker.observed, ahead, time)), 3.4, palette.other, 1, palette.panel);
 }
 
 // Every hypothesis but the one looked at: the heavier, the clearer and the broader.
 function drawHypotheses(context, view, walker, state, palette, strength, chosen = -1) {
   const now = OBSERVED - 1;
-  const heaviest = Math.max(walker.hypotheses[walker.likeliest].weight, 1e-9);
+  const { heaviest } = walker;
   const start = walker.observed[now];
   const early = state.time < now ? 0.45 : 1;
   for (const hypothesis of walker.hypotheses) {
@@ -157,7 +157,7 @@ function drawHypotheses(context, view, walker, state, palette, strength, chosen 
 function drawChosen(context, view, walker, state, palette) {
   const { time, show } = state;
   const now = OBSERVED - 1;
-  const hypothesis = walker.hypotheses[state.hypothesis ?? walker.likeliest];
+  const hypothesis = walker.hypotheses[state.hypothesis ?? walker.representative];
   const toPixels = (places) => places.map(view.px);
   if (show.hypotheses) drawHypotheses(context, view, walker, state, palette, 1, hypothesis.index);
   const early = time < now ? 0.5 : 1;
@@ -198,7 +198,7 @@ function drawNumbers(context, view, moment, state, palette) {
   for (const at of order) {
     const walker = moment.walkers[at];
     if (at !== state.walker && !state.show.others) continue;
-    const ahead = state.show.truth ? walker.truth : walker.hypotheses[walker.likeliest].path;
+    const ahead = state.show.truth ? walker.truth : walker.hypotheses[walker.representative].path;
     const [x, y] = view.px(placeAt(walker.observed, ahead, state.time));
     const box = [x + 6, y - 18, x + 12 + 7 * String(walker.pedestrian).length, y - 4];
     if (taken.some((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3])) continue;

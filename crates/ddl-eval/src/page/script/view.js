@@ -19,7 +19,7 @@ function* placesOf(walker, allHypotheses) {
   yield* walker.observed;
   yield* walker.truth;
   for (const hypothesis of walker.hypotheses) {
-    if (allHypotheses || hypothesis.index === walker.likeliest) {
+    if (allHypotheses || hypothesis.index === walker.representative) {
       yield* hypothesis.path;
       if (hypothesis.goal) yield hypothesis.goal;
     }
