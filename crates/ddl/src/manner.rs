@@ -29,10 +29,9 @@ impl Manner {
     /// Where its goals come from, as results say it.
     pub(crate) fn goal_words(&self, model: &Ddl) -> String {
         match self.goals {
-            GivenGoals::Own => model.goal_model().words(),
+            // Of the published goals the name of the row tells.
+            GivenGoals::Own | GivenGoals::Published => model.goal_model().words(),
             GivenGoals::WithoutLibrary => model.goal_model().recipe().words_without_library(),
-            // What the network was trained for; the name of the row says the rest.
-            GivenGoals::Published => model.goal_model().words(),
         }
     }
 
