@@ -78,12 +78,11 @@ impl Arguments {
                 Ok((task.fold.clone(), result))
             })
             .collect::<Result<BTreeMap<String, Reported>>>()?;
-        let program = match &self.program {
-            Some(program) => absolute(program)?,
-            None => {
-                set_up(workspace)?;
-                build::program(workspace, "release")?
-            }
+        let program = if let Some(program) = &self.program {
+            absolute(program)?
+        } else {
+            set_up(workspace)?;
+            build::program(workspace, "release")?
         };
         // Nothing is replaced before everything is there.
         let packed = tasks
