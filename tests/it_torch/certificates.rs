@@ -210,7 +210,12 @@ fn the_walk_agrees_with_the_tensors() {
         let config = tiny.model.config().star.clone();
         let network = StarNetwork::new(config, 0, device).unwrap();
         let origin = tiny.model.config().network_origin();
-        load_parameters(network.parameters(), &origin, &tiny.model.run().model()).unwrap();
+        load_parameters(
+            network.parameters(),
+            &origin,
+            &tiny.model.run().unwrap().model(),
+        )
+        .unwrap();
         let certified = tiny.model.forecast_certified(&windows).unwrap();
         let goals: Vec<Vec<Vec<Position>>> = windows
             .iter()

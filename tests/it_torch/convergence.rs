@@ -138,7 +138,12 @@ fn run_on_every_walker_arrives() {
     let device = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
     let network = StarNetwork::new(config.star.clone(), 0, device).unwrap();
     let origin = tiny.model.config().network_origin();
-    load_parameters(network.parameters(), &origin, &tiny.model.run().model()).unwrap();
+    load_parameters(
+        network.parameters(),
+        &origin,
+        &tiny.model.run().unwrap().model(),
+    )
+    .unwrap();
 
     let first = crowd::windows(1, 4).remove(0).without_future();
     let forecast = tiny.model.forecast(&first).unwrap();

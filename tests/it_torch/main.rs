@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+mod builtin;
 mod certificates;
 mod convergence;
 mod errors;
@@ -14,6 +15,7 @@ mod leak;
 mod leak_in_reports;
 mod live;
 mod other_program;
+mod packed;
 mod precision;
 mod prepare;
 mod real_recordings;

@@ -4,6 +4,7 @@ mod bench;
 mod benchmark;
 mod ci;
 mod data;
+mod models;
 mod page;
 mod setup;
 mod test;
@@ -28,6 +29,8 @@ pub(crate) enum Command {
     Data(data::Arguments),
     /// Train and score every fold, and write the report
     Benchmark(Box<benchmark::Arguments>),
+    /// Make the models that come with the program out of a finished benchmark
+    Models(models::Arguments),
     /// Make the report page of the simulated crowds and check it in a browser
     Page(page::Arguments),
     /// Run every test
@@ -56,6 +59,7 @@ impl Command {
             Self::Env => setup::print_environment(workspace),
             Self::Data(arguments) => arguments.run(workspace),
             Self::Benchmark(arguments) => return arguments.run(workspace),
+            Self::Models(arguments) => arguments.run(workspace),
             Self::Page(arguments) => arguments.run(workspace),
             Self::Test(arguments) => arguments.run(workspace),
             Self::Bench(arguments) => arguments.run(workspace),

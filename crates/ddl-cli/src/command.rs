@@ -5,6 +5,8 @@ pub(crate) mod evaluate;
 pub(crate) mod forecast;
 pub(crate) mod goals;
 pub(crate) mod info;
+mod model;
+pub(crate) mod pack;
 pub(crate) mod report;
 mod test_windows;
 pub(crate) mod train;

@@ -15,7 +15,10 @@ use std::process::ExitCode;
 /// positive-definite matrix P, and the walker follows v = -P grad Phi to the goal.
 #[derive(Debug, Parser)]
 #[command(name = "ddl", version, arg_required_else_help = true)]
-#[command(after_help = "Exit codes: 0 done, 1 failed, 2 wrong arguments, 130 interrupted (saved).")]
+#[command(
+    after_help = "Trained models come with the program: `ddl forecast tracks.csv` works at once.\n\n\
+    Exit codes: 0 done, 1 failed, 2 wrong arguments, 130 interrupted (saved)."
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -29,6 +32,7 @@ enum Command {
     Report(command::report::Report),
     Forecast(command::forecast::Forecast),
     Goals(command::goals::Goals),
+    Pack(command::pack::Pack),
     Windows(command::windows::Windows),
     Info(command::info::Info),
 }
@@ -41,6 +45,7 @@ fn main() -> ExitCode {
         Command::Report(command) => command.run(),
         Command::Forecast(command) => command.run(),
         Command::Goals(command) => command.run(),
+        Command::Pack(command) => command.run(),
         Command::Windows(command) => command.run(),
         Command::Info(command) => command.run(),
     };

@@ -42,6 +42,14 @@ pub enum StarError {
         /// What is wrong with it, and what to do.
         problem: String,
     },
+    /// A learned tensor that cannot be rounded, or does not belong to the network it is given to.
+    #[error("weights: {tensor} {problem}")]
+    Weights {
+        /// Name of the tensor.
+        tensor: String,
+        /// What is wrong with it, and what to do.
+        problem: String,
+    },
     /// The loss or its gradient is no longer a number.
     #[error(
         "epoch {epoch}, batch {batch}: the {quantity} is {value}; the last good checkpoint is kept; \

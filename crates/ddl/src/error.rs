@@ -81,6 +81,14 @@ pub enum DdlError {
         /// What is wrong with it, and what to do.
         problem: String,
     },
+    /// A packed model that cannot be used.
+    #[error("model {model}: {problem}")]
+    Model {
+        /// Its file or name.
+        model: String,
+        /// What is wrong with it, and what to do.
+        problem: String,
+    },
     /// Reading or writing a file failed.
     #[error("{}: {source}", path.display())]
     Io {

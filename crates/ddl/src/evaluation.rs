@@ -154,6 +154,9 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             let goals = model.goal_model().goals(windows)?;
             let towards = |manner: &Manner| {
                 let goals = match (manner.goals, &published) {
+                    (GivenGoals::WithoutLibrary, _) => {
+                        model.goal_model().goals_without_library(windows)?
+                    }
                     (GivenGoals::Published, Some(estimator)) => {
                         goals::retrieved(estimator, windows)?
                     }
@@ -174,11 +177,16 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             for (manner, forecasts) in manners.iter().zip(&forecasts.model) {
                 if manner.protocols.contains(&protocol) {
                     let admitted = admit(forecasts, &model.name())?;
-                    forecasted.push(Forecasted::model(admitted, manner.change.as_deref()));
+                    forecasted.push(Forecasted::model(
+                        &model.name(),
+                        admitted,
+                        manner.change.as_deref(),
+                        manner.goal_words(model),
+                    ));
                 }
             }
             let lines = admit(&forecasts.lines, "straight line")?;
-            let recipe = format!("goals {}", model.config().goals.words());
+            let recipe = format!("goals {}", model.goal_model().words());
             forecasted.push(Forecasted::lines_to(goal, recipe, lines));
             rows.extend(self.rows(protocol, "last epoch").of(&forecasted)?);
         }
@@ -242,9 +250,10 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 lines,
             })
         })?;
+        let words = model.goal_model().words();
         let selection = format!("best kept epoch on up to {SELECTION_WALKERS} TEST walkers");
         self.rows(protocol, &selection).of(&[
-            Forecasted::model(forecasts.model.remove(0), None),
+            Forecasted::model(&model.name(), forecasts.model.remove(0), None, words),
             Forecasted::lines_to(
                 goal,
                 "goals of the published estimator".to_owned(),

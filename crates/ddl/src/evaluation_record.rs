@@ -1,7 +1,7 @@
 //! Which evaluation a run's `report.json` holds, so that a repeated one can be skipped.
 
 use crate::run_directory::{read_json, write_json};
-use crate::{Clearance, Ddl, DdlError, EvaluationRequest};
+use crate::{Clearance, Ddl, DdlError, EvaluationRequest, RunDirectory};
 use ddl_eval::{Moment, Report};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -14,7 +14,13 @@ struct Record {
     device: String,
     #[serde(default)]
     clearance: Option<Clearance>,
+    /// Which rows there are; results with fewer are measured anew.
+    #[serde(default)]
+    rows: u32,
 }
+
+/// 1: with the row without an expert library.
+const ROWS: u32 = 1;
 
 impl Record {
     fn new(model: &Ddl, request: &EvaluationRequest) -> Self {
@@ -22,15 +28,18 @@ impl Record {
             request: request.clone(),
             device: model.computed_on(),
             clearance: model.clearance(),
+            rows: ROWS,
         }
     }
 }
 
-/// Whether the run already holds the results of exactly this evaluation.
+/// Whether the model's run already holds the results of exactly this evaluation; a packed model holds none.
 #[must_use]
 pub fn is_evaluated(model: &Ddl, request: &EvaluationRequest) -> bool {
-    let record = record_file(model);
-    let run = model.run();
+    let Some(run) = model.run() else {
+        return false;
+    };
+    let record = record_file(run);
     if ![&record, &run.report(), &run.moments()]
         .iter()
         .all(|file| file.is_file())
@@ -41,27 +50,32 @@ pub fn is_evaluated(model: &Ddl, request: &EvaluationRequest) -> bool {
     read_json::<Record>(&record).is_ok_and(|done| done == Record::new(model, request))
 }
 
-/// Writes `report.json` and `moments.json`, then the record of what was asked for.
+/// Writes `report.json` and `moments.json` of the model's run, then the record of what was asked for.
 ///
 /// # Errors
-/// When a file cannot be written.
+/// When a file cannot be written, or the model is packed and has no run.
 pub fn save_evaluation(
     model: &Ddl,
     request: &EvaluationRequest,
     report: &Report,
     moments: &[Moment],
 ) -> Result<(), DdlError> {
-    let record = record_file(model);
+    let Some(run) = model.run() else {
+        return Err(model.source().wrong(
+            "has no directory of a run to keep results in; write them elsewhere (`Results::save`)",
+        ));
+    };
+    let record = record_file(run);
     if record.is_file() {
         // while the report is replaced, no record may vouch for it
         std::fs::remove_file(&record).map_err(|error| DdlError::io(&record, error))?;
     }
     let json = report.to_json()?;
-    crate::write_atomically(&model.run().report(), json.as_bytes())?;
-    model.run().write_moments(moments)?;
+    crate::write_atomically(&run.report(), json.as_bytes())?;
+    run.write_moments(moments)?;
     write_json(&record, &Record::new(model, request))
 }
 
-fn record_file(model: &Ddl) -> PathBuf {
-    model.run().path().join("evaluation.json")
+fn record_file(run: &RunDirectory) -> PathBuf {
+    run.path().join("evaluation.json")
 }

@@ -123,9 +123,9 @@ pub fn evaluate_goals(
     );
     let evaluation = GoalEvaluation {
         fold: model.config().data.fold.clone(),
-        goals: model.recipe().words(),
+        goals: model.words(),
         windows: words,
-        clusters: model.estimator().params().clusters(),
+        clusters: model.clusters(),
         all: errors(None),
         calibration: Calibration::of(likelihoods),
         recordings,

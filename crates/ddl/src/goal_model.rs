@@ -1,39 +1,65 @@
-//! Where the goals of a run come from: its expert library and, where it has one, its proposal network.
+//! Where the goals of a model come from: the expert library of its run, its proposal network, or both.
 
+use crate::model_source::ModelSource;
+use crate::packed_model::{self, Unpacked};
 use crate::run_config::RunConfig;
 use crate::run_directory::RunDirectory;
 use crate::{DdlError, GoalRecipe, experts, goals, views};
 use ddl_data::{Position, WINDOW, Window};
 use ddl_eval::ForecastError;
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
-use ddl_star::{ComputeDevice, DeviceChoice, ProposalNetwork, load_parameters};
+use ddl_star::{ComputeDevice, DeviceChoice, ProposalNetwork, ProposedEnds, load_parameters};
 use rayon::prelude::*;
 use std::path::Path;
 
 /// Estimates where the walkers of a window are going, from the 8 observed frames and nothing else.
 #[derive(Debug)]
 pub struct GoalModel {
-    run: RunDirectory,
+    source: ModelSource,
     config: RunConfig,
-    estimator: GoalEstimator,
-    /// The network, and the share of the probability that the retrieved goals have beside it.
-    proposer: Option<(ProposalNetwork, f64)>,
+    origin: GoalOrigin,
+    /// Goals a walker.
+    clusters: usize,
+}
+
+/// What goals are made of.
+#[derive(Debug)]
+enum GoalOrigin {
+    /// Similar walkers.
+    Retrieved(GoalEstimator),
+    /// The network's ends.
+    Proposed(ProposalNetwork),
+    /// Both, the retrieved goals with this share of the probability.
+    Both(ProposalNetwork, GoalEstimator, f64),
 }
 
 impl GoalModel {
-    /// Loads the goals' part of the run at `path`, whose forecasting network need not be trained yet.
+    /// Loads the goals' part of the run at `path`, whose forecasting network need not be trained yet, or of a packed model.
+    ///
+    /// # Errors
+    /// As [`GoalModel::open`].
+    pub fn load(path: &Path, device: DeviceChoice) -> Result<Self, DdlError> {
+        Self::open(&ModelSource::at(path), device)
+    }
+
+    /// The same from any source of models.
     ///
     /// # Errors
     /// When there is no run, its goals are not trained, one of the files is broken, or the device
     /// cannot be had.
-    pub fn load(path: &Path, device: DeviceChoice) -> Result<Self, DdlError> {
-        let run = RunDirectory::new(path);
+    pub fn open(source: &ModelSource, device: DeviceChoice) -> Result<Self, DdlError> {
+        let Some(run) = source.run() else {
+            let bytes = packed_model::bytes(source)?;
+            let device = ComputeDevice::open(device)?;
+            let unpacked = packed_model::unpack(&bytes, source, device)?;
+            return Ok(Self::of_packed(source, unpacked)?.0);
+        };
         let config = run.config()?;
         if !run.has_goals(&config.goals) {
             let problem = "has no goals yet; run the same `ddl train` command again to go on";
-            return Err(DdlError::run(path, problem));
+            return Err(source.wrong(problem));
         }
-        Self::of_run(run, config, ComputeDevice::open(device)?)
+        Self::of_run(run.clone(), config, ComputeDevice::open(device)?)
     }
 
     pub(crate) fn of_run(
@@ -43,9 +69,11 @@ impl GoalModel {
     ) -> Result<Self, DdlError> {
         let library = experts::load(&config.goals_origin(), config.data.walkers, &run.experts())?;
         let params = config.goals.retrieval.clone().query(QuerySpan::Observed);
-        let estimator = GoalEstimator::new(params.check()?, library)?;
-        let proposer = match &config.goals.proposal {
-            None => None,
+        let params = params.check()?;
+        let clusters = params.clusters();
+        let estimator = GoalEstimator::new(params, library)?;
+        let origin = match &config.goals.proposal {
+            None => GoalOrigin::Retrieved(estimator),
             Some(recipe) => {
                 let network =
                     ProposalNetwork::new(recipe.network.clone(), recipe.training.seed, device)?;
@@ -54,15 +82,35 @@ impl GoalModel {
                     &config.goals_origin(),
                     &run.proposal(),
                 )?;
-                Some((network, recipe.retrieved_share))
+                GoalOrigin::Both(network, estimator, recipe.retrieved_share)
             }
         };
         Ok(Self {
-            run,
+            source: ModelSource::Run(run),
             config,
-            estimator,
-            proposer,
+            origin,
+            clusters,
         })
+    }
+
+    /// The goals of a packed model, and what else it holds.
+    pub(crate) fn of_packed(
+        source: &ModelSource,
+        unpacked: Unpacked,
+    ) -> Result<(Self, ddl_star::StarNetwork), DdlError> {
+        let Unpacked {
+            config,
+            network,
+            proposal,
+        } = unpacked;
+        let clusters = config.goals.retrieval.clone().check()?.clusters();
+        let goals = Self {
+            source: source.clone(),
+            config,
+            origin: GoalOrigin::Proposed(proposal),
+            clusters,
+        };
+        Ok((goals, network))
     }
 
     /// What decided the run.
@@ -70,26 +118,54 @@ impl GoalModel {
         &self.config
     }
 
-    /// Where the run lies.
-    pub fn run(&self) -> &RunDirectory {
-        &self.run
+    /// Where the model was taken from.
+    pub fn source(&self) -> &ModelSource {
+        &self.source
     }
 
-    /// How the goals are made.
+    /// How the goals were trained; whether all of it is at hand, [`words`](Self::words) says.
     pub fn recipe(&self) -> &GoalRecipe {
         &self.config.goals
     }
 
-    /// The retrieval of similar walkers, which sees the observed positions alone.
-    pub fn estimator(&self) -> &GoalEstimator {
-        &self.estimator
+    /// Where the goals come from, in words.
+    pub fn words(&self) -> String {
+        match &self.origin {
+            GoalOrigin::Proposed(_) => self.recipe().words_without_library(),
+            GoalOrigin::Retrieved(_) | GoalOrigin::Both(..) => self.recipe().words(),
+        }
+    }
+
+    /// Goals a walker, at most.
+    pub fn clusters(&self) -> usize {
+        self.clusters
+    }
+
+    /// The retrieval of similar walkers, which sees the observed positions alone; `None` where there is no expert library.
+    pub fn estimator(&self) -> Option<&GoalEstimator> {
+        match &self.origin {
+            GoalOrigin::Proposed(_) => None,
+            GoalOrigin::Retrieved(estimator) | GoalOrigin::Both(_, estimator, _) => Some(estimator),
+        }
+    }
+
+    /// The network that proposes ends, where there is one.
+    pub(crate) fn proposal_network(&self) -> Option<&ProposalNetwork> {
+        match &self.origin {
+            GoalOrigin::Retrieved(_) => None,
+            GoalOrigin::Proposed(network) | GoalOrigin::Both(network, ..) => Some(network),
+        }
+    }
+
+    /// Whether the goals would be others without the expert library, and there would be some.
+    pub(crate) fn has_library_beside_network(&self) -> bool {
+        matches!(self.origin, GoalOrigin::Both(..))
     }
 
     /// Numbers learned by the proposal network; 0 without one.
     pub fn parameter_count(&self) -> usize {
-        self.proposer
-            .as_ref()
-            .map_or(0, |(network, _)| network.parameters().count())
+        self.proposal_network()
+            .map_or(0, |network| network.parameters().count())
     }
 
     /// The goals of every pedestrian of every window, from the observed frames alone.
@@ -100,20 +176,36 @@ impl GoalModel {
     /// # Errors
     /// When positions are so far apart that distances leave the range of `f64`, or libtorch fails.
     pub fn goals(&self, windows: &[Window]) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
-        match &self.proposer {
-            None => goals::retrieved(&self.estimator, windows),
-            Some((network, share)) => self.proposed(network, *share, windows),
+        match &self.origin {
+            GoalOrigin::Retrieved(estimator) => goals::retrieved(estimator, windows),
+            GoalOrigin::Proposed(network) => self.standing_for_ends(network, None, windows),
+            GoalOrigin::Both(network, estimator, share) => {
+                self.standing_for_ends(network, Some((estimator, *share)), windows)
+            }
         }
     }
 
-    /// Goals that stand for the network's ends and the retrieved goals together.
-    fn proposed(
+    /// The goals that the model would have without its expert library; its own where none of them are proposed.
+    ///
+    /// # Errors
+    /// As [`GoalModel::goals`].
+    pub(crate) fn goals_without_library(
         &self,
-        network: &ProposalNetwork,
-        retrieved_share: f64,
         windows: &[Window],
     ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
-        let clusters = self.estimator.params().clusters();
+        match self.proposal_network() {
+            None => self.goals(windows),
+            Some(network) => self.standing_for_ends(network, None, windows),
+        }
+    }
+
+    /// Goals that stand for the network's ends, and for retrieved goals where they have a share.
+    fn standing_for_ends(
+        &self,
+        network: &ProposalNetwork,
+        retrieval: Option<(&GoalEstimator, f64)>,
+        windows: &[Window],
+    ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
         let mut seen = Vec::new();
         for window in windows {
             let walkers = views::of_window(window, network.config().neighbours).map_err(failed)?;
@@ -121,18 +213,25 @@ impl GoalModel {
         }
         let (frames, views): (Vec<_>, Vec<_>) =
             seen.into_iter().map(|seen| (seen.frame, seen.view)).unzip();
-        let proposed = network.propose(&views).map_err(failed)?;
-        let retrieved = goals::retrieved(&self.estimator, windows)?;
-        let retrieved: Vec<GoalSet> = retrieved.into_iter().flatten().collect();
-        let sets: Vec<GoalSet> = (frames, proposed, retrieved)
-            .into_par_iter()
-            .map(|(frame, proposed, retrieved)| {
-                let (mut ends, mut weights) = (proposed.ends, proposed.weights);
-                for weight in &mut weights {
-                    *weight *= 1.0 - retrieved_share;
+        let mut proposed = network.propose(&views).map_err(failed)?;
+        if let Some((estimator, share)) = retrieval {
+            let retrieved = goals::retrieved(estimator, windows)?;
+            let retrieved = retrieved.into_iter().flatten();
+            for ((proposed, frame), set) in proposed.iter_mut().zip(&frames).zip(retrieved) {
+                for weight in &mut proposed.weights {
+                    *weight *= 1.0 - share;
                 }
-                ends.extend(retrieved.goals().iter().map(|&goal| frame.to_frame(goal)));
-                weights.extend(retrieved.weights().iter().map(|w| w * retrieved_share));
+                let ends = set.goals().iter().map(|&goal| frame.to_frame(goal));
+                proposed.ends.extend(ends);
+                proposed
+                    .weights
+                    .extend(set.weights().iter().map(|weight| weight * share));
+            }
+        }
+        let clusters = self.clusters;
+        let sets: Vec<GoalSet> = (frames, proposed)
+            .into_par_iter()
+            .map(|(frame, ProposedEnds { ends, weights })| {
                 GoalSet::of_ends(&frame, &ends, &weights, clusters)
             })
             .collect::<Result<_, _>>()
@@ -151,40 +250,41 @@ impl GoalModel {
     /// When libtorch fails.
     pub(crate) fn lessons(&self, windows: &[Window]) -> Result<Vec<Vec<Position>>, ForecastError> {
         let end = |window: &Window, i: usize| window.track(i)[WINDOW - 1];
-        let Some((network, _)) = &self.proposer else {
-            return Ok(windows
-                .iter()
-                .map(|window| (0..window.len()).map(|i| end(window, i)).collect())
-                .collect());
+        if self.proposal_network().is_none() {
+            let ends = |window: &Window| (0..window.len()).map(|i| end(window, i)).collect();
+            return Ok(windows.iter().map(ends).collect());
+        }
+        let sets = self.goals_without_library(windows)?;
+        let nearest = |(i, set): (usize, GoalSet), window: &Window| {
+            let [x, y] = end(window, i);
+            let off = |goal: &Position| (goal[0] - x).hypot(goal[1] - y);
+            let goals = set.goals().iter();
+            goals
+                .min_by(|a, b| off(a).total_cmp(&off(b)))
+                .map_or([x, y], |&goal| goal)
         };
-        let clusters = self.estimator.params().clusters();
-        windows
-            .iter()
-            .map(|window| {
-                let seen = views::of_window(window, network.config().neighbours).map_err(failed)?;
-                let (frames, views): (Vec<_>, Vec<_>) =
-                    seen.into_iter().map(|seen| (seen.frame, seen.view)).unzip();
-                let proposed = network.propose(&views).map_err(failed)?;
-                frames
-                    .par_iter()
-                    .zip(proposed)
-                    .enumerate()
-                    .map(|(i, (frame, ends))| {
-                        let set = GoalSet::of_ends(frame, &ends.ends, &ends.weights, clusters)
-                            .map_err(failed)?;
-                        let [x, y] = end(window, i);
-                        let off = |g: &Position| (g[0] - x).hypot(g[1] - y);
-                        let nearest = set.goals().iter().min_by(|a, b| off(a).total_cmp(&off(b)));
-                        Ok(nearest.copied().unwrap_or([x, y]))
-                    })
-                    .collect()
+        Ok(sets
+            .into_iter()
+            .zip(windows)
+            .map(|(sets, window)| {
+                let walkers = sets.into_iter().enumerate();
+                walkers.map(|walker| nearest(walker, window)).collect()
             })
-            .collect()
+            .collect())
     }
 
     /// The published estimator: under the protocol `published` its query reads the first future frame.
+    ///
+    /// # Errors
+    /// When there is no expert library.
     pub(crate) fn published_estimator(&self, query: QuerySpan) -> Result<GoalEstimator, DdlError> {
-        let library: ExpertLibrary = self.estimator.library().clone();
+        let Some(estimator) = self.estimator() else {
+            return Err(self.source.wrong(
+                "has no expert library, from which the protocol `published` takes its goals; measure it under `fair` and \
+                 `single`, or measure the run that it was packed from",
+            ));
+        };
+        let library: ExpertLibrary = estimator.library().clone();
         let retrieval = self.recipe().retrieval.clone();
         let params: GoalEstimatorParams = retrieval.into_published().query(query);
         Ok(GoalEstimator::new(params.check()?, library)?)

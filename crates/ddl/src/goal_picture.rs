@@ -11,7 +11,7 @@ use ddl_goal::GoalSet;
 /// Retrieved walkers that are drawn, the most similar ones.
 const EXPERTS: usize = 60;
 
-/// An SVG of typical walkers: what was observed, the retrieved walkers, the goals, and how it went on.
+/// An SVG of typical walkers: what was observed, the retrieved walkers where there are some, the goals, and how it went on.
 ///
 /// # Errors
 /// When a picture cannot be drawn of such goals.
@@ -88,13 +88,16 @@ impl<'a> Walker<'a> {
             self.kind
         );
         let observed = self.window.observed(self.index);
-        let retrieved = model.estimator().estimate(observed)?;
-        let experts = retrieved
-            .experts()
-            .iter()
-            .take(EXPERTS)
-            .map(|expert| model.estimator().carry_over(expert, observed))
-            .collect::<Result<Vec<_>, _>>()?;
+        let experts = match model.estimator() {
+            None => Vec::new(),
+            Some(estimator) => estimator
+                .estimate(observed)?
+                .experts()
+                .iter()
+                .take(EXPERTS)
+                .map(|expert| estimator.carry_over(expert, observed))
+                .collect::<Result<Vec<_>, _>>()?,
+        };
         let goals = WeightedGoals::new(self.set.goals().to_vec(), self.set.weights().to_vec())
             .map_err(ForecastError::from)?;
         let track = self.window.track(self.index);

@@ -76,6 +76,18 @@ impl GoalRecipe {
         Ok(())
     }
 
+    /// Where the goals come from when the expert library is not at hand, in words.
+    #[must_use]
+    pub fn words_without_library(&self) -> String {
+        match &self.proposal {
+            None => "none: they would be retrieved, and there is no expert library".to_owned(),
+            Some(proposal) => format!(
+                "proposed by {} networks trained {} steps, no expert library",
+                proposal.network.members, proposal.training.steps
+            ),
+        }
+    }
+
     /// Where the goals come from, in words.
     #[must_use]
     pub fn words(&self) -> String {

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod baselines;
+mod builtin_model;
 mod certified_forecast;
 mod clearance;
 mod error;
@@ -17,11 +18,14 @@ mod live;
 mod machine;
 mod manner;
 mod model;
+mod model_source;
+mod packed_model;
 mod published;
 mod result_rows;
 mod results;
 mod run_config;
 mod run_directory;
+mod sha256;
 mod straight_lines;
 mod test_set;
 mod training;
@@ -37,6 +41,7 @@ pub use ddl_softdtw as softdtw;
 pub use ddl_star as star;
 
 pub use baselines::measure_baselines;
+pub use builtin_model::BuiltinModel;
 pub use certified_forecast::{CertificateError, CertifiedForecast};
 pub use clearance::Clearance;
 pub use ddl_eval::{Forecast, Forecaster, Protocol};
@@ -53,6 +58,7 @@ pub use goal_recipe::{GoalRecipe, ProposalRecipe};
 pub use live::{LiveForecast, LiveForecaster};
 pub use machine::{cuda_status, prepare};
 pub use model::Ddl;
+pub use model_source::ModelSource;
 pub use results::Results;
 pub use run_config::{FORMAT, RunConfig, TrainingData};
 pub use run_directory::{RunDirectory, write_atomically};

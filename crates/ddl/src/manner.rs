@@ -1,6 +1,6 @@
 //! The ways in which one model is measured under the honest protocols.
 
-use crate::model::Ddl;
+use crate::model::{Ddl, WITHOUT_LIBRARY};
 use crate::walk::Gait;
 use ddl_eval::Protocol;
 
@@ -19,14 +19,25 @@ pub(crate) struct Manner {
 pub(crate) enum GivenGoals {
     /// Its own.
     Own,
+    /// Those it would have without its expert library.
+    WithoutLibrary,
     /// Those of the published estimator, without its look at the first future frame.
     Published,
 }
 
 impl Manner {
-    /// The model as it is; what the published steps would make of the same flow, and where `published` is measured too, what
-    /// its goals are worth when none of them is chosen with the truth, both told once, in the headline protocol; and, where asked
-    /// for, keeping clear of others.
+    /// Where its goals come from, as results say it.
+    pub(crate) fn goal_words(&self, model: &Ddl) -> String {
+        match self.goals {
+            // Of the published goals the name of the row tells.
+            GivenGoals::Own | GivenGoals::Published => model.goal_model().words(),
+            GivenGoals::WithoutLibrary => model.goal_model().recipe().words_without_library(),
+        }
+    }
+
+    /// The model as it is; what the published steps would make of the same flow, what is left of it without its expert library, and
+    /// where `published` is measured too, what that protocol's goals are worth when none of them is chosen with the truth, all told
+    /// once, in the headline protocol; and, where asked for, keeping clear of others.
     pub(crate) fn all(model: &Ddl, asked: &[Protocol]) -> Vec<Self> {
         let asked = |protocol| asked.contains(&protocol);
         let variant = model.config().star.variant;
@@ -41,6 +52,15 @@ impl Manner {
                 goals: GivenGoals::Own,
                 gait: Gait::PlainEuler,
                 change: Some("with plain Euler steps".to_owned()),
+                protocols: &[Protocol::Fair],
+            });
+        }
+        let has_library = model.goal_model().has_library_beside_network();
+        if asked(Protocol::Fair) && has_library && variant.uses_goal() {
+            manners.push(Self {
+                goals: GivenGoals::WithoutLibrary,
+                gait: Gait::Stable(None),
+                change: Some(WITHOUT_LIBRARY.to_owned()),
                 protocols: &[Protocol::Fair],
             });
         }

@@ -1,7 +1,10 @@
 //! A trained model: the network, its goal estimator, and how the two make a forecast.
 
+mod loading;
+
 use crate::certified_forecast::{self, CertifiedForecast, Walked};
 use crate::clearance::Clearance;
+use crate::model_source::ModelSource;
 use crate::run_config::RunConfig;
 use crate::run_directory::RunDirectory;
 use crate::walk::Gait;
@@ -9,13 +12,12 @@ use crate::{DdlError, GoalModel};
 use ddl_data::{Position, Window};
 use ddl_eval::{Forecast, ForecastError, Forecaster};
 use ddl_goal::GoalSet;
-use ddl_star::{
-    ComputeDevice, Noise, Precision, StarNetwork, StepRule, WindowRollout, load_parameters,
-};
-use std::path::Path;
+use ddl_star::{ComputeDevice, Noise, Precision, StarNetwork, StepRule, WindowRollout};
 
 /// The name of the model in tables.
 pub(crate) const NAME: &str = "DDL";
+/// What is different without the tracks that goals are retrieved from.
+pub(crate) const WITHOUT_LIBRARY: &str = "without an expert library";
 
 /// Hypotheses of the variant without goals: as many noise vectors.
 const NOISE_HYPOTHESES: usize = 20;
@@ -50,33 +52,6 @@ pub struct Ddl {
 }
 
 impl Ddl {
-    /// Loads the finished run at `path`.
-    ///
-    /// # Errors
-    /// When there is no finished run, one of its files is broken, or the device cannot be had.
-    pub fn load(path: &Path, device: ddl_star::DeviceChoice) -> Result<Self, DdlError> {
-        let run = RunDirectory::new(path);
-        let config = run.config()?;
-        if !run.is_trained() {
-            let problem = if run.has_goals(&config.goals) {
-                "is not finished: its goals are trained, its network is not (no model.safetensors); run \
-                 the same `ddl train` command again, without --only-goals, to go on"
-            } else {
-                "is not finished: it has no model.safetensors; run the same `ddl train` command again to \
-                 go on"
-            };
-            return Err(DdlError::run(path, problem));
-        }
-        let device = ComputeDevice::open(device)?;
-        let network = load_network(&config, device, &run.model())?;
-        Ok(Self {
-            goals: GoalModel::of_run(run, config, device)?,
-            device,
-            network,
-            clearance: None,
-        })
-    }
-
     /// The same model, whose walkers keep clear of each other.
     ///
     /// # Errors
@@ -107,9 +82,14 @@ impl Ddl {
         self.goals.config()
     }
 
-    /// Where the model lies.
-    pub fn run(&self) -> &RunDirectory {
-        self.goals.run()
+    /// Where the model was taken from.
+    pub fn source(&self) -> &ModelSource {
+        self.goals.source()
+    }
+
+    /// The directory of its run; `None` for a packed model, which keeps nothing but what it takes to forecast.
+    pub fn run(&self) -> Option<&RunDirectory> {
+        self.source().run()
     }
 
     /// Where it computes.
@@ -139,12 +119,6 @@ impl Ddl {
     /// Where its goals come from.
     pub fn goal_model(&self) -> &GoalModel {
         &self.goals
-    }
-
-    /// The network, with the weights kept after `epoch`.
-    pub(crate) fn network_of_epoch(&self, epoch: usize) -> Result<StarNetwork, DdlError> {
-        let network = load_network(self.config(), self.device, &self.run().epoch(epoch))?;
-        Ok(network.in_precision(self.network.precision())?)
     }
 
     /// Forecasts the windows, with the evidence for every hypothesis that it goes to its goal.
@@ -242,7 +216,10 @@ impl Ddl {
 
 impl Forecaster for Ddl {
     fn name(&self) -> String {
-        NAME.into()
+        match self.run() {
+            Some(_) => NAME.into(),
+            None => format!("{NAME} {WITHOUT_LIBRARY}"),
+        }
     }
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
@@ -272,14 +249,4 @@ pub(crate) fn unused_goals(windows: &[Window]) -> Vec<Vec<Vec<Position>>> {
         .iter()
         .map(|window| vec![vec![[0.0; 2]]; window.len()])
         .collect()
-}
-
-fn load_network(
-    config: &RunConfig,
-    device: ComputeDevice,
-    weights: &Path,
-) -> Result<StarNetwork, DdlError> {
-    let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
-    load_parameters(network.parameters(), &config.network_origin(), weights)?;
-    Ok(network)
 }

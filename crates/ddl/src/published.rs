@@ -30,20 +30,26 @@ impl Published {
         windows: &[Window],
         mut tick: impl FnMut() -> Result<(), DdlError>,
     ) -> Result<Self, DdlError> {
+        let Some(run) = model.run() else {
+            return Err(model.source().wrong(
+                "keeps one set of weights, and the protocol `published` chooses among epochs; measure it under `fair` and \
+                 `single`",
+            ));
+        };
         let config = model.config();
         // One epoch is no choice: a number that says "best kept epoch" must have had several to choose from.
         if config.training.epochs > 1 && config.keep_every >= config.training.epochs {
             return Err(DdlError::run(
-                model.run().path(),
+                run.path(),
                 "keeps the weights of its last epoch alone, and `published` chooses among several; train it \
                  anew without --last-epoch-only",
             ));
         }
         let goals = goals::nearest_true_end(estimator, windows)?;
         let mut best: Option<(f64, Self)> = None;
-        for epoch in model.run().kept_epochs()? {
+        for epoch in run.kept_epochs()? {
             tick()?;
-            let network = model.network_of_epoch(epoch)?;
+            let network = model.network_of_epoch(run, epoch)?;
             let candidate = Self {
                 network,
                 seed: model.config().training.seed,
@@ -55,10 +61,7 @@ impl Published {
             }
         }
         let (_, best) = best.ok_or_else(|| {
-            DdlError::run(
-                model.run().path(),
-                "keeps the weights of no epoch; train it anew",
-            )
+            DdlError::run(run.path(), "keeps the weights of no epoch; train it anew")
         })?;
         Ok(best)
     }

@@ -16,14 +16,21 @@ pub(crate) struct Forecasted {
 }
 
 impl Forecasted {
-    /// What the model forecast, with something changed or as it is.
-    pub(crate) fn model(forecasts: Vec<Forecast>, change: Option<&str>) -> Self {
+    /// What the model of that name forecast, with something changed or as it is, to goals that come from where `goals` says.
+    pub(crate) fn model(
+        name: &str,
+        forecasts: Vec<Forecast>,
+        change: Option<&str>,
+        goals: String,
+    ) -> Self {
         Self {
             forecaster: match change {
-                None => model::NAME.to_owned(),
-                Some(change) => format!("{} {change}", model::NAME),
+                None => name.to_owned(),
+                // "DDL with plain Euler steps"
+                Some(change) if name == model::NAME => format!("{name} {change}"),
+                Some(change) => format!("{name}, {change}"),
             },
-            made_by: MadeBy::Model,
+            made_by: MadeBy::Model { goals },
             forecasts,
         }
     }
@@ -41,8 +48,8 @@ impl Forecasted {
 /// What decided the forecasts, and so what their conditions must name.
 #[derive(Debug)]
 enum MadeBy {
-    /// The trained model.
-    Model,
+    /// The trained model, and where its goals come from.
+    Model { goals: String },
     /// The run's goals alone, which depend on its seed.
     Goals { recipe: String },
 }
@@ -77,7 +84,7 @@ impl ResultRows<'_> {
                     indices.iter().map(|&i| one.forecasts[i].clone()).collect();
                 let mut conditions = plain.clone();
                 match &one.made_by {
-                    MadeBy::Model => conditions = self.of_the_model(conditions),
+                    MadeBy::Model { goals } => conditions = self.of_the_model(conditions, goals),
                     MadeBy::Goals { recipe } => {
                         conditions.seed = Some(self.model.config().training.seed);
                         conditions.recipe = Some(recipe.clone());
@@ -102,7 +109,7 @@ impl ResultRows<'_> {
         }
     }
 
-    fn of_the_model(&self, plain: Conditions) -> Conditions {
+    fn of_the_model(&self, plain: Conditions, goals: &str) -> Conditions {
         let config = self.model.config();
         let training = &config.training;
         Conditions {
@@ -112,7 +119,10 @@ impl ResultRows<'_> {
             selection: Some(self.selection.to_owned()),
             device: self.model.computed_on(),
             training_subset: subset(training),
-            recipe: Some(recipe(training, &config.goals)),
+            recipe: Some(match self.model.run() {
+                Some(_) => recipe(training, goals),
+                None => recipe(training, goals) + "; weights rounded to 16 bits",
+            }),
             ..plain
         }
     }

@@ -33,7 +33,7 @@ impl TestSet {
         walkers: Option<usize>,
     ) -> Result<Self, DdlError> {
         let data = &goals.config().data;
-        let wrong = |problem: String| Err(DdlError::run(goals.run().path(), problem));
+        let wrong = |problem: String| Err(goals.source().wrong(problem));
         if data.convention != dataset.convention() {
             return wrong(format!(
                 "was trained on `{}` data and cannot be measured on `{}` data",

@@ -2,7 +2,7 @@
 
 use crate::run_config::{FORMAT, RunConfig, TrainingData};
 use crate::run_directory::{RunDirectory, SAVE_EVERY};
-use crate::{Ddl, DdlError, GoalModel, GoalRecipe, goal_training};
+use crate::{Ddl, DdlError, GoalModel, GoalRecipe, goal_training, sha256};
 use ddl_data::{Convention, Dataset, Window, WindowRule};
 use ddl_goal::RetrievalFrame;
 use ddl_star::{
@@ -10,7 +10,6 @@ use ddl_star::{
     StarError, StarNetwork, StepReport, Trainer, TrainingConfig, save_parameters,
 };
 use sha2::{Digest as _, Sha256};
-use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -240,11 +239,5 @@ pub(crate) fn digest(windows: &[Window]) -> String {
             }
         }
     }
-    hasher
-        .finalize()
-        .iter()
-        .fold(String::new(), |mut text, byte| {
-            let _ = write!(text, "{byte:02x}"); // writing to a string cannot fail
-            text
-        })
+    sha256::in_hex(hasher)
 }

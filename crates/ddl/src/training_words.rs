@@ -1,13 +1,11 @@
 //! A training in words, as results name it.
 
-use crate::GoalRecipe;
 use ddl_star::TrainingConfig;
 
-/// How it was trained, in words.
-pub(crate) fn recipe(training: &TrainingConfig, goals: &GoalRecipe) -> String {
+/// How it was trained, in words; `goals` are those of where its goals come from.
+pub(crate) fn recipe(training: &TrainingConfig, goals: &str) -> String {
     let (walkers, rate) = (training.batch_walkers, training.learning_rate);
     let schedule = training.learning_rate_schedule;
-    let goals = goals.words();
     format!(
         "batches of more than {walkers} walkers, Adam with step size {rate} ({schedule}); goals {goals}"
     )

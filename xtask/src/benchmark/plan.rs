@@ -260,6 +260,18 @@ impl Plan {
         whole_file::write(&file, &text)
     }
 
+    /// Reads the plan of a benchmark folder.
+    pub(crate) fn read(folder: &Path) -> Result<Self> {
+        let file = folder.join("plan.json");
+        let text = fs::read(&file).with_context(|| {
+            format!(
+                "{} cannot be read: `cargo xtask benchmark` makes such a folder",
+                file.display()
+            )
+        })?;
+        serde_json::from_slice(&text).with_context(|| format!("{} is damaged", file.display()))
+    }
+
     fn check_same_settings(&self, before: &Self, out: &Path) -> Result<()> {
         // The recordings are pinned by hash: where they lie makes no difference.
         let comparable = |settings: &Settings| {

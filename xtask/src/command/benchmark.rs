@@ -1,6 +1,6 @@
 //! `cargo xtask benchmark`: from nothing to the table.
 
-mod build;
+pub(super) mod build;
 mod publish;
 mod report;
 mod side_by_side;

@@ -6,21 +6,27 @@ use super::{Exactness, KeepClear, Machine, Telling, at_least_one, dataset};
 use crate::interrupt::Interrupt;
 use crate::progress::{Progress, ProgressMode};
 use crate::result_lines;
-use anyhow::bail;
+use anyhow::Context as _;
 use clap::Args;
 use ddl::eval::Report;
-use ddl::{Ddl, EvaluationRequest, EvaluationSplit, Protocol};
+use ddl::{Ddl, DdlError, EvaluationRequest, EvaluationSplit, ModelSource, Protocol, Results};
 use forecasts::OtherProgram;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Measure a trained model on the scene left out of its training, or forecasts of another program, beside the baselines
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
+        ddl evaluate --fold zara1\n  \
         ddl evaluate --model runs/eth --protocol fair --protocol single\n  \
         ddl evaluate --forecasts mine.jsonl --fold zara1 --out results")]
 pub(crate) struct Evaluate {
-    /// Directory of the run
-    #[arg(long, required_unless_present = "forecasts", conflicts_with_all = ["forecasts", "convention", "fold", "window_rule"])]
+    /// Model, measured on the scene it was trained without: the directory of a run, a packed file, or the name of a built-in
+    /// model [default: the built-in model that was trained without --fold]
+    #[arg(
+        long,
+        required_unless_present_any = ["forecasts", "fold"],
+        conflicts_with_all = ["forecasts", "convention", "fold", "window_rule"]
+    )]
     model: Option<PathBuf>,
     #[command(flatten)]
     other: OtherProgram,
@@ -54,18 +60,16 @@ impl Evaluate {
                 let report = self.other.evaluate(file, &self.protocols, data, commit)?;
                 self.tell(&report, &self.other.written())
             }
-            (None, Some(run)) => self.measure(run),
-            (None, None) => {
-                bail!("give the --model to measure, or the --forecasts of another program")
-            }
+            (None, Some(name)) => self.measure(&ModelSource::named(name)),
+            (None, None) => self.measure(&ModelSource::Builtin(self.other.builtin_model()?)),
         }
     }
 
-    fn measure(&self, run: &Path) -> anyhow::Result<()> {
+    fn measure(&self, source: &ModelSource) -> anyhow::Result<()> {
         self.machine.prepare()?;
         let interrupt = Interrupt::catch()?;
         let model =
-            Ddl::load(run, self.machine.device)?.in_precision(self.exactness.precision())?;
+            Ddl::open(source, self.machine.device)?.in_precision(self.exactness.precision())?;
         let model = self.clear.of(model)?;
         let request = EvaluationRequest {
             protocols: self.protocols.clone(),
@@ -77,8 +81,16 @@ impl Evaluate {
             test_walkers: self.test_walkers,
             commit: self.telling.commit.clone(),
         };
-        if ddl::is_evaluated(&model, &request) {
-            return self.tell(&Report::load(&model.run().report())?, &written(&model));
+        let title = format!(
+            "{} {}",
+            model.config().data.fold,
+            model.config().star.variant
+        );
+        if let Some(run) = model.run()
+            && ddl::is_evaluated(&model, &request)
+        {
+            self.save_elsewhere(|| Results::of(&title, &[run.path()]))?;
+            return self.tell(&Report::load(&run.report())?, &self.written(&model));
         }
         let dataset = dataset(model.config().data.convention, self.data.as_deref())?;
         let progress = Progress::new("evaluate", self.telling.progress);
@@ -88,14 +100,42 @@ impl Evaluate {
             interrupt.flow()
         })?;
         drop(progress);
-        let title = format!(
-            "{} {}",
-            model.config().data.fold,
-            model.config().star.variant
-        );
-        let report = Report::new(title, evaluation.rows)?;
-        ddl::save_evaluation(&model, &request, &report, &evaluation.moments)?;
-        self.tell(&report, &written(&model))
+        let report = Report::new(&title, evaluation.rows)?;
+        if let Some(run) = model.run() {
+            ddl::save_evaluation(&model, &request, &report, &evaluation.moments)?;
+            self.save_elsewhere(|| Results::of(&title, &[run.path()]))?;
+        } else {
+            self.save_elsewhere(|| Ok(Results::new(report.clone(), evaluation.moments)))?;
+        }
+        self.tell(&report, &self.written(&model))
+    }
+
+    /// Writes the whole report to the folder asked for, if any.
+    fn save_elsewhere(
+        &self,
+        results: impl FnOnce() -> Result<Results, DdlError>,
+    ) -> anyhow::Result<()> {
+        if let Some(folder) = &self.other.out {
+            results()?
+                .save(folder)
+                .with_context(|| format!("cannot write to {}", folder.display()))?;
+        }
+        Ok(())
+    }
+
+    /// Where the rest of the results is.
+    fn written(&self, model: &Ddl) -> String {
+        match (model.run(), &self.other.out) {
+            (Some(run), None) => {
+                let (report, run) = (run.report(), run.path());
+                format!(
+                    "all metrics: {}; as a page: ddl report {} --out FOLDER",
+                    report.display(),
+                    run.display()
+                )
+            }
+            _ => self.other.written(),
+        }
     }
 
     /// The results for people; programs read `report.json`.
@@ -105,14 +145,4 @@ impl Evaluate {
         }
         Ok(())
     }
-}
-
-/// Where the rest of a run's results is.
-fn written(model: &Ddl) -> String {
-    let (report, run) = (model.run().report(), model.run().path());
-    format!(
-        "all metrics: {}; as a page: ddl report {} --out FOLDER",
-        report.display(),
-        run.display()
-    )
 }

@@ -3,23 +3,23 @@
 mod json_lines;
 mod table;
 
+use super::model::ModelChoice;
 use super::{Exactness, KeepClear, Machine};
 use crate::tracks::{Tracks, write_output};
 use clap::{Args, ValueEnum};
 use ddl::data::{HORIZON, OBSERVED, Window};
 use ddl::dynamics::LyapunovCertificate;
-use ddl::{CertifiedForecast, Ddl, Forecaster as _};
+use ddl::{CertifiedForecast, Forecaster as _};
 use std::path::PathBuf;
 
 /// Forecast the next 4.8 s of your own tracks
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
-        ddl forecast --model runs/eth tracks.csv --output forecasts.csv\n  \
+        ddl forecast tracks.csv --output forecasts.csv\n  \
         ddl forecast --model runs/eth tracks.csv --last --format jsonl --certificate")]
 pub(crate) struct Forecast {
-    /// Directory of a trained run
-    #[arg(long)]
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelChoice,
     #[command(flatten)]
     tracks: Tracks,
     /// File to write [default: standard output]
@@ -62,7 +62,9 @@ impl Forecast {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         self.machine.prepare_for_little()?;
         let windows = self.tracks.windows()?;
-        let model = Ddl::load(&self.model, self.machine.device)?
+        let model = self
+            .model
+            .load(self.machine.device)?
             .in_precision(self.exactness.precision())?;
         let model = self.clear.of(model)?;
         let text = if self.certificate {

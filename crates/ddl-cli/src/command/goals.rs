@@ -1,28 +1,28 @@
 //! `ddl goals`.
 
+use super::model::ModelChoice;
 use super::{Machine, dataset};
 use crate::tracks::{Tracks, write_output};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use ddl::data::Window;
 use ddl::goal::GoalSet;
-use ddl::{EvaluationSplit, GoalEvaluation, GoalModel};
+use ddl::{EvaluationSplit, GoalEvaluation};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Estimate where the people of your own tracks are going, as csv; or measure how good a run's goals are
+/// Estimate where the people of your own tracks are going, as csv; or measure how good a model's goals are
 #[derive(Debug, Args)]
 #[command(
     mut_arg("file", |file| file.required(false)),
-    after_help = "Examples:\n  ddl goals --model runs/eth tracks.csv\n  ddl goals --model runs/eth --measure test --svg goals.svg"
+    after_help = "Examples:\n  ddl goals tracks.csv\n  ddl goals --model runs/eth --measure test --svg goals.svg"
 )]
 pub(crate) struct Goals {
-    /// Directory of a run whose goals are trained (`ddl train --only-goals` is enough)
-    #[arg(long)]
-    model: PathBuf,
+    #[command(flatten)]
+    model: ModelChoice,
     #[command(flatten)]
     tracks: Option<Tracks>,
-    /// Compare the goals with the true ends of the recordings the run was trained without
+    /// Compare the goals with the true ends of the recordings the model was trained without
     #[arg(long, value_enum, conflicts_with_all = ["file", "last", "frame_step"])]
     measure: Option<Measure>,
     /// Folder of the recordings to measure on [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
@@ -70,7 +70,7 @@ impl Goals {
             (Some(tracks), None) => {
                 self.machine.prepare_for_little()?;
                 let windows = tracks.windows()?;
-                let model = GoalModel::load(&self.model, self.machine.device)?;
+                let model = self.model.load_goals(self.machine.device)?;
                 csv(&windows, &model.goals(&windows)?)?
             }
             (None, None) => bail!("give a file of TRACKS to estimate goals for, or --measure test"),
@@ -80,7 +80,7 @@ impl Goals {
 
     fn measure(&self, measure: Measure) -> anyhow::Result<String> {
         self.machine.prepare()?;
-        let model = GoalModel::load(&self.model, self.machine.device)?;
+        let model = self.model.load_goals(self.machine.device)?;
         let dataset = dataset(model.config().data.convention, self.data.as_deref())?;
         let on = match measure {
             Measure::Test => EvaluationSplit::Test,

@@ -1,7 +1,7 @@
 //! `ddl info`.
 
 use clap::Args;
-use ddl::{Ddl, DeviceChoice, GoalModel, RunDirectory};
+use ddl::{BuiltinModel, Ddl, DeviceChoice, GoalModel, ModelSource, RunDirectory};
 use serde_json::json;
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -9,7 +9,7 @@ use std::path::PathBuf;
 /// Describe a trained model, or this program when no model is given
 #[derive(Debug, Args)]
 pub(crate) struct Info {
-    /// Directory of a run
+    /// Directory of a run, a packed file, or the name of a built-in model
     #[arg(long)]
     model: Option<PathBuf>,
     /// As JSON
@@ -23,13 +23,15 @@ impl Info {
             None => json!({
                 "version": env!("CARGO_PKG_VERSION"),
                 "cuda": ddl::cuda_status(),
+                "models": BuiltinModel::ALL.map(BuiltinModel::name),
             }),
-            Some(path) => {
-                if RunDirectory::new(path).is_trained() {
-                    let model = Ddl::load(path, DeviceChoice::Cpu)?;
+            Some(name) => {
+                let source = ModelSource::named(name);
+                if source.run().is_none_or(RunDirectory::is_trained) {
+                    let model = Ddl::open(&source, DeviceChoice::Cpu)?;
                     facts_of(model.goal_model(), &json!(model.parameter_count()))?
                 } else {
-                    let goals = GoalModel::load(path, DeviceChoice::Cpu)?;
+                    let goals = GoalModel::open(&source, DeviceChoice::Cpu)?;
                     facts_of(&goals, &json!("not trained yet"))?
                 }
             }
@@ -49,12 +51,17 @@ fn facts_of(
     goals: &GoalModel,
     parameters: &serde_json::Value,
 ) -> anyhow::Result<serde_json::Value> {
+    let epochs = goals
+        .source()
+        .run()
+        .map_or(Ok(Vec::new()), RunDirectory::metrics)?;
     Ok(json!({
         "config": goals.config(),
         "parameters": parameters,
         "goal_parameters": goals.parameter_count(),
-        "experts": goals.estimator().library().len(),
-        "epochs": goals.run().metrics()?,
+        "goals": goals.words(),
+        "experts": goals.estimator().map_or(0, |estimator| estimator.library().len()),
+        "epochs": epochs,
     }))
 }
 

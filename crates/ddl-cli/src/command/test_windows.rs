@@ -1,6 +1,7 @@
 //! Which test windows to take, where no model says it.
 
 use super::dataset;
+use anyhow::bail;
 use clap::Args;
 use ddl::data::{Convention, Window, WindowRule};
 use std::path::Path;
@@ -34,6 +35,24 @@ impl TestWindows {
         self.fold.as_deref().ok_or_else(|| {
             anyhow::anyhow!("give the --fold to test on, one of {}", known.join(", "))
         })
+    }
+
+    /// Refuses windows that no built-in model is measured on.
+    pub(crate) fn ensure_of_builtin_models(&self) -> anyhow::Result<()> {
+        if self.convention != Convention::Star {
+            bail!(
+                "the built-in models were trained on `star` data and cannot be measured on `{}` data; train one on it (`ddl train \
+                 --convention {}`) and name it with --model",
+                self.convention,
+                self.convention
+            );
+        }
+        if self.window_rule.is_some() {
+            bail!(
+                "a model is measured under the rules of its convention's tables: leave --window-rule out, or measure --forecasts"
+            );
+        }
+        Ok(())
     }
 
     /// The windows, read from a folder of recordings or simulated.

@@ -18,7 +18,7 @@ mod walk;
 use clock::{Clock, Measured, side_by_side};
 use ddl::data::{Dataset, Position, Window};
 use ddl::star::{ComputeDevice, Noise, StarNetwork, StepRule, load_parameters};
-use ddl::{Ddl, DeviceChoice, Forecaster as _};
+use ddl::{Ddl, DeviceChoice, Forecaster as _, RunDirectory};
 use std::error::Error;
 use std::io::Write as _;
 use std::path::Path;
@@ -42,7 +42,10 @@ fn main() -> Result<()> {
     let run = untrained::run(&dataset, folder.path())?;
     let mut out = std::io::stdout().lock();
     let library = Ddl::load(run.path(), DeviceChoice::Cpu)?;
-    let library = library.goal_model().estimator().library().len();
+    let library = library
+        .goal_model()
+        .estimator()
+        .map_or(0, |estimator| estimator.library().len());
     writeln!(
         out,
         "\n{} pedestrians, 20 hypotheses, {library} experts, one thread, processor time",
@@ -112,7 +115,7 @@ fn forecast(run: &Path, window: &Window, turns: usize) -> Result<Row> {
     load_parameters(
         network.parameters(),
         &model.config().network_origin(),
-        &model.run().model(),
+        &RunDirectory::new(run).model(),
     )?;
     let windows = std::slice::from_ref(window);
     let sets = model.goal_model().goals(windows)?.remove(0);

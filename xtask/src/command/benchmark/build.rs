@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::workspace::Workspace;
 
 /// Cargo is asked where the program lies: a target folder may be set in many ways.
-pub(super) fn program(workspace: &Workspace, cargo_profile: &str) -> Result<PathBuf> {
+pub(in crate::command) fn program(workspace: &Workspace, cargo_profile: &str) -> Result<PathBuf> {
     eprintln!("building ddl ({cargo_profile})");
     let mut child = workspace
         .cargo_process()

@@ -5,7 +5,7 @@ use anyhow::Context as _;
 use clap::Args;
 use ddl::eval::foreign::{self, Coverage, ForeignFormat};
 use ddl::eval::{Conditions, Report, baseline, gallery};
-use ddl::{Protocol, Results};
+use ddl::{BuiltinModel, Protocol, Results};
 use std::path::{Path, PathBuf};
 
 /// A file of forecasts and what it is to be measured on.
@@ -32,11 +32,17 @@ pub(crate) struct OtherProgram {
     intersection: bool,
     /// Folder to write the report to: report.html to look at, report.md, report.tex, report.json, moments.json and
     /// figures
-    #[arg(long, value_name = "FOLDER", requires = "forecasts")]
-    out: Option<PathBuf>,
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 impl OtherProgram {
+    /// The built-in model to measure, where neither forecasts nor a model are given: that of the fold.
+    pub(crate) fn builtin_model(&self) -> anyhow::Result<BuiltinModel> {
+        self.windows.ensure_of_builtin_models()?;
+        Ok(self.windows.fold()?.parse()?)
+    }
+
     /// Where the rest of the results is.
     pub(crate) fn written(&self) -> String {
         match &self.out {

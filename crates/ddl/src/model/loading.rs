@@ -1,0 +1,120 @@
+//! A model from the files of a run, a packed file or the program, and into a packed file.
+
+use super::Ddl;
+use crate::model_source::ModelSource;
+use crate::packed_model;
+use crate::run_config::RunConfig;
+use crate::run_directory::{RunDirectory, write_atomically};
+use crate::{BuiltinModel, DdlError, GoalModel};
+use ddl_star::{ComputeDevice, DeviceChoice, StarNetwork, load_parameters};
+use std::path::Path;
+
+impl Ddl {
+    /// Loads the finished run at `path`, or the packed model in that file.
+    ///
+    /// # Errors
+    /// As [`Ddl::open`].
+    pub fn load(path: &Path, device: DeviceChoice) -> Result<Self, DdlError> {
+        Self::open(&ModelSource::at(path), device)
+    }
+
+    /// A model that comes with the program: works at once, without any file.
+    ///
+    /// # Errors
+    /// When the device cannot be had.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl::data::{PedestrianId, Window};
+    /// use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _};
+    ///
+    /// let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
+    /// // Somebody who walks along x at 1.25 m/s, seen for 8 frames, 0.4 s apart.
+    /// let seen = (0..8).map(|t| [0.5 * f64::from(t), 0.0]).collect();
+    /// let window = Window::new("here", 0, 1, vec![PedestrianId(1)], vec![seen])?;
+    ///
+    /// let forecast = model.forecast(&window)?;
+    /// assert_eq!(forecast.hypotheses(), 20);
+    /// let [x, y] = forecast.hypothesis(0, forecast.most_likely(0))[11]; // in 4.8 s, metres
+    /// assert!(x > 3.5 && y.abs() < x - 3.5, "ahead: ({x}, {y})");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn builtin(model: BuiltinModel, device: DeviceChoice) -> Result<Self, DdlError> {
+        Self::open(&ModelSource::Builtin(model), device)
+    }
+
+    /// Loads a model from any source of models.
+    ///
+    /// # Errors
+    /// When there is no finished run, one of its files is broken, or the device cannot be had.
+    pub fn open(source: &ModelSource, device: DeviceChoice) -> Result<Self, DdlError> {
+        match source.run() {
+            Some(run) => Self::of_run(run.clone(), device),
+            None => Self::of_packed(source, device),
+        }
+    }
+
+    fn of_packed(source: &ModelSource, device: DeviceChoice) -> Result<Self, DdlError> {
+        let bytes = packed_model::bytes(source)?;
+        let device = ComputeDevice::open(device)?;
+        let unpacked = packed_model::unpack(&bytes, source, device)?;
+        let (goals, network) = GoalModel::of_packed(source, unpacked)?;
+        Ok(Self {
+            goals,
+            device,
+            network,
+            clearance: None,
+        })
+    }
+
+    fn of_run(run: RunDirectory, device: DeviceChoice) -> Result<Self, DdlError> {
+        let config = run.config()?;
+        if !run.is_trained() {
+            let problem = if run.has_goals(&config.goals) {
+                "is not finished: its goals are trained, its network is not (no model.safetensors); run \
+                 the same `ddl train` command again, without --only-goals, to go on"
+            } else {
+                "is not finished: it has no model.safetensors; run the same `ddl train` command again to \
+                 go on"
+            };
+            return Err(DdlError::run(run.path(), problem));
+        }
+        let device = ComputeDevice::open(device)?;
+        let network = load_network(&config, device, &run.model())?;
+        Ok(Self {
+            goals: GoalModel::of_run(run, config, device)?,
+            device,
+            network,
+            clearance: None,
+        })
+    }
+
+    /// The network, with the weights that the run kept after `epoch`.
+    pub(crate) fn network_of_epoch(
+        &self,
+        run: &RunDirectory,
+        epoch: usize,
+    ) -> Result<StarNetwork, DdlError> {
+        let network = load_network(self.config(), self.device, &run.epoch(epoch))?;
+        Ok(network.in_precision(self.network.precision())?)
+    }
+
+    /// Writes what it takes to forecast into one small file, which [`Ddl::load`] reads: both networks' weights in half precision and
+    /// the run's configuration. The expert library, which is trajectory data, is left out: goals are then proposed alone.
+    ///
+    /// # Errors
+    /// When all goals come from the expert library, a weight is out of the range of half precision, or the file cannot be written.
+    pub fn pack(&self, file: &Path) -> Result<(), DdlError> {
+        write_atomically(file, &packed_model::pack(&self.network, &self.goals)?)
+    }
+}
+
+fn load_network(
+    config: &RunConfig,
+    device: ComputeDevice,
+    weights: &Path,
+) -> Result<StarNetwork, DdlError> {
+    let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
+    load_parameters(network.parameters(), &config.network_origin(), weights)?;
+    Ok(network)
+}

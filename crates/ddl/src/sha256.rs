@@ -1,0 +1,13 @@
+//! A SHA-256 as it is written down.
+
+use sha2::{Digest as _, Sha256};
+use std::fmt::Write as _;
+
+/// The digest of what was fed to the hasher, in hexadecimal.
+pub(crate) fn in_hex(hasher: Sha256) -> String {
+    let digest = hasher.finalize();
+    digest.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}"); // writing to a string cannot fail
+        text
+    })
+}

@@ -1,0 +1,220 @@
+//! `ddl pack`: a packed model forecasts as its run does without the expert library.
+
+use ddl::eval::{Report, ResultRow};
+use ddl::{Ddl, DdlError, DeviceChoice, Forecaster as _, ModelSource, Protocol, Variant};
+use ddl_tests::{bits, crowd, folder_contents, own_tracks, program, tiny_model};
+use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
+use std::path::Path;
+
+const PACKED: &str = "DDL without an expert library";
+/// Metres by which results may differ through weights in half precision.
+const ROUNDING: f64 = 0.002;
+
+/// The one row of that name under `fair`.
+fn row<'a>(report: &'a Report, forecaster: &str) -> &'a ResultRow {
+    let mut rows = report.rows().iter().filter(|row| {
+        row.conditions.forecaster == forecaster && row.conditions.protocol == Protocol::Fair
+    });
+    let (Some(row), None) = (rows.next(), rows.next()) else {
+        panic!("not one row {forecaster}");
+    };
+    row
+}
+
+#[test]
+fn a_packed_run_is_measured_as_the_run_without_its_library() {
+    let folder = tiny_model::folder(Variant::Full);
+    let here = folder.path();
+    let run = |command: &str| program::run(here, command).succeeds();
+    let said = run("pack --model . --out packed.safetensors");
+    assert!(said.contains("packed.safetensors"), "{said}");
+
+    let measure = "--protocol fair --protocol single --test-walkers 120 --threads 1";
+    let _ = run(&format!("evaluate --model . {measure}"));
+    let before = folder_contents::read(here);
+    let printed = run(&format!("evaluate --model packed.safetensors {measure}"));
+    assert!(printed.contains(PACKED), "{printed}");
+    // A packed model has no place for results of its own.
+    assert_eq!(
+        folder_contents::differences(&before, &folder_contents::read(here)),
+        Vec::<String>::new()
+    );
+    let _ = run(&format!(
+        "evaluate --model packed.safetensors --out packed {measure}"
+    ));
+
+    let of_run = Report::load(&here.join("report.json")).unwrap();
+    let of_packed = Report::load(&here.join("packed/report.json")).unwrap();
+    assert!(here.join("packed/report.html").is_file());
+    let (expected, found) = (row(&of_run, PACKED), row(&of_packed, PACKED));
+    assert_eq!(found.scores.pedestrians, expected.scores.pedestrians);
+    assert!((found.scores.min_ade - expected.scores.min_ade).abs() < ROUNDING);
+    assert!((found.scores.min_fde - expected.scores.min_fde).abs() < ROUNDING);
+    // The library is what the rows of the run differ in: without that there would be nothing to compare.
+    let whole = row(&of_run, "DDL");
+    assert!((whole.scores.min_fde - expected.scores.min_fde).abs() > 1e-6);
+    for row in [found, expected] {
+        let recipe = row.conditions.recipe.as_deref().unwrap();
+        assert!(recipe.contains("no expert library"), "{recipe}");
+        assert_eq!(row.scores.stability.unwrap().certified, Some(1.0));
+    }
+    let recipe = whole.conditions.recipe.as_deref().unwrap();
+    assert!(recipe.contains("and retrieved"), "{recipe}");
+    let recipe = found.conditions.recipe.as_deref().unwrap();
+    assert!(recipe.contains("16 bits"), "{recipe}");
+    let lines = row(&of_packed, "straight line to the estimated goals");
+    let lines = lines.conditions.recipe.as_deref().unwrap();
+    assert!(lines.contains("no expert library"), "{lines}");
+    // The other way of walking is told of it too.
+    let _ = row(&of_packed, &format!("{PACKED}, with plain Euler steps"));
+}
+
+#[test]
+fn every_command_takes_a_packed_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    tiny_model::of(Variant::Full)
+        .model
+        .pack(&here.join("packed"))
+        .unwrap();
+    let tracks = own_tracks::csv(&own_tracks::three_people(8));
+    std::fs::write(here.join("tracks.csv"), tracks).unwrap();
+    let run = |command: &str| program::run(here, command).succeeds();
+    let forecasts = run("forecast --model packed tracks.csv");
+    assert_eq!(forecasts.lines().count(), 1 + 3 * 20 * 12);
+    let goals = run("goals --model packed tracks.csv");
+    assert_eq!(goals.lines().count(), 1 + 3 * 20);
+    let measured = run("goals --model packed --measure test --svg goals.svg --threads 1");
+    assert!(measured.contains("no expert library"), "{measured}");
+    assert!(here.join("goals.svg").is_file());
+    let info: serde_json::Value = serde_json::from_str(&run("info --model packed --json")).unwrap();
+    assert_eq!(
+        (&info["experts"], &info["config"]["data"]["fold"]),
+        (&0.into(), &crowd::FOLD.into())
+    );
+    assert!(info["parameters"].as_u64().unwrap() > 100_000);
+    let _ = run("pack --model packed --out again");
+    let read = |name: &str| std::fs::read(here.join(name)).unwrap();
+    assert!(
+        read("packed") == read("again"),
+        "packing a packed model changes it"
+    );
+}
+
+#[test]
+fn what_a_packed_model_cannot_do_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    tiny_model::of(Variant::Full)
+        .model
+        .pack(&here.join("packed"))
+        .unwrap();
+    let fails = |command: &str| program::run(here, command).fails();
+    let published = fails("evaluate --model packed --protocol published");
+    assert!(published.contains("no expert library"), "{published}");
+    let other_data = "evaluate --model zara1 --convention simulated";
+    assert_eq!(program::run(here, other_data).code, Some(2));
+    // A model is measured on no scene but the one left out.
+    for other_fold in [
+        "evaluate --model packed --fold plaza",
+        "evaluate --model zara1 --fold eth",
+    ] {
+        assert_eq!(program::run(here, other_fold).code, Some(2), "{other_fold}");
+    }
+    let retrieved = tempfile::tempdir().unwrap();
+    let mut request = tiny_model::request(crowd::FOLD, Variant::Full, 40, retrieved.path());
+    request.goals = ddl::GoalRecipe::retrieved(1);
+    tiny_model::train(&request, &crowd::dataset());
+    let run = retrieved.path().display();
+    let message = fails(&format!("pack --model {run} --out new"));
+    assert!(message.contains("--goals proposed"), "{message}");
+    assert!(!here.join("new").exists());
+}
+
+#[test]
+fn the_network_comes_back_in_every_variant() {
+    let windows = crowd::windows(3, 6);
+    for variant in [Variant::NoGoalShift, Variant::NoDynamics, Variant::Star] {
+        let tiny = tiny_model::of(variant);
+        let file = tiny.folder().join("packed");
+        tiny.model.pack(&file).unwrap();
+        let packed = Ddl::load(&file, DeviceChoice::Cpu).unwrap();
+        assert_eq!(packed.config(), tiny.model.config());
+        assert_eq!(packed.source(), &ModelSource::Packed(file));
+        let forecasts = packed.forecast_all(&windows).unwrap();
+        if variant == Variant::Star {
+            // It reads no goals: only the rounding of its weights is left.
+            let of_run = tiny.model.forecast_all(&windows).unwrap();
+            for (one, other) in of_run.iter().zip(&forecasts) {
+                for (i, k) in (0..one.pedestrians()).flat_map(|i| (0..20).map(move |k| (i, k))) {
+                    let pairs = one.hypothesis(i, k).iter().zip(other.hypothesis(i, k));
+                    for ([x, y], [u, v]) in pairs {
+                        assert!((x - u).hypot(y - v) < 0.02, "({x}, {y}), ({u}, {v})");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Loads what a file of these bytes holds, and says what it forecasts.
+fn forecast_bits(file: &Path) -> Result<Vec<Vec<u64>>, DdlError> {
+    let model = Ddl::load(file, DeviceChoice::Cpu)?;
+    Ok(bits::of_all(&model.forecast_all(&crowd::windows(1, 3))?))
+}
+
+/// What may happen to a file on its way: it ends early, or bits of it turn.
+fn damaged(whole: &[u8], length: Option<usize>, flips: &[(usize, u8)]) -> Vec<u8> {
+    let mut bytes = whole[..length.unwrap_or(whole.len())].to_vec();
+    for &(place, bit) in flips {
+        if let Some(byte) = bytes.get_mut(place) {
+            *byte ^= 1 << bit;
+        }
+    }
+    bytes
+}
+
+/// Wherever a file is damaged it is refused, with its name, or the damage made no difference (blanks at the end of its header).
+#[test]
+fn no_damage_goes_unnoticed() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("packed");
+    tiny_model::of(Variant::Full).model.pack(&file).unwrap();
+    let whole = std::fs::read(&file).unwrap();
+    let expected = forecast_bits(&file).unwrap();
+    let refused = |bytes: &[u8]| {
+        std::fs::write(&file, bytes).unwrap();
+        match forecast_bits(&file) {
+            Err(error) => assert!(error.to_string().contains("packed"), "{error}"),
+            Ok(found) => assert_eq!(found, expected),
+        }
+    };
+    let header = 8 + u64::from_le_bytes(whole[..8].try_into().unwrap()) as usize;
+    let last = whole.len() - 1;
+    for length in [0, 1, 7, 8, 9, header - 1, header, header + 1, last] {
+        refused(&whole[..length]);
+    }
+    refused(&[&whole[..], &[0]].concat());
+    // Every bit of the header's length and of its beginning.
+    for (place, bit) in (0..16).flat_map(|place| (0..8).map(move |bit| (place, bit))) {
+        refused(&damaged(&whole, None, &[(place, bit)]));
+    }
+    let place = prop_oneof![0..header, 0..last];
+    let flips = proptest::collection::vec((place, 0..8_u8), 1..4);
+    let lengths = proptest::option::weighted(0.2, prop_oneof![0..header, 0..last]);
+    let mut runner = TestRunner::new(ProptestConfig {
+        failure_persistence: None,
+        ..ProptestConfig::with_cases(256)
+    });
+    runner
+        .run(&(flips, lengths), |(flips, length)| {
+            refused(&damaged(&whole, length, &flips));
+            Ok(())
+        })
+        .unwrap();
+    // Weights alone are no model, and say so.
+    let tiny = tiny_model::folder(Variant::Full);
+    let error = forecast_bits(&tiny.path().join("model.safetensors")).unwrap_err();
+    assert!(error.to_string().contains("ddl pack"), "{error}");
+}
