@@ -118,6 +118,8 @@ pub struct TrainingConfig {
     pub rotate: bool,
     /// Mirror each batch at every other visit, drawn at random.
     pub mirror: bool,
+    /// Learn from the windows as if time ran backwards, too: for whoever prepares the windows.
+    pub reversed: bool,
     /// Train on at most about this many walkers an epoch, going round the whole set.
     pub walkers_per_epoch: Option<usize>,
     /// Seed of initial weights, batch order, rotation, noise and dropout.
@@ -137,6 +139,7 @@ impl TrainingConfig {
             batch_walkers: 256,
             rotate: true,
             mirror: false,
+            reversed: false,
             walkers_per_epoch: None,
             seed: 1,
         }
@@ -157,6 +160,7 @@ impl TrainingConfig {
             learning_rate_schedule: LearningRateSchedule::Cosine,
             batch_walkers: 64,
             mirror: true,
+            reversed: true,
             walkers_per_epoch: Some(5000),
             ..Self::published()
         }
