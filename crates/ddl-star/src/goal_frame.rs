@@ -146,6 +146,8 @@ mod tests {
         assert!(difference.double_value(&[]) < 1e-12);
 
         let [turned, factors, own, world] = [&turned, &factors, &frame.of_world(&u), &u].map(plain);
+        let single = |x: &Tensor| x.to_kind(Kind::Float);
+        let frame = GoalFrame::new(&single(&last), &single(&goals));
         for (i, each) in frame.numbers(3).into_iter().enumerate() {
             let factor = each.factor_to_world(std::array::from_fn(|j| factors[3 * i + j]));
             for (j, number) in factor.into_iter().enumerate() {

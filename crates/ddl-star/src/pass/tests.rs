@@ -7,7 +7,7 @@ use crate::config::{StarConfig, Variant};
 use crate::device::{ComputeDevice, DeviceChoice};
 use crate::emission::NoiseInput;
 use crate::flow::StepRule;
-use crate::loss::mean_squared_distance;
+use crate::loss::{mean_distance, mean_squared_distance};
 use crate::star::StarNetwork;
 use ddl_data::{Dataset, WINDOW, Window, WindowRule};
 
@@ -80,16 +80,65 @@ fn kernels_and_tape_give_the_gradients_of_libtorch() {
     }
 }
 
+/// The networks of all variants, and those in the walkers' own frames.
+fn configs() -> Vec<StarConfig> {
+    let own = [Variant::NoDynamics, Variant::Full].map(StarConfig::recommended);
+    let world = Variant::ALL.map(StarConfig::published);
+    let narrow = |config| StarConfig {
+        feed_forward_width: 96,
+        ..config
+    };
+    world.into_iter().chain(own).map(narrow).collect()
+}
+
+/// Loss and gradient of a whole walk, whose own positions are read again: through kernels and tape as libtorch alone has
+/// them in double precision.
+#[test]
+fn kernels_and_tape_give_the_gradients_of_a_walk() {
+    let cpu = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
+    for (config, scenes) in configs()
+        .iter()
+        .flat_map(|config| [(config, 0), (config, 1)])
+    {
+        let gradient = |kind: Kind, plain: bool| {
+            let network = StarNetwork::with_precision(config.clone(), 3, cpu, kind).unwrap();
+            let pass = if plain {
+                Pass::plain(Mode::Evaluate)
+            } else {
+                Pass::training(Mode::Evaluate, 0, network.parameters())
+            };
+            let batch = &batches(kind)[scenes];
+            let goals = batch.positions().narrow(0, WINDOW as i64 - 1, 1) + 0.3;
+            let steps = (12, StepRule::StableEuler);
+            let walk = network.roll_out_in(batch, &goals, &NoiseInput::Expected, steps, &pass);
+            let truth = batch.positions().narrow(0, 8, 12);
+            let loss = mean_distance(&walk.positions.squeeze_dim(1), &truth);
+            let gradient = pass.gradient(&loss, network.parameters()).unwrap();
+            (loss.double_value(&[]), gradient.to_kind(Kind::Double))
+        };
+        let (loss, ours) = gradient(Kind::Float, false);
+        let (known_loss, known) = gradient(Kind::Double, true);
+        let name = format!("{} {:?}", config.variant, config.frame);
+        assert!(
+            (loss / known_loss - 1.0).abs() < 1e-4,
+            "{name}: {loss} {known_loss}"
+        );
+        let difference = (&ours - &known).norm().double_value(&[]);
+        let size = known.norm().double_value(&[]);
+        assert!(
+            size > 1e-3 && difference < 5e-3 * size,
+            "{name}: {difference} of {size}"
+        );
+    }
+}
+
 /// Positions and factors of forecasts, with several goals or several noise vectors, by kernels as libtorch has them in
 /// double precision; kernels see that weights have changed.
 #[test]
 fn kernels_give_the_forecasts_of_libtorch() {
     let cpu = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
-    for variant in Variant::ALL {
-        let config = StarConfig {
-            feed_forward_width: 96,
-            ..StarConfig::published(variant)
-        };
+    for config in configs() {
+        let variant = config.variant;
         let of = |kind: Kind, several_goals: bool| -> Vec<Tensor> {
             let network = StarNetwork::with_precision(config.clone(), 3, cpu, kind).unwrap();
             assert!(!network.pass(Mode::Evaluate).has_kernels(), "{kind:?}");
