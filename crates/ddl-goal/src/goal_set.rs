@@ -3,6 +3,9 @@
 use crate::expert::Expert;
 use crate::points::squared_distance;
 
+/// Metres.
+const SMALLEST_DISTANCE: f64 = 1e-4;
+
 /// Possible goals of one walker with their weights, most likely first.
 ///
 /// Goals of equal weight are ordered by their first, then their second coordinate, so that equal inputs give equal bytes.
@@ -53,6 +56,54 @@ impl GoalSet {
         0
     }
 
+    /// The one goal for who may have only one: it minimises the mean distance to the goals under their weights raised to the
+    /// power [`SHARPNESS`](Self::SHARPNESS), the geometric median. No goal of the set need be there.
+    ///
+    /// # Numerics
+    /// Weiszfeld's iteration from the weighted mean, until a step is below 0.1 mm, at most 100 steps; a goal nearer than that counts as
+    /// 0.1 mm away.
+    ///
+    /// # References
+    /// E. Weiszfeld, "Sur le point pour lequel la somme des distances de n points donnés est minimum", 1937.
+    pub fn central(&self) -> [f64; 2] {
+        let sharpened: Vec<f64> = self
+            .weights
+            .iter()
+            .map(|weight| weight.powf(Self::SHARPNESS))
+            .collect();
+        let mean = |shares: &dyn Fn(usize) -> f64| {
+            let mut sums = [0.0; 3];
+            for (k, goal) in self.goals.iter().enumerate() {
+                let share = shares(k);
+                sums[0] += share * goal[0];
+                sums[1] += share * goal[1];
+                sums[2] += share;
+            }
+            [sums[0] / sums[2], sums[1] / sums[2]]
+        };
+        let mut centre = mean(&|k| sharpened[k]);
+        for _ in 0..100 {
+            let off = |k: usize| squared_distance(self.goals[k], centre).sqrt();
+            let next = mean(&|k| sharpened[k] / off(k).max(SMALLEST_DISTANCE));
+            let step = squared_distance(next, centre).sqrt();
+            centre = next;
+            if step < SMALLEST_DISTANCE {
+                break;
+            }
+        }
+        centre
+    }
+
+    /// The set of the [`central`](Self::central) goal alone.
+    #[must_use]
+    pub fn only_central(&self) -> Self {
+        Self::new(vec![self.central()], vec![1.0], self.experts.clone())
+    }
+
+    /// Power of the weights in [`central`](Self::central), chosen on validation splits of training recordings
+    /// (`docs/accuracy.md`): whoever stands is likelier to stay than the mean of all ways to leave says.
+    pub const SHARPNESS: f64 = 1.5;
+
     /// Index of the goal nearest to `point` (m), the first of equally near ones.
     ///
     /// With the true end as `point` this is the oracle choice of the published protocol.
@@ -69,5 +120,57 @@ impl GoalSet {
     /// In [`crate::RetrievalFrame::Heading`] the first 100 of them.
     pub fn experts(&self) -> &[Expert] {
         &self.experts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn set(goals: &[[f64; 2]], weights: &[f64]) -> GoalSet {
+        GoalSet::new(goals.to_vec(), weights.to_vec(), Vec::new())
+    }
+
+    /// Whoever has more than half of the sharpened weight is the geometric median itself.
+    #[test]
+    fn a_goal_with_most_of_the_weight_is_the_central_one() {
+        let central = set(&[[3.0, 1.0], [0.0, 0.0], [5.0, 7.0]], &[0.6, 0.2, 0.2]).central();
+        assert!(
+            squared_distance(central, [3.0, 1.0]).sqrt() < 1e-3,
+            "{central:?}"
+        );
+    }
+
+    /// The Fermat point of a triangle sees its sides under 120 degrees: of an equilateral one it is the centre.
+    #[test]
+    fn equal_goals_of_a_triangle_meet_at_its_fermat_point() {
+        let corners = [[0.0, 0.0], [2.0, 0.0], [1.0, 3.0_f64.sqrt()]];
+        let central = set(&corners, &[1.0 / 3.0; 3]).central();
+        assert!(squared_distance(central, [1.0, 1.0 / 3.0_f64.sqrt()]).sqrt() < 1e-3);
+    }
+
+    proptest! {
+        /// No goal of the set, nor their mean, is nearer to all of them together.
+        #[test]
+        fn nothing_is_more_central(
+            goals in prop::collection::vec((prop::array::uniform2(-9.0..9.0_f64), 0.01..1.0_f64), 1..20),
+        ) {
+            let total: f64 = goals.iter().map(|(_, weight)| weight).sum();
+            let (places, weights): (Vec<_>, Vec<_>) =
+                goals.into_iter().map(|(goal, weight)| (goal, weight / total)).unzip();
+            let set = set(&places, &weights);
+            let cost = |point: [f64; 2]| -> f64 {
+                let each = set.goals().iter().zip(set.weights());
+                each.map(|(&goal, weight)| {
+                    weight.powf(GoalSet::SHARPNESS) * squared_distance(goal, point).sqrt()
+                })
+                .sum()
+            };
+            let central = cost(set.central());
+            for &goal in set.goals() {
+                prop_assert!(central <= cost(goal) * (1.0 + 1e-3) + 1e-3);
+            }
+        }
     }
 }

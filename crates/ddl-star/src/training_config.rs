@@ -118,8 +118,6 @@ pub struct TrainingConfig {
     pub rotate: bool,
     /// Mirror each batch at every other visit, drawn at random.
     pub mirror: bool,
-    /// Learn from the windows as if time ran backwards, too: for whoever prepares the windows.
-    pub reversed: bool,
     /// Train on at most about this many walkers an epoch, going round the whole set.
     pub walkers_per_epoch: Option<usize>,
     /// Seed of initial weights, batch order, rotation, noise and dropout.
@@ -139,7 +137,6 @@ impl TrainingConfig {
             batch_walkers: 256,
             rotate: true,
             mirror: false,
-            reversed: false,
             walkers_per_epoch: None,
             seed: 1,
         }
@@ -160,7 +157,6 @@ impl TrainingConfig {
             learning_rate_schedule: LearningRateSchedule::Cosine,
             batch_walkers: 64,
             mirror: true,
-            reversed: true,
             walkers_per_epoch: Some(5000),
             ..Self::published()
         }

@@ -11,7 +11,7 @@ use crate::test_set::TestSet;
 use ddl_data::{Dataset, Window};
 use ddl_eval::baseline::WeightedGoals;
 use ddl_eval::{Forecast, ForecastError, Forecaster as _, Moment, Protocol, ResultRow, gallery};
-use ddl_goal::QuerySpan;
+use ddl_goal::{GoalSet, QuerySpan};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -112,6 +112,14 @@ struct Forecasts {
     /// One list a manner.
     model: Vec<Vec<Forecast>>,
     lines: Vec<Forecast>,
+    /// The straight line to the one goal that stands for them, for who may have only one forecast.
+    line: Vec<Forecast>,
+}
+
+/// The one goal that stands for each walker's.
+fn only_central(goals: &[Vec<GoalSet>]) -> Vec<Vec<GoalSet>> {
+    let only = |sets: &Vec<GoalSet>| sets.iter().map(GoalSet::only_central).collect();
+    goals.iter().map(only).collect()
 }
 
 struct Measuring<'a, O> {
@@ -138,7 +146,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         };
         let model = self.model;
         let manners = Manner::all(model, &self.request.protocols);
-        let goal = "the estimated goals";
+        let (goal, central) = ("the estimated goals", "the central goal");
         // Its library is copied: only where it is asked for.
         let given = |manner: &Manner| manner.goals == GivenGoals::Published;
         let published = if manners.iter().any(given) {
@@ -153,6 +161,9 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let forecasts = self.forecast(first, manners.len(), |windows| {
             let goals = model.goal_model().goals(windows)?;
             let towards = |manner: &Manner| {
+                if manner.goals == GivenGoals::Central {
+                    return model.forecast_central(windows, &goals, manner.gait);
+                }
                 let goals = match (manner.goals, &published) {
                     (GivenGoals::WithoutLibrary, _) => {
                         model.goal_model().goals_without_library(windows)?
@@ -167,6 +178,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             Ok(Forecasts {
                 model: manners.iter().map(towards).collect::<Result<_, _>>()?,
                 lines: straight_lines(goal, windows, &goals::weighted(&goals)?)?,
+                line: straight_lines(central, windows, &goals::weighted(&only_central(&goals))?)?,
             })
         })?;
         let mut rows = Vec::new();
@@ -185,7 +197,11 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                     ));
                 }
             }
-            let lines = admit(&forecasts.lines, "straight line")?;
+            let (goal, lines) = match protocol {
+                Protocol::Single => (central, &forecasts.line),
+                _ => (goal, &forecasts.lines),
+            };
+            let lines = admit(lines, "straight line")?;
             let recipe = format!("goals {}", model.goal_model().words());
             forecasted.push(Forecasted::lines_to(goal, recipe, lines));
             rows.extend(self.rows(protocol, "last epoch").of(&forecasted)?);
@@ -248,6 +264,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             Ok(Forecasts {
                 model: vec![best.forecast_towards(windows, &goals)?],
                 lines,
+                line: Vec::new(),
             })
         })?;
         let words = model.goal_model().words();
@@ -273,6 +290,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let mut all = Forecasts {
             model: vec![Vec::new(); manners],
             lines: Vec::new(),
+            line: Vec::new(),
         };
         while all.lines.len() < self.test.windows.len() {
             let rest = &self.test.windows[all.lines.len()..];
@@ -289,6 +307,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 all.extend(some);
             }
             all.lines.extend(some.lines);
+            all.line.extend(some.line);
             self.report(rest[..count].iter().map(Window::len).sum(), protocol)?;
         }
         Ok(all)

@@ -19,6 +19,8 @@ pub(crate) struct Manner {
 pub(crate) enum GivenGoals {
     /// Its own.
     Own,
+    /// The one that stands for its own, for who may have only one.
+    Central,
     /// Those it would have without its expert library.
     WithoutLibrary,
     /// Those of the published estimator, without its look at the first future frame.
@@ -30,7 +32,9 @@ impl Manner {
     pub(crate) fn goal_words(&self, model: &Ddl) -> String {
         match self.goals {
             // Of the published goals the name of the row tells.
-            GivenGoals::Own | GivenGoals::Published => model.goal_model().words(),
+            GivenGoals::Own | GivenGoals::Central | GivenGoals::Published => {
+                model.goal_model().words()
+            }
             GivenGoals::WithoutLibrary => model.goal_model().recipe().words_without_library(),
         }
     }
@@ -41,12 +45,32 @@ impl Manner {
     pub(crate) fn all(model: &Ddl, asked: &[Protocol]) -> Vec<Self> {
         let asked = |protocol| asked.contains(&protocol);
         let variant = model.config().star.variant;
-        let mut manners = vec![Self {
-            goals: GivenGoals::Own,
-            gait: Gait::Stable(None),
-            change: None,
-            protocols: &[Protocol::Fair, Protocol::Single],
-        }];
+        let mut manners = Vec::new();
+        let mut as_it_walks = |gait: Gait, change: Option<String>| {
+            if asked(Protocol::Fair) {
+                manners.push(Self {
+                    goals: GivenGoals::Own,
+                    gait,
+                    change: change.clone(),
+                    protocols: &[Protocol::Fair],
+                });
+            }
+            if asked(Protocol::Single) {
+                manners.push(Self {
+                    goals: GivenGoals::Central,
+                    gait,
+                    change,
+                    protocols: &[Protocol::Single],
+                });
+            }
+        };
+        as_it_walks(Gait::Stable(None), None);
+        if let Some(clearance) = model.clearance() {
+            as_it_walks(
+                Gait::Stable(Some(clearance)),
+                Some(format!("minding others within {} m", clearance.distance())),
+            );
+        }
         if asked(Protocol::Fair) && variant.dynamics() {
             manners.push(Self {
                 goals: GivenGoals::Own,
@@ -70,14 +94,6 @@ impl Manner {
                 gait: Gait::Stable(None),
                 change: Some("with the published goals, all 20 kept".to_owned()),
                 protocols: &[Protocol::Fair],
-            });
-        }
-        if let Some(clearance) = model.clearance() {
-            manners.push(Self {
-                goals: GivenGoals::Own,
-                gait: Gait::Stable(Some(clearance)),
-                change: Some(format!("minding others within {} m", clearance.distance())),
-                protocols: &[Protocol::Fair, Protocol::Single],
             });
         }
         manners

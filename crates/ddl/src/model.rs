@@ -151,6 +151,30 @@ impl Ddl {
             .collect()
     }
 
+    /// One forecast a pedestrian, for who may have only one: the walk to the point with the least expected distance to its
+    /// goals ([`GoalSet::central`]); certified as those to the goals are. For the variant without goals, its noise samples.
+    ///
+    /// # Errors
+    /// As [`forecast_all`](Forecaster::forecast_all).
+    pub fn forecast_one(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
+        let goals = self.goals.goals(windows)?;
+        self.forecast_central(windows, &goals, Gait::Stable(self.clearance))
+    }
+
+    /// [`forecast_one`](Self::forecast_one) for goals that are known.
+    pub(crate) fn forecast_central(
+        &self,
+        windows: &[Window],
+        sets: &[Vec<GoalSet>],
+        gait: Gait,
+    ) -> Result<Vec<Forecast>, ForecastError> {
+        let central = sets
+            .iter()
+            .map(|sets| sets.iter().map(GoalSet::only_central).collect())
+            .collect();
+        self.forecast_towards(windows, central, gait)
+    }
+
     /// One hypothesis a goal for every pedestrian, with the goal's weight; for the variant without
     /// goals, one a noise vector, all equally likely.
     pub(crate) fn forecast_towards(

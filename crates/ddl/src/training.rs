@@ -167,12 +167,7 @@ pub fn train(
         Objective::NextStep => Trainer::new(network, windows, config.training.clone())?,
         Objective::Walk => {
             let goals = GoalModel::of_run(run.clone(), config.clone(), device)?;
-            let mut with_future: Vec<Window> =
-                windows.into_iter().filter(Window::has_future).collect();
-            if config.training.reversed {
-                let reversed: Vec<Window> = with_future.iter().map(Window::reversed).collect();
-                with_future.extend(reversed);
-            }
+            let with_future: Vec<Window> = windows.into_iter().filter(Window::has_future).collect();
             let lessons = goals.lessons(&with_future)?;
             Trainer::towards(network, with_future, lessons, config.training.clone())?
         }
