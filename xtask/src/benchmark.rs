@@ -13,13 +13,15 @@ mod local;
 mod plan;
 mod profile;
 mod progress;
+mod recipe;
 mod record;
 
 pub(crate) use executor::{End, Executor, Stop};
 pub(crate) use folds::fold_names;
 pub(crate) use local::Local;
 pub(crate) use plan::{PROTOCOLS, PUBLISHED_PROTOCOL, Plan, Settings, Task, VARIANTS};
-#[cfg(test)]
-pub(crate) use profile::PUBLISHED;
 pub(crate) use profile::Profile;
 pub(crate) use progress::{Display, human};
+pub(crate) use recipe::RecipeName;
+#[cfg(test)]
+pub(crate) use recipe::{PUBLISHED, RECOMMENDED};

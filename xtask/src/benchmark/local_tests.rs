@@ -118,7 +118,7 @@ fn plan(folds: &[&str]) -> Plan {
         proposal_steps: None,
         test_walkers: None,
         protocols: vec!["fair".to_owned()],
-        recipe: crate::benchmark::PUBLISHED,
+        recipe: crate::benchmark::RECOMMENDED,
     };
     let folds: Vec<String> = folds.iter().map(|&fold| fold.to_owned()).collect();
     Plan::new(settings, &folds, &["full".to_owned()], &[1]).unwrap()

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::whole_file;
 
 use super::cost::Cost;
-use super::profile::Recipe;
+use super::recipe::Recipe;
 
 /// The published method and what is left of it without each of its two ideas.
 pub(crate) const VARIANTS: [&str; 4] = ["full", "no-goal-shift", "no-dynamics", "star"];
@@ -21,7 +21,7 @@ pub(crate) const PROTOCOLS: [&str; 3] = [PUBLISHED_PROTOCOL, "fair", "single"];
 /// The protocol that chooses with the truth, and for which the weights of many epochs are kept.
 pub(crate) const PUBLISHED_PROTOCOL: &str = "published";
 
-/// Layout of `plan.json`; 3: `single` scores another hypothesis than before, and plans name their protocols.
+/// Layout of `plan.json`; 3: `single` scores another hypothesis than before, and plans name their protocols and recipe.
 const FORMAT: u32 = 3;
 
 /// Everything to do, independent of who does it.
@@ -49,7 +49,7 @@ pub(crate) struct Settings {
     pub(crate) device: String,
     pub(crate) cargo_profile: String,
     pub(crate) epochs: u32,
-    /// Walkers trained on in each epoch; none is all.
+    /// Walkers trained on in each epoch; none is as many as the recipe says.
     pub(crate) train_walkers: Option<u32>,
     /// Batches that the proposal network is trained on; none is the program's default.
     pub(crate) proposal_steps: Option<u32>,
@@ -57,6 +57,7 @@ pub(crate) struct Settings {
     pub(crate) test_walkers: Option<u32>,
     /// Protocols scored under, each once, in the order of [`PROTOCOLS`].
     pub(crate) protocols: Vec<String>,
+    /// What every model is trained by.
     pub(crate) recipe: Recipe,
 }
 
@@ -115,6 +116,7 @@ impl Plan {
         for fold in folds {
             let cost = Cost::of(
                 fold,
+                settings.recipe.name,
                 settings.epochs,
                 settings.train_walkers,
                 settings.test_walkers,
@@ -170,9 +172,12 @@ impl Plan {
             push("--proposal-steps", steps.to_string());
         }
         let recipe = &self.settings.recipe;
-        push("--batch-walkers", recipe.batch_walkers.to_string());
-        push("--learning-rate", recipe.learning_rate.to_string());
-        push("--learning-rate-schedule", recipe.schedule.to_string());
+        push("--recipe", recipe.name.to_string());
+        if let Some(optimiser) = &recipe.optimiser {
+            push("--batch-walkers", optimiser.batch_walkers.to_string());
+            push("--learning-rate", optimiser.learning_rate.to_string());
+            push("--learning-rate-schedule", optimiser.schedule.to_string());
+        }
         push("--out", task.run_folder(out).display().to_string());
         self.common_arguments(threads, &mut push);
         if !self.settings.chooses_epochs() {

@@ -1,6 +1,7 @@
 //! What a plan holds, says to the program, and refuses.
 
 use super::*;
+use crate::benchmark::{PUBLISHED, RECOMMENDED};
 
 pub(crate) fn settings() -> Settings {
     Settings {
@@ -14,7 +15,7 @@ pub(crate) fn settings() -> Settings {
         proposal_steps: Some(30),
         test_walkers: None,
         protocols: PROTOCOLS.map(str::to_owned).to_vec(),
-        recipe: crate::benchmark::PUBLISHED,
+        recipe: PUBLISHED,
     }
 }
 
@@ -68,9 +69,27 @@ fn the_arguments_are_those_the_program_knows() {
     assert_eq!(
         plan.train_arguments(&plan.tasks[0], out, 1).join(" "),
         "train --convention star --data /recordings --fold eth --variant full --seed 7 \
-         --epochs 4 --train-walkers 800 --proposal-steps 30 --batch-walkers 256 --learning-rate 0.0015 \
-         --learning-rate-schedule constant --out runs/x/eth-full-7/run --device cpu --threads 1 \
+         --epochs 4 --train-walkers 800 --proposal-steps 30 --recipe published --batch-walkers 256 \
+         --learning-rate 0.0015 --learning-rate-schedule constant --out runs/x/eth-full-7/run --device cpu --threads 1 \
          --progress json"
+    );
+    // Of the recommended recipe nothing is changed that nobody asked to have changed.
+    let recommended = Settings {
+        recipe: RECOMMENDED,
+        train_walkers: None,
+        proposal_steps: None,
+        protocols: vec!["fair".to_owned(), "single".to_owned()],
+        ..settings()
+    };
+    let folds = ["eth".to_owned()];
+    let recommended = Plan::new(recommended, &folds, &["full".to_owned()], &[7]).unwrap();
+    assert_eq!(
+        recommended
+            .train_arguments(&recommended.tasks[0], out, 1)
+            .join(" "),
+        "train --convention star --data /recordings --fold eth --variant full --seed 7 --epochs 4 \
+         --recipe recommended --out runs/x/eth-full-7/run --device cpu --threads 1 --progress json \
+         --last-epoch-only"
     );
     plan.settings.data = None;
     assert_eq!(
@@ -93,6 +112,7 @@ fn published_is_neither_kept_nor_scored_unless_asked_for() {
     let train = |plan: &Plan| plan.train_arguments(&plan.tasks[0], out, 1).join(" ");
     assert!(!train(&plan).contains("--last-epoch-only"));
     plan.settings.protocols = vec!["fair".to_owned()];
+    plan.settings.recipe = RECOMMENDED;
     assert!(train(&plan).ends_with(" --last-epoch-only"));
     let evaluate = plan.evaluate_arguments(&plan.tasks[0], out, 2).join(" ");
     assert_eq!(

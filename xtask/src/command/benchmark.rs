@@ -17,8 +17,8 @@ use clap::Args;
 use self::side_by_side::SideBySide;
 use super::set_up;
 use crate::benchmark::{
-    Display, End, Executor, Local, PROTOCOLS, Plan, Profile, Settings, Stop, VARIANTS, fold_names,
-    human,
+    Display, End, Executor, Local, PROTOCOLS, Plan, Profile, RecipeName, Settings, Stop, VARIANTS,
+    fold_names, human,
 };
 use crate::data::{self, Chosen, Convention};
 use crate::workspace::{Workspace, absolute};
@@ -28,8 +28,9 @@ const INTERRUPTED: u8 = 130;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// How much work: smoke (a minute), quick (minutes), evening (60 epochs: an hour or two),
-    /// paper (the paper's 200 epochs: some hours, or one GPU)
+    /// How much work: smoke (a minute), quick (some minutes), evening or paper (all there is: about a quarter of an hour on two
+    /// cores); with the protocol published smoke (a minute), quick (minutes), evening (60 epochs: an hour or two), paper (the
+    /// paper's 200 epochs: some hours, or one GPU)
     #[arg(long, default_value = "quick")]
     profile: Profile,
     /// star, social-gan or simulated [default: the first of these that can be had]
@@ -49,9 +50,14 @@ pub(crate) struct Arguments {
         default_value = "full"
     )]
     variants: Vec<String>,
-    /// Protocols to score under: published, fair, single; without published the last epoch alone is kept
-    /// [default: all three]
-    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    /// Protocols to score under: published, fair, single; with published every model is trained by the paper's recipe, without
+    /// it by the recommended one, and the last epoch alone is kept
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "NAMES",
+        default_value = "fair,single"
+    )]
     protocol: Vec<String>,
     /// Seeds; the report gives means and standard deviations over them
     #[arg(
@@ -67,7 +73,8 @@ pub(crate) struct Arguments {
     /// auto, cpu or cuda
     #[arg(long, default_value = "cpu", value_parser = ["auto", "cpu", "cuda"])]
     device: String,
-    /// Folder of the results; one that is there is gone on with [default: `runs/CONVENTION-PROFILE`]
+    /// Folder of the results; one that is there is gone on with [default: `runs/CONVENTION-PROFILE`,
+    /// and `runs/CONVENTION-PROFILE-published` with the protocol published]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Program `ddl` to run, built already: needs no Rust and no checkout but its folder `datasets` [default: build it]
@@ -76,7 +83,7 @@ pub(crate) struct Arguments {
     /// Cargo profile the program is built with
     #[arg(long, default_value = "release", value_parser = ["release", "dev"])]
     cargo_profile: String,
-    /// Walkers trained on in each epoch [default: the profile's]
+    /// Walkers trained on in each epoch [default: the profile's, or else the recipe's]
     #[arg(long, value_name = "N")]
     train_walkers: Option<u32>,
     /// Test walkers scored [default: the profile's]
@@ -85,7 +92,8 @@ pub(crate) struct Arguments {
     /// Training epochs [default: the profile's]
     #[arg(long, value_name = "N")]
     epochs: Option<u32>,
-    /// Also write the report to docs/benchmark.md, with what made it
+    /// Also write the report to docs/benchmark.md, with what made it; profiles but paper, conventions but star and the paper's
+    /// recipe have pages of their own, named after them
     #[arg(long)]
     publish: bool,
 }
@@ -199,6 +207,8 @@ impl Arguments {
             check_names("variant", &self.variants, &all)?;
             self.variants.clone()
         };
+        let protocols = protocols(&self.protocol)?;
+        let training = self.profile.training(RecipeName::of_protocols(&protocols));
         let settings = Settings {
             profile: self.profile.name.to_owned(),
             convention: chosen.convention.name().to_owned(),
@@ -208,24 +218,28 @@ impl Arguments {
                 Some(_) => "given program".to_owned(),
                 None => self.cargo_profile.clone(),
             },
-            epochs: self.epochs.unwrap_or(self.profile.epochs),
-            train_walkers: self.train_walkers.or(self.profile.train_walkers),
+            epochs: self.epochs.unwrap_or(training.epochs),
+            train_walkers: self.train_walkers.or(training.walkers),
             proposal_steps: self.profile.proposal_steps,
             test_walkers: self.test_walkers.or(self.profile.test_walkers),
-            protocols: protocols(&self.protocol)?,
-            recipe: self.profile.recipe.clone(),
+            protocols,
+            recipe: training.recipe.clone(),
         };
         Plan::new(settings, &folds, &variants, &self.seeds)
     }
 
     fn out_folder(&self, workspace: &Workspace, plan: &Plan) -> Result<PathBuf> {
-        match &self.out {
-            Some(folder) => absolute(folder),
-            None => Ok(workspace.path("runs").join(format!(
-                "{}-{}",
-                plan.settings.convention, plan.settings.profile
-            ))),
+        if let Some(folder) = &self.out {
+            return absolute(folder);
         }
+        let Settings {
+            convention,
+            profile,
+            recipe,
+            ..
+        } = &plan.settings;
+        let name = format!("{convention}-{profile}{}", recipe.name.suffix());
+        Ok(workspace.path("runs").join(name))
     }
 }
 
@@ -251,8 +265,10 @@ fn work_off(executor: &dyn Executor, plan: &Plan, out: &Path) -> Result<Vec<End>
 fn protocols(asked: &[String]) -> Result<Vec<String>> {
     let known = PROTOCOLS.map(str::to_owned);
     check_names("protocol", asked, &known)?;
-    let wanted = |name: &String| asked.is_empty() || asked.contains(name);
-    Ok(known.into_iter().filter(wanted).collect())
+    Ok(known
+        .into_iter()
+        .filter(|name| asked.contains(name))
+        .collect())
 }
 
 fn check_names(what: &str, asked: &[String], known: &[String]) -> Result<()> {
@@ -265,8 +281,8 @@ fn check_names(what: &str, asked: &[String], known: &[String]) -> Result<()> {
     }
 }
 
-/// The benchmark as `ci` runs it: small, into a folder of its own, from the start, and without a
-/// second build of everything.
+/// The benchmark as `ci` runs it: small, under every protocol, into a folder of its own, from the start, and
+/// without a second build of everything.
 pub(super) fn smoke(workspace: &Workspace) -> Result<()> {
     let out = workspace.path("target/ci-benchmark");
     if out.exists() {
@@ -278,7 +294,7 @@ pub(super) fn smoke(workspace: &Workspace) -> Result<()> {
         data: None,
         folds: Vec::new(),
         variants: vec!["full".to_owned()],
-        protocol: Vec::new(),
+        protocol: PROTOCOLS.map(str::to_owned).to_vec(),
         seeds: vec![1],
         jobs: None,
         device: "cpu".to_owned(),

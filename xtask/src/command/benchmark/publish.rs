@@ -6,12 +6,13 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 
-use crate::benchmark::{Plan, human};
+use crate::benchmark::{Plan, RecipeName, Settings, human};
 use crate::whole_file;
 use crate::workspace::Workspace;
 
-/// Where the results of a profile in a data convention are shown: every pair has a page of its own.
-fn file(profile: &str, convention: &str) -> String {
+/// Where results are shown: every data convention, recipe and profile has a page of its own, and the headline is the one whose
+/// name says nothing of them.
+fn file(settings: &Settings) -> String {
     let named = |name: &str, usual: &str| {
         if name == usual {
             String::new()
@@ -20,9 +21,10 @@ fn file(profile: &str, convention: &str) -> String {
         }
     };
     format!(
-        "docs/benchmark{}{}.md",
-        named(convention, "star"),
-        named(profile, "quick")
+        "docs/benchmark{}{}{}.md",
+        named(&settings.convention, "star"),
+        settings.recipe.name.suffix(),
+        named(&settings.profile, "paper")
     )
 }
 
@@ -35,7 +37,7 @@ pub(super) fn publish(
 ) -> Result<()> {
     let report = fs::read_to_string(out.join("report.md")).context("the report cannot be read")?;
     let text = page(&report, plan, &workspace.commit(), &workspace.now(), took);
-    let file = file(&plan.settings.profile, &plan.settings.convention);
+    let file = file(&plan.settings);
     whole_file::write(&workspace.path(&file), text.as_bytes())?;
     println!("published: {file}");
     Ok(())
@@ -54,8 +56,17 @@ fn page(report: &str, plan: &Plan, commit: &str, time: &str, took: Duration) -> 
         .map_or(0, |(end, _)| end.min(report.len()));
     let (title, body) = report.split_at(end_of_title);
     let settings = &plan.settings;
-    let limit =
-        |walkers: Option<u32>| walkers.map_or("all".to_owned(), |walkers| walkers.to_string());
+    let or = |walkers: Option<u32>, otherwise: &str| {
+        walkers.map_or(otherwise.to_owned(), |walkers| walkers.to_string())
+    };
+    let of_the_recipe = "the recipe's";
+    let optimiser = match &settings.recipe.optimiser {
+        Some(optimiser) => format!(
+            "{} / {} ({})",
+            optimiser.batch_walkers, optimiser.learning_rate, optimiser.schedule
+        ),
+        None => of_the_recipe.to_owned(),
+    };
     let mut seeds: Vec<u64> = plan.tasks.iter().map(|task| task.seed).collect();
     seeds.sort_unstable();
     seeds.dedup();
@@ -67,9 +78,10 @@ fn page(report: &str, plan: &Plan, commit: &str, time: &str, took: Duration) -> 
          | command | `{}` |\n\
          | data convention | {} |\n\
          | seeds | {} |\n\
+         | recipe | {} |\n\
          | epochs | {} |\n\
          | walkers trained on in an epoch / scored | {} / {} |\n\
-         | walkers a batch / largest step of Adam | {} / {} ({}) |\n\
+         | walkers a batch / largest step of Adam | {optimiser} |\n\
          | device | {} |\n\
          | commit | {commit} |\n\
          | time | {time}, took {} |\n\n{}\n",
@@ -77,12 +89,16 @@ fn page(report: &str, plan: &Plan, commit: &str, time: &str, took: Duration) -> 
         command(plan, &seeds),
         settings.convention,
         seeds.join(", "),
+        settings.recipe.name,
         settings.epochs,
-        limit(settings.train_walkers),
-        limit(settings.test_walkers),
-        settings.recipe.batch_walkers,
-        settings.recipe.learning_rate,
-        settings.recipe.schedule,
+        or(
+            settings.train_walkers,
+            match settings.recipe.name {
+                RecipeName::Recommended => of_the_recipe,
+                RecipeName::Published => "all",
+            }
+        ),
+        or(settings.test_walkers, "all"),
         settings.device,
         human(took),
         body.trim()
@@ -124,18 +140,10 @@ fn command(plan: &Plan, seeds: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::benchmark::Settings;
+    use crate::benchmark::{PUBLISHED, RECOMMENDED};
 
-    #[test]
-    fn a_profile_and_a_convention_have_a_page_of_their_own() {
-        assert_eq!(file("quick", "star"), "docs/benchmark.md");
-        assert_eq!(file("evening", "star"), "docs/benchmark-evening.md");
-        assert_eq!(file("quick", "social-gan"), "docs/benchmark-social-gan.md");
-    }
-
-    #[test]
-    fn the_page_says_what_made_it_and_names_no_folder() {
-        let settings = Settings {
+    fn settings() -> Settings {
+        Settings {
             profile: "quick".to_owned(),
             convention: "star".to_owned(),
             data: Some("/secret/folder".into()),
@@ -146,41 +154,112 @@ mod tests {
             proposal_steps: None,
             test_walkers: None,
             protocols: vec!["fair".to_owned(), "single".to_owned()],
-            recipe: crate::benchmark::PUBLISHED,
-        };
+            recipe: RECOMMENDED,
+        }
+    }
+
+    #[test]
+    fn a_convention_a_recipe_and_a_profile_have_a_page_of_their_own() {
+        for (convention, recipe, profile, expected) in [
+            ("star", RECOMMENDED, "paper", "docs/benchmark.md"),
+            ("star", RECOMMENDED, "quick", "docs/benchmark-quick.md"),
+            ("star", PUBLISHED, "paper", "docs/benchmark-published.md"),
+            (
+                "star",
+                PUBLISHED,
+                "quick",
+                "docs/benchmark-published-quick.md",
+            ),
+            (
+                "social-gan",
+                RECOMMENDED,
+                "paper",
+                "docs/benchmark-social-gan.md",
+            ),
+            (
+                "simulated",
+                PUBLISHED,
+                "smoke",
+                "docs/benchmark-simulated-published-smoke.md",
+            ),
+        ] {
+            let settings = Settings {
+                convention: convention.to_owned(),
+                profile: profile.to_owned(),
+                recipe,
+                ..settings()
+            };
+            assert_eq!(file(&settings), expected);
+        }
+    }
+
+    fn made(settings: Settings) -> String {
         let names = |names: &[&str]| {
             names
                 .iter()
                 .map(|&name| name.to_owned())
                 .collect::<Vec<_>>()
         };
-        let plan = Plan::new(
-            settings,
-            &names(&["hotel", "eth"]),
-            &names(&["full"]),
-            &[2, 1],
-        )
-        .unwrap();
+        let folds = names(&["hotel", "eth"]);
+        let plan = Plan::new(settings, &folds, &names(&["full"]), &[2, 1]).unwrap();
         let took = Duration::from_secs(61);
-        let text = page(
-            "# Title\n\n| a | table |\n",
-            &plan,
-            "0123456789ab",
-            "2024",
-            took,
-        );
-        assert!(text.starts_with("# Title\n"), "{text}");
-        assert!(text.ends_with("\n| a | table |\n"), "{text}");
-        for piece in [
-            "`cargo xtask benchmark --profile quick --convention star --folds eth,hotel --variants \
-             full --protocol fair,single --seeds 1,2 --epochs 4 --device cpu --cargo-profile release --train-walkers 800 \
-             --publish`",
-            "| commit | 0123456789ab |",
-            "| walkers trained on in an epoch / scored | 800 / all |",
-            "| time | 2024, took 1 min 1 s |",
-        ] {
+        let report = "# Title\n\n| a | table |\n";
+        page(report, &plan, "0123456789ab", "2024", took)
+    }
+
+    fn check(text: &str, pieces: &[&str]) {
+        for piece in pieces {
             assert!(text.contains(piece), "{piece} is not in {text}");
         }
         assert!(!text.contains("secret"));
+    }
+
+    #[test]
+    fn the_page_says_what_made_it_and_names_no_folder() {
+        let text = made(settings());
+        assert!(text.starts_with("# Title\n"), "{text}");
+        assert!(text.ends_with("\n| a | table |\n"), "{text}");
+        check(
+            &text,
+            &[
+                "`cargo xtask benchmark --profile quick --convention star --folds eth,hotel --variants \
+                 full --protocol fair,single --seeds 1,2 --epochs 4 --device cpu --cargo-profile release --train-walkers 800 \
+                 --publish`",
+                "| commit | 0123456789ab |",
+                "| recipe | recommended |",
+                "| walkers trained on in an epoch / scored | 800 / all |",
+                "| walkers a batch / largest step of Adam | the recipe's |",
+                "| time | 2024, took 1 min 1 s |",
+            ],
+        );
+    }
+
+    #[test]
+    fn the_page_says_what_a_recipe_was_changed_to() {
+        let text = made(Settings {
+            recipe: PUBLISHED,
+            train_walkers: None,
+            test_walkers: Some(50),
+            ..settings()
+        });
+        // The paper's epochs are of all walkers.
+        check(
+            &text,
+            &[
+                "| recipe | published |",
+                "| walkers trained on in an epoch / scored | all / 50 |",
+                "| walkers a batch / largest step of Adam | 256 / 0.0015 (constant) |",
+            ],
+        );
+    }
+
+    #[test]
+    fn the_page_leaves_to_the_recipe_what_is_its_own() {
+        let text = made(Settings {
+            train_walkers: None,
+            ..settings()
+        });
+        let row = "| walkers trained on in an epoch / scored | the recipe's / all |";
+        check(&text, &[row, "--cargo-profile release --publish`"]);
     }
 }

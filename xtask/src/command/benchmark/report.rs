@@ -21,7 +21,10 @@ pub(super) fn write(
     let mut folders = runs.to_vec();
     folders.extend(baselines_elsewhere(workspace, plan, program, out)?);
     let settings = &plan.settings;
-    let title = format!("Benchmark: {}, {}", settings.convention, settings.profile);
+    let title = format!(
+        "Benchmark: {}, {}, recipe {}",
+        settings.convention, settings.profile, settings.recipe.name
+    );
     let mut command = Command::new(program);
     command
         .arg("report")

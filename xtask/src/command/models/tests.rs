@@ -2,7 +2,7 @@
 #![cfg(unix)]
 
 use super::*;
-use crate::benchmark::{PUBLISHED, Settings};
+use crate::benchmark::{RECOMMENDED, Settings};
 use serde_json::json;
 use std::os::unix::fs::PermissionsExt as _;
 use tempfile::TempDir;
@@ -27,7 +27,8 @@ impl Made {
             train_walkers: None,
             proposal_steps: None,
             test_walkers: Some(2500),
-            recipe: PUBLISHED,
+            protocols: vec!["fair".to_owned(), "single".to_owned()],
+            recipe: RECOMMENDED,
         };
         let folds: Vec<String> = folds.iter().map(|&fold| fold.to_owned()).collect();
         let variants = ["full", "star"].map(str::to_owned);
