@@ -68,12 +68,13 @@ impl GoalModel {
         device: ComputeDevice,
     ) -> Result<Self, DdlError> {
         let library = experts::load(&config.goals_origin(), config.data.walkers, &run.experts())?;
-        let params = config.goals.retrieval.clone().query(QuerySpan::Observed);
-        let params = params.check()?;
-        let clusters = params.clusters();
-        let estimator = GoalEstimator::new(params, library)?;
+        let clusters = config.goals.retrieval.clone().check()?.clusters();
+        let estimator = |params: GoalEstimatorParams| -> Result<_, DdlError> {
+            let params = params.query(QuerySpan::Observed).check()?;
+            Ok(GoalEstimator::new(params, library)?)
+        };
         let origin = match &config.goals.proposal {
-            None => GoalOrigin::Retrieved(estimator),
+            None => GoalOrigin::Retrieved(estimator(config.goals.retrieval.clone())?),
             Some(recipe) => {
                 let network =
                     ProposalNetwork::new(recipe.network.clone(), recipe.training.seed, device)?;
@@ -82,6 +83,7 @@ impl GoalModel {
                     &config.goals_origin(),
                     &run.proposal(),
                 )?;
+                let estimator = estimator(config.goals.beside(recipe))?;
                 GoalOrigin::Both(network, estimator, recipe.retrieved_share)
             }
         };

@@ -26,6 +26,8 @@ pub struct ProposalRecipe {
     /// Share of the probability given to the retrieved goals, which are pooled with the network's ends before K goals are
     /// chosen to stand for both.
     pub retrieved_share: f64,
+    /// Into how many goals the retrieved walkers are gathered before they are pooled with the network's ends.
+    pub retrieved_goals: usize,
 }
 
 impl Default for ProposalRecipe {
@@ -34,7 +36,8 @@ impl Default for ProposalRecipe {
         Self {
             network: ProposalConfig::default(),
             training: ProposalTraining::default(),
-            retrieved_share: 0.3,
+            retrieved_share: 0.5,
+            retrieved_goals: 200,
         }
     }
 }
@@ -69,6 +72,7 @@ impl GoalRecipe {
         if let Some(proposal) = &self.proposal {
             proposal.network.check()?;
             proposal.training.check()?;
+            self.beside(proposal).check()?;
             if !(0.0..=1.0).contains(&proposal.retrieved_share) {
                 return Err(DdlError::RetrievedShare(proposal.retrieved_share));
             }
@@ -86,6 +90,11 @@ impl GoalRecipe {
                 proposal.network.members, proposal.training.steps
             ),
         }
+    }
+
+    /// The retrieval whose goals are pooled with a network's ends.
+    pub(crate) fn beside(&self, proposal: &ProposalRecipe) -> GoalEstimatorParams {
+        self.retrieval.clone().clusters(proposal.retrieved_goals)
     }
 
     /// Where the goals come from, in words.
