@@ -152,7 +152,7 @@ impl TrainingConfig {
             } else {
                 Objective::NextStep
             },
-            epochs: 60,
+            epochs: 40,
             learning_rate: 3e-3,
             learning_rate_schedule: LearningRateSchedule::Cosine,
             batch_walkers: 64,

@@ -65,13 +65,13 @@ const PROFILES: [Profile; 4] = [
     // has reached its end by then.
     Profile {
         name: "evening", folds: 5, proposal_steps: None, test_walkers: None,
-        recommended: training(RECOMMENDED, 60, None),
+        recommended: training(RECOMMENDED, 40, None),
         published: training(FADING, 60, None),
     },
     // As much training as the recipe says, on every window.
     Profile {
         name: "paper", folds: 5, proposal_steps: None, test_walkers: None,
-        recommended: training(RECOMMENDED, 60, None),
+        recommended: training(RECOMMENDED, 40, None),
         published: training(PUBLISHED, 200, None),
     },
 ];

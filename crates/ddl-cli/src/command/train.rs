@@ -38,7 +38,7 @@ pub(crate) struct Train {
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Epochs [default: 60, published 200]
+    /// Epochs [default: 40, published 200]
     #[arg(long)]
     epochs: Option<usize>,
     /// Walkers an epoch, going round the training set [default: 5000, published all]
