@@ -105,11 +105,11 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
         ),
         (
             "--profile evening",
-            "star-evening 5 all: --epochs 60 --recipe recommended",
+            "star-evening 5 all: --epochs 40 --recipe recommended",
         ),
         (
             "--profile paper --protocol single",
-            "star-paper 5 all: --epochs 60 --recipe recommended",
+            "star-paper 5 all: --epochs 40 --recipe recommended",
         ),
         (
             "--epochs 3 --train-walkers 70 --test-walkers 80",
@@ -127,7 +127,7 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
         ),
         (
             &format!("{all} evening"),
-            "star-evening-published 5 all: --epochs 60 --recipe published --batch-walkers 256 --learning-rate 0.0015 \
+            "star-evening-published 5 all: --epochs 40 --recipe published --batch-walkers 256 --learning-rate 0.0015 \
              --learning-rate-schedule cosine",
         ),
         (
