@@ -127,7 +127,7 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
         ),
         (
             &format!("{all} evening"),
-            "star-evening-published 5 all: --epochs 40 --recipe published --batch-walkers 256 --learning-rate 0.0015 \
+            "star-evening-published 5 all: --epochs 60 --recipe published --batch-walkers 256 --learning-rate 0.0015 \
              --learning-rate-schedule cosine",
         ),
         (
