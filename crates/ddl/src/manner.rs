@@ -3,6 +3,7 @@
 use crate::model::{Ddl, WITHOUT_LIBRARY};
 use crate::walk::Gait;
 use ddl_eval::Protocol;
+use ddl_star::Objective;
 
 /// A way in which the model forecasts, each a row of its own.
 #[derive(Debug)]
@@ -71,7 +72,9 @@ impl Manner {
                 Some(format!("minding others within {} m", clearance.distance())),
             );
         }
-        if asked(Protocol::Fair) && variant.dynamics() {
+        // A network that has learned whole stable walks has never seen where plain steps would lead it: they diverge.
+        let learned_on_plain_steps = model.config().training.objective == Objective::NextStep;
+        if asked(Protocol::Fair) && variant.dynamics() && learned_on_plain_steps {
             manners.push(Self {
                 goals: GivenGoals::Own,
                 gait: Gait::PlainEuler,
