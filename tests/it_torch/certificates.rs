@@ -267,6 +267,38 @@ fn the_certified_forecast_is_the_forecast() {
     }
 }
 
+/// The walk to the central goal has the same guarantee, and comes nearer to that goal at every step.
+#[test]
+fn the_one_forecast_is_certified_towards_the_central_goal() {
+    let windows = crowd::windows(6, 24);
+    for variant in [Variant::Full, Variant::NoGoalShift] {
+        let tiny = tiny_model::of(variant);
+        let goals = tiny.model.goal_model().goals(&windows).unwrap();
+        let forecasts = tiny.model.forecast_one(&windows).unwrap();
+        assert_eq!(forecasts.len(), windows.len());
+        for ((forecast, sets), window) in forecasts.iter().zip(&goals).zip(&windows) {
+            assert_eq!(
+                (forecast.pedestrians(), forecast.hypotheses()),
+                (window.len(), 1)
+            );
+            for (i, set) in sets.iter().enumerate() {
+                assert_eq!(forecast.certified(i, 0), Some(true), "{variant}");
+                assert_eq!(forecast.weight(i, 0).to_bits(), 1.0_f64.to_bits());
+                let goal = forecast.goal(i, 0).unwrap();
+                assert_eq!(goal.map(f64::to_bits), set.central().map(f64::to_bits));
+                let start = window.observed(i)[OBSERVED - 1];
+                let path = std::iter::once(&start).chain(forecast.hypothesis(i, 0));
+                let left: Vec<f64> = path.map(|&position| distance(position, goal)).collect();
+                assert_eq!(left.len(), FRAMES + 1);
+                let falls = left
+                    .windows(2)
+                    .all(|pair| pair[1] < pair[0] || pair[0] == 0.0);
+                assert!(falls, "{variant}: {left:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn the_facade_says_why_it_has_no_certificate() {
     let tiny = tiny_model::of(Variant::NoDynamics);

@@ -4,6 +4,7 @@ use ddl::Variant;
 use ddl_tests::{own_tracks, program, tiny_model};
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 #[derive(Deserialize)]
 struct Goal {
@@ -52,6 +53,23 @@ fn goals_of_own_tracks_are_those_of_the_forecasts() {
     assert!(goals.next().is_none());
 }
 
+/// How many numbers a safetensors file says it holds.
+fn numbers_in(file: &Path) -> u64 {
+    let bytes = std::fs::read(file).unwrap();
+    let (length, rest) = bytes.split_first_chunk::<8>().unwrap();
+    let length = usize::try_from(u64::from_le_bytes(*length)).unwrap();
+    let header: serde_json::Value = serde_json::from_slice(&rest[..length]).unwrap();
+    let tensors = header.as_object().unwrap().iter();
+    tensors
+        .filter(|(name, _)| *name != "__metadata__")
+        .map(|(_, tensor)| {
+            let shape = tensor["shape"].as_array().unwrap();
+            let sizes = shape.iter().map(|size| size.as_u64().unwrap());
+            sizes.product::<u64>()
+        })
+        .sum()
+}
+
 #[test]
 fn info_describes_program_and_model() {
     let run = tiny_model::folder(Variant::NoGoalShift);
@@ -69,7 +87,9 @@ fn info_describes_program_and_model() {
     assert_eq!(config["star"]["variant"], "no-goal-shift");
     assert_eq!(of_model["epochs"].as_array().unwrap().len(), 1);
     assert_eq!(of_model["experts"], config["data"]["walkers"]);
-    assert!(of_model["parameters"].as_u64().unwrap() > 100_000);
+    let parameters = of_model["parameters"].as_u64().unwrap();
+    assert_eq!(parameters, numbers_in(&here.join("model.safetensors")));
+    assert!(parameters > 10_000);
 
     let for_people = info("--model .");
     assert!(

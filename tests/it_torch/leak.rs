@@ -60,12 +60,54 @@ fn no_wild_future_changes_a_forecast_under_a_protocol() {
     assert_ne!(fair, single);
 }
 
+/// The walk to the central goal, which is all that `single` measures of the model.
+struct One<'a>(&'a Ddl);
+
+impl Forecaster for One<'_> {
+    fn name(&self) -> String {
+        "DDL, one forecast".to_owned()
+    }
+
+    fn forecast(&self, window: &Window) -> Result<Forecast, ddl::eval::ForecastError> {
+        let mut forecasts = self.0.forecast_one(std::slice::from_ref(window))?;
+        Ok(forecasts.remove(0))
+    }
+}
+
+#[test]
+fn no_future_position_changes_the_one_forecast() {
+    let tiny = tiny_model::of(Variant::Full);
+    let window = &crowd::windows(1, 3)[0];
+    assert_eq!(leak::find(&One(&tiny.model), window).unwrap(), None);
+}
+
+#[test]
+fn no_wild_future_changes_the_one_forecast() {
+    let windows = crowd::windows(2, 4);
+    let observed: Vec<Window> = windows.iter().map(Window::without_future).collect();
+    for variant in Variant::ALL {
+        let tiny = tiny_model::of(variant);
+        let forecast = |windows: &[Window]| tiny.model.forecast_one(windows).unwrap();
+        let reference = bits::of_all(&forecast(&observed));
+        for (future, seen) in with_wild_futures(&windows, forecast) {
+            assert_eq!(seen, reference, "{variant}, future: {future}");
+        }
+    }
+}
+
 /// The observation does change it: the test compares more than constants.
 #[test]
 fn the_last_observed_position_changes_a_forecast() {
     let tiny = tiny_model::of(Variant::Full);
     let window = &crowd::windows(1, 3)[0];
-    let reference = bits::of(&tiny.model.forecast(window).unwrap());
+    let forecasts = |window: &Window| {
+        [
+            tiny.model.forecast(window),
+            One(&tiny.model).forecast(window),
+        ]
+        .map(|forecast| bits::of(&forecast.unwrap()))
+    };
+    let reference = forecasts(window);
     let nudged = window.map_positions(|i, t, p| {
         if (i, t) == (0, 7) {
             [p[0] + 0.01, p[1]]
@@ -73,8 +115,10 @@ fn the_last_observed_position_changes_a_forecast() {
             p
         }
     });
-    let changed = bits::of(&tiny.model.forecast(&nudged).unwrap());
-    assert_ne!(changed, reference);
+    let changed = forecasts(&nudged);
+    for (changed, reference) in changed.iter().zip(&reference) {
+        assert_ne!(changed, reference);
+    }
 }
 
 /// The model with a glimpse of the true end, far below a millimetre.

@@ -19,6 +19,7 @@ mod packed;
 mod precision;
 mod prepare;
 mod real_recordings;
+mod recipes;
 mod start_up;
 mod train_resume;
 mod training_memory;

@@ -2,6 +2,8 @@
 
 #![cfg(unix)]
 
+use ddl::RunDirectory;
+use ddl::star::Objective;
 use ddl_tests::folder_contents::{self, Contents};
 use ddl_tests::program::{self, Finished};
 use std::collections::hash_map::RandomState;
@@ -89,6 +91,11 @@ fn losses(line: &str) -> String {
 fn interrupted_equals_whole(interrupt: impl FnOnce(&Path)) {
     let [whole, stopped] = [0, 1].map(|_| tempfile::tempdir().unwrap());
     let expected = finish(whole.path());
+    // of the recommended recipe: whole walks to goals that the stage before estimates
+    let config = RunDirectory::new(whole.path().join("run"))
+        .config()
+        .unwrap();
+    assert_eq!(config.training.objective, Objective::Walk);
     assert!(expected.contains_key(Path::new("model.safetensors")));
     interrupt(stopped.path());
     let model = stopped.path().join("run/model.safetensors");

@@ -1,4 +1,4 @@
-//! A model trained in seconds on the simulated crowds, once for a whole test binary.
+//! A model of the recommended recipe, trained in seconds on the simulated crowds, once for a whole test binary.
 
 use crate::crowd;
 use crate::folder_contents::{self, Contents};
@@ -102,18 +102,18 @@ pub fn batch_walkers(walkers: usize) -> usize {
     walkers / 4
 }
 
-/// What is trained: one epoch of `walkers` walkers.
+/// What is trained: one epoch of `walkers` walkers, all else as recommended.
 #[must_use]
 pub fn request(fold: &str, variant: Variant, walkers: usize, out: &Path) -> TrainingRequest {
     let training = TrainingConfig {
         epochs: 1,
         walkers_per_epoch: Some(walkers),
         batch_walkers: batch_walkers(walkers),
-        ..TrainingConfig::published()
+        ..TrainingConfig::recommended(variant)
     };
     TrainingRequest {
         fold: fold.to_owned(),
-        star: StarConfig::published(variant),
+        star: StarConfig::recommended(variant),
         goals: goal_recipe(training.seed),
         training,
         validation: 0.0,

@@ -71,7 +71,8 @@ pub enum StarError {
     #[error(
         "step {step} of the proposal network: the {quantity} is {value}; the last good checkpoint is \
          kept; lower the learning rate or look at the walkers of that batch (the first is number \
-         {example} of the examples)"
+         {example} of the {}examples, counted from 0)",
+        if *reversed { "reversed " } else { "" }
     )]
     ProposalNonFinite {
         /// Steps done before.
@@ -80,8 +81,10 @@ pub enum StarError {
         quantity: &'static str,
         /// The value met.
         value: f64,
-        /// First example of the batch.
+        /// First example of the batch, within the examples or within the reversed ones, counted from 0.
         example: usize,
+        /// Whether it is one of the reversed examples.
+        reversed: bool,
     },
     /// Training was given nothing to learn from.
     #[error("no training windows: every epoch needs at least one window with its future")]

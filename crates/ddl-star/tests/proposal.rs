@@ -212,4 +212,23 @@ fn what_cannot_be_learned_from_is_refused() {
         "{error}"
     );
     assert_eq!(trainer.steps(), (0, 5));
+    assert!(error.to_string().contains("of the examples"), "{error}");
+
+    // The sound ones before them are not blamed.
+    let only_reversed = ProposalTraining {
+        reversed: 1.0,
+        ..training(5)
+    };
+    let broken = &broken[..7];
+    let mut trainer = ProposalTrainer::new(network(), &examples(), broken, only_reversed).unwrap();
+    let error = trainer.step().unwrap_err();
+    let StarError::ProposalNonFinite {
+        example, reversed, ..
+    } = error
+    else {
+        panic!("{error}")
+    };
+    assert!(reversed && example < broken.len(), "{error}");
+    let said = format!("number {example} of the reversed examples");
+    assert!(error.to_string().contains(&said), "{error}");
 }

@@ -1,6 +1,8 @@
 //! Compares rules by which one forecast is made of a model's hypotheses, on the windows that its training kept for validation:
 //! `one_forecast RUN`. Mean ADE/FDE in metres of each recording, beside constant velocity. The table of docs/accuracy.md.
 
+#![expect(clippy::print_stdout, reason = "a program that prints a table")]
+
 use ddl::data::{Convention, Dataset, HORIZON, OBSERVED, Position, Window, locate};
 use ddl::eval::baseline::ConstantVelocity;
 use ddl::eval::metric::displacement::{average_displacement, final_displacement};

@@ -104,20 +104,7 @@ pub fn train(
     if windows.is_empty() {
         return Err(StarError::NoTrainingWindows.into());
     }
-    // Evaluation runs the published estimator too, which needs as many tracks as it retrieves.
-    let published = request.goals.retrieval.clone().into_published().check()?;
-    let retrieval = request.goals.retrieval.clone().check()?;
-    let (tracks, experts) = (
-        windows.iter().map(Window::len).sum::<usize>(),
-        match retrieval.frame() {
-            RetrievalFrame::World => published.experts().max(retrieval.experts()),
-            // a smaller library is used whole
-            RetrievalFrame::Heading => published.experts(),
-        },
-    );
-    if tracks < experts {
-        return Err(DdlError::TooFewTracks { tracks, experts });
-    }
+    ensure_enough_tracks(&request.goals, &windows)?;
     let run = &request.out;
     let config = RunConfig {
         format: FORMAT,
@@ -162,20 +149,49 @@ pub fn train(
         return Ok(());
     }
     let origin = config.network_origin();
-    let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
-    let mut trainer = match config.training.objective {
-        Objective::NextStep => Trainer::new(network, windows, config.training.clone())?,
-        Objective::Walk => {
-            let goals = GoalModel::of_run(run.clone(), config.clone(), device)?;
-            let with_future: Vec<Window> = windows.into_iter().filter(Window::has_future).collect();
-            let lessons = goals.lessons(&with_future)?;
-            Trainer::towards(network, with_future, lessons, config.training.clone())?
-        }
-    };
+    let mut trainer = trainer(&config, windows, run, device)?;
     if run.optimizer().is_file() {
         trainer.resume(&origin, &run.optimizer())?;
     }
     run_epochs(&mut trainer, (run, &origin), config.keep_every, observe)
+}
+
+/// Evaluation runs the published estimator too, which needs as many tracks as it retrieves.
+fn ensure_enough_tracks(goals: &GoalRecipe, windows: &[Window]) -> Result<(), DdlError> {
+    let published = goals.retrieval.clone().into_published().check()?;
+    let retrieval = goals.retrieval.clone().check()?;
+    let (tracks, experts) = (
+        windows.iter().map(Window::len).sum::<usize>(),
+        match retrieval.frame() {
+            RetrievalFrame::World => published.experts().max(retrieval.experts()),
+            // a smaller library is used whole
+            RetrievalFrame::Heading => published.experts(),
+        },
+    );
+    if tracks < experts {
+        return Err(DdlError::TooFewTracks { tracks, experts });
+    }
+    Ok(())
+}
+
+/// The forecasting network at the start of its training: on single steps, or on walks to goals that those of the run estimate.
+fn trainer(
+    config: &RunConfig,
+    windows: Vec<Window>,
+    run: &RunDirectory,
+    device: ComputeDevice,
+) -> Result<Trainer, DdlError> {
+    let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
+    let training = config.training.clone();
+    Ok(match training.objective {
+        Objective::NextStep => Trainer::new(network, windows, training)?,
+        Objective::Walk => {
+            let goals = GoalModel::of_run(run.clone(), config.clone(), device)?;
+            let with_future: Vec<Window> = windows.into_iter().filter(Window::has_future).collect();
+            let lessons = goals.lessons(&with_future)?;
+            Trainer::towards(network, with_future, lessons, training)?
+        }
+    })
 }
 
 /// Trains to the end, saving what a later call needs to go on.

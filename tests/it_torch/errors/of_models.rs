@@ -1,7 +1,7 @@
 //! Runs that are missing, unfinished, damaged, or another's; devices that are not there.
 
 use super::{FORECAST, fails, folder_with_model};
-use ddl::{TrainingRequest, TrainingStage, Variant};
+use ddl::Variant;
 use ddl_tests::{crowd, program, tiny_model};
 
 #[test]
@@ -45,22 +45,23 @@ fn half_a_file_is_named() {
     }
 }
 
-/// Weights of a variant whose shapes are the same, and goals of another fold, copied over those of the run.
+/// Weights of another variant, and weights of the same shapes and goals of another fold, copied over those of the run.
 #[test]
 fn files_of_another_run_are_refused() {
-    let other = tiny_model::folder(Variant::NoGoalShift);
+    let other = tiny_model::folder(Variant::NoDynamics);
     let elsewhere = tempfile::tempdir().unwrap();
     let request = tiny_model::request("plaza", Variant::Full, 40, elsewhere.path());
-    let only_goals = TrainingRequest {
-        until: TrainingStage::Goals,
-        ..request
-    };
-    tiny_model::train(&only_goals, &crowd::dataset());
+    tiny_model::train(&request, &crowd::dataset());
     for (from, file, difference) in [
         (
             other.path(),
             "model.safetensors",
-            "star.variant is no-goal-shift, not full",
+            "star.variant is no-dynamics, not full",
+        ),
+        (
+            elsewhere.path(),
+            "model.safetensors",
+            "data.fold is plaza, not corridor",
         ),
         (
             elsewhere.path(),
@@ -134,4 +135,19 @@ fn cuda_that_is_not_there_is_an_error_and_not_the_cpu() {
         let on_cuda = format!("{command_line} --device cuda");
         fails(folder.path(), &on_cuda, &["cuda", "--device cpu"]);
     }
+}
+
+/// A choice among epochs needs several: one that was kept alone is no choice, and is not passed off as one.
+#[test]
+fn published_is_not_measured_on_the_last_epoch_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let train = "train --convention simulated --fold corridor --epochs 2 --train-walkers 20 \
+                 --batch-walkers 20 --proposal-steps 3 --last-epoch-only --out run --threads 1";
+    let _ = program::run(folder.path(), train).succeeds();
+    let published = "evaluate --model run --protocol published --test-walkers 20";
+    let advice = ["`published`", "train it anew without --last-epoch-only"];
+    fails(folder.path(), published, &advice);
+    // what needs no choice is measured
+    let fair = "evaluate --model run --protocol fair --test-walkers 20 --threads 1";
+    let _ = program::run(folder.path(), fair).succeeds();
 }

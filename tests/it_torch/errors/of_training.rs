@@ -29,8 +29,17 @@ fn a_folder_that_holds_another_run_is_not_trained_over() {
     for (different, part) in [
         ("--fold corridor --seed 77", "training.seed is 1, not 77"),
         (
+            "--fold corridor --variant no-dynamics",
+            "star.variant is full, not no-dynamics",
+        ),
+        // plain STAR has no goals to make a frame of, which is told first
+        (
             "--fold corridor --variant star",
-            "star.variant is full, not star",
+            "star.frame is goal, not world",
+        ),
+        (
+            "--fold corridor --recipe published --learning-rate 3e-3",
+            "star.feed_forward_width is 128, not 2048",
         ),
         ("--fold plaza", "data.fold is corridor, not plaza"),
     ] {

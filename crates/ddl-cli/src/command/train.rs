@@ -156,11 +156,6 @@ impl Train {
                 TrainingConfig::published(),
             ),
         };
-        fn set<T>(place: &mut T, option: Option<T>) {
-            if let Some(value) = option {
-                *place = value;
-            }
-        }
         set(&mut star.feed_forward_width, self.feed_forward_width);
         set(&mut training.epochs, self.epochs);
         set(&mut training.batch_walkers, self.batch_walkers);
@@ -202,5 +197,12 @@ impl Train {
                 Ok(recipe)
             }
         }
+    }
+}
+
+/// Puts what an option says in its place, where it was given.
+fn set<T>(place: &mut T, option: Option<T>) {
+    if let Some(value) = option {
+        *place = value;
     }
 }

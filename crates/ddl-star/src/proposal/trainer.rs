@@ -177,12 +177,16 @@ impl ProposalTrainer {
         let (distance, norm_value) = (distance.double_value(&[]), norm.double_value(&[]));
         for (quantity, value) in [("loss", distance), ("gradient norm", norm_value)] {
             if !value.is_finite() {
-                let example = rows.int64_value(&[0, 0]) as usize;
+                let row = rows.int64_value(&[0, 0]) as usize;
+                // the reversed examples lie behind the others
+                let reversed = row >= self.onward;
+                let example = if reversed { row - self.onward } else { row };
                 return Err(StarError::ProposalNonFinite {
                     step,
                     quantity,
                     value,
                     example,
+                    reversed,
                 });
             }
         }
