@@ -2,7 +2,7 @@
 
 use crate::GoalRecipe;
 use ddl_data::{Convention, WindowRule};
-use ddl_star::{Origin, StarConfig, TrainingConfig};
+use ddl_star::{Objective, Origin, StarConfig, TrainingConfig};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -37,7 +37,11 @@ impl RunConfig {
     /// What the weights of the forecasting network, and the state of its training, are of.
     #[must_use]
     pub fn network_origin(&self) -> Origin {
-        self.origin_of(&["format", "star", "training", "data"])
+        match self.training.objective {
+            Objective::NextStep => self.origin_of(&["format", "star", "training", "data"]),
+            // Who has learned walks to the proposed goals has learned from these.
+            Objective::Walk => self.origin_of(&["format", "star", "training", "data", "goals"]),
+        }
     }
 
     /// What the expert library and the proposal network are of.
