@@ -356,6 +356,7 @@ def variants(html, data, folder):
         for name in ("paths", "goals", "weights", "falls", "certified"):
             walker[name] = walker[name][:1]
         walker["goals"], walker["weights"], walker["falls"], walker["certified"] = [None], [1000], "-", "-"
+        walker["representative"] = 0
     one["picks"], one["walkers"] = [], one["walkers"][:1]
     yield variant(html, folder, "one-hypothesis", [one])
     crowd = max(data, key=lambda moment: len(moment["walkers"]))
