@@ -9,7 +9,7 @@ use ddl_tests::program;
 use serde::Deserialize;
 use std::path::Path;
 
-const TRAIN: &str = "train --convention simulated --fold plaza --seed 5 --epochs 2 --train-walkers 200 \
+const TRAIN: &str = "train --convention simulated --fold plaza --recipe published --seed 5 --epochs 2 --train-walkers 200 \
                      --batch-walkers 64 --proposal-steps 10 --out run --threads 1";
 const EVALUATE: &str = "evaluate --model run --protocol published --protocol fair --protocol single \
                         --test-walkers 60 --threads 1";
