@@ -151,7 +151,7 @@ mod tests {
     }
 
     proptest! {
-        /// No goal of the set, nor their mean, is nearer to all of them together.
+        /// No goal of the set is nearer to all of them together.
         #[test]
         fn nothing_is_more_central(
             goals in prop::collection::vec((prop::array::uniform2(-9.0..9.0_f64), 0.01..1.0_f64), 1..20),

@@ -52,20 +52,20 @@ fn weights(network: &StarNetwork) -> Vec<f32> {
     Vec::try_from(Tensor::cat(&rows, 0)).unwrap()
 }
 
+/// The mean loss of each epoch of a whole training.
+fn losses(mut trainer: Trainer) -> Vec<f64> {
+    let mut losses = Vec::new();
+    while !trainer.is_finished() {
+        let epoch = trainer.step().unwrap().finished_epoch;
+        losses.extend(epoch.map(|epoch| epoch.loss));
+    }
+    losses
+}
+
 #[test]
 fn every_variant_learns() {
     for variant in Variant::ALL {
-        let mut trainer = trainer(variant, 25);
-        let mut losses = Vec::new();
-        while !trainer.is_finished() {
-            losses.extend(
-                trainer
-                    .step()
-                    .unwrap()
-                    .finished_epoch
-                    .map(|epoch| epoch.loss),
-            );
-        }
+        let losses = losses(trainer(variant, 25));
 
         // the noise of a step makes single epochs jump: the best of the last ones counts
         let best = losses[17..].iter().copied().fold(f64::INFINITY, f64::min);
@@ -103,17 +103,7 @@ fn walker(epochs: usize) -> Trainer {
 
 #[test]
 fn walks_to_goals_are_learned() {
-    let mut trainer = walker(30);
-    let mut losses = Vec::new();
-    while !trainer.is_finished() {
-        losses.extend(
-            trainer
-                .step()
-                .unwrap()
-                .finished_epoch
-                .map(|epoch| epoch.loss),
-        );
-    }
+    let losses = losses(walker(30));
     // at most 0.36 m off at the end, and on the way there a walk can keep to the true path
     let last = losses[29];
     assert!(last < 0.5 * losses[0] && last < 0.25, "{losses:?}");
