@@ -2,7 +2,7 @@
 
 use crate::StarError;
 use crate::batch::SceneBatch;
-use ddl_data::{Position, WINDOW, Window};
+use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
 use std::cell::OnceCell;
 use tch::{Device, Kind, Tensor};
 
@@ -36,6 +36,26 @@ impl TrainingBatch {
         Self {
             scenes: self.scenes.turned(images),
             goals: self.goals.matmul(images),
+        }
+    }
+
+    /// The same as if it had been observed less exactly: every observed coordinate is off by a normal error, whose deviation is
+    /// uniform from 0 to `jitter` (m) for each walker. The future and the goals stay where they are. Draws from libtorch's
+    /// generator.
+    pub(crate) fn jittered(self, jitter: f64) -> Self {
+        let Self { scenes, goals } = self;
+        let observed = scenes.positions.narrow(0, 0, OBSERVED as i64);
+        let future = scenes.positions.narrow(0, OBSERVED as i64, HORIZON as i64);
+        let options = (observed.kind(), observed.device());
+        let deviations = Tensor::rand([1, observed.size()[1], 1], options) * jitter;
+        let observed = &observed + observed.randn_like() * deviations;
+        let positions = Tensor::cat(&[observed, future], 0);
+        Self {
+            scenes: SceneBatch {
+                positions,
+                ..scenes
+            },
+            goals,
         }
     }
 
@@ -133,5 +153,35 @@ mod tests {
         assert!(std::ptr::eq(first, prepared.batch(1, &[3, 0]).unwrap()));
         assert_eq!(prepared.window(3).start_frame(), windows[3].start_frame());
         assert!(prepared.batch(0, &[]).is_err());
+    }
+
+    #[test]
+    fn jitter_moves_what_was_observed_and_nothing_else() {
+        let dataset = Dataset::simulated(1);
+        let windows = dataset.recordings()[0].windows(WindowRule::Complete);
+        let (device, kind) = (Device::Cpu, Kind::Double);
+        let all: Vec<usize> = (0..windows.len()).collect();
+        let prepared = PreparedBatches::new((windows, None), 1, 10.0, device, kind);
+        let exact = prepared.batch(0, &all).unwrap();
+        tch::manual_seed(7);
+        let off = exact.shared().jittered(0.05);
+        let moved = off.scenes.positions() - exact.scenes.positions();
+        let (observed, future) = (moved.slice(0, 0, 8, 1), moved.slice(0, 8, 20, 1));
+        assert_eq!(future.abs().max().double_value(&[]), 0.0);
+        assert_eq!(off.goals, exact.goals);
+        // Every walker, frame and axis has an error of its own, some walkers' are small, and over all of them the mean
+        // square of a uniform deviation is a third of that of the largest.
+        let squares = observed.square();
+        let all = squares.mean(Kind::Double).double_value(&[]).sqrt();
+        assert!((all - 0.05 / 3_f64.sqrt()).abs() < 0.004, "{all}");
+        assert!(observed.abs().min().double_value(&[]) > 0.0);
+        let each = squares
+            .mean_dim([0i64, 2].as_slice(), false, Kind::Double)
+            .sqrt();
+        let (least, most) = (each.min().double_value(&[]), each.max().double_value(&[]));
+        assert!(
+            least < 0.01 && most > 0.04 && most < 0.1,
+            "{least} to {most}"
+        );
     }
 }

@@ -211,6 +211,11 @@ impl Trainer {
             // Held from seeding to the last draw of dropout.
             let _generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
             tch::manual_seed(draw.libtorch);
+            let batch = if self.config.jitter > 0.0 {
+                batch.jittered(self.config.jitter)
+            } else {
+                batch
+            };
             let pass = Pass::training(Mode::Train, draw.kernels, self.network.parameters());
             (self.loss(&batch, draw.noise, &pass)?, pass)
         };

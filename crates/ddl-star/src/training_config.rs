@@ -118,6 +118,9 @@ pub struct TrainingConfig {
     pub rotate: bool,
     /// Mirror each batch at every other visit, drawn at random.
     pub mirror: bool,
+    /// Move every observed coordinate by a normal error at every visit, whose deviation is uniform from 0 to this (m) for each
+    /// walker; futures stay where they are. Only for [`Objective::Walk`].
+    pub jitter: f64,
     /// Train on at most about this many walkers an epoch, going round the whole set.
     pub walkers_per_epoch: Option<usize>,
     /// Seed of initial weights, batch order, rotation, noise and dropout.
@@ -137,6 +140,7 @@ impl TrainingConfig {
             batch_walkers: 256,
             rotate: true,
             mirror: false,
+            jitter: 0.0,
             walkers_per_epoch: None,
             seed: 1,
         }
@@ -146,17 +150,19 @@ impl TrainingConfig {
     /// (`docs/accuracy.md`): whole walks to estimated goals, and for plain STAR, which has none, single steps.
     #[must_use]
     pub fn recommended(variant: Variant) -> Self {
+        let (objective, jitter) = if variant.uses_goal() {
+            (Objective::Walk, 0.06)
+        } else {
+            (Objective::NextStep, 0.0)
+        };
         Self {
-            objective: if variant.uses_goal() {
-                Objective::Walk
-            } else {
-                Objective::NextStep
-            },
+            objective,
             epochs: 40,
             learning_rate: 3e-3,
             learning_rate_schedule: LearningRateSchedule::Cosine,
             batch_walkers: 64,
             mirror: true,
+            jitter,
             walkers_per_epoch: Some(5000),
             ..Self::published()
         }
@@ -184,6 +190,19 @@ impl TrainingConfig {
             "learning_rate",
             &rate,
             "finite and positive",
+        )?;
+        let jitter = self.jitter;
+        require(
+            jitter.is_finite() && jitter >= 0.0,
+            "jitter",
+            &jitter,
+            "finite and not negative",
+        )?;
+        require(
+            jitter == 0.0 || self.objective == Objective::Walk,
+            "jitter",
+            &jitter,
+            "0 unless the objective is walk: single steps are led to the observed positions themselves",
         )?;
         let clip = self.gradient_clip;
         require(

@@ -69,12 +69,10 @@ impl GoalModel {
     ) -> Result<Self, DdlError> {
         let library = experts::load(&config.goals_origin(), config.data.walkers, &run.experts())?;
         let clusters = config.goals.retrieval.clone().check()?.clusters();
-        let estimator = |params: GoalEstimatorParams| -> Result<_, DdlError> {
-            let params = params.query(QuerySpan::Observed).check()?;
-            Ok(GoalEstimator::new(params, library)?)
-        };
+        let params = config.goals.retrieval.clone().query(QuerySpan::Observed);
+        let estimator = GoalEstimator::new(params.check()?, library)?;
         let origin = match &config.goals.proposal {
-            None => GoalOrigin::Retrieved(estimator(config.goals.retrieval.clone())?),
+            None => GoalOrigin::Retrieved(estimator),
             Some(recipe) => {
                 let network =
                     ProposalNetwork::new(recipe.network.clone(), recipe.training.seed, device)?;
@@ -83,7 +81,6 @@ impl GoalModel {
                     &config.goals_origin(),
                     &run.proposal(),
                 )?;
-                let estimator = estimator(config.goals.beside(recipe))?;
                 GoalOrigin::Both(network, estimator, recipe.retrieved_share)
             }
         };

@@ -26,18 +26,15 @@ pub struct ProposalRecipe {
     /// Share of the probability given to the retrieved goals, which are pooled with the network's ends before K goals are
     /// chosen to stand for both.
     pub retrieved_share: f64,
-    /// Into how many goals the retrieved walkers are gathered before they are pooled with the network's ends.
-    pub retrieved_goals: usize,
 }
 
 impl Default for ProposalRecipe {
-    /// Chosen on validation splits of training recordings (`docs/goals.md`).
+    /// Chosen on validation splits of training recordings (`docs/accuracy.md`).
     fn default() -> Self {
         Self {
             network: ProposalConfig::default(),
             training: ProposalTraining::default(),
-            retrieved_share: 0.5,
-            retrieved_goals: 200,
+            retrieved_share: 0.15,
         }
     }
 }
@@ -72,7 +69,6 @@ impl GoalRecipe {
         if let Some(proposal) = &self.proposal {
             proposal.network.check()?;
             proposal.training.check()?;
-            self.beside(proposal).check()?;
             if !(0.0..=1.0).contains(&proposal.retrieved_share) {
                 return Err(DdlError::RetrievedShare(proposal.retrieved_share));
             }
@@ -90,11 +86,6 @@ impl GoalRecipe {
                 proposal.network.members, proposal.training.steps
             ),
         }
-    }
-
-    /// The retrieval whose goals are pooled with a network's ends.
-    pub(crate) fn beside(&self, proposal: &ProposalRecipe) -> GoalEstimatorParams {
-        self.retrieval.clone().clusters(proposal.retrieved_goals)
     }
 
     /// Where the goals come from, in words.

@@ -2,6 +2,7 @@
 
 pub(super) mod build;
 mod publish;
+mod readme;
 mod report;
 mod side_by_side;
 

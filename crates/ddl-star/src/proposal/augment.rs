@@ -48,7 +48,8 @@ pub(crate) fn augment(
         .to_kind(options.0)
         .unsqueeze(-1);
     let own = views.own.matmul(&matrix);
-    let own = &own + noise(&own, training.jitter);
+    let inexactness = Tensor::rand([size[0], size[1], 1, 1], options) * training.jitter;
+    let own = &own + own.randn_like() * inexactness;
     let augmented = Views {
         own,
         neighbours,

@@ -121,7 +121,7 @@ pub struct ProposalTraining {
     pub scale: f64,
     /// Scenes are turned by a normal angle of this standard deviation (radians).
     pub turn: f64,
-    /// Standard deviation of what is added to every observed position (metres).
+    /// Largest standard deviation of what is added to every observed position (metres); each walker's is uniform from 0 to this.
     pub jitter: f64,
     /// Standard deviation of what is added to a neighbour's whole track (metres).
     pub neighbour_jitter: f64,
@@ -144,9 +144,9 @@ impl Default for ProposalTraining {
             relaxed_share: 0.6,
             waypoint_weight: 0.5,
             probability_weight: 0.1,
-            scale: 0.2,
+            scale: 0.35,
             turn: 0.1,
-            jitter: 0.03,
+            jitter: 0.08,
             neighbour_jitter: 0.3,
             blindness: 0.3,
             reversed: 0.3,

@@ -1,4 +1,4 @@
-//! Copies a report into the documentation, with what made it.
+//! Copies a report into the documentation, with what made it, and its headline tables into the README.
 
 use std::fs;
 use std::path::Path;
@@ -6,9 +6,13 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 
+use super::readme;
 use crate::benchmark::{Plan, RecipeName, Settings, human};
 use crate::whole_file;
 use crate::workspace::Workspace;
+
+/// The page whose tables the README shows too.
+const HEADLINE: &str = "docs/benchmark.md";
 
 /// Where results are shown: every data convention, recipe and profile has a page of its own, and the headline is the one whose
 /// name says nothing of them.
@@ -36,11 +40,48 @@ pub(super) fn publish(
     took: Duration,
 ) -> Result<()> {
     let report = fs::read_to_string(out.join("report.md")).context("the report cannot be read")?;
-    let text = page(&report, plan, &workspace.commit(), &workspace.now(), took);
+    let (commit, now) = (workspace.commit(), workspace.now());
+    let text = page(&report, plan, &commit, &now, took);
     let file = file(&plan.settings);
     whole_file::write(&workspace.path(&file), text.as_bytes())?;
     println!("published: {file}");
+    if file == HEADLINE {
+        let path = workspace.path("README.md");
+        let old = fs::read_to_string(&path).context("README.md cannot be read")?;
+        let made_by = made_by(plan, &commit, &now, took);
+        let new = readme::with_results(&old, &report, &plan.settings.protocols, &made_by)?;
+        whole_file::write(&path, new.as_bytes())?;
+        println!("published: README.md");
+    }
     Ok(())
+}
+
+/// What made the tables of the README, in words.
+fn made_by(plan: &Plan, commit: &str, time: &str, took: Duration) -> String {
+    let settings = &plan.settings;
+    format!(
+        "`{}` made these tables: recipe `{}`, {} epochs, the last one; seeds {}; data convention `{}`, window rule \
+         `published`, {} test windows; device {}; commit {commit}, {time}, in {}. All of it: [{HEADLINE}]({HEADLINE}).",
+        command(plan, &seeds(plan)),
+        settings.recipe.name,
+        settings.epochs,
+        seeds(plan).join(", "),
+        settings.convention,
+        match settings.test_walkers {
+            None => "all".to_owned(),
+            Some(walkers) => format!("{walkers} walkers of the"),
+        },
+        settings.device,
+        human(took),
+    )
+}
+
+/// The seeds of the tasks, each once, in order.
+fn seeds(plan: &Plan) -> Vec<String> {
+    let mut seeds: Vec<u64> = plan.tasks.iter().map(|task| task.seed).collect();
+    seeds.sort_unstable();
+    seeds.dedup();
+    seeds.iter().map(u64::to_string).collect()
 }
 
 /// The report with its origin below the title.
@@ -67,10 +108,7 @@ fn page(report: &str, plan: &Plan, commit: &str, time: &str, took: Duration) -> 
         ),
         None => of_the_recipe.to_owned(),
     };
-    let mut seeds: Vec<u64> = plan.tasks.iter().map(|task| task.seed).collect();
-    seeds.sort_unstable();
-    seeds.dedup();
-    let seeds: Vec<String> = seeds.iter().map(u64::to_string).collect();
+    let seeds = seeds(plan);
     format!(
         "{}\n\n\
          <!-- Generated. Do not edit: run the command below. -->\n\
@@ -161,7 +199,7 @@ mod tests {
     #[test]
     fn a_convention_a_recipe_and_a_profile_have_a_page_of_their_own() {
         for (convention, recipe, profile, expected) in [
-            ("star", RECOMMENDED, "paper", "docs/benchmark.md"),
+            ("star", RECOMMENDED, "paper", HEADLINE),
             ("star", RECOMMENDED, "quick", "docs/benchmark-quick.md"),
             ("star", PUBLISHED, "paper", "docs/benchmark-published.md"),
             (
