@@ -61,9 +61,9 @@ impl Protocol {
                  split of the training scenes"
             }
             Self::Single => {
-                "one hypothesis a pedestrian from the 8 observed frames alone: of those forecast the one of \
-                 least expected ADE under their own weights (all alike where there are none); nothing is \
-                 chosen with the truth"
+                "one forecast a pedestrian from the 8 observed frames alone: what a forecaster gives as its one \
+                 forecast (DDL: a walk to the central goal), otherwise the hypothesis of least expected ADE under \
+                 their own weights (all alike where there are none); nothing is chosen with the truth"
             }
         }
     }

@@ -100,8 +100,8 @@ impl GoalSet {
         Self::new(vec![self.central()], vec![1.0], self.experts.clone())
     }
 
-    /// Power of the weights in [`central`](Self::central), chosen on validation splits of training recordings
-    /// (`docs/accuracy.md`): whoever stands is likelier to stay than the mean of all ways to leave says.
+    /// Power of the weights in [`central`](Self::central), chosen on validation splits of training recordings for the choice among walks
+    /// (`docs/accuracy.md`) and taken over: whoever stands is likelier to stay than the mean of all ways to leave says.
     pub const SHARPNESS: f64 = 1.5;
 
     /// Index of the goal nearest to `point` (m), the first of equally near ones.

@@ -75,6 +75,10 @@ impl GoalFrame {
     ///
     /// # Shapes
     /// `factors` `[.., P, 3]` holds (a, b, c) of L = [[a, 0], [b, c]]; the same of L' comes back.
+    ///
+    /// # Numerics
+    /// Where the first row of R^T L vanishes (L singular, its null space along the world's x axis) the square of the first pivot is raised to 1e-12 m/s and
+    /// what the second row is worth is lost: the walker stands, and P is still positive definite.
     pub(crate) fn factors_to_world(&self, factors: &Tensor) -> Tensor {
         let l = |i: i64| factors.narrow(-1, i, 1);
         let (a, b, c) = (l(0), l(1), l(2));

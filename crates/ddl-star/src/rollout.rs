@@ -34,8 +34,8 @@ impl StarNetwork {
     /// One-step-ahead positions: from the true positions up to each frame, the next one.
     ///
     /// # Shapes
-    /// `batch` of T frames with neighbours of at least T - 1; `goals` `[P, 2]`; `noise`
-    /// one vector, or none -> `[T - 1, P, 2]`, the forecasts of frames 1..T.
+    /// `batch` of T frames with neighbours of at least T - 1, T at least 8 in the walkers' own frames and without goal shift; `goals`
+    /// `[P, 2]`; `noise` one vector, or none -> `[T - 1, P, 2]`, the forecasts of frames 1..T.
     pub fn teacher_forced(
         &self,
         batch: &SceneBatch,
@@ -190,11 +190,14 @@ impl StarNetwork {
         }
     }
 
+    /// Where the walkers are led, as this network reads it.
+    ///
     /// # Shapes
-    /// `goals` `[.., P, 2]`.
+    /// `batch` of at least 8 frames, unless the network reads positions relative to the goal in the world's frame; `goals`
+    /// `[.., P, 2]`.
     fn course(&self, batch: &SceneBatch, goals: &Tensor) -> Course {
         let config = self.config();
-        let last = batch.positions.narrow(0, OBSERVED as i64 - 1, 1);
+        let last = || batch.positions.narrow(0, OBSERVED as i64 - 1, 1);
         let goals = if goals.dim() == 2 {
             goals.unsqueeze(0)
         } else {
@@ -202,13 +205,13 @@ impl StarNetwork {
         };
         let frame = match config.frame {
             Frame::World => None,
-            Frame::Goal => Some(GoalFrame::new(&last, &goals)),
+            Frame::Goal => Some(GoalFrame::new(&last(), &goals)),
         };
         Course {
             reference: if config.variant.goal_shift() {
                 goals
             } else {
-                last
+                last()
             },
             frame,
             dynamics: config.variant.dynamics(),

@@ -72,16 +72,24 @@ impl Trainer {
         goals: Vec<Vec<Position>>,
         config: TrainingConfig,
     ) -> Result<Self, StarError> {
-        let fits = goals.len() == windows.len()
-            && goals
-                .iter()
-                .zip(&windows)
-                .all(|(goals, window)| goals.len() == window.len());
-        if !fits {
+        let walkers: Vec<usize> = windows.iter().map(Window::len).collect();
+        let given: Vec<usize> = goals.iter().map(Vec::len).collect();
+        if given != walkers {
+            let first = walkers.iter().zip(&given).position(|(a, b)| a != b);
+            let (expected, got) = match first {
+                Some(w) => (
+                    format!("{} goals, one a walker, of window {w}", walkers[w]),
+                    format!("{}", given[w]),
+                ),
+                None => (
+                    format!("the goals of {} windows", walkers.len()),
+                    format!("those of {}", given.len()),
+                ),
+            };
             return Err(StarError::Shape {
                 operation: "training",
-                expected: format!("a goal for each walker of {} windows", windows.len()),
-                got: format!("goals of {} windows", goals.len()),
+                expected,
+                got,
             });
         }
         let (windows, goals) = windows
@@ -99,6 +107,7 @@ impl Trainer {
         config: TrainingConfig,
     ) -> Result<Self, StarError> {
         config.check()?;
+        config.check_for(network.config().variant)?;
         if network.precision() != Precision::F32 {
             return Err(StarError::Config {
                 field: "precision",

@@ -123,7 +123,7 @@ pub struct TrainingConfig {
     pub jitter: f64,
     /// Train on at most about this many walkers an epoch, going round the whole set.
     pub walkers_per_epoch: Option<usize>,
-    /// Seed of initial weights, batch order, rotation, noise and dropout.
+    /// Seed of initial weights, batch order, rotation, mirror images, jitter, noise and dropout.
     pub seed: u64,
 }
 
@@ -221,6 +221,20 @@ impl TrainingConfig {
             require(walkers > 0, "walkers_per_epoch", &walkers, "at least 1")?;
         }
         Ok(())
+    }
+
+    /// Checks that a network of this variant can be trained so.
+    ///
+    /// # Errors
+    /// [`StarError::Config`] for walks of [`Variant::Star`], which has no goals to walk to: its forecasts live on the noise that
+    /// walks are trained without.
+    pub fn check_for(&self, variant: Variant) -> Result<(), StarError> {
+        require(
+            variant.uses_goal() || self.objective == Objective::NextStep,
+            "objective",
+            &"walk",
+            "next-step for the variant without goals",
+        )
     }
 }
 

@@ -1,5 +1,6 @@
 //! Compares rules by which one forecast is made of a model's hypotheses, on the windows that its training kept for validation:
-//! `one_forecast RUN`. Mean ADE/FDE in metres of each recording, beside constant velocity. The table of docs/accuracy.md.
+//! `one_forecast RUN`. Mean ADE/FDE in metres of each recording, beside constant velocity: the rows of the table in docs/accuracy.md but
+//! those of the central goal, which `ddl evaluate --validation` measures under `single`.
 
 #![expect(clippy::print_stdout, reason = "a program that prints a table")]
 

@@ -243,7 +243,8 @@ impl GoalModel {
     }
 
     /// Where walkers whose future is known are led in training: to the proposed goal nearest the true end, or to the true
-    /// end where nothing is proposed. What is retrieved is left out: the library holds the very walkers that are learned from.
+    /// end where nothing is proposed. What is retrieved is left out: the library holds the very walkers that are learned from. The
+    /// proposals have learned from them too, which costs less: they know nobody by heart (`docs/goals.md`, training).
     ///
     /// # Errors
     /// When libtorch fails.
@@ -255,12 +256,9 @@ impl GoalModel {
         }
         let sets = self.goals_without_library(windows)?;
         let nearest = |(i, set): (usize, GoalSet), window: &Window| {
-            let [x, y] = end(window, i);
-            let off = |goal: &Position| (goal[0] - x).hypot(goal[1] - y);
-            let goals = set.goals().iter();
-            goals
-                .min_by(|a, b| off(a).total_cmp(&off(b)))
-                .map_or([x, y], |&goal| goal)
+            let end = end(window, i);
+            let goal = set.goals().get(set.nearest(end));
+            goal.copied().unwrap_or(end)
         };
         Ok(sets
             .into_iter()

@@ -5,13 +5,13 @@ use ddl_goal::GoalEstimatorParams;
 use ddl_star::{ProposalConfig, ProposalTraining};
 use serde::{Deserialize, Serialize};
 
-/// How goals are made: retrieved from the expert library, or proposed by a network.
+/// How goals are made: retrieved from the expert library, or proposed by a network and pooled with retrieved ones.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GoalRecipe {
     /// Retrieval of similar walkers; also says how many goals there are.
     pub retrieval: GoalEstimatorParams,
-    /// The proposal network that goals come from; without one, from the retrieval.
+    /// The proposal network whose ends are pooled with the retrieved goals; without one these are all.
     pub proposal: Option<ProposalRecipe>,
 }
 

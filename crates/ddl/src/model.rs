@@ -152,7 +152,7 @@ impl Ddl {
     }
 
     /// One forecast a pedestrian, for who may have only one: the walk to the point with the least expected distance to its
-    /// goals ([`GoalSet::central`]); certified as those to the goals are. For the variant without goals, its noise samples.
+    /// goals ([`GoalSet::central`]). Its steps are as stable as those to the goals, and `Forecast::certified` holds the verdict of each. For the variant without goals, its noise samples.
     ///
     /// # Errors
     /// As [`forecast_all`](Forecaster::forecast_all).

@@ -86,6 +86,7 @@ pub fn train(
     // Everything is checked before the directory is claimed: a mistake must not leave a run behind.
     request.star.check()?;
     request.training.check()?;
+    request.training.check_for(request.star.variant)?;
     request.goals.check()?;
     if !(0.0..1.0).contains(&request.validation) {
         return Err(DdlError::Validation(request.validation));

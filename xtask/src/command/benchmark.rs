@@ -93,8 +93,8 @@ pub(crate) struct Arguments {
     /// Training epochs [default: the profile's]
     #[arg(long, value_name = "N")]
     epochs: Option<u32>,
-    /// Also write the report to docs/benchmark.md, with what made it; profiles but paper, conventions but star and the paper's
-    /// recipe have pages of their own, named after them
+    /// Also write the report to docs/benchmark.md, with what made it, and its tables into README.md; profiles but paper, conventions
+    /// but star and the paper's recipe have pages of their own, named after them
     #[arg(long)]
     publish: bool,
 }
@@ -128,7 +128,7 @@ impl Arguments {
             plan.tasks.len(),
             out.display()
         );
-        let executor = Local::new(program.clone(), jobs, threads).of_commit(commit);
+        let executor = Local::new(program.clone(), jobs, threads).of_commit(commit.clone());
         let ends = work_off(&executor, &plan, &out)?;
         let finished: Vec<PathBuf> = plan
             .tasks
@@ -165,7 +165,8 @@ impl Arguments {
                  delete {} or choose another --out",
                 out.display()
             );
-            publish::publish(workspace, &plan, &out, start.elapsed())?;
+            let folds = fold_names(workspace, chosen.convention)?;
+            publish::publish(workspace, (&plan, &folds), (&out, &commit), start.elapsed())?;
         }
         Ok(ExitCode::SUCCESS)
     }

@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use super::benchmark::build;
 use super::set_up;
-use crate::benchmark::{Plan, Task, fold_names};
+use crate::benchmark::{Plan, RecipeName, Task, fold_names};
 use crate::data::Convention;
 use crate::whole_file;
 use crate::workspace::{Workspace, absolute};
@@ -110,6 +110,20 @@ fn tasks<'a>(plan: &'a Plan, folds: &[String], seed: Option<u64>) -> Result<Vec<
     ensure!(
         convention == Convention::Star.name(),
         "the models that come with the program are trained on star data, and that benchmark is of {convention} data"
+    );
+    let settings = &plan.settings;
+    let recommended = settings.recipe.name == RecipeName::Recommended;
+    ensure!(
+        recommended && settings.profile == "paper" && settings.train_walkers.is_none(),
+        "the models that come with the program are of the whole recommended recipe (--profile paper), and that benchmark is of profile \
+         {}, recipe {}{}",
+        settings.profile,
+        settings.recipe.name,
+        settings
+            .train_walkers
+            .map_or(String::new(), |walkers| format!(
+                ", {walkers} walkers an epoch"
+            )),
     );
     let full = || plan.tasks.iter().filter(|task| task.variant == "full");
     let seed = seed.or_else(|| full().map(|task| task.seed).min());

@@ -13,6 +13,7 @@ use crate::workspace::Workspace;
 
 /// The page whose tables the README shows too.
 const HEADLINE: &str = "docs/benchmark.md";
+const README: &str = "README.md";
 
 /// Where results are shown: every data convention, recipe and profile has a page of its own, and the headline is the one whose
 /// name says nothing of them.
@@ -32,28 +33,45 @@ fn file(settings: &Settings) -> String {
     )
 }
 
-/// Writes the results of the plan into the page of its profile.
+/// Writes the results of the plan, which `commit` measured, into the page of its profile, and into the README where they are those of all
+/// `folds`.
 pub(super) fn publish(
     workspace: &Workspace,
-    plan: &Plan,
-    out: &Path,
+    (plan, folds): (&Plan, &[String]),
+    (out, commit): (&Path, &str),
     took: Duration,
 ) -> Result<()> {
     let report = fs::read_to_string(out.join("report.md")).context("the report cannot be read")?;
-    let (commit, now) = (workspace.commit(), workspace.now());
-    let text = page(&report, plan, &commit, &now, took);
+    let now = workspace.now();
+    let text = page(&report, plan, commit, &now, took);
     let file = file(&plan.settings);
-    whole_file::write(&workspace.path(&file), text.as_bytes())?;
-    println!("published: {file}");
-    if file == HEADLINE {
-        let path = workspace.path("README.md");
-        let old = fs::read_to_string(&path).context("README.md cannot be read")?;
-        let made_by = made_by(plan, &commit, &now, took);
+    let mut pages = vec![(file.as_str(), text)];
+    if file == HEADLINE && is_whole(plan, folds) {
+        let old = fs::read_to_string(workspace.path(README))
+            .with_context(|| format!("{README} cannot be read"))?;
+        let made_by = made_by(plan, commit, &now, took);
         let new = readme::with_results(&old, &report, &plan.settings.protocols, &made_by)?;
-        whole_file::write(&path, new.as_bytes())?;
-        println!("published: README.md");
+        pages.push((README, new));
+    }
+    for (file, text) in pages {
+        whole_file::write(&workspace.path(file), text.as_bytes())?;
+        println!("published: {file}");
     }
     Ok(())
+}
+
+/// Whether the README may show it: the whole method on all folds and windows, under the protocols that do not look ahead.
+fn is_whole(plan: &Plan, folds: &[String]) -> bool {
+    let settings = &plan.settings;
+    let full = |fold: &String| {
+        let mut tasks = plan.tasks.iter();
+        tasks.any(|task| task.fold == *fold && task.variant == "full")
+    };
+    settings.protocols == ["fair", "single"]
+        && settings.train_walkers.is_none()
+        && settings.test_walkers.is_none()
+        && folds.iter().all(full)
+        && plan.tasks.iter().all(|task| task.variant == "full")
 }
 
 /// What made the tables of the README, in words.
@@ -229,6 +247,31 @@ mod tests {
             };
             assert_eq!(file(&settings), expected);
         }
+    }
+
+    /// The README shows the headline, and no part of it.
+    #[test]
+    fn a_part_of_the_benchmark_does_not_reach_the_readme() {
+        let names =
+            |names: &[&str]| -> Vec<String> { names.iter().map(|&name| name.to_owned()).collect() };
+        let folds = names(&["eth", "hotel"]);
+        let whole = |settings: Settings, some: &[&str], variants: &[&str]| {
+            let plan = Plan::new(settings, &names(some), &names(variants), &[0]).unwrap();
+            is_whole(&plan, &folds)
+        };
+        let all = || Settings {
+            train_walkers: None,
+            ..settings()
+        };
+        assert!(whole(all(), &["eth", "hotel"], &["full"]));
+        assert!(!whole(all(), &["eth"], &["full"]));
+        assert!(!whole(all(), &["eth", "hotel"], &["full", "star"]));
+        assert!(!whole(settings(), &["eth", "hotel"], &["full"]));
+        let cut = Settings {
+            test_walkers: Some(50),
+            ..all()
+        };
+        assert!(!whole(cut, &["eth", "hotel"], &["full"]));
     }
 
     fn made(settings: Settings) -> String {

@@ -16,9 +16,13 @@ struct Made {
 
 impl Made {
     fn new(convention: &str, folds: &[&str]) -> Self {
+        Self::of_profile("paper", convention, folds)
+    }
+
+    fn of_profile(profile: &str, convention: &str, folds: &[&str]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let settings = Settings {
-            profile: "quick".to_owned(),
+            profile: profile.to_owned(),
             convention: convention.to_owned(),
             data: None,
             device: "cpu".to_owned(),
@@ -118,6 +122,8 @@ fn half_a_benchmark_is_refused() {
     assert!(few.contains("zara2") && few.contains("all folds"), "{few}");
     let other = Made::new("social-gan", &FOLDS).error();
     assert!(other.contains("social-gan"), "{other}");
+    let short = Made::of_profile("quick", "star", &FOLDS).error();
+    assert!(short.contains("of profile quick"), "{short}");
 
     let made = Made::new("star", &FOLDS);
     let report = made.path("benchmark/univ-full-1/run/report.json");
