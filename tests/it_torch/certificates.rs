@@ -285,7 +285,10 @@ fn the_one_forecast_is_certified_towards_the_central_goal() {
                 assert_eq!(forecast.certified(i, 0), Some(true), "{variant}");
                 assert_eq!(forecast.weight(i, 0).to_bits(), 1.0_f64.to_bits());
                 let goal = forecast.goal(i, 0).unwrap();
-                assert_eq!(goal.map(f64::to_bits), set.central().map(f64::to_bits));
+                assert_eq!(
+                    goal.map(f64::to_bits),
+                    set.central(window.observed(i)).map(f64::to_bits)
+                );
                 let start = window.observed(i)[OBSERVED - 1];
                 let path = std::iter::once(&start).chain(forecast.hypothesis(i, 0));
                 let left: Vec<f64> = path.map(|&position| distance(position, goal)).collect();

@@ -56,8 +56,8 @@ impl GoalSet {
         0
     }
 
-    /// The one goal for who may have only one: it minimises the mean distance to the goals under their weights raised to the
-    /// power [`SHARPNESS`](Self::SHARPNESS), the geometric median. No goal of the set need be there.
+    /// The geometric median of the goals: it minimises the mean distance to them under their weights raised to the power
+    /// [`SHARPNESS`](Self::SHARPNESS). No goal of the set need be there.
     ///
     /// # Numerics
     /// Weiszfeld's iteration from the weighted mean, until a step is below 0.1 mm, at most 100 steps; a goal nearer than that counts as
@@ -65,7 +65,7 @@ impl GoalSet {
     ///
     /// # References
     /// E. Weiszfeld, "Sur le point pour lequel la somme des distances de n points donnés est minimum", 1937.
-    pub fn central(&self) -> [f64; 2] {
+    pub fn median(&self) -> [f64; 2] {
         let sharpened: Vec<f64> = self
             .weights
             .iter()
@@ -94,13 +94,7 @@ impl GoalSet {
         centre
     }
 
-    /// The set of the [`central`](Self::central) goal alone.
-    #[must_use]
-    pub fn only_central(&self) -> Self {
-        Self::new(vec![self.central()], vec![1.0], self.experts.clone())
-    }
-
-    /// Power of the weights in [`central`](Self::central), chosen on validation splits of training recordings for the choice among walks
+    /// Power of the weights in [`median`](Self::median), chosen on validation splits of training recordings for the choice among walks
     /// (`docs/accuracy.md`) and taken over: whoever stands is likelier to stay than the mean of all ways to leave says.
     pub const SHARPNESS: f64 = 1.5;
 
@@ -134,11 +128,11 @@ mod tests {
 
     /// Whoever has more than half of the sharpened weight is the geometric median itself.
     #[test]
-    fn a_goal_with_most_of_the_weight_is_the_central_one() {
-        let central = set(&[[3.0, 1.0], [0.0, 0.0], [5.0, 7.0]], &[0.6, 0.2, 0.2]).central();
+    fn a_goal_with_most_of_the_weight_is_the_median() {
+        let median = set(&[[3.0, 1.0], [0.0, 0.0], [5.0, 7.0]], &[0.6, 0.2, 0.2]).median();
         assert!(
-            squared_distance(central, [3.0, 1.0]).sqrt() < 1e-3,
-            "{central:?}"
+            squared_distance(median, [3.0, 1.0]).sqrt() < 1e-3,
+            "{median:?}"
         );
     }
 
@@ -146,8 +140,8 @@ mod tests {
     #[test]
     fn equal_goals_of_a_triangle_meet_at_its_fermat_point() {
         let corners = [[0.0, 0.0], [2.0, 0.0], [1.0, 3.0_f64.sqrt()]];
-        let central = set(&corners, &[1.0 / 3.0; 3]).central();
-        assert!(squared_distance(central, [1.0, 1.0 / 3.0_f64.sqrt()]).sqrt() < 1e-3);
+        let median = set(&corners, &[1.0 / 3.0; 3]).median();
+        assert!(squared_distance(median, [1.0, 1.0 / 3.0_f64.sqrt()]).sqrt() < 1e-3);
     }
 
     proptest! {
@@ -167,9 +161,9 @@ mod tests {
                 })
                 .sum()
             };
-            let central = cost(set.central());
+            let median = cost(set.median());
             for &goal in set.goals() {
-                prop_assert!(central <= cost(goal) * (1.0 + 1e-3) + 1e-3);
+                prop_assert!(median <= cost(goal) * (1.0 + 1e-3) + 1e-3);
             }
         }
     }

@@ -2,6 +2,7 @@
 
 mod analogues;
 mod carry_over;
+mod central_goal;
 mod choice;
 mod error;
 mod estimator;

@@ -11,7 +11,7 @@ use crate::test_set::TestSet;
 use ddl_data::{Dataset, Window};
 use ddl_eval::baseline::WeightedGoals;
 use ddl_eval::{Forecast, ForecastError, Forecaster as _, Moment, Protocol, ResultRow, gallery};
-use ddl_goal::{GoalSet, QuerySpan};
+use ddl_goal::QuerySpan;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -116,12 +116,6 @@ struct Forecasts {
     line: Vec<Forecast>,
 }
 
-/// The one goal that stands for each walker's.
-fn only_central(goals: &[Vec<GoalSet>]) -> Vec<Vec<GoalSet>> {
-    let only = |sets: &Vec<GoalSet>| sets.iter().map(GoalSet::only_central).collect();
-    goals.iter().map(only).collect()
-}
-
 struct Measuring<'a, O> {
     model: &'a Ddl,
     test: &'a TestSet,
@@ -178,7 +172,10 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             Ok(Forecasts {
                 model: manners.iter().map(towards).collect::<Result<_, _>>()?,
                 lines: straight_lines(goal, windows, &goals::weighted(&goals)?)?,
-                line: straight_lines(central, windows, &goals::weighted(&only_central(&goals))?)?,
+                line: {
+                    let goals = goals::only_central(windows, &goals);
+                    straight_lines(central, windows, &goals::weighted(&goals)?)?
+                },
             })
         })?;
         let mut rows = Vec::new();

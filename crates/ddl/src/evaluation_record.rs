@@ -19,8 +19,8 @@ struct Record {
     rows: u32,
 }
 
-/// 1: with the row without an expert library.
-const ROWS: u32 = 1;
+/// 1: with the row without an expert library. 2: the central goal is drawn towards where the last step leads.
+const ROWS: u32 = 2;
 
 impl Record {
     fn new(model: &Ddl, request: &EvaluationRequest) -> Self {

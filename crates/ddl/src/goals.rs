@@ -42,6 +42,17 @@ pub(crate) fn weighted(sets: &[Vec<GoalSet>]) -> Result<Vec<Vec<WeightedGoals>>,
         .collect()
 }
 
+/// The one goal that stands for each walker's, for who may have only one.
+pub(crate) fn only_central(windows: &[Window], sets: &[Vec<GoalSet>]) -> Vec<Vec<GoalSet>> {
+    let of_window = |(window, sets): (&Window, &Vec<GoalSet>)| {
+        let walkers = sets.iter().enumerate();
+        walkers
+            .map(|(i, set)| set.only_central(window.observed(i)))
+            .collect()
+    };
+    windows.iter().zip(sets).map(of_window).collect()
+}
+
 /// The one estimated goal nearest the TRUE end, a pedestrian: the published protocol's oracle.
 pub(crate) fn nearest_true_end(
     estimator: &GoalEstimator,

@@ -4,6 +4,7 @@ mod loading;
 
 use crate::certified_forecast::{self, CertifiedForecast, Walked};
 use crate::clearance::Clearance;
+use crate::goals;
 use crate::model_source::ModelSource;
 use crate::run_config::RunConfig;
 use crate::run_directory::RunDirectory;
@@ -168,11 +169,7 @@ impl Ddl {
         sets: &[Vec<GoalSet>],
         gait: Gait,
     ) -> Result<Vec<Forecast>, ForecastError> {
-        let central = sets
-            .iter()
-            .map(|sets| sets.iter().map(GoalSet::only_central).collect())
-            .collect();
-        self.forecast_towards(windows, central, gait)
+        self.forecast_towards(windows, goals::only_central(windows, sets), gait)
     }
 
     /// One hypothesis a goal for every pedestrian, with the goal's weight; for the variant without
