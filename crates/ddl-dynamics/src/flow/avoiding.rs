@@ -41,8 +41,8 @@ use crate::{
 /// # Numerics
 /// The decrease goes first. A walker held up at a saddle still makes the smallest move to the goal that
 /// shows, a rounding a step, and so gets into the ball, rounding by rounding. And on a surface,
-/// where rounding has used up the gap, up to `sqrt(2 epsilon) lambda_max` of the approach may be left between several
-/// balls. In `f64` neither shows; in `f32` allow some millimetres.
+/// where rounding has used up the gap, `epsilon lambda_max` of the approach is left, between several balls up to
+/// `sqrt(2 epsilon) lambda_max`. In `f64` neither shows; in `f32` allow some millimetres.
 ///
 /// Balls that touch or overlap can form a dead end, where walkers come to rest. A walker who starts inside
 /// a ball is let out of it, not further in.
