@@ -74,7 +74,7 @@ fn every_variant_learns() {
 }
 
 /// Walks to goals that are not the true ends, backwards and forwards, in the walkers' own frames.
-fn walker(epochs: usize) -> Trainer {
+fn walker(epochs: usize, jitter: f64) -> Trainer {
     let config = StarConfig {
         feed_forward_width: 64,
         ..StarConfig::recommended(Variant::Full)
@@ -84,6 +84,7 @@ fn walker(epochs: usize) -> Trainer {
         batch_walkers: 40,
         walkers_per_epoch: None,
         seed: 7,
+        jitter,
         ..TrainingConfig::recommended(Variant::Full)
     };
     let mut windows = windows();
@@ -103,7 +104,8 @@ fn walker(epochs: usize) -> Trainer {
 
 #[test]
 fn walks_to_goals_are_learned() {
-    let losses = losses(walker(30));
+    // from exact positions: what jitter adds to the loss of so few walkers is not to be learned
+    let losses = losses(walker(30, 0.0));
     // at most 0.36 m off at the end, and on the way there a walk can keep to the true path
     let last = losses[29];
     assert!(last < 0.5 * losses[0] && last < 0.25, "{losses:?}");
@@ -131,11 +133,11 @@ fn a_network_without_goals_has_no_frame_of_its_own() {
 
 #[test]
 fn walks_stopped_and_resumed_give_the_same_weights() {
-    let mut whole = walker(2);
+    let mut whole = walker(2, 0.06);
     let (_, total) = whole.steps();
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("optimizer.safetensors");
-    let mut first = walker(2);
+    let mut first = walker(2, 0.06);
     for step in 0..total {
         whole.step().unwrap();
         if step < total / 2 {
@@ -143,7 +145,7 @@ fn walks_stopped_and_resumed_give_the_same_weights() {
         }
     }
     first.save(&origin(), &state).unwrap();
-    let mut second = walker(2);
+    let mut second = walker(2, 0.06);
     second.resume(&origin(), &state).unwrap();
     while !second.is_finished() {
         second.step().unwrap();
