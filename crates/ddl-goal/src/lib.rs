@@ -8,6 +8,7 @@ mod error;
 mod estimator;
 mod expert;
 mod frame;
+mod geometric_median;
 mod goal_set;
 mod heading;
 mod kmeans;

@@ -1,0 +1,179 @@
+//! The point with the least weighted mean distance to given points.
+
+use crate::points::squared_distance;
+
+/// A step shorter than this (m) is the last.
+const LAST_STEP: f64 = 1e-4;
+const MOST_STEPS: usize = 100;
+/// A point is better than the way between the points only where it is by more than this share: pulls that balance, as those of two
+/// equal points, have medians all the way between, and rounding must not choose.
+const ROUNDING: f64 = 1e-9;
+
+/// The point with the least weighted mean distance to `points` (m): one of them, or one between them.
+///
+/// # Shapes
+/// `points`: at least one; `weights`: as many, not negative, of a positive sum.
+///
+/// # Numerics
+/// A point whose weight outweighs the pull of all others is the median, to the bit. Otherwise Weiszfeld's steps lead there from the weighted
+/// mean, until one is below 0.1 mm, at most 100. They creep where a point nearly outweighs the others: then that point comes out if it is better.
+///
+/// # References
+/// E. Weiszfeld, "Sur le point pour lequel la somme des distances de n points donnés est minimum", 1937; H. W. Kuhn, "A note on Fermat's
+/// problem", 1973 (when a point is the median); Y. Vardi, C.-H. Zhang, "The multivariate L1-median and associated data depth", 2000 (the step from a point).
+pub(crate) fn geometric_median(points: &[[f64; 2]], weights: &[f64]) -> [f64; 2] {
+    let outweighs = |&&point: &&[f64; 2]| {
+        let pull = Pull::at(point, points, weights);
+        pull.strength() < (1.0 - ROUNDING) * pull.here
+    };
+    if let Some(&point) = points.iter().find(outweighs) {
+        return point;
+    }
+    let mut centre = mean(points, weights);
+    for _ in 0..MOST_STEPS {
+        let [x, y] = Pull::at(centre, points, weights).step();
+        centre = [centre[0] + x, centre[1] + y];
+        if x.hypot(y) < LAST_STEP {
+            break;
+        }
+    }
+    let least = (1.0 - ROUNDING) * total_distance(centre, points, weights);
+    let distances = points
+        .iter()
+        .map(|&point| (total_distance(point, points, weights), point));
+    match distances.min_by(|(a, _), (b, _)| a.total_cmp(b)) {
+        Some((distance, point)) if distance < least => point,
+        _ => centre,
+    }
+}
+
+fn mean(points: &[[f64; 2]], weights: &[f64]) -> [f64; 2] {
+    let total: f64 = weights.iter().sum();
+    std::array::from_fn(|axis| {
+        let each = points.iter().zip(weights);
+        each.map(|(point, weight)| weight * point[axis])
+            .sum::<f64>()
+            / total
+    })
+}
+
+fn total_distance(centre: [f64; 2], points: &[[f64; 2]], weights: &[f64]) -> f64 {
+    let each = points.iter().zip(weights);
+    each.map(|(&point, weight)| weight * squared_distance(point, centre).sqrt())
+        .sum()
+}
+
+/// How the points pull at a place.
+#[derive(Debug, Clone, Copy, Default)]
+struct Pull {
+    /// Weight of the points of the place itself.
+    here: f64,
+    /// Sum of weight x direction over the others.
+    sum: [f64; 2],
+    /// Sum of weight / distance over the others.
+    shares: f64,
+}
+
+impl Pull {
+    fn at(place: [f64; 2], points: &[[f64; 2]], weights: &[f64]) -> Self {
+        let mut pull = Self::default();
+        for (point, weight) in points.iter().zip(weights) {
+            let (x, y) = (point[0] - place[0], point[1] - place[1]);
+            let share = weight / x.hypot(y);
+            if share.is_finite() {
+                pull.sum = [pull.sum[0] + share * x, pull.sum[1] + share * y];
+                pull.shares += share;
+            } else {
+                pull.here += weight;
+            }
+        }
+        pull
+    }
+
+    fn strength(&self) -> f64 {
+        self.sum[0].hypot(self.sum[1])
+    }
+
+    /// To the mean under weight / distance; less far from a place that has weight itself.
+    fn step(&self) -> [f64; 2] {
+        let strength = self.strength();
+        if strength <= self.here {
+            return [0.0; 2];
+        }
+        let length = (1.0 - self.here / strength) / self.shares;
+        self.sum.map(|pull| length * pull)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
+        squared_distance(a, b).sqrt()
+    }
+
+    /// Whoever has more than half of the weight is the median itself, to the bit.
+    #[test]
+    fn a_point_with_most_of_the_weight_is_the_median() {
+        let points = [[3.0, 1.0], [0.0, 0.0], [5.0, 7.0]];
+        let median = geometric_median(&points, &[0.6, 0.2, 0.2]);
+        assert_eq!(median.map(f64::to_bits), points[0].map(f64::to_bits));
+    }
+
+    /// The Fermat point of a triangle sees its sides under 120 degrees: of an equilateral one it is the centre.
+    #[test]
+    fn equal_corners_of_a_triangle_meet_at_its_fermat_point() {
+        let corners = [[0.0, 0.0], [2.0, 0.0], [1.0, 3.0_f64.sqrt()]];
+        let median = geometric_median(&corners, &[1.0; 3]);
+        assert!(apart(median, [1.0, 1.0 / 3.0_f64.sqrt()]) < 1e-3);
+    }
+
+    /// Where a triangle's angle is 120 degrees, its corner is the median: steps creep there.
+    #[test]
+    fn a_corner_at_the_edge_of_being_the_median_is_it() {
+        let wide = [[0.0, 0.0], [1.0, 0.0], [-0.5, 0.75_f64.sqrt()]];
+        for weight in [0.999, 1.0, 1.001] {
+            let median = geometric_median(&wide, &[weight, 1.0, 1.0]);
+            assert!(apart(median, [0.0; 2]) < 1e-2, "{weight}: {median:?}");
+        }
+    }
+
+    /// Every place between is as good: the middle, wherever rounding leans.
+    #[test]
+    fn two_equal_points_meet_half_way() {
+        let median = geometric_median(&[[0.1, 0.2], [3.1, 4.2]], &[0.5; 2]);
+        assert!(apart(median, [1.6, 2.2]) < 1e-9, "{median:?}");
+    }
+
+    #[test]
+    fn points_of_one_place_are_one_point() {
+        let median = geometric_median(&[[1.0, 2.0], [1.0, 2.0], [4.0, 2.0]], &[0.3, 0.3, 0.4]);
+        assert_eq!(median.map(f64::to_bits), [1.0_f64, 2.0].map(f64::to_bits));
+    }
+
+    proptest! {
+        /// None of the points, and hardly any other place, is nearer to all of them together.
+        #[test]
+        fn nothing_is_more_central(
+            points in prop::collection::vec(
+                (prop::array::uniform2(-9.0..9.0_f64), prop_oneof![Just(0.0), 0.001..1.0_f64]),
+                1..20,
+            ),
+            (angle, way) in (0.0..6.3_f64, 0.01..1.0_f64),
+        ) {
+            let (points, mut weights): (Vec<_>, Vec<_>) = points.into_iter().unzip();
+            weights[0] += 0.1;
+            let median = geometric_median(&points, &weights);
+            let cost = |point| total_distance(point, &points, &weights);
+            let least = cost(median);
+            let total: f64 = weights.iter().sum();
+            for &point in &points {
+                prop_assert!(least <= cost(point) * (1.0 + 1e-8), "{median:?} {point:?}");
+            }
+            let aside = [median[0] + way * angle.cos(), median[1] + way * angle.sin()];
+            prop_assert!(least <= cost(aside) + 0.02 * total, "{median:?} {aside:?}");
+        }
+    }
+}
