@@ -267,11 +267,12 @@ fn the_certified_forecast_is_the_forecast() {
     }
 }
 
-/// The walk to the central goal has the same guarantee, and comes nearer to that goal at every step.
+/// The walk to the central goal has the same guarantee, comes nearer to that goal at every step, and leads straight there at
+/// constant speed.
 #[test]
 fn the_one_forecast_is_certified_towards_the_central_goal() {
     let windows = crowd::windows(6, 24);
-    for variant in [Variant::Full, Variant::NoGoalShift] {
+    for variant in [Variant::Full, Variant::NoGoalShift, Variant::NoDynamics] {
         let tiny = tiny_model::of(variant);
         let goals = tiny.model.goal_model().goals(&windows).unwrap();
         let forecasts = tiny.model.forecast_one(&windows).unwrap();
@@ -297,6 +298,11 @@ fn the_one_forecast_is_certified_towards_the_central_goal() {
                     .windows(2)
                     .all(|pair| pair[1] < pair[0] || pair[0] == 0.0);
                 assert!(falls, "{variant}: {left:?}");
+                for (t, position) in (1..).zip(forecast.hypothesis(i, 0)) {
+                    let share = f64::from(t) / FRAMES as f64;
+                    let line = [0, 1].map(|axis| start[axis] + share * (goal[axis] - start[axis]));
+                    assert!(distance(*position, line) < 1e-6, "{variant}: {position:?}");
+                }
             }
         }
     }

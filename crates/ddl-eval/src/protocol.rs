@@ -62,7 +62,7 @@ impl Protocol {
             }
             Self::Single => {
                 "one forecast a pedestrian from the 8 observed frames alone: what a forecaster gives as its one \
-                 forecast (DDL: a walk to the central goal), otherwise the hypothesis of least expected ADE under \
+                 forecast (DDL: straight to the central goal), otherwise the hypothesis of least expected ADE under \
                  their own weights (all alike where there are none); nothing is chosen with the truth"
             }
         }

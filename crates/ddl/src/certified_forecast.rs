@@ -5,7 +5,7 @@ use crate::walk::{Course, Gait, Walk};
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use ddl_dynamics::{DynamicsError, LyapunovCertificate, Violation};
 use ddl_eval::{Forecast, ForecastError};
-use ddl_star::{StarConfig, Variant, WindowRollout};
+use ddl_star::{StarConfig, Variant};
 
 /// A forecast whose every hypothesis carries a Lyapunov certificate.
 ///
@@ -88,13 +88,18 @@ pub enum CertificateError {
     },
 }
 
-/// Where the walkers of a window were rolled out to, how likely, and how they walk.
+/// Where the walkers of a window are led, how likely, and how they walk.
 #[derive(Debug)]
 pub(crate) struct Walked<'a> {
     pub(crate) config: &'a StarConfig,
     pub(crate) gait: Gait,
     pub(crate) window: &'a Window,
-    pub(crate) rollout: WindowRollout,
+    /// K
+    pub(crate) hypotheses: usize,
+    /// `[N][K][12]`: what the network itself walked, metres; empty where it had no part in it.
+    pub(crate) rolled_out: Vec<Position>,
+    /// `[N][K][12]`: (a, b, c) of the factor of P; `None` where there is no flow.
+    pub(crate) factors: Option<Vec<[f64; 3]>>,
     /// `[N][K]`
     pub(crate) weights: Vec<f64>,
     /// `[N][K]`
@@ -104,21 +109,21 @@ pub(crate) struct Walked<'a> {
 impl Walked<'_> {
     /// The forecast alone, with the verdicts where there is a flow to certify.
     pub(crate) fn forecast(self) -> Result<Forecast, ForecastError> {
-        if self.rollout.factors.is_some() {
+        if self.factors.is_some() {
             return Ok(self.certified()?.forecast);
         }
-        let (pedestrians, hypotheses) = (self.rollout.pedestrians, self.rollout.hypotheses);
-        let (positions, goals) = (self.rollout.positions, Some(self.goals));
+        let (pedestrians, hypotheses) = (self.window.len(), self.hypotheses);
+        let (positions, goals) = (self.rolled_out, Some(self.goals));
         let forecast = Forecast::new(pedestrians, hypotheses, positions, self.weights, goals);
         Ok(forecast?)
     }
 
     /// The forecast with a certificate for each hypothesis.
     ///
-    /// Stable steps: the network shapes P, `ddl-dynamics` walks. Plain Euler steps: the positions of the
+    /// Stable steps: P is shaped by its factors, `ddl-dynamics` walks. Plain Euler steps: the positions of the
     /// network's own rollout, as they are.
     pub(crate) fn certified(self) -> Result<CertifiedForecast, ForecastError> {
-        let Some(factors) = &self.rollout.factors else {
+        let Some(factors) = &self.factors else {
             return Err(no_flow(self.config.variant));
         };
         let (positions, certificates) = match self.gait {
@@ -130,7 +135,7 @@ impl Walked<'_> {
             .iter()
             .map(|certificate| certificate.holds().is_ok())
             .collect();
-        let (pedestrians, hypotheses) = (self.rollout.pedestrians, self.rollout.hypotheses);
+        let (pedestrians, hypotheses) = (self.window.len(), self.hypotheses);
         let goals = Some(self.goals);
         let forecast = Forecast::new(pedestrians, hypotheses, positions, self.weights, goals)?
             .with_certified(held)?;
@@ -144,11 +149,11 @@ impl Walked<'_> {
         &self,
         factors: &[[f64; 3]],
     ) -> Result<(Vec<Position>, Vec<LyapunovCertificate<f64>>), ForecastError> {
-        let mut paths = self.rollout.positions.chunks_exact(HORIZON);
+        let mut paths = self.rolled_out.chunks_exact(HORIZON);
         let certificates = self.each(factors, |_, course, factors| {
             course.certify(paths.next().unwrap_or_default(), factors)
         })?;
-        Ok((self.rollout.positions.clone(), certificates))
+        Ok((self.rolled_out.clone(), certificates))
     }
 
     /// Every hypothesis walked as if nobody else were there.
@@ -163,7 +168,7 @@ impl Walked<'_> {
         clearance: Clearance,
     ) -> Result<Vec<Walk>, ForecastError> {
         let alone = self.alone(factors)?;
-        let hypotheses = self.rollout.hypotheses;
+        let hypotheses = self.hypotheses;
         let likeliest: Vec<[Position; HORIZON]> = alone
             .chunks_exact(hypotheses)
             .zip(self.weights.chunks_exact(hypotheses))
@@ -173,7 +178,7 @@ impl Walked<'_> {
                 walks[first.unwrap_or(0)].positions
             })
             .collect();
-        let others = (0..self.rollout.pedestrians)
+        let others = (0..self.window.len())
             .map(|i| clearance.others(i, &likeliest))
             .collect::<Result<Vec<_>, _>>()
             .map_err(|error| ForecastError::model(crate::model::NAME, error))?;
@@ -188,7 +193,7 @@ impl Walked<'_> {
         factors: &[[f64; 3]],
         mut of: impl FnMut(usize, &Course, &[[f64; 3]]) -> Result<R, DynamicsError>,
     ) -> Result<Vec<R>, ForecastError> {
-        let hypotheses = self.rollout.hypotheses;
+        let hypotheses = self.hypotheses;
         let pairs = factors.chunks_exact(HORIZON).zip(&self.goals).enumerate();
         pairs
             .map(|(pair, (factors, &goal))| {

@@ -112,8 +112,6 @@ struct Forecasts {
     /// One list a manner.
     model: Vec<Vec<Forecast>>,
     lines: Vec<Forecast>,
-    /// The straight line to the one goal that stands for them, for who may have only one forecast.
-    line: Vec<Forecast>,
 }
 
 struct Measuring<'a, O> {
@@ -140,7 +138,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         };
         let model = self.model;
         let manners = Manner::all(model, &self.request.protocols);
-        let (goal, central) = ("the estimated goals", "the central goal");
+        let goal = "the estimated goals";
         // Its library is copied: only where it is asked for.
         let given = |manner: &Manner| manner.goals == GivenGoals::Published;
         let published = if manners.iter().any(given) {
@@ -155,10 +153,11 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let forecasts = self.forecast(first, manners.len(), |windows| {
             let goals = model.goal_model().goals(windows)?;
             let towards = |manner: &Manner| {
-                if manner.goals == GivenGoals::Central {
-                    return model.forecast_central(windows, &goals, manner.gait);
-                }
                 let goals = match (manner.goals, &published) {
+                    (GivenGoals::Central, _) => {
+                        return model.forecast_straight(windows, &goals, manner.gait.clearance());
+                    }
+                    (GivenGoals::CentralShaped, _) => goals::only_central(windows, &goals),
                     (GivenGoals::WithoutLibrary, _) => {
                         model.goal_model().goals_without_library(windows)?
                     }
@@ -172,10 +171,6 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             Ok(Forecasts {
                 model: manners.iter().map(towards).collect::<Result<_, _>>()?,
                 lines: straight_lines(goal, windows, &goals::weighted(&goals)?)?,
-                line: {
-                    let goals = goals::only_central(windows, &goals);
-                    straight_lines(central, windows, &goals::weighted(&goals)?)?
-                },
             })
         })?;
         let mut rows = Vec::new();
@@ -194,13 +189,12 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                     ));
                 }
             }
-            let (goal, lines) = match protocol {
-                Protocol::Single => (central, &forecasts.line),
-                _ => (goal, &forecasts.lines),
-            };
-            let lines = admit(lines, "straight line")?;
-            let recipe = format!("goals {}", model.goal_model().words());
-            forecasted.push(Forecasted::lines_to(goal, recipe, lines));
+            // The one forecast is a straight line itself.
+            if protocol != Protocol::Single {
+                let lines = admit(&forecasts.lines, "straight line")?;
+                let recipe = format!("goals {}", model.goal_model().words());
+                forecasted.push(Forecasted::lines_to(goal, recipe, lines));
+            }
             rows.extend(self.rows(protocol, "last epoch").of(&forecasted)?);
         }
         let moments = if self.asked(Protocol::Fair) {
@@ -261,7 +255,6 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             Ok(Forecasts {
                 model: vec![best.forecast_towards(windows, &goals)?],
                 lines,
-                line: Vec::new(),
             })
         })?;
         let words = model.goal_model().words();
@@ -287,7 +280,6 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let mut all = Forecasts {
             model: vec![Vec::new(); manners],
             lines: Vec::new(),
-            line: Vec::new(),
         };
         while all.lines.len() < self.test.windows.len() {
             let rest = &self.test.windows[all.lines.len()..];
@@ -304,7 +296,6 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 all.extend(some);
             }
             all.lines.extend(some.lines);
-            all.line.extend(some.line);
             self.report(rest[..count].iter().map(Window::len).sum(), protocol)?;
         }
         Ok(all)

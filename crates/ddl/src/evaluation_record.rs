@@ -20,7 +20,8 @@ struct Record {
 }
 
 /// 1: with the row without an expert library. 2: the central goal is drawn towards where the last step leads.
-const ROWS: u32 = 2;
+/// 3: the one forecast walks straight.
+const ROWS: u32 = 3;
 
 impl Record {
     fn new(model: &Ddl, request: &EvaluationRequest) -> Self {

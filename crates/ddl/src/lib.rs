@@ -27,6 +27,7 @@ mod run_config;
 mod run_directory;
 mod sha256;
 mod straight_lines;
+mod straight_walk;
 mod test_set;
 mod training;
 mod training_words;

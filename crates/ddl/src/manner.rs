@@ -20,8 +20,10 @@ pub(crate) struct Manner {
 pub(crate) enum GivenGoals {
     /// Its own.
     Own,
-    /// The one that stands for its own, for who may have only one.
+    /// The one that stands for its own, to walk straight to.
     Central,
+    /// The same, to walk to as the network shapes it.
+    CentralShaped,
     /// Those it would have without its expert library.
     WithoutLibrary,
     /// Those of the published estimator, without its look at the first future frame.
@@ -33,16 +35,18 @@ impl Manner {
     pub(crate) fn goal_words(&self, model: &Ddl) -> String {
         match self.goals {
             // Of the published goals the name of the row tells.
-            GivenGoals::Own | GivenGoals::Central | GivenGoals::Published => {
-                model.goal_model().words()
-            }
+            GivenGoals::Own
+            | GivenGoals::Central
+            | GivenGoals::CentralShaped
+            | GivenGoals::Published => model.goal_model().words(),
             GivenGoals::WithoutLibrary => model.goal_model().recipe().words_without_library(),
         }
     }
 
     /// The model as it is; what the published steps would make of the same flow, what is left of it without its expert library, and
     /// where `published` is measured too, what that protocol's goals are worth when none of them is chosen with the truth, all told
-    /// once, in the headline protocol; and, where asked for, keeping clear of others.
+    /// once, in the headline protocol; in `single`, what its network would make of the way to the one goal; and, where asked for, keeping
+    /// clear of others.
     pub(crate) fn all(model: &Ddl, asked: &[Protocol]) -> Vec<Self> {
         let asked = |protocol| asked.contains(&protocol);
         let variant = model.config().star.variant;
@@ -80,6 +84,14 @@ impl Manner {
                 gait: Gait::PlainEuler,
                 change: Some("with plain Euler steps".to_owned()),
                 protocols: &[Protocol::Fair],
+            });
+        }
+        if asked(Protocol::Single) && variant.uses_goal() {
+            manners.push(Self {
+                goals: GivenGoals::CentralShaped,
+                gait: Gait::Stable(None),
+                change: Some("on the way that its network shapes".to_owned()),
+                protocols: &[Protocol::Single],
             });
         }
         let has_library = model.goal_model().has_library_beside_network();

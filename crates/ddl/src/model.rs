@@ -8,6 +8,7 @@ use crate::goals;
 use crate::model_source::ModelSource;
 use crate::run_config::RunConfig;
 use crate::run_directory::RunDirectory;
+use crate::straight_walk;
 use crate::walk::Gait;
 use crate::{DdlError, GoalModel};
 use ddl_data::{Position, Window};
@@ -152,24 +153,46 @@ impl Ddl {
             .collect()
     }
 
-    /// One forecast a pedestrian, for who may have only one: the walk to the point with the least expected distance to its
-    /// goals ([`GoalSet::central`]). Its steps are as stable as those to the goals, and `Forecast::certified` holds the verdict of each. For the variant without goals, its noise samples.
+    /// One forecast a pedestrian, for who may have only one: straight on to the goal that stands for all its goals
+    /// ([`GoalSet::central`]), at constant speed. The network has no part in it but for the goals: how it shapes the way to a goal that is sure pays nothing
+    /// on the way to one that is not (`docs/accuracy.md`). The flow is as stable as those to the goals, and `Forecast::certified` holds the verdict of each
+    /// walk. For the variant without goals, its noise samples.
     ///
     /// # Errors
     /// As [`forecast_all`](Forecaster::forecast_all).
     pub fn forecast_one(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
         let goals = self.goals.goals(windows)?;
-        self.forecast_central(windows, &goals, Gait::Stable(self.clearance))
+        self.forecast_straight(windows, &goals, self.clearance)
     }
 
     /// [`forecast_one`](Self::forecast_one) for goals that are known.
-    pub(crate) fn forecast_central(
+    pub(crate) fn forecast_straight(
         &self,
         windows: &[Window],
         sets: &[Vec<GoalSet>],
-        gait: Gait,
+        clearance: Option<Clearance>,
     ) -> Result<Vec<Forecast>, ForecastError> {
-        self.forecast_towards(windows, goals::only_central(windows, sets), gait)
+        let config = &self.config().star;
+        if !config.variant.uses_goal() {
+            return self.forecast_without_goals(windows);
+        }
+        let central = goals::only_central(windows, sets);
+        let straight = |(window, sets): (&Window, Vec<GoalSet>)| {
+            let goals: Vec<Position> = sets.iter().flat_map(GoalSet::goals).copied().collect();
+            let factors = straight_walk::factors(window, &goals, config.time_step);
+            Walked {
+                config,
+                gait: Gait::Stable(clearance),
+                window,
+                hypotheses: 1,
+                rolled_out: Vec::new(),
+                factors: Some(factors),
+                weights: vec![1.0; goals.len()],
+                goals,
+            }
+            .forecast()
+        };
+        windows.iter().zip(central).map(straight).collect()
     }
 
     /// One hypothesis a goal for every pedestrian, with the goal's weight; for the variant without
@@ -209,7 +232,9 @@ impl Ddl {
             config: &self.config().star,
             gait,
             window,
-            rollout,
+            hypotheses: rollout.hypotheses,
+            rolled_out: rollout.positions,
+            factors: rollout.factors,
             weights: sets.iter().flat_map(GoalSet::weights).copied().collect(),
             goals: sets.iter().flat_map(GoalSet::goals).copied().collect(),
         }))

@@ -95,7 +95,9 @@ impl Published {
                     config,
                     gait: Gait::PlainEuler,
                     window,
-                    rollout,
+                    hypotheses: rollout.hypotheses,
+                    rolled_out: rollout.positions,
+                    factors: rollout.factors,
                     weights: vec![1.0 / SAMPLES as f64; goals.len() * SAMPLES],
                     goals: goals.iter().flat_map(|&goal| [goal; SAMPLES]).collect(),
                 };
