@@ -101,7 +101,12 @@ fn rotation<const D: usize>(
 /// The rotation `R` that maximises `tr(R^T M)` (Kabsch): `U diag(1, .., 1, ±1) V^T` of the singular
 /// value decomposition of `M`, the sign such that `det R = 1`.
 fn nearest_rotation<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
-    let general = DMatrix::from_fn(D, D, |row, column| matrix[(row, column)]);
+    // What is too small to count may be so small that the decomposition divides by its square: no number would come out.
+    let counts = f64::EPSILON * f64::EPSILON * matrix.amax();
+    let general = DMatrix::from_fn(D, D, |row, column| {
+        let entry = matrix[(row, column)];
+        if entry.abs() < counts { 0.0 } else { entry }
+    });
     let decomposition = SVD::try_new(
         general,
         true,
@@ -109,8 +114,12 @@ fn nearest_rotation<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64,
         f64::EPSILON,
         ITERATIONS_PER_DIMENSION * D,
     );
+    let finite = |(u, v_t): &(DMatrix<f64>, DMatrix<f64>)| {
+        u.iter().chain(v_t).all(|entry| entry.is_finite())
+    };
+    let factors = decomposition.and_then(|svd| svd.u.zip(svd.v_t));
     // Never seen to fail. Unturned is a place as good as any, only further to go.
-    let Some((mut u, v_t)) = decomposition.and_then(|svd| svd.u.zip(svd.v_t)) else {
+    let Some((mut u, v_t)) = factors.filter(finite) else {
         return SMatrix::identity();
     };
     if (&u * &v_t).determinant() < 0.0 {
@@ -172,6 +181,19 @@ mod tests {
         let placed = Unbending::new(&corner).unwrap().placed(1.0, &mirrored);
         let (a, b) = (placed[1] - placed[0], placed[2] - placed[1]);
         assert!((a.perp(&b) - 2.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn entries_too_small_to_square_do_no_harm() {
+        for tiny in [2.68e-163, 1e-200, 5e-324] {
+            let mut covariance = SMatrix::<f64, 3, 3>::zeros();
+            covariance[(2, 2)] = 0.09;
+            covariance[(0, 2)] = tiny;
+            covariance[(2, 0)] = -tiny;
+            let turn = nearest_rotation(&covariance);
+            assert!((turn * turn.transpose() - SMatrix::identity()).norm() < 1e-12);
+            assert!((turn[(2, 2)] - 1.0).abs() < 1e-12, "{turn}");
+        }
     }
 
     #[test]
