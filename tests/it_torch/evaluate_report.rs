@@ -172,6 +172,7 @@ fn check_certificates(protocol: Protocol, rows: &[&ResultRow]) {
         assert_eq!(protocol, Protocol::Single);
         return;
     };
+    assert_ne!(protocol, Protocol::Single);
     assert_eq!(line.scores.stability.unwrap().certified, None);
     // The goals depend on the run: another seed has other lines.
     assert_eq!(line.conditions.seed, Some(5));
@@ -211,6 +212,14 @@ fn check_rows(rows: &[ResultRow]) {
         }
         let walkers = model[0].scores.pedestrians;
         assert!((60..100).contains(&walkers), "{walkers}");
+        if protocol == Protocol::Single {
+            let shaped = of_protocol
+                .iter()
+                .find(|row| row.conditions.forecaster == beside)
+                .unwrap();
+            assert_eq!(shaped.scores.stability.unwrap().certified, Some(1.0));
+            assert!(!same(shaped.scores.min_ade, model[0].scores.min_ade));
+        }
         for row in &of_protocol {
             assert_eq!(
                 row.scores.pedestrians, walkers,

@@ -52,6 +52,27 @@ fn fewer_come_near_and_all_still_arrive() {
     }
 }
 
+/// The one forecast minds the others too, on its straight way: some go another way, all still to their goals.
+#[test]
+fn the_one_forecast_keeps_clear() {
+    let windows = crowd::windows(12, 12);
+    let alone = tiny_model::of(Variant::Full).model;
+    let free = alone.forecast_one(&windows).unwrap();
+    let careful = alone.keeping_clear(Clearance::new(0.5).unwrap()).unwrap();
+    let clear = careful.forecast_one(&windows).unwrap();
+    let (before, after) = (
+        near_pairs(&windows, &free, 0.5),
+        near_pairs(&windows, &clear, 0.5),
+    );
+    assert!(after < before, "{before} pairs came near, now {after}");
+    for (free, clear) in free.iter().zip(&clear) {
+        for i in 0..free.pedestrians() {
+            assert_eq!(free.goal(i, 0), clear.goal(i, 0));
+            assert_eq!(clear.certified(i, 0), Some(true));
+        }
+    }
+}
+
 /// Somebody alone in the window walks as before, to the last bit.
 #[test]
 fn nobody_near_changes_nothing() {

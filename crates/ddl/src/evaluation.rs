@@ -2,7 +2,7 @@
 
 use crate::DdlError;
 use crate::goals;
-use crate::manner::{GivenGoals, Manner};
+use crate::manner::{GivenGoals, Manner, Way};
 use crate::model::Ddl;
 use crate::published::Published;
 use crate::result_rows::{Forecasted, ResultRows};
@@ -111,6 +111,7 @@ pub fn evaluate(
 struct Forecasts {
     /// One list a manner.
     model: Vec<Vec<Forecast>>,
+    /// None where they are not asked for.
     lines: Vec<Forecast>,
 }
 
@@ -139,6 +140,8 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let model = self.model;
         let manners = Manner::all(model, &self.request.protocols);
         let goal = "the estimated goals";
+        // The one forecast of `single` is a straight line itself.
+        let lines_asked = protocols.iter().any(|&p| p != Protocol::Single);
         // Its library is copied: only where it is asked for.
         let given = |manner: &Manner| manner.goals == GivenGoals::Published;
         let published = if manners.iter().any(given) {
@@ -154,10 +157,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             let goals = model.goal_model().goals(windows)?;
             let towards = |manner: &Manner| {
                 let goals = match (manner.goals, &published) {
-                    (GivenGoals::Central, _) => {
-                        return model.forecast_straight(windows, &goals, manner.gait.clearance());
-                    }
-                    (GivenGoals::CentralShaped, _) => goals::only_central(windows, &goals),
+                    (GivenGoals::Central, _) => goals::only_central(windows, &goals),
                     (GivenGoals::WithoutLibrary, _) => {
                         model.goal_model().goals_without_library(windows)?
                     }
@@ -166,11 +166,18 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                     }
                     _ => goals.clone(),
                 };
-                model.forecast_towards(windows, goals, manner.gait)
+                match manner.way {
+                    Way::Shaped(gait) => model.forecast_towards(windows, goals, gait),
+                    Way::Straight(clearance) => model.forecast_straight(windows, goals, clearance),
+                }
             };
             Ok(Forecasts {
                 model: manners.iter().map(towards).collect::<Result<_, _>>()?,
-                lines: straight_lines(goal, windows, &goals::weighted(&goals)?)?,
+                lines: if lines_asked {
+                    straight_lines(goal, windows, &goals::weighted(&goals)?)?
+                } else {
+                    Vec::new()
+                },
             })
         })?;
         let mut rows = Vec::new();
@@ -189,7 +196,6 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                     ));
                 }
             }
-            // The one forecast is a straight line itself.
             if protocol != Protocol::Single {
                 let lines = admit(&forecasts.lines, "straight line")?;
                 let recipe = format!("goals {}", model.goal_model().words());
@@ -281,8 +287,9 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             model: vec![Vec::new(); manners],
             lines: Vec::new(),
         };
-        while all.lines.len() < self.test.windows.len() {
-            let rest = &self.test.windows[all.lines.len()..];
+        let mut done = 0;
+        while done < self.test.windows.len() {
+            let rest = &self.test.windows[done..];
             let mut walkers = 0;
             let count = rest
                 .iter()
@@ -296,6 +303,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 all.extend(some);
             }
             all.lines.extend(some.lines);
+            done += count;
             self.report(rest[..count].iter().map(Window::len).sum(), protocol)?;
         }
         Ok(all)

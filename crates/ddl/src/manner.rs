@@ -1,15 +1,16 @@
 //! The ways in which one model is measured under the honest protocols.
 
+use crate::clearance::Clearance;
 use crate::model::{Ddl, WITHOUT_LIBRARY};
 use crate::walk::Gait;
 use ddl_eval::Protocol;
 use ddl_star::Objective;
 
-/// A way in which the model forecasts, each a row of its own.
+/// A manner in which the model forecasts, each a row of its own.
 #[derive(Debug)]
 pub(crate) struct Manner {
     pub(crate) goals: GivenGoals,
-    pub(crate) gait: Gait,
+    pub(crate) way: Way,
     /// What is different from the model as it is; `None` for that one.
     pub(crate) change: Option<String>,
     pub(crate) protocols: &'static [Protocol],
@@ -20,14 +21,21 @@ pub(crate) struct Manner {
 pub(crate) enum GivenGoals {
     /// Its own.
     Own,
-    /// The one that stands for its own, to walk straight to.
+    /// The one that stands for its own.
     Central,
-    /// The same, to walk to as the network shapes it.
-    CentralShaped,
     /// Those it would have without its expert library.
     WithoutLibrary,
     /// Those of the published estimator, without its look at the first future frame.
     Published,
+}
+
+/// The way to the goals.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Way {
+    /// As the network shapes it.
+    Shaped(Gait),
+    /// Straight on, alone or keeping clear of the others.
+    Straight(Option<Clearance>),
 }
 
 impl Manner {
@@ -35,10 +43,9 @@ impl Manner {
     pub(crate) fn goal_words(&self, model: &Ddl) -> String {
         match self.goals {
             // Of the published goals the name of the row tells.
-            GivenGoals::Own
-            | GivenGoals::Central
-            | GivenGoals::CentralShaped
-            | GivenGoals::Published => model.goal_model().words(),
+            GivenGoals::Own | GivenGoals::Central | GivenGoals::Published => {
+                model.goal_model().words()
+            }
             GivenGoals::WithoutLibrary => model.goal_model().recipe().words_without_library(),
         }
     }
@@ -51,11 +58,11 @@ impl Manner {
         let asked = |protocol| asked.contains(&protocol);
         let variant = model.config().star.variant;
         let mut manners = Vec::new();
-        let mut as_it_walks = |gait: Gait, change: Option<String>| {
+        let mut as_it_walks = |clearance: Option<Clearance>, change: Option<String>| {
             if asked(Protocol::Fair) {
                 manners.push(Self {
                     goals: GivenGoals::Own,
-                    gait,
+                    way: Way::Shaped(Gait::Stable(clearance)),
                     change: change.clone(),
                     protocols: &[Protocol::Fair],
                 });
@@ -63,16 +70,16 @@ impl Manner {
             if asked(Protocol::Single) {
                 manners.push(Self {
                     goals: GivenGoals::Central,
-                    gait,
+                    way: Way::Straight(clearance),
                     change,
                     protocols: &[Protocol::Single],
                 });
             }
         };
-        as_it_walks(Gait::Stable(None), None);
+        as_it_walks(None, None);
         if let Some(clearance) = model.clearance() {
             as_it_walks(
-                Gait::Stable(Some(clearance)),
+                Some(clearance),
                 Some(format!("minding others within {} m", clearance.distance())),
             );
         }
@@ -81,15 +88,15 @@ impl Manner {
         if asked(Protocol::Fair) && variant.dynamics() && learned_on_plain_steps {
             manners.push(Self {
                 goals: GivenGoals::Own,
-                gait: Gait::PlainEuler,
+                way: Way::Shaped(Gait::PlainEuler),
                 change: Some("with plain Euler steps".to_owned()),
                 protocols: &[Protocol::Fair],
             });
         }
         if asked(Protocol::Single) && variant.uses_goal() {
             manners.push(Self {
-                goals: GivenGoals::CentralShaped,
-                gait: Gait::Stable(None),
+                goals: GivenGoals::Central,
+                way: Way::Shaped(Gait::Stable(None)),
                 change: Some("on the way that its network shapes".to_owned()),
                 protocols: &[Protocol::Single],
             });
@@ -98,7 +105,7 @@ impl Manner {
         if asked(Protocol::Fair) && has_library && variant.uses_goal() {
             manners.push(Self {
                 goals: GivenGoals::WithoutLibrary,
-                gait: Gait::Stable(None),
+                way: Way::Shaped(Gait::Stable(None)),
                 change: Some(WITHOUT_LIBRARY.to_owned()),
                 protocols: &[Protocol::Fair],
             });
@@ -106,7 +113,7 @@ impl Manner {
         if asked(Protocol::Fair) && asked(Protocol::Published) && variant.uses_goal() {
             manners.push(Self {
                 goals: GivenGoals::Published,
-                gait: Gait::Stable(None),
+                way: Way::Shaped(Gait::Stable(None)),
                 change: Some("with the published goals, all 20 kept".to_owned()),
                 protocols: &[Protocol::Fair],
             });

@@ -26,9 +26,9 @@ const NOISE_HYPOTHESES: usize = 20;
 
 /// A trained model, ready to forecast.
 ///
-/// As a [`Forecaster`] it is the model of the protocols `fair` and `single`: one hypothesis for each
+/// As a [`Forecaster`] it is the model of the protocol `fair`: one hypothesis for each
 /// of the K = 20 goals, weighted as the goals are, each rolled out along a flow whose distance to the
-/// goal falls at every step. It reads the 8 observed frames and nothing else.
+/// goal falls at every step. Under `single` it is asked for [one forecast](Self::forecast_one) alone. It reads the 8 observed frames and nothing else.
 ///
 /// # Numerics
 /// The network computes in `f32` and shapes the metric P of each step; the variants with dynamics then
@@ -154,29 +154,28 @@ impl Ddl {
     }
 
     /// One forecast a pedestrian, for who may have only one: straight on to the goal that stands for all its goals
-    /// ([`GoalSet::central`]), at constant speed. The network has no part in it but for the goals: how it shapes the way to a goal that is sure pays nothing
-    /// on the way to one that is not (`docs/accuracy.md`). The flow is as stable as those to the goals, and `Forecast::certified` holds the verdict of each
-    /// walk. For the variant without goals, its noise samples.
+    /// ([`GoalSet::central`]), at constant speed. The forecasting network has no part in it: what it knows is how people go to a goal that is sure
+    /// (`docs/accuracy.md`). So all variants with goals go the same way; that without makes its noise samples. The flow is as stable as those to the
+    /// goals, and `Forecast::certified` holds the verdict of each walk.
     ///
     /// # Errors
     /// As [`forecast_all`](Forecaster::forecast_all).
     pub fn forecast_one(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
-        let goals = self.goals.goals(windows)?;
-        self.forecast_straight(windows, &goals, self.clearance)
+        let goals = goals::only_central(windows, &self.goals.goals(windows)?);
+        self.forecast_straight(windows, goals, self.clearance)
     }
 
-    /// [`forecast_one`](Self::forecast_one) for goals that are known.
+    /// One straight walk for every pedestrian, to the one goal of its set; for the variant without goals, noise samples.
     pub(crate) fn forecast_straight(
         &self,
         windows: &[Window],
-        sets: &[Vec<GoalSet>],
+        sets: Vec<Vec<GoalSet>>,
         clearance: Option<Clearance>,
     ) -> Result<Vec<Forecast>, ForecastError> {
         let config = &self.config().star;
         if !config.variant.uses_goal() {
             return self.forecast_without_goals(windows);
         }
-        let central = goals::only_central(windows, sets);
         let straight = |(window, sets): (&Window, Vec<GoalSet>)| {
             let goals: Vec<Position> = sets.iter().flat_map(GoalSet::goals).copied().collect();
             let factors = straight_walk::factors(window, &goals, config.time_step);
@@ -192,7 +191,7 @@ impl Ddl {
             }
             .forecast()
         };
-        windows.iter().zip(central).map(straight).collect()
+        windows.iter().zip(sets).map(straight).collect()
     }
 
     /// One hypothesis a goal for every pedestrian, with the goal's weight; for the variant without

@@ -29,14 +29,6 @@ impl Gait {
             Self::Stable(_) => StepRule::StableEuler,
         }
     }
-
-    /// How far walkers keep from each other; `None` where each walks as if alone.
-    pub(crate) fn clearance(self) -> Option<Clearance> {
-        match self {
-            Self::PlainEuler => None,
-            Self::Stable(clearance) => clearance,
-        }
-    }
 }
 
 /// What a walk needs besides its shape.

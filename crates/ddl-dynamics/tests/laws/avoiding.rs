@@ -58,12 +58,14 @@ fn no_ball_is_entered<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseRes
         .map(nalgebra::Matrix::amax)
         .fold(T::zero(), T::max);
     let noise = T::rounded(64.0) * T::EPSILON * far.max(T::one());
-    for (step, metric) in path.windows(2).zip(&metrics) {
-        let left = T::rounded(2.0) * T::EPSILON * metric.eigenvalue_range().largest * scene.dt();
-        for ball in &balls {
+    for ball in &balls {
+        let mut deepest = -noise;
+        for (step, metric) in path.windows(2).zip(&metrics) {
             let [before, after] = [0, 1].map(|t| ball.gap_and_normal(&step[t]).0);
-            let on_surface = before <= noise;
-            let deepest = before.min(T::zero()) - noise - if on_surface { left } else { T::zero() };
+            if before <= noise {
+                let speed = metric.eigenvalue_range().largest;
+                deepest -= T::rounded(2.0) * T::EPSILON * speed * scene.dt();
+            }
             prop_assert!(
                 after >= deepest,
                 "{before:?} m to {after:?} m from {ball:?}"

@@ -40,13 +40,18 @@ pub(super) struct StandingLine {
 }
 
 impl Standing {
-    /// The forecaster that the report is about: the best trained one; else that of another program; else the best of all.
+    /// The forecaster that the report is about: the best trained one, as it is where it is there with something changed ("DDL" for
+    /// "DDL without an expert library"); else that of another program; else the best of all.
     pub(super) fn subject(&self) -> Option<&StandingLine> {
         let trained = |line: &&StandingLine| line.conditions.epochs.is_some();
         let foreign = |line: &&StandingLine| line.conditions.selection.is_some();
         let lines = || self.lines.iter();
+        let name = |line: &StandingLine| line.conditions.forecaster.clone();
+        let best = lines().find(trained).map(name).unwrap_or_default();
         lines()
-            .find(trained)
+            .filter(trained)
+            .filter(|line| best.starts_with(&line.conditions.forecaster))
+            .min_by_key(|line| line.conditions.forecaster.len())
             .or_else(|| lines().find(foreign))
             .or(self.lines.first())
     }

@@ -118,7 +118,7 @@ fn nearest_rotation<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64,
         u.iter().chain(v_t).all(|entry| entry.is_finite())
     };
     let factors = decomposition.and_then(|svd| svd.u.zip(svd.v_t));
-    // Never seen to fail. Unturned is a place as good as any, only further to go.
+    // Not seen to fail since what is too small is left out. Unturned is a place as good as any, only further to go.
     let Some((mut u, v_t)) = factors.filter(finite) else {
         return SMatrix::identity();
     };
