@@ -4,7 +4,7 @@
 
 use ddl_data::{Convention, PedestrianId, Position, Window, WindowRule};
 use ddl_eval::{
-    Conditions, EpochPoint, Forecast, Moment, Protocol, Report, TrainingCurve, baseline,
+    Conditions, EpochPoint, Forecast, Moment, Protocol, Report, ResultRow, TrainingCurve, baseline,
     gallery::{Pick, Show},
     page::{MomentProblem, Page, PageError},
 };
@@ -131,6 +131,39 @@ fn the_head_takes_fair_results_and_the_published_ones_bring_their_warning() {
             && published.contains("class=\"warning\"")
     );
     assert!(head(&Report::new("Nothing", []).unwrap()).contains("This report holds no results."));
+}
+
+/// Even where the same with something changed is better.
+#[test]
+fn the_head_is_about_the_model_as_it_is() {
+    let (window, forecast) = window_and_forecast(1, 1, false);
+    let windows = std::slice::from_ref(&window);
+    let right: Vec<Position> = window.future(0).to_vec();
+    let right = Forecast::new(1, 1, right, vec![1.0], None).unwrap();
+    let row = |name: &str, forecast: &Forecast| {
+        let single = Protocol::Single;
+        let conditions = Conditions {
+            seed: Some(0),
+            epochs: Some(40),
+            selection: Some("last epoch".to_owned()),
+            ..Conditions::new(Convention::Star, WindowRule::Published, single, "eth", name)
+        };
+        ResultRow::score(conditions, windows, std::slice::from_ref(forecast)).unwrap()
+    };
+    let rows = [
+        row("DDL with hindsight", &right),
+        row("DDL", &forecast),
+        row("another", &forecast),
+    ];
+    let html = Page::new(&Report::new("Heads", rows).unwrap())
+        .to_html()
+        .unwrap();
+    let (_, verdict) = html.split_once("class=\"verdict\">").unwrap();
+    assert!(
+        verdict.starts_with("<strong>DDL</strong>"),
+        "{}",
+        &verdict[..80]
+    );
 }
 
 #[test]
