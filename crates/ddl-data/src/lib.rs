@@ -1,14 +1,17 @@
 #![doc = include_str!("../README.md")]
 
 mod augment;
+mod completion;
 mod convention;
 mod dataset;
 mod error;
 mod fold;
 pub mod format;
+mod homography;
 mod live;
 mod locate;
 mod neighbours;
+mod rate;
 mod recording;
 mod rule;
 pub mod simulate;
@@ -16,14 +19,17 @@ mod track;
 mod window;
 
 pub use augment::Rotation;
+pub use completion::{Completion, CompletionError, MadeUp};
 pub use convention::Convention;
 pub use dataset::Dataset;
 pub use error::{DataError, FormatError, FormatProblem, RecordingError, UnknownName, WindowError};
 pub use fold::{Fold, SocialGanSplit, TrainingSplit};
 pub use format::{Format, parse_recording, read_recording};
+pub use homography::{Homography, HomographyError};
 pub use live::{LiveError, LiveTracks};
 pub use locate::{DATASETS_VARIABLE, locate};
 pub use neighbours::{NEIGHBOUR_HALF_WIDTH, NeighbourMask};
+pub use rate::{InSteps, RateError};
 pub use recording::Recording;
 pub use rule::WindowRule;
 pub use track::{HORIZON, OBSERVED, Observation, PedestrianId, Position, TIME_STEP, WINDOW};

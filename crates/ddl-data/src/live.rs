@@ -1,25 +1,28 @@
 //! Tracks that grow frame by frame, as a tracker on a robot delivers them.
 
+use std::collections::VecDeque;
+use std::sync::Arc;
+
 use thiserror::Error;
 
 use crate::recording::{FRAME_LIMIT, FRAME_STEP_LIMIT};
-use crate::{OBSERVED, PedestrianId, Position, Window};
+use crate::{Completion, OBSERVED, PedestrianId, Position, Recording, Window};
 
-/// What windows of live tracks name as their recording.
 const NAME: &str = "live";
 
 /// Everybody's last positions, fed one frame at a time.
 ///
 /// After every frame, [`window`](Self::window) is the one that [`Recording::observed_windows`](crate::Recording::observed_windows) would
-/// cut from all frames so far and that ends at this frame: whoever was seen in each of the last 8 frames, 0.4 s apart, with the same
+/// cut from all frames so far and that ends at this frame: whoever is there and was seen in each of the last 8 frames, 0.4 s apart, with the same
 /// numbers in the same order.
 ///
-/// - A frame comes at least one step (0.4 s) after the one before; anything earlier is an error.
-/// - After a *gap*, a frame later than one step, everybody starts anew: nothing is filled in.
-/// - Whoever is missing in a frame, also in an empty one, is forgotten, and starts anew when seen again. So what is kept is
-///   bounded by the people of the last frame, 8 positions each.
+/// - A frame comes after the one before, by a step (0.4 s), by more, or by less where the tracker is faster than that.
+/// - Whoever was not seen in one of the 8 frames is not in the window, nothing is made up; unless a [`Completion`] is
+///   [asked for](Self::completing).
+/// - Whoever has been away for a step (0.4 s), or longer than the longest hole that is filled, is forgotten, and starts anew when seen again. So what is
+///   kept is bounded by the people of the last frames, and what was seen of them within some 4 s.
 /// - After an error nothing has changed: the same frame can be pushed again, corrected.
-/// - A frame far ahead is a gap too, and earlier ones come too early then: [`clear`](Self::clear) starts anew.
+/// - A frame far ahead makes earlier ones come too early: [`clear`](Self::clear) starts anew.
 ///
 /// ```
 /// use ddl_data::{LiveTracks, PedestrianId};
@@ -37,20 +40,21 @@ const NAME: &str = "live";
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveTracks {
+    /// What windows name as their recording.
+    name: Arc<str>,
     frame_step: i64,
+    completion: Completion,
     last_frame: Option<i64>,
-    /// Those in the last frame, by id.
+    /// By id.
     walkers: Vec<Walker>,
 }
 
-/// Somebody who is in the last frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Somebody who is in the last frame, or may be in a window again.
+#[derive(Debug, Clone, PartialEq)]
 struct Walker {
     id: PedestrianId,
-    /// Frames in a row up to the last, at most 8.
-    seen: usize,
-    /// The last `seen` of these, oldest first; the others mean nothing.
-    positions: [Position; OBSERVED],
+    /// Raw frames and positions, oldest first; never empty.
+    seen: VecDeque<(i64, Position)>,
 }
 
 impl Default for LiveTracks {
@@ -64,7 +68,9 @@ impl LiveTracks {
     #[must_use]
     pub fn new() -> Self {
         Self {
+            name: NAME.into(),
             frame_step: 1,
+            completion: Completion::NONE,
             last_frame: None,
             walkers: Vec::new(),
         }
@@ -84,6 +90,26 @@ impl LiveTracks {
         })
     }
 
+    /// Nobody seen yet of a recording.
+    pub(crate) fn of(recording: &Recording) -> Self {
+        Self {
+            name: recording.shared_name(),
+            frame_step: recording.frame_step(),
+            ..Self::new()
+        }
+    }
+
+    /// The same, making up what the completion allows of observations that are not whole.
+    #[must_use]
+    pub fn completing(self, completion: Completion) -> Self {
+        Self { completion, ..self }
+    }
+
+    /// What is made up of observations that are not whole.
+    pub fn completion(&self) -> Completion {
+        self.completion
+    }
+
     /// Forgets everybody and the last frame: any frame may come next, as when a tracker starts anew.
     pub fn clear(&mut self) {
         self.last_frame = None;
@@ -100,7 +126,7 @@ impl LiveTracks {
         self.last_frame
     }
 
-    /// People in the last frame, which is as many as are remembered.
+    /// People who are remembered: those of the last frame, and those who were there shortly before.
     pub fn len(&self) -> usize {
         self.walkers.len()
     }
@@ -111,7 +137,7 @@ impl LiveTracks {
     }
 
     /// Adds one frame, everybody's positions (m) in any order, and gives the window that ends there; `None` while nobody has
-    /// been seen for 8 frames in a row.
+    /// been seen for 8 frames in a row, or as often as the completion asks for.
     ///
     /// # Errors
     /// As [`after`](Self::after); nothing has changed then.
@@ -127,7 +153,7 @@ impl LiveTracks {
     /// The tracks with one frame more, leaving these as they are.
     ///
     /// # Errors
-    /// [`LiveError`] for a frame out of range or less than one step after the last, a position that is not finite, or
+    /// [`LiveError`] for a frame out of range or not after the last, a position that is not finite, or
     /// somebody twice.
     pub fn after(
         &self,
@@ -137,11 +163,8 @@ impl LiveTracks {
         if frame.unsigned_abs() >= FRAME_LIMIT.unsigned_abs() {
             return Err(LiveError::FrameOutOfRange { frame });
         }
-        let due = self.last_frame.map(|last| last + self.frame_step);
-        if let (Some(last), Some(due)) = (self.last_frame, due)
-            && frame < due
-        {
-            return Err(LiveError::TooEarly { frame, last, due });
+        if let Some(last) = self.last_frame.filter(|last| frame <= *last) {
+            return Err(LiveError::TooEarly { frame, last });
         }
         let mut people: Vec<(PedestrianId, Position)> = people.into_iter().collect();
         people.sort_unstable_by_key(|&(id, _)| id);
@@ -158,64 +181,82 @@ impl LiveTracks {
             let pedestrian = pair[0].0;
             return Err(LiveError::Duplicate { pedestrian, frame });
         }
-        let known: &[Walker] = if due == Some(frame) {
-            &self.walkers
-        } else {
-            &[]
-        };
-        let mut earlier = known.iter().peekable();
-        let walkers = people
-            .into_iter()
-            .map(|(id, position)| {
-                while earlier.next_if(|walker| walker.id < id).is_some() {}
-                match earlier.next_if(|walker| walker.id == id) {
-                    Some(walker) => walker.moved_to(position),
-                    None => Walker::new(id, position),
-                }
-            })
-            .collect();
+        let mut earlier = self.walkers.iter().peekable();
+        let mut walkers = Vec::with_capacity(people.len());
+        for (id, position) in people {
+            while let Some(absent) = earlier.next_if(|walker| walker.id < id) {
+                walkers.extend(self.remembered(absent, frame));
+            }
+            let known = earlier.next_if(|walker| walker.id == id);
+            let mut walker = known
+                .and_then(|walker| self.remembered_before(walker, frame))
+                .unwrap_or_else(|| Walker::unseen(id));
+            walker.seen.push_back((frame, position));
+            walkers.push(walker);
+        }
+        walkers.extend(earlier.filter_map(|absent| self.remembered(absent, frame)));
         Ok(Self {
+            name: Arc::clone(&self.name),
             frame_step: self.frame_step,
+            completion: self.completion,
             last_frame: Some(frame),
             walkers,
         })
     }
 
-    /// The window that ends at the last frame, of everybody seen in each of the last 8; `None` when that is nobody.
+    /// Who is not in the frame, as far as he may be in a window again with what was seen: `None` where the hole is too long already.
+    fn remembered(&self, absent: &Walker, frame: i64) -> Option<Walker> {
+        self.remembered_before(absent, frame + 1)
+    }
+
+    /// What may be in the same window as an observation at the frame; `None` for nothing.
+    fn remembered_before(&self, walker: &Walker, frame: i64) -> Option<Walker> {
+        let (last, _) = *walker.seen.back()?;
+        let gap = self.completion.longest_gap() as i64;
+        if frame - last > (gap + 1) * self.frame_step {
+            return None;
+        }
+        // A hole at the start of the window may begin before it.
+        let oldest = frame - (OBSERVED as i64 + gap) * self.frame_step;
+        let forgotten = walker.seen.partition_point(|(seen, _)| *seen <= oldest);
+        let seen = walker.seen.range(forgotten..).copied().collect();
+        let id = walker.id;
+        Some(Walker { id, seen })
+    }
+
+    /// The window that ends at the last frame, of everybody in it who was seen, or completed, in each of the last 8; `None` when that is
+    /// nobody.
     #[must_use]
     pub fn window(&self) -> Option<Window> {
         let last = self.last_frame?;
-        let whole: Vec<&Walker> = self.walkers.iter().filter(|w| w.seen == OBSERVED).collect();
-        if whole.is_empty() {
+        let (mut ids, mut positions, mut made_up) = (Vec::new(), Vec::new(), Vec::new());
+        for walker in self.walkers.iter().filter(|walker| walker.is_at(last)) {
+            let seen = walker.seen.iter().copied();
+            if let Some((observed, missed)) = self.completion.observation(seen, self.frame_step) {
+                ids.push(walker.id);
+                positions.extend(observed);
+                made_up.push(missed);
+            }
+        }
+        if ids.is_empty() {
             return None;
         }
         let frames = (1 - OBSERVED as i64..=0).map(|t| last + t * self.frame_step);
-        Some(Window::cut(
-            NAME.into(),
-            self.frame_step,
-            frames.collect(),
-            whole.iter().map(|walker| walker.id).collect(),
-            whole.iter().flat_map(|walker| walker.positions).collect(),
-        ))
+        let (step, frames) = (self.frame_step, frames.collect());
+        Some(
+            Window::cut(Arc::clone(&self.name), step, frames, ids, positions).with_made_up(made_up),
+        )
     }
 }
 
 impl Walker {
-    /// Somebody seen for the first time.
-    fn new(id: PedestrianId, position: Position) -> Self {
-        Self {
-            id,
-            seen: 1,
-            positions: [position; OBSERVED],
-        }
+    fn unseen(id: PedestrianId) -> Self {
+        let seen = VecDeque::new();
+        Self { id, seen }
     }
 
-    /// The same one step later.
-    fn moved_to(mut self, position: Position) -> Self {
-        self.positions.rotate_left(1);
-        self.positions[OBSERVED - 1] = position;
-        self.seen = (self.seen + 1).min(OBSERVED);
-        self
+    fn is_at(&self, frame: i64) -> bool {
+        self.seen.back().is_some_and(|(last, _)| *last == frame)
     }
 }
 
@@ -235,18 +276,16 @@ pub enum LiveError {
         /// The raw frame number.
         frame: i64,
     },
-    /// A frame that goes back in time, or comes less than 0.4 s after the last one.
+    /// A frame that goes back in time.
     #[error(
-        "frame {frame} comes too early: the last one was {last}, the next one 0.4 s later is {due}; leave frames in between \
-         out, give another frame step, or clear the tracks when the tracker starts anew"
+        "frame {frame} comes after frame {last}; push frames in order of time, each once, and clear the tracks when the tracker \
+         starts anew"
     )]
     TooEarly {
         /// The raw frame number.
         frame: i64,
         /// That of the frame before.
         last: i64,
-        /// The earliest one allowed.
-        due: i64,
     },
     /// A coordinate is infinite or NaN.
     #[error("frame {frame}, pedestrian {pedestrian}: {position:?} is not finite")]

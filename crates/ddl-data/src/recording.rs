@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::error::RecordingError;
 use crate::rule;
-use crate::{Observation, PedestrianId, Window, WindowRule};
+use crate::{Completion, LiveTracks, Observation, PedestrianId, Window, WindowRule};
 
 /// Frames are below this in size: exact in an `f64`, and far from overflow when counting on.
 pub(crate) const FRAME_LIMIT: i64 = 1 << 53;
@@ -249,5 +249,31 @@ impl Recording {
     #[must_use]
     pub fn observed_windows(&self) -> Vec<Window> {
         rule::observed_windows(self)
+    }
+
+    /// The same, making up what the completion allows of observations that are not whole: whoever is there at a frame and was seen
+    /// often enough belongs to its window, and [`Window::made_up`] says what was not seen.
+    ///
+    /// ```
+    /// use ddl_data::{Completion, Observation, PedestrianId, Recording};
+    ///
+    /// let walk = [0, 10, 40].map(|frame| Observation::new(frame, PedestrianId(1), [0.05 * frame as f64, 0.0]));
+    /// let windows = Recording::new("yard", 10, walk.to_vec())?.completed_windows(Completion::USUAL);
+    /// let last = &windows[1];
+    /// assert_eq!((last.made_up(0).padded, last.made_up(0).filled), (3, 2));
+    /// assert_eq!(last.observed(0)[5..], [[1.0, 0.0], [1.5, 0.0], [2.0, 0.0]]);
+    /// # Ok::<(), ddl_data::RecordingError>(())
+    /// ```
+    #[must_use]
+    pub fn completed_windows(&self, completion: Completion) -> Vec<Window> {
+        let mut tracks = LiveTracks::of(self).completing(completion);
+        let mut windows = Vec::new();
+        for &frame in &self.frames {
+            let people = self.at(frame).iter();
+            let people = people.map(|seen| (seen.pedestrian, seen.position));
+            // A recording holds nothing that live tracks refuse.
+            windows.extend(tracks.push(frame, people).ok().flatten());
+        }
+        windows
     }
 }

@@ -6,7 +6,7 @@ use crate::augment::Rotation;
 use crate::error::WindowError;
 use crate::neighbours::NeighbourMask;
 use crate::recording::{FRAME_LIMIT, FRAME_STEP_LIMIT};
-use crate::{OBSERVED, PedestrianId, Position, WINDOW};
+use crate::{MadeUp, OBSERVED, PedestrianId, Position, WINDOW};
 
 /// The pedestrians of one scene over 8 observed steps and, where known, the 12 that follow.
 ///
@@ -33,6 +33,8 @@ pub struct Window {
     pedestrians: Vec<PedestrianId>,
     /// Pedestrian-major: pedestrian i holds `positions[i * T..(i + 1) * T]`.
     positions: Vec<Position>,
+    /// One a pedestrian, or none where nothing is.
+    made_up: Vec<MadeUp>,
 }
 
 impl Window {
@@ -98,6 +100,7 @@ impl Window {
             frames,
             pedestrians,
             positions,
+            made_up: Vec::new(),
         })
     }
 
@@ -118,7 +121,25 @@ impl Window {
             frames,
             pedestrians,
             positions,
+            made_up: Vec::new(),
         }
+    }
+
+    /// The same with what of each pedestrian's observation was made up.
+    pub(crate) fn with_made_up(mut self, made_up: Vec<MadeUp>) -> Self {
+        debug_assert_eq!(made_up.len(), self.len());
+        let whole = made_up.iter().all(|made_up| made_up.is_nothing());
+        self.made_up = if whole { Vec::new() } else { made_up };
+        self
+    }
+
+    /// What of the i-th pedestrian's observation was not seen: nothing, unless a [`Completion`](crate::Completion) was asked for.
+    ///
+    /// # Panics
+    /// If `i >= len()`.
+    pub fn made_up(&self, i: usize) -> MadeUp {
+        assert!(i < self.len(), "pedestrian {i} of {}", self.len());
+        self.made_up.get(i).copied().unwrap_or_default()
     }
 
     /// Name of the recording it is from.
@@ -232,6 +253,7 @@ impl Window {
             frames: self.frames[..OBSERVED].to_vec(),
             pedestrians: self.pedestrians.clone(),
             positions,
+            made_up: self.made_up.clone(),
         }
     }
 
@@ -254,13 +276,15 @@ impl Window {
         if kept.is_empty() {
             return None;
         }
-        Some(Window {
+        let window = Window {
             recording: Arc::clone(&self.recording),
             frame_step: self.frame_step,
             frames: self.frames.clone(),
             pedestrians: kept.iter().map(|&i| self.pedestrians[i]).collect(),
             positions: kept.iter().flat_map(|&i| self.track(i)).copied().collect(),
-        })
+            made_up: Vec::new(),
+        };
+        Some(window.with_made_up(kept.iter().map(|&i| self.made_up(i)).collect()))
     }
 
     /// The window with every position replaced by `f(i, step, position)`: pedestrian index, step from

@@ -39,8 +39,11 @@ fn cut_windows(recording: &Recording) -> Vec<Window> {
 fn frames() -> impl Strategy<Value = Vec<(i64, People)>> {
     let place = prop::array::uniform2(-20.0..20.0_f64);
     let crowd = prop::collection::vec(prop::option::weighted(0.9, place), 5);
-    let later = prop_oneof![20 => Just(STEP), 1 => STEP + 1..3 * STEP];
-    prop::collection::vec((later, crowd), 1..80).prop_map(|frames| {
+    // A tracker that keeps time, and one that is faster than the steps.
+    let slow = prop_oneof![20 => Just(STEP), 1 => STEP + 1..3 * STEP];
+    let fast = prop_oneof![20 => Just(STEP / 3), 1 => 1..2 * STEP];
+    let frames = |later| prop::collection::vec((later, crowd.clone()), 1..80);
+    prop_oneof![frames(slow.boxed()), frames(fast.boxed())].prop_map(|frames| {
         let mut frame = -3 * STEP;
         frames
             .into_iter()
@@ -66,11 +69,7 @@ fn recording(frames: &[(i64, People)]) -> Option<Recording> {
 /// Frames that must be refused after `last`.
 fn refused(last: i64, someone: PedestrianId) -> [(i64, People, LiveError); 5] {
     let (frame, here, nowhere) = (last + STEP, [1.0, 2.0], [f64::INFINITY, 0.0]);
-    let too_early = |frame| LiveError::TooEarly {
-        frame,
-        last,
-        due: last + STEP,
-    };
+    let too_early = |frame| LiveError::TooEarly { frame, last };
     let duplicate = LiveError::Duplicate {
         pedestrian: someone,
         frame,
@@ -83,7 +82,7 @@ fn refused(last: i64, someone: PedestrianId) -> [(i64, People, LiveError); 5] {
     let far = i64::MIN;
     [
         (last, vec![], too_early(last)),
-        (last + STEP - 1, vec![], too_early(last + STEP - 1)),
+        (last - 1, vec![], too_early(last - 1)),
         (far, vec![], LiveError::FrameOutOfRange { frame: far }),
         (frame, vec![(someone, here), (someone, here)], duplicate),
         (frame, vec![(someone, nowhere)], not_finite),
@@ -97,7 +96,7 @@ proptest! {
         let mut windows = Vec::new();
         for (frame, people) in &frames {
             windows.extend(tracks.push(*frame, people.iter().copied()).unwrap());
-            prop_assert_eq!(tracks.len(), people.len());
+            prop_assert!(tracks.len() >= people.len());
         }
         let cut = recording(&frames).map_or(Vec::new(), |recording| cut_windows(&recording));
         prop_assert_eq!(windows, cut);

@@ -2,7 +2,7 @@
 
 use crate::certified_forecast::{self, CertifiedForecast};
 use crate::{Ddl, DdlError};
-use ddl_data::{LiveTracks, OBSERVED, PedestrianId, Position, Window};
+use ddl_data::{Completion, LiveTracks, OBSERVED, PedestrianId, Position, Window};
 use ddl_eval::{Forecast, ForecastError, Forecaster};
 use std::borrow::Borrow;
 
@@ -107,6 +107,13 @@ impl<M> LiveForecaster<M> {
     pub fn with_frame_step(model: M, frame_step: i64) -> Result<Self, DdlError> {
         let tracks = LiveTracks::with_frame_step(frame_step)?;
         Ok(Self { model, tracks })
+    }
+
+    /// The same, making up what the completion allows of observations that are not whole; [`Window::made_up`] says of whom.
+    #[must_use]
+    pub fn completing(self, completion: Completion) -> Self {
+        let tracks = self.tracks.completing(completion);
+        Self { tracks, ..self }
     }
 
     /// What forecasts.

@@ -1,0 +1,162 @@
+//! Observations that are not whole: begun late, or with holes.
+
+use thiserror::Error;
+
+use crate::{OBSERVED, Position};
+
+/// Longest hole that may be filled, in frames.
+const LONGEST_GAP: usize = 2;
+/// A single position says nothing of where somebody goes.
+const LEAST_SEEN: usize = 2;
+
+/// How much of the 8 observed positions may be made up where a walker was not seen at all of them.
+///
+/// - A *hole* of a few frames is filled on the straight line between the positions before and after it.
+/// - An observation that *begins late* is padded at its start, as if the walker had come with the mean velocity at which it was seen.
+///
+/// The last position is always one that was seen. How much was made up stands in [`Window::made_up`](crate::Window::made_up).
+///
+/// ```
+/// use ddl_data::{Completion, LiveTracks, MadeUp, PedestrianId};
+///
+/// let mut tracks = LiveTracks::new().completing(Completion::USUAL);
+/// assert!(tracks.push(0, [(PedestrianId(7), [0.0, 0.0])])?.is_none());
+/// let window = tracks.push(1, [(PedestrianId(7), [0.5, 0.0])])?.expect("two positions are enough");
+/// assert_eq!(window.observed(0)[0], [-3.0, 0.0]);
+/// assert_eq!(window.made_up(0), MadeUp { padded: 6, filled: 0 });
+/// # Ok::<(), ddl_data::LiveError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Completion {
+    least_seen: usize,
+    longest_gap: usize,
+}
+
+impl Completion {
+    /// Nothing is made up: who was not seen in each of the 8 frames is not forecast. So data sets are cut.
+    pub const NONE: Self = Self {
+        least_seen: OBSERVED,
+        longest_gap: 0,
+    };
+    /// Who was seen twice is forecast, holes of up to 2 frames are filled.
+    pub const USUAL: Self = Self {
+        least_seen: LEAST_SEEN,
+        longest_gap: LONGEST_GAP,
+    };
+
+    /// Walkers seen at `least_seen` of the 8 positions or more, with holes of up to `longest_gap` frames.
+    ///
+    /// # Errors
+    /// [`CompletionError`] if `least_seen` does not lie in 2..=8, or `longest_gap` in 0..=2.
+    pub fn new(least_seen: usize, longest_gap: usize) -> Result<Self, CompletionError> {
+        if !(LEAST_SEEN..=OBSERVED).contains(&least_seen) {
+            return Err(CompletionError::LeastSeen { found: least_seen });
+        }
+        if longest_gap > LONGEST_GAP {
+            return Err(CompletionError::LongestGap { found: longest_gap });
+        }
+        Ok(Self {
+            least_seen,
+            longest_gap,
+        })
+    }
+
+    /// Frames of the longest hole that is filled.
+    pub fn longest_gap(self) -> usize {
+        self.longest_gap
+    }
+
+    /// The 8 positions up to the last of `seen`, one every `step` raw frames, and what of them was made up; `None` where that
+    /// is not allowed.
+    ///
+    /// # Shapes
+    /// `seen`: raw frames and positions (m), in order of time.
+    pub(crate) fn observation(
+        self,
+        seen: impl DoubleEndedIterator<Item = (i64, Position)>,
+        step: i64,
+    ) -> Option<([Position; OBSERVED], MadeUp)> {
+        let mut earlier = seen.rev();
+        let (until, last) = earlier.next()?;
+        let mut positions = [last; OBSERVED];
+        let (mut found, mut filled) = (1, 0);
+        // What was seen at the place reached, or as the first thing after it.
+        let mut after = (until, last);
+        let mut before = earlier.next();
+        let longest = (self.longest_gap as i64 + 1) * step;
+        for place in (0..OBSERVED - 1).rev() {
+            let frame = until - (OBSERVED - 1 - place) as i64 * step;
+            while let Some(seen) = before.filter(|(seen, _)| *seen >= frame) {
+                after = seen;
+                before = earlier.next();
+            }
+            positions[place] = if after.0 == frame {
+                after.1
+            } else {
+                let hole = before.filter(|_| self.longest_gap > 0);
+                let Some(before) = hole.filter(|(seen, _)| after.0 - seen <= longest) else {
+                    break;
+                };
+                filled += 1;
+                between(before, after, frame)
+            };
+            found += 1;
+        }
+        if found - filled < self.least_seen {
+            return None;
+        }
+        let padded = OBSERVED - found;
+        let first = positions[padded];
+        let steps = (found - 1) as f64;
+        for (place, position) in positions[..padded].iter_mut().enumerate() {
+            let back = (padded - place) as f64 / steps;
+            *position = [0, 1].map(|axis| first[axis] - back * (last[axis] - first[axis]));
+        }
+        Some((positions, MadeUp { padded, filled }))
+    }
+}
+
+/// The point at `frame` of the straight line between two observations.
+fn between(before: (i64, Position), after: (i64, Position), frame: i64) -> Position {
+    let share = (frame - before.0) as f64 / (after.0 - before.0) as f64;
+    [0, 1].map(|axis| before.1[axis] + share * (after.1[axis] - before.1[axis]))
+}
+
+/// How many of the 8 observed positions of a walker were not seen but made up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MadeUp {
+    /// Positions at the start, before the walker was seen.
+    pub padded: usize,
+    /// Positions in holes.
+    pub filled: usize,
+}
+
+impl MadeUp {
+    /// Whether all 8 positions were seen.
+    pub fn is_nothing(self) -> bool {
+        self == Self::default()
+    }
+
+    /// How many positions were seen.
+    pub fn seen(self) -> usize {
+        OBSERVED - self.padded - self.filled
+    }
+}
+
+/// Why a [`Completion`] is not allowed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum CompletionError {
+    /// Too few positions, or more than there are.
+    #[error("a forecast needs 2 to 8 positions that were seen, not {found}")]
+    LeastSeen {
+        /// The number given.
+        found: usize,
+    },
+    /// A hole in which anything may have happened.
+    #[error("holes of up to 2 frames can be filled, not of {found}")]
+    LongestGap {
+        /// The number given.
+        found: usize,
+    },
+}

@@ -1,0 +1,162 @@
+//! From pixels of a camera to metres on the ground.
+
+use thiserror::Error;
+
+use crate::{PedestrianId, Position, Recording, RecordingError};
+
+/// Rows and columns.
+const SIZE: usize = 3;
+
+/// A plane seen by a camera: the matrix that takes pixels to metres on the ground.
+///
+/// With H the matrix, a pixel (u, v) is the place (X / W, Y / W) where (X, Y, W) = H (u, v, 1): what `findHomography(pixels, metres)` of
+/// `OpenCV` returns, and what `H.txt` of the ETH recordings holds.
+///
+/// ```
+/// use ddl_data::Homography;
+///
+/// let ground: Homography = "0.02 0 -6.4\n0 -0.02 4.8\n0 0 1".parse()?;
+/// assert_eq!(ground.apply([320.0, 240.0]), Some([0.0, 0.0]));
+/// # Ok::<(), ddl_data::HomographyError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Homography([[f64; SIZE]; SIZE]);
+
+impl Homography {
+    /// The matrix, row by row.
+    ///
+    /// # Errors
+    /// [`HomographyError`] where an entry is not finite, or the matrix squeezes the plane into a line.
+    pub fn new(rows: [[f64; SIZE]; SIZE]) -> Result<Self, HomographyError> {
+        for (row, entries) in rows.iter().enumerate() {
+            if let Some(column) = entries.iter().position(|entry| !entry.is_finite()) {
+                return Err(HomographyError::NotFinite { row, column });
+            }
+        }
+        // Relative to the size of the rows, which may be of any scale.
+        let length = |row: &[f64; SIZE]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let volume = determinant(&rows) / rows.iter().map(length).product::<f64>();
+        // false for what is no number
+        if volume.abs() > f64::EPSILON {
+            Ok(Self(rows))
+        } else {
+            Err(HomographyError::Singular)
+        }
+    }
+
+    /// Where a pixel is on the ground (m); `None` on the horizon, which is nowhere.
+    #[must_use]
+    pub fn apply(&self, [u, v]: [f64; 2]) -> Option<Position> {
+        let [x, y, w] = self.0.map(|[a, b, c]| a * u + b * v + c);
+        let place = [x / w, y / w];
+        place.iter().all(|c| c.is_finite()).then_some(place)
+    }
+
+    /// A recording in pixels, in metres.
+    ///
+    /// # Errors
+    /// [`HomographyError::Horizon`] where somebody is nowhere on the ground.
+    pub fn on_the_ground(&self, recording: &Recording) -> Result<Recording, HomographyError> {
+        let mut observations = recording.observations().to_vec();
+        for seen in &mut observations {
+            seen.position = self.apply(seen.position).ok_or(HomographyError::Horizon {
+                pedestrian: seen.pedestrian,
+                frame: seen.frame,
+                pixel: seen.position,
+            })?;
+        }
+        Ok(Recording::new(
+            recording.name(),
+            recording.frame_step(),
+            observations,
+        )?)
+    }
+}
+
+fn determinant([[a, b, c], [d, e, f], [g, h, i]]: &[[f64; SIZE]; SIZE]) -> f64 {
+    a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
+}
+
+impl std::str::FromStr for Homography {
+    type Err = HomographyError;
+
+    /// Nine numbers, three a line, separated by blanks or commas.
+    fn from_str(text: &str) -> Result<Self, HomographyError> {
+        let mut rows = [[0.0; SIZE]; SIZE];
+        let mut found = 0;
+        for (index, line) in text.lines().enumerate() {
+            let fields: Vec<&str> = line
+                .split([' ', '\t', ','])
+                .filter(|field| !field.trim().is_empty())
+                .collect();
+            if fields.is_empty() {
+                continue;
+            }
+            let wrong = || HomographyError::Line {
+                line: index + 1,
+                found: line.chars().take(60).collect(),
+            };
+            let row = rows.get_mut(found).ok_or_else(wrong)?;
+            if fields.len() != SIZE {
+                return Err(wrong());
+            }
+            for (entry, field) in row.iter_mut().zip(fields) {
+                *entry = field.trim().parse().map_err(|_| wrong())?;
+            }
+            found += 1;
+        }
+        if found < SIZE {
+            return Err(HomographyError::Rows { found });
+        }
+        Self::new(rows)
+    }
+}
+
+/// Why there is no [`Homography`], or no place on the ground.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum HomographyError {
+    /// An entry is infinite or NaN.
+    #[error("row {}, column {} of the homography is not finite", .row + 1, .column + 1)]
+    NotFinite {
+        /// From 0.
+        row: usize,
+        /// From 0.
+        column: usize,
+    },
+    /// All pixels would lie on a line.
+    #[error("the homography is singular: it squeezes the plane into a line; is a row there twice?")]
+    Singular,
+    /// A line that is no row.
+    #[error(
+        "line {line} of the homography must hold three numbers, and be one of three such lines, found {found:?}"
+    )]
+    Line {
+        /// From 1.
+        line: usize,
+        /// The line, shortened.
+        found: String,
+    },
+    /// Too few rows.
+    #[error("a homography has three rows of three numbers, found {found}")]
+    Rows {
+        /// Rows found.
+        found: usize,
+    },
+    /// A pixel at which the camera sees no ground.
+    #[error(
+        "pedestrian {pedestrian}, frame {frame}: pixel {pixel:?} lies on the horizon of the homography; is it of this \
+         camera, and from pixels to metres?"
+    )]
+    Horizon {
+        /// Who.
+        pedestrian: PedestrianId,
+        /// When.
+        frame: i64,
+        /// Where in the image.
+        pixel: [f64; 2],
+    },
+    /// What came out is no recording.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+}

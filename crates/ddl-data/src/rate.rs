@@ -1,0 +1,185 @@
+//! Recordings of other rates, in steps of 0.4 s.
+
+use std::collections::BTreeMap;
+
+use thiserror::Error;
+
+use crate::recording::{FRAME_LIMIT, FRAME_STEP_LIMIT};
+use crate::{Observation, PedestrianId, Position, Recording, RecordingError, TIME_STEP};
+
+/// A step may be this much longer or shorter than 0.4 s, as a share: less than anybody's speed varies.
+const TOLERANCE: f64 = 0.005;
+/// Parts of a frame that are tried where a step is no whole number of frames, and how well they must fit.
+const MOST_PARTS: i64 = 1000;
+const FIT: f64 = 1e-4;
+/// Observations further apart than this (s) do not show how somebody walks.
+const SLOWEST: f64 = 1.2;
+/// Observations up to this many usual spacings apart are joined; longer holes stay holes.
+const JOINED: f64 = 1.5;
+
+/// A recording in steps of 0.4 s.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct InSteps {
+    /// The recording. Its frames count `parts` of a frame of the one that it was made of.
+    pub recording: Recording,
+    /// 1 unless positions had to be taken between frames.
+    pub parts: i64,
+}
+
+impl InSteps {
+    /// Seconds of a step: 0.4 within 0.5 %.
+    #[must_use]
+    pub fn step_seconds(&self, frame_time: f64) -> f64 {
+        self.recording.frame_step() as f64 * frame_time / self.parts as f64
+    }
+
+    /// Whether positions were taken between frames.
+    #[must_use]
+    pub fn is_resampled(&self) -> bool {
+        self.parts > 1
+    }
+}
+
+impl Recording {
+    /// The recording in steps of 0.4 s, given the seconds from one frame number to the next, such as 0.04 at 25 frames a second.
+    ///
+    /// Where some whole number of the usual spacing between observations makes a step (10 frames of 0.04 s), nothing changes but the
+    /// [`frame_step`](Recording::frame_step): every frame can be forecast from. Otherwise positions are taken every 0.4 s, counted back from the last
+    /// frame, on straight lines between observations that are no further apart than usual.
+    ///
+    /// # Errors
+    /// [`RateError`] where the time is not positive, observations are more than 1.2 s apart, or frames leave their range.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_data::{Observation, PedestrianId, Recording};
+    ///
+    /// let at = |frame: i64| Observation::new(frame, PedestrianId(1), [0.06 * frame as f64, 0.0]);
+    /// let film = Recording::new("film", 1, (0..=48).map(at).collect())?;
+    /// let steps = film.in_steps(1.0 / 24.0)?; // 9.6 frames a step
+    /// assert_eq!((steps.parts, steps.recording.frame_step()), (5, 48));
+    /// assert_eq!(steps.recording.frames(), [0, 48, 96, 144, 192, 240]);
+    /// let before_last = steps.recording.at(192)[0].position;
+    /// assert!((before_last[0] - 0.06 * 38.4).abs() < 1e-12);
+    /// assert_eq!(film.in_steps(1.0 / 25.0)?.recording.frame_step(), 10);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn in_steps(&self, frame_time: f64) -> Result<InSteps, RateError> {
+        if !(frame_time.is_finite() && frame_time > 0.0) {
+            return Err(RateError::FrameTime { found: frame_time });
+        }
+        let spacing = self.frame_step();
+        let apart = spacing as f64 * frame_time;
+        if apart > SLOWEST {
+            return Err(RateError::TooSlow { apart });
+        }
+        let frames = TIME_STEP / frame_time;
+        if frames > FRAME_STEP_LIMIT as f64 {
+            return Err(RateError::FrameTime { found: frame_time });
+        }
+        let spacings = (frames / spacing as f64).round();
+        if spacings >= 1.0 && fits(spacings * spacing as f64, frames, TOLERANCE) {
+            let step = spacings as i64 * spacing;
+            let recording = self.clone().with_frame_step(step)?;
+            return Ok(InSteps {
+                recording,
+                parts: 1,
+            });
+        }
+        let whole = |parts: &i64| {
+            let step = (frames * *parts as f64).round();
+            step >= 1.0 && fits(step, frames * *parts as f64, FIT)
+        };
+        // A thousandth of a frame is always near enough.
+        let parts = (2..=MOST_PARTS).find(whole).unwrap_or(MOST_PARTS);
+        let step = (frames * parts as f64).round().max(1.0) as i64;
+        self.resampled(parts, step)
+    }
+
+    /// Positions every `step` parts of a frame, counted back from the last frame.
+    fn resampled(&self, parts: i64, step: i64) -> Result<InSteps, RateError> {
+        let farthest = self.frames().iter().map(|frame| frame.unsigned_abs()).max();
+        let limit = FRAME_LIMIT.unsigned_abs() / parts.unsigned_abs();
+        let last = *self.frames().last().unwrap_or(&0);
+        if farthest.is_none_or(|frame| frame >= limit) || step > FRAME_STEP_LIMIT {
+            return Err(RateError::Frames { last, parts });
+        }
+        let end = last * parts;
+        let longest = (JOINED * (self.frame_step() * parts) as f64) as i64;
+        let mut tracks: BTreeMap<PedestrianId, Vec<(i64, Position)>> = BTreeMap::new();
+        for seen in self.observations() {
+            let track = tracks.entry(seen.pedestrian).or_default();
+            track.push((seen.frame * parts, seen.position));
+        }
+        let mut observations = Vec::new();
+        for (pedestrian, track) in tracks {
+            let mut add = |frame, position| {
+                observations.push(Observation::new(frame, pedestrian, position));
+            };
+            for &(frame, position) in &track {
+                if (end - frame) % step == 0 {
+                    add(frame, position);
+                }
+            }
+            for pair in track.windows(2) {
+                let [(from, a), (to, b)] = [pair[0], pair[1]];
+                if to - from > longest {
+                    continue;
+                }
+                // The first place of the grid after `from`.
+                let first = end - (end - from - 1).div_euclid(step) * step;
+                let mut frame = first;
+                while frame < to {
+                    let share = (frame - from) as f64 / (to - from) as f64;
+                    add(
+                        frame,
+                        [0, 1].map(|axis| a[axis] + share * (b[axis] - a[axis])),
+                    );
+                    frame += step;
+                }
+            }
+        }
+        let recording = Recording::new(self.name(), step, observations)?;
+        Ok(InSteps { recording, parts })
+    }
+}
+
+/// Whether two numbers differ by no more than a share of the second.
+fn fits(found: f64, wanted: f64, tolerance: f64) -> bool {
+    (found - wanted).abs() <= tolerance * wanted
+}
+
+/// Why a recording cannot be had in steps of 0.4 s.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum RateError {
+    /// The time of a frame is no time.
+    #[error(
+        "a frame must take more than 0 s, and 0.4 s be no more than 2^31 frames; found {found} s a frame"
+    )]
+    FrameTime {
+        /// Seconds.
+        found: f64,
+    },
+    /// Observations too far apart.
+    #[error(
+        "observations are {apart:.2} s apart, more than 1.2 s: too few to see how somebody walks; is the rate right, and are the frame \
+         numbers those of this rate?"
+    )]
+    TooSlow {
+        /// Seconds between two observations.
+        apart: f64,
+    },
+    /// Frame numbers too large to be divided.
+    #[error("frame {last} is too large to be counted in {parts} parts; count frames from 0")]
+    Frames {
+        /// The last frame.
+        last: i64,
+        /// Parts of a frame.
+        parts: i64,
+    },
+    /// What came out is no recording.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+}

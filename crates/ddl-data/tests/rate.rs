@@ -1,0 +1,120 @@
+//! Recordings of other rates.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use ddl_data::{Observation, PedestrianId, RateError, Recording};
+use proptest::prelude::*;
+
+/// Two people who walk straight on, seen at some frames; every `spacing`-th where none is left out.
+fn walkers(frames: impl Iterator<Item = i64>, spacing: i64) -> Recording {
+    let place = |id: i64, frame: i64| [0.05 * frame as f64 + id as f64, -0.02 * frame as f64];
+    let seen = frames.flat_map(|frame| {
+        [1, 2].map(|id| Observation::new(frame, PedestrianId(id), place(id, frame)))
+    });
+    Recording::new("film", spacing, seen.collect()).unwrap()
+}
+
+#[test]
+fn whole_numbers_of_frames_are_left_alone() {
+    for (rate, spacing, step) in [
+        (25.0, 1, 10),
+        (30.0, 1, 12),
+        (29.97, 1, 12),
+        (2.5, 1, 1),
+        (25.0, 10, 10),
+        (15.0, 6, 6),
+        (10.0, 2, 4),
+        (1000.0, 100, 400),
+    ] {
+        let recording = walkers((0..50).map(|t| t * spacing), spacing);
+        let steps = recording.in_steps(1.0 / rate).unwrap();
+        assert_eq!((steps.parts, steps.is_resampled()), (1, false), "{rate}");
+        assert_eq!(steps.recording.frame_step(), step, "{rate}");
+        assert_eq!(steps.recording.observations(), recording.observations());
+        assert!((steps.step_seconds(1.0 / rate) - 0.4).abs() < 0.002);
+    }
+}
+
+/// By hand: 12 frames a second are 4.8 a step, 4 a second 1.6, 1 a second 0.4; 25 seen every third frame are 10 that are not seen.
+#[test]
+fn other_rates_are_counted_in_parts_of_a_frame() {
+    for (rate, spacing, parts, step) in [
+        (12.0, 1, 5, 24),
+        (24.0, 1, 5, 48),
+        (4.0, 1, 5, 8),
+        (1.0, 1, 5, 2),
+        (25.0, 3, 2, 20),
+        (7.0, 1, 5, 14),
+    ] {
+        let recording = walkers((0..50).map(|t| t * spacing), spacing);
+        let steps = recording.in_steps(1.0 / rate).unwrap();
+        assert_eq!(
+            (steps.parts, steps.recording.frame_step()),
+            (parts, step),
+            "{rate}"
+        );
+        let last = 49 * spacing * parts;
+        assert_eq!(steps.recording.frames().last(), Some(&last), "{rate}");
+        assert!((steps.step_seconds(1.0 / rate) - 0.4).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn a_hole_stays_a_hole() {
+    // 24 frames a second, frames 30 to 59 missing: more than a second
+    let seen = (0..30).chain(60..100);
+    let steps = walkers(seen, 1).in_steps(1.0 / 24.0).unwrap();
+    let frames = steps.recording.frames();
+    let missing = |frame: &&i64| (29 * 5 + 1..60 * 5).contains(*frame);
+    assert_eq!(frames.iter().find(missing), None);
+    assert!(frames.iter().any(|frame| *frame < 30 * 5));
+}
+
+#[test]
+fn what_is_no_rate_is_refused() {
+    let recording = walkers(0..20, 1);
+    for time in [0.0, -0.1, f64::NAN, f64::INFINITY, 1e-12] {
+        let error = recording.in_steps(time).unwrap_err();
+        assert!(matches!(error, RateError::FrameTime { .. }), "{time}");
+    }
+    assert_eq!(
+        recording.in_steps(1.5),
+        Err(RateError::TooSlow { apart: 1.5 })
+    );
+    let far = walkers((1 << 52)..(1 << 52) + 20, 1);
+    let error = far.in_steps(1.0 / 24.0).unwrap_err();
+    assert!(matches!(error, RateError::Frames { .. }), "{error}");
+}
+
+proptest! {
+    /// Whatever the rate, whoever walks straight on still does, at every step from the last frame back, and never before it was seen.
+    #[test]
+    fn an_even_walk_stays_one(
+        rate in 1.0..60.0_f64,
+        spacing in 1..4_i64,
+        first in -1000..1000_i64,
+        count in 2..60_i64,
+    ) {
+        let recording = walkers((0..count).map(|t| first + t * spacing), spacing);
+        let Ok(steps) = recording.in_steps(1.0 / rate) else {
+            prop_assert!(spacing as f64 / rate > 1.2);
+            return Ok(());
+        };
+        let parts = steps.parts as f64;
+        prop_assert!((steps.step_seconds(1.0 / rate) / 0.4 - 1.0).abs() <= 0.005 + 1e-9);
+        for seen in steps.recording.observations() {
+            let (frame, id) = (seen.frame as f64 / parts, seen.pedestrian.0 as f64);
+            let [x, y] = seen.position;
+            prop_assert!((x - 0.05 * frame - id).abs() < 1e-9 && (y + 0.02 * frame).abs() < 1e-9);
+            prop_assert!(frame >= first as f64);
+        }
+        if steps.is_resampled() {
+            let frames = steps.recording.frames();
+            let last = (first + (count - 1) * spacing) * steps.parts;
+            prop_assert_eq!(frames.last(), Some(&last));
+            let step = steps.recording.frame_step();
+            prop_assert!(frames.windows(2).all(|pair| pair[1] - pair[0] == step));
+            prop_assert!(frames[0] - first * steps.parts < step);
+        }
+    }
+}
