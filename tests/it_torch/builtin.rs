@@ -54,16 +54,17 @@ fn own_tracks_are_forecast_at_once() {
     let tracks = own_tracks::csv(&own_tracks::three_people(8));
     std::fs::write(here.join("tracks.csv"), tracks).unwrap();
     let run = |command: &str| program::run(here, command).succeeds();
-    let forecasts = run("forecast tracks.csv");
+    let forecasts = run("forecast tracks.csv --whole");
     assert_eq!(forecasts.lines().count(), 1 + 3 * 20 * 12);
     let default = BuiltinModel::default();
-    let by_name = |model: BuiltinModel| run(&format!("forecast --model {model} tracks.csv"));
+    let by_name =
+        |model: BuiltinModel| run(&format!("forecast --model {model} tracks.csv --whole"));
     assert_eq!(by_name(default), forecasts);
     let other = BuiltinModel::ALL
         .into_iter()
         .find(|model| *model != default);
     assert_ne!(by_name(other.unwrap()), forecasts);
-    assert_eq!(run("goals tracks.csv").lines().count(), 1 + 3 * 20);
+    assert_eq!(run("goals tracks.csv --whole").lines().count(), 1 + 3 * 20);
     let info: serde_json::Value = serde_json::from_str(&run("info --json")).unwrap();
     assert_eq!(info["models"].as_array().unwrap().len(), 5);
     let of_model: serde_json::Value =

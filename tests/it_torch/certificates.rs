@@ -20,9 +20,13 @@ struct CsvRow {
     pedestrian: i64,
     hypothesis: usize,
     weight: f64,
+    goal_x: f64,
+    goal_y: f64,
     frame: i64,
     x: f64,
     y: f64,
+    padded: usize,
+    filled: usize,
     distance_to_goal: f64,
     certified: bool,
 }
@@ -33,6 +37,8 @@ struct CsvRow {
 struct JsonLine {
     observed_until: i64,
     pedestrian: i64,
+    padded: usize,
+    filled: usize,
     frames: Vec<i64>,
     hypotheses: Vec<Hypothesis>,
 }
@@ -140,6 +146,12 @@ fn every_certificate_holds_and_speaks_of_the_positions_printed() {
                 );
                 assert_eq!([row.x, row.y].map(f64::to_bits), position.map(f64::to_bits));
                 assert_eq!(row.weight.to_bits(), hypothesis.weight.to_bits());
+                assert_eq!(
+                    [row.goal_x, row.goal_y].map(f64::to_bits),
+                    hypothesis.goal.map(f64::to_bits)
+                );
+                let made_up = [row.padded, row.filled, line.padded, line.filled];
+                assert_eq!(made_up, [0; 4]);
                 assert_eq!(row.distance_to_goal.to_bits(), left.to_bits());
                 assert!(row.certified);
             }
@@ -176,12 +188,12 @@ fn the_certificate_changes_no_other_number() {
     let certified = program::forecast(folder.path(), &rows, "--certificate").succeeds();
     let cut: Vec<String> = certified
         .lines()
-        .map(|line| line.split(',').take(7).collect::<Vec<_>>().join(","))
+        .map(|line| line.split(',').take(11).collect::<Vec<_>>().join(","))
         .collect();
     assert_eq!(plain.lines().collect::<Vec<_>>(), cut);
     let header = certified.lines().next().unwrap();
     assert!(
-        header.ends_with(",x,y,distance_to_goal,certified"),
+        header.ends_with(",x,y,padded,filled,distance_to_goal,certified"),
         "{header}"
     );
 }

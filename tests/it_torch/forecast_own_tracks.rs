@@ -19,9 +19,13 @@ struct CsvRow {
     pedestrian: i64,
     hypothesis: usize,
     weight: f64,
+    goal_x: f64,
+    goal_y: f64,
     frame: i64,
     x: f64,
     y: f64,
+    padded: usize,
+    filled: usize,
 }
 
 /// A line of the JSON lines.
@@ -30,6 +34,8 @@ struct CsvRow {
 struct JsonLine {
     observed_until: i64,
     pedestrian: i64,
+    padded: usize,
+    filled: usize,
     frames: Vec<i64>,
     hypotheses: Vec<Hypothesis>,
 }
@@ -122,6 +128,10 @@ fn json_lines_hold_the_same_numbers_as_csv() {
                     (line.observed_until, line.pedestrian, k, frame)
                 );
                 assert_eq!([row.x, row.y].map(f64::to_bits), position.map(f64::to_bits));
+                let goal = Some([row.goal_x, row.goal_y]);
+                assert_eq!(goal, hypothesis.goal);
+                assert_eq!((row.padded, row.filled), (line.padded, line.filled));
+                assert_eq!((row.padded, row.filled), (0, 0));
                 assert_eq!(row.weight.to_bits(), hypothesis.weight.to_bits());
             }
         }

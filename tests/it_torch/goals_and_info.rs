@@ -21,7 +21,11 @@ fn goals_of_own_tracks_are_those_of_the_forecasts() {
     let rows = own_tracks::three_people(9);
     std::fs::write(folder.path().join("tracks.csv"), own_tracks::csv(&rows)).unwrap();
     let ask = |command: &str| {
-        program::run(folder.path(), &format!("{command} --model . tracks.csv")).succeeds()
+        program::run(
+            folder.path(),
+            &format!("{command} --model . tracks.csv --whole"),
+        )
+        .succeeds()
     };
     let goals: Vec<Goal> = csv::Reader::from_reader(ask("goals").as_bytes())
         .deserialize()

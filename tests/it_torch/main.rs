@@ -21,5 +21,6 @@ mod prepare;
 mod real_recordings;
 mod recipes;
 mod start_up;
+mod tracks_as_they_come;
 mod train_resume;
 mod training_memory;

@@ -223,7 +223,7 @@ fn tracks_of_trajnet_are_forecast_as_they_are() {
         })
         .collect();
     std::fs::write(run.path().join("tracks.ndjson"), lines.join("\n")).unwrap();
-    let command_line = "forecast --model . tracks.ndjson --threads 1";
+    let command_line = "forecast --model . tracks.ndjson --whole --threads 1";
     assert_eq!(program::run(run.path(), command_line).succeeds(), table);
 }
 

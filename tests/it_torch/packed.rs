@@ -81,9 +81,9 @@ fn every_command_takes_a_packed_model() {
     let tracks = own_tracks::csv(&own_tracks::three_people(8));
     std::fs::write(here.join("tracks.csv"), tracks).unwrap();
     let run = |command: &str| program::run(here, command).succeeds();
-    let forecasts = run("forecast --model packed tracks.csv");
+    let forecasts = run("forecast --model packed tracks.csv --whole");
     assert_eq!(forecasts.lines().count(), 1 + 3 * 20 * 12);
-    let goals = run("goals --model packed tracks.csv");
+    let goals = run("goals --model packed tracks.csv --whole");
     assert_eq!(goals.lines().count(), 1 + 3 * 20);
     let measured = run("goals --model packed --measure test --svg goals.svg --threads 1");
     assert!(measured.contains("no expert library"), "{measured}");

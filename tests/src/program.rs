@@ -42,14 +42,14 @@ pub fn run(folder: &Path, command_line: &str) -> Finished {
     Finished::new(format!("ddl {command_line}"), &output)
 }
 
-/// Forecasts rows of tracks with the model in `folder`, where they are written to `tracks.csv`.
+/// Forecasts rows of tracks, whole observations alone, with the model in `folder`, where they are written to `tracks.csv`.
 ///
 /// # Panics
 /// If they cannot be written, or the program cannot be started.
 #[must_use]
 pub fn forecast(folder: &Path, rows: &[Row], options: &str) -> Finished {
     std::fs::write(folder.join("tracks.csv"), own_tracks::csv(rows)).expect("a csv can be written");
-    let command_line = format!("forecast --model . tracks.csv --threads 1 {options}");
+    let command_line = format!("forecast --model . tracks.csv --whole --threads 1 {options}");
     run(folder, &command_line)
 }
 

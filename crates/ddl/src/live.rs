@@ -6,18 +6,19 @@ use ddl_data::{Completion, LiveTracks, OBSERVED, PedestrianId, Position, Window}
 use ddl_eval::{Forecast, ForecastError, Forecaster};
 use std::borrow::Borrow;
 
-/// A forecaster that is fed one frame at a time, 0.4 s apart, and remembers what it has to.
+/// A forecaster that is fed one frame at a time, 0.4 s apart or faster, and remembers what it has to.
 ///
-/// Once somebody has been seen for 8 frames in a row, every [`push`](Self::push) forecasts everybody of whom that is true, and
-/// says who they are. The numbers are those of [`Forecaster::forecast`] on the window that
+/// Once somebody has been seen for 8 frames in a row (or as often as a [`Completion`] asks for), every [`push`](Self::push) forecasts
+/// everybody of whom that is true, and says who they are. The numbers are those of [`Forecaster::forecast`] on the window that
 /// [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far, bit for bit. What counts as
 /// a frame in a row, and what a gap or a walker who leaves does, is that of [`LiveTracks`].
 ///
 /// The forecaster is owned, or borrowed: `LiveForecaster::new(&model)` watches several places with one model.
 ///
 /// # What is kept from frame to frame
-/// The last 8 positions of those who are there, and the model as it was loaded: its networks, its expert library and the index that
-/// is searched for similar walkers. A walker who leaves is forgotten at once, so that memory is bounded by the people present.
+/// What was seen of those who are there during the last 8 steps, and the model as it was loaded: its networks, its expert library and the index that
+/// is searched for similar walkers. A walker who leaves is forgotten after a step (or the longest hole that is filled), so that memory is bounded by the
+/// people present.
 ///
 /// The network's *tokens* of past frames, with their keys and values, are not kept, because they are not the same numbers one
 /// frame later. A token is made of the walker's position relative to its goal (the goal shift), and the goals are estimated

@@ -39,9 +39,52 @@ fn missing_tracks_are_named() {
 #[test]
 fn tracks_too_short_to_forecast_are_refused() {
     let folder = folder_with_model();
-    let tracks = own_tracks::csv(&own_tracks::three_people(7));
-    std::fs::write(folder.path().join("tracks.csv"), tracks).unwrap();
-    fails(folder.path(), FORECAST, &["tracks.csv", "8 frames"]);
+    let tracks = |frames| own_tracks::csv(&own_tracks::three_people(frames));
+    std::fs::write(folder.path().join("tracks.csv"), tracks(7)).unwrap();
+    let whole = format!("{FORECAST} --whole");
+    fails(folder.path(), &whole, &["tracks.csv", "8 frames"]);
+    std::fs::write(folder.path().join("tracks.csv"), tracks(1)).unwrap();
+    fails(
+        folder.path(),
+        FORECAST,
+        &["tracks.csv", "two frames", "--fps"],
+    );
+}
+
+#[test]
+fn a_homography_or_a_rate_that_is_none_is_named() {
+    let folder = folder_with_model();
+    let matrix = folder.path().join("H.txt");
+    let options = format!("{FORECAST} --homography H.txt");
+    fails(folder.path(), &options, &["H.txt", "No such file"]);
+    for (text, needle) in [
+        ("1 0 0\n0 1 0\n", "three rows"),
+        ("1 0 0\n0 1 zero\n0 0 1\n", "line 2"),
+        ("1 0 0\n1 0 0\n0 0 1\n", "singular"),
+    ] {
+        std::fs::write(&matrix, text).unwrap();
+        fails(folder.path(), &options, &["H.txt", needle]);
+    }
+    std::fs::write(&matrix, "0 0 1\n0 1 0\n1 0 0\n").unwrap(); // x = 0 is the horizon
+    fails(
+        folder.path(),
+        &options,
+        &["tracks.csv", "pedestrian 1, frame 0", "horizon"],
+    );
+    // rows are 10 frames apart
+    let slow = format!("{FORECAST} --fps 5");
+    fails(folder.path(), &slow, &["tracks.csv", "2.00 s apart"]);
+    for (option, problem) in [
+        ("--fps 0", "above 0"),
+        ("--fps many", "must be a number"),
+        ("--dt=-1", "above 0"),
+        ("--fps 25 --dt 0.04", "cannot be used with"),
+        ("--fps 25 --frame-step 10", "cannot be used with"),
+    ] {
+        let finished = ddl_tests::program::run(folder.path(), &format!("{FORECAST} {option}"));
+        assert_eq!(finished.code, Some(2), "{option}");
+        assert!(finished.stderr.contains(problem), "{finished:?}");
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@ mod table;
 
 use super::model::ModelChoice;
 use super::{Exactness, KeepClear, Machine};
-use crate::tracks::{Tracks, write_output};
+use crate::tracks::{Clock, FrameNumber, Tracks, write_output};
 use clap::{Args, ValueEnum};
 use ddl::data::{HORIZON, OBSERVED, Window};
 use ddl::dynamics::LyapunovCertificate;
@@ -16,6 +16,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
         ddl forecast tracks.csv --output forecasts.csv\n  \
+        ddl forecast camera.csv --fps 25 --homography H.txt --last\n  \
         ddl forecast --model runs/eth tracks.csv --last --format jsonl --certificate")]
 pub(crate) struct Forecast {
     #[command(flatten)]
@@ -56,30 +57,35 @@ struct Moment<'a> {
     window: &'a Window,
     forecast: &'a ddl::Forecast,
     certified: Option<&'a CertifiedForecast>,
+    clock: Clock,
 }
 
 impl Forecast {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         self.machine.prepare_for_little()?;
-        let windows = self.tracks.windows()?;
+        let observed = self.tracks.observed()?;
+        let (windows, clock) = (&observed.windows, observed.clock);
         let model = self
             .model
             .load(self.machine.device)?
             .in_precision(self.exactness.precision())?;
         let model = self.clear.of(model)?;
         let text = if self.certificate {
-            let certified = model.forecast_certified(&windows)?;
+            let certified = model.forecast_certified(windows)?;
             let pairs = windows.iter().zip(&certified);
-            let moments: Vec<Moment<'_>> = pairs.map(Moment::certified).collect();
+            let moments: Vec<Moment<'_>> =
+                pairs.map(|pair| Moment::certified(pair, clock)).collect();
             warn_of_violation(&moments);
             self.format.text(&moments)
         } else {
-            let forecasts = model.forecast_all(&windows)?;
+            let forecasts = model.forecast_all(windows)?;
             let pairs = windows.iter().zip(&forecasts);
-            self.format
-                .text(&pairs.map(Moment::plain).collect::<Vec<_>>())
+            let moments: Vec<Moment<'_>> = pairs.map(|pair| Moment::plain(pair, clock)).collect();
+            self.format.text(&moments)
         };
-        write_output(self.output.as_deref(), &text?)
+        write_output(self.output.as_deref(), &text?)?;
+        observed.tell_what_is_made_up();
+        Ok(())
     }
 }
 
@@ -93,19 +99,21 @@ impl OutputFormat {
 }
 
 impl<'a> Moment<'a> {
-    fn plain((window, forecast): (&'a Window, &'a ddl::Forecast)) -> Self {
+    fn plain((window, forecast): (&'a Window, &'a ddl::Forecast), clock: Clock) -> Self {
         Self {
             window,
             forecast,
             certified: None,
+            clock,
         }
     }
 
-    fn certified((window, certified): (&'a Window, &'a CertifiedForecast)) -> Self {
+    fn certified((window, certified): (&'a Window, &'a CertifiedForecast), clock: Clock) -> Self {
         Self {
             window,
             forecast: &certified.forecast,
             certified: Some(certified),
+            clock,
         }
     }
 
@@ -114,14 +122,15 @@ impl<'a> Moment<'a> {
     }
 
     /// The last observed frame.
-    fn observed_until(&self) -> i64 {
-        self.window.frames()[OBSERVED - 1]
+    fn observed_until(&self) -> FrameNumber {
+        self.clock.number(self.window.frames()[OBSERVED - 1])
     }
 
     /// The frames that are forecast.
-    fn frames(&self) -> Vec<i64> {
-        let (last, step) = (self.observed_until(), self.window.frame_step());
-        (1..=HORIZON as i64).map(|t| last + t * step).collect()
+    fn frames(&self) -> Vec<FrameNumber> {
+        let (last, step) = (self.window.frames()[OBSERVED - 1], self.window.frame_step());
+        let frames = (1..=HORIZON as i64).map(|t| self.clock.number(last + t * step));
+        frames.collect()
     }
 }
 

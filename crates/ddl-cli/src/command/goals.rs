@@ -2,10 +2,10 @@
 
 use super::model::ModelChoice;
 use super::{Machine, dataset};
-use crate::tracks::{Tracks, write_output};
+use crate::tracks::{FrameNumber, Observed, Tracks, write_output};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
-use ddl::data::Window;
+use ddl::data::OBSERVED;
 use ddl::goal::GoalSet;
 use ddl::{EvaluationSplit, GoalEvaluation};
 use serde::Serialize;
@@ -23,7 +23,7 @@ pub(crate) struct Goals {
     #[command(flatten)]
     tracks: Option<Tracks>,
     /// Compare the goals with the true ends of the recordings the model was trained without
-    #[arg(long, value_enum, conflicts_with_all = ["file", "last", "frame_step"])]
+    #[arg(long, value_enum, conflicts_with_all = ["file", "last", "whole", "frame_step", "fps", "dt", "homography"])]
     measure: Option<Measure>,
     /// Folder of the recordings to measure on [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
     #[arg(long)]
@@ -52,12 +52,14 @@ enum Measure {
 
 #[derive(Serialize)]
 struct Row {
-    observed_until: i64,
+    observed_until: FrameNumber,
     pedestrian: i64,
     goal: usize,
     weight: f64,
     x: f64,
     y: f64,
+    padded: usize,
+    filled: usize,
 }
 
 impl Goals {
@@ -69,9 +71,12 @@ impl Goals {
             (_, Some(measure)) => self.measure(measure)?,
             (Some(tracks), None) => {
                 self.machine.prepare_for_little()?;
-                let windows = tracks.windows()?;
+                let observed = tracks.observed()?;
                 let model = self.model.load_goals(self.machine.device)?;
-                csv(&windows, &model.goals(&windows)?)?
+                let goals = model.goals(&observed.windows)?;
+                let text = csv(&observed, &goals)?;
+                observed.tell_what_is_made_up();
+                text
             }
             (None, None) => bail!("give a file of TRACKS to estimate goals for, or --measure test"),
         };
@@ -99,11 +104,12 @@ impl Goals {
     }
 }
 
-fn csv(windows: &[Window], sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
+fn csv(observed: &Observed, sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    for (window, sets) in windows.iter().zip(sets) {
-        let last = window.frames()[ddl::data::OBSERVED - 1];
-        for (pedestrian, set) in window.pedestrians().iter().zip(sets) {
+    for (window, sets) in observed.windows.iter().zip(sets) {
+        let last = observed.clock.number(window.frames()[OBSERVED - 1]);
+        for (i, (pedestrian, set)) in window.pedestrians().iter().zip(sets).enumerate() {
+            let made_up = window.made_up(i);
             for (goal, (position, weight)) in set.goals().iter().zip(set.weights()).enumerate() {
                 writer.serialize(Row {
                     observed_until: last,
@@ -112,6 +118,8 @@ fn csv(windows: &[Window], sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
                     weight: *weight,
                     x: position[0],
                     y: position[1],
+                    padded: made_up.padded,
+                    filled: made_up.filled,
                 })?;
             }
         }

@@ -1,15 +1,19 @@
 //! Forecasts as JSON lines: an object a pedestrian, in the format that `ddl evaluate --forecasts` reads.
 
 use super::Moment;
+use crate::tracks::FrameNumber;
 use ddl::dynamics::{LyapunovCertificate, Violation};
 use serde::Serialize;
 
 /// All hypotheses of a pedestrian.
 #[derive(Serialize)]
 struct Line<'a> {
-    observed_until: i64,
+    observed_until: FrameNumber,
     pedestrian: i64,
-    frames: Vec<i64>,
+    /// Positions before the first that was seen, and in holes.
+    padded: usize,
+    filled: usize,
+    frames: Vec<FrameNumber>,
     hypotheses: Vec<Hypothesis<'a>>,
 }
 
@@ -61,9 +65,12 @@ pub(super) fn json_lines(moments: &[Moment<'_>]) -> anyhow::Result<String> {
                     certificate: moment.certificate(i, k).map(Certificate::of),
                 })
                 .collect();
+            let made_up = moment.window.made_up(i);
             let line = Line {
                 observed_until: moment.observed_until(),
                 pedestrian: pedestrian.0,
+                padded: made_up.padded,
+                filled: made_up.filled,
                 frames: moment.frames(),
                 hypotheses,
             };
