@@ -139,6 +139,22 @@ pub enum FormatProblem {
         /// Line of the first occurrence.
         first_line: usize,
     },
+    /// A frame that is over comes again, or an earlier one.
+    #[error(
+        "frame {frame} comes after frame {last}; tracks that are read as they arrive must be in order of time"
+    )]
+    OutOfOrder {
+        /// The raw frame number.
+        frame: i64,
+        /// That of the frame before.
+        last: i64,
+    },
+    /// A line without an end.
+    #[error("the line is longer than {limit} bytes; is it a file of tracks?")]
+    LongLine {
+        /// Bytes that a line may have.
+        limit: usize,
+    },
     /// The text is no well-formed comma-separated table.
     #[error("not a well-formed table: {detail}")]
     Table {

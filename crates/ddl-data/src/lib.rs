@@ -24,7 +24,7 @@ pub use convention::Convention;
 pub use dataset::Dataset;
 pub use error::{DataError, FormatError, FormatProblem, RecordingError, UnknownName, WindowError};
 pub use fold::{Fold, SocialGanSplit, TrainingSplit};
-pub use format::{Format, parse_recording, read_recording};
+pub use format::{Format, Frame, FrameReader, parse_recording, read_recording};
 pub use homography::{Homography, HomographyError};
 pub use live::{LiveError, LiveTracks};
 pub use locate::{DATASETS_VARIABLE, locate};

@@ -10,6 +10,7 @@ mod obsmat;
 mod rows;
 mod social_gan;
 mod star_csv;
+mod stream;
 mod table;
 mod trajnet;
 
@@ -21,6 +22,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{DataError, FormatError, FormatProblem, UnknownName};
 use crate::recording::Recording;
+
+pub use stream::{Frame, FrameReader};
 
 /// How a file of tracks is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]

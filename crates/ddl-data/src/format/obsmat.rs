@@ -11,7 +11,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
     rows::of_lines(text, origin, row)
 }
 
-fn row(text: &str, line: usize, origin: &str) -> Result<Row, FormatError> {
+pub(super) fn row(text: &str, line: usize, origin: &str) -> Result<Row, FormatError> {
     let here = Place { line, field: None };
     let fields: Vec<&str> = text.split_ascii_whitespace().collect();
     let &[frame, pedestrian, x, z, y, v_x, v_z, v_y] = fields.as_slice() else {

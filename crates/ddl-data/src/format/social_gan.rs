@@ -8,7 +8,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
     rows::of_lines(text, origin, row)
 }
 
-fn row(text: &str, line: usize, origin: &str) -> Result<Row, FormatError> {
+pub(super) fn row(text: &str, line: usize, origin: &str) -> Result<Row, FormatError> {
     let here = Place { line, field: None };
     let fields: Vec<&str> = text.split_ascii_whitespace().collect();
     let &[frame, pedestrian, x, y] = fields.as_slice() else {

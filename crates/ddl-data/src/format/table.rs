@@ -31,9 +31,37 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
 }
 
 /// Which column holds what.
-struct Columns([usize; 4]);
+#[derive(Debug)]
+pub(super) struct Columns {
+    places: [usize; 4],
+    count: usize,
+}
 
 impl Columns {
+    /// The columns that a header line names.
+    pub(super) fn of_line(text: &str, line: usize, origin: &str) -> Result<Self, FormatError> {
+        Self::of(&record(text, line, origin)?, origin)
+    }
+
+    /// A row on a line of its own.
+    pub(super) fn row_of_line(
+        &self,
+        text: &str,
+        line: usize,
+        origin: &str,
+    ) -> Result<Row, FormatError> {
+        let record = record(text, line, origin)?;
+        if record.len() != self.count {
+            let problem = FormatProblem::FieldCount {
+                expected: self.count,
+                found: record.len(),
+                names: FIELDS,
+            };
+            return Err(Place { line, field: None }.wrong(origin, problem));
+        }
+        self.row(&record, line, origin)
+    }
+
     fn of(header: &StringRecord, origin: &str) -> Result<Self, FormatError> {
         let wrong = |field: Option<usize>, detail: String| {
             Place { line: 1, field }.wrong(origin, FormatProblem::Header { detail })
@@ -55,11 +83,14 @@ impl Columns {
         for ((column, place), name) in columns.iter_mut().zip(places).zip(COLUMNS) {
             *column = place.ok_or_else(|| wrong(None, format!("column {name} is missing")))?;
         }
-        Ok(Self(columns))
+        Ok(Self {
+            places: columns,
+            count: header.len(),
+        })
     }
 
     fn row(&self, record: &StringRecord, line: usize, origin: &str) -> Result<Row, FormatError> {
-        let [frame, pedestrian, x, y] = self.0;
+        let [frame, pedestrian, x, y] = self.places;
         let text = |column: usize| record.get(column).unwrap_or_default();
         let at = |column: usize| {
             move |p| {
@@ -81,6 +112,21 @@ impl Columns {
             place,
         ))
     }
+}
+
+/// The fields of one line.
+fn record(text: &str, line: usize, origin: &str) -> Result<StringRecord, FormatError> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let mut record = StringRecord::new();
+    let read = reader.read_record(&mut record);
+    read.map(|_| record).map_err(|error| {
+        let detail = error.to_string();
+        Place { line, field: None }.wrong(origin, FormatProblem::Table { detail })
+    })
 }
 
 fn table_error(error: &csv::Error, origin: &str) -> FormatError {

@@ -52,7 +52,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
 }
 
 /// Frame, pedestrian and position of a line, if it holds an observation.
-fn observation(text: &str) -> Result<Option<(i64, i64, Position)>, FormatProblem> {
+pub(super) fn observation(text: &str) -> Result<Option<(i64, i64, Position)>, FormatProblem> {
     if text.trim().is_empty() {
         return Ok(None);
     }

@@ -1,0 +1,218 @@
+//! Tracks as they arrive: a frame as soon as it is whole.
+
+use std::collections::BTreeMap;
+use std::io::{BufRead, Read as _};
+
+use super::rows::Row;
+use super::table::Columns;
+use super::{Format, Place, obsmat, social_gan, trajnet};
+use crate::error::{DataError, FormatError, FormatProblem};
+use crate::{PedestrianId, Position};
+
+/// Bytes of the longest line.
+const LONGEST_LINE: usize = 1 << 16;
+
+/// Everybody at one moment.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Frame {
+    /// The raw frame number.
+    pub number: i64,
+    /// Who is where (m), in the order of the lines.
+    pub people: Vec<(PedestrianId, Position)>,
+}
+
+/// Reads tracks frame by frame, as a tracker writes them: in order of time, one observation a line.
+///
+/// A frame is whole when a line of a later one comes, when an empty line comes, or at the end. What the lines are is told from
+/// the first: a header (`table`), a JSON object (`trajnet`), or four or eight columns parted by blanks (`social-gan`, `obsmat`). The files of the `star`
+/// convention are of four lines, which do not arrive in order of time.
+///
+/// Memory is bounded by the people of a frame.
+///
+/// ```
+/// use ddl_data::FrameReader;
+///
+/// let text = b"frame,pedestrian,x,y\n0,1,0.0,2.0\n0,2,8.0,2.5\n1,1,0.5,2.0\n";
+/// let mut frames = FrameReader::new(&text[..], "tracker");
+/// let first = frames.next_frame()?.expect("two frames");
+/// assert_eq!((first.number, first.people.len()), (0, 2));
+/// assert_eq!(frames.next_frame()?.map(|frame| frame.number), Some(1));
+/// assert_eq!(frames.next_frame()?, None);
+/// # Ok::<(), ddl_data::DataError>(())
+/// ```
+#[derive(Debug)]
+pub struct FrameReader<R> {
+    reader: R,
+    origin: String,
+    lines: usize,
+    kind: Option<Kind>,
+    /// The frame that is being read.
+    current: Option<Growing>,
+    /// The last frame that was given out.
+    last: Option<i64>,
+    ended: bool,
+}
+
+/// A frame that is not whole yet.
+#[derive(Debug)]
+struct Growing {
+    frame: Frame,
+    /// The line of everybody in it.
+    lines: BTreeMap<PedestrianId, usize>,
+}
+
+/// What the lines are.
+#[derive(Debug)]
+enum Kind {
+    Table(Columns),
+    TrajNet,
+    SocialGan,
+    Obsmat,
+}
+
+impl<R: BufRead> FrameReader<R> {
+    /// Nothing read yet; `origin` is the name in messages.
+    pub fn new(reader: R, origin: impl Into<String>) -> Self {
+        Self {
+            reader,
+            origin: origin.into(),
+            lines: 0,
+            kind: None,
+            current: None,
+            last: None,
+            ended: false,
+        }
+    }
+
+    /// The next whole frame; waits for it. `None` at the end.
+    ///
+    /// # Errors
+    /// If nothing can be read any more, or a line is wrong: see [`FormatProblem`]. What came before has been given out; after an error
+    /// the reader is at the next line.
+    pub fn next_frame(&mut self) -> Result<Option<Frame>, DataError> {
+        while !self.ended {
+            let Some(text) = self.line()? else {
+                self.ended = true;
+                break;
+            };
+            if text.trim().is_empty() {
+                if let Some(frame) = self.whole() {
+                    return Ok(Some(frame));
+                }
+                continue;
+            }
+            let Some(row) = self.row(&text)? else {
+                continue;
+            };
+            if let Some(frame) = self.add(&row)? {
+                return Ok(Some(frame));
+            }
+        }
+        Ok(self.whole())
+    }
+
+    /// The next line without its end; `None` at the end of the file.
+    fn line(&mut self) -> Result<Option<String>, DataError> {
+        let mut bytes = Vec::new();
+        let mut limited = self.reader.by_ref().take(LONGEST_LINE as u64 + 1);
+        let read = limited.read_until(b'\n', &mut bytes);
+        read.map_err(|source| DataError::Read {
+            path: self.origin.clone().into(),
+            source,
+        })?;
+        if bytes.is_empty() {
+            return Ok(None);
+        }
+        self.lines += 1;
+        if bytes.len() > LONGEST_LINE {
+            let limit = LONGEST_LINE;
+            return Err(self.wrong(FormatProblem::LongLine { limit }).into());
+        }
+        match String::from_utf8(bytes) {
+            Err(_) => Err(self.wrong(FormatProblem::NotUtf8).into()),
+            Ok(text) if self.lines == 1 => Ok(Some(text.trim_start_matches('\u{feff}').to_owned())),
+            Ok(text) => Ok(Some(text)),
+        }
+    }
+
+    /// The observation of a line, if it holds one.
+    fn row(&mut self, text: &str) -> Result<Option<Row>, FormatError> {
+        let (line, origin) = (self.lines, self.origin.as_str());
+        let Some(kind) = &self.kind else {
+            let kind = match Format::guess("".as_ref(), text.as_bytes()) {
+                Format::TrajNet => Kind::TrajNet,
+                Format::SocialGan => Kind::SocialGan,
+                Format::Obsmat => Kind::Obsmat,
+                Format::Table | Format::StarCsv => {
+                    self.kind = Some(Kind::Table(Columns::of_line(text, line, origin)?));
+                    return Ok(None);
+                }
+            };
+            self.kind = Some(kind);
+            return self.row(text);
+        };
+        match kind {
+            Kind::Table(columns) => columns.row_of_line(text, line, origin).map(Some),
+            Kind::SocialGan => social_gan::row(text, line, origin).map(Some),
+            Kind::Obsmat => obsmat::row(text, line, origin).map(Some),
+            Kind::TrajNet => {
+                let place = Place { line, field: None };
+                let found = trajnet::observation(text).map_err(|problem| self.wrong(problem))?;
+                Ok(found.map(|(frame, who, position)| Row::new(frame, who, position, place)))
+            }
+        }
+    }
+
+    /// Adds an observation; the frame before, if this is the first of a new one.
+    fn add(&mut self, row: &Row) -> Result<Option<Frame>, FormatError> {
+        let seen = row.observation;
+        let reached = self.current.as_ref().map(|growing| growing.frame.number);
+        if let Some(last) = reached.or(self.last)
+            && (seen.frame < last || (reached.is_none() && seen.frame == last))
+        {
+            let frame = seen.frame;
+            return Err(self.wrong(FormatProblem::OutOfOrder { frame, last }));
+        }
+        let before = if reached == Some(seen.frame) {
+            None
+        } else {
+            self.whole()
+        };
+        let line = self.lines;
+        let growing = self.current.get_or_insert_with(|| Growing {
+            frame: Frame {
+                number: seen.frame,
+                people: Vec::new(),
+            },
+            lines: BTreeMap::new(),
+        });
+        if let Some(&first_line) = growing.lines.get(&seen.pedestrian) {
+            let problem = FormatProblem::Duplicate {
+                pedestrian: seen.pedestrian,
+                frame: seen.frame,
+                first_line,
+            };
+            return Err(self.wrong(problem));
+        }
+        growing.lines.insert(seen.pedestrian, line);
+        growing.frame.people.push((seen.pedestrian, seen.position));
+        Ok(before)
+    }
+
+    /// The frame that has been read, which is over.
+    fn whole(&mut self) -> Option<Frame> {
+        let growing = self.current.take()?;
+        self.last = Some(growing.frame.number);
+        Some(growing.frame)
+    }
+
+    /// The error that something is wrong with the last line.
+    fn wrong(&self, problem: FormatProblem) -> FormatError {
+        let place = Place {
+            line: self.lines,
+            field: None,
+        };
+        place.wrong(&self.origin, problem)
+    }
+}
