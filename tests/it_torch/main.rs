@@ -14,6 +14,7 @@ mod keep_clear;
 mod leak;
 mod leak_in_reports;
 mod live;
+mod live_program;
 mod other_program;
 mod packed;
 mod precision;

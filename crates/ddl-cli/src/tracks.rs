@@ -14,7 +14,8 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Tracks {
     /// csv with the header frame,pedestrian,x,y: metres, rows of a pedestrian 0.4 s apart unless --fps or --dt says otherwise
     ///
-    /// Or TrajNet++ ndjson, ETH obsmat.txt or the files of a data convention, told by extension and first lines.
+    /// Or TrajNet++ ndjson, ETH obsmat.txt or the files of a data convention, told by extension and first lines. `ddl forecast -` reads a tracker's lines as
+    /// they come.
     #[arg(value_name = "TRACKS")]
     file: PathBuf,
     /// Frame numbers count so many a second, such as 25: steps of 0.4 s are found, and resampled where they are no whole number of frames
@@ -64,6 +65,9 @@ pub(crate) enum FrameNumber {
 }
 
 impl Clock {
+    /// Windows count frames as the tracks do.
+    pub(crate) const WHOLE: Self = Self { parts: 1 };
+
     pub(crate) fn number(self, frame: i64) -> FrameNumber {
         if frame % self.parts == 0 {
             FrameNumber::Whole(frame / self.parts)
@@ -83,6 +87,11 @@ impl std::fmt::Display for FrameNumber {
 }
 
 impl Tracks {
+    /// Whether they come from standard input.
+    pub(crate) fn are_live(&self) -> bool {
+        self.file.as_os_str() == "-"
+    }
+
     /// The tracks in metres, in the format that their file looks like. It is read once, so that it may be a pipe.
     fn recording(&self) -> anyhow::Result<Recording> {
         let bytes = std::fs::read(&self.file)
@@ -91,22 +100,64 @@ impl Tracks {
         let name = self.file.file_stem().unwrap_or_default().to_string_lossy();
         let recording = parse_recording(&bytes, &self.file.display().to_string(), format)?;
         let recording = recording.with_name(&*name);
+        match self.homography()? {
+            None => Ok(recording),
+            Some(homography) => homography
+                .on_the_ground(&recording)
+                .with_context(|| self.file.display().to_string()),
+        }
+    }
+
+    /// From pixels to metres, where positions are pixels.
+    pub(crate) fn homography(&self) -> anyhow::Result<Option<Homography>> {
         let Some(path) = &self.homography else {
-            return Ok(recording);
+            return Ok(None);
         };
         let text = std::fs::read_to_string(path)
             .with_context(|| format!("cannot read {}", path.display()))?;
-        let homography: Homography = text.parse().with_context(|| path.display().to_string())?;
-        homography
-            .on_the_ground(&recording)
-            .with_context(|| self.file.display().to_string())
+        let homography = text.parse().with_context(|| path.display().to_string())?;
+        Ok(Some(homography))
+    }
+
+    /// What is made up of observations that are not whole.
+    pub(crate) fn completion(&self) -> Completion {
+        if self.whole {
+            Completion::NONE
+        } else {
+            Completion::USUAL
+        }
+    }
+
+    /// Seconds from one frame number to the next, as far as they were given.
+    fn frame_time(&self) -> Option<f64> {
+        self.dt.or(self.fps.map(|fps| 1.0 / fps))
+    }
+
+    /// Frame numbers in a step of live tracks, as far as they were given.
+    pub(crate) fn live_frame_step(&self) -> anyhow::Result<Option<i64>> {
+        if self.last {
+            bail!(
+                "--last has no meaning for tracks that have no end yet: every frame of standard input is forecast from as it comes"
+            );
+        }
+        let Some(frame_time) = self.frame_time() else {
+            return Ok(self.frame_step);
+        };
+        let frames = TIME_STEP / frame_time;
+        let step = frames.round();
+        if step < 1.0 || (step - frames).abs() > 0.005 * frames {
+            bail!(
+                "0.4 s are {frames:.4} frames: live tracks are not resampled; give a rate of which 0.4 s are a whole number of frames, or \
+                 count frames in finer parts"
+            );
+        }
+        Ok(Some(step as i64))
     }
 
     /// The tracks in steps of 0.4 s.
     fn in_steps(&self) -> anyhow::Result<(Recording, Clock)> {
         let recording = self.recording()?;
-        let frame_time = self.dt.or(self.fps.map(|fps| 1.0 / fps));
-        let Some(frame_time) = frame_time else {
+        let Some(frame_time) = self.frame_time() else {
             let recording = match self.frame_step {
                 None => recording,
                 Some(step) => recording.with_frame_step(step)?,
@@ -129,12 +180,7 @@ impl Tracks {
     /// Windows of 8 observed frames, one a frame that has anybody to forecast.
     pub(crate) fn observed(&self) -> anyhow::Result<Observed> {
         let (recording, clock) = self.in_steps()?;
-        let completion = if self.whole {
-            Completion::NONE
-        } else {
-            Completion::USUAL
-        };
-        let mut windows = recording.completed_windows(completion);
+        let mut windows = recording.completed_windows(self.completion());
         if windows.is_empty() {
             bail!(
                 "{}: nobody was seen {} (steps of {} frames); give --fps where frame numbers are not 0.4 s apart, or --frame-step",

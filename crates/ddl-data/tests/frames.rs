@@ -7,8 +7,8 @@ mod recordings;
 use std::fmt::Write as _;
 
 use ddl_data::{
-    Convention, DataError, Format, Frame, FrameReader, Observation, PedestrianId, Recording,
-    parse_recording,
+    Convention, DataError, Format, Frame, FrameReader, Observation, PedestrianId, Position,
+    Recording, parse_recording,
 };
 use proptest::prelude::*;
 
@@ -16,6 +16,9 @@ fn frames(text: &[u8]) -> Result<Vec<Frame>, DataError> {
     let mut reader = FrameReader::new(text, "tracker");
     std::iter::from_fn(|| reader.next_frame().transpose()).collect()
 }
+
+/// Frames with everybody in them.
+type Seen = Vec<(i64, Vec<(PedestrianId, Position)>)>;
 
 /// The same rows in each format that can be read frame by frame.
 fn written(recording: &Recording) -> Vec<(Format, String)> {
@@ -40,7 +43,7 @@ fn written(recording: &Recording) -> Vec<(Format, String)> {
     ]
 }
 
-fn of_whole(recording: &Recording) -> Vec<(i64, Vec<(PedestrianId, [f64; 2])>)> {
+fn of_whole(recording: &Recording) -> Seen {
     let people = |frame: &i64| {
         let at = recording.at(*frame).iter();
         (
@@ -51,7 +54,7 @@ fn of_whole(recording: &Recording) -> Vec<(i64, Vec<(PedestrianId, [f64; 2])>)> 
     recording.frames().iter().map(people).collect()
 }
 
-fn of_frames(frames: Vec<Frame>) -> Vec<(i64, Vec<(PedestrianId, [f64; 2])>)> {
+fn of_frames(frames: Vec<Frame>) -> Seen {
     frames
         .into_iter()
         .map(|frame| (frame.number, frame.people))

@@ -165,6 +165,25 @@ impl Ddl {
         self.forecast_straight(windows, goals, self.clearance)
     }
 
+    /// [`forecast_one`](Self::forecast_one) with the evidence for every walk that it goes to its goal.
+    ///
+    /// # Errors
+    /// As [`forecast_one`](Self::forecast_one); for the variant without goals
+    /// [`CertificateError::NoFlow`](crate::CertificateError::NoFlow).
+    pub fn forecast_one_certified(
+        &self,
+        windows: &[Window],
+    ) -> Result<Vec<CertifiedForecast>, ForecastError> {
+        let variant = self.config().star.variant;
+        if !variant.uses_goal() {
+            certified_forecast::ensure_flow(variant)?;
+        }
+        let goals = goals::only_central(windows, &self.goals.goals(windows)?);
+        self.straight(windows, goals, self.clearance)
+            .map(Walked::certified)
+            .collect()
+    }
+
     /// One straight walk for every pedestrian, to the one goal of its set; for the variant without goals, noise samples.
     pub(crate) fn forecast_straight(
         &self,
@@ -172,26 +191,35 @@ impl Ddl {
         sets: Vec<Vec<GoalSet>>,
         clearance: Option<Clearance>,
     ) -> Result<Vec<Forecast>, ForecastError> {
-        let config = &self.config().star;
-        if !config.variant.uses_goal() {
+        if !self.config().star.variant.uses_goal() {
             return self.forecast_without_goals(windows);
         }
-        let straight = |(window, sets): (&Window, Vec<GoalSet>)| {
+        self.straight(windows, sets, clearance)
+            .map(Walked::forecast)
+            .collect()
+    }
+
+    /// The straight walks, of which each becomes a forecast when it is its turn.
+    fn straight<'a>(
+        &'a self,
+        windows: &'a [Window],
+        sets: Vec<Vec<GoalSet>>,
+        clearance: Option<Clearance>,
+    ) -> impl Iterator<Item = Walked<'a>> {
+        let config = &self.config().star;
+        windows.iter().zip(sets).map(move |(window, sets)| {
             let goals: Vec<Position> = sets.iter().flat_map(GoalSet::goals).copied().collect();
-            let factors = straight_walk::factors(window, &goals, config.time_step);
             Walked {
                 config,
                 gait: Gait::Stable(clearance),
                 window,
                 hypotheses: 1,
                 rolled_out: Vec::new(),
-                factors: Some(factors),
+                factors: Some(straight_walk::factors(window, &goals, config.time_step)),
                 weights: vec![1.0; goals.len()],
                 goals,
             }
-            .forecast()
-        };
-        windows.iter().zip(sets).map(straight).collect()
+        })
     }
 
     /// One hypothesis a goal for every pedestrian, with the goal's weight; for the variant without

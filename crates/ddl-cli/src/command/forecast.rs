@@ -1,6 +1,7 @@
 //! `ddl forecast`.
 
 mod json_lines;
+mod live;
 mod table;
 
 use super::model::ModelChoice;
@@ -9,7 +10,7 @@ use crate::tracks::{Clock, FrameNumber, Tracks, write_output};
 use clap::{Args, ValueEnum};
 use ddl::data::{HORIZON, OBSERVED, Window};
 use ddl::dynamics::LyapunovCertificate;
-use ddl::{CertifiedForecast, Forecaster as _};
+use ddl::{CertifiedForecast, Ddl, Forecaster as _};
 use std::path::PathBuf;
 
 /// Forecast the next 4.8 s of your own tracks
@@ -17,6 +18,7 @@ use std::path::PathBuf;
 #[command(after_help = "Examples:\n  \
         ddl forecast tracks.csv --output forecasts.csv\n  \
         ddl forecast camera.csv --fps 25 --homography H.txt --last\n  \
+        tracker | ddl forecast - --fps 10 --one --format jsonl\n  \
         ddl forecast --model runs/eth tracks.csv --last --format jsonl --certificate")]
 pub(crate) struct Forecast {
     #[command(flatten)]
@@ -29,6 +31,9 @@ pub(crate) struct Forecast {
     /// csv: a row a position; jsonl: a JSON object a pedestrian
     #[arg(long, value_enum, default_value = "csv")]
     format: OutputFormat,
+    /// One forecast a pedestrian, for who may have only one: straight on to the goal that stands for all 20
+    #[arg(long)]
+    one: bool,
     /// Attach to every hypothesis the evidence that it comes nearer to its goal at every step
     ///
     /// A certificate holds when the distance to the goal falls at every one of the 12 steps, along a
@@ -63,36 +68,61 @@ struct Moment<'a> {
 impl Forecast {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         self.machine.prepare_for_little()?;
+        if self.tracks.are_live() {
+            return live::run(&self);
+        }
         let observed = self.tracks.observed()?;
-        let (windows, clock) = (&observed.windows, observed.clock);
+        let model = self.model()?;
+        let text = self.text(&model, &observed.windows, observed.clock, true)?;
+        write_output(self.output.as_deref(), &text)?;
+        observed.tell_what_is_made_up();
+        Ok(())
+    }
+
+    fn model(&self) -> anyhow::Result<Ddl> {
         let model = self
             .model
             .load(self.machine.device)?
             .in_precision(self.exactness.precision())?;
-        let model = self.clear.of(model)?;
-        let text = if self.certificate {
-            let certified = model.forecast_certified(windows)?;
+        Ok(self.clear.of(model)?)
+    }
+
+    /// What is forecast from the windows, as it is written; `headed` by the names of columns where there are any.
+    fn text(
+        &self,
+        model: &Ddl,
+        windows: &[Window],
+        clock: Clock,
+        headed: bool,
+    ) -> anyhow::Result<String> {
+        if self.certificate {
+            let certified = if self.one {
+                model.forecast_one_certified(windows)?
+            } else {
+                model.forecast_certified(windows)?
+            };
             let pairs = windows.iter().zip(&certified);
             let moments: Vec<Moment<'_>> =
                 pairs.map(|pair| Moment::certified(pair, clock)).collect();
             warn_of_violation(&moments);
-            self.format.text(&moments)
+            self.format.text(&moments, headed)
         } else {
-            let forecasts = model.forecast_all(windows)?;
+            let forecasts = if self.one {
+                model.forecast_one(windows)?
+            } else {
+                model.forecast_all(windows)?
+            };
             let pairs = windows.iter().zip(&forecasts);
             let moments: Vec<Moment<'_>> = pairs.map(|pair| Moment::plain(pair, clock)).collect();
-            self.format.text(&moments)
-        };
-        write_output(self.output.as_deref(), &text?)?;
-        observed.tell_what_is_made_up();
-        Ok(())
+            self.format.text(&moments, headed)
+        }
     }
 }
 
 impl OutputFormat {
-    fn text(self, moments: &[Moment<'_>]) -> anyhow::Result<String> {
+    fn text(self, moments: &[Moment<'_>], headed: bool) -> anyhow::Result<String> {
         match self {
-            Self::Csv => table::csv(moments),
+            Self::Csv => table::csv(moments, headed),
             Self::Jsonl => json_lines::json_lines(moments),
         }
     }

@@ -70,6 +70,11 @@ impl Goals {
         let text = match (&self.tracks, self.measure) {
             (_, Some(measure)) => self.measure(measure)?,
             (Some(tracks), None) => {
+                if tracks.are_live() {
+                    bail!(
+                        "goals are estimated for a file of tracks; `ddl forecast - --format jsonl` tells those of live ones"
+                    );
+                }
                 self.machine.prepare_for_little()?;
                 let observed = tracks.observed()?;
                 let model = self.model.load_goals(self.machine.device)?;

@@ -30,8 +30,10 @@ struct Certified {
     certified: bool,
 }
 
-pub(super) fn csv(moments: &[Moment<'_>]) -> anyhow::Result<String> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
+pub(super) fn csv(moments: &[Moment<'_>], headed: bool) -> anyhow::Result<String> {
+    let mut writer = csv::WriterBuilder::new()
+        .has_headers(headed)
+        .from_writer(Vec::new());
     for moment in moments {
         let frames = moment.frames();
         for (i, pedestrian) in moment.window.pedestrians().iter().enumerate() {
