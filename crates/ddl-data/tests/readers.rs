@@ -319,3 +319,29 @@ fn a_file_that_cannot_be_read_is_named() {
         "{error}"
     );
 }
+
+/// What a header says otherwise than asked is read where it can be, and explained where not.
+#[test]
+fn headers_as_others_write_them() {
+    let read = |header: &str| {
+        let text = format!("{header}\n0,1,2.0,3.0\n");
+        parse_recording(text.as_bytes(), "t", Format::Table)
+    };
+    let recording = read("Frame,PEDESTRIAN,X,Y").unwrap();
+    assert_eq!(
+        recording.at(0)[0].position.map(f64::to_bits),
+        [2.0_f64, 3.0].map(f64::to_bits)
+    );
+    for (header, advice) in [
+        ("frame,id,x,y", "rename it pedestrian"),
+        ("time,pedestrian,x,y", "count frames"),
+        ("frame;pedestrian;x;y", "commas"),
+        ("frame,pedestrian,x,vx", "leave it out"),
+    ] {
+        let message = read(header).unwrap_err().to_string();
+        assert!(
+            message.contains("line 1") && message.contains(advice),
+            "{message}"
+        );
+    }
+}

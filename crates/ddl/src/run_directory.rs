@@ -17,7 +17,7 @@
 //! Every file is written under a temporary name and renamed.
 
 use crate::run_config::{FORMAT, RunConfig};
-use crate::{DdlError, GoalRecipe};
+use crate::{BuiltinModel, DdlError, GoalRecipe};
 use ddl_eval::Moment;
 use ddl_star::EpochReport;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -186,7 +186,12 @@ impl RunDirectory {
         let path = self.config_file();
         if !path.is_file() {
             let inside = self.0.join("run");
-            let problem = if inside.join("config.json").is_file() {
+            let problem = if !self.0.exists() {
+                format!(
+                    "is not there: there is neither a run (`ddl train --out` makes one) nor a packed file nor a built-in model of that name (those are {})",
+                    BuiltinModel::ALL.map(BuiltinModel::name).join(", ")
+                )
+            } else if inside.join("config.json").is_file() {
                 format!(
                     "has no config.json, but {} has one: name that",
                     inside.display()

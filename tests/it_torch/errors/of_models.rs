@@ -13,7 +13,11 @@ fn a_missing_model_is_named() {
         "evaluate --model nowhere",
         "info --model nowhere",
     ] {
-        fails(folder.path(), command_line, &["nowhere", "ddl train"]);
+        fails(
+            folder.path(),
+            command_line,
+            &["nowhere", "ddl train", "built-in", "zara1, zara2"],
+        );
     }
     let report = "report nowhere --out pages";
     fails(folder.path(), report, &["nowhere", "ddl evaluate"]);

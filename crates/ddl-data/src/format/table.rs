@@ -20,7 +20,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| table_error(&e, origin))?;
-    let columns = Columns::of(header, origin)?;
+    let columns = Columns::of(header, 1, origin)?;
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| table_error(&e, origin))?;
@@ -40,7 +40,7 @@ pub(super) struct Columns {
 impl Columns {
     /// The columns that a header line names.
     pub(super) fn of_line(text: &str, line: usize, origin: &str) -> Result<Self, FormatError> {
-        Self::of(&record(text, line, origin)?, origin)
+        Self::of(&record(text, line, origin)?, line, origin)
     }
 
     /// A row on a line of its own.
@@ -62,15 +62,17 @@ impl Columns {
         self.row(&record, line, origin)
     }
 
-    fn of(header: &StringRecord, origin: &str) -> Result<Self, FormatError> {
+    fn of(header: &StringRecord, line: usize, origin: &str) -> Result<Self, FormatError> {
         let wrong = |field: Option<usize>, detail: String| {
-            Place { line: 1, field }.wrong(origin, FormatProblem::Header { detail })
+            Place { line, field }.wrong(origin, FormatProblem::Header { detail })
         };
         let mut places = [None; 4];
         for (index, name) in header.iter().enumerate() {
-            let column = COLUMNS.iter().position(|&c| c == name);
+            // Spreadsheets like capitals.
+            let column = COLUMNS.iter().position(|c| name.eq_ignore_ascii_case(c));
             let Some(column) = column else {
-                return Err(wrong(Some(index + 1), format!("unknown column {name:?}")));
+                let detail = format!("unknown column {name:?}; {}", advice(name));
+                return Err(wrong(Some(index + 1), detail));
             };
             if places[column].replace(index).is_some() {
                 return Err(wrong(
@@ -111,6 +113,18 @@ impl Columns {
             ],
             place,
         ))
+    }
+}
+
+/// What to do about a column that is none of the four.
+fn advice(name: &str) -> &'static str {
+    match name.to_ascii_lowercase().as_str() {
+        "id" | "ped" | "ped_id" | "agent" | "agent_id" | "track" | "track_id" => {
+            "rename it pedestrian"
+        }
+        "t" | "time" | "frame_id" => "rename it frame, and count frames",
+        text if text.contains(';') => "separate columns by commas",
+        _ => "leave it out",
     }
 }
 
