@@ -204,7 +204,7 @@ impl LiveTracks {
         })
     }
 
-    /// Who is not in the frame, as far as he may be in a window again with what was seen: `None` where the hole is too long already.
+    /// What is remembered of somebody who is not in the frame; `None` where the hole is too long already for what was seen to be in a window again.
     fn remembered(&self, absent: &Walker, frame: i64) -> Option<Walker> {
         self.remembered_before(absent, frame + 1)
     }
