@@ -36,7 +36,7 @@ pub(crate) struct Tracks {
     /// padded at the mean velocity seen. The columns `padded` and `filled` count such positions.
     #[arg(long, requires = "file")]
     whole: bool,
-    /// Only the last frame of the file, with those who are in it, instead of every frame that can be forecast from
+    /// Only the last frame that can be forecast from, instead of every one
     #[arg(long, requires = "file")]
     last: bool,
 }
@@ -167,7 +167,7 @@ impl Tracks {
         let steps = recording
             .in_steps(frame_time)
             .with_context(|| self.file.display().to_string())?;
-        if steps.is_resampled() {
+        if steps.resampled {
             eprintln!(
                 "note: 0.4 s are {:.4} frames: positions are taken on straight lines between frames, every 0.4 s back from the last one",
                 TIME_STEP / frame_time

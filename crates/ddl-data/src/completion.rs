@@ -112,7 +112,9 @@ impl Completion {
             let back = (padded - place) as f64 / steps;
             *position = [0, 1].map(|axis| first[axis] - back * (last[axis] - first[axis]));
         }
-        Some((positions, MadeUp { padded, filled }))
+        // What lies between positions out of this world may be no number.
+        let finite = positions.iter().flatten().all(|c| c.is_finite());
+        finite.then_some((positions, MadeUp { padded, filled }))
     }
 }
 

@@ -9,8 +9,8 @@ const SIZE: usize = 3;
 
 /// A plane seen by a camera: the matrix that takes pixels to metres on the ground.
 ///
-/// With H the matrix, a pixel (u, v) is the place (X / W, Y / W) where (X, Y, W) = H (u, v, 1): what `findHomography(pixels, metres)` of
-/// `OpenCV` returns, and what `H.txt` of the ETH recordings holds.
+/// With H the matrix, a pixel (u, v), column and row, is the place (X / W, Y / W) where (X, Y, W) = H (u, v, 1): what
+/// `findHomography(pixels, metres)` of `OpenCV` returns. The `H.txt` of the ETH recordings counts (row, column): swap its first two columns.
 ///
 /// ```
 /// use ddl_data::Homography;

@@ -13,11 +13,11 @@ const NAME: &str = "live";
 /// Everybody's last positions, fed one frame at a time.
 ///
 /// After every frame, [`window`](Self::window) is the one that [`Recording::observed_windows`](crate::Recording::observed_windows) would
-/// cut from all frames so far and that ends at this frame: whoever is there and was seen in each of the last 8 frames, 0.4 s apart, with the same
+/// cut from all frames so far and that ends at this frame: whoever is there and was seen at each of the last 8 steps, 0.4 s apart, with the same
 /// numbers in the same order.
 ///
 /// - A frame comes after the one before, by a step (0.4 s), by more, or by less where the tracker is faster than that.
-/// - Whoever was not seen in one of the 8 frames is not in the window, nothing is made up; unless a [`Completion`] is
+/// - Whoever was not seen at one of the 8 steps is not in the window, nothing is made up; unless a [`Completion`] is
 ///   [asked for](Self::completing).
 /// - Whoever has been away for a step (0.4 s), or longer than the longest hole that is filled, is forgotten, and starts anew when seen again. So what is
 ///   kept is bounded by the people of the last frames, and what was seen of them within some 4 s.
@@ -137,7 +137,7 @@ impl LiveTracks {
     }
 
     /// Adds one frame, everybody's positions (m) in any order, and gives the window that ends there; `None` while nobody has
-    /// been seen for 8 frames in a row, or as often as the completion asks for.
+    /// been seen for 8 steps in a row, or as often as the completion asks for.
     ///
     /// # Errors
     /// As [`after`](Self::after); nothing has changed then.
@@ -224,7 +224,7 @@ impl LiveTracks {
         Some(Walker { id, seen })
     }
 
-    /// The window that ends at the last frame, of everybody in it who was seen, or completed, in each of the last 8; `None` when that is
+    /// The window that ends at the last frame, of everybody in it who was seen, or completed, at each of the last 8 steps; `None` when that is
     /// nobody.
     #[must_use]
     pub fn window(&self) -> Option<Window> {

@@ -14,6 +14,8 @@ const MOST_PARTS: i64 = 1000;
 const FIT: f64 = 1e-4;
 /// Observations further apart than this (s) do not show how somebody walks.
 const SLOWEST: f64 = 1.2;
+/// Share of the differences between frames that must be whole numbers of the usual one; a clock that trembles has others.
+const EVEN: f64 = 0.95;
 /// Observations up to this many usual spacings apart are joined; longer holes stay holes.
 const JOINED: f64 = 1.5;
 
@@ -23,8 +25,10 @@ const JOINED: f64 = 1.5;
 pub struct InSteps {
     /// The recording. Its frames count `parts` of a frame of the one that it was made of.
     pub recording: Recording,
-    /// 1 unless positions had to be taken between frames.
+    /// 1 where a step is a whole number of frames.
     pub parts: i64,
+    /// Whether positions were taken between frames.
+    pub resampled: bool,
 }
 
 impl InSteps {
@@ -33,18 +37,12 @@ impl InSteps {
     pub fn step_seconds(&self, frame_time: f64) -> f64 {
         self.recording.frame_step() as f64 * frame_time / self.parts as f64
     }
-
-    /// Whether positions were taken between frames.
-    #[must_use]
-    pub fn is_resampled(&self) -> bool {
-        self.parts > 1
-    }
 }
 
 impl Recording {
     /// The recording in steps of 0.4 s, given the seconds from one frame number to the next, such as 0.04 at 25 frames a second.
     ///
-    /// Where some whole number of the usual spacing between observations makes a step (10 frames of 0.04 s), nothing changes but the
+    /// Where frames keep time and some whole number of the usual spacing between them makes a step (10 frames of 0.04 s), nothing changes but the
     /// [`frame_step`](Recording::frame_step): every frame can be forecast from. Otherwise positions are taken every 0.4 s, counted back from the last
     /// frame, on straight lines between observations that are no further apart than usual.
     ///
@@ -79,12 +77,13 @@ impl Recording {
             return Err(RateError::FrameTime { found: frame_time });
         }
         let spacings = (frames / spacing as f64).round();
-        if spacings >= 1.0 && fits(spacings * spacing as f64, frames, TOLERANCE) {
+        if self.is_even() && spacings >= 1.0 && fits(spacings * spacing as f64, frames, TOLERANCE) {
             let step = spacings as i64 * spacing;
             let recording = self.clone().with_frame_step(step)?;
             return Ok(InSteps {
                 recording,
                 parts: 1,
+                resampled: false,
             });
         }
         let whole = |parts: &i64| {
@@ -92,9 +91,19 @@ impl Recording {
             step >= 1.0 && fits(step, frames * *parts as f64, FIT)
         };
         // A thousandth of a frame is always near enough.
-        let parts = (2..=MOST_PARTS).find(whole).unwrap_or(MOST_PARTS);
+        let parts = (1..=MOST_PARTS).find(whole).unwrap_or(MOST_PARTS);
         let step = (frames * parts as f64).round().max(1.0) as i64;
+        if step > FRAME_STEP_LIMIT {
+            return Err(RateError::FrameTime { found: frame_time });
+        }
         self.resampled(parts, step)
+    }
+
+    /// Whether frames keep time.
+    fn is_even(&self) -> bool {
+        let differences = self.frames().windows(2).map(|pair| pair[1] - pair[0]);
+        let whole = differences.filter(|difference| difference % self.frame_step() == 0);
+        whole.count() as f64 >= EVEN * (self.frames().len() - 1) as f64
     }
 
     /// Positions every `step` parts of a frame, counted back from the last frame.
@@ -102,7 +111,7 @@ impl Recording {
         let farthest = self.frames().iter().map(|frame| frame.unsigned_abs()).max();
         let limit = FRAME_LIMIT.unsigned_abs() / parts.unsigned_abs();
         let last = *self.frames().last().unwrap_or(&0);
-        if farthest.is_none_or(|frame| frame >= limit) || step > FRAME_STEP_LIMIT {
+        if farthest.is_none_or(|frame| frame >= limit) {
             return Err(RateError::Frames { last, parts });
         }
         let end = last * parts;
@@ -141,7 +150,11 @@ impl Recording {
             }
         }
         let recording = Recording::new(self.name(), step, observations)?;
-        Ok(InSteps { recording, parts })
+        Ok(InSteps {
+            recording,
+            parts,
+            resampled: true,
+        })
     }
 }
 

@@ -169,6 +169,18 @@ fn what_is_wrong_is_named_with_its_line() {
     assert!(long.contains("longer than 65536 bytes"), "{long}");
 }
 
+/// The rest of a line that is too long is no line of its own, and those who come after it keep their numbers.
+#[test]
+fn a_line_without_an_end_costs_itself_alone() {
+    let text = format!("{} 0 1 2 3\n0 1 2 3\nbad\n", "7".repeat(200_000));
+    let mut reader = FrameReader::new(text.as_bytes(), "t");
+    let wrong = |reader: &mut FrameReader<&[u8]>| reader.next_frame().unwrap_err().to_string();
+    assert!(wrong(&mut reader).contains("line 1: the line is longer"));
+    assert!(wrong(&mut reader).contains("line 3"));
+    assert_eq!(reader.unfinished().map(|frame| frame.people.len()), Some(1));
+    assert_eq!(reader.next_frame().unwrap(), None);
+}
+
 /// What is wrong costs its line, not the stream.
 #[test]
 fn after_an_error_the_next_line_is_read() {

@@ -5,8 +5,8 @@
 mod recordings;
 
 use ddl_data::{
-    Convention, LiveError, LiveTracks, OBSERVED, Observation, PedestrianId, Position, Recording,
-    Window,
+    Completion, Convention, LiveError, LiveTracks, OBSERVED, Observation, PedestrianId, Position,
+    Recording, Window,
 };
 use proptest::prelude::*;
 
@@ -197,4 +197,40 @@ fn what_was_cleared_starts_anew() {
         assert!(tracks.push(frame, one()).unwrap().is_none());
     }
     assert!(tracks.push(7, one()).unwrap().is_some());
+}
+
+/// With holes to fill somebody who left is remembered a little longer, and no more than that.
+#[test]
+fn completing_remembers_little_more() {
+    let mut tracks = LiveTracks::new().completing(Completion::USUAL);
+    for frame in 0..40_000_i64 {
+        let present = (0..10).map(|k| (frame - k) / 10 * 10 + k);
+        let people = present.map(|id| (PedestrianId(id), [frame as f64, id as f64]));
+        tracks.push(frame, people).unwrap();
+        assert!(
+            (10..=12).contains(&tracks.len()),
+            "frame {frame}: {}",
+            tracks.len()
+        );
+    }
+}
+
+/// As far as frames go, and steps.
+#[test]
+fn at_the_ends_of_time() {
+    let step = 1 << 31;
+    let mut tracks = LiveTracks::with_frame_step(step)
+        .unwrap()
+        .completing(Completion::USUAL);
+    let (first, last) = (1 - (1 << 53), (1 << 53) - 1);
+    for frame in [first, first + step, last - 2 * step, last] {
+        let one = [(PedestrianId(1), [0.0, 1e308])];
+        let window = tracks.push(frame, one).unwrap();
+        assert_eq!(window.is_some(), frame == first + step || frame == last);
+    }
+    // the velocity of these is no number
+    let mut tracks = LiveTracks::new().completing(Completion::USUAL);
+    for (frame, x) in [(0, -1e308), (1, 1e308)] {
+        assert_eq!(tracks.push(frame, [(PedestrianId(1), [x, 0.0])]), Ok(None));
+    }
 }

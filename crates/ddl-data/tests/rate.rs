@@ -28,7 +28,7 @@ fn whole_numbers_of_frames_are_left_alone() {
     ] {
         let recording = walkers((0..50).map(|t| t * spacing), spacing);
         let steps = recording.in_steps(1.0 / rate).unwrap();
-        assert_eq!((steps.parts, steps.is_resampled()), (1, false), "{rate}");
+        assert_eq!((steps.parts, steps.resampled), (1, false), "{rate}");
         assert_eq!(steps.recording.frame_step(), step, "{rate}");
         assert_eq!(steps.recording.observations(), recording.observations());
         assert!((steps.step_seconds(1.0 / rate) - 0.4).abs() < 0.002);
@@ -43,7 +43,7 @@ fn other_rates_are_counted_in_parts_of_a_frame() {
         (24.0, 1, 5, 48),
         (4.0, 1, 5, 8),
         (1.0, 1, 5, 2),
-        (25.0, 3, 2, 20),
+        (25.0, 3, 1, 10),
         (7.0, 1, 5, 14),
     ] {
         let recording = walkers((0..50).map(|t| t * spacing), spacing);
@@ -108,7 +108,7 @@ proptest! {
             prop_assert!((x - 0.05 * frame - id).abs() < 1e-9 && (y + 0.02 * frame).abs() < 1e-9);
             prop_assert!(frame >= first as f64);
         }
-        if steps.is_resampled() {
+        if steps.resampled {
             let frames = steps.recording.frames();
             let last = (first + (count - 1) * spacing) * steps.parts;
             prop_assert_eq!(frames.last(), Some(&last));
@@ -117,4 +117,21 @@ proptest! {
             prop_assert!(frames[0] - first * steps.parts < step);
         }
     }
+}
+
+/// Milliseconds of a clock that trembles by one: no two observations are exactly 0.4 s apart.
+#[test]
+fn a_clock_that_trembles_is_resampled() {
+    let frames = (0..60_i64).map(|t| 40 * t + [0, 1, -1, 0, 1][(t % 5) as usize]);
+    let steps = walkers(frames, 40).in_steps(0.001).unwrap();
+    assert_eq!((steps.parts, steps.resampled), (1, true));
+    let recording = &steps.recording;
+    assert_eq!(recording.frame_step(), 400);
+    let windows = recording.observed_windows();
+    assert!(windows.is_empty(), "2.4 s are no whole observation");
+    for seen in recording.observations() {
+        let [x, _] = seen.position;
+        assert!((x - 0.05 * seen.frame as f64 - seen.pedestrian.0 as f64).abs() < 1e-9);
+    }
+    assert_eq!(recording.frames().len(), 6);
 }

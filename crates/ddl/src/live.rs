@@ -8,7 +8,7 @@ use std::borrow::Borrow;
 
 /// A forecaster that is fed one frame at a time, 0.4 s apart or faster, and remembers what it has to.
 ///
-/// Once somebody has been seen for 8 frames in a row (or as often as a [`Completion`] asks for), every [`push`](Self::push) forecasts
+/// Once somebody has been seen for 8 steps in a row (or as often as a [`Completion`] asks for), every [`push`](Self::push) forecasts
 /// everybody of whom that is true, and says who they are. The numbers are those of [`Forecaster::forecast`] on the window that
 /// [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far, bit for bit. What counts as
 /// a frame in a row, and what a gap or a walker who leaves does, is that of [`LiveTracks`].
@@ -159,7 +159,7 @@ impl<M> LiveForecaster<M> {
 }
 
 impl<M: Forecaster> LiveForecaster<M> {
-    /// Adds a frame, everybody's positions (m) in any order, and forecasts everybody seen for 8 frames in a row; `None` while
+    /// Adds a frame, everybody's positions (m) in any order, and forecasts everybody seen for 8 steps in a row; `None` while
     /// that is nobody.
     ///
     /// # Errors

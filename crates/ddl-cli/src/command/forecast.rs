@@ -40,7 +40,7 @@ pub(crate) struct Forecast {
     /// flow that descends everywhere, and a walker at its goal stays. It speaks of the very positions
     /// printed. csv: two columns, the distance to the goal at that frame (metres) and the verdict;
     /// jsonl: the verdict and its evidence, step by step. It says that the forecast is stable, not
-    /// that people will do as forecast. The variants star and no-dynamics have no certificates.
+    /// that people will do as forecast. The variants star and no-dynamics have no certificates (with --one, star alone).
     #[arg(long)]
     certificate: bool,
     #[command(flatten)]

@@ -28,7 +28,7 @@ pub struct Frame {
 /// the first: a header (`table`), a JSON object (`trajnet`), or four or eight columns parted by blanks (`social-gan`, `obsmat`). The files of the `star`
 /// convention are of four lines, which do not arrive in order of time.
 ///
-/// Memory is bounded by the people of a frame.
+/// Memory is bounded by the people of a frame. A last line that was cut off is read as far as it goes.
 ///
 /// ```
 /// use ddl_data::FrameReader;
@@ -112,20 +112,25 @@ impl<R: BufRead> FrameReader<R> {
         Ok(self.whole())
     }
 
+    /// The frame that is being read, as far as it has been: for who gives up after an error.
+    pub fn unfinished(&mut self) -> Option<Frame> {
+        self.whole()
+    }
+
     /// The next line without its end; `None` at the end of the file.
     fn line(&mut self) -> Result<Option<String>, DataError> {
         let mut bytes = Vec::new();
         let mut limited = self.reader.by_ref().take(LONGEST_LINE as u64 + 1);
         let read = limited.read_until(b'\n', &mut bytes);
-        read.map_err(|source| DataError::Read {
-            path: self.origin.clone().into(),
-            source,
-        })?;
+        read.map_err(|source| self.unreadable(source))?;
         if bytes.is_empty() {
             return Ok(None);
         }
         self.lines += 1;
         if bytes.len() > LONGEST_LINE {
+            if bytes.last() != Some(&b'\n') {
+                self.skip_line()?;
+            }
             let limit = LONGEST_LINE;
             return Err(self.wrong(FormatProblem::LongLine { limit }).into());
         }
@@ -134,6 +139,29 @@ impl<R: BufRead> FrameReader<R> {
             Ok(text) if self.lines == 1 => Ok(Some(text.trim_start_matches('\u{feff}').to_owned())),
             Ok(text) => Ok(Some(text)),
         }
+    }
+
+    /// Leaves out what is left of a line.
+    fn skip_line(&mut self) -> Result<(), DataError> {
+        loop {
+            let (skipped, ended) = match self.reader.fill_buf() {
+                Err(source) => return Err(self.unreadable(source)),
+                Ok([]) => return Ok(()),
+                Ok(bytes) => match bytes.iter().position(|&byte| byte == b'\n') {
+                    Some(end) => (end + 1, true),
+                    None => (bytes.len(), false),
+                },
+            };
+            self.reader.consume(skipped);
+            if ended {
+                return Ok(());
+            }
+        }
+    }
+
+    fn unreadable(&self, source: std::io::Error) -> DataError {
+        let path = self.origin.clone().into();
+        DataError::Read { path, source }
     }
 
     /// The observation of a line, if it holds one.

@@ -7,14 +7,15 @@ use ddl::data::{Completion, Frame, FrameReader, Homography, LiveTracks, Window};
 use std::fs::File;
 use std::io::{ErrorKind, Write, stdin, stdout};
 
+/// Frames apart that are believed to be 0.4 s: more may be a hole, or a clock.
+const LONGEST_STEP: i64 = 1000;
+
 /// Forecasts from every frame as soon as it is whole, until standard input ends or nobody reads on.
 pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
-    let mut tracking = Tracking {
-        completion: forecast.tracks.completion(),
-        frame_step: forecast.tracks.live_frame_step()?,
-        tracks: None,
-        first: None,
-    };
+    let mut tracking = Tracking::new(
+        forecast.tracks.completion(),
+        forecast.tracks.live_frame_step()?,
+    )?;
     let homography = forecast.tracks.homography()?;
     let model = forecast.model()?;
     let mut output: Box<dyn Write> = match &forecast.output {
@@ -25,7 +26,14 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
     };
     let mut frames = FrameReader::new(stdin().lock(), "standard input");
     let mut headed = true;
-    while let Some(frame) = frames.next_frame()? {
+    let mut wrong = None;
+    while wrong.is_none() {
+        let frame = frames.next_frame().or_else(|error| {
+            // what came before the bad line is not lost
+            wrong = Some(error);
+            Ok::<_, anyhow::Error>(frames.unfinished())
+        })?;
+        let Some(frame) = frame else { break };
         let frame = on_the_ground(frame, homography.as_ref())?;
         let Some(window) = tracking.push(frame)? else {
             continue;
@@ -38,6 +46,9 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => return Ok(()),
             result => result.context("cannot write the forecasts")?,
         }
+    }
+    if let Some(wrong) = wrong {
+        return Err(wrong.into());
     }
     if headed {
         bail!(
@@ -65,37 +76,45 @@ fn on_the_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::R
 /// Live tracks whose frame step may have to be learned from the first two frames.
 struct Tracking {
     completion: Completion,
-    frame_step: Option<i64>,
     tracks: Option<LiveTracks>,
     /// The first frame, until there is a second to learn from.
     first: Option<Frame>,
 }
 
 impl Tracking {
+    fn new(completion: Completion, frame_step: Option<i64>) -> anyhow::Result<Self> {
+        let tracks = match frame_step {
+            None => None,
+            Some(step) => Some(LiveTracks::with_frame_step(step)?.completing(completion)),
+        };
+        Ok(Self {
+            completion,
+            tracks,
+            first: None,
+        })
+    }
+
     /// Adds a frame; the window that ends there, if anybody can be forecast.
     fn push(&mut self, frame: Frame) -> anyhow::Result<Option<Window>> {
         if let Some(tracks) = &mut self.tracks {
             return Ok(tracks.push(frame.number, frame.people)?);
         }
-        let step = match (self.frame_step, &self.first) {
-            (Some(step), _) => step,
-            (None, Some(first)) => {
-                let step = frame.number - first.number;
-                eprintln!(
-                    "note: frames are taken to be {step} apart in 0.4 s, as the first two are; --fps or --frame-step says otherwise"
-                );
-                step
-            }
-            (None, None) => {
-                self.first = Some(frame);
-                return Ok(None);
-            }
+        let Some(first) = self.first.take() else {
+            self.first = Some(frame);
+            return Ok(None);
         };
+        let step = frame.number - first.number;
+        if step > LONGEST_STEP {
+            bail!(
+                "standard input: the first two frames are {step} apart; say with --fps or --frame-step how many that are in 0.4 s"
+            );
+        }
+        eprintln!(
+            "note: frames are taken to be {step} apart in 0.4 s, as the first two are; --fps or --frame-step says otherwise"
+        );
         let tracks = LiveTracks::with_frame_step(step)?.completing(self.completion);
         let tracks = self.tracks.insert(tracks);
-        if let Some(first) = self.first.take() {
-            tracks.push(first.number, first.people)?;
-        }
+        tracks.push(first.number, first.people)?;
         Ok(tracks.push(frame.number, frame.people)?)
     }
 }
