@@ -3,7 +3,8 @@
 use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{
-    Completion, Format, Homography, MadeUp, OBSERVED, Recording, TIME_STEP, Window, parse_recording,
+    Completion, Format, Homography, MadeUp, OBSERVED, Recording, TIME_STEP, Window,
+    parse_recording, whole_frame_step,
 };
 use serde::Serialize;
 use std::io::{ErrorKind, Write as _};
@@ -143,15 +144,14 @@ impl Tracks {
         let Some(frame_time) = self.frame_time() else {
             return Ok(self.frame_step);
         };
-        let frames = TIME_STEP / frame_time;
-        let step = frames.round();
-        if step < 1.0 || (step - frames).abs() > 0.005 * frames {
+        let Some(step) = whole_frame_step(frame_time) else {
             bail!(
-                "0.4 s are {frames:.4} frames: live tracks are not resampled; give a rate of which 0.4 s are a whole number of frames, or \
-                 count frames in finer parts"
+                "0.4 s are {:.4} frames: live tracks are not resampled; give a rate of which 0.4 s are a whole number of frames, or \
+                 count frames in finer parts",
+                TIME_STEP / frame_time
             );
-        }
-        Ok(Some(step as i64))
+        };
+        Ok(Some(step))
     }
 
     /// The tracks in steps of 0.4 s.
@@ -236,10 +236,10 @@ fn warn_of_implausible_speed(windows: &[Window]) {
 impl Observed {
     /// Says so where observations were not whole: a forecast from two positions looks like any other.
     pub(crate) fn tell_what_is_made_up(&self) {
-        let of_window = |window: &'_ Window| -> Vec<MadeUp> {
-            (0..window.len()).map(|i| window.made_up(i)).collect()
-        };
-        let all: Vec<MadeUp> = self.windows.iter().flat_map(of_window).collect();
+        let windows = self.windows.iter();
+        let all: Vec<MadeUp> = windows
+            .flat_map(|window| (0..window.len()).map(|i| window.made_up(i)))
+            .collect();
         let late = all.iter().filter(|made_up| made_up.padded > 0).count();
         let holes = all.iter().filter(|made_up| made_up.filled > 0).count();
         if late + holes > 0 {

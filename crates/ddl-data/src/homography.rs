@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::{PedestrianId, Position, Recording, RecordingError};
+use crate::{Observation, PedestrianId, Position, Recording, RecordingError};
 
 /// Rows and columns.
 const SIZE: usize = 3;
@@ -52,6 +52,18 @@ impl Homography {
         place.iter().all(|c| c.is_finite()).then_some(place)
     }
 
+    /// Where somebody who was seen at a pixel is on the ground (m).
+    ///
+    /// # Errors
+    /// [`HomographyError::Horizon`] where that is nowhere.
+    pub fn place(&self, seen: &Observation) -> Result<Position, HomographyError> {
+        self.apply(seen.position).ok_or(HomographyError::Horizon {
+            pedestrian: seen.pedestrian,
+            frame: seen.frame,
+            pixel: seen.position,
+        })
+    }
+
     /// A recording in pixels, in metres.
     ///
     /// # Errors
@@ -59,11 +71,7 @@ impl Homography {
     pub fn on_the_ground(&self, recording: &Recording) -> Result<Recording, HomographyError> {
         let mut observations = recording.observations().to_vec();
         for seen in &mut observations {
-            seen.position = self.apply(seen.position).ok_or(HomographyError::Horizon {
-                pedestrian: seen.pedestrian,
-                frame: seen.frame,
-                pixel: seen.position,
-            })?;
+            seen.position = self.place(seen)?;
         }
         Ok(Recording::new(
             recording.name(),

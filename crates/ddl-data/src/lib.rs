@@ -29,7 +29,7 @@ pub use homography::{Homography, HomographyError};
 pub use live::{LiveError, LiveTracks};
 pub use locate::{DATASETS_VARIABLE, locate};
 pub use neighbours::{NEIGHBOUR_HALF_WIDTH, NeighbourMask};
-pub use rate::{InSteps, RateError};
+pub use rate::{InSteps, RateError, whole_frame_step};
 pub use recording::Recording;
 pub use rule::WindowRule;
 pub use track::{HORIZON, OBSERVED, Observation, PedestrianId, Position, TIME_STEP, WINDOW};

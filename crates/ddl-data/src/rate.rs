@@ -39,6 +39,24 @@ impl InSteps {
     }
 }
 
+/// Frames in a step of 0.4 s, where a frame takes so many seconds and these are a whole number within 0.5 %.
+///
+/// ```
+/// use ddl_data::whole_frame_step;
+/// assert_eq!(whole_frame_step(1.0 / 25.0), Some(10));
+/// assert_eq!(whole_frame_step(1.0 / 24.0), None); // 9.6
+/// ```
+#[must_use]
+pub fn whole_frame_step(frame_time: f64) -> Option<i64> {
+    whole_multiple(TIME_STEP / frame_time, 1)
+}
+
+/// The whole multiple of `spacing` that a number of frames is.
+fn whole_multiple(frames: f64, spacing: i64) -> Option<i64> {
+    let multiple = (frames / spacing as f64).round() * spacing as f64;
+    (multiple >= 1.0 && fits(multiple, frames, TOLERANCE)).then_some(multiple as i64)
+}
+
 impl Recording {
     /// The recording in steps of 0.4 s, given the seconds from one frame number to the next, such as 0.04 at 25 frames a second.
     ///
@@ -76,9 +94,7 @@ impl Recording {
         if frames > FRAME_STEP_LIMIT as f64 {
             return Err(RateError::FrameTime { found: frame_time });
         }
-        let spacings = (frames / spacing as f64).round();
-        if self.is_even() && spacings >= 1.0 && fits(spacings * spacing as f64, frames, TOLERANCE) {
-            let step = spacings as i64 * spacing;
+        if let Some(step) = whole_multiple(frames, spacing).filter(|_| self.is_even()) {
             let recording = self.clone().with_frame_step(step)?;
             return Ok(InSteps {
                 recording,

@@ -3,7 +3,7 @@
 use super::Forecast;
 use crate::tracks::Clock;
 use anyhow::{Context as _, bail};
-use ddl::data::{Completion, Frame, FrameReader, Homography, LiveTracks, Window};
+use ddl::data::{Completion, Frame, FrameReader, Homography, LiveTracks, Observation, Window};
 use std::fs::File;
 use std::io::{ErrorKind, Write, stdin, stdout};
 
@@ -63,12 +63,8 @@ fn on_the_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::R
         return Ok(frame);
     };
     for (pedestrian, position) in &mut frame.people {
-        *position = homography.apply(*position).with_context(|| {
-            format!(
-                "standard input: pedestrian {pedestrian}, frame {}: pixel {position:?} lies on the horizon of the homography",
-                frame.number
-            )
-        })?;
+        let seen = Observation::new(frame.number, *pedestrian, *position);
+        *position = homography.place(&seen).context("standard input")?;
     }
     Ok(frame)
 }
