@@ -1,0 +1,46 @@
+//! What every fuzz target links: an allocator that stops whoever asks for too much at once.
+//!
+//! libFuzzer's `-malloc_limit_mb` sees allocations only where a sanitizer is built in; this one sees those of Rust always.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+
+/// Bytes that no reader of a small input may ask for at once.
+const MOST: usize = 64 << 20;
+
+struct Bounded;
+
+#[global_allocator]
+static BOUNDED: Bounded = Bounded;
+
+fn check(size: usize) {
+    if size > MOST {
+        eprintln!("a reader asked for {size} bytes at once");
+        std::process::abort();
+    }
+}
+
+// SAFETY: every call is handed on to the system's allocator as it is.
+unsafe impl GlobalAlloc for Bounded {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        check(layout.size());
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        check(layout.size());
+        // SAFETY: the caller keeps the contract of `alloc_zeroed`.
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        check(size);
+        // SAFETY: the caller keeps the contract of `realloc`.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller keeps the contract of `dealloc`.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
