@@ -287,7 +287,8 @@ fn a_number_goes_from_the_recordings_to_the_page() {
     assert!(!folds.is_empty() && folds.iter().all(|fold| *fold == "doorway"));
 
     let page = "report run baselines --title Plaza --out pages";
-    assert_eq!(program::run(here, page).succeeds(), "");
+    let told = program::run(here, page).succeeds();
+    assert!(told.ends_with("report.html\n") && told.lines().count() == 1);
     let collected = Report::load(&here.join("pages/report.json")).unwrap();
     assert_eq!(collected.title(), "Plaza");
     assert_eq!(collected.rows(), [report.rows(), elsewhere.rows()].concat());

@@ -114,8 +114,11 @@ fn what_a_packed_model_cannot_do_is_said() {
     let fails = |command: &str| program::run(here, command).fails();
     let published = fails("evaluate --model packed --protocol published");
     assert!(published.contains("no expert library"), "{published}");
-    let other_data = "evaluate --model zara1 --convention simulated";
-    assert_eq!(program::run(here, other_data).code, Some(2));
+    let other_data = fails("evaluate --model zara1 --convention simulated");
+    assert!(
+        other_data.contains("cannot be measured on `simulated`"),
+        "{other_data}"
+    );
     // A model is measured on no scene but the one left out.
     for other_fold in [
         "evaluate --model packed --fold plaza",

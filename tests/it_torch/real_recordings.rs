@@ -30,7 +30,9 @@ fn a_tiny_run_of_the_hotel_fold() {
     };
     let train = "train --fold hotel --epochs 1 --train-walkers 60 --batch-walkers 30 --proposal-steps 10 --out run \
                  --threads 1";
-    assert_eq!(run_on_data(train), "");
+    assert!(
+        run_on_data(train).starts_with("run: trained, 1 epochs\nnext: ddl evaluate --model run")
+    );
     let run = RunDirectory::new(here.join("run"));
     let config = run.config().unwrap();
     assert_eq!(config.data.convention, Convention::Star);

@@ -6,10 +6,11 @@ use ddl::RunDirectory;
 use ddl::star::Objective;
 use ddl_tests::folder_contents::{self, Contents};
 use ddl_tests::program::{self, Finished};
+use ddl_tests::training_result;
 use std::collections::hash_map::RandomState;
 use std::hash::BuildHasher as _;
 use std::io::{BufRead as _, BufReader, Lines};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::Duration;
 
@@ -70,21 +71,7 @@ fn finish(folder: &Path) -> Contents {
     let last = rest.lines().last().unwrap_or_default();
     let all = format!("\"done\":{STEPS},\"total\":{STEPS}");
     assert!(rest.is_empty() || last.contains(&all), "ended at {last}");
-    let mut files = folder_contents::read(&folder.join("run"));
-    let metrics = files.remove(&PathBuf::from("metrics.jsonl")).flatten();
-    let metrics = String::from_utf8(metrics.unwrap()).unwrap();
-    let epochs: Vec<_> = metrics.lines().map(losses).collect();
-    files.insert(PathBuf::from("losses"), Some(epochs.concat().into_bytes()));
-    // holds seconds too; the weights are those of the model
-    files.remove(&PathBuf::from("optimizer.safetensors"));
-    files
-}
-
-/// A line of `metrics.jsonl` without its seconds.
-fn losses(line: &str) -> String {
-    let mut epoch: serde_json::Value = serde_json::from_str(line).unwrap();
-    epoch.as_object_mut().unwrap().remove("seconds").unwrap();
-    epoch.to_string()
+    training_result::of(&folder.join("run"))
 }
 
 /// Trains with interruptions and compares with training that had none.
@@ -103,9 +90,8 @@ fn interrupted_equals_whole(interrupt: impl FnOnce(&Path)) {
         !model.exists(),
         "the run had ended before it was interrupted"
     );
-    let mut found = finish(stopped.path());
-    // what a killed process was writing when it was killed lies there under its temporary name
-    found.retain(|name, _| !name.to_string_lossy().contains(".writing-"));
+    // nothing is left of what a killed process was writing when it was killed
+    let found = finish(stopped.path());
     assert_eq!(
         folder_contents::differences(&expected, &found),
         Vec::<String>::new()

@@ -1,6 +1,7 @@
 //! What the system says of a process: its processor time and its memory. Linux tells in `/proc`; elsewhere nothing is
 //! known, and the tests say so.
 
+use std::process::{Child, Command, ExitStatus};
 use std::time::Duration;
 
 /// The kernel counts in hundredths of a second for programs, whatever it does itself.
@@ -33,6 +34,70 @@ pub fn resident_bytes() -> Option<u64> {
         line.trim().strip_suffix("kB")?.trim().parse().ok()
     };
     Some(1024 * (kibibytes("VmRSS:")? + kibibytes("VmSwap:").unwrap_or(0)))
+}
+
+/// The most bytes of a process that were in memory at once so far.
+#[must_use]
+pub fn peak_bytes(id: u32) -> Option<u64> {
+    let status = std::fs::read_to_string(format!("/proc/{id}/status")).ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(1024 * kibibytes)
+}
+
+/// Lets a process run to its end, watched; its processor time and the most bytes it had in memory, as far as both are told.
+///
+/// # Panics
+/// If it cannot be waited for.
+pub fn watch(child: &mut Child) -> (ExitStatus, Option<(Duration, u64)>) {
+    let mut seen = None;
+    loop {
+        let time = processor_time(child.id());
+        seen = time.zip(peak_bytes(child.id())).or(seen);
+        if let Some(status) = child.try_wait().expect("a child can be waited for") {
+            return (status, seen);
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Sends a signal, such as `KILL`.
+///
+/// # Panics
+/// If `kill` cannot be started.
+pub fn signal(id: u32, name: &str) {
+    let id = id.to_string();
+    let sent = Command::new("kill").args(["-s", name, &id]).output();
+    // it may have ended by itself
+    drop(sent.expect("`kill` can be started"));
+}
+
+/// A process and all that it started, and they started, as far as their parents are still there.
+#[must_use]
+pub fn with_descendants(id: u32) -> Vec<u32> {
+    let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    let ids = entries.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
+    let pairs: Vec<(u32, u32)> = ids.filter_map(|id| Some((parent(id)?, id))).collect();
+    let mut found = vec![id];
+    let mut next = 0;
+    while let Some(&of) = found.get(next) {
+        next += 1;
+        found.extend(
+            pairs
+                .iter()
+                .filter(|(parent, _)| *parent == of)
+                .map(|(_, id)| id),
+        );
+    }
+    found
+}
+
+fn parent(id: u32) -> Option<u32> {
+    let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
+    let (_, fields) = stat.rsplit_once(')')?;
+    fields.split_whitespace().nth(1)?.parse().ok() // after the state
 }
 
 #[cfg(test)]

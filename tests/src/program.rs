@@ -18,7 +18,12 @@ const VARIABLES: [&str; 3] = ["DDL_DATASETS", "DDL_COMMIT", "RUST_LOG"];
 /// If the program was not built, or is older than its sources.
 #[must_use]
 pub fn command(folder: &Path, command_line: &str) -> Command {
-    let mut command = Command::new(path());
+    undisturbed(path(), folder, command_line)
+}
+
+/// Any program, as [`command`].
+pub(crate) fn undisturbed(program: &Path, folder: &Path, command_line: &str) -> Command {
+    let mut command = Command::new(program);
     command
         .args(command_line.split_whitespace())
         .current_dir(folder)
@@ -124,28 +129,35 @@ impl Finished {
 #[must_use]
 pub fn path() -> &'static Path {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
-    PATH.get_or_init(|| {
-        let path = beside_this_test();
-        assert!(
-            path.is_file(),
-            "{} is missing; build it with `{}`",
+    PATH.get_or_init(|| built(Path::new("ddl"), "-p ddl-cli"))
+}
+
+/// A program of the profile of this test, by its place among what cargo builds, such as `examples/live`; `target` is what
+/// `cargo build` is told to make it.
+///
+/// # Panics
+/// If it was not built, or is older than its sources.
+pub(crate) fn built(place: &Path, target: &str) -> PathBuf {
+    let path = beside_this_test(place);
+    assert!(
+        path.is_file(),
+        "{} is missing; build it with `{}`",
+        path.display(),
+        build_command(target)
+    );
+    if let Some(newer) = newer_source(&path) {
+        panic!(
+            "{} is older than {}; build it anew with `{}`",
             path.display(),
-            build_command(&path)
+            newer.display(),
+            build_command(target)
         );
-        if let Some(newer) = newer_source(&path) {
-            panic!(
-                "{} is older than {}; build it anew with `{}`",
-                path.display(),
-                newer.display(),
-                build_command(&path)
-            );
-        }
-        path
-    })
+    }
+    path
 }
 
 /// Cargo puts tests into `deps`, one below the programs of the same profile.
-fn beside_this_test() -> PathBuf {
+fn profile_folder() -> PathBuf {
     let test = std::env::current_exe().expect("a running test has a path");
     let deps = test.parent().unwrap_or(&test);
     let profile = if deps.ends_with("deps") {
@@ -153,15 +165,21 @@ fn beside_this_test() -> PathBuf {
     } else {
         deps
     };
-    profile.join(format!("ddl{}", std::env::consts::EXE_SUFFIX))
+    profile.to_path_buf()
 }
 
-fn build_command(program: &Path) -> String {
-    let profile = program.parent().and_then(Path::file_name);
-    match profile.and_then(OsStr::to_str) {
-        None | Some("debug") => "cargo build -p ddl-cli".to_owned(),
-        Some("release") => "cargo build -p ddl-cli --release".to_owned(),
-        Some(other) => format!("cargo build -p ddl-cli --profile {other}"),
+fn beside_this_test(place: &Path) -> PathBuf {
+    let mut path = profile_folder().join(place).into_os_string();
+    path.push(std::env::consts::EXE_SUFFIX);
+    path.into()
+}
+
+fn build_command(target: &str) -> String {
+    let profile = profile_folder();
+    match profile.file_name().and_then(OsStr::to_str) {
+        None | Some("debug") => format!("cargo build {target}"),
+        Some("release") => format!("cargo build {target} --release"),
+        Some(other) => format!("cargo build {target} --profile {other}"),
     }
 }
 

@@ -2,10 +2,12 @@
 
 use crate::crowd;
 use crate::folder_contents::{self, Contents};
+use crate::own_tracks;
 use ddl::data::Dataset;
 use ddl::star::{ProposalConfig, StarConfig, TrainingConfig};
 use ddl::{
-    Ddl, DdlError, DeviceChoice, GoalRecipe, RunDirectory, TrainingRequest, TrainingStage, Variant,
+    Ddl, DdlError, DeviceChoice, GoalRecipe, RunDirectory, TrainingRequest, TrainingStage,
+    TrainingStep, Variant,
 };
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -63,6 +65,20 @@ pub fn folder(variant: Variant) -> TempDir {
     folder
 }
 
+/// A folder with tracks of three people and, in `run`, a copy of the tiny model.
+///
+/// # Panics
+/// If it cannot be trained or written.
+#[must_use]
+pub fn folder_with_model() -> TempDir {
+    let place = tempfile::tempdir().expect("a temporary folder can be made");
+    let run = folder_contents::read(folder(Variant::Full).path());
+    folder_contents::write(&run, &place.path().join("run"));
+    let tracks = own_tracks::csv(&own_tracks::three_people(9));
+    std::fs::write(place.path().join("tracks.csv"), tracks).expect("a csv can be written");
+    place
+}
+
 /// One thread for tensors in this process, where tests run side by side already: sums are then in one
 /// order. To be called before the first tensor is made; may be called again.
 ///
@@ -96,6 +112,20 @@ pub fn train_again(run: &RunDirectory) -> Result<(), DdlError> {
     ddl::train(&request, &crowd::dataset(), |_| ControlFlow::Continue(()))
 }
 
+/// Begins the training of the tiny model anywhere, as long as its observer lets it go on.
+///
+/// # Errors
+/// What stops the training.
+pub fn train_until(
+    run: &RunDirectory,
+    mut goes_on: impl FnMut(&TrainingStep) -> ControlFlow<()>,
+) -> Result<(), DdlError> {
+    use_one_thread();
+    let _one_at_a_time = TRAINING.lock();
+    let request = request(crowd::FOLD, Variant::Full, WALKERS, run.path());
+    ddl::train(&request, &crowd::dataset(), |now| goes_on(&now.step))
+}
+
 /// Walkers a batch when `walkers` are trained on: four batches.
 #[must_use]
 pub fn batch_walkers(walkers: usize) -> usize {
@@ -118,6 +148,7 @@ pub fn request(fold: &str, variant: Variant, walkers: usize, out: &Path) -> Trai
         training,
         validation: 0.0,
         validation_recordings: Vec::new(),
+        patience: None,
         last_epoch_only: false,
         until: TrainingStage::Network,
         out: RunDirectory::new(out),

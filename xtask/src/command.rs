@@ -4,7 +4,12 @@ mod bench;
 mod benchmark;
 mod ci;
 mod data;
+mod deny;
+mod docs;
+mod faults;
+mod fuzz;
 mod models;
+mod package;
 mod page;
 mod setup;
 mod test;
@@ -33,12 +38,22 @@ pub(crate) enum Command {
     Models(models::Arguments),
     /// Make the report page of the simulated crowds and check it in a browser
     Page(page::Arguments),
+    /// Kill, fill, damage and flood the program many times, and print what was found
+    Faults(faults::Arguments),
+    /// Make the documentation site: the guide and every crate's interface, every link checked
+    Docs(docs::Arguments),
     /// Run every test
     Test(test::Arguments),
+    /// Fuzz the readers of outside bytes
+    Fuzz(fuzz::Arguments),
     /// Run the micro-benchmarks of the crates
     Bench(bench::Arguments),
     /// Check the invariants of docs/architecture.md
     Tidy,
+    /// Check what comes in from outside, by deny.toml
+    Deny,
+    /// Pack the crates as for a registry, and check what is in the packages
+    Package(package::Arguments),
     /// Everything that must hold before a change goes in: format, tidy, lints, docs, tests
     Ci,
 }
@@ -60,10 +75,15 @@ impl Command {
             Self::Data(arguments) => arguments.run(workspace),
             Self::Benchmark(arguments) => return arguments.run(workspace),
             Self::Models(arguments) => arguments.run(workspace),
+            Self::Faults(arguments) => arguments.run(workspace),
             Self::Page(arguments) => arguments.run(workspace),
+            Self::Docs(arguments) => arguments.run(workspace),
             Self::Test(arguments) => arguments.run(workspace),
+            Self::Fuzz(arguments) => arguments.run(workspace),
             Self::Bench(arguments) => arguments.run(workspace),
             Self::Tidy => tidy::run(workspace),
+            Self::Deny => deny::run(workspace),
+            Self::Package(arguments) => arguments.run(workspace),
             Self::Ci => ci::run(workspace),
         }
         .map(|()| ExitCode::SUCCESS)

@@ -9,6 +9,7 @@
 //! | `libtorch` | which libtorch is pinned, where it lies, how to get it, how cargo is told |
 //! | `data` | which recordings are pinned, where they lie, how to get them |
 //! | `benchmark` | profiles, the plan, the executor that works it off, progress |
+//! | `site` | the documentation site: what it is made of, and that its links lead somewhere |
 //! | `browser` | where a browser is or how to get one, and what drives it |
 //! | `tidy` | the invariants of `docs/architecture.md`, as checks |
 #![allow(
@@ -23,6 +24,7 @@ mod data;
 mod digest;
 mod libtorch;
 mod python;
+mod site;
 mod tidy;
 mod whole_file;
 mod workspace;

@@ -5,7 +5,9 @@
 
 mod arrows;
 mod names;
+mod network;
 mod packages;
+mod readmes;
 mod recordings;
 mod text;
 
@@ -41,6 +43,8 @@ pub(crate) fn check(workspace: &Workspace) -> Result<Findings> {
     packages::check(&metadata, workspace.root(), &mut findings);
     names::check(&files, &mut findings);
     text::check(&files, workspace.root(), &mut findings)?;
+    network::check(&metadata, &files, workspace.root(), &mut findings)?;
+    readmes::check(&metadata, &files, workspace.root(), &mut findings)?;
     recordings::check(&files, workspace, &mut findings)?;
     Ok(findings)
 }

@@ -1,23 +1,31 @@
 //! The commands, one a file, and the options they share.
 
 pub(crate) mod baselines;
+pub(crate) mod completions;
+pub(crate) mod data;
 pub(crate) mod evaluate;
 pub(crate) mod forecast;
 pub(crate) mod goals;
 pub(crate) mod info;
+pub(crate) mod man;
 mod model;
 pub(crate) mod pack;
 pub(crate) mod report;
 mod test_windows;
 pub(crate) mod train;
+pub(crate) mod view;
 pub(crate) mod windows;
 
 use crate::progress::ProgressMode;
-use anyhow::Context as _;
+use crate::telling::tell;
+use crate::units::Units;
+use crate::{output, recordings, result_lines};
+use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{Convention, Dataset, locate};
+use ddl::eval::Report;
 use ddl::{Clearance, Ddl, DdlError, DeviceChoice, Precision};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Seed of the simulated crowds: one data set for everybody.
 const SIMULATION_SEED: u64 = 1;
@@ -28,8 +36,7 @@ pub(crate) struct Machine {
     /// Device: auto, cpu or cuda
     #[arg(long, default_value = "cpu")]
     pub(crate) device: DeviceChoice,
-    /// Threads for the network's kernels and goal search [default: all cores; 1 for a forecast, which
-    /// is too little to share]
+    /// Threads for the network's kernels and goal search [default: all cores; of forecast, view and goals 1: too little to share]
     #[arg(long, value_parser = at_least_one)]
     threads: Option<usize>,
 }
@@ -59,10 +66,10 @@ impl Exactness {
     /// The precision, and a warning where it is no gain.
     pub(crate) fn precision(&self) -> Precision {
         if !self.precision.is_native() {
-            eprintln!(
+            tell(format_args!(
                 "warning: this processor has no {name} instructions; --precision {name} is emulated, slower than f32",
                 name = self.precision.name()
-            );
+            ));
         }
         self.precision
     }
@@ -108,13 +115,75 @@ pub(crate) struct Telling {
     /// Progress: a bar on a terminal (auto), a JSON object a line (json), or none
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) progress: ProgressMode,
-    /// Commit to be named in results
-    #[arg(long, env = "DDL_COMMIT", default_value = "unknown", hide = true)]
+    /// Results on standard output as JSON, for programs
+    #[arg(long, conflicts_with = "progress")]
+    pub(crate) json: bool,
+    /// Commit to be named in results: that of the checkout it was built from
+    #[arg(long, env = "DDL_COMMIT", default_value = env!("DDL_BUILT_FROM"), hide = true)]
     pub(crate) commit: String,
 }
 
-/// The recordings of a convention, from a folder or simulated.
-pub(crate) fn dataset(convention: Convention, data: Option<&Path>) -> anyhow::Result<Dataset> {
+impl Telling {
+    /// Tells results: for programs as JSON where asked for, else for people; `rest` says where more of them is.
+    fn tell(&self, report: &Report, rest: &str) -> anyhow::Result<()> {
+        if self.json {
+            output::print(&(report.to_json()? + "\n"))
+        } else if self.progress == ProgressMode::Json {
+            // standard output has lines of progress
+            Ok(())
+        } else {
+            output::print(&result_lines::lines(report, rest))
+        }
+    }
+}
+
+/// Where recordings are, and what the numbers of own ones mean.
+#[derive(Debug, Args)]
+pub(crate) struct RecordingsAt {
+    /// Folder of the recordings; of own ones (--convention own) any files of tracks, or one such file [default: `$DDL_DATASETS`, then
+    /// `datasets/eth_ucy`]
+    #[arg(long)]
+    data: Option<PathBuf>,
+    #[command(flatten)]
+    units: Units,
+}
+
+impl RecordingsAt {
+    /// Whether a place was named.
+    fn is_named(&self) -> bool {
+        self.data.is_some()
+    }
+
+    /// What another command takes to read the same.
+    fn as_options(&self) -> String {
+        let data = self.data.as_ref();
+        let data = data.map_or_else(String::new, |data| format!(" --data {}", data.display()));
+        data + &self.units.as_options()
+    }
+
+    /// The recordings of a convention, from a folder or simulated.
+    fn dataset(&self, convention: Convention) -> anyhow::Result<Dataset> {
+        dataset(convention, self.data.as_deref(), &self.units)
+    }
+}
+
+/// The recordings of a convention, from a folder or simulated; own ones in these units.
+fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow::Result<Dataset> {
+    if convention == Convention::Own {
+        let data = data.context("give the folder of your own recordings: --data FOLDER")?;
+        let files = recordings::files(&[data.to_owned()], units)?;
+        let read = recordings::read(&files, units)?;
+        recordings::warn_of_doubts(&read);
+        return Ok(Dataset::own(
+            read.into_iter().map(|of| of.recording).collect(),
+        )?);
+    }
+    if units.are_given() {
+        bail!(
+            "--fps, --dt, --frame-step and --homography say what your own recordings mean (--convention own); those of {convention} are \
+             known"
+        );
+    }
     if convention == Convention::Simulated {
         return Ok(Dataset::simulated(SIMULATION_SEED));
     }

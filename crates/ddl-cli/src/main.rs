@@ -1,23 +1,32 @@
 //! The program `ddl`: argument parsing and glue; the work is done by the crate `ddl`.
 
+mod clock;
 mod command;
 mod interrupt;
+mod output;
 mod progress;
+mod recordings;
 mod result_lines;
+mod telling;
 mod tracks;
+mod units;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// Forecasts of walking people that converge to their goals.
-///
-/// A goal is estimated for each pedestrian from similar walkers, a Transformer (STAR) shapes a
-/// positive-definite matrix P, and the walker follows v = -P grad Phi to the goal.
+// It fits a screen of 24 lines of 80 columns, which a test measures.
 #[derive(Debug, Parser)]
-#[command(name = "ddl", version, arg_required_else_help = true)]
 #[command(
-    after_help = "Trained models come with the program: `ddl forecast tracks.csv` works at once.\n\n\
-    Exit codes: 0 done, 1 failed, 2 wrong arguments, 130 interrupted (saved)."
+    name = "ddl",
+    version,
+    arg_required_else_help = true,
+    disable_help_subcommand = true,
+    help_template = "{about}\n\n{usage-heading} {usage}\n\n{subcommands}{after-help}",
+    after_help = "Trained models come with the program: `ddl forecast tracks.csv` works at once.\n\
+    `ddl COMMAND --help` lists options. Exit codes: 0 done, or whoever read the\n\
+    output has gone, 1 failed, 2 wrong arguments, 130 interrupted (saved: the same\n\
+    command goes on)."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -26,44 +35,54 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Forecast(command::forecast::Forecast),
+    View(command::view::View),
+    Goals(command::goals::Goals),
+    Data(command::data::Data),
     Train(command::train::Train),
     Evaluate(command::evaluate::Evaluate),
-    Baselines(command::baselines::Baselines),
     Report(command::report::Report),
-    Forecast(command::forecast::Forecast),
-    Goals(command::goals::Goals),
-    Pack(command::pack::Pack),
+    Baselines(command::baselines::Baselines),
     Windows(command::windows::Windows),
+    Pack(command::pack::Pack),
     Info(command::info::Info),
+    Completions(command::completions::Completions),
+    Man(command::man::Man),
 }
 
 fn main() -> ExitCode {
     let result = match Cli::parse().command {
+        Command::Forecast(command) => command.run(),
+        Command::View(command) => command.run(),
+        Command::Goals(command) => command.run(),
+        Command::Data(command) => command.run(),
         Command::Train(command) => command.run(),
         Command::Evaluate(command) => command.run(),
-        Command::Baselines(command) => command.run(),
         Command::Report(command) => command.run(),
-        Command::Forecast(command) => command.run(),
-        Command::Goals(command) => command.run(),
-        Command::Pack(command) => command.run(),
+        Command::Baselines(command) => command.run(),
         Command::Windows(command) => command.run(),
+        Command::Pack(command) => command.run(),
         Command::Info(command) => command.run(),
+        Command::Completions(command) => command.run(Cli::command()),
+        Command::Man(command) => command.run(Cli::command()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
+        // as in `ddl info | head -1`
+        Err(error) if telling::reader_has_gone(&error) => ExitCode::SUCCESS,
         Err(error) => {
             let interrupted = matches!(
                 error.downcast_ref::<ddl::DdlError>(),
                 Some(ddl::DdlError::Interrupted)
             );
             let who = if interrupted { "ddl" } else { "error" };
-            eprintln!("{who}: {}", message(&error));
+            telling::tell(format_args!("{who}: {}", message(&error)));
             ExitCode::from(if interrupted { 130 } else { 1 })
         }
     }
 }
 
-/// An error and its causes, each said once: some errors already say their cause themselves.
+/// An error and its causes, each said once, as some errors already say their cause themselves, and what to do about a full disk and the like.
 fn message(error: &anyhow::Error) -> String {
     let mut message = String::new();
     for cause in error.chain().map(ToString::to_string) {
@@ -71,6 +90,9 @@ fn message(error: &anyhow::Error) -> String {
             let separator = if message.is_empty() { "" } else { ": " };
             message = message + separator + &cause;
         }
+    }
+    if let Some(advice) = telling::advice(error) {
+        message = message + "; " + advice;
     }
     message
 }

@@ -1,11 +1,18 @@
 //! Results for people, in the terminal.
 
+use ddl::Protocol;
 use ddl::eval::{Report, ResultRow};
-use std::io::Write as _;
+use std::fmt::{Result, Write as _};
 
 /// One line a result, under what it has in common with others; `rest` says where everything else is.
-pub(crate) fn print(report: &Report, rest: &str) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
+pub(crate) fn lines(report: &Report, rest: &str) -> String {
+    let mut text = String::new();
+    // a `String` takes everything
+    let _ = write_lines(&mut text, report, rest);
+    text
+}
+
+fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
     let common = |row: &ResultRow| {
         let c = &row.conditions;
         (c.convention, c.protocol, c.window_rule)
@@ -17,11 +24,15 @@ pub(crate) fn print(report: &Report, rest: &str) -> std::io::Result<()> {
             continue;
         }
         printed.push(common(first));
+        let (errors, of) = match protocol {
+            Protocol::Single => ("ADE/FDE", "of one hypothesis"),
+            _ => ("minADE/minFDE", "best of K"),
+        };
         writeln!(
             out,
-            "\nconvention {convention}, protocol {protocol}, windows {rule}; minADE/minFDE in metres, best of K\n\
-             {:10} {:>7} {:>3}  {:15}  forecaster",
-            "fold", "walkers", "K", "minADE/minFDE"
+            "\nconvention {convention}, protocol {protocol}, windows {rule}; {errors} in metres, {of}\n\
+             {:10} {:>7} {:>3}  {errors:15}  forecaster",
+            "fold", "walkers", "K"
         )?;
         for row in report
             .rows()

@@ -1,5 +1,6 @@
 //! Observations that are not whole: begun late, or with holes.
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::{OBSERVED, Position};
@@ -125,7 +126,7 @@ fn between(before: (i64, Position), after: (i64, Position), frame: i64) -> Posit
 }
 
 /// How many of the 8 observed positions of a walker were not seen but made up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct MadeUp {
     /// Positions at the start, before the walker was seen.
     pub padded: usize,

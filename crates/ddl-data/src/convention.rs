@@ -22,11 +22,13 @@ pub enum Convention {
     SocialGan,
     /// Simulated crowds ([`simulate`](crate::simulate)), for machines without the recordings.
     Simulated,
+    /// Somebody's own recordings ([`Dataset::own`](crate::Dataset::own)).
+    Own,
 }
 
 impl Convention {
     /// Every convention, in order of preference.
-    pub const ALL: [Self; 3] = [Self::Star, Self::SocialGan, Self::Simulated];
+    pub const ALL: [Self; 4] = [Self::Star, Self::SocialGan, Self::Simulated, Self::Own];
 
     /// The name, which is also that of the folder which holds the files.
     pub fn name(self) -> &'static str {
@@ -34,15 +36,16 @@ impl Convention {
             Self::Star => "star",
             Self::SocialGan => "social-gan",
             Self::Simulated => "simulated",
+            Self::Own => "own",
         }
     }
 
-    /// How the convention's files are written; `None` for the simulated one, which has none.
+    /// How the convention's files are written; `None` for those that have no files of fixed names.
     pub fn format(self) -> Option<Format> {
         match self {
             Self::Star => Some(Format::StarCsv),
             Self::SocialGan => Some(Format::SocialGan),
-            Self::Simulated => None,
+            Self::Simulated | Self::Own => None,
         }
     }
 
@@ -53,11 +56,11 @@ impl Convention {
             Self::SocialGan => WindowRule::SocialGan {
                 min_pedestrians: SOCIAL_GAN_FEWEST,
             },
-            Self::Simulated => WindowRule::Complete,
+            Self::Simulated | Self::Own => WindowRule::Complete,
         }
     }
 
-    /// The files that a folder of this convention holds; none for the simulated one.
+    /// The files that a folder of this convention holds; none where they have no fixed names.
     pub fn file_names(self) -> impl Iterator<Item = &'static str> {
         self.plan()
             .recordings
@@ -70,7 +73,7 @@ impl Convention {
         self.plan().recordings.iter().map(|r| r.name.as_str())
     }
 
-    /// Names of the leave-one-out folds, in order.
+    /// Names of the leave-one-out folds, in order; none for own recordings, whose folds [the data set](crate::Dataset::fold_names) knows.
     pub fn fold_names(self) -> impl Iterator<Item = &'static str> {
         self.plan().folds.iter().map(|f| f.name.as_str())
     }
@@ -80,6 +83,7 @@ impl Convention {
             Self::Star => &PLANS.star,
             Self::SocialGan => &PLANS.social_gan,
             Self::Simulated => &PLANS.simulated,
+            Self::Own => &NOTHING_PLANNED,
         }
     }
 }
@@ -100,7 +104,7 @@ impl FromStr for Convention {
             .ok_or_else(|| UnknownName {
                 kind: "data convention",
                 found: word.to_owned(),
-                expected: "star, social-gan, simulated",
+                expected: "star, social-gan, simulated, own",
             })
     }
 }
@@ -138,6 +142,11 @@ struct Plans {
     simulated: Plan,
 }
 
+static NOTHING_PLANNED: Plan = Plan {
+    recordings: Vec::new(),
+    folds: Vec::new(),
+};
+
 static PLANS: LazyLock<Plans> = LazyLock::new(|| {
     // Compiled in, so wrong only if this crate itself is; the tests below read it.
     toml::from_str(include_str!("../folds.toml")).expect("the compiled-in folds.toml is valid")
@@ -151,7 +160,8 @@ mod tests {
     fn every_test_recording_of_every_fold_exists() {
         for convention in Convention::ALL {
             let plan = convention.plan();
-            assert_eq!(plan.folds.len(), 5, "{convention}");
+            let folds = if convention == Convention::Own { 0 } else { 5 };
+            assert_eq!(plan.folds.len(), folds, "{convention}");
             for name in plan.folds.iter().flat_map(|f| &f.test) {
                 assert!(
                     plan.recordings.iter().any(|r| r.name == *name),
@@ -174,7 +184,7 @@ mod tests {
         let error = "Star".parse::<Convention>().unwrap_err();
         assert_eq!(
             error.to_string(),
-            "\"Star\" is no data convention; choose one of star, social-gan, simulated"
+            "\"Star\" is no data convention; choose one of star, social-gan, simulated, own"
         );
     }
 }

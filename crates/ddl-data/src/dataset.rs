@@ -32,12 +32,15 @@ impl Dataset {
     ///
     /// # Errors
     /// If a file is missing or cannot be read, or its content is wrong (the message names file, line
-    /// and field), and for [`Convention::Simulated`], which has no files.
+    /// and field), and for [`Convention::Simulated`] and [`Convention::Own`], which have no files of fixed names.
     pub fn load(convention: Convention, folder: &Path) -> Result<Self, DataError> {
-        let format = convention.format().ok_or(DataError::NoFiles)?;
+        let format = convention.format().ok_or(DataError::NoFiles(convention))?;
         let mut recordings = Vec::new();
         for planned in &convention.plan().recordings {
-            let file = planned.file.as_deref().ok_or(DataError::NoFiles)?;
+            let file = planned
+                .file
+                .as_deref()
+                .ok_or(DataError::NoFiles(convention))?;
             let recording = read_recording(&folder.join(file), format)?
                 .with_name(planned.name.as_str())
                 .with_frame_step(planned.frame_step)
@@ -64,6 +67,48 @@ impl Dataset {
             convention: Convention::Simulated,
             recordings,
         }
+    }
+
+    /// Somebody's own recordings, in steps of 0.4 s ([`Recording::in_steps`]); each can be left out as a fold of its name.
+    ///
+    /// # Errors
+    /// Without recordings, or when two have one name, or one is called `none` ([`Fold::WHOLE`]).
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_data::{Dataset, Fold, Observation, PedestrianId, Recording, WindowRule};
+    ///
+    /// let walk = |name: &str| {
+    ///     let seen = (0..25).map(|t| Observation::new(t, PedestrianId(1), [0.5 * t as f64, 0.0]));
+    ///     Recording::new(name, 1, seen.collect())
+    /// };
+    /// let own = Dataset::own(vec![walk("lobby")?, walk("yard")?])?;
+    /// assert_eq!(own.fold(Fold::WHOLE)?.training_recordings().len(), 2);
+    /// assert_eq!(own.fold("lobby")?.test_windows(WindowRule::Complete).len(), 6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn own(recordings: Vec<Recording>) -> Result<Self, DataError> {
+        let problem = |problem: String| Err(DataError::Own { problem });
+        if recordings.is_empty() {
+            return problem("no recordings; give at least one file of tracks".to_owned());
+        }
+        for (index, recording) in recordings.iter().enumerate() {
+            let name = recording.name();
+            if recordings[..index].iter().any(|other| other.name() == name) {
+                return problem(format!(
+                    "two recordings are called {name:?}; give one of the files another name"
+                ));
+            }
+            if name == Fold::WHOLE {
+                return problem(format!(
+                    "a recording is called {name:?}, which stands for leaving none out; give the file another name"
+                ));
+            }
+        }
+        Ok(Self {
+            convention: Convention::Own,
+            recordings,
+        })
     }
 
     /// The convention of all its recordings.
@@ -95,36 +140,47 @@ impl Dataset {
             })
     }
 
-    /// Names of the leave-one-out folds: eth, hotel, univ, zara1, zara2, or the simulated scenes.
-    pub fn fold_names(&self) -> Vec<&'static str> {
-        self.convention.fold_names().collect()
+    /// Names of the leave-one-out folds: eth, hotel, univ, zara1, zara2, or the simulated scenes, or each own recording.
+    pub fn fold_names(&self) -> Vec<&str> {
+        match self.convention {
+            Convention::Own => self.recordings.iter().map(Recording::name).collect(),
+            planned => planned.fold_names().collect(),
+        }
     }
 
-    /// The fold of this name: test on its recordings, train on all others.
+    /// The fold of this name: test on its recordings, train on all others. Own recordings also have [`Fold::WHOLE`], which trains on
+    /// all of them.
     ///
     /// # Errors
     /// If there is none; the message lists those there are.
     pub fn fold(&self, name: &str) -> Result<Fold<'_>, DataError> {
+        let unknown = || DataError::UnknownFold {
+            convention: self.convention,
+            name: name.to_owned(),
+            known: self.fold_names().into_iter().map(str::to_owned).collect(),
+        };
+        if self.convention == Convention::Own {
+            if name == Fold::WHOLE {
+                return Ok(Fold::new(Fold::WHOLE, &[], &self.recordings));
+            }
+            let left_out = self.recordings.iter().find(|r| r.name() == name);
+            let name = left_out.ok_or_else(unknown)?.name();
+            return Ok(Fold::new(name, &[name.to_owned()], &self.recordings));
+        }
         let plan = self
             .convention
             .plan()
             .folds
             .iter()
             .find(|f| f.name == name)
-            .ok_or_else(|| DataError::UnknownFold {
-                convention: self.convention,
-                name: name.to_owned(),
-                known: self.fold_names().into_iter().map(str::to_owned).collect(),
-            })?;
+            .ok_or_else(unknown)?;
         Ok(Fold::new(&plan.name, &plan.test, &self.recordings))
     }
 
     /// Every fold, in order.
     #[must_use]
     pub fn folds(&self) -> Vec<Fold<'_>> {
-        let plans = self.convention.plan().folds.iter();
-        plans
-            .map(|plan| Fold::new(&plan.name, &plan.test, &self.recordings))
-            .collect()
+        let names = self.fold_names().into_iter();
+        names.filter_map(|name| self.fold(name).ok()).collect()
     }
 }

@@ -84,6 +84,17 @@ pub enum FormatProblem {
         /// The field's text, shortened.
         found: String,
     },
+    /// A coordinate farther from the origin than [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT).
+    #[error(
+        "{name} must lie within {limit} m of the origin, found {found:?}; count from an origin near by",
+        limit = crate::COORDINATE_LIMIT
+    )]
+    TooFar {
+        /// What the field holds: `x` or `y`.
+        name: &'static str,
+        /// The field's text, shortened.
+        found: String,
+    },
     /// A field that must be a number, whatever its value, is none.
     #[error("{name} must be a number, found {found:?}")]
     NotNumber {
@@ -148,6 +159,14 @@ pub enum FormatProblem {
         frame: i64,
         /// That of the frame before.
         last: i64,
+    },
+    /// More people in one frame than any place holds.
+    #[error("more than {limit} people in frame {frame}; does the frame number count on?")]
+    Crowd {
+        /// The raw frame number.
+        frame: i64,
+        /// People that a frame may have.
+        limit: usize,
     },
     /// A line without an end.
     #[error("the line is longer than {limit} bytes; is it a file of tracks?")]
@@ -296,9 +315,17 @@ pub enum DataError {
         /// Each folder that was tried, with the first file it lacks.
         searched: Vec<String>,
     },
-    /// The simulated convention was asked for files.
-    #[error("the simulated convention has no files; use `Dataset::simulated(seed)`")]
-    NoFiles,
+    /// A convention without files of fixed names was asked for them.
+    #[error(
+        "the {0} convention has no files of fixed names; use `Dataset::simulated` or `Dataset::own`"
+    )]
+    NoFiles(Convention),
+    /// Own recordings that do not make a data set.
+    #[error("{problem}")]
+    Own {
+        /// What is wrong with them, and what to do.
+        problem: String,
+    },
     /// No recording of this name.
     #[error("no recording {name:?} in the {convention} convention; it has {}", .known.join(", "))]
     UnknownRecording {
@@ -313,7 +340,7 @@ pub enum DataError {
     #[error("{name:?} is no training recording of fold {fold}; those are {}", .known.join(", "))]
     NotATrainingRecording {
         /// The fold.
-        fold: &'static str,
+        fold: String,
         /// The name asked for.
         name: String,
         /// The training recordings.

@@ -5,9 +5,24 @@ use crate::recording::Recording;
 use crate::{Window, WindowRule};
 
 /// One leave-one-out fold: some recordings to test on, all others to train on.
+///
+/// # Examples
+/// ```
+/// use ddl_data::{Dataset, WindowRule};
+///
+/// let dataset = Dataset::simulated(1); // `Dataset::load` reads the recordings
+/// let fold = dataset.fold("corridor")?;
+/// let tested = fold.test_windows(WindowRule::Complete);
+/// assert!(tested.iter().all(|window| window.recording() == "corridor"));
+/// // The last fifth of each training recording validates, and shares no frame with the rest.
+/// let split = fold.training_split(WindowRule::Complete, 0.2);
+/// assert!(split.training.iter().all(|window| window.recording() != "corridor"));
+/// assert!(!split.validation.is_empty());
+/// # Ok::<(), ddl_data::DataError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Fold<'a> {
-    name: &'static str,
+    name: &'a str,
     test: Vec<&'a Recording>,
     training: Vec<&'a Recording>,
     /// Training recordings that are kept for validation whole.
@@ -38,11 +53,10 @@ pub struct SocialGanSplit {
 }
 
 impl<'a> Fold<'a> {
-    pub(crate) fn new(
-        name: &'static str,
-        test_names: &[String],
-        recordings: &'a [Recording],
-    ) -> Self {
+    /// Name of the fold of own recordings that leaves none out.
+    pub const WHOLE: &'static str = "none";
+
+    pub(crate) fn new(name: &'a str, test_names: &[String], recordings: &'a [Recording]) -> Self {
         let test: Vec<_> = test_names
             .iter()
             .filter_map(|name| recordings.iter().find(|r| r.name() == name))
@@ -68,7 +82,7 @@ impl<'a> Fold<'a> {
         for name in names {
             let index = self.training.iter().position(|r| r.name() == name);
             let index = index.ok_or_else(|| DataError::NotATrainingRecording {
-                fold: self.name,
+                fold: self.name.to_owned(),
                 name: name.clone(),
                 known: self.training.iter().map(|r| r.name().to_owned()).collect(),
             })?;
@@ -78,7 +92,7 @@ impl<'a> Fold<'a> {
     }
 
     /// The fold's name, that of its test scene.
-    pub fn name(&self) -> &'static str {
+    pub fn name(&self) -> &'a str {
         self.name
     }
 

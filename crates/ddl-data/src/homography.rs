@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::{Observation, PedestrianId, Position, Recording, RecordingError};
+use crate::{COORDINATE_LIMIT, Observation, PedestrianId, Position, Recording, RecordingError};
 
 /// Rows and columns.
 const SIZE: usize = 3;
@@ -23,7 +23,7 @@ const SIZE: usize = 3;
 pub struct Homography([[f64; SIZE]; SIZE]);
 
 impl Homography {
-    /// The matrix, row by row.
+    /// The matrix, row by row: it takes (u, v, 1) in pixels to (X, Y, W), of which X / W and Y / W are metres.
     ///
     /// # Errors
     /// [`HomographyError`] where an entry is not finite, or the matrix squeezes the plane into a line.
@@ -44,12 +44,15 @@ impl Homography {
         }
     }
 
-    /// Where a pixel is on the ground (m); `None` on the horizon, which is nowhere.
+    /// Where a pixel is on the ground (m); `None` on the horizon, which is nowhere, and so near to it that the place would be farther
+    /// away than [`COORDINATE_LIMIT`].
     #[must_use]
     pub fn apply(&self, [u, v]: [f64; 2]) -> Option<Position> {
         let [x, y, w] = self.0.map(|[a, b, c]| a * u + b * v + c);
         let place = [x / w, y / w];
-        place.iter().all(|c| c.is_finite()).then_some(place)
+        // false for what is no number
+        let near = place.iter().all(|c| c.abs() <= COORDINATE_LIMIT);
+        near.then_some(place)
     }
 
     /// Where somebody who was seen at a pixel is on the ground (m).

@@ -15,6 +15,7 @@ mod rate;
 mod recording;
 mod rule;
 pub mod simulate;
+mod summary;
 mod track;
 mod window;
 
@@ -32,5 +33,8 @@ pub use neighbours::{NEIGHBOUR_HALF_WIDTH, NeighbourMask};
 pub use rate::{InSteps, RateError, whole_frame_step};
 pub use recording::Recording;
 pub use rule::WindowRule;
-pub use track::{HORIZON, OBSERVED, Observation, PedestrianId, Position, TIME_STEP, WINDOW};
+pub use summary::{Doubt, Fastest, Summary};
+pub use track::{
+    COORDINATE_LIMIT, HORIZON, OBSERVED, Observation, PedestrianId, Position, TIME_STEP, WINDOW,
+};
 pub use window::Window;

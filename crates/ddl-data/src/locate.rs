@@ -22,7 +22,7 @@ const DEFAULT_FOLDER: &str = "datasets/eth_ucy";
 ///
 /// # Errors
 /// [`DataError::NotFound`] names every folder tried and the first file it lacks;
-/// [`DataError::NoFiles`] for the simulated convention.
+/// [`DataError::NoFiles`] for conventions without files of fixed names.
 pub fn locate(convention: Convention, explicit: Option<&Path>) -> Result<PathBuf, DataError> {
     let variable = std::env::var_os(DATASETS_VARIABLE)
         .filter(|v| !v.is_empty())
@@ -52,7 +52,7 @@ fn roots(explicit: Option<&Path>, variable: Option<&Path>, here: &Path) -> Vec<P
 
 fn locate_among(convention: Convention, roots: Vec<PathBuf>) -> Result<PathBuf, DataError> {
     if convention.format().is_none() {
-        return Err(DataError::NoFiles);
+        return Err(DataError::NoFiles(convention));
     }
     let mut searched = Vec::new();
     for root in roots {
@@ -119,7 +119,7 @@ mod tests {
         );
         assert!(matches!(
             locate(Convention::Simulated, None),
-            Err(DataError::NoFiles)
+            Err(DataError::NoFiles(Convention::Simulated))
         ));
     }
 

@@ -5,7 +5,10 @@ use std::sync::Arc;
 
 use crate::error::RecordingError;
 use crate::rule;
-use crate::{Completion, LiveTracks, Observation, PedestrianId, Window, WindowRule};
+use crate::{
+    Completion, HORIZON, LiveTracks, OBSERVED, Observation, PedestrianId, Position, Window,
+    WindowRule,
+};
 
 /// Frames are below this in size: exact in an `f64`, and far from overflow when counting on.
 pub(crate) const FRAME_LIMIT: i64 = 1 << 53;
@@ -275,5 +278,35 @@ impl Recording {
             windows.extend(tracks.push(frame, people).ok().flatten());
         }
         windows
+    }
+
+    /// What then happened to each pedestrian of an observed window, as far as it was seen: up to [`HORIZON`](crate::HORIZON) positions from
+    /// the step after the last observed one on, ending before the first step at which the pedestrian was not seen.
+    ///
+    /// ```
+    /// use ddl_data::{Observation, PedestrianId, Recording};
+    ///
+    /// let walk = (0..10).map(|t| Observation::new(10 * t, PedestrianId(1), [t as f64, 0.0])).collect();
+    /// let recording = Recording::new("yard", 10, walk)?;
+    /// let first = &recording.observed_windows()[0];
+    /// assert_eq!(recording.onward(first), [[[8.0, 0.0], [9.0, 0.0]]]);
+    /// # Ok::<(), ddl_data::RecordingError>(())
+    /// ```
+    #[must_use]
+    pub fn onward(&self, window: &Window) -> Vec<Vec<Position>> {
+        let last = window.frames()[OBSERVED - 1];
+        let position = |pedestrian: PedestrianId, step: i64| {
+            let here = self.at(last + step * window.frame_step());
+            let index = here.binary_search_by_key(&pedestrian, |seen| seen.pedestrian);
+            index.ok().map(|index| here[index].position)
+        };
+        let pedestrians = window.pedestrians().iter();
+        pedestrians
+            .map(|&pedestrian| {
+                (1..=HORIZON as i64)
+                    .map_while(|step| position(pedestrian, step))
+                    .collect()
+            })
+            .collect()
     }
 }

@@ -195,3 +195,19 @@ fn after_an_error_the_next_line_is_read() {
     assert_eq!(reader.next_frame().unwrap().unwrap().number, 1);
     assert_eq!(reader.next_frame().unwrap(), None);
 }
+
+#[test]
+fn a_frame_number_that_stands_still_does_not_fill_the_memory() {
+    let mut lines: Vec<String> = (0..100_002).map(|id| format!("0 {id} 0 0")).collect();
+    lines.push("1 7 0 0\n".to_owned());
+    let text = lines.join("\n");
+    let mut reader = FrameReader::new(text.as_bytes(), "tracker");
+    for line in [100_001, 100_002] {
+        let error = reader.next_frame().unwrap_err().to_string();
+        let expected = format!("tracker, line {line}: more than 100000 people in frame 0");
+        assert!(error.starts_with(&expected), "{error}");
+    }
+    let full = reader.next_frame().unwrap().unwrap();
+    assert_eq!((full.number, full.people.len()), (0, 100_000));
+    assert_eq!(reader.next_frame().unwrap().unwrap().number, 1);
+}

@@ -89,3 +89,10 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn what_lies_beyond_every_map_is_the_horizon() {
+    let plain: Homography = "1 0 0\n0 1 0\n0 0 1\n".parse().unwrap();
+    assert_eq!(plain.apply([1e7, -1e7]), Some([1e7, -1e7]));
+    assert!(plain.apply([1.1e7, 0.0]).is_none());
+}

@@ -345,3 +345,48 @@ fn headers_as_others_write_them() {
         );
     }
 }
+
+#[test]
+fn coordinates_beyond_the_world_are_named_with_their_place() {
+    for (format, text, place) in [
+        (
+            Format::Table,
+            "frame,pedestrian,x,y\n0,1,0,1e30",
+            "f, line 2, field 4: y must lie within 10000000 m",
+        ),
+        (
+            Format::StarCsv,
+            "0\n1\n0\n-1e38",
+            "f, line 4, field 1: x must lie within 10000000 m",
+        ),
+        (
+            Format::SocialGan,
+            "0 1 2e7 0",
+            "f, line 1, field 3: x must lie within 10000000 m",
+        ),
+        (
+            Format::Obsmat,
+            "0 1 0 0 -2e7 0 0 0",
+            "f, line 1, field 5: y must lie within 10000000 m",
+        ),
+        (
+            Format::TrajNet,
+            r#"{"track": {"f": 0, "p": 1, "x": 1e300, "y": 0}}"#,
+            "f, line 1: track.x must lie within 10000000 m",
+        ),
+    ] {
+        let complaint = complaint(text, format);
+        assert!(complaint.starts_with(place), "{complaint}");
+    }
+}
+
+#[test]
+fn a_field_of_trajnet_that_is_there_twice_is_refused() {
+    for text in [
+        r#"{"track": {"f": 0, "f": 1, "p": 1, "x": 0, "y": 0}}"#,
+        r#"{"track": {"f": 0, "p": 1, "x": 0, "y": 0}, "track": {"f": 1, "p": 1, "x": 0, "y": 0}}"#,
+    ] {
+        let complaint = complaint(text, Format::TrajNet);
+        assert!(complaint.contains("duplicate field"), "{complaint}");
+    }
+}

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use ddl_data::HORIZON;
+
 use crate::Protocol;
 
 /// The numbers given for a [`Forecast`](crate::Forecast) do not make one.
@@ -159,6 +161,14 @@ pub enum EvaluationError {
         expected: usize,
         /// Pedestrians in the forecast.
         found: usize,
+    },
+    /// More was seen of a walker's future than a forecast covers.
+    #[error(
+        "{longest} positions were given as seen after the observation; a forecast covers {HORIZON}"
+    )]
+    Seen {
+        /// Positions of the walker with the most.
+        longest: usize,
     },
     /// A reduced window is not a part of the whole one it is scored among.
     #[error(

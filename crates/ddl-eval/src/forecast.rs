@@ -80,6 +80,9 @@ impl Forecast {
 
     /// A forecast whose hypotheses all have the weight 1/K.
     ///
+    /// # Shapes
+    /// `positions`: `[N][K][12]`, metres.
+    ///
     /// # Errors
     /// As [`Forecast::new`].
     pub fn equally_likely(

@@ -11,7 +11,7 @@ use crate::{Forecast, error::ForecastError};
 /// # Contract
 /// A forecaster reads [`Window::observed`] alone. One that also reads the future when it is there
 /// (the `published` protocol asks for that) must not need it, or must fail with
-/// [`ForecastError::FutureMissing`]. [`leak::find`](crate::leak::find) checks it.
+/// [`ForecastError::FutureMissing`]. `leak::find` checks it.
 pub trait Forecaster {
     /// The name printed in tables, the same for every window.
     fn name(&self) -> String;

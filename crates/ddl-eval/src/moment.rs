@@ -1,6 +1,6 @@
 //! One moment of a recording and what was forecast then, as data for galleries and the player.
 
-use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use ddl_data::{HORIZON, MadeUp, OBSERVED, Position, Window};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -46,8 +46,11 @@ pub struct MomentWalker {
     pub pedestrian: i64,
     /// 8 observed positions, m.
     pub observed: Vec<Position>,
-    /// 12 true positions, m.
+    /// What then happened: 12 true positions, m; the first of them where no more were seen.
     pub truth: Vec<Position>,
+    /// How many of the observed positions were made up; `None` where all were seen.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub made_up: Option<MadeUp>,
     /// K hypotheses.
     pub hypotheses: Vec<MomentHypothesis>,
 }
@@ -105,16 +108,77 @@ impl Moment {
         forecast: &Forecast,
     ) -> Result<Self, EvaluationError> {
         let scene = Scene::new(window, forecast)?;
-        let walkers = (0..window.len()).map(|i| walker(&scene, i)).collect();
-        Ok(Self {
-            fold: fold.into(),
-            forecaster: forecaster.into(),
+        let truths: Vec<&[Position]> = (0..window.len()).map(|i| scene.truth(i)).collect();
+        Ok(Self::of(
+            (fold.into(), forecaster.into()),
+            window,
+            forecast,
+            &truths,
+        ))
+    }
+
+    /// The moment of a window without a future, such as one of tracks that are still going on.
+    ///
+    /// `seen[i]` is what then happened to pedestrian i as far as it was seen, m: the first of the 12 positions, or none.
+    ///
+    /// # Errors
+    /// The forecast or `seen` is not of the window's pedestrians, or more than 12 positions of somebody are there.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_data::{PedestrianId, Window};
+    /// use ddl_eval::{Forecaster, Moment, baseline::ConstantVelocity};
+    /// let walk = (0..8).map(|t| [0.4 * f64::from(t), 0.0]).collect();
+    /// let window = Window::new("yard", 0, 10, vec![PedestrianId(7)], vec![walk])?;
+    /// let forecast = ConstantVelocity::last_step().forecast(&window)?;
+    /// let moment = Moment::under_way("constant velocity", &window, &forecast, &[vec![[3.2, 0.0]]])?;
+    /// assert_eq!(moment.walkers[0].truth, [[3.2, 0.0]]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn under_way(
+        forecaster: impl Into<String>,
+        window: &Window,
+        forecast: &Forecast,
+        seen: &[Vec<Position>],
+    ) -> Result<Self, EvaluationError> {
+        for found in [forecast.pedestrians(), seen.len()] {
+            if found != window.len() {
+                return Err(EvaluationError::Pedestrians {
+                    recording: window.recording().to_owned(),
+                    start_frame: window.start_frame(),
+                    expected: window.len(),
+                    found,
+                });
+            }
+        }
+        let seen: Vec<&[Position]> = seen.iter().map(Vec::as_slice).collect();
+        if let Some(longest) = seen.iter().map(|path| path.len()).max()
+            && longest > HORIZON
+        {
+            return Err(EvaluationError::Seen { longest });
+        }
+        let fold = window.recording().to_owned();
+        Ok(Self::of((fold, forecaster.into()), window, forecast, &seen))
+    }
+
+    fn of(
+        (fold, forecaster): (String, String),
+        window: &Window,
+        forecast: &Forecast,
+        truths: &[&[Position]],
+    ) -> Self {
+        let walkers = truths.iter().enumerate();
+        Self {
+            fold,
+            forecaster,
             recording: window.recording().to_owned(),
             frame: window.frames()[OBSERVED - 1],
             frame_step: window.frame_step(),
-            walkers,
+            walkers: walkers
+                .map(|(i, truth)| walker(window, forecast, truth, i))
+                .collect(),
             picks: Vec::new(),
-        })
+        }
     }
 
     /// The same moment, chosen to show something.
@@ -124,8 +188,8 @@ impl Moment {
     }
 }
 
-fn walker(scene: &Scene<'_>, i: usize) -> MomentWalker {
-    let forecast = scene.forecast();
+fn walker(window: &Window, forecast: &Forecast, truth: &[Position], i: usize) -> MomentWalker {
+    let last = window.observed(i)[OBSERVED - 1];
     let hypothesis = |k: usize| {
         let goal = forecast.goal(i, k);
         let path = forecast.hypothesis(i, k);
@@ -134,16 +198,17 @@ fn walker(scene: &Scene<'_>, i: usize) -> MomentWalker {
             weight: round(forecast.weight(i, k)),
             positions: positions(path),
             goal: goal.map(|goal| goal.map(round)),
-            decreasing: goal
-                .map(|goal| RolloutStability::of(scene.last_observed(i), path, goal).decreasing),
+            decreasing: goal.map(|goal| RolloutStability::of(last, path, goal).decreasing),
             certified: forecast.certified(i, k),
         }
     };
+    let made_up = window.made_up(i);
     MomentWalker {
-        pedestrian: scene.window().pedestrians()[i].0,
-        observed: positions(scene.window().observed(i)),
-        truth: positions(scene.truth(i)),
-        hypotheses: (0..scene.hypotheses()).map(hypothesis).collect(),
+        pedestrian: window.pedestrians()[i].0,
+        observed: positions(window.observed(i)),
+        truth: positions(truth),
+        made_up: (made_up != MadeUp::default()).then_some(made_up),
+        hypotheses: (0..forecast.hypotheses()).map(hypothesis).collect(),
     }
 }
 

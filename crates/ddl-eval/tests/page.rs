@@ -6,7 +6,7 @@ use ddl_data::{Convention, PedestrianId, Position, Window, WindowRule};
 use ddl_eval::{
     Conditions, EpochPoint, Forecast, Moment, Protocol, Report, ResultRow, TrainingCurve, baseline,
     gallery::{Pick, Show},
-    page::{MomentProblem, Page, PageError},
+    page::{MomentProblem, Page, PageError, Viewer},
 };
 use proptest::prelude::*;
 use serde_json::Value;
@@ -383,4 +383,28 @@ proptest! {
         prop_assert_eq!(&walked(last, &data["truth"]).0[..], &metres[8..20]);
         prop_assert_eq!(&walked(last, &data["paths"][0]).0[..], &metres[20..]);
     }
+}
+
+#[test]
+fn a_viewer_plays_what_is_not_over_yet() {
+    let mut under_way = moment(2, 2, true);
+    under_way.walkers[1].truth.truncate(3);
+    under_way.walkers[0].truth.clear();
+    let page = Viewer::new("yard <1>", vec![under_way.clone()])
+        .lead("two & two")
+        .notes(vec!["made by x < y".to_owned()]);
+    let html = page.to_html().unwrap();
+    for words in [
+        "<title>yard &lt;1&gt;</title>",
+        "two &amp; two",
+        "<p>made by x &lt; y</p>",
+        "<section id=\"player\" class=\"ready\">",
+    ] {
+        assert!(html.contains(words), "{words}");
+    }
+    assert!(!html.contains("{{") && !html.contains("report-json"));
+
+    let thirteen = vec![[0.0; 2]; 13];
+    under_way.walkers[1].truth = thirteen;
+    assert!(Viewer::new("yard", vec![under_way]).to_html().is_err());
 }

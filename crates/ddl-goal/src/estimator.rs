@@ -41,6 +41,24 @@ use crate::retrieve::Retriever;
 /// # References
 /// Wang, Zhi, Batista, Chandra, *Pedestrian trajectory prediction using dynamics-based deep learning*, ICRA 2024,
 /// section II-D.
+///
+/// # Examples
+/// ```
+/// use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
+///
+/// // Walkers of a training scene: 20 positions (m), 0.4 s apart, at 0.8 to 1.6 m/s.
+/// let walk = |speed: f64| (0..20).map(|t| [0.4 * speed * f64::from(t), 0.0]).collect();
+/// let tracks = (0..90).map(|i| walk(0.8 + 0.4 * f64::from(i % 3))).collect();
+/// let params = GoalEstimatorParams::default().experts(30).clusters(3).check()?;
+/// let estimator = GoalEstimator::new(params, ExpertLibrary::new(tracks, 0.4)?)?;
+///
+/// // Somebody who walks north, seen for 3.2 s.
+/// let observed: Vec<[f64; 2]> = (0..8).map(|t| [5.0, 0.48 * f64::from(t)]).collect();
+/// let goals = estimator.estimate(&observed)?;
+/// let [x, y] = goals.goals()[0];
+/// assert!((x - 5.0).abs() < 1e-6 && (y - 0.48 * 19.0).abs() < 0.1, "still on the way north");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct GoalEstimator {
     params: ValidGoalEstimatorParams,
@@ -124,6 +142,9 @@ impl GoalEstimator {
     }
 
     /// The goals of many walkers, in parallel over the current `rayon` pool.
+    ///
+    /// # Shapes
+    /// A set a track, in their order; tracks as [`GoalEstimator::estimate`] takes them (m).
     ///
     /// # Errors
     /// [`GoalError::BatchTrack`] for the first track that [`GoalEstimator::estimate`] refuses.

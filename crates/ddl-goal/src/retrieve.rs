@@ -11,6 +11,18 @@ use crate::span::{QuerySpan, velocities};
 /// # References
 /// DDL paper, equations 4 and 5. The cost is the squared Euclidean distance, as in the published code (the text of the
 /// paper says Euclidean).
+///
+/// # Examples
+/// ```
+/// use ddl_goal::{ExpertLibrary, QuerySpan, Retriever};
+///
+/// let walk = |speed: f64| -> Vec<[f64; 2]> { (0..20).map(|t| [0.4 * speed * f64::from(t), 0.0]).collect() };
+/// let library = ExpertLibrary::new((5..20).map(|i| walk(0.1 * f64::from(i))).collect(), 0.4)?;
+/// let retriever = Retriever::new(&library, 1.0, QuerySpan::Observed)?;
+/// let nearest = retriever.nearest(&walk(1.31)[..8], 2)?;
+/// assert_eq!((nearest[0].index, nearest[1].index), (8, 9)); // 1.3 and 1.4 m/s
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Retriever {
     index: SearchIndex<2>,

@@ -116,6 +116,9 @@ impl<const D: usize> SearchIndex<D> {
 
     /// The `n` candidates nearest to `query` (all of them when there are fewer), nearest first, ties by index.
     ///
+    /// # Shapes
+    /// `query`: at least one step of `D` components, in the unit of the candidates; it may be longer or shorter than they are.
+    ///
     /// # Errors
     /// [`SearchError::Query`] when the query is empty or not finite, or when a distance to be returned leaves the range of
     /// `f64`.

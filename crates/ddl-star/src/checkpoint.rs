@@ -1,6 +1,7 @@
 //! Weights and training state as safetensors files: checked when read, atomic when written.
 
 use crate::StarError;
+use crate::numbers_digest::{check_numbers, numbers_digest};
 use crate::optimizer::Adam;
 use crate::origin::Origin;
 use crate::parameters::Parameters;
@@ -173,10 +174,11 @@ pub(crate) fn write(
     let broken = |error: safetensors::SafeTensorError| bad(path, error.to_string());
     let views = numbers
         .iter()
-        .map(|(name, numbers)| Ok((name, numbers.view()?)))
+        .map(|(name, numbers)| Ok((name.as_str(), numbers.view()?)))
         .collect::<Result<Vec<_>, _>>()
         .map_err(broken)?;
-    let bytes = safetensors::serialize(views, Some(origin.to_header())).map_err(broken)?;
+    let header = origin.to_header(&numbers_digest(views.iter().cloned()));
+    let bytes = safetensors::serialize(views, Some(header)).map_err(broken)?;
     let mut builder = tempfile::Builder::new();
     let builder = builder.prefix(".writing-").suffix(".safetensors");
     // Temporary files are private by default; results are as readable as the user's other files.
@@ -245,7 +247,8 @@ pub(crate) fn read(
         bad(path, problem)
     };
     let (_, header) = SafeTensors::read_metadata(&bytes).map_err(broken)?;
-    if let Some(difference) = Origin::of_header(header.metadata().as_ref()).difference(origin) {
+    let (of_file, digest) = Origin::of_header(header.metadata().as_ref());
+    if let Some(difference) = of_file.difference(origin) {
         let problem = format!(
             "belongs to another run than the config.json beside it: its {difference}; put back the file, or the \
              config.json, that it was made with"
@@ -253,6 +256,7 @@ pub(crate) fn read(
         return Err(bad(path, problem));
     }
     let file = SafeTensors::deserialize(&bytes).map_err(broken)?;
+    check_numbers(&file, digest.as_deref()).map_err(|problem| bad(path, problem))?;
     file.iter()
         .map(|(name, view)| {
             let kind = match view.dtype() {

@@ -127,6 +127,16 @@ impl StarConfig {
         self.model_width * (4 * self.model_width + 2 * self.feed_forward_width)
     }
 
+    /// Weights of the spatial encoders alone: the network has more numbers than these, and a file with fewer is not of it. So a file can
+    /// be refused before there is a network that it would have to fill.
+    ///
+    /// # Panics
+    /// Where numbers overflow, which [`check`](Self::check) excludes.
+    #[must_use]
+    pub fn least_numbers(&self) -> u64 {
+        2 * self.spatial_layers as u64 * self.layer_numbers() as u64
+    }
+
     /// The published network: 32-wide tokens, 8 heads, 2048-wide feed-forward blocks, two spatial
     /// layers, 16 noise numbers, sigma = 1e-8, 0.4 s.
     #[must_use]
@@ -304,6 +314,31 @@ mod tests {
         assert!(too_wide.check().is_err());
         let bad = StarConfig { sigma: 0.0, ..good };
         assert!(bad.check().unwrap_err().to_string().contains("sigma"));
+    }
+
+    #[test]
+    fn a_network_has_more_numbers_than_the_least_but_not_many_times_more() {
+        let device = crate::ComputeDevice::open(crate::DeviceChoice::Cpu).unwrap();
+        for (model_width, heads, feed_forward_width, spatial_layers) in [
+            (32, 8, 128, 2),
+            (1, 1, 1, 1),
+            (16, 4, 512, 5),
+            (64, 2, 1, 1),
+        ] {
+            let config = StarConfig {
+                model_width,
+                heads,
+                feed_forward_width,
+                spatial_layers,
+                ..StarConfig::published(Variant::Full)
+            };
+            let network = crate::StarNetwork::new(config.clone(), 1, device).unwrap();
+            let (least, count) = (config.least_numbers(), network.parameters().count() as u64);
+            assert!(
+                least <= count && count <= 20 * least + 1000,
+                "{least}, {count}"
+            );
+        }
     }
 
     #[test]

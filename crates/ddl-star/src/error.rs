@@ -87,7 +87,9 @@ pub enum StarError {
         reversed: bool,
     },
     /// Training was given nothing to learn from.
-    #[error("no training windows: every epoch needs at least one window with its future")]
+    #[error(
+        "no training windows: every epoch needs at least one window with its future, somebody seen at 20 steps of 0.4 s in a row"
+    )]
     NoTrainingWindows,
     /// Reading or writing a file failed.
     #[error("{}: {source}", path.display())]

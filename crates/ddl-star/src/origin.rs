@@ -49,31 +49,39 @@ impl Origin {
         ))
     }
 
-    /// As the header of a safetensors file holds it: one entry, so that the same origin is always the same bytes.
+    /// As the header of a safetensors file holds it, with the SHA-256 of the file's numbers ([`numbers_digest`](crate::numbers_digest)):
+    /// one entry, so that the same origin and numbers are always the same bytes.
     #[must_use]
-    pub fn to_header(&self) -> HashMap<String, String> {
+    pub fn to_header(&self, digest: &str) -> HashMap<String, String> {
         let facts = self
             .0
             .iter()
-            .map(|(name, value)| (name.clone(), value.clone().into()));
+            .map(|(name, value)| (name.as_str(), value.as_str()));
+        let facts = facts.chain([(DIGEST, digest)]);
+        let facts = facts.map(|(name, value)| (name.to_owned(), value.into()));
         let facts = serde_json::Value::Object(facts.collect());
         HashMap::from([(HEADER.to_owned(), facts.to_string())])
     }
 
-    /// What the header of a safetensors file says; nothing, when it is not a header of ours.
+    /// What the header of a safetensors file says, and the SHA-256 of its numbers; nothing, when it is not a header of ours. Files of
+    /// earlier versions have no SHA-256.
     #[must_use]
-    pub fn of_header(header: Option<&HashMap<String, String>>) -> Self {
+    pub fn of_header(header: Option<&HashMap<String, String>>) -> (Self, Option<String>) {
         let facts = header.and_then(|header| header.get(HEADER));
-        Self(
+        let mut origin = Self(
             facts
                 .and_then(|facts| serde_json::from_str(facts).ok())
                 .unwrap_or_default(),
-        )
+        );
+        let digest = origin.0.remove(DIGEST);
+        (origin, digest)
     }
 }
 
 /// Name of the header's entry.
 const HEADER: &str = "origin";
+/// Name of the fact that is none of the origin: the SHA-256 of the file's numbers.
+const DIGEST: &str = "numbers.sha256";
 
 #[cfg(test)]
 mod tests {
@@ -91,10 +99,16 @@ mod tests {
     #[test]
     fn a_header_brings_it_back() {
         let origin = Origin::from_iter([("fold", "eth"), ("seed", "1")]);
-        let header = origin.to_header();
-        assert_eq!(Origin::of_header(Some(&header)), origin);
-        assert_eq!(Origin::of_header(None), Origin::default());
+        let header = origin.to_header("ab12");
+        let digest = Some("ab12".to_owned());
+        assert_eq!(Origin::of_header(Some(&header)), (origin, digest));
+        let nothing = (Origin::default(), None);
+        assert_eq!(Origin::of_header(None), nothing);
         let foreign = HashMap::from([(HEADER.to_owned(), "[1".to_owned())]);
-        assert_eq!(Origin::of_header(Some(&foreign)), Origin::default());
+        assert_eq!(Origin::of_header(Some(&foreign)), nothing);
+        // of a version without a digest
+        let old = HashMap::from([(HEADER.to_owned(), r#"{"fold":"eth"}"#.to_owned())]);
+        let eth = Origin::from_iter([("fold", "eth")]);
+        assert_eq!(Origin::of_header(Some(&old)), (eth, None));
     }
 }

@@ -380,6 +380,7 @@ impl Trainer {
                 loss: self.progress.loss_sum / steps_per_epoch as f64,
                 batches: steps_per_epoch,
                 seconds: self.progress.seconds,
+                validation: None,
             };
             (self.progress.loss_sum, self.progress.seconds) = (0.0, 0.0);
             report

@@ -32,4 +32,7 @@ pub struct EpochReport {
     pub batches: usize,
     /// Seconds it took.
     pub seconds: f64,
+    /// Error on validation windows, metres, where somebody measured it; the trainer does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub validation: Option<f64>,
 }

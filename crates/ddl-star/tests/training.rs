@@ -5,8 +5,10 @@
 use ddl_data::{Dataset, Window, WindowRule};
 use ddl_star::{
     ComputeDevice, DeviceChoice, Origin, StarConfig, StarError, StarNetwork, Trainer,
-    TrainingConfig, Variant, load_parameters, save_parameters,
+    TrainingConfig, Variant, load_parameters, numbers_digest, save_parameters,
 };
+use safetensors::SafeTensors;
+use safetensors::tensor::TensorView;
 use tch::Tensor;
 
 fn cpu() -> ComputeDevice {
@@ -184,6 +186,28 @@ fn a_run_stopped_anywhere_and_resumed_gives_the_same_weights() {
     }
 }
 
+/// The file with its tensors changed, and the sum of what they are then.
+fn forged(whole: &[u8], change: impl Fn(&mut String, &mut Vec<u8>)) -> Vec<u8> {
+    let file = SafeTensors::deserialize(whole).unwrap();
+    let mut tensors: Vec<_> = file
+        .iter()
+        .map(|(name, view)| {
+            let (mut name, mut bytes) = (name.to_owned(), view.data().to_vec());
+            change(&mut name, &mut bytes);
+            (name, view.dtype(), view.shape().to_vec(), bytes)
+        })
+        .collect();
+    tensors.sort_by(|a, b| a.0.cmp(&b.0));
+    let views = || {
+        tensors.iter().map(|(name, dtype, shape, bytes)| {
+            let view = TensorView::new(*dtype, shape.clone(), bytes).unwrap();
+            (name.as_str(), view)
+        })
+    };
+    let header = origin().to_header(&numbers_digest(views()));
+    safetensors::serialize(views(), Some(header)).unwrap()
+}
+
 #[test]
 fn weights_survive_the_file_and_broken_files_are_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -227,20 +251,22 @@ fn weights_survive_the_file_and_broken_files_are_refused() {
         "a file of another program",
         "its fold is nothing, not corridor",
     );
-    let header = whole.iter().position(|&byte| byte == b'}').unwrap();
-    let name = b"fusion_layer.bias";
-    let at = whole[header..]
-        .windows(name.len())
-        .position(|bytes| bytes == name)
-        .unwrap()
-        + header;
-    let mut renamed = whole.clone();
-    renamed[at] = b'x';
+    let mut turned = whole.clone();
+    let last = turned.len() - 4;
+    turned[last] ^= 1;
+    std::fs::write(&broken, &turned).unwrap();
+    refuse("a bit that turned", "the SHA-256 of its numbers");
+    // What was meant, and carries the right sum.
+    let renamed = forged(&whole, |name, _| {
+        if name == "fusion_layer.bias" {
+            *name = "xusion_layer.bias".to_owned();
+        }
+    });
     std::fs::write(&broken, &renamed).unwrap();
     refuse("another name", "lacks the tensor fusion_layer.bias");
-    let mut poisoned = whole.clone();
-    let last = poisoned.len() - 4;
-    poisoned[last..].copy_from_slice(&f32::NAN.to_le_bytes());
+    let poisoned = forged(&whole, |_, bytes| {
+        bytes[..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    });
     std::fs::write(&broken, &poisoned).unwrap();
     refuse("not a number", "NaN or infinite");
 

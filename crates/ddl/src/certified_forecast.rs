@@ -17,6 +17,23 @@ use ddl_star::{StarConfig, Variant};
 ///
 /// # Shapes
 /// One certificate for each pedestrian and hypothesis, `[N][K]`, of 12 steps each.
+///
+/// # Examples
+/// ```
+/// use ddl::data::{PedestrianId, Window};
+/// use ddl::{BuiltinModel, Ddl, DeviceChoice};
+///
+/// let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
+/// let walk = (0..8).map(|t| [0.5 * f64::from(t), 0.0]).collect(); // metres, 0.4 s apart
+/// let window = Window::new("yard", 0, 1, vec![PedestrianId(1)], vec![walk])?;
+/// let certified = model.forecast_certified(&[window])?.remove(0);
+/// assert_eq!(certified.certificates.len(), 20);
+/// let certificate = certified.certificate(0, 0); // the first pedestrian, the likeliest goal
+/// certificate.holds()?;
+/// let distances: Vec<f64> = certificate.potentials().collect(); // metres, 13 of them
+/// assert!(distances.is_sorted_by(|before, after| after <= before));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct CertifiedForecast {

@@ -41,6 +41,22 @@ pub enum DdlError {
         "validation = {0} is not allowed: a share of the recordings' time, at least 0, below 1"
     )]
     Validation(f64),
+    /// Early stopping has nothing to measure epochs on.
+    #[error(
+        "no windows of 20 steps to validate on at the ends of the recordings; keep a larger share for validation, or whole recordings"
+    )]
+    NothingToValidateOn,
+    /// Early stopping without validation, or without patience.
+    #[error(
+        "a patience of {patience} epochs with {validation} of the recordings' time for validation is not allowed: at least 1 epoch, \
+         and a share above 0 or whole recordings to measure epochs on"
+    )]
+    Patience {
+        /// Epochs to wait.
+        patience: usize,
+        /// Share of the time kept.
+        validation: f64,
+    },
     /// The share of the retrieved goals beside the proposed ones is no share.
     #[error("retrieved_share = {0} is not allowed: 0 to 1")]
     RetrievedShare(f64),

@@ -8,6 +8,7 @@ use crate::published::Published;
 use crate::result_rows::{Forecasted, ResultRows};
 use crate::straight_lines::straight_lines;
 use crate::test_set::TestSet;
+use crate::training_words;
 use ddl_data::{Dataset, Window};
 use ddl_eval::baseline::WeightedGoals;
 use ddl_eval::{Forecast, ForecastError, Forecaster as _, Moment, Protocol, ResultRow, gallery};
@@ -53,7 +54,7 @@ pub struct EvaluationProgress {
 }
 
 /// What an evaluation gives.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Evaluation {
     /// The numbers, each with its conditions.
@@ -132,10 +133,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             .filter(|p| !p.shows_future() && self.asked(*p))
             .collect();
         let Some(&first) = protocols.first() else {
-            return Ok(Evaluation {
-                rows: Vec::new(),
-                moments: Vec::new(),
-            });
+            return Ok(Evaluation::default());
         };
         let model = self.model;
         let manners = Manner::all(model, &self.request.protocols);
@@ -201,7 +199,8 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 let recipe = format!("goals {}", model.goal_model().words());
                 forecasted.push(Forecasted::lines_to(goal, recipe, lines));
             }
-            rows.extend(self.rows(protocol, "last epoch").of(&forecasted)?);
+            let selection = training_words::selection(model.config().patience);
+            rows.extend(self.rows(protocol, selection).of(&forecasted)?);
         }
         let moments = if self.asked(Protocol::Fair) {
             self.moments(&forecasts.model[0])?
@@ -218,9 +217,8 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             .headline_indices()
             .map(|index| (self.test.windows[index].clone(), forecasts[index].clone()))
             .unzip();
-        let fold = &self.model.config().data.fold;
         Ok(gallery::moments(
-            fold,
+            &self.test.fold,
             &self.model.name(),
             &windows,
             &forecasts,

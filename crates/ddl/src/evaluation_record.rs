@@ -1,6 +1,7 @@
 //! Which evaluation a run's `report.json` holds, so that a repeated one can be skipped.
 
 use crate::run_directory::{read_json, write_json};
+use crate::run_lock::RunLock;
 use crate::{Clearance, Ddl, DdlError, EvaluationRequest, RunDirectory};
 use ddl_eval::{Moment, Report};
 use serde::{Deserialize, Serialize};
@@ -66,6 +67,7 @@ pub fn save_evaluation(
             "has no directory of a run to keep results in; write them elsewhere (`Results::save`)",
         ));
     };
+    let _claimed = RunLock::wait(run.path())?;
     let record = record_file(run);
     if record.is_file() {
         // while the report is replaced, no record may vouch for it

@@ -4,7 +4,7 @@ use crate::DdlError;
 use crate::run_directory::write_atomically;
 use ddl_data::{Position, TIME_STEP, WINDOW, Window};
 use ddl_goal::ExpertLibrary;
-use ddl_star::Origin;
+use ddl_star::{Origin, check_numbers, numbers_digest};
 use safetensors::SafeTensors;
 use safetensors::tensor::{Dtype, TensorView};
 use std::io::Read as _;
@@ -14,7 +14,7 @@ const TRACKS: &str = "tracks";
 /// Bytes of a track: 20 positions of two f64.
 const TRACK_BYTES: usize = WINDOW * 2 * 8;
 /// Room for the header of the file.
-const HEADER_BYTES: usize = 1 << 20;
+const HEADER_BYTES: u64 = 1 << 20;
 
 /// The library of all walkers of the training windows.
 ///
@@ -39,8 +39,8 @@ pub(crate) fn save(library: &ExpertLibrary, origin: &Origin, path: &Path) -> Res
     let shape = vec![library.len(), WINDOW, 2];
     let broken = |error: safetensors::SafeTensorError| DdlError::run(path, error.to_string());
     let view = TensorView::new(Dtype::F64, shape, &bytes).map_err(broken)?;
-    let file =
-        safetensors::serialize([(TRACKS, view)], Some(origin.to_header())).map_err(broken)?;
+    let header = origin.to_header(&numbers_digest([(TRACKS, view.clone())]));
+    let file = safetensors::serialize([(TRACKS, view)], Some(header)).map_err(broken)?;
     write_atomically(path, &file)
 }
 
@@ -50,10 +50,12 @@ pub(crate) fn save(library: &ExpertLibrary, origin: &Origin, path: &Path) -> Res
 /// When the file is broken, or belongs to another run.
 pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<ExpertLibrary, DdlError> {
     // Nothing more is read, and no room made, than the library of the run takes.
-    let most = (tracks * TRACK_BYTES + HEADER_BYTES) as u64;
+    let most = (tracks as u64)
+        .saturating_mul(TRACK_BYTES as u64)
+        .saturating_add(HEADER_BYTES);
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(|error| DdlError::io(path, error))?;
-    file.take(most + 1)
+    file.take(most.saturating_add(1))
         .read_to_end(&mut bytes)
         .map_err(|error| DdlError::io(path, error))?;
     if bytes.len() as u64 > most {
@@ -68,7 +70,8 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         DdlError::run(path, problem)
     };
     let (_, header) = SafeTensors::read_metadata(&bytes).map_err(broken)?;
-    if let Some(difference) = Origin::of_header(header.metadata().as_ref()).difference(origin) {
+    let (of_file, digest) = Origin::of_header(header.metadata().as_ref());
+    if let Some(difference) = of_file.difference(origin) {
         return Err(DdlError::run(
             path,
             format!(
@@ -78,6 +81,7 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         ));
     }
     let file = SafeTensors::deserialize(&bytes).map_err(broken)?;
+    check_numbers(&file, digest.as_deref()).map_err(|problem| DdlError::run(path, problem))?;
     let view = file
         .tensor(TRACKS)
         .map_err(|error| DdlError::run(path, error.to_string()))?;

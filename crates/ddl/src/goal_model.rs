@@ -4,7 +4,7 @@ use crate::model_source::ModelSource;
 use crate::packed_model::{self, Unpacked};
 use crate::run_config::RunConfig;
 use crate::run_directory::RunDirectory;
-use crate::{DdlError, GoalRecipe, experts, goals, views};
+use crate::{DdlError, GoalRecipe, enough_weights, experts, goals, views};
 use ddl_data::{Position, WINDOW, Window};
 use ddl_eval::ForecastError;
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
@@ -13,6 +13,21 @@ use rayon::prelude::*;
 use std::path::Path;
 
 /// Estimates where the walkers of a window are going, from the 8 observed frames and nothing else.
+///
+/// # Examples
+/// ```
+/// use ddl::data::{PedestrianId, Window};
+/// use ddl::{BuiltinModel, DeviceChoice, GoalModel, ModelSource};
+///
+/// let source = ModelSource::Builtin(BuiltinModel::default());
+/// let model = GoalModel::open(&source, DeviceChoice::Cpu)?;
+/// let walk = (0..8).map(|t| [0.5 * f64::from(t), 0.0]).collect(); // metres, 0.4 s apart
+/// let window = Window::new("yard", 0, 1, vec![PedestrianId(1)], vec![walk])?;
+/// let goals = model.goals(&[window])?.remove(0).remove(0);
+/// assert_eq!(goals.goals().len(), 20);
+/// assert!((goals.weights().iter().sum::<f64>() - 1.0).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct GoalModel {
     source: ModelSource,
@@ -74,6 +89,8 @@ impl GoalModel {
         let origin = match &config.goals.proposal {
             None => GoalOrigin::Retrieved(estimator),
             Some(recipe) => {
+                recipe.network.check()?;
+                enough_weights::require(&run.proposal(), recipe.network.least_numbers())?;
                 let network =
                     ProposalNetwork::new(recipe.network.clone(), recipe.training.seed, device)?;
                 load_parameters(

@@ -4,6 +4,8 @@ mod baselines;
 mod builtin_model;
 mod certified_forecast;
 mod clearance;
+mod early_stopping;
+mod enough_weights;
 mod error;
 mod evaluation;
 mod evaluation_record;
@@ -19,12 +21,14 @@ mod machine;
 mod manner;
 mod model;
 mod model_source;
+mod network_forecast;
 mod packed_model;
 mod published;
 mod result_rows;
 mod results;
 mod run_config;
 mod run_directory;
+mod run_lock;
 mod sha256;
 mod straight_lines;
 mod straight_walk;
@@ -47,6 +51,7 @@ pub use certified_forecast::{CertificateError, CertifiedForecast};
 pub use clearance::Clearance;
 pub use ddl_eval::{Forecast, Forecaster, Protocol};
 pub use ddl_star::{DeviceChoice, Precision, Variant};
+pub use early_stopping::best_epoch;
 pub use error::DdlError;
 pub use evaluation::{
     Evaluation, EvaluationProgress, EvaluationRequest, EvaluationSplit, evaluate,
@@ -64,3 +69,12 @@ pub use results::Results;
 pub use run_config::{FORMAT, RunConfig, TrainingData};
 pub use run_directory::{RunDirectory, write_atomically};
 pub use training::{TrainingProgress, TrainingRequest, TrainingStage, TrainingStep, train};
+
+/// The examples of the guide, run as those of this documentation are.
+#[cfg(doctest)]
+mod guide {
+    #[doc = include_str!("../../../docs/guide/src/rust.md")]
+    mod rust {}
+    #[doc = include_str!("../../../docs/guide/src/extending.md")]
+    mod extending {}
+}

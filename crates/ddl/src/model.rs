@@ -6,6 +6,7 @@ use crate::certified_forecast::{self, CertifiedForecast, Walked};
 use crate::clearance::Clearance;
 use crate::goals;
 use crate::model_source::ModelSource;
+use crate::network_forecast;
 use crate::run_config::RunConfig;
 use crate::run_directory::RunDirectory;
 use crate::straight_walk;
@@ -14,15 +15,12 @@ use crate::{DdlError, GoalModel};
 use ddl_data::{Position, Window};
 use ddl_eval::{Forecast, ForecastError, Forecaster};
 use ddl_goal::GoalSet;
-use ddl_star::{ComputeDevice, Noise, Precision, StarNetwork, StepRule, WindowRollout};
+use ddl_star::{ComputeDevice, Precision, StarNetwork};
 
 /// The name of the model in tables.
 pub(crate) const NAME: &str = "DDL";
 /// What is different without the tracks that goals are retrieved from.
 pub(crate) const WITHOUT_LIBRARY: &str = "without an expert library";
-
-/// Hypotheses of the variant without goals: as many noise vectors.
-const NOISE_HYPOTHESES: usize = 20;
 
 /// A trained model, ready to forecast.
 ///
@@ -37,13 +35,18 @@ const NOISE_HYPOTHESES: usize = 20;
 /// [`forecast_certified`](Self::forecast_certified) hands out the evidence.
 ///
 /// # Examples
-/// ```no_run
-/// use ddl::{Ddl, DeviceChoice, Forecaster as _};
-/// # fn example(window: &ddl::data::Window) -> Result<(), Box<dyn std::error::Error>> {
-/// let model = Ddl::load("runs/eth".as_ref(), DeviceChoice::Cpu)?;
-/// let forecast = model.forecast(window)?;
+/// ```
+/// use ddl::data::{PedestrianId, Window};
+/// use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _};
+///
+/// // Or `Ddl::load`, of a run of your own.
+/// let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
+/// let walk = (0..8).map(|t| [0.5 * f64::from(t), 0.0]).collect(); // metres, 0.4 s apart
+/// let window = Window::new("yard", 0, 1, vec![PedestrianId(1)], vec![walk])?;
+/// let forecast = model.forecast(&window)?;
 /// let one = forecast.hypothesis(0, forecast.representative(0)); // 12 positions, metres
-/// # Ok(()) }
+/// assert!(one[11][0] > 3.5, "further on");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
 pub struct Ddl {
@@ -148,7 +151,7 @@ impl Ddl {
     ) -> Result<Vec<CertifiedForecast>, ForecastError> {
         certified_forecast::ensure_flow(self.config().star.variant)?;
         let goals = self.goals.goals(windows)?;
-        self.walked(windows, goals, Gait::Stable(self.clearance))?
+        network_forecast::walked(&self.network, windows, goals, Gait::Stable(self.clearance))?
             .map(Walked::certified)
             .collect()
     }
@@ -157,6 +160,9 @@ impl Ddl {
     /// ([`GoalSet::central`]), at constant speed. The forecasting network has no part in it: what it knows is how people go to a goal that is sure
     /// (`docs/accuracy.md`). So all variants with goals go the same way; that without makes its noise samples. The flow is as stable as those to the
     /// goals, and `Forecast::certified` holds the verdict of each walk.
+    ///
+    /// # Shapes
+    /// A forecast a window: one hypothesis of 12 positions (m) a pedestrian.
     ///
     /// # Errors
     /// As [`forecast_all`](Forecaster::forecast_all).
@@ -192,7 +198,8 @@ impl Ddl {
         clearance: Option<Clearance>,
     ) -> Result<Vec<Forecast>, ForecastError> {
         if !self.config().star.variant.uses_goal() {
-            return self.forecast_without_goals(windows);
+            let seed = self.config().training.seed;
+            return network_forecast::without_goals(&self.network, seed, windows);
         }
         self.straight(windows, sets, clearance)
             .map(Walked::forecast)
@@ -230,60 +237,8 @@ impl Ddl {
         sets: Vec<Vec<GoalSet>>,
         gait: Gait,
     ) -> Result<Vec<Forecast>, ForecastError> {
-        if !self.config().star.variant.uses_goal() {
-            return self.forecast_without_goals(windows);
-        }
-        self.walked(windows, sets, gait)?
-            .map(Walked::forecast)
-            .collect()
-    }
-
-    /// The network's rollouts to all goals; each becomes a forecast when it is its turn, so that the
-    /// certificates of many windows need not be kept.
-    fn walked<'a>(
-        &'a self,
-        windows: &'a [Window],
-        sets: Vec<Vec<GoalSet>>,
-        gait: Gait,
-    ) -> Result<impl Iterator<Item = Walked<'a>>, ForecastError> {
-        let goals: Vec<Vec<Vec<Position>>> = sets
-            .iter()
-            .map(|sets| sets.iter().map(|set| set.goals().to_vec()).collect())
-            .collect();
-        let rollouts = self
-            .network
-            .forecast_windows(windows, &goals, Noise::Expected, gait.rule())
-            .map_err(|error| ForecastError::model(NAME, error))?;
-        let shaped = rollouts.into_iter().zip(windows).zip(sets);
-        Ok(shaped.map(move |((rollout, window), sets)| Walked {
-            config: &self.config().star,
-            gait,
-            window,
-            hypotheses: rollout.hypotheses,
-            rolled_out: rollout.positions,
-            factors: rollout.factors,
-            weights: sets.iter().flat_map(GoalSet::weights).copied().collect(),
-            goals: sets.iter().flat_map(GoalSet::goals).copied().collect(),
-        }))
-    }
-
-    /// Plain STAR: noise samples, all equally likely.
-    fn forecast_without_goals(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
-        let noise = Noise::Draws {
-            count: NOISE_HYPOTHESES,
-            seed: self.config().training.seed,
-        };
-        self.network
-            .forecast_windows(
-                windows,
-                &unused_goals(windows),
-                noise,
-                StepRule::StableEuler,
-            )
-            .map_err(|error| ForecastError::model(NAME, error))?
-            .into_iter()
-            .map(equally_likely)
-            .collect()
+        let seed = self.config().training.seed;
+        network_forecast::towards(&self.network, seed, windows, sets, gait)
     }
 }
 
@@ -305,21 +260,4 @@ impl Forecaster for Ddl {
         let goals = self.goals.goals(windows)?;
         self.forecast_towards(windows, goals, Gait::Stable(self.clearance))
     }
-}
-
-/// A rollout without goals as a forecast.
-pub(crate) fn equally_likely(rollout: WindowRollout) -> Result<Forecast, ForecastError> {
-    Ok(Forecast::equally_likely(
-        rollout.pedestrians,
-        rollout.hypotheses,
-        rollout.positions,
-    )?)
-}
-
-/// A goal for everybody, for the variant that reads none.
-pub(crate) fn unused_goals(windows: &[Window]) -> Vec<Vec<Vec<Position>>> {
-    windows
-        .iter()
-        .map(|window| vec![vec![[0.0; 2]]; window.len()])
-        .collect()
 }

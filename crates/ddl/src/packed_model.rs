@@ -218,6 +218,19 @@ pub(crate) fn unpack(
             "does not fit the networks it describes ({error}); pack its run anew"
         ))
     };
+    // Networks are made only of sizes that the file itself has weights for.
+    for (tensors, least) in [
+        (&of_network, config.star.least_numbers()),
+        (&of_proposal, recipe.network.least_numbers()),
+    ] {
+        let bytes: usize = tensors.iter().map(|tensor| tensor.bytes.len()).sum();
+        let numbers = bytes as u64 / 2;
+        if numbers < least {
+            return Err(source.wrong(format!(
+                "does not fit the networks it describes ({numbers} weights where they have more than {least}); pack its run anew"
+            )));
+        }
+    }
     let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
     from_half(network.parameters(), &of_network).map_err(unfit)?;
     let proposal = ProposalNetwork::new(recipe.network.clone(), recipe.training.seed, device)?;

@@ -4,6 +4,7 @@ use crate::DdlError;
 use crate::certified_forecast::Walked;
 use crate::goals;
 use crate::model::{self, Ddl};
+use crate::network_forecast;
 use crate::walk::Gait;
 use ddl_data::{Position, Window};
 use ddl_eval::{Forecast, ForecastError, Scores};
@@ -43,6 +44,13 @@ impl Published {
                 run.path(),
                 "keeps the weights of its last epoch alone, and `published` chooses among several; train it \
                  anew without --last-epoch-only",
+            ));
+        }
+        if config.patience.is_some() {
+            return Err(DdlError::run(
+                run.path(),
+                "keeps the weights of its best epoch alone, chosen on its validation part, and `published` chooses among several; train it anew with \
+                 --patience 0",
             ));
         }
         let goals = goals::nearest_true_end(estimator, windows)?;
@@ -89,7 +97,7 @@ impl Published {
         rolled
             .map(|((rollout, window), goals)| {
                 if !config.variant.uses_goal() {
-                    return model::equally_likely(rollout);
+                    return network_forecast::equally_likely(rollout);
                 }
                 let walked = Walked {
                     config,

@@ -4,7 +4,7 @@ use crate::DdlError;
 use crate::model::{self, Ddl};
 use crate::test_set::TestSet;
 use crate::training_words::{recipe, subset};
-use ddl_data::{Window, WindowRule};
+use ddl_data::{Convention, Window, WindowRule};
 use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, baseline};
 
 /// Forecasts of one forecaster, one a window of the test set.
@@ -100,13 +100,38 @@ impl ResultRows<'_> {
 
     /// Conditions of what is not trained.
     fn conditions(&self, rule: WindowRule) -> Conditions {
-        let data = &self.model.config().data;
         Conditions {
             device: "cpu".to_owned(),
             commit: self.commit.to_owned(),
             test_subset: self.test.subset.clone(),
-            ..Conditions::new(data.convention, rule, self.protocol, &*data.fold, "")
+            ..Conditions::new(
+                self.test.convention,
+                rule,
+                self.protocol,
+                &*self.test.fold,
+                "",
+            )
         }
+    }
+
+    /// What else decides the model's forecasts.
+    fn besides(&self) -> String {
+        let rounded = match self.model.run() {
+            Some(_) => "",
+            None => "; weights rounded to 16 bits",
+        };
+        let data = &self.model.config().data;
+        let (convention, fold) = (data.convention, &data.fold);
+        if convention == Convention::Own {
+            // Models of different recordings are told apart.
+            let (count, sha256) = (data.recordings.len(), data.sha256.get(..12));
+            let sha256 = sha256.unwrap_or_default();
+            return format!("{rounded}; trained on {count} own recordings ({sha256})");
+        }
+        if convention == self.test.convention {
+            return rounded.to_owned();
+        }
+        format!("{rounded}; trained on `{convention}` without {fold}")
     }
 
     fn of_the_model(&self, plain: Conditions, goals: &str) -> Conditions {
@@ -119,10 +144,7 @@ impl ResultRows<'_> {
             selection: Some(self.selection.to_owned()),
             device: self.model.computed_on(),
             training_subset: subset(training),
-            recipe: Some(match self.model.run() {
-                Some(_) => recipe(training, goals),
-                None => recipe(training, goals) + "; weights rounded to 16 bits",
-            }),
+            recipe: Some(recipe(training, goals) + &self.besides()),
             ..plain
         }
     }

@@ -63,7 +63,7 @@ impl Results {
             let epochs = run.metrics()?.into_iter().map(|epoch| EpochPoint {
                 epoch: epoch.epoch,
                 loss: epoch.loss,
-                validation: None,
+                validation: epoch.validation,
                 seconds: epoch.seconds,
             });
             results.curves.push(TrainingCurve {

@@ -25,6 +25,10 @@ pub struct RunConfig {
     pub data: TrainingData,
     /// Weights are kept after every so many epochs.
     pub keep_every: usize,
+    /// Training ends early when the validation error has not fallen for so many epochs, and the best epoch is the model; `None`: all epochs,
+    /// and the last is the model.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub patience: Option<usize>,
     /// Commit of the program that began it, as far as known.
     pub commit: String,
     /// libtorch that it was begun with.
@@ -38,9 +42,13 @@ impl RunConfig {
     #[must_use]
     pub fn network_origin(&self) -> Origin {
         match self.training.objective {
-            Objective::NextStep => self.origin_of(&["format", "star", "training", "data"]),
+            Objective::NextStep => {
+                self.origin_of(&["format", "star", "training", "data", "patience"])
+            }
             // Who has learned walks to the proposed goals has learned from these.
-            Objective::Walk => self.origin_of(&["format", "star", "training", "data", "goals"]),
+            Objective::Walk => {
+                self.origin_of(&["format", "star", "training", "data", "goals", "patience"])
+            }
         }
     }
 
@@ -53,7 +61,15 @@ impl RunConfig {
     /// What the run is of: everything but commit, libtorch and device, which may change while it is trained.
     #[must_use]
     pub fn origin(&self) -> Origin {
-        self.origin_of(&["format", "star", "training", "goals", "data", "keep_every"])
+        self.origin_of(&[
+            "format",
+            "star",
+            "training",
+            "goals",
+            "data",
+            "keep_every",
+            "patience",
+        ])
     }
 
     /// Some parts of `config.json`, each leaf under its path, such as `training.seed`.
@@ -103,6 +119,10 @@ pub struct TrainingData {
     pub walkers: usize,
     /// SHA-256 of their positions.
     pub sha256: String,
+    /// SHA-256 of the positions of each own recording that was trained or validated on, whatever it is called: none of them is a test. Empty for
+    /// recordings whose folds are known.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub recordings: Vec<String>,
 }
 
 #[cfg(test)]
@@ -128,8 +148,10 @@ mod tests {
                 windows: 3,
                 walkers: 9,
                 sha256: "00".to_owned(),
+                recordings: Vec::new(),
             },
             keep_every: 1,
+            patience: None,
             commit: commit.to_owned(),
             libtorch: "2".to_owned(),
             device: "cpu".to_owned(),

@@ -13,17 +13,25 @@
 //! | `report.json` | results of the evaluation |
 //! | `moments.json` | moments of the evaluation, to look at |
 //! | `evaluation.json` | which evaluation that was |
+//! | `.lock` | empty; held by the process that trains, or writes results |
 //!
 //! Every file is written under a temporary name and renamed.
 
 use crate::run_config::{FORMAT, RunConfig};
+use crate::run_lock::RunLock;
 use crate::{BuiltinModel, DdlError, GoalRecipe};
 use ddl_eval::Moment;
 use ddl_star::EpochReport;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
-use std::io::{ErrorKind, Write as _};
+use std::io::{ErrorKind, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+/// Heads the name of a file that is being written.
+const WRITING: &str = ".writing-";
+
+/// No JSON file of a run is as long: a moment takes some kilobytes, a configuration two.
+const MOST_JSON_BYTES: u64 = 1 << 28;
 
 /// A run under way is saved at least this often.
 pub(crate) const SAVE_EVERY: Duration = Duration::from_secs(30);
@@ -156,26 +164,51 @@ impl RunDirectory {
         Ok(epochs)
     }
 
-    /// Claims the directory for a run: makes it, or checks that what it holds is the same run.
+    /// Makes the weights kept after `epoch` those of the model, and removes those of other epochs.
     ///
     /// # Errors
-    /// [`DdlError::Run`] when another run lives there.
-    pub(crate) fn claim(&self, config: &RunConfig) -> Result<(), DdlError> {
-        let epochs = self.0.join("epochs");
-        std::fs::create_dir_all(&epochs).map_err(|error| DdlError::io(epochs, error))?;
-        if !self.config_file().exists() {
-            return write_json(&self.config_file(), config);
+    /// When a file cannot be read, written or removed.
+    pub(crate) fn take_epoch(&self, epoch: usize) -> Result<(), DdlError> {
+        let best = self.epoch(epoch);
+        if !best.is_file() {
+            let problem = "is not there, but it is the best epoch by metrics.jsonl; put the file back, or remove the directory and train anew";
+            return Err(DdlError::run(&best, problem));
         }
-        match self.config()?.origin().difference(&config.origin()) {
-            None => Ok(()),
-            Some(difference) => {
-                let problem = format!(
-                    "holds another run: its {difference} as asked for; choose another directory, or \
-                     remove this one"
-                );
-                Err(DdlError::run(&self.0, problem))
+        let weights = std::fs::read(&best).map_err(|error| DdlError::io(&best, error))?;
+        for other in self.kept_epochs()? {
+            if other != epoch {
+                let file = self.epoch(other);
+                std::fs::remove_file(&file).map_err(|error| DdlError::io(&file, error))?;
             }
         }
+        // Last: with a model the run is finished, and nothing of this is done again.
+        write_atomically(&self.model(), &weights)
+    }
+
+    /// Claims the directory for a run: makes it, or checks that what it holds is the same run. It is claimed until what is
+    /// returned is dropped, or the process ends.
+    ///
+    /// # Errors
+    /// [`DdlError::Run`] when another run lives there, or another process works there.
+    pub(crate) fn claim(&self, config: &RunConfig) -> Result<RunLock, DdlError> {
+        let epochs = self.0.join("epochs");
+        std::fs::create_dir_all(&epochs).map_err(|error| DdlError::io(&epochs, error))?;
+        let lock = RunLock::take(&self.0)?;
+        let has_config = self.config_file().exists();
+        if has_config && let Some(difference) = self.config()?.origin().difference(&config.origin())
+        {
+            let problem = format!(
+                "holds another run: its {difference} as asked for; choose another directory, or remove this one"
+            );
+            return Err(DdlError::run(&self.0, problem));
+        }
+        for folder in [&self.0, &epochs] {
+            remove_half_written(folder);
+        }
+        if !has_config {
+            write_json(&self.config_file(), config)?;
+        }
+        Ok(lock)
     }
 
     /// Reads `config.json`.
@@ -202,14 +235,21 @@ impl RunDirectory {
             };
             return Err(DdlError::run(&self.0, problem));
         }
+        let damaged = |error: serde_json::Error| {
+            let problem = format!(
+                "is damaged ({error}); put the file back as it was, or remove the directory and train anew"
+            );
+            DdlError::run(&path, problem)
+        };
         // The layout first: what another one holds may not be understood.
-        let Layout { format } = read_json(&path)?;
+        let text = read_text(&path)?;
+        let Layout { format } = serde_json::from_str(&text).map_err(damaged)?;
         if format != FORMAT {
             let problem =
                 format!("has layout {format}, this program reads {FORMAT}; train it anew");
             return Err(DdlError::run(&self.0, problem));
         }
-        read_json(&path)
+        serde_json::from_str(&text).map_err(damaged)
     }
 
     /// Reads `metrics.jsonl`; empty when no epoch is done.
@@ -221,8 +261,8 @@ impl RunDirectory {
         if !path.is_file() {
             return Ok(Vec::new());
         }
-        let text = std::fs::read_to_string(&path).map_err(|error| DdlError::io(&path, error))?;
-        text.lines()
+        read_text(&path)?
+            .lines()
             .enumerate()
             .map(|(index, line)| {
                 serde_json::from_str(line)
@@ -231,6 +271,7 @@ impl RunDirectory {
             .collect()
     }
 
+    /// Writes `metrics.jsonl`.
     pub(crate) fn write_metrics(&self, epochs: &[EpochReport]) -> Result<(), DdlError> {
         let mut text = String::new();
         for epoch in epochs {
@@ -241,9 +282,33 @@ impl RunDirectory {
     }
 }
 
+/// Removes what a killed process was writing. Only for who has claimed the folder; what cannot be removed does no harm.
+fn remove_half_written(folder: &Path) {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    for entry in entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(WRITING)) {
+        let _ = std::fs::remove_file(entry.path());
+    }
+}
+
+/// Reads a text file of a run, which must not be endless.
+fn read_text(path: &Path) -> Result<String, DdlError> {
+    let io = |error| DdlError::io(path, error);
+    let file = std::fs::File::open(path).map_err(io)?;
+    let mut text = String::new();
+    file.take(MOST_JSON_BYTES + 1)
+        .read_to_string(&mut text)
+        .map_err(io)?;
+    if text.len() as u64 > MOST_JSON_BYTES {
+        let problem =
+            format!("is longer than {MOST_JSON_BYTES} bytes, and no such file of a run is");
+        return Err(DdlError::run(path, problem));
+    }
+    Ok(text)
+}
+
 /// Reads a JSON file.
 pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, DdlError> {
-    let text = std::fs::read_to_string(path).map_err(|error| DdlError::io(path, error))?;
+    let text = read_text(path)?;
     serde_json::from_str(&text).map_err(|error| {
         DdlError::run(
             path,
@@ -282,7 +347,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), DdlError> {
         return Err(io(std::io::Error::new(ErrorKind::NotFound, problem)));
     }
     let mut builder = tempfile::Builder::new();
-    let builder = builder.prefix(".writing-");
+    let builder = builder.prefix(WRITING);
     // Temporary files are private by default; results are as readable as the user's other files.
     #[cfg(unix)]
     let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));

@@ -1,9 +1,9 @@
 //! The windows a model is measured on: the test windows of its fold under the headline rule and the
 //! one printed beside it, or the validation part of its training recordings.
 
-use crate::training::digest;
+use crate::training::{digest, digest_of_recording};
 use crate::{DdlError, EvaluationSplit, GoalModel};
-use ddl_data::{Convention, Dataset, Fold, PedestrianId, Window, WindowRule};
+use ddl_data::{Convention, Dataset, Fold, PedestrianId, Recording, Window, WindowRule};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -14,6 +14,9 @@ const SUBSET_SEED: u64 = 0;
 /// Test windows with the rules they belong to. A window that both rules have is forecast once.
 #[derive(Debug)]
 pub(crate) struct TestSet {
+    pub(crate) convention: Convention,
+    /// Of which fold these are, as results name it.
+    pub(crate) fold: String,
     pub(crate) windows: Vec<Window>,
     /// Each rule with the indices of its windows; the headline rule first.
     pub(crate) rules: Vec<(WindowRule, Vec<usize>)>,
@@ -34,6 +37,9 @@ impl TestSet {
     ) -> Result<Self, DdlError> {
         let data = &goals.config().data;
         let wrong = |problem: String| Err(goals.source().wrong(problem));
+        if dataset.convention() == Convention::Own && on == EvaluationSplit::Test {
+            return Self::of_own(goals, dataset, walkers);
+        }
         if data.convention != dataset.convention() {
             return wrong(format!(
                 "was trained on `{}` data and cannot be measured on `{}` data",
@@ -57,12 +63,59 @@ impl TestSet {
                             .to_owned(),
                     );
                 }
-                Ok(Self::validation(&fold, rule, fraction, walkers))
+                Ok(Self::validation(&fold, data.convention, (rule, fraction), walkers))
             }
             EvaluationSplit::Validation => {
                 wrong("kept nothing for validation; train it with --validation 0.2 or --validation-recordings".to_owned())
             }
         }
+    }
+
+    /// Somebody's own recordings: the one that the model was trained without, where it is there, else all of them.
+    ///
+    /// # Errors
+    /// When the model has learned from one of them, or nobody in them was seen for 20 steps.
+    fn of_own(
+        goals: &GoalModel,
+        dataset: &Dataset,
+        walkers: Option<usize>,
+    ) -> Result<Self, DdlError> {
+        let data = &goals.config().data;
+        let all = dataset.recordings();
+        let left_out = all
+            .iter()
+            .filter(|r| data.convention == Convention::Own && r.name() == data.fold);
+        let mut tested: Vec<&Recording> = left_out.collect();
+        if tested.is_empty() {
+            tested = all.iter().collect();
+        }
+        let known = tested
+            .iter()
+            .filter(|recording| data.recordings.contains(&digest_of_recording(recording)));
+        let known: Vec<&str> = known.map(|recording| recording.name()).collect();
+        if !known.is_empty() {
+            return Err(goals.source().wrong(format!(
+                "was trained on {}; measure it on what it kept for validation, on other recordings, or on one that it is trained without (`ddl \
+                 train --convention own --fold NAME`)",
+                known.join(", ")
+            )));
+        }
+        let rule = dataset.convention().headline_rule();
+        let windows: Vec<Window> = tested.iter().flat_map(|r| r.windows(rule)).collect();
+        if windows.is_empty() {
+            return Err(goals.source().wrong(
+                "cannot be measured on these recordings: nobody in them was seen at 20 steps in a row",
+            ));
+        }
+        let names: Vec<&str> = tested.iter().map(|recording| recording.name()).collect();
+        let set = Self {
+            convention: dataset.convention(),
+            fold: names.join("+"),
+            rules: vec![(rule, (0..windows.len()).collect())],
+            windows,
+            subset: None,
+        };
+        Ok(set.at_most(walkers))
     }
 
     /// The fold's test windows, or a seeded part of them with about `walkers` walkers.
@@ -93,6 +146,8 @@ impl TestSet {
         }
         rules.reverse();
         Self {
+            convention,
+            fold: fold.name().to_owned(),
             windows,
             rules,
             subset: None,
@@ -103,13 +158,19 @@ impl TestSet {
     /// The last part of the fold's training recordings, on which choices may be made.
     pub(crate) fn validation(
         fold: &Fold<'_>,
-        rule: WindowRule,
-        fraction: f64,
+        convention: Convention,
+        (rule, fraction): (WindowRule, f64),
         walkers: Option<usize>,
     ) -> Self {
         let windows = fold.training_split(rule, fraction).validation;
         let rules = vec![(rule, (0..windows.len()).collect())];
+        let fold_name = match fold.name() {
+            Fold::WHOLE => convention.name(),
+            left_out => left_out,
+        };
         let part = Self {
+            convention,
+            fold: fold_name.to_owned(),
             windows,
             rules,
             subset: None,
@@ -166,7 +227,7 @@ impl TestSet {
     }
 
     /// A seeded part of the windows, in their order, with at least `walkers` walkers.
-    fn part(self, walkers: usize) -> Self {
+    fn part(mut self, walkers: usize) -> Self {
         let mut order: Vec<usize> = (0..self.windows.len()).collect();
         let mut rng = ChaCha8Rng::seed_from_u64(SUBSET_SEED);
         for last in (1..order.len()).rev() {
@@ -183,14 +244,13 @@ impl TestSet {
         }
         let mut new_index = vec![None; taken.len()];
         let mut windows = Vec::new();
-        for (index, window) in self.windows.into_iter().enumerate() {
+        for (index, window) in std::mem::take(&mut self.windows).into_iter().enumerate() {
             if taken[index] {
                 new_index[index] = Some(windows.len());
                 windows.push(window);
             }
         }
-        let rules = self
-            .rules
+        let rules = std::mem::take(&mut self.rules)
             .into_iter()
             .map(|(rule, indices)| {
                 (
@@ -206,6 +266,7 @@ impl TestSet {
             windows,
             rules,
             subset: None,
+            ..self
         }
     }
 }
@@ -215,7 +276,7 @@ fn rules(convention: Convention) -> Vec<WindowRule> {
     let beside = match convention {
         Convention::Star => Some(WindowRule::Complete),
         Convention::SocialGan => Some(WindowRule::SocialGan { min_pedestrians: 1 }),
-        Convention::Simulated => None,
+        Convention::Simulated | Convention::Own => None,
     };
     let headline = convention.headline_rule();
     [headline].into_iter().chain(beside).collect()

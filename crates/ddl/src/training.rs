@@ -1,13 +1,14 @@
 //! Training of one fold into a run directory, stopped and resumed at will.
 
+use crate::early_stopping::{EarlyStopping, best_epoch};
 use crate::run_config::{FORMAT, RunConfig, TrainingData};
 use crate::run_directory::{RunDirectory, SAVE_EVERY};
 use crate::{Ddl, DdlError, GoalModel, GoalRecipe, goal_training, sha256};
-use ddl_data::{Convention, Dataset, Window, WindowRule};
+use ddl_data::{Convention, Dataset, Fold, Recording, Window, WindowRule};
 use ddl_goal::RetrievalFrame;
 use ddl_star::{
-    ComputeDevice, DeviceChoice, LIBTORCH_VERSION, Objective, Origin, ProposalStep, StarConfig,
-    StarError, StarNetwork, StepReport, Trainer, TrainingConfig, save_parameters,
+    ComputeDevice, DeviceChoice, EpochReport, LIBTORCH_VERSION, Objective, Origin, ProposalStep,
+    StarConfig, StarError, StarNetwork, StepReport, Trainer, TrainingConfig, save_parameters,
 };
 use sha2::{Digest as _, Sha256};
 use std::ops::ControlFlow;
@@ -31,6 +32,9 @@ pub struct TrainingRequest {
     pub validation_recordings: Vec<String>,
     /// What the goals come from.
     pub goals: GoalRecipe,
+    /// End early when the validation error has not fallen for so many epochs, and take the best epoch for the model; `None`: all epochs, and the
+    /// last is the model.
+    pub patience: Option<usize>,
     /// Keep the weights of the last epoch alone, and not those of some 20 among which the protocol `published` chooses.
     pub last_epoch_only: bool,
     /// The last stage to train; a later call may go on.
@@ -105,6 +109,7 @@ pub fn train(
     if windows.is_empty() {
         return Err(StarError::NoTrainingWindows.into());
     }
+    ensure_patience(request, &fold, window_rule)?;
     ensure_enough_tracks(&request.goals, &windows)?;
     let run = &request.out;
     let config = RunConfig {
@@ -121,17 +126,23 @@ pub fn train(
             windows: windows.len(),
             walkers: windows.iter().map(Window::len).sum(),
             sha256: digest(&windows),
+            recordings: match dataset.convention() {
+                Convention::Own => learned_from(&fold).map(digest_of_recording).collect(),
+                _ => Vec::new(),
+            },
         },
-        keep_every: if request.last_epoch_only {
-            request.training.epochs
-        } else {
-            request.training.epochs.div_ceil(KEPT_EPOCHS)
+        keep_every: match (request.patience, request.last_epoch_only) {
+            // any of them may be the best
+            (Some(_), _) => 1,
+            (None, true) => request.training.epochs,
+            (None, false) => request.training.epochs.div_ceil(KEPT_EPOCHS),
         },
+        patience: request.patience,
         commit: request.commit.clone(),
         libtorch: LIBTORCH_VERSION.to_owned(),
         device: device.name().to_owned(),
     };
-    run.claim(&config)?;
+    let _claimed = run.claim(&config)?;
     goal_training::train(
         config.goals.proposal.as_ref(),
         &windows,
@@ -150,11 +161,36 @@ pub fn train(
         return Ok(());
     }
     let origin = config.network_origin();
-    let mut trainer = trainer(&config, windows, run, device)?;
+    let goals = GoalModel::of_run(run.clone(), config.clone(), device)?;
+    let early_stopping = EarlyStopping::of(&goals, &fold)?;
+    let mut trainer = trainer(&config, windows, &goals, device)?;
     if run.optimizer().is_file() {
         trainer.resume(&origin, &run.optimizer())?;
     }
-    run_epochs(&mut trainer, (run, &origin), config.keep_every, observe)
+    let kept = (config.keep_every, early_stopping.as_ref());
+    run_epochs(&mut trainer, (run, &origin), kept, observe)
+}
+
+/// Early stopping needs something to measure epochs on.
+fn ensure_patience(
+    request: &TrainingRequest,
+    fold: &Fold<'_>,
+    rule: WindowRule,
+) -> Result<(), DdlError> {
+    let (validation, Some(patience)) = (request.validation, request.patience) else {
+        return Ok(());
+    };
+    let measured = validation > 0.0 || !request.validation_recordings.is_empty();
+    if patience == 0 || !measured {
+        return Err(DdlError::Patience {
+            patience,
+            validation,
+        });
+    }
+    if fold.training_split(rule, validation).validation.is_empty() {
+        return Err(DdlError::NothingToValidateOn);
+    }
+    Ok(())
 }
 
 /// Evaluation runs the published estimator too, which needs as many tracks as it retrieves.
@@ -179,7 +215,7 @@ fn ensure_enough_tracks(goals: &GoalRecipe, windows: &[Window]) -> Result<(), Dd
 fn trainer(
     config: &RunConfig,
     windows: Vec<Window>,
-    run: &RunDirectory,
+    goals: &GoalModel,
     device: ComputeDevice,
 ) -> Result<Trainer, DdlError> {
     let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
@@ -187,7 +223,6 @@ fn trainer(
     Ok(match training.objective {
         Objective::NextStep => Trainer::new(network, windows, training)?,
         Objective::Walk => {
-            let goals = GoalModel::of_run(run.clone(), config.clone(), device)?;
             let with_future: Vec<Window> = windows.into_iter().filter(Window::has_future).collect();
             let lessons = goals.lessons(&with_future)?;
             Trainer::towards(network, with_future, lessons, training)?
@@ -195,19 +230,49 @@ fn trainer(
     })
 }
 
+/// The model is chosen by the record: with a hole in it, it would be chosen among some of the epochs.
+fn ensure_every_epoch_is_recorded(
+    epochs: &[EpochReport],
+    completed: usize,
+    run: &RunDirectory,
+) -> Result<(), DdlError> {
+    let recorded = |epoch: usize| {
+        let report = epochs.get(epoch - 1);
+        report.is_some_and(|report| report.epoch == epoch && report.validation.is_some())
+    };
+    match (1..=completed).find(|&epoch| !recorded(epoch)) {
+        None => Ok(()),
+        Some(epoch) => Err(DdlError::run(
+            run.path(),
+            format!(
+                "has no record of epoch {epoch} in metrics.jsonl, by which the best epoch is chosen; put the file back, or remove the directory and \
+                 train anew"
+            ),
+        )),
+    }
+}
+
 /// Trains to the end, saving what a later call needs to go on.
 fn run_epochs(
     trainer: &mut Trainer,
     (run, origin): (&RunDirectory, &Origin),
-    keep_every: usize,
+    (keep_every, early_stopping): (usize, Option<&EarlyStopping>),
     mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
 ) -> Result<(), DdlError> {
     let mut epochs = run.metrics()?;
     epochs.truncate(trainer.completed_epochs());
+    if early_stopping.is_some() {
+        ensure_every_epoch_is_recorded(&epochs, trainer.completed_epochs(), run)?;
+    }
     let mut saved = Instant::now();
-    while !trainer.is_finished() {
-        let step = trainer.step()?;
-        if let Some(epoch) = &step.finished_epoch {
+    let is_over =
+        |epochs: &[EpochReport]| early_stopping.is_some_and(|stopping| stopping.is_over(epochs));
+    while !trainer.is_finished() && !is_over(&epochs) {
+        let mut step = trainer.step()?;
+        if let Some(epoch) = &mut step.finished_epoch {
+            if let Some(stopping) = early_stopping {
+                epoch.validation = Some(stopping.min_ade(trainer.network())?);
+            }
             epochs.push(epoch.clone());
             if epoch.epoch % keep_every == 0 || trainer.is_finished() {
                 save_parameters(
@@ -228,11 +293,14 @@ fn run_epochs(
             trainer.save(origin, &run.optimizer())?;
             saved = Instant::now();
         }
-        if stop && !trainer.is_finished() {
+        if stop && !trainer.is_finished() && !is_over(&epochs) {
             return Err(DdlError::Interrupted);
         }
     }
-    save_parameters(trainer.network().parameters(), origin, &run.model())?;
+    match best_epoch(&epochs) {
+        None => save_parameters(trainer.network().parameters(), origin, &run.model())?,
+        Some(best) => run.take_epoch(best.epoch)?,
+    }
     Ok(())
 }
 
@@ -242,6 +310,25 @@ pub(crate) fn training_rule(convention: Convention) -> WindowRule {
         Convention::SocialGan => WindowRule::SocialGan { min_pedestrians: 1 },
         _ => WindowRule::Complete,
     }
+}
+
+/// The recordings that a fold trains or validates on.
+fn learned_from<'a>(fold: &'a Fold<'_>) -> impl Iterator<Item = &'a Recording> {
+    let learned = fold.training_recordings().iter();
+    learned.chain(fold.recordings_set_apart()).copied()
+}
+
+/// SHA-256 of a recording's frames, people and positions; its name does not matter.
+pub(crate) fn digest_of_recording(recording: &Recording) -> String {
+    let mut hasher = Sha256::new();
+    for seen in recording.observations() {
+        hasher.update(seen.frame.to_le_bytes());
+        hasher.update(seen.pedestrian.0.to_le_bytes());
+        for coordinate in seen.position {
+            hasher.update(coordinate.to_le_bytes());
+        }
+    }
+    sha256::in_hex(hasher)
 }
 
 /// SHA-256 of the windows' positions.

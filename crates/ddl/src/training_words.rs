@@ -11,6 +11,14 @@ pub(crate) fn recipe(training: &TrainingConfig, goals: &str) -> String {
     )
 }
 
+/// Which epoch is the model, in words.
+pub(crate) fn selection(patience: Option<usize>) -> &'static str {
+    match patience {
+        None => "last epoch",
+        Some(_) => "epoch of the least validation error",
+    }
+}
+
 /// How much of the training set an epoch sees, in words; `None` for all of it.
 pub(crate) fn subset(training: &TrainingConfig) -> Option<String> {
     training.walkers_per_epoch.map(|walkers| {

@@ -57,8 +57,14 @@ fn nearest(window: &Window, i: usize, count: usize) -> impl Iterator<Item = usiz
         .filter(|&j| j != i)
         .map(|j| ((last(j)[0] - here[0]).hypot(last(j)[1] - here[1]), j))
         .collect();
-    others.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    others.into_iter().take(count).map(|(_, j)| j)
+    let nearer = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+    // Among thousands only the few that are wanted are put in order.
+    if count < others.len() {
+        others.select_nth_unstable_by(count, nearer);
+        others.truncate(count);
+    }
+    others.sort_unstable_by(nearer);
+    others.into_iter().map(|(_, j)| j)
 }
 
 fn in_frame<const T: usize>(frame: &HeadingFrame, track: &[Position]) -> [Position; T] {

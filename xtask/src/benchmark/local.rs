@@ -1,7 +1,7 @@
 //! Tasks as processes on this machine.
 
 use std::ffi::OsString;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
@@ -133,6 +133,18 @@ impl Local {
             return End::Kept;
         }
         watch.started(task);
+        let mut log = match open_log(&task.folder(out)) {
+            Ok(log) => log,
+            Err(error) => return failure(task, out, &format!("{error:#}")),
+        };
+        // Whoever killed an earlier benchmark may have left its processes to themselves: they end by themselves.
+        while is_held(&log) {
+            if stop.is_requested() {
+                return End::Interrupted;
+            }
+            watch.advanced(task, 0.0, "waits for a process of an earlier benchmark");
+            thread::sleep(BEAT);
+        }
         let start = Instant::now();
         let train = task.train_cost / task.cost();
         let steps = [
@@ -144,7 +156,7 @@ impl Local {
             let tell = |fraction: f64, message: &str| {
                 watch.advanced(task, from + (to - from) * fraction, message);
             };
-            match self.run_step(&task.folder(out), &arguments, &tell) {
+            match self.run_step(&mut log, &arguments, &tell) {
                 Ok(status) if status.success() => {}
                 // A child that was asked to stop has saved and left.
                 _ if stop.is_requested() => return End::Interrupted,
@@ -165,14 +177,13 @@ impl Local {
         }
     }
 
-    /// Runs the program once; its standard error goes to the task's log.
+    /// Runs the program once; its standard error goes to the task's log, which it so holds until it ends, whatever becomes of this process.
     fn run_step(
         &self,
-        folder: &Path,
+        log: &mut File,
         arguments: &[String],
         tell: &dyn Fn(f64, &str),
     ) -> Result<ExitStatus> {
-        let mut log = open_log(folder)?;
         writeln!(log, "$ ddl {}", arguments.join(" ")).context("the log cannot be written")?;
         let errors = log.try_clone().context("the log cannot be shared")?;
         let mut command = Command::new(&self.program);
@@ -212,6 +223,12 @@ fn open_log(folder: &Path) -> Result<File> {
     fs::create_dir_all(folder)
         .and_then(|()| OpenOptions::new().create(true).append(true).open(&path))
         .with_context(|| format!("{} cannot be opened", path.display()))
+}
+
+/// Whether a process of an earlier benchmark still writes into the log; else it is this process's, and that of the processes it starts: they
+/// share the lock with the file that they write to.
+fn is_held(log: &File) -> bool {
+    matches!(log.try_lock(), Err(TryLockError::WouldBlock))
 }
 
 fn failure(task: &Task, out: &Path, what: &str) -> End {

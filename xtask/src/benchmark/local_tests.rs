@@ -27,7 +27,7 @@ if [ "$verb" = train ]; then
   epoch=$(cat "$run/epoch" 2>/dev/null || echo 0)
   echo "from epoch $epoch" >&2
   while [ "$epoch" -lt 20 ]; do
-    sleep 0.02
+    sleep 0.05
     epoch=$((epoch + 1)); echo "$epoch" > "$run/epoch"
     echo "{\"stage\":\"train\",\"done\":$epoch,\"total\":20,\"message\":\"epoch $epoch\"}"
     [ "$fold" = stubborn ] && sleep 5
@@ -265,4 +265,22 @@ fn a_program_that_is_not_there_is_a_failure_of_the_task() {
         reason.contains("/no/such/program cannot be started"),
         "{reason}"
     );
+}
+
+#[test]
+fn who_writes_into_a_log_holds_it_until_it_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = open_log(folder.path()).unwrap();
+    assert!(!is_held(&log));
+    let mut left = Command::new("sleep")
+        .arg("0.3")
+        .stderr(Stdio::from(log.try_clone().unwrap()))
+        .spawn()
+        .unwrap();
+    // As when a benchmark is killed: its files are closed, its process goes on.
+    drop(log);
+    let next = open_log(folder.path()).unwrap();
+    assert!(is_held(&next));
+    left.wait().unwrap();
+    assert!(!is_held(&next));
 }

@@ -18,10 +18,11 @@ use clap::Args;
 use self::side_by_side::SideBySide;
 use super::set_up;
 use crate::benchmark::{
-    Display, End, Executor, Local, PROTOCOLS, Plan, Profile, RecipeName, Settings, Stop, VARIANTS,
-    fold_names, human,
+    Display, End, Executor, Local, Lock, PROTOCOLS, Plan, Profile, RecipeName, Settings, Stop,
+    VARIANTS, fold_names, human,
 };
 use crate::data::{self, Chosen, Convention};
+use crate::whole_file;
 use crate::workspace::{Workspace, absolute};
 
 /// Exit code of a run that was stopped and can be gone on with, as shells have it for Ctrl-C.
@@ -118,6 +119,9 @@ impl Arguments {
         }
         let plan = self.plan(workspace, &chosen)?;
         let out = self.out_folder(workspace, &plan)?;
+        let _locked = Lock::take(&out)?;
+        // The folders of runs are the program's own.
+        whole_file::remove_half_written(&out, 1);
         plan.write(&out)?;
         let (program, commit) = self.program(workspace)?;
         let cores = thread::available_parallelism().map_or(1, std::num::NonZero::get);

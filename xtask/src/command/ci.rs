@@ -5,20 +5,24 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 
-use super::{benchmark, data, page, set_up, test, tidy};
+use super::{benchmark, data, deny, docs, package, page, set_up, test, tidy};
 use crate::data::Convention;
+use crate::site;
 use crate::workspace::{Workspace, step};
 
 /// A named check of `ci`.
 type Check = (&'static str, fn(&Workspace) -> Result<()>);
 
-const CHECKS: [Check; 9] = [
+const CHECKS: [Check; 12] = [
     ("format", format),
     ("tidy", tidy::run),
+    ("packages", package::check),
     ("recordings from the package index", recordings),
+    ("what comes in from outside", deny::run),
     ("set-up", set_up),
     ("lints", lints),
     ("documentation", documentation),
+    ("documentation site", docs::check),
     ("benchmark", smoke),
     ("report page in a browser", page::check),
     // Last, and the last to print: what a reader of the log looks for is the test results.
@@ -66,6 +70,7 @@ fn lints(workspace: &Workspace) -> Result<()> {
 /// `RUSTDOCFLAGS=-Dwarnings` would replace the path to libtorch that the examples need, so the
 /// warnings are found in what rustdoc prints; cargo repeats them for pages it has kept.
 fn documentation(workspace: &Workspace) -> Result<()> {
+    site::make_room(workspace)?;
     let output = workspace
         .cargo(["doc", "--workspace", "--no-deps"])
         .ignore_status()

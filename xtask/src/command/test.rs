@@ -7,7 +7,7 @@ use anyhow::Result;
 use clap::Args;
 
 use super::data::fetch_one;
-use super::set_up;
+use super::{faults, set_up};
 use crate::data::{Convention, FETCHED};
 use crate::workspace::{Workspace, absolute, step};
 
@@ -73,7 +73,8 @@ fn cargo_test(workspace: &Workspace, selection: &[&str], rest: &[String]) -> Res
         .args(rest)
         // Tests run side by side already: a thread each keeps them from fighting for cores, and
         // libtorch's sums in one order.
-        .env("OMP_NUM_THREADS", "1");
+        .env("OMP_NUM_THREADS", "1")
+        .env(faults::PROGRAM, faults::this_program()?);
     if let Some(folder) = recordings(workspace)? {
         command = command.env("DDL_DATASETS", folder);
     }

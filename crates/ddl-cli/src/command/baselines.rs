@@ -1,26 +1,23 @@
 //! `ddl baselines`.
 
-use super::{Telling, at_least_one, dataset};
-use crate::progress::ProgressMode;
-use crate::result_lines;
+use super::{RecordingsAt, Telling, at_least_one};
 use clap::Args;
 use ddl::Protocol;
 use ddl::data::Convention;
 use ddl::eval::Report;
 use std::path::PathBuf;
 
-/// Measure the baselines (constant velocity and the like) on the test scenes of a data convention
+/// Measure constant velocity and other baselines on test scenes
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example:\n  ddl baselines --convention social-gan --out runs/baselines-social-gan"
 )]
 pub(crate) struct Baselines {
-    /// star, social-gan or simulated
+    /// star, social-gan, simulated or own
     #[arg(long)]
     convention: Convention,
-    /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
-    #[arg(long)]
-    data: Option<PathBuf>,
+    #[command(flatten)]
+    recordings: RecordingsAt,
     /// Fold to measure on; may be repeated [default: all]
     #[arg(long = "fold")]
     folds: Vec<String>,
@@ -39,7 +36,7 @@ pub(crate) struct Baselines {
 
 impl Baselines {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        let dataset = dataset(self.convention, self.data.as_deref())?;
+        let dataset = self.recordings.dataset(self.convention)?;
         let folds = if self.folds.is_empty() {
             let names = dataset.fold_names().into_iter();
             names.map(str::to_owned).collect()
@@ -57,9 +54,6 @@ impl Baselines {
             }
             None => "all metrics, as a page and as files: with --out FOLDER".to_owned(),
         };
-        if self.telling.progress != ProgressMode::Json {
-            result_lines::print(&report, &rest)?;
-        }
-        Ok(())
+        self.telling.tell(&report, &rest)
     }
 }

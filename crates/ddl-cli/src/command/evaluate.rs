@@ -2,37 +2,40 @@
 
 mod forecasts;
 
-use super::{Exactness, KeepClear, Machine, Telling, at_least_one, dataset};
+use super::{Exactness, KeepClear, Machine, RecordingsAt, Telling, at_least_one};
 use crate::interrupt::Interrupt;
-use crate::progress::{Progress, ProgressMode};
-use crate::result_lines;
+use crate::progress::Progress;
 use anyhow::Context as _;
 use clap::Args;
+use ddl::data::Convention;
 use ddl::eval::Report;
-use ddl::{Ddl, DdlError, EvaluationRequest, EvaluationSplit, ModelSource, Protocol, Results};
+use ddl::{
+    Ddl, DdlError, EvaluationRequest, EvaluationSplit, ModelSource, Protocol, Results, RunDirectory,
+};
 use forecasts::OtherProgram;
 use std::path::PathBuf;
 
-/// Measure a trained model on the scene left out of its training, or forecasts of another program, beside the baselines
+/// Measure a model or another program's forecasts, and baselines
+///
+/// A model is measured on the scene left out of its training; forecasts of another program on the test windows of a fold.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
         ddl evaluate --fold zara1\n  \
         ddl evaluate --model runs/eth --protocol fair --protocol single\n  \
         ddl evaluate --forecasts mine.jsonl --fold zara1 --out results")]
 pub(crate) struct Evaluate {
-    /// Model, measured on the scene it was trained without: the directory of a run, a packed file, or the name of a built-in
-    /// model [default: the built-in model that was trained without --fold]
+    /// Model, measured on the scene it was trained without, or on your own recordings (--data FOLDER --convention own): the directory of a run, a
+    /// packed file, or the name of a built-in model [default: the built-in model that was trained without --fold]
     #[arg(
         long,
         required_unless_present_any = ["forecasts", "fold"],
-        conflicts_with_all = ["forecasts", "convention", "fold", "window_rule"]
+        conflicts_with_all = ["forecasts", "fold", "window_rule"]
     )]
     model: Option<PathBuf>,
     #[command(flatten)]
     other: OtherProgram,
-    /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
-    #[arg(long)]
-    data: Option<PathBuf>,
+    #[command(flatten)]
+    recordings: RecordingsAt,
     /// published, fair or single; may be repeated
     #[arg(long = "protocol", default_values = ["fair", "single"])]
     protocols: Vec<Protocol>,
@@ -56,9 +59,9 @@ impl Evaluate {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         match (&self.other.forecasts, &self.model) {
             (Some(file), _) => {
-                let (data, commit) = (self.data.as_deref(), &self.telling.commit);
+                let (data, commit) = (&self.recordings, &self.telling.commit);
                 let report = self.other.evaluate(file, &self.protocols, data, commit)?;
-                self.tell(&report, &self.other.written())
+                self.telling.tell(&report, &self.other.written())
             }
             (None, Some(name)) => self.measure(&ModelSource::named(name)),
             (None, None) => self.measure(&ModelSource::Builtin(self.other.builtin_model()?)),
@@ -81,18 +84,29 @@ impl Evaluate {
             test_walkers: self.test_walkers,
             commit: self.telling.commit.clone(),
         };
-        let title = format!(
-            "{} {}",
-            model.config().data.fold,
-            model.config().star.variant
-        );
-        if let Some(run) = model.run()
+        let trained_on = model.config().data.convention;
+        let convention = self.other.windows.convention.unwrap_or(trained_on);
+        let title = match convention {
+            Convention::Own => format!("own recordings, {}", model.config().star.variant),
+            _ => format!(
+                "{} {}",
+                model.config().data.fold,
+                model.config().star.variant
+            ),
+        };
+        // Results on other recordings than those of the run's convention are not the run's.
+        let kept = model.run().filter(|_| convention == trained_on);
+        if let Some(run) = kept
+            // own recordings may be others than last time
+            && convention != Convention::Own
             && ddl::is_evaluated(&model, &request)
         {
             self.save_elsewhere(|| Results::of(&title, &[run.path()]))?;
-            return self.tell(&Report::load(&run.report())?, &self.written(&model));
+            return self
+                .telling
+                .tell(&Report::load(&run.report())?, &self.written(kept));
         }
-        let dataset = dataset(model.config().data.convention, self.data.as_deref())?;
+        let dataset = self.recordings.dataset(convention)?;
         let progress = Progress::new("evaluate", self.telling.progress);
         let evaluation = ddl::evaluate(&model, &dataset, &request, |now| {
             let (done, total) = now.walkers;
@@ -101,13 +115,13 @@ impl Evaluate {
         })?;
         drop(progress);
         let report = Report::new(&title, evaluation.rows)?;
-        if let Some(run) = model.run() {
+        if let Some(run) = kept {
             ddl::save_evaluation(&model, &request, &report, &evaluation.moments)?;
             self.save_elsewhere(|| Results::of(&title, &[run.path()]))?;
         } else {
             self.save_elsewhere(|| Ok(Results::new(report.clone(), evaluation.moments)))?;
         }
-        self.tell(&report, &self.written(&model))
+        self.telling.tell(&report, &self.written(kept))
     }
 
     /// Writes the whole report to the folder asked for, if any.
@@ -124,8 +138,8 @@ impl Evaluate {
     }
 
     /// Where the rest of the results is.
-    fn written(&self, model: &Ddl) -> String {
-        match (model.run(), &self.other.out) {
+    fn written(&self, kept: Option<&RunDirectory>) -> String {
+        match (kept, &self.other.out) {
             (Some(run), None) => {
                 let (report, run) = (run.report(), run.path());
                 format!(
@@ -136,13 +150,5 @@ impl Evaluate {
             }
             _ => self.other.written(),
         }
-    }
-
-    /// The results for people; programs read `report.json`.
-    fn tell(&self, report: &Report, rest: &str) -> anyhow::Result<()> {
-        if self.telling.progress != ProgressMode::Json {
-            result_lines::print(report, rest)?;
-        }
-        Ok(())
     }
 }

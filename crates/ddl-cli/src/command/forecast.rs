@@ -6,7 +6,10 @@ mod table;
 
 use super::model::ModelChoice;
 use super::{Exactness, KeepClear, Machine};
-use crate::tracks::{Clock, FrameNumber, Tracks, write_output};
+use crate::clock::{Clock, FrameNumber};
+use crate::output::write_output;
+use crate::telling::tell;
+use crate::tracks::Tracks;
 use clap::{Args, ValueEnum};
 use ddl::data::{HORIZON, OBSERVED, Window};
 use ddl::dynamics::LyapunovCertificate;
@@ -15,6 +18,7 @@ use std::path::PathBuf;
 
 /// Forecast the next 4.8 s of your own tracks
 #[derive(Debug, Args)]
+#[command(mut_arg("file", |file| file.required(true)))]
 #[command(after_help = "Examples:\n  \
         ddl forecast tracks.csv --output forecasts.csv\n  \
         ddl forecast camera.csv --fps 25 --homography H.txt --last\n  \
@@ -172,11 +176,11 @@ fn warn_of_violation(moments: &[Moment<'_>]) {
         Some((moment, i, hypothesis, violation))
     });
     if let Some((moment, i, hypothesis, violation)) = first {
-        eprintln!(
+        tell(format_args!(
             "warning: not every certificate holds; the first that does not is that of pedestrian {}, \
              observed until frame {}, hypothesis {hypothesis}: {violation}",
             moment.window.pedestrians()[i].0,
             moment.observed_until(),
-        );
+        ));
     }
 }

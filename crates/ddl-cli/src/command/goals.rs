@@ -2,7 +2,9 @@
 
 use super::model::ModelChoice;
 use super::{Machine, dataset};
-use crate::tracks::{FrameNumber, Observed, Tracks, write_output};
+use crate::clock::FrameNumber;
+use crate::output::write_output;
+use crate::tracks::{Observed, Tracks};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use ddl::data::OBSERVED;
@@ -11,19 +13,20 @@ use ddl::{EvaluationSplit, GoalEvaluation};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Estimate where the people of your own tracks are going, as csv; or measure how good a model's goals are
+/// Estimate where the people of your own tracks are going
+///
+/// As csv; or, with --measure, how good a model's goals are.
 #[derive(Debug, Args)]
 #[command(
-    mut_arg("file", |file| file.required(false)),
     after_help = "Examples:\n  ddl goals tracks.csv\n  ddl goals --model runs/eth --measure test --svg goals.svg"
 )]
 pub(crate) struct Goals {
     #[command(flatten)]
     model: ModelChoice,
     #[command(flatten)]
-    tracks: Option<Tracks>,
+    tracks: Tracks,
     /// Compare the goals with the true ends of the recordings the model was trained without
-    #[arg(long, value_enum, conflicts_with_all = ["file", "last", "whole", "frame_step", "fps", "dt", "homography"])]
+    #[arg(long, value_enum, conflicts_with_all = ["file", "last", "whole"])]
     measure: Option<Measure>,
     /// Folder of the recordings to measure on [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
     #[arg(long)]
@@ -67,9 +70,10 @@ impl Goals {
         if self.measure.is_none() && (self.json || self.svg.is_some() || self.data.is_some()) {
             bail!("--json, --svg and --data go with --measure test or --measure validation");
         }
-        let text = match (&self.tracks, self.measure) {
-            (_, Some(measure)) => self.measure(measure)?,
-            (Some(tracks), None) => {
+        let tracks = &self.tracks;
+        let text = match self.measure {
+            Some(measure) => self.measure(measure)?,
+            None if tracks.are_named() => {
                 if tracks.are_live() {
                     bail!(
                         "goals are estimated for a file of tracks; `ddl forecast - --format jsonl` tells those of live ones"
@@ -83,7 +87,7 @@ impl Goals {
                 observed.tell_what_is_made_up();
                 text
             }
-            (None, None) => bail!("give a file of TRACKS to estimate goals for, or --measure test"),
+            None => bail!("give a file of TRACKS to estimate goals for, or --measure test"),
         };
         write_output(self.output.as_deref(), &text)
     }
@@ -91,7 +95,8 @@ impl Goals {
     fn measure(&self, measure: Measure) -> anyhow::Result<String> {
         self.machine.prepare()?;
         let model = self.model.load_goals(self.machine.device)?;
-        let dataset = dataset(model.config().data.convention, self.data.as_deref())?;
+        let convention = model.config().data.convention;
+        let dataset = dataset(convention, self.data.as_deref(), self.tracks.units())?;
         let on = match measure {
             Measure::Test => EvaluationSplit::Test,
             Measure::Validation => EvaluationSplit::Validation,

@@ -1,17 +1,26 @@
 //! `ddl info`.
 
+use crate::output;
 use clap::Args;
 use ddl::{BuiltinModel, Ddl, DeviceChoice, GoalModel, ModelSource, RunDirectory};
 use serde_json::json;
-use std::io::Write as _;
+use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Describe a trained model, or this program when no model is given
+/// Describe a model, or this program
 #[derive(Debug, Args)]
 pub(crate) struct Info {
-    /// Directory of a run, a packed file, or the name of a built-in model
-    #[arg(long)]
+    /// Directory of a run, a packed file, or the name of a built-in model [default: the program itself]
+    #[arg(value_name = "MODEL")]
     model: Option<PathBuf>,
+    /// The same, as other commands take it
+    #[arg(
+        long = "model",
+        value_name = "MODEL",
+        conflicts_with = "model",
+        hide = true
+    )]
+    named: Option<PathBuf>,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -19,9 +28,10 @@ pub(crate) struct Info {
 
 impl Info {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        let facts = match &self.model {
+        let facts = match self.model.as_ref().or(self.named.as_ref()) {
             None => json!({
                 "version": env!("CARGO_PKG_VERSION"),
+                "commit": env!("DDL_BUILT_FROM"),
                 "cuda": ddl::cuda_status(),
                 "models": BuiltinModel::ALL.map(BuiltinModel::name),
             }),
@@ -36,13 +46,12 @@ impl Info {
                 }
             }
         };
-        let mut out = std::io::stdout().lock();
         if self.json {
-            writeln!(out, "{}", serde_json::to_string_pretty(&facts)?)?;
-            return Ok(());
+            return output::print_json(&facts);
         }
-        print_facts(&mut out, &facts, 0)?;
-        Ok(())
+        let mut text = String::new();
+        write_facts(&mut text, &facts, 0)?;
+        output::print(&text)
     }
 }
 
@@ -66,11 +75,7 @@ fn facts_of(
 }
 
 /// Nested facts as indented lines.
-fn print_facts(
-    out: &mut impl std::io::Write,
-    facts: &serde_json::Value,
-    depth: usize,
-) -> std::io::Result<()> {
+fn write_facts(out: &mut String, facts: &serde_json::Value, depth: usize) -> std::fmt::Result {
     let Some(map) = facts.as_object() else {
         return Ok(());
     };
@@ -79,7 +84,7 @@ fn print_facts(
         match value {
             serde_json::Value::Object(_) => {
                 writeln!(out, "{indent}{name}:")?;
-                print_facts(out, value, depth + 1)?;
+                write_facts(out, value, depth + 1)?;
             }
             serde_json::Value::Array(items) => {
                 writeln!(out, "{indent}{name}:")?;

@@ -1,11 +1,12 @@
 //! `ddl pack`.
 
+use crate::output;
 use clap::Args;
 use ddl::{Ddl, DeviceChoice, ModelSource};
-use std::io::Write as _;
+use serde_json::json;
 use std::path::PathBuf;
 
-/// Pack what it takes to forecast into one small file, without the tracks a model was trained on
+/// Pack a trained model into one small file, without its tracks
 ///
 /// The file holds the weights of both networks in half precision and the configuration of the run, and no trajectory data: goals
 /// are then proposed by the network alone. Every command that takes a --model takes the file. How much the tracks would add, a row
@@ -19,6 +20,9 @@ pub(crate) struct Pack {
     /// File to write
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+    /// What was written on standard output as JSON
+    #[arg(long)]
+    json: bool,
 }
 
 impl Pack {
@@ -26,8 +30,9 @@ impl Pack {
         let model = Ddl::open(&ModelSource::named(&self.model), DeviceChoice::Cpu)?;
         model.pack(&self.out)?;
         let numbers = model.parameter_count() + model.goal_model().parameter_count();
-        let mut out = std::io::stdout().lock();
-        writeln!(out, "{}: {numbers} weights", self.out.display())?;
-        Ok(())
+        if self.json {
+            return output::print_json(&json!({"file": self.out, "weights": numbers}));
+        }
+        output::print(&format!("{}: {numbers} weights\n", self.out.display()))
     }
 }

@@ -1,11 +1,13 @@
 //! `ddl report`.
 
+use crate::output;
 use clap::Args;
 use ddl::Results;
 use std::path::PathBuf;
 
-/// Put the results of evaluated runs together: report.html to look at, report.md, report.tex, report.json, moments.json and
-/// figures
+/// Put results together: a page to look at, tables, figures
+///
+/// Writes report.html to look at, report.md, report.tex, report.json, moments.json and figures.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  ddl report runs/eth runs/hotel --out runs")]
 pub(crate) struct Report {
@@ -18,10 +20,19 @@ pub(crate) struct Report {
     /// Folder to write to
     #[arg(long)]
     out: PathBuf,
+    /// The gathered results on standard output as JSON
+    #[arg(long)]
+    json: bool,
 }
 
 impl Report {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        Ok(Results::of(self.title, &self.runs)?.save(&self.out)?)
+        let results = Results::of(self.title, &self.runs)?;
+        results.save(&self.out)?;
+        output::print(&if self.json {
+            results.report.to_json()? + "\n"
+        } else {
+            format!("{}\n", self.out.join("report.html").display())
+        })
     }
 }

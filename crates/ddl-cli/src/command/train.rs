@@ -1,29 +1,40 @@
 //! `ddl train`.
 
-use super::{Machine, Telling, dataset};
+mod finished;
+
+use super::{Machine, RecordingsAt, Telling};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
-use ddl::data::Convention;
+use ddl::data::{Convention, Fold};
 use ddl::star::{LearningRateSchedule, ProposalTraining, StarConfig, TrainingConfig};
 use ddl::{GoalRecipe, RunDirectory, TrainingRequest, TrainingStage, TrainingStep, Variant};
 use std::path::PathBuf;
 
-/// Train a model on all scenes but one; resumes where an earlier run of the same command stopped
+/// Share of own recordings kept for validation.
+const VALIDATION: f64 = 0.2;
+/// Epochs to wait for a smaller validation error, on own recordings.
+const PATIENCE: usize = 10;
+
+/// Train a model on your own recordings, or on all scenes but one
+///
+/// The same command goes on where an earlier run of it stopped.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  ddl train --fold eth --epochs 10 --out runs/eth")]
+#[command(after_help = "Examples:\n  \
+        ddl train --data recordings --out runs/own\n  \
+        ddl train --data recordings --convention own --fold lobby --out runs/without-lobby\n  \
+        ddl train --fold eth --epochs 10 --out runs/eth")]
 pub(crate) struct Train {
-    /// Data convention: star, social-gan or simulated
-    #[arg(long, default_value = "star")]
-    convention: Convention,
-    /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
+    /// Data convention: star, social-gan, simulated or own [default: own without --fold, star with it]
     #[arg(long)]
-    data: Option<PathBuf>,
+    convention: Option<Convention>,
+    #[command(flatten)]
+    recordings: RecordingsAt,
     /// Scene left out of training: eth, hotel, univ, zara1 or zara2; of the simulated ones corridor,
-    /// crossing, plaza, bottleneck or doorway
+    /// crossing, plaza, bottleneck or doorway; of own ones the name of a file, without its extension [default: none of the own ones]
     #[arg(long)]
-    fold: String,
+    fold: Option<String>,
     /// full, no-goal-shift, no-dynamics or star (neither)
     #[arg(long, default_value = "full")]
     variant: Variant,
@@ -53,12 +64,16 @@ pub(crate) struct Train {
     /// How the step size changes: constant or cosine [default: cosine, published constant]
     #[arg(long)]
     learning_rate_schedule: Option<LearningRateSchedule>,
-    /// Share of the training recordings' time, at their ends, kept for validation
-    #[arg(long, default_value_t = 0.0)]
-    validation: f64,
+    /// Share of the training recordings' time, at their ends, kept for validation [default: 0, of own recordings 0.2]
+    #[arg(long)]
+    validation: Option<f64>,
     /// Training recordings kept for validation whole, such as `uni_examples,zara03`
     #[arg(long, value_delimiter = ',')]
     validation_recordings: Vec<String>,
+    /// Stop when the error on the validation part has not fallen for so many epochs, and keep the best one; 0 trains all epochs [default: 0, of own
+    /// recordings 10]
+    #[arg(long, value_name = "EPOCHS")]
+    patience: Option<usize>,
     /// Where goals come from: proposed by a network trained first, or retrieved from the training tracks
     #[arg(long, value_enum, default_value_t = GoalsFrom::Proposed)]
     goals: GoalsFrom,
@@ -98,15 +113,25 @@ impl Train {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         self.machine.prepare()?;
         let interrupt = Interrupt::catch()?;
-        let dataset = dataset(self.convention, self.data.as_deref())?;
+        let (convention, fold) = self.scene()?;
+        let dataset = self.recordings.dataset(convention)?;
         let goals = self.goal_recipe()?;
         let (star, training) = self.recipe();
+        let own = convention == Convention::Own;
+        let validation = self
+            .validation
+            .unwrap_or(if own { VALIDATION } else { 0.0 });
+        let kept = validation > 0.0 || !self.validation_recordings.is_empty();
+        let patience = self
+            .patience
+            .unwrap_or(if own && kept { PATIENCE } else { 0 });
         let request = TrainingRequest {
-            fold: self.fold,
+            fold,
             star,
             training,
-            validation: self.validation,
+            validation,
             validation_recordings: self.validation_recordings,
+            patience: (patience > 0).then_some(patience),
             goals,
             last_epoch_only: self.last_epoch_only,
             until: if self.only_goals {
@@ -116,7 +141,7 @@ impl Train {
             },
             out: RunDirectory::new(self.out),
             device: self.machine.device,
-            commit: self.telling.commit,
+            commit: self.telling.commit.clone(),
         };
         // Each stage has its bar, from its first step on.
         let (mut goals, mut network) = (None, None);
@@ -141,7 +166,34 @@ impl Train {
             }
             interrupt.flow()
         })?;
-        Ok(())
+        drop((goals, network));
+        finished::tell(&request, &self.recordings, &self.telling)
+    }
+
+    /// The convention and the fold to train.
+    fn scene(&self) -> anyhow::Result<(Convention, String)> {
+        match (self.convention, &self.fold) {
+            (Some(convention), Some(fold)) => Ok((convention, fold.clone())),
+            (None, Some(fold)) => {
+                let known: Vec<&str> = Convention::Star.fold_names().collect();
+                if !known.contains(&fold.as_str()) {
+                    bail!(
+                        "no fold {fold:?} in the star convention; it has {}; to leave out one of your own recordings, add --convention own",
+                        known.join(", ")
+                    );
+                }
+                Ok((Convention::Star, fold.clone()))
+            }
+            (None, None) if !self.recordings.is_named() => bail!(
+                "say what to train on: your own recordings (--data FOLDER), or the scene to leave out of ETH/UCY (--fold eth, hotel, univ, zara1 \
+                 or zara2)"
+            ),
+            (None | Some(Convention::Own), None) => Ok((Convention::Own, Fold::WHOLE.to_owned())),
+            (Some(convention), None) => {
+                let known: Vec<&str> = convention.fold_names().collect();
+                bail!("give the --fold to leave out, one of {}", known.join(", "))
+            }
+        }
     }
 
     /// Network and training of the recipe, with what the options change of it.

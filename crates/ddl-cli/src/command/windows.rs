@@ -1,14 +1,15 @@
 //! `ddl windows`.
 
+use super::RecordingsAt;
 use super::test_windows::TestWindows;
-use crate::tracks::write_output;
+use crate::output::write_output;
 use clap::Args;
 use ddl::eval::foreign;
 use std::path::PathBuf;
 
-/// Write what is observed in the test windows of a fold, for another program to forecast
+/// Write test windows for another program to forecast
 ///
-/// JSON lines, an object for each walker of each window: recording, `observed_until` (the last observed raw frame),
+/// What is observed in those of a fold, as JSON lines: an object for each walker of each window: recording, `observed_until` (the last observed raw frame),
 /// pedestrian, and the 8 observed positions in metres, 0.4 s apart. Nothing of the future is in them. `ddl evaluate
 /// --forecasts` scores what the other program makes of them.
 #[derive(Debug, Args)]
@@ -18,9 +19,8 @@ use std::path::PathBuf;
 pub(crate) struct Windows {
     #[command(flatten)]
     of: TestWindows,
-    /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
-    #[arg(long)]
-    data: Option<PathBuf>,
+    #[command(flatten)]
+    recordings: RecordingsAt,
     /// File to write [default: standard output]
     #[arg(long, short)]
     output: Option<PathBuf>,
@@ -28,7 +28,7 @@ pub(crate) struct Windows {
 
 impl Windows {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        let windows = self.of.windows(self.data.as_deref())?;
+        let windows = self.of.windows(&self.recordings)?;
         let mut text = Vec::new();
         foreign::write_windows(&windows, &mut text)?;
         write_output(self.output.as_deref(), std::str::from_utf8(&text)?)

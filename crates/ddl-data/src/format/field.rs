@@ -1,5 +1,6 @@
 //! Single fields: whole numbers and coordinates.
 
+use crate::COORDINATE_LIMIT;
 use crate::error::FormatProblem;
 use crate::recording::FRAME_LIMIT;
 
@@ -25,13 +26,17 @@ pub(super) fn integer(text: &str, name: &'static str) -> Result<i64, FormatProbl
 /// A coordinate (m).
 pub(super) fn coordinate(text: &str, name: &'static str) -> Result<f64, FormatProblem> {
     let text = text.trim();
-    text.parse::<f64>()
-        .ok()
-        .filter(|c| c.is_finite())
-        .ok_or_else(|| FormatProblem::NotFinite {
+    match text.parse::<f64>() {
+        Ok(number) if number.abs() <= COORDINATE_LIMIT => Ok(number),
+        Ok(number) if number.is_finite() => Err(FormatProblem::TooFar {
             name,
             found: quoted(text),
-        })
+        }),
+        _ => Err(FormatProblem::NotFinite {
+            name,
+            found: quoted(text),
+        }),
+    }
 }
 
 /// A number of any size, NaN included, that is not used: it must be there.
@@ -86,6 +91,17 @@ mod tests {
         assert_eq!(coordinate("-1.5e-1", "x"), Ok(-0.15));
         for text in ["", "NaN", "inf", "-Infinity", "1e999", "1.2.3", "one"] {
             assert!(coordinate(text, "x").is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn coordinates_beyond_the_world_are_refused() {
+        for text in ["1e7", "-10000000"] {
+            assert!(coordinate(text, "x").is_ok(), "{text}");
+        }
+        for text in ["10000000.1", "-1e30", "1e38", "1.7976931348623157e308"] {
+            let refused = matches!(coordinate(text, "x"), Err(FormatProblem::TooFar { .. }));
+            assert!(refused, "{text}");
         }
     }
 

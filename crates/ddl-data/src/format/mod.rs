@@ -6,6 +6,7 @@
 
 mod field;
 mod guess;
+mod json_section;
 mod obsmat;
 mod rows;
 mod social_gan;

@@ -11,6 +11,8 @@ use crate::{PedestrianId, Position};
 
 /// Bytes of the longest line.
 const LONGEST_LINE: usize = 1 << 16;
+/// People of the fullest frame: beyond any crowd a tracker sees. A frame number that stands still must not fill the memory.
+const LARGEST_CROWD: usize = 100_000;
 
 /// Everybody at one moment.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,7 +30,7 @@ pub struct Frame {
 /// the first: a header (`table`), a JSON object (`trajnet`), or four or eight columns parted by blanks (`social-gan`, `obsmat`). The files of the `star`
 /// convention are of four lines, which do not arrive in order of time.
 ///
-/// Memory is bounded by the people of a frame. A last line that was cut off is read as far as it goes.
+/// Memory is bounded by the people of a frame, of whom there may be 100,000. A last line that was cut off is read as far as it goes.
 ///
 /// ```
 /// use ddl_data::FrameReader;
@@ -222,6 +224,10 @@ impl<R: BufRead> FrameReader<R> {
                 first_line,
             };
             return Err(self.wrong(problem));
+        }
+        if growing.lines.len() == LARGEST_CROWD {
+            let (frame, limit) = (seen.frame, LARGEST_CROWD);
+            return Err(self.wrong(FormatProblem::Crowd { frame, limit }));
         }
         growing.lines.insert(seen.pedestrian, line);
         growing.frame.people.push((seen.pedestrian, seen.position));

@@ -130,6 +130,15 @@ fn advice(name: &str) -> &'static str {
 
 /// The fields of one line.
 fn record(text: &str, line: usize, origin: &str) -> Result<StringRecord, FormatError> {
+    // A reader of tables is costly to make for every line of a stream, and without quotes there is nothing that it knows better.
+    let plain = text.trim_end_matches(['\r', '\n']);
+    if !plain.contains(['"', '\r', '\n']) {
+        return Ok(plain.split(',').map(str::trim).collect());
+    }
+    quoted_record(text, line, origin)
+}
+
+fn quoted_record(text: &str, line: usize, origin: &str) -> Result<StringRecord, FormatError> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
@@ -158,4 +167,19 @@ fn table_error(error: &csv::Error, origin: &str) -> FormatError {
         },
     };
     Place { line, field: None }.wrong(origin, problem)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Lines without quotes are split as the reader of tables splits them.
+        #[test]
+        fn plain_lines_are_read_as_any(text in "[a0., \t\u{a0}\r\n\"]{0,12}[a0,]\r?\n?") {
+            let fields = record(&text, 1, "t").unwrap();
+            prop_assert_eq!(fields, quoted_record(&text, 1, "t").unwrap());
+        }
+    }
 }

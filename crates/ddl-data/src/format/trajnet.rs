@@ -2,8 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use serde_json::{Map, Value};
+use serde::de::IgnoredAny;
+use serde::{Deserialize, Deserializer};
+use serde_json::Value;
 
+use super::json_section::Section;
 use super::rows::Row;
 use super::{Place, field};
 use crate::error::{FormatError, FormatProblem};
@@ -51,46 +54,72 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
     Ok(rows)
 }
 
+/// The parts of a line that are read; others may stand beside them. A part that is there twice is refused.
+#[derive(Deserialize)]
+struct Line {
+    #[serde(default)]
+    scene: Option<Section<IgnoredAny>>,
+    #[serde(default)]
+    track: Option<Section<Track>>,
+}
+
+/// The fields of a track, as they are written.
+#[derive(Deserialize)]
+struct Track {
+    #[serde(default, deserialize_with = "as_written")]
+    f: Option<Value>,
+    #[serde(default, deserialize_with = "as_written")]
+    p: Option<Value>,
+    #[serde(default, deserialize_with = "as_written")]
+    x: Option<Value>,
+    #[serde(default, deserialize_with = "as_written")]
+    y: Option<Value>,
+    #[serde(default)]
+    prediction_number: Option<IgnoredAny>,
+}
+
+/// A field that is there, be it null.
+fn as_written<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value>, D::Error> {
+    Value::deserialize(deserializer).map(Some)
+}
+
 /// Frame, pedestrian and position of a line, if it holds an observation.
 pub(super) fn observation(text: &str) -> Result<Option<(i64, i64, Position)>, FormatProblem> {
     if text.trim().is_empty() {
         return Ok(None);
     }
-    let line: Map<String, Value> =
-        serde_json::from_str(text).map_err(|error| FormatProblem::Json {
-            detail: error.to_string(),
-        })?;
+    let not_one = |detail: String| FormatProblem::Json { detail };
+    let line: Section<Line> =
+        serde_json::from_str(text).map_err(|error| not_one(error.to_string()))?;
+    let line = match line {
+        Section::Fields(line) => line,
+        Section::Other(found) => return Err(not_one(format!("found {found}"))),
+    };
     // A scene is not used, but one that is no object shows that the file is not what it seems.
-    section(&line, "scene")?;
-    let Some(track) = section(&line, "track")? else {
+    fields(line.scene, "scene")?;
+    let Some(track) = fields(line.track, "track")? else {
         return Ok(None);
     };
-    if track.get("prediction_number").is_some_and(|n| !n.is_null()) {
+    if track.prediction_number.is_some() {
         return Ok(None);
     }
-    let text = |key: &str, name: &'static str| match track.get(key) {
+    let text = |value: Option<Value>, name: &'static str| match value {
         None => Err(FormatProblem::MissingField { name }),
         // as it is written: a number in its digits, text in quotes, which is no number
         Some(value) => Ok(value.to_string()),
     };
-    let frame = field::integer(&text("f", "track.f")?, "track.f")?;
-    let pedestrian = field::integer(&text("p", "track.p")?, "track.p")?;
-    let x = field::coordinate(&text("x", "track.x")?, "track.x")?;
-    let y = field::coordinate(&text("y", "track.y")?, "track.y")?;
+    let frame = field::integer(&text(track.f, "track.f")?, "track.f")?;
+    let pedestrian = field::integer(&text(track.p, "track.p")?, "track.p")?;
+    let x = field::coordinate(&text(track.x, "track.x")?, "track.x")?;
+    let y = field::coordinate(&text(track.y, "track.y")?, "track.y")?;
     Ok(Some((frame, pedestrian, [x, y])))
 }
 
-/// The object of that name; `None` where there is none, or null.
-fn section<'a>(
-    line: &'a Map<String, Value>,
-    name: &'static str,
-) -> Result<Option<&'a Map<String, Value>>, FormatProblem> {
-    match line.get(name) {
-        None | Some(Value::Null) => Ok(None),
-        Some(Value::Object(section)) => Ok(Some(section)),
-        Some(other) => Err(FormatProblem::NotObject {
-            name,
-            found: field::quoted(&other.to_string()),
-        }),
+/// The fields of a part; none where there is none, or null.
+fn fields<T>(section: Option<Section<T>>, name: &'static str) -> Result<Option<T>, FormatProblem> {
+    match section {
+        None => Ok(None),
+        Some(Section::Fields(fields)) => Ok(Some(fields)),
+        Some(Section::Other(found)) => Err(FormatProblem::NotObject { name, found }),
     }
 }

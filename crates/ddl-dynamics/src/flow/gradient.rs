@@ -14,6 +14,17 @@ use crate::{
 ///
 /// # References
 /// Equation (8) of the paper.
+///
+/// # Examples
+/// ```
+/// use ddl_dynamics::{Attractor, Flow, GradientFlow, State};
+/// use nalgebra::Vector2;
+///
+/// let flow = GradientFlow::new(Attractor::new(Vector2::new(3.0, 4.0))?);
+/// let velocity = flow.velocity(&State::at(Vector2::zeros()))?;
+/// assert!((velocity - Vector2::new(0.6, 0.8)).norm() < 1e-12); // 1 m/s, straight there
+/// # Ok::<(), ddl_dynamics::DynamicsError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GradientFlow<T, const D: usize> {
     attractor: Attractor<T, D>,

@@ -37,7 +37,7 @@ impl WeightedGoals {
         Ok(Self { goals, weights })
     }
 
-    /// One certain goal.
+    /// One certain goal (m).
     #[must_use]
     pub fn certain(goal: Position) -> Self {
         Self {

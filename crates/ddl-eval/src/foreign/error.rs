@@ -145,6 +145,15 @@ pub enum ForeignProblem {
         /// Bytes that a line may have.
         limit: usize,
     },
+    /// A position farther from the origin than [`COORDINATE_LIMIT`](ddl_data::COORDINATE_LIMIT).
+    #[error(
+        "must lie within {limit} m of the origin, found {found}",
+        limit = ddl_data::COORDINATE_LIMIT
+    )]
+    TooFar {
+        /// The coordinate, m.
+        found: f64,
+    },
     /// The file holds nothing.
     #[error("the file holds no forecast; is it empty or cut off?")]
     Empty,

@@ -6,6 +6,7 @@ use ddl_data::{HORIZON, Position};
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
+use super::bounds::within_bounds;
 use super::error::{ForeignError, ForeignProblem};
 use super::lines::{Lines, Wrong, in_field};
 use super::repair::{self, finite, kind, list, optional, position, required, whole};
@@ -98,6 +99,12 @@ impl Line {
                 let expected = HORIZON;
                 let problem = ForeignProblem::Length { expected, found };
                 return Err(in_field(format!("hypotheses[{k}].positions"), problem));
+            }
+            for (t, &position) in hypothesis.positions.iter().enumerate() {
+                within_bounds(position, || format!("hypotheses[{k}].positions[{t}]"))?;
+            }
+            if let Some(goal) = hypothesis.goal {
+                within_bounds(goal, || format!("hypotheses[{k}].goal"))?;
             }
             forecast.positions.extend(hypothesis.positions);
             if let (Some(weights), Some(weight)) = (&mut forecast.weights, hypothesis.weight) {

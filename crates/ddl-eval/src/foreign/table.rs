@@ -6,6 +6,7 @@ use std::io::BufRead;
 use csv::StringRecord;
 use ddl_data::{HORIZON, Position};
 
+use super::bounds::within_bounds;
 use super::error::{ForeignError, ForeignProblem};
 use super::lines::{Lines, Wrong, in_field, whole_line};
 use super::numbering::Numbering;
@@ -123,12 +124,14 @@ impl Columns {
             None => None,
             Some(place) => Some(finite(fields[place].trim(), "weight")?),
         };
+        let position = [finite(x, REQUIRED[3])?, finite(y, REQUIRED[4])?];
+        within_bounds(position, || "x, y".to_owned())?;
         Ok(Row {
             who,
             hypothesis,
             weight,
             frame: whole(frame, REQUIRED[2])?,
-            position: [finite(x, REQUIRED[3])?, finite(y, REQUIRED[4])?],
+            position,
         })
     }
 }

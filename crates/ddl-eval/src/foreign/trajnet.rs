@@ -8,6 +8,7 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::BufRead;
 
+use super::bounds::within_bounds;
 use super::error::{ForeignError, ForeignProblem};
 use super::lines::{Lines, Wrong, in_field, whole_line};
 use super::numbering::Numbering;
@@ -159,7 +160,9 @@ impl<'w, 'a> Reading<'w, 'a> {
             let path = format!("prediction_number {prediction}");
             return Err(in_field(path, ForeignProblem::Length { expected, found }));
         }
-        rows.push((track.f, [track.x, track.y]));
+        let position = [track.x, track.y];
+        within_bounds(position, || "track.x, track.y".to_owned())?;
+        rows.push((track.f, position));
         Ok(())
     }
 

@@ -78,6 +78,15 @@ impl DistributionErrors {
 }
 
 /// AMV of a mean covariance: its largest eigenvalue, square metres.
+///
+/// # Examples
+/// ```
+/// use ddl_eval::metric::{amd::amv, gaussian::Moments};
+///
+/// // Two places 2 m apart, equally likely: a deviation of 1 m along x, none along y.
+/// let moments = Moments::of(&[[-1.0, 0.0], [1.0, 0.0]], &[0.5, 0.5]);
+/// assert!((amv(moments.covariance) - 1.0).abs() < 1e-12); // square metres
+/// ```
 #[must_use]
 pub fn amv(mean_covariance: Covariance) -> f64 {
     mean_covariance.principal_axes().variances[0]

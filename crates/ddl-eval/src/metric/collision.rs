@@ -68,6 +68,16 @@ fn distance_to_origin(r0: Position, r1: Position) -> f64 {
 ///
 /// # Shapes
 /// one entry a track.
+///
+/// # Examples
+/// ```
+/// use ddl_eval::metric::collision::{DISC_RADIUS, collides};
+///
+/// let west = [[0.0, 0.0], [2.0, 0.0]];
+/// let east = [[2.0, 0.3], [0.0, 0.3]]; // passes at 0.3 m: discs of 0.2 m overlap
+/// let far = [[0.0, 5.0], [2.0, 5.0]];
+/// assert_eq!(collides(&[&west, &east, &far], DISC_RADIUS), [true, true, false]);
+/// ```
 #[must_use]
 pub fn collides(tracks: &[&[Position]], radius: f64) -> Vec<bool> {
     let mut hit = vec![false; tracks.len()];

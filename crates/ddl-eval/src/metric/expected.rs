@@ -17,6 +17,16 @@ use crate::Forecast;
 ///
 /// # Panics
 /// When `i` is out of range or there are more errors than hypotheses.
+///
+/// # Examples
+/// ```
+/// use ddl_eval::{Forecast, metric::expected::expected};
+///
+/// let positions = vec![[0.0, 0.0]; 2 * 12];
+/// let forecast = Forecast::new(1, 2, positions, vec![0.75, 0.25], None)?;
+/// assert_eq!(expected(&forecast, 0, &[0.4, 2.0]), 0.75 * 0.4 + 0.25 * 2.0); // metres
+/// # Ok::<(), ddl_eval::ForecastShapeError>(())
+/// ```
 #[must_use]
 pub fn expected(forecast: &Forecast, i: usize, errors: &[f64]) -> f64 {
     let weighted = errors.iter().enumerate();

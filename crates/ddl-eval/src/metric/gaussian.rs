@@ -23,7 +23,7 @@ pub struct Covariance {
 }
 
 impl Covariance {
-    /// Every entry times `factor`.
+    /// Every entry times `factor` (no unit).
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         Self {
@@ -66,7 +66,7 @@ pub struct PrincipalAxes {
 }
 
 impl PrincipalAxes {
-    /// The same axes, with eigenvalues below `least` raised to it: a spread of nothing has no inverse.
+    /// The same axes, with eigenvalues below `least` (square metres) raised to it: a spread of nothing has no inverse.
     #[must_use]
     pub fn raised_to(self, least: f64) -> Self {
         Self {

@@ -18,6 +18,21 @@ pub const MISS_DISTANCES: [f64; 3] = [MISS_DISTANCE, 1.0, 2.0];
 ///
 /// # Panics
 /// When `i` is out of range.
+///
+/// # Examples
+/// ```
+/// use ddl_data::{PedestrianId, Window};
+/// use ddl_eval::metric::{displacement::DisplacementErrors, miss::is_miss};
+/// use ddl_eval::{Forecast, Scene};
+///
+/// let walk = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect(); // ends at (9.5, 0) m
+/// let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![walk])?;
+/// let ends_early = (8..20).map(|t| [0.4 * f64::from(t), 0.0]).collect(); // at (7.6, 0) m
+/// let forecast = Forecast::equally_likely(1, 1, ends_early)?;
+/// let errors = DisplacementErrors::of(&Scene::new(&window, &forecast)?);
+/// assert!(is_miss(&errors, 0, 0.5) && !is_miss(&errors, 0, 2.0)); // 1.9 m off
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[must_use]
 pub fn is_miss(errors: &DisplacementErrors, i: usize, threshold: f64) -> bool {
     errors.min_fde(i) > threshold

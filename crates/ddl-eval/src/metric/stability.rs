@@ -31,6 +31,18 @@ use crate::Scene;
 pub const AT_GOAL: f64 = 1e-3;
 
 /// What one rollout does about its goal.
+///
+/// # Examples
+/// ```
+/// use ddl_eval::metric::stability::RolloutStability;
+///
+/// let goal = [2.0, 0.0];
+/// let there = RolloutStability::of([0.0, 0.0], &[[1.0, 0.0], [2.0, 0.0]], goal);
+/// assert!(there.decreasing && there.end_distance == 0.0);
+/// // One step too long: past the goal, and back.
+/// let beyond = RolloutStability::of([0.0, 0.0], &[[5.0, 0.0], [2.0, 0.0]], goal);
+/// assert!(!beyond.decreasing);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RolloutStability {
     /// Whether the distance to the goal decreases at every step.

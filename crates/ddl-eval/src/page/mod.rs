@@ -12,19 +12,27 @@ mod moment_data;
 mod standing;
 mod template;
 mod training_section;
+mod viewer;
 
 pub use error::{MomentProblem, PageError};
+pub use viewer::Viewer;
 
 use crate::{
     Moment, Report, TrainingCurve,
     document::{ContentsEntry, escape, inline},
 };
 use figure::{Drawing, Shape};
+use moment_data::Truth;
 
 const TEMPLATE: &str = include_str!("page.html");
+/// Of every page, up to its body.
+const HEAD: &str = include_str!("head.html");
+/// Light, dark, or as the system has it.
+const THEME_BUTTON: &str = include_str!("theme_button.html");
+const PLAYER: &str = include_str!("player.html");
 const STYLE: &str = include_str!("style.css");
-/// Run in this order, inside one function.
-const SCRIPTS: [&str; 14] = [
+/// Of the player. Run in this order, inside one function.
+const PLAYER_SCRIPTS: [&str; 12] = [
     include_str!("script/theme.js"),
     include_str!("script/print.js"),
     include_str!("script/moments.js"),
@@ -37,6 +45,9 @@ const SCRIPTS: [&str; 14] = [
     include_str!("script/clock.js"),
     include_str!("script/player.js"),
     include_str!("script/keys.js"),
+];
+/// Of the rest of the page, after them.
+const REPORT_SCRIPTS: [&str; 2] = [
     include_str!("script/curves.js"),
     include_str!("script/report_file.js"),
 ];
@@ -100,23 +111,16 @@ impl<'a> Page<'a> {
         let report = embed::json_in_script(&self.report.to_json()?);
         let moments = embed::json_in_script(&moment_data::to_json(&self.moments)?);
         let curves = embed::json_in_script(&serde_json::to_string(&self.curves)?);
-        let scripts = SCRIPTS.join("\n");
+        let scripts = [PLAYER_SCRIPTS.join("\n"), REPORT_SCRIPTS.join("\n")].join("\n");
         Ok(template::fill(
             TEMPLATE,
             &[
+                ("head", &head(&document.title)),
+                ("theme-button", THEME_BUTTON),
                 ("title", &escape(&document.title)),
                 ("lead", &inline(&document.lead)),
-                ("style", STYLE),
-                ("figure-style", figure::STYLE),
                 ("headline", &headline::headline(self.report)),
-                (
-                    "player-state",
-                    if self.moments.is_empty() {
-                        "empty"
-                    } else {
-                        "ready"
-                    },
-                ),
+                ("player", &player(&self.moments)),
                 ("gallery", &gallery_section::html(&self.moments)),
                 ("training", &training_section::html(&self.curves)),
                 ("contents", &contents.concat()),
@@ -160,9 +164,25 @@ impl<'a> Page<'a> {
     }
 
     fn check(&self) -> Result<(), PageError> {
-        moment_data::check(&self.moments)?;
+        moment_data::check(&self.moments, Truth::Whole)?;
         training_section::check(&self.curves)
     }
+}
+
+/// The head of a page under this title.
+fn head(title: &str) -> String {
+    let slots = [
+        ("title", &*escape(title)),
+        ("style", STYLE),
+        ("figure-style", figure::STYLE),
+    ];
+    template::fill(HEAD, &slots)
+}
+
+/// The player, which shows the embedded moments.
+fn player(moments: &[Moment]) -> String {
+    let state = if moments.is_empty() { "empty" } else { "ready" };
+    template::fill(PLAYER, &[("player-state", state)])
 }
 
 /// A line of the list of tables.

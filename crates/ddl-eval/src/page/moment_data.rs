@@ -2,24 +2,25 @@
 //!
 //! ```text
 //! observed  [x0, y0, dx, dy, ...]   the first position, then steps             mm
-//! truth     [dx, dy, ...]           steps from the last observed position      mm
+//! truth     [dx, dy, ...]           steps from the last observed position      mm; fewer than 12 where no more was seen
 //! paths     [[dx, dy, ...], ...]    the same, one a hypothesis                 mm
 //! goals     [[dx, dy] or null, ...] from the last observed position            mm
 //! weights   [...]                   thousandths
 //! representative                    index of the hypothesis that stands for all
 //! falls, certified                  one letter a hypothesis: y, n, - (nothing known)
+//! made_up                           how many observed positions were; left out where none was
 //! ```
 //!
 //! Moments hold whole millimetres, so that nothing is lost: `x / 1000` is the number that was there.
 
-use ddl_data::{HORIZON, OBSERVED, Position};
+use ddl_data::{HORIZON, MadeUp, OBSERVED, Position};
 use serde::Serialize;
 
 use super::error::{MomentProblem, PageError};
 use crate::{Moment, MomentHypothesis, MomentWalker, gallery::Pick};
 
 /// Beyond this nothing is a place, m: millimetres stay far from the largest whole number of an `f64`.
-const REACH: f64 = 1e6;
+const REACH: f64 = ddl_data::COORDINATE_LIMIT;
 
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
@@ -44,12 +45,23 @@ struct WalkerData {
     representative: usize,
     falls: String,
     certified: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    made_up: Option<MadeUp>,
+}
+
+/// How much of what then happened must be there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Truth {
+    /// All of it: errors are shown.
+    Whole,
+    /// As far as it was seen.
+    AsSeen,
 }
 
 /// Checks that every moment is whole, and names the first that is not.
-pub(super) fn check(moments: &[Moment]) -> Result<(), PageError> {
+pub(super) fn check(moments: &[Moment], truth: Truth) -> Result<(), PageError> {
     for (index, moment) in moments.iter().enumerate() {
-        problem(moment).map_or(Ok(()), |problem| {
+        problem(moment, truth).map_or(Ok(()), |problem| {
             Err(PageError::Moment {
                 index,
                 recording: moment.recording.clone(),
@@ -61,7 +73,7 @@ pub(super) fn check(moments: &[Moment]) -> Result<(), PageError> {
     Ok(())
 }
 
-fn problem(moment: &Moment) -> Option<MomentProblem> {
+fn problem(moment: &Moment, truth: Truth) -> Option<MomentProblem> {
     if moment.walkers.is_empty() {
         return Some(MomentProblem::Empty("there is nobody in it"));
     }
@@ -76,11 +88,11 @@ fn problem(moment: &Moment) -> Option<MomentProblem> {
     };
     let mut of_walkers = moment.walkers.iter().enumerate();
     of_walkers
-        .find_map(|(walker, who)| of_walker(walker, who))
+        .find_map(|(walker, who)| of_walker(walker, who, truth))
         .or_else(|| moment.picks.iter().find_map(absent))
 }
 
-fn of_walker(walker: usize, who: &MomentWalker) -> Option<MomentProblem> {
+fn of_walker(walker: usize, who: &MomentWalker, truth: Truth) -> Option<MomentProblem> {
     if who.hypotheses.is_empty() {
         return Some(MomentProblem::Empty("a walker has no hypothesis"));
     }
@@ -97,7 +109,13 @@ fn of_walker(walker: usize, who: &MomentWalker) -> Option<MomentProblem> {
         place(walker, field, path)
     };
     path("observed", &who.observed, OBSERVED)
-        .or_else(|| path("truth", &who.truth, HORIZON))
+        .or_else(|| {
+            let expected = match truth {
+                Truth::Whole => HORIZON,
+                Truth::AsSeen => who.truth.len().min(HORIZON),
+            };
+            path("truth", &who.truth, expected)
+        })
         .or_else(|| {
             let mut numbered = who.hypotheses.iter().enumerate();
             numbered.find_map(|(hypothesis, of)| {
@@ -172,6 +190,7 @@ impl WalkerData {
             representative: walker.representative(),
             falls: letters(|h| h.decreasing),
             certified: letters(|h| h.certified),
+            made_up: walker.made_up,
         }
     }
 }

@@ -63,5 +63,6 @@ fn describe_convention(convention: Convention) -> &'static str {
         Convention::Simulated => {
             "simulated crowds, NOT real recordings: comparable with no published number"
         }
+        Convention::Own => "own recordings, comparable with no published number",
     }
 }

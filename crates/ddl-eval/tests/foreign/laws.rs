@@ -9,11 +9,11 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-/// Any finite number, as other programs print them.
+/// Any coordinate within the bounds, as other programs print them.
 fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![
         -1e3..1e3_f64,
-        prop::num::f64::NORMAL,
+        -ddl_data::COORDINATE_LIMIT..=ddl_data::COORDINATE_LIMIT,
         prop::num::f64::SUBNORMAL,
         Just(-0.0)
     ]

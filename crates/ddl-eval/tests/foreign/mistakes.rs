@@ -361,3 +361,37 @@ fn text_that_is_not_utf8_is_refused_at_its_line() {
         );
     }
 }
+
+#[test]
+fn positions_beyond_every_map_are_named_with_their_place() {
+    let far = |expected: &str| {
+        format!(
+            "f, line {expected}: must lie within 10000000 m of the origin, found 1000000000000000000000000000000"
+        )
+    };
+    let positions = format!("{{\"positions\":{:?}}}", still(2.0, 0.0));
+    let json = line(70, 3, &positions.replacen("[2.0", "[1e30", 1));
+    let goal = line(70, 3, &positions.replacen('{', "{\"goal\":[0,1e30],", 1));
+    check(
+        ForeignFormat::JsonLines,
+        &json,
+        &far("1, hypotheses[0].positions[0]"),
+    );
+    check(
+        ForeignFormat::JsonLines,
+        &goal,
+        &far("1, hypotheses[0].goal"),
+    );
+    let table = HEADER.to_owned() + &rows("yard", 70, 3, 0, 1.0, 1e30);
+    let complaint = complaint(&table, ForeignFormat::Table);
+    assert!(
+        complaint.starts_with("f, line 2, x, y: must lie within"),
+        "{complaint}"
+    );
+    let trajnet = scene(0, 3, 0) + &tracks(0, 3, 0, 70, 1e30);
+    check(
+        ForeignFormat::TrajNet,
+        &trajnet,
+        "f, line 2, track.x, track.y: must lie within",
+    );
+}

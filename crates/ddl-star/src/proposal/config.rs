@@ -45,6 +45,19 @@ impl Default for ProposalConfig {
 }
 
 impl ProposalConfig {
+    /// Weights of its largest layers alone: the network has more numbers than these, and a file with fewer is not of it.
+    ///
+    /// # Panics
+    /// Where numbers overflow, which [`check`](Self::check) excludes.
+    #[must_use]
+    pub fn least_numbers(&self) -> u64 {
+        let [members, ends, width, near] =
+            [self.members, self.ends, self.width, self.neighbour_width].map(|size| size as u64);
+        let layers = self.layers as u64;
+        // hidden layers, attention, and for each end a place, three waypoints and a probability
+        members * (layers * width * width + near * (3 * near + width) + 9 * width * ends)
+    }
+
     /// Checks every field.
     ///
     /// # Errors
@@ -228,6 +241,32 @@ mod tests {
         assert!((training.relaxed_at(0) - 10.0).abs() < 1e-12);
         assert!((training.relaxed_at(450) - 5.5).abs() < 1e-12);
         assert!((training.relaxed_at(1499) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_network_has_more_numbers_than_the_least_but_not_many_times_more() {
+        let device = crate::ComputeDevice::open(crate::DeviceChoice::Cpu).unwrap();
+        for (members, ends, width, layers, neighbour_width) in [
+            (4, 20, 192, 2, 64),
+            (1, 1, 1, 1, 4),
+            (2, 3, 8, 5, 32),
+            (1, 64, 2, 1, 4),
+        ] {
+            let config = ProposalConfig {
+                members,
+                ends,
+                width,
+                layers,
+                neighbour_width,
+                ..ProposalConfig::default()
+            };
+            let network = crate::ProposalNetwork::new(config.clone(), 1, device).unwrap();
+            let (least, count) = (config.least_numbers(), network.parameters().count() as u64);
+            assert!(
+                least <= count && count <= 20 * least + 1000,
+                "{least}, {count}"
+            );
+        }
     }
 
     #[test]

@@ -145,6 +145,9 @@ impl ProposalNetwork {
     ///
     /// A walker's proposals do not depend on the other views of the call, beyond rounding.
     ///
+    /// # Shapes
+    /// One [`ProposedEnds`] a view, in their order: `members * ends` places, in metres ahead and to the left.
+    ///
     /// # Errors
     /// [`StarError::Torch`] when libtorch fails, for want of memory for instance.
     pub fn propose(&self, views: &[WalkerView]) -> Result<Vec<ProposedEnds>, StarError> {

@@ -28,6 +28,7 @@ pub(crate) fn run(dataset: &Dataset, folder: &Path) -> Result<RunDirectory> {
         validation: 0.0,
         validation_recordings: Vec::new(),
         goals,
+        patience: None,
         last_epoch_only: false,
         until: TrainingStage::Network,
         out: run.clone(),

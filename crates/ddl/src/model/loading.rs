@@ -1,6 +1,7 @@
 //! A model from the files of a run, a packed file or the program, and into a packed file.
 
 use super::Ddl;
+use crate::enough_weights;
 use crate::model_source::ModelSource;
 use crate::packed_model;
 use crate::run_config::RunConfig;
@@ -114,6 +115,8 @@ fn load_network(
     device: ComputeDevice,
     weights: &Path,
 ) -> Result<StarNetwork, DdlError> {
+    config.star.check()?;
+    enough_weights::require(weights, config.star.least_numbers())?;
     let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
     load_parameters(network.parameters(), &config.network_origin(), weights)?;
     Ok(network)

@@ -1,5 +1,6 @@
 //! `ddl evaluate --forecasts`: what another program forecast, scored beside the baselines.
 
+use super::super::RecordingsAt;
 use super::super::test_windows::TestWindows;
 use anyhow::Context as _;
 use clap::Args;
@@ -23,7 +24,7 @@ pub(crate) struct OtherProgram {
     )]
     pub(crate) forecasts: Option<PathBuf>,
     #[command(flatten)]
-    windows: TestWindows,
+    pub(crate) windows: TestWindows,
     /// Name of the other program in tables [default: the file's name]
     #[arg(long, requires = "forecasts")]
     name: Option<String>,
@@ -56,14 +57,14 @@ impl OtherProgram {
         &self,
         file: &Path,
         protocols: &[Protocol],
-        data: Option<&Path>,
+        recordings: &RecordingsAt,
         commit: &str,
     ) -> anyhow::Result<Report> {
         let fold = self.windows.fold()?;
         if protocols.contains(&Protocol::Published) {
             return Err(foreign::ForeignError::Published.into());
         }
-        let windows = self.windows.windows(data)?;
+        let windows = self.windows.windows(recordings)?;
         let coverage = if self.intersection {
             Coverage::Intersection
         } else {
@@ -75,7 +76,7 @@ impl OtherProgram {
         let name = self.name.as_deref().unwrap_or(&stem);
         let mut rows = Vec::new();
         for &protocol in protocols {
-            let (convention, rule) = (self.windows.convention, self.windows.rule());
+            let (convention, rule) = (self.windows.convention(), self.windows.rule());
             let conditions = Conditions {
                 commit: commit.to_owned(),
                 ..Conditions::new(convention, rule, protocol, fold, name)
@@ -107,7 +108,7 @@ fn named(error: foreign::ForeignError, windows: &TestWindows) -> anyhow::Error {
         anyhow::anyhow!(
             "{error} (the windows are those of --convention {} --fold {}, rule {}; --intersection scores the walkers \
              in both)",
-            windows.convention,
+            windows.convention(),
             windows.fold.as_deref().unwrap_or_default(),
             windows.rule()
         )

@@ -1,7 +1,7 @@
 //! Forecasts as JSON lines: an object a pedestrian, in the format that `ddl evaluate --forecasts` reads.
 
 use super::Moment;
-use crate::tracks::FrameNumber;
+use crate::clock::FrameNumber;
 use ddl::dynamics::{LyapunovCertificate, Violation};
 use serde::Serialize;
 

@@ -1,7 +1,8 @@
 //! `ddl forecast -`: from a tracker's lines, a forecast a frame.
 
 use super::Forecast;
-use crate::tracks::Clock;
+use crate::clock::Clock;
+use crate::telling::tell;
 use anyhow::{Context as _, bail};
 use ddl::data::{Completion, Frame, FrameReader, Homography, LiveTracks, Observation, Window};
 use std::fs::File;
@@ -44,7 +45,10 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
         match written.and_then(|()| output.flush()) {
             // whoever reads has seen enough
             Err(error) if error.kind() == ErrorKind::BrokenPipe => return Ok(()),
-            result => result.context("cannot write the forecasts")?,
+            result => result.with_context(|| match &forecast.output {
+                Some(path) => format!("cannot write to {}", path.display()),
+                None => "cannot write to standard output".to_owned(),
+            })?,
         }
     }
     if let Some(wrong) = wrong {
@@ -105,9 +109,9 @@ impl Tracking {
                 "standard input: the first two frames are {step} apart; say with --fps or --frame-step how many that are in 0.4 s"
             );
         }
-        eprintln!(
+        tell(format_args!(
             "note: frames are taken to be {step} apart in 0.4 s, as the first two are; --fps or --frame-step says otherwise"
-        );
+        ));
         let tracks = LiveTracks::with_frame_step(step)?.completing(self.completion);
         let tracks = self.tracks.insert(tracks);
         tracks.push(first.number, first.people)?;

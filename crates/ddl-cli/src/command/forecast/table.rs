@@ -1,7 +1,7 @@
 //! Forecasts as csv: a row a position.
 
 use super::Moment;
-use crate::tracks::FrameNumber;
+use crate::clock::FrameNumber;
 use anyhow::Context as _;
 use serde::Serialize;
 

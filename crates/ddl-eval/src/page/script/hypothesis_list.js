@@ -30,7 +30,7 @@ function makeHypothesisList(table, choose) {
     bar.style.setProperty("--share", (item.weight / heaviest).toFixed(3));
     weight.append(bar, item.weight.toFixed(3));
     tr.append(head, weight);
-    for (const text of [item.ade.toFixed(3), item.fde.toFixed(3)]) {
+    for (const text of [errorWords(item.ade), errorWords(item.fde)]) {
       tr.append(Object.assign(document.createElement("td"), { textContent: text }));
     }
     tr.append(Object.assign(document.createElement("td"), { className: "text", textContent: item.verdict }));

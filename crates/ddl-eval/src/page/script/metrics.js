@@ -6,16 +6,23 @@ function distance(a, b) {
   return Math.hypot(a[0] - b[0], a[1] - b[1]);
 }
 
-// ADE: the mean distance of the 12 positions from the true ones. FDE: that of the last.
+// ADE: the mean distance of the 12 positions from the true ones. FDE: that of the last. Null where these were not all seen.
 function displacement(path, truth) {
+  if (truth.length < path.length) return { ade: null, fde: null };
   const distances = path.map((place, at) => distance(place, truth[at]));
   const sum = distances.reduce((total, d) => total + d, 0);
   return { ade: sum / distances.length, fde: distances[distances.length - 1] };
 }
 
+// An error in metres; a dash where it is not known.
+function errorWords(error) {
+  return error === null ? "–" : error.toFixed(3);
+}
+
 // minADE and minFDE: two minima over the hypotheses, each of its own.
 function walkerErrors(walker) {
   const each = walker.hypotheses.map((h) => displacement(h.path, walker.truth));
+  if (walker.truth.length < HORIZON) return { each, minAde: null, minFde: null };
   return {
     each,
     minAde: Math.min(...each.map((e) => e.ade)),

@@ -41,7 +41,9 @@ function decodeWalker(data) {
   return {
     pedestrian: data.pedestrian,
     observed: walked([0, 0], data.observed),
+    // What then happened, as far as it was seen: up to 12 places.
     truth: walked(last, data.truth),
+    madeUp: data.made_up ?? { padded: 0, filled: 0 },
     hypotheses,
     representative: data.representative,
     heaviest: Math.max(...hypotheses.map((h) => h.weight), 1e-9),
@@ -53,19 +55,25 @@ function decodeMoment(data) {
   return { ...data, walkers: data.walkers.map(decodeWalker) };
 }
 
-// The place at a time counted in frames from 0; between two frames on the line between them.
+// The last frame, counted from 0, at which it is known where the walker was.
+function knownUntil(walker) {
+  return OBSERVED - 1 + walker.truth.length;
+}
+
+// The place at a time counted in frames from 0; between two frames on the line between them, after the last one there.
 function placeAt(observed, ahead, time) {
-  const at = Math.min(Math.max(time, 0), FRAMES - 1);
+  const last = OBSERVED - 1 + ahead.length;
+  const at = Math.min(Math.max(time, 0), last);
   const frame = Math.floor(at);
   const place = (f) => (f < OBSERVED ? observed[f] : ahead[f - OBSERVED]);
-  const [a, b] = [place(frame), place(Math.min(frame + 1, FRAMES - 1))];
+  const [a, b] = [place(frame), place(Math.min(frame + 1, last))];
   const share = at - frame;
   return [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
 }
 
 // The velocity in m/s of the step that the time lies in; of the last step at the end.
 function velocityAt(observed, ahead, time) {
-  const frame = Math.min(Math.floor(Math.max(time, 0)), FRAMES - 2);
+  const frame = Math.min(Math.floor(Math.max(time, 0)), OBSERVED + ahead.length - 2);
   const [a, b] = [placeAt(observed, ahead, frame), placeAt(observed, ahead, frame + 1)];
   return [(b[0] - a[0]) / SECONDS_A_FRAME, (b[1] - a[1]) / SECONDS_A_FRAME];
 }

@@ -42,6 +42,16 @@ function makePlayer(moments) {
     return `${moment.recording}${fold}${who}`;
   }
 
+  // What of the observed frames was not seen.
+  function madeUpWords(who) {
+    const { padded, filled } = who.madeUp;
+    if (padded + filled === 0) return "";
+    const parts = [];
+    if (padded > 0) parts.push(`${padded} before it came`);
+    if (filled > 0) parts.push(`${filled} in holes`);
+    return `Of its ${OBSERVED} observed frames ${padded + filled} are made up (${parts.join(", ")}). `;
+  }
+
   function momentAt(at) {
     if (!decoded.has(at)) decoded.set(at, decodeMoment(moments[at]));
     return decoded.get(at);
@@ -115,11 +125,15 @@ function makePlayer(moments) {
     const chosen = chosenHypothesis();
     byId("choose-walker").value = state.walker;
     byId("walker-name").textContent = `Walker ${who.pedestrian}`;
-    byId("min-ade").textContent = errors.minAde.toFixed(3);
-    byId("min-fde").textContent = errors.minFde.toFixed(3);
+    byId("min-ade").textContent = errorWords(errors.minAde);
+    byId("min-fde").textContent = errorWords(errors.minFde);
     const count = who.hypotheses.length;
+    const best = count === 1 ? "Of its one hypothesis" : `Best of ${count} hypotheses, two minima of their own`;
+    const measured = errors.minAde === null
+      ? `Not measured: seen for ${who.truth.length} of the ${HORIZON} forecast frames. `
+      : `${best}; from positions rounded to the millimetre. `;
     byId("convention-words").textContent =
-      `${count === 1 ? "Of its one hypothesis" : `Best of ${count} hypotheses, two minima of their own`}; from positions rounded to the millimetre. ` +
+      measured + madeUpWords(who) +
       `Forecast by ${moment.forecaster}; ${moment.recording}, frame ${moment.frame}.`;
     canvas.setAttribute(
       "aria-label",
@@ -221,7 +235,13 @@ function makePlayer(moments) {
     redraw();
   });
   new ResizeObserver(fit).observe(canvas);
-  chooseMoment(0);
+  if (document.body.dataset.first === "busiest") {
+    setShow("whole", true);
+    const people = moments.map((moment) => moment.walkers.length);
+    chooseMoment(people.indexOf(Math.max(...people)));
+  } else {
+    chooseMoment(0);
+  }
 
   return {
     clock,

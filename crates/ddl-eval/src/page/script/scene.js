@@ -114,21 +114,27 @@ function trail(observed, ahead, from, time) {
   return places;
 }
 
+// Where a walker is shown to go: as it went, as far as it was seen; else as it is forecast.
+function shownAhead(walker, show, time) {
+  return show.truth && time <= knownUntil(walker) ? walker.truth : walker.hypotheses[walker.representative].path;
+}
+
 function drawOther(context, view, walker, state, palette) {
   const { time, show } = state;
   const now = OBSERVED - 1;
+  const known = knownUntil(walker);
   const toPixels = (places) => places.map(view.px);
   stroke(context, toPixels(trail(walker.observed, walker.truth, 0, Math.min(time, now))), palette.other, 1.4, 0.8);
   if (show.truth) {
-    stroke(context, toPixels(trail(walker.observed, walker.truth, now, FRAMES - 1)), palette.other, 1, 0.35);
-    stroke(context, toPixels(trail(walker.observed, walker.truth, now, time)), palette.other, 1.4, 0.8);
+    stroke(context, toPixels(trail(walker.observed, walker.truth, now, known)), palette.other, 1, 0.35);
+    stroke(context, toPixels(trail(walker.observed, walker.truth, now, Math.min(time, known))), palette.other, 1.4, 0.8);
   }
   if (show.everything) drawHypotheses(context, view, walker, state, palette, 0.5);
   else if (time >= now) {
     const { path } = walker.hypotheses[walker.representative];
     stroke(context, toPixels([walker.observed[now], ...path]), palette.accent, 1, 0.4, [3, 3]);
   }
-  const ahead = show.truth ? walker.truth : walker.hypotheses[walker.representative].path;
+  const ahead = shownAhead(walker, show, time);
   dot(context, view.px(placeAt(walker.observed, ahead, time)), 3.4, palette.other, 1, palette.panel);
 }
 
@@ -157,6 +163,7 @@ function drawHypotheses(context, view, walker, state, palette, strength, chosen 
 function drawChosen(context, view, walker, state, palette) {
   const { time, show } = state;
   const now = OBSERVED - 1;
+  const known = knownUntil(walker);
   const hypothesis = walker.hypotheses[state.hypothesis ?? walker.representative];
   const toPixels = (places) => places.map(view.px);
   if (show.hypotheses) drawHypotheses(context, view, walker, state, palette, 1, hypothesis.index);
@@ -169,12 +176,14 @@ function drawChosen(context, view, walker, state, palette) {
   star(context, view.px(hypothesis.path[HORIZON - 1]), 8, palette.accent, early, palette.panel);
 
   if (show.truth) {
-    stroke(context, toPixels(trail(walker.observed, walker.truth, now, FRAMES - 1)), palette.truth, 1.6, 0.4);
-    stroke(context, toPixels(trail(walker.observed, walker.truth, now, time)), palette.truth, 3);
+    stroke(context, toPixels(trail(walker.observed, walker.truth, now, known)), palette.truth, 1.6, 0.4);
+    stroke(context, toPixels(trail(walker.observed, walker.truth, now, Math.min(time, known))), palette.truth, 3);
   }
   stroke(context, toPixels(trail(walker.observed, walker.truth, 0, Math.min(time, now))), palette.ink, 1.2, 0.5);
   walker.observed.forEach((place, frame) => {
-    dot(context, view.px(place), 2.6, palette.ink, frame <= time ? 1 : 0.25);
+    // Who came late has not been seen there.
+    if (frame < walker.madeUp.padded) ring(context, view.px(place), 2.2, palette.ink, 1, frame <= time ? 0.6 : 0.25);
+    else dot(context, view.px(place), 2.6, palette.ink, frame <= time ? 1 : 0.25);
   });
 
   if (time > now) {
@@ -182,7 +191,7 @@ function drawChosen(context, view, walker, state, palette) {
     arrow(context, view, place, velocityAt(walker.observed, hypothesis.path, time), palette["accent-deep"], 2);
     dot(context, view.px(place), 5.5, palette.accent, 1, palette.panel);
   }
-  if (time <= now || show.truth) {
+  if (time <= now || (show.truth && time <= known)) {
     const place = placeAt(walker.observed, walker.truth, time);
     const colour = time <= now ? palette.ink : palette.truth;
     arrow(context, view, place, velocityAt(walker.observed, walker.truth, time), colour, 2);
@@ -198,7 +207,7 @@ function drawNumbers(context, view, moment, state, palette) {
   for (const at of order) {
     const walker = moment.walkers[at];
     if (at !== state.walker && !state.show.others) continue;
-    const ahead = state.show.truth ? walker.truth : walker.hypotheses[walker.representative].path;
+    const ahead = shownAhead(walker, state.show, state.time);
     const [x, y] = view.px(placeAt(walker.observed, ahead, state.time));
     const box = [x + 6, y - 18, x + 12 + 7 * String(walker.pedestrian).length, y - 4];
     if (taken.some((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3])) continue;

@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
 use super::Task;
-use super::queries::{Buffers, UNSEEN, dot};
+use super::queries::{Buffers, LARGE, UNSEEN, dot};
 use crate::kernel::exp2::exp2;
 use crate::kernel::heads::Part;
 use crate::kernel::lanes::{DEPTH, Lanes, Quad};
@@ -56,8 +56,16 @@ impl Run<'_, '_> {
         let queries = buffers.queries.chunks_exact(quads);
         let queries = queries.zip(task.scene.codes.chunks_exact(walkers));
         for (two, ((mixed, normaliser), (query, codes))) in rows.zip(queries).enumerate() {
-            let weights = &mut buffers.weights[..];
-            let largest = scores(simd, query, &buffers.keys, codes, weights);
+            // Which walkers are dropped depends on their places, and training scenes are small.
+            let (codes, keys, values) = if !DROP && walkers > LARGE {
+                let seen = &mut buffers.seen;
+                seen.gather(codes, &buffers.keys, &buffers.values, quads);
+                (&seen.codes[..], &seen.keys[..], &seen.values[..])
+            } else {
+                (codes, &buffers.keys[..], &buffers.values[..])
+            };
+            let weights = &mut buffers.weights[..codes.len()];
+            let largest = scores(simd, query, keys, codes, weights);
             let mut sum = simd.splat(0.0);
             for (key, weight) in weights.iter_mut().enumerate() {
                 let power = exp2(simd, simd.sub(simd.load(&weight.0), largest));
@@ -76,8 +84,7 @@ impl Run<'_, '_> {
             let mut second = (!second.is_empty()).then_some(second);
             for quad in 0..quads {
                 let mut sum = [simd.splat(0.0); DEPTH];
-                let values = buffers.values.chunks_exact(quads);
-                for (weight, value) in weights.iter().zip(values) {
+                for (weight, value) in weights.iter().zip(values.chunks_exact(quads)) {
                     let value = simd.read(&value[quad]);
                     sum = simd.accumulate(sum, simd.load(&weight.0), value);
                 }

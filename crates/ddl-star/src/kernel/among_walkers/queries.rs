@@ -32,6 +32,39 @@ pub(super) struct Buffers {
     pub(super) weights: Vec<Lanes>,
     /// By two queries, of one key.
     pub(super) score_gradients: Vec<Lanes>,
+    /// What two queries see of a large scene.
+    pub(super) seen: Seen,
+}
+
+/// Scenes with more walkers are gone through by who is seen. Nobody sees far, and in a crowd of thousands most are far; smaller scenes
+/// are faster to go through whole.
+pub(super) const LARGE: usize = 128;
+
+/// The keys and values that at least one of two queries sees, in the order of the scene.
+///
+/// Who is not seen has the weight 0: to leave him out changes no bit.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seen {
+    pub(super) codes: Vec<u8>,
+    pub(super) keys: Vec<Quad>,
+    pub(super) values: Vec<Quad>,
+}
+
+impl Seen {
+    /// Takes those with a code other than 0 out of all.
+    pub(super) fn gather(&mut self, codes: &[u8], keys: &[Quad], values: &[Quad], quads: usize) {
+        self.codes.clear();
+        self.keys.clear();
+        self.values.clear();
+        let all = keys.chunks_exact(quads).zip(values.chunks_exact(quads));
+        for (&code, (key, value)) in codes.iter().zip(all) {
+            if code != 0 {
+                self.codes.push(code);
+                self.keys.extend_from_slice(key);
+                self.values.extend_from_slice(value);
+            }
+        }
+    }
 }
 
 /// What is added to the scores of two queries, by the code of what they see.

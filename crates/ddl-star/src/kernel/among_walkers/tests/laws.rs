@@ -1,6 +1,7 @@
 //! Laws that hold for any input.
 
 use super::Case;
+use crate::kernel::among_walkers::queries::LARGE;
 use crate::kernel::among_walkers::{AmongWalkers, Attended};
 use crate::kernel::instruction_set::InstructionSet;
 use crate::kernel::tests::numbers::{assert_close, bits, wide};
@@ -154,4 +155,39 @@ fn refuses_frames_that_do_not_fit() {
     let scenes = Scenes::new(&[1], &[true; 2]);
     let mut attended = Attended::default();
     AmongWalkers::new(8, 4).forward(&[0.0; 288], scenes.throughout(), None, &mut attended);
+}
+
+/// A scene so large that only who is seen is gone through.
+#[test]
+fn large_scenes_are_those_of_the_formula() {
+    let case = Case::new(21, (8, 4), &[LARGE + 21], (2, 1), 1.5);
+    let (mixed, gradient) = case.expected();
+    for set in InstructionSet::available() {
+        let (of_mixed, of_gradient) = case.run(set);
+        assert_close("mixed", &of_mixed, &mixed, 5e-6);
+        assert_close("gradient", &of_gradient, &gradient, 5e-6);
+    }
+}
+
+/// Walkers who are seen by nobody of a small scene make it a large one, and change no bit of it.
+#[test]
+fn who_is_far_away_changes_no_bit() {
+    let (near, all) = (LARGE, LARGE + 40);
+    let small = Case::new(22, (8, 4), &[near], (1, 1), 1.5);
+    let mut large = Case::new(23, (8, 4), &[all], (1, 1), 1.5);
+    for (i, j) in (0..all).flat_map(|i| (0..all).map(move |j| (i, j))) {
+        large.visible[i * all + j] = match (i < near, j < near) {
+            (true, true) => small.visible[i * near + j],
+            (false, false) => large.visible[i * all + j],
+            _ => false,
+        };
+    }
+    large.qkv[..small.qkv.len()].copy_from_slice(&small.qkv);
+    for set in InstructionSet::available() {
+        let (of_small, of_large) = (small.run(set).0, large.run(set).0);
+        assert!(
+            bits(&of_small) == bits(&of_large[..of_small.len()]),
+            "{set:?}"
+        );
+    }
 }

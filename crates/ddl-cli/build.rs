@@ -1,0 +1,41 @@
+//! Bakes in which commit the program is built from, for results to name.
+
+use std::path::Path;
+use std::process::Command;
+
+fn main() {
+    println!("cargo::rustc-env=DDL_BUILT_FROM={}", commit());
+}
+
+/// The commit of the checkout, shortened as results name it; `unknown` where there is no checkout or no git.
+fn commit() -> String {
+    let unknown = || "unknown".to_owned();
+    // A package that was unpacked inside of some other checkout is not of that checkout.
+    let in_workspace = Path::new("../../crates/ddl-cli/build.rs").is_file();
+    let folder = git(&["rev-parse", "--absolute-git-dir"]).filter(|_| in_workspace);
+    let Some(folder) = folder else {
+        println!("cargo::rerun-if-changed=build.rs");
+        return unknown();
+    };
+    // Written at every commit, checkout and merge.
+    let log = Path::new(&folder).join("logs/HEAD");
+    let moves = if log.is_file() {
+        log
+    } else {
+        Path::new(&folder).join("HEAD")
+    };
+    println!("cargo::rerun-if-changed={}", moves.display());
+    println!("cargo::rerun-if-changed=build.rs");
+    git(&["rev-parse", "--short=12", "HEAD"]).unwrap_or_else(unknown)
+}
+
+/// What git answers, in one line.
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).output().ok()?;
+    let answer = String::from_utf8(output.stdout).ok()?;
+    output
+        .status
+        .success()
+        .then(|| answer.trim().to_owned())
+        .filter(|answer| !answer.is_empty())
+}

@@ -1,0 +1,68 @@
+//! How frames are numbered where recordings count them in finer parts than the tracks did.
+
+use ddl::data::Doubt;
+use serde::Serialize;
+
+/// How frames of windows are numbered in the tracks.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Clock {
+    /// Parts of a frame that windows count.
+    parts: i64,
+}
+
+/// A frame as the tracks number it; between two frames where these do not meet the steps of 0.4 s.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(untagged)]
+pub(crate) enum FrameNumber {
+    Whole(i64),
+    Between(f64),
+}
+
+impl Clock {
+    /// Windows count frames as the tracks do.
+    pub(crate) const WHOLE: Self = Self { parts: 1 };
+
+    /// Windows count so many parts of a frame.
+    pub(crate) fn of_parts(parts: i64) -> Self {
+        Self { parts }
+    }
+
+    /// The frame nearest to one of a window.
+    pub(crate) fn nearest(self, frame: i64) -> i64 {
+        match self.number(frame) {
+            FrameNumber::Whole(frame) => frame,
+            FrameNumber::Between(frame) => frame.round() as i64,
+        }
+    }
+
+    /// The doubt with its frame numbered so.
+    pub(crate) fn of_doubt(self, doubt: Doubt) -> Doubt {
+        match doubt {
+            Doubt::Jump(mut fastest) => {
+                fastest.frame = self.nearest(fastest.frame);
+                Doubt::Jump(fastest)
+            }
+            Doubt::NoSteps { frame_step } => Doubt::NoSteps {
+                frame_step: self.nearest(frame_step),
+            },
+            other => other,
+        }
+    }
+
+    pub(crate) fn number(self, frame: i64) -> FrameNumber {
+        if frame % self.parts == 0 {
+            FrameNumber::Whole(frame / self.parts)
+        } else {
+            FrameNumber::Between(frame as f64 / self.parts as f64)
+        }
+    }
+}
+
+impl std::fmt::Display for FrameNumber {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Whole(frame) => frame.fmt(f),
+            Self::Between(frame) => frame.fmt(f),
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! `ddl view`.
+
+use super::model::ModelChoice;
+use super::{KeepClear, Machine};
+use crate::output;
+use crate::tracks::{Observed, Tracks};
+use anyhow::{Context as _, bail};
+use clap::Args;
+use ddl::data::{OBSERVED, Window};
+use ddl::eval::Moment;
+use ddl::eval::page::Viewer;
+use ddl::{Ddl, Forecast, Forecaster as _};
+use std::io::IsTerminal as _;
+use std::path::{Path, PathBuf};
+
+/// Look at forecasts of your own tracks in the browser
+///
+/// Writes one page that needs no network: a player of moments of the recording, with everybody's hypotheses, their weights, goals and
+/// certificates, and what then happened as far as it was seen.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  ddl view tracks.csv\n  ddl view camera.csv --fps 25 --homography H.txt --output lobby.html --no-open"
+)]
+pub(crate) struct View {
+    #[command(flatten)]
+    model: ModelChoice,
+    #[command(flatten)]
+    tracks: Tracks,
+    /// Moments to show, evenly spread over the recording
+    #[arg(long, default_value_t = 60, value_parser = super::at_least_one)]
+    moments: usize,
+    /// Page to write [default: the name of the tracks with -forecasts.html, in this folder]
+    #[arg(long, short)]
+    output: Option<PathBuf>,
+    /// Only write the page; otherwise it is opened too, where standard output is a terminal
+    #[arg(long)]
+    no_open: bool,
+    #[command(flatten)]
+    clear: KeepClear,
+    #[command(flatten)]
+    machine: Machine,
+}
+
+impl View {
+    pub(crate) fn run(self) -> anyhow::Result<()> {
+        if self.tracks.are_live() {
+            bail!("a page is made of a file of tracks; `ddl forecast -` forecasts live ones");
+        }
+        self.machine.prepare_for_little()?;
+        let observed = self.tracks.observed()?;
+        let model = self.clear.of(self.model.load(self.machine.device)?)?;
+        let chosen = spread(&observed.windows, self.moments);
+        let page = page(&model, &chosen, &observed, self.tracks.file())?;
+        let path = self.output.unwrap_or_else(|| {
+            let stem = self.tracks.file().file_stem().unwrap_or_default();
+            PathBuf::from(format!("{}-forecasts.html", stem.to_string_lossy()))
+        });
+        output::write_output(Some(&path), &page)?;
+        output::print(&format!("{}\n", path.display()))?;
+        if !self.no_open && std::io::stdout().is_terminal() {
+            open(&path)?;
+        }
+        Ok(())
+    }
+}
+
+/// Opens the page in the user's browser, which is not waited for.
+fn open(path: &Path) -> anyhow::Result<()> {
+    open::that_detached(path).with_context(|| {
+        format!(
+            "the page is written, but no browser could be started; open {} in one (--no-open does not try)",
+            path.display()
+        )
+    })
+}
+
+/// At most so many windows, evenly spread, the last one among them.
+fn spread(windows: &[Window], most: usize) -> Vec<Window> {
+    let count = windows.len().min(most);
+    (1..=count)
+        .map(|k| windows[k * windows.len() / count - 1].clone())
+        .collect()
+}
+
+/// The page of these windows, which are some of those observed.
+fn page(
+    model: &Ddl,
+    windows: &[Window],
+    observed: &Observed,
+    file: &Path,
+) -> anyhow::Result<String> {
+    let forecasts = model.forecast_all(windows)?;
+    let moment = |(window, forecast): (&Window, &Forecast)| {
+        let seen = observed.recording.onward(window);
+        let mut moment = Moment::under_way(model.name(), window, forecast, &seen)?;
+        moment.frame = observed.clock.nearest(window.frames()[OBSERVED - 1]);
+        Ok(moment)
+    };
+    let pairs = windows.iter().zip(&forecasts);
+    let moments: Vec<Moment> = pairs.map(moment).collect::<anyhow::Result<_>>()?;
+    let lead = format!(
+        "{} of {} moments of {}: what was observed of each person, where each may go in the next 4.8 s, and what then happened as \
+         far as it was seen.",
+        windows.len(),
+        observed.windows.len(),
+        file.display()
+    );
+    let mut notes = vec![format!(
+        "Forecast by {} ({}); goals {}.",
+        model.name(),
+        model.source(),
+        model.goal_model().words()
+    )];
+    notes.extend(certificates(&forecasts));
+    let viewer = Viewer::new(observed.recording.name(), moments);
+    Ok(viewer.lead(lead).notes(notes).to_html()?)
+}
+
+/// What the certificates say, in words; nothing where there are none.
+fn certificates(forecasts: &[Forecast]) -> Option<String> {
+    let verdicts: Vec<bool> = forecasts
+        .iter()
+        .flat_map(|of| {
+            let people = 0..of.pedestrians();
+            people.flat_map(move |i| (0..of.hypotheses()).map(move |k| of.certified(i, k)))
+        })
+        .flatten()
+        .collect();
+    let held = verdicts.iter().filter(|&&holds| holds).count();
+    (!verdicts.is_empty()).then(|| {
+        format!(
+            "Certificates: {held} of {} hypotheses come nearer to their goal at each of the 12 steps, along a flow that descends everywhere. \
+             That says that the forecasts are stable, not that people will do as forecast.",
+            verdicts.len()
+        )
+    })
+}

@@ -1,0 +1,31 @@
+//! Where output goes: standard output, or a file that is replaced as a whole.
+
+use anyhow::Context as _;
+use std::io::{ErrorKind, Write as _};
+use std::path::Path;
+
+/// Writes a whole output: to standard output, or to a file under a temporary name that is renamed.
+pub(crate) fn write_output(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
+    match path {
+        // A device or a pipe is written to, not replaced.
+        Some(path) if path.exists() && !path.is_file() => std::fs::write(path, text)
+            .with_context(|| format!("cannot write to {}", path.display())),
+        Some(path) => Ok(ddl::write_atomically(path, text.as_bytes())?),
+        None => print(text),
+    }
+}
+
+/// Writes to standard output.
+pub(crate) fn print(text: &str) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        // whoever reads has seen enough, as in `ddl forecast .. | head`
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        result => result.context("cannot write to standard output"),
+    }
+}
+
+/// Writes facts to standard output as JSON for programs.
+pub(crate) fn print_json(facts: &impl serde::Serialize) -> anyhow::Result<()> {
+    print(&(serde_json::to_string_pretty(facts)? + "\n"))
+}

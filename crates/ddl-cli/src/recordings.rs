@@ -1,0 +1,64 @@
+//! A user's own recordings: one file each, in a folder or named one by one.
+
+use crate::telling::tell;
+use crate::units::{InSteps, Units};
+use anyhow::{Context as _, bail};
+use std::path::{Path, PathBuf};
+
+/// What files of recordings are called; others in a folder are not looked at.
+const EXTENSIONS: [&str; 3] = ["csv", "txt", "ndjson"];
+
+/// The files of recordings in these folders, by name, and the files named themselves.
+pub(crate) fn files(paths: &[PathBuf], units: &Units) -> anyhow::Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            files.extend(in_folder(path, units)?);
+        } else {
+            files.push(path.clone());
+        }
+    }
+    Ok(files)
+}
+
+fn in_folder(folder: &Path, units: &Units) -> anyhow::Result<Vec<PathBuf>> {
+    let unreadable = || format!("cannot list {}", folder.display());
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).with_context(unreadable)? {
+        let path = entry.with_context(unreadable)?.path();
+        let hidden = path
+            .file_name()
+            .is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+        let of_tracks = EXTENSIONS.iter().any(|known| extension == *known);
+        if path.is_file() && !hidden && of_tracks && !units.are_from(&path) {
+            files.push(path);
+        }
+    }
+    if files.is_empty() {
+        bail!(
+            "{} holds no recordings: files that end in .csv, .txt or .ndjson",
+            folder.display()
+        );
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// Reads them in steps of 0.4 s; the first that cannot be read is named.
+pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<InSteps>> {
+    files.iter().map(|file| units.read(file)).collect()
+}
+
+/// Says what looks wrong with speeds: what is learned from wrong units, or measured with them, means nothing.
+pub(crate) fn warn_of_doubts(read: &[InSteps]) {
+    for InSteps { recording, clock } in read {
+        if let Some(doubt) = recording.speed_doubt() {
+            tell(format_args!(
+                "warning: {}: {} (--homography, --fps)",
+                recording.name(),
+                clock.of_doubt(doubt)
+            ));
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! What is told to people, on standard error.
+
+use std::fmt::Arguments;
+use std::io::{Error, ErrorKind, Write as _, stderr};
+
+/// Writes a line to standard error. Where nobody reads it, the work goes on: `eprintln!` would panic.
+pub(crate) fn tell(line: Arguments<'_>) {
+    let _ = writeln!(stderr(), "{line}");
+}
+
+/// Whether a write failed because its reader has gone, as in `ddl info | head -1`.
+pub(crate) fn reader_has_gone(error: &anyhow::Error) -> bool {
+    kinds(error).any(|kind| kind == ErrorKind::BrokenPipe)
+}
+
+/// What to do about an error of the system, where there is something to be done.
+pub(crate) fn advice(error: &anyhow::Error) -> Option<&'static str> {
+    kinds(error).find_map(|kind| match kind {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => Some(
+            "make room and run the same command again; nothing that was written before is lost",
+        ),
+        ErrorKind::ReadOnlyFilesystem => Some("choose a place that may be written to"),
+        ErrorKind::PermissionDenied => Some("ask for the right to it, or choose another place"),
+        _ => None,
+    })
+}
+
+fn kinds(error: &anyhow::Error) -> impl Iterator<Item = ErrorKind> {
+    let causes = error.chain();
+    causes.filter_map(|cause| Some(cause.downcast_ref::<Error>()?.kind()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anyhow::Context as _;
+
+    #[test]
+    fn the_cause_is_found_behind_what_was_said_of_it() {
+        let error = |kind: ErrorKind| {
+            let failed: Result<(), Error> = Err(kind.into());
+            failed.context("cannot write to a file").unwrap_err()
+        };
+        assert!(reader_has_gone(&error(ErrorKind::BrokenPipe)));
+        assert!(!reader_has_gone(&error(ErrorKind::StorageFull)));
+        assert!(
+            advice(&error(ErrorKind::StorageFull)).is_some_and(|told| told.contains("make room"))
+        );
+        assert_eq!(advice(&error(ErrorKind::InvalidData)), None);
+    }
+}

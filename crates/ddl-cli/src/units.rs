@@ -1,0 +1,152 @@
+//! What the numbers of tracks mean: how fast frames follow each other, and where a pixel is.
+
+use crate::clock::Clock;
+use crate::telling::tell;
+use anyhow::{Context as _, bail};
+use clap::Args;
+use ddl::data::{Format, Homography, Recording, TIME_STEP, parse_recording, whole_frame_step};
+use std::path::{Path, PathBuf};
+
+/// What frame numbers and positions mean.
+#[derive(Debug, Args)]
+pub(crate) struct Units {
+    /// Frame numbers count so many a second, such as 25: steps of 0.4 s are found, and resampled where they are no whole number of frames
+    #[arg(long, conflicts_with_all = ["dt", "frame_step"], value_parser = positive)]
+    fps: Option<f64>,
+    /// Seconds from one frame number to the next, such as 0.1
+    #[arg(long, conflicts_with = "frame_step", value_name = "SECONDS", value_parser = positive)]
+    dt: Option<f64>,
+    /// Frame numbers in 0.4 s [default: the most common difference between two rows]
+    #[arg(long)]
+    frame_step: Option<i64>,
+    /// Positions are pixels: a file of three lines of three numbers, the homography from pixels to metres
+    #[arg(long, value_name = "FILE")]
+    homography: Option<PathBuf>,
+}
+
+/// A recording in steps of 0.4 s.
+#[derive(Debug)]
+pub(crate) struct InSteps {
+    pub(crate) recording: Recording,
+    pub(crate) clock: Clock,
+}
+
+impl Units {
+    /// Whether any of them was given.
+    pub(crate) fn are_given(&self) -> bool {
+        let rate = self.fps.or(self.dt).is_some();
+        rate || self.frame_step.is_some() || self.homography.is_some()
+    }
+
+    /// What another command takes for the same.
+    pub(crate) fn as_options(&self) -> String {
+        let numbers = [
+            ("fps", self.fps.map(|fps| fps.to_string())),
+            ("dt", self.dt.map(|dt| dt.to_string())),
+            ("frame-step", self.frame_step.map(|step| step.to_string())),
+            (
+                "homography",
+                self.homography
+                    .as_ref()
+                    .map(|file| file.display().to_string()),
+            ),
+        ];
+        let given = numbers.into_iter();
+        given
+            .filter_map(|(name, value)| Some(format!(" --{name} {}", value?)))
+            .collect::<Vec<_>>()
+            .concat()
+    }
+
+    /// Whether this file is the homography, which may lie beside recordings.
+    pub(crate) fn are_from(&self, file: &Path) -> bool {
+        let place = |path: &Path| path.canonicalize().ok();
+        let homography = self.homography.as_deref().and_then(place);
+        homography.is_some() && homography == place(file)
+    }
+
+    /// The recording in the file, in metres and steps of 0.4 s, in the format that the file looks like. It is read once, so that it may be a pipe.
+    pub(crate) fn read(&self, file: &Path) -> anyhow::Result<InSteps> {
+        let recording = self.in_metres(file)?;
+        let Some(frame_time) = self.frame_time() else {
+            let recording = match self.frame_step {
+                None => recording,
+                Some(step) => recording.with_frame_step(step)?,
+            };
+            return Ok(InSteps {
+                recording,
+                clock: Clock::WHOLE,
+            });
+        };
+        let steps = recording
+            .in_steps(frame_time)
+            .with_context(|| file.display().to_string())?;
+        if steps.resampled {
+            tell(format_args!(
+                "note: 0.4 s are {:.4} frames: positions are taken on straight lines between frames, every 0.4 s back from the last one",
+                TIME_STEP / frame_time
+            ));
+        }
+        Ok(InSteps {
+            recording: steps.recording,
+            clock: Clock::of_parts(steps.parts),
+        })
+    }
+
+    fn in_metres(&self, file: &Path) -> anyhow::Result<Recording> {
+        let bytes =
+            std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
+        let format = Format::guess(file, &bytes);
+        let name = file.file_stem().unwrap_or_default().to_string_lossy();
+        let recording = parse_recording(&bytes, &file.display().to_string(), format)?;
+        let recording = recording.with_name(&*name);
+        match self.homography()? {
+            None => Ok(recording),
+            Some(homography) => homography
+                .on_the_ground(&recording)
+                .with_context(|| file.display().to_string()),
+        }
+    }
+
+    /// From pixels to metres, where positions are pixels.
+    pub(crate) fn homography(&self) -> anyhow::Result<Option<Homography>> {
+        let Some(path) = &self.homography else {
+            return Ok(None);
+        };
+        let text = std::fs::read_to_string(path)
+            .with_context(|| format!("cannot read {}", path.display()))?;
+        let homography = text.parse().with_context(|| path.display().to_string())?;
+        Ok(Some(homography))
+    }
+
+    /// Seconds from one frame number to the next, as far as they were given.
+    fn frame_time(&self) -> Option<f64> {
+        self.dt.or(self.fps.map(|fps| 1.0 / fps))
+    }
+
+    /// Frame numbers in a step of live tracks, as far as they were given.
+    pub(crate) fn live_frame_step(&self) -> anyhow::Result<Option<i64>> {
+        let Some(frame_time) = self.frame_time() else {
+            return Ok(self.frame_step);
+        };
+        let Some(step) = whole_frame_step(frame_time) else {
+            bail!(
+                "0.4 s are {:.4} frames: live tracks are not resampled; give a rate of which 0.4 s are a whole number of frames, or \
+                 count frames in finer parts",
+                TIME_STEP / frame_time
+            );
+        };
+        Ok(Some(step))
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number: f64 = text
+        .parse()
+        .map_err(|error| format!("must be a number ({error})"))?;
+    if number.is_finite() && number > 0.0 {
+        Ok(number)
+    } else {
+        Err("must be a finite number above 0".to_owned())
+    }
+}

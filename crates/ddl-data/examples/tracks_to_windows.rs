@@ -1,0 +1,103 @@
+//! Tracks of any format become the windows that forecasts are made from.
+//!
+//! ```text
+//! cargo run -p ddl-data --example tracks_to_windows
+//! cargo run -p ddl-data --example tracks_to_windows -- tracks.csv 25
+//! ```
+//! The arguments are a file (the project's own csv, TrajNet++ ndjson, the text files of ETH/UCY, ..: the format is told by its name and first
+//! lines) and the frames a second that its frame numbers count. Without them, three people filmed at 25 frames a second are made up, and
+//! written in two formats. One of them comes late, one is lost for a moment: what of their last 3.2 s was not seen is made up, and counted.
+#![expect(clippy::print_stdout, reason = "what it is for")]
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use ddl_data::{Completion, Format, OBSERVED, WindowRule, parse_recording};
+
+/// Frame, pedestrian, x and y in metres, every 10th frame of a camera at 25 a second: 0.4 s apart.
+fn three_people() -> Vec<(i64, i64, f64, f64)> {
+    let mut rows = Vec::new();
+    for step in 0..24 {
+        let (frame, t) = (10 * step, 0.4 * step as f64);
+        rows.push((frame, 1, 1.3 * t, 0.0));
+        // The tracker loses her for two steps.
+        if !(18..20).contains(&step) {
+            rows.push((frame, 2, 12.0 - 1.1 * t, 0.8));
+        }
+        // He comes around the corner at the end.
+        if step >= 20 {
+            rows.push((frame, 3, 4.0, -3.0 + 0.9 * (t - 8.0)));
+        }
+    }
+    rows
+}
+
+/// The same rows as a table, and as the lines of TrajNet++.
+fn written(rows: &[(i64, i64, f64, f64)]) -> [(&'static str, String); 2] {
+    let mut table = "frame,pedestrian,x,y\n".to_owned();
+    let mut lines = String::new();
+    for (frame, pedestrian, x, y) in rows {
+        // Writing to a string cannot fail.
+        let _ = writeln!(table, "{frame},{pedestrian},{x:.3},{y:.3}");
+        let _ = writeln!(
+            lines,
+            r#"{{"track": {{"f": {frame}, "p": {pedestrian}, "x": {x:.3}, "y": {y:.3}}}}}"#
+        );
+    }
+    [("street.csv", table), ("street.ndjson", lines)]
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match arguments.as_slice() {
+        [] => {
+            for (file, text) in written(&three_people()) {
+                show(Path::new(file), text.as_bytes(), 25.0)?;
+            }
+            Ok(())
+        }
+        [file, rate] => {
+            let bytes = std::fs::read(file).map_err(|error| format!("{file}: {error}"))?;
+            show(Path::new(file), &bytes, rate.parse()?)
+        }
+        _ => Err("usage: tracks_to_windows [FILE FRAMES_A_SECOND]".into()),
+    }
+}
+
+fn show(file: &Path, bytes: &[u8], frames_a_second: f64) -> Result<(), Box<dyn Error>> {
+    let format = Format::guess(file, bytes);
+    let recording = parse_recording(bytes, &file.display().to_string(), format)?;
+    let recording = recording.in_steps(1.0 / frames_a_second)?.recording;
+    println!(
+        "{}: format {format}, {} positions of {} people, {} frames a step of 0.4 s",
+        recording.name(),
+        recording.observations().len(),
+        recording.pedestrians().len(),
+        recording.frame_step()
+    );
+    println!(
+        "  {} windows with a known future, to train and measure on",
+        recording.windows(WindowRule::Complete).len()
+    );
+    let windows = recording.completed_windows(Completion::USUAL);
+    let Some(last) = windows.last() else {
+        println!("  nobody to forecast");
+        return Ok(());
+    };
+    println!(
+        "  {} windows to forecast from; the last, up to frame {}:",
+        windows.len(),
+        last.frames()[OBSERVED - 1]
+    );
+    for (i, pedestrian) in last.pedestrians().iter().enumerate() {
+        let ([x, y], made_up) = (last.observed(i)[OBSERVED - 1], last.made_up(i));
+        println!(
+            "    pedestrian {pedestrian} at ({x:.2}, {y:.2}) m; of 8 positions {} seen, {} filled in, {} before it came",
+            made_up.seen(),
+            made_up.filled,
+            made_up.padded
+        );
+    }
+    Ok(())
+}

@@ -1,0 +1,81 @@
+//! A robot's hand reaches past a pillar to a cup, in three dimensions, and the motion is certified.
+//!
+//! ```text
+//! cargo run -p ddl-dynamics --example reaching
+//! ```
+//! A positive-definite metric shapes the reach: quick across, slow in height, with a swing to the left. A ball in the way slows the
+//! approach to it and is slid along. `StableEuler` makes every step of finite length end nearer to the cup. Printed are the distance to
+//! the cup and the clearance from the ball's surface on the way, and whether the certificate holds, which is judged from the positions
+//! alone: also of plain Euler steps, which overshoot. No file is needed.
+#![expect(clippy::print_stdout, reason = "what it is for")]
+
+use ddl_dynamics::{
+    Attractor, AvoidingFlow, Ball, CholeskyMetric, DynamicsError, Euler, LyapunovCertificate,
+    NaturalGradientFlow, StableEuler, rollout,
+};
+use nalgebra::{Matrix3, Vector3};
+
+/// Seconds of a step of the controller.
+const TIME_STEP: f64 = 0.05;
+const STEPS: usize = 120;
+
+fn main() -> Result<(), DynamicsError> {
+    let cup = Attractor::new(Vector3::new(0.6, 0.1, 0.3))?; // metres
+    // P = L L^T + sigma I, in m/s along each axis: L is lower triangular, anything else about it is free.
+    #[rustfmt::skip]
+    let factor = Matrix3::new(
+        0.8, 0.0, 0.0,
+        0.3, 0.7, 0.0,
+        0.0, 0.1, 0.5,
+    );
+    let reach = NaturalGradientFlow::new(cup, CholeskyMetric::new(factor, 0.01)?);
+    // Radius 0.1 m; slowed from 0.1 m before its surface on.
+    let pillar = Ball::new(Vector3::new(0.3, 0.1, 0.14), 0.1)?;
+    let careful = AvoidingFlow::new(reach, [pillar], 0.1)?;
+
+    let start = Vector3::zeros();
+    let clearance = |path: &[Vector3<f64>]| {
+        let gaps = path.iter().map(|hand| pillar.gap_and_normal(hand).0);
+        gaps.fold(f64::INFINITY, f64::min)
+    };
+    let careless = rollout(&reach, &StableEuler, start, TIME_STEP, STEPS)?;
+    let path = rollout(&careful, &StableEuler, start, TIME_STEP, STEPS)?;
+
+    println!("   time      x      y      z   to the cup  clearance");
+    for step in (0..=40).step_by(4) {
+        let hand = &path[step];
+        println!(
+            "{:>5.1} s {:>6.3} {:>6.3} {:>6.3} {:>10.4} m {:>8.4} m",
+            TIME_STEP * step as f64,
+            hand.x,
+            hand.y,
+            hand.z,
+            cup.distance(hand),
+            pillar.gap_and_normal(hand).0
+        );
+    }
+    println!(
+        "at the end: {:.6} m from the cup; least clearance {:.4} m ({:.4} m without minding the pillar)",
+        cup.distance(&path[STEPS]),
+        clearance(&path),
+        clearance(&careless)
+    );
+
+    let certificate = LyapunovCertificate::of_rollout(&careful, &path, TIME_STEP)?;
+    match certificate.holds() {
+        Ok(()) => println!("certificate: holds, nearer to the cup at every step"),
+        Err(violation) => println!("certificate: BROKEN, {violation}"),
+    }
+    println!(
+        "largest turn from the straight way: {:.0} degrees",
+        certificate.largest_angle().to_degrees()
+    );
+
+    // The same flow in plain Euler steps.
+    let plain = rollout(&careful, &Euler, start, TIME_STEP, STEPS)?;
+    match LyapunovCertificate::of_rollout(&careful, &plain, TIME_STEP)?.holds() {
+        Ok(()) => println!("plain Euler steps: hold"),
+        Err(violation) => println!("plain Euler steps: {violation}"),
+    }
+    Ok(())
+}

@@ -1,0 +1,97 @@
+//! What a forecasting network makes of windows and their goals, trained or still in training.
+
+use crate::certified_forecast::Walked;
+use crate::model::NAME;
+use crate::walk::Gait;
+use ddl_data::{Position, Window};
+use ddl_eval::{Forecast, ForecastError};
+use ddl_goal::GoalSet;
+use ddl_star::{Noise, StarNetwork, StepRule, WindowRollout};
+
+/// Hypotheses of the variant without goals: as many noise vectors.
+const NOISE_HYPOTHESES: usize = 20;
+
+/// One hypothesis a goal for every pedestrian, with the goal's weight; for the variant without
+/// goals, one a noise vector of that seed, all equally likely.
+pub(crate) fn towards(
+    network: &StarNetwork,
+    seed: u64,
+    windows: &[Window],
+    sets: Vec<Vec<GoalSet>>,
+    gait: Gait,
+) -> Result<Vec<Forecast>, ForecastError> {
+    if !network.config().variant.uses_goal() {
+        return without_goals(network, seed, windows);
+    }
+    walked(network, windows, sets, gait)?
+        .map(Walked::forecast)
+        .collect()
+}
+
+/// The network's rollouts to all goals; each becomes a forecast when it is its turn, so that the
+/// certificates of many windows need not be kept.
+pub(crate) fn walked<'a>(
+    network: &'a StarNetwork,
+    windows: &'a [Window],
+    sets: Vec<Vec<GoalSet>>,
+    gait: Gait,
+) -> Result<impl Iterator<Item = Walked<'a>>, ForecastError> {
+    let goals: Vec<Vec<Vec<Position>>> = sets
+        .iter()
+        .map(|sets| sets.iter().map(|set| set.goals().to_vec()).collect())
+        .collect();
+    let rollouts = network
+        .forecast_windows(windows, &goals, Noise::Expected, gait.rule())
+        .map_err(|error| ForecastError::model(NAME, error))?;
+    let shaped = rollouts.into_iter().zip(windows).zip(sets);
+    Ok(shaped.map(move |((rollout, window), sets)| Walked {
+        config: network.config(),
+        gait,
+        window,
+        hypotheses: rollout.hypotheses,
+        rolled_out: rollout.positions,
+        factors: rollout.factors,
+        weights: sets.iter().flat_map(GoalSet::weights).copied().collect(),
+        goals: sets.iter().flat_map(GoalSet::goals).copied().collect(),
+    }))
+}
+
+/// Plain STAR: noise samples, all equally likely.
+pub(crate) fn without_goals(
+    network: &StarNetwork,
+    seed: u64,
+    windows: &[Window],
+) -> Result<Vec<Forecast>, ForecastError> {
+    let noise = Noise::Draws {
+        count: NOISE_HYPOTHESES,
+        seed,
+    };
+    network
+        .forecast_windows(
+            windows,
+            &unused_goals(windows),
+            noise,
+            StepRule::StableEuler,
+        )
+        .map_err(|error| ForecastError::model(NAME, error))?
+        .into_iter()
+        .map(equally_likely)
+        .collect()
+}
+
+/// A rollout without goals as a forecast.
+pub(crate) fn equally_likely(rollout: WindowRollout) -> Result<Forecast, ForecastError> {
+    Ok(Forecast::equally_likely(
+        rollout.pedestrians,
+        rollout.hypotheses,
+        rollout.positions,
+    )?)
+}
+
+/// A goal for everybody, for the variant that reads none.
+pub(crate) fn unused_goals(windows: &[Window]) -> Vec<Vec<Vec<Position>>> {
+    windows
+        .iter()
+        .map(|window| vec![vec![[0.0; 2]]; window.len()])
+        .collect()
+}

@@ -1,0 +1,184 @@
+//! `kill -9` at any moment of a benchmark: the same command goes on to the same results.
+//!
+//! The benchmark is run by `cargo xtask`, which names itself to the tests that it runs.
+
+use super::{Chance, half_written};
+use ddl_tests::folder_contents::{self, Contents};
+use ddl_tests::{figures, processes, program};
+use serde_json::Value;
+use std::os::unix::process::ExitStatusExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+/// Names the program.
+const PROGRAM: &str = "DDL_XTASK";
+
+/// A benchmark of two models, each of which takes some seconds.
+fn benchmark(folder: &Path) -> Option<Command> {
+    let Some(xtask) = std::env::var_os(PROGRAM) else {
+        eprintln!(
+            "skipped: {PROGRAM} does not name the program of `cargo xtask`, as it does under `cargo xtask test`"
+        );
+        return None;
+    };
+    let workspace = [env!("CARGO_MANIFEST_DIR"), ".."]
+        .iter()
+        .collect::<PathBuf>();
+    let mut command = Command::new(xtask);
+    command
+        .args(
+            "benchmark --convention simulated --profile smoke --folds corridor --seeds 1,2"
+                .split(' '),
+        )
+        .args("--train-walkers 64 --test-walkers 20 --protocol fair --jobs 2 --program".split(' '))
+        .arg(program::path())
+        .arg("--out")
+        .arg(folder.join("out"))
+        .current_dir(workspace)
+        .env_remove("DDL_COMMIT")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    Some(command)
+}
+
+/// Files of a finished benchmark without what differs from time to time: seconds, and logs.
+fn results(folder: &Path) -> Contents {
+    let mut contents = folder_contents::read(&folder.join("out"));
+    contents.retain(|name, _| {
+        let name = name.to_string_lossy();
+        !name.ends_with("log.txt") && !name.ends_with("optimizer.safetensors")
+    });
+    for (name, bytes) in &mut contents {
+        let Some(bytes) = bytes else { continue };
+        let extension = name.extension().and_then(|extension| extension.to_str());
+        let text = || String::from_utf8_lossy(bytes).into_owned();
+        match extension {
+            Some("json") => {
+                let mut value: Value = serde_json::from_slice(bytes).unwrap();
+                forget_seconds(&mut value);
+                *bytes = value.to_string().into_bytes();
+            }
+            Some("jsonl") => {
+                let lines = text();
+                let lines = lines.lines().map(|line| {
+                    let mut value: Value = serde_json::from_str(line).unwrap();
+                    forget_seconds(&mut value);
+                    value.to_string()
+                });
+                *bytes = lines.collect::<Vec<_>>().join("\n").into_bytes();
+            }
+            // They tell the same as report.json, and how long it took.
+            Some("md" | "html" | "tex") => bytes.clear(),
+            _ => {}
+        }
+    }
+    contents
+}
+
+fn forget_seconds(value: &mut Value) {
+    match value {
+        Value::Object(fields) => {
+            fields.retain(|name, _| !name.contains("seconds"));
+            fields.values_mut().for_each(forget_seconds);
+        }
+        Value::Array(items) => items.iter_mut().for_each(forget_seconds),
+        _ => {}
+    }
+}
+
+fn finish(folder: &Path) -> Option<Contents> {
+    let status = benchmark(folder)?.status().unwrap();
+    if !status.success() {
+        let logs = folder_contents::read(&folder.join("out"));
+        let logs = logs.iter().filter(|(name, _)| name.ends_with("log.txt"));
+        let logs: Vec<_> = logs
+            .map(|(_, log)| String::from_utf8_lossy(log.as_deref().unwrap_or_default()))
+            .collect();
+        panic!("{status}: {}", logs.join("\n"));
+    }
+    Some(results(folder))
+}
+
+/// Half of the times everything is killed, half of the times the benchmark alone, whose processes go on by themselves.
+#[test]
+fn a_killed_benchmark_ends_in_the_same_results() {
+    let whole = tempfile::tempdir().unwrap();
+    let begun = Instant::now();
+    let Some(expected) = finish(whole.path()) else {
+        return;
+    };
+    let takes = begun.elapsed();
+    assert!(expected.contains_key(Path::new("report.json")));
+    let rounds = figures::rounds(2, 50);
+    let mut chance = Chance::new("killed benchmark");
+    let (mut killed, mut alone) = (0, 0);
+    for round in 0..rounds {
+        let folder = tempfile::tempdir().unwrap();
+        let mut child = benchmark(folder.path()).unwrap().spawn().unwrap();
+        let moment = chance.moment((round, rounds), takes);
+        std::thread::sleep(moment);
+        if round % 2 == 0 {
+            // the benchmark first, so that it begins nothing new
+            for id in processes::with_descendants(child.id()) {
+                processes::signal(id, "KILL");
+            }
+        } else {
+            child.kill().unwrap();
+            alone += 1;
+        }
+        killed += usize::from(child.wait().unwrap().signal().is_some());
+        let found = finish(folder.path()).unwrap();
+        assert_eq!(
+            folder_contents::differences(&expected, &found),
+            Vec::<String>::new(),
+            "killed after {moment:?}, round {round}"
+        );
+        assert_eq!(half_written(folder.path()), Vec::<String>::new());
+    }
+    assert!(
+        2 * killed > rounds,
+        "{killed} of {rounds} were killed before they were done"
+    );
+    figures::tell(
+        "`kill -9` of a benchmark",
+        format!(
+            "{rounds} benchmarks of 2 models, {:.1} s each, killed once at a random moment ({killed} before their end); {alone} times the \
+             benchmark alone, whose processes went on",
+            takes.as_secs_f64()
+        ),
+        format!("{rounds} of {rounds} go on to the same results but for times"),
+    );
+}
+
+#[test]
+fn a_second_benchmark_in_the_same_folder_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(mut command) = benchmark(folder.path()) else {
+        return;
+    };
+    let mut first = command.spawn().unwrap();
+    while !folder.path().join("out/plan.json").exists() {
+        assert!(first.try_wait().unwrap().is_none());
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    let mut second = benchmark(folder.path()).unwrap();
+    let output = second.stderr(Stdio::piped()).output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(
+        told.contains("another benchmark") && told.contains("choose another --out"),
+        "{told}"
+    );
+    for id in processes::with_descendants(first.id()) {
+        processes::signal(id, "KILL");
+    }
+    first.wait().unwrap();
+    assert!(finish(folder.path()).is_some());
+    figures::tell(
+        "two benchmarks in one folder",
+        "the second, then again after a `kill -9` of the first",
+        "refused, naming the folder; free after the kill",
+    );
+}

@@ -1,0 +1,164 @@
+//! A day of live tracks: memory and time of a frame at its end are those of its beginning.
+//!
+//! Measured in a process of its own, started anew from this very test, because the other tests of this program use memory as they like.
+
+use ddl::data::{PedestrianId, Position};
+use ddl::eval::baseline::ConstantVelocity;
+use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster, LiveForecaster};
+use ddl_tests::{figures, processes, tiny_model};
+use std::process::Command;
+use std::time::Instant;
+
+/// Set in the child: the file to write to.
+const CHILD: &str = "DDL_TESTS_LONG_STREAM";
+/// Frames of an hour, 0.4 s apart.
+const HOUR: usize = 9_000;
+const MIB: u64 = 1 << 20;
+
+/// Who is there at a frame: somebody new every 12 frames, for 20 to 50 frames each, walking past at 1.25 m/s.
+fn people(frame: i64) -> Vec<(PedestrianId, Position)> {
+    let mut people = Vec::new();
+    for id in (frame / 12 - 4).max(0)..=frame / 12 {
+        let age = frame - 12 * id;
+        let stays = 20 + id * 7 % 31;
+        if age < stays {
+            let lane = (id % 5) as f64;
+            people.push((
+                PedestrianId(id),
+                [0.5 * age as f64, lane + 0.1 * (0.3 * age as f64).sin()],
+            ));
+        }
+    }
+    people
+}
+
+/// Seconds of some frames: the median and the 99th percentile, milliseconds.
+fn quantiles(seconds: &mut [f64]) -> [f64; 2] {
+    seconds.sort_by(f64::total_cmp);
+    [0.5, 0.99].map(|q| 1e3 * seconds[(q * (seconds.len() - 1) as f64) as usize])
+}
+
+/// What the child does: streams `frames`, of which the first `part` and the last are measured.
+fn stream(model: impl Forecaster, (frames, part): (usize, usize)) -> Option<String> {
+    let mut live = LiveForecaster::new(model);
+    let mut seconds = vec![0.0; frames];
+    let (mut early, mut most) = (0, 0);
+    for (frame, seconds) in seconds.iter_mut().enumerate() {
+        let begun = Instant::now();
+        let now = live.push(frame as i64, people(frame as i64)).unwrap();
+        *seconds = begun.elapsed().as_secs_f64();
+        assert_eq!(now.is_some(), frame >= 7, "somebody is always there");
+        most = most.max(live.tracks().len());
+        if frame + 1 == part {
+            early = processes::resident_bytes()?;
+        }
+    }
+    let late = processes::resident_bytes()?;
+    let peak = processes::peak_bytes(std::process::id())?;
+    let of_first = quantiles(&mut seconds[..part].to_vec());
+    let of_last = quantiles(&mut seconds[frames - part..].to_vec());
+    let numbers = [early as f64, late as f64, peak as f64, most as f64];
+    let numbers = numbers.iter().chain(&of_first).chain(&of_last);
+    Some(numbers.map(f64::to_string).collect::<Vec<_>>().join(" "))
+}
+
+/// One forecast a pedestrian, as a robot takes it.
+struct OneForecast(Ddl);
+
+impl Forecaster for OneForecast {
+    fn name(&self) -> String {
+        "one forecast".to_owned()
+    }
+
+    fn forecast(
+        &self,
+        window: &ddl::data::Window,
+    ) -> Result<ddl::Forecast, ddl::eval::ForecastError> {
+        // one window in, one forecast out
+        Ok(self.0.forecast_one(std::slice::from_ref(window))?.remove(0))
+    }
+}
+
+#[test]
+fn a_day_of_forecasts_does_not_add_up() {
+    let size = figures::rounds((3_000, 600), (24 * HOUR, HOUR));
+    watched(
+        "a live stream, one forecast each",
+        "a_day_of_forecasts_does_not_add_up",
+        size,
+        || {
+            tiny_model::use_one_thread();
+            let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu).unwrap();
+            stream(OneForecast(model), size)
+        },
+    );
+}
+
+/// What remembers people, and as good as nothing else.
+#[test]
+fn a_day_of_tracks_does_not_add_up() {
+    let size = (24 * HOUR, HOUR);
+    watched(
+        "a live stream, constant velocity",
+        "a_day_of_tracks_does_not_add_up",
+        size,
+        || stream(ConstantVelocity::last_step(), size),
+    );
+}
+
+/// Lets a child stream, and holds what it measured to what it measured at first.
+fn watched(
+    what: &str,
+    test: &str,
+    (frames, part): (usize, usize),
+    stream: impl FnOnce() -> Option<String>,
+) {
+    if let Some(file) = std::env::var_os(CHILD) {
+        return std::fs::write(file, stream().unwrap_or_default()).unwrap();
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("numbers");
+    let output = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", &format!("long_stream::{test}")])
+        .env(CHILD, &file)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let numbers = std::fs::read_to_string(file).unwrap();
+    if numbers.is_empty() {
+        eprintln!("skipped: this system does not tell the memory of a process");
+        return;
+    }
+    let numbers: Vec<f64> = numbers
+        .split(' ')
+        .map(|number| number.parse().unwrap())
+        .collect();
+    let [early, late, peak, most, median, p99, last_median, last_p99] = numbers[..] else {
+        panic!("{numbers:?}");
+    };
+    assert!(most <= 6.0, "{most} people remembered");
+    // what allocators keep for themselves; a number of 8 bytes kept a frame would be 1.7 MB a day
+    let growth = late - early;
+    assert!(growth <= 8.0 * MIB as f64, "{growth} bytes more");
+    // The machine may be busy with something else at one of the times: twice is not a trend.
+    assert!(
+        last_median < 3.0 * median,
+        "{median} ms, then {last_median} ms"
+    );
+    let mib = |bytes: f64| bytes / MIB as f64;
+    figures::tell(
+        what,
+        format!(
+            "{frames} frames of 0.4 s ({:.1} h), 2 to 5 people at a time coming and going",
+            frames as f64 / HOUR as f64
+        ),
+        format!(
+            "memory {:.1} MiB after {:.1} h, {:.1} MiB at the end (peak {:.1}); a frame takes {median:.3} ms at first (p99 {p99:.3}), {last_median:.3} ms \
+             at last (p99 {last_p99:.3})",
+            mib(early),
+            part as f64 / HOUR as f64,
+            mib(late),
+            mib(peak)
+        ),
+    );
+}

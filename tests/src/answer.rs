@@ -1,0 +1,68 @@
+//! What a page says a command answers, held against what it answered.
+
+/// Whether a shown line is this line: `...` in it stands for anything.
+#[must_use]
+pub fn line_matches(shown: &str, line: &str) -> bool {
+    let mut parts = shown.split("...");
+    let first = parts.next().unwrap_or_default();
+    let Some(mut rest) = line.strip_prefix(first) else {
+        return false;
+    };
+    let parts: Vec<&str> = parts.collect();
+    let Some((last, middle)) = parts.split_last() else {
+        return rest.is_empty();
+    };
+    for part in middle {
+        match rest.find(part) {
+            Some(at) => rest = &rest[at + part.len()..],
+            None => return false,
+        }
+    }
+    rest.ends_with(last)
+}
+
+/// The first shown line that is not in the answer after those before it; a line `...` stands for any lines.
+#[must_use]
+pub fn first_missing<'a>(shown: &'a [String], answer: &str) -> Option<&'a str> {
+    let mut lines = answer.lines().map(str::trim);
+    let lines_to_show = shown.iter().map(|line| line.trim());
+    lines_to_show
+        .filter(|line| !line.is_empty() && *line != "...")
+        .find(|wanted| !lines.any(|line| line_matches(wanted, line)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dots_stand_for_anything() {
+        for (shown, line) in [
+            ("a", "a"),
+            ("a...c", "abbc"),
+            ("...c", "c"),
+            ("a...b...c", "a1b2b3c"),
+            ("error: ...", "error: x"),
+        ] {
+            assert!(line_matches(shown, line), "{shown} {line}");
+        }
+        for (shown, line) in [
+            ("a", "ab"),
+            ("a...c", "ab"),
+            ("a...b...c", "ac"),
+            ("...c", "cd"),
+            ("ab...bc", "abc"),
+        ] {
+            assert!(!line_matches(shown, line), "{shown} {line}");
+        }
+    }
+
+    #[test]
+    fn lines_come_in_their_order() {
+        let shown = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(first_missing(&shown("a\n...\nc"), "a\nb\nc\nd\n"), None);
+        assert_eq!(first_missing(&shown("c\na"), "a\nb\nc\n"), Some("a"));
+        assert_eq!(first_missing(&shown("a\na"), "a\n"), Some("a"));
+        assert_eq!(first_missing(&shown(""), ""), None);
+    }
+}

@@ -1,0 +1,41 @@
+//! The examples of the crates, run as their head comments say.
+
+use crate::program::{self, Finished};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Runs an example of a crate in `folder`, with the arguments of a command line, which are parted by blanks.
+///
+/// # Panics
+/// If it was not built, is older than its sources, or cannot be started.
+#[must_use]
+pub fn run(package: &str, example: &str, folder: &Path, command_line: &str) -> Finished {
+    let place = Path::new("examples").join(example);
+    let path = program::built(&place, &format!("-p {package} --example {example}"));
+    let output = program::undisturbed(&path, folder, command_line).output();
+    let output = output.expect("the example can be started");
+    Finished::new(format!("{example} {command_line}"), &output)
+}
+
+/// The names of a crate's examples: `examples/NAME.rs` and `examples/NAME/main.rs`.
+///
+/// # Panics
+/// If its folder cannot be read.
+#[must_use]
+pub fn all_of(package: &str) -> BTreeSet<String> {
+    let folder =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../crates/{package}/examples"));
+    let entries = std::fs::read_dir(&folder).expect("every crate has examples");
+    let name = |path: &Path| -> Option<String> {
+        let is_one = path.extension().is_some_and(|e| e == "rs") || path.join("main.rs").is_file();
+        is_one.then(|| {
+            path.file_stem()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned()
+        })
+    };
+    entries
+        .filter_map(|entry| name(&entry.expect("a folder can be listed").path()))
+        .collect()
+}

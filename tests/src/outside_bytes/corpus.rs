@@ -1,0 +1,84 @@
+//! The committed corpora, and what a plain test makes of them.
+
+use std::path::PathBuf;
+
+use super::Reader;
+use super::edits::Choices;
+
+/// Byte edits of each file.
+const EDITS: u64 = 300;
+/// Longest file of which every truncation is read; of a longer one as many are.
+const MOST_TRUNCATIONS: usize = 2048;
+
+/// The files of a reader's corpus, by name.
+///
+/// # Panics
+/// When there is none, or one cannot be read.
+#[must_use]
+pub fn files(reader: &str) -> Vec<(PathBuf, Vec<u8>)> {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("fuzz/corpus")
+        .join(reader);
+    let entries = std::fs::read_dir(&folder)
+        .unwrap_or_else(|error| panic!("{} has no corpus: {error}", folder.display()));
+    let mut paths: Vec<PathBuf> = entries
+        .map(|entry| entry.expect("the folder can be listed").path())
+        .collect();
+    paths.sort();
+    assert!(!paths.is_empty(), "{} is empty", folder.display());
+    let read = |path: PathBuf| {
+        let bytes = std::fs::read(&path).expect("the file can be read");
+        (path, bytes)
+    };
+    paths.into_iter().map(read).collect()
+}
+
+/// Hands a reader every file of its corpus, all their truncations, and some edits of each, the same at every call.
+///
+/// # Panics
+/// When a law is broken; the bytes are then printed.
+pub fn run((name, read): Reader) {
+    for (path, bytes) in files(name) {
+        let hand_over = |bytes: &[u8], how: &str| {
+            let caught = std::panic::catch_unwind(|| read(bytes));
+            if let Err(panic) = caught {
+                eprintln!(
+                    "{name}, {} {how}: {:?}",
+                    path.display(),
+                    String::from_utf8_lossy(bytes)
+                );
+                std::panic::resume_unwind(panic);
+            }
+        };
+        hand_over(&bytes, "whole");
+        let stride = bytes.len().div_ceil(MOST_TRUNCATIONS).max(1);
+        for length in (0..bytes.len()).step_by(stride) {
+            hand_over(&bytes[..length], "cut short");
+        }
+        for seed in 0..EDITS {
+            let mut edited = bytes.clone();
+            let noise = noise(seed);
+            let mut choices = Choices::new(&noise);
+            for _ in 0..=(seed % 3) {
+                choices.edit(&mut edited);
+            }
+            hand_over(&edited, "edited");
+        }
+    }
+}
+
+/// Bytes that look like any (splitmix64).
+fn noise(seed: u64) -> Vec<u8> {
+    let mut state = seed;
+    let word = || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    };
+    std::iter::repeat_with(word)
+        .take(8)
+        .flat_map(u64::to_le_bytes)
+        .collect()
+}

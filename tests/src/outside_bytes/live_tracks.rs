@@ -1,0 +1,53 @@
+//! Frames with any numbers, pushed as a program pushes them.
+
+use ddl_data::{Completion, LiveTracks, PedestrianId, Position};
+
+use super::edits::Choices;
+
+/// Each few bytes are a frame: how far it is ahead, and who is where; now and then a number of any bits.
+///
+/// # Panics
+/// When an error changes the tracks, or what is remembered grows beyond those who may be in a window again.
+pub fn read(bytes: &[u8]) {
+    let mut choices = Choices::new(bytes);
+    let completion = Completion::new(2 + choices.below(7), choices.below(3));
+    let step = 1 + choices.below(12) as i64;
+    let Ok(tracks) = LiveTracks::with_frame_step(step) else {
+        panic!("a step of {step} is allowed");
+    };
+    let mut tracks = tracks.completing(completion.expect("within the bounds"));
+    let mut frame: i64 = choices.byte().into();
+    let mut people_of_late: Vec<(i64, usize)> = Vec::new();
+    while !choices.is_empty() {
+        frame = match choices.byte() {
+            255 => i64::from_le_bytes(choices.bytes()),
+            ahead => frame.wrapping_add(i64::from(ahead % 24) - 2),
+        };
+        let people: Vec<(PedestrianId, Position)> = (0..choices.below(5))
+            .map(|_| {
+                let id = PedestrianId(choices.below(6) as i64);
+                (id, [choices.number(), choices.number()])
+            })
+            .collect();
+        let before = tracks.clone();
+        let count = people.len();
+        match tracks.push(frame, people) {
+            Err(error) => {
+                assert!(!error.to_string().is_empty());
+                assert_eq!(tracks, before, "an error changes nothing");
+                frame = tracks.last_frame().unwrap_or_default();
+            }
+            Ok(window) => {
+                assert_eq!(tracks.last_frame(), Some(frame));
+                if let Some(window) = window {
+                    assert!(window.frames().last() == Some(&frame) && window.len() <= count);
+                }
+                let oldest = frame.saturating_sub(4 * step);
+                people_of_late.retain(|&(seen, _)| seen >= oldest);
+                people_of_late.push((frame, count));
+                let most: usize = people_of_late.iter().map(|&(_, count)| count).sum();
+                assert!(tracks.len() <= most, "{} of {most}", tracks.len());
+            }
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Every reader of bytes that somebody else wrote, as a function of bytes that holds it to its laws.
+//!
+//! No reader panics, whatever the bytes. Where there is more to say, the function says it: what is read and written again reads the
+//! same, a stream in pieces gives what it gives at once, an error changes nothing. The fuzz targets of `tests/fuzz` call these
+//! functions, and so do plain tests, with the committed corpora.
+
+pub mod corpus;
+mod edits;
+pub mod foreign;
+pub mod goal_library;
+pub mod homography;
+pub mod live_tracks;
+#[cfg(feature = "torch")]
+pub mod model_files;
+pub mod obsmat;
+pub mod own_tracks;
+mod recording;
+pub mod report;
+pub mod social_gan;
+pub mod star_csv;
+pub mod stream;
+pub mod table;
+pub mod trajnet;
+
+/// A reader under its laws, by the name of its fuzz target and corpus.
+pub type Reader = (&'static str, fn(&[u8]));
+
+/// The readers that need no libtorch.
+pub const READERS: [Reader; 15] = [
+    ("table", table::read),
+    ("star_csv", star_csv::read),
+    ("social_gan", social_gan::read),
+    ("trajnet", trajnet::read),
+    ("obsmat", obsmat::read),
+    ("own_tracks", own_tracks::read),
+    ("stream", stream::read),
+    ("live_tracks", live_tracks::read),
+    ("homography", homography::read),
+    ("foreign_json_lines", foreign::read_json_lines),
+    ("foreign_table", foreign::read_table),
+    ("foreign_trajnet", foreign::read_trajnet),
+    ("report", report::read),
+    ("moments", report::read_moments),
+    ("goal_library", goal_library::read),
+];
+
+/// The readers of models, which need libtorch.
+#[cfg(feature = "torch")]
+pub const MODEL_READERS: [Reader; 6] = [
+    ("packed_model", model_files::read_packed),
+    ("run_config", model_files::read_config),
+    ("metrics", model_files::read_metrics),
+    ("weights", model_files::read_weights),
+    ("experts", model_files::read_experts),
+    ("training_state", model_files::read_training_state),
+];

@@ -1,0 +1,53 @@
+//! A user's own tracks, as `ddl forecast` takes them: format guessed, rate given, windows cut.
+
+use ddl_data::{Completion, Format, OBSERVED, Recording, WindowRule, parse_recording};
+
+use super::recording::bounded;
+
+const NAMES: [&str; 4] = ["a.csv", "a.txt", "a.ndjson", "a"];
+/// Seconds a frame that the second byte chooses from.
+const FRAME_TIMES: [f64; 6] = [0.4, 0.04, 1.0 / 30.0, 0.1, 1e-9, 7.0];
+
+/// The first byte chooses the name of a file of tracks, the second the rate; the others are its content.
+///
+/// # Panics
+/// When a window is not of the recording.
+pub fn read(bytes: &[u8]) {
+    let [name, rate, text @ ..] = bytes else {
+        return;
+    };
+    let name = NAMES[usize::from(*name) % NAMES.len()];
+    let format = Format::guess(name.as_ref(), text);
+    let Ok(recording) = parse_recording(text, name, format) else {
+        return;
+    };
+    cut(&recording);
+    let frame_time = FRAME_TIMES[usize::from(*rate) % FRAME_TIMES.len()];
+    if let Ok(steps) = recording.in_steps(frame_time) {
+        bounded(&steps.recording);
+        cut(&steps.recording);
+    }
+}
+
+fn cut(recording: &Recording) {
+    let last = recording.frames().last().copied();
+    let whole = recording.completed_windows(Completion::NONE);
+    let completed = recording.completed_windows(Completion::USUAL);
+    assert!(whole.len() <= completed.len() && completed.len() <= recording.frames().len());
+    for window in &completed {
+        assert_eq!(window.steps(), OBSERVED);
+        assert!(window.frames().last() <= last.as_ref());
+        for i in 0..window.len() {
+            // What is padded at its start walks on a straight line, back to 7 steps of one step's length or hole's.
+            let far = window.observed(i).as_flattened().iter();
+            assert!(far.clone().all(|c| c.abs() <= 2e7), "{window:?}");
+        }
+    }
+    for rule in [
+        WindowRule::Published,
+        WindowRule::Complete,
+        WindowRule::SocialGan { min_pedestrians: 2 },
+    ] {
+        assert!(recording.windows(rule).len() <= recording.frames().len());
+    }
+}

@@ -1,0 +1,41 @@
+//! Results: `report.json` and `moments.json`.
+
+use std::sync::OnceLock;
+
+use ddl_eval::{Moment, Report, page::Page};
+
+/// Reads bytes as `report.json`, and makes a page of it. Written again, it reads the same.
+///
+/// # Panics
+/// When it does not.
+pub fn read(bytes: &[u8]) {
+    let Ok(report) = Report::from_json(&String::from_utf8_lossy(bytes)) else {
+        return;
+    };
+    let text = report.to_json().expect("what was read can be written");
+    let again = Report::from_json(&text)
+        .unwrap_or_else(|error| panic!("what was read is refused when written: {error}\n{text}"));
+    assert_eq!(again, report);
+    let document = report.document();
+    let _ = (document.to_markdown(), document.to_latex());
+    let page = Page::new(&report);
+    assert!(page.figures().is_ok() && page.to_html().is_ok());
+}
+
+/// Reads bytes as `moments.json`, and draws them.
+///
+/// # Panics
+/// When what is written again reads otherwise.
+pub fn read_moments(bytes: &[u8]) {
+    static EMPTY: OnceLock<Report> = OnceLock::new();
+    let Ok(moments) = serde_json::from_slice::<Vec<Moment>>(bytes) else {
+        return;
+    };
+    let text = serde_json::to_string(&moments).expect("what was read can be written");
+    let again: Vec<Moment> = serde_json::from_str(&text).expect("what was written can be read");
+    assert_eq!(again, moments);
+    let empty = EMPTY.get_or_init(|| Report::new("none", []).expect("no rows, no conflict"));
+    let page = Page::new(empty).moments(moments);
+    // Moments that are not whole are refused, and by both alike.
+    assert_eq!(page.figures().is_ok(), page.to_html().is_ok());
+}

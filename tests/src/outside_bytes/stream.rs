@@ -1,0 +1,54 @@
+//! Tracks as a tracker writes them, line by line.
+
+use std::io::BufReader;
+
+use ddl_data::{Completion, Frame, FrameReader, LiveTracks};
+
+/// The first byte says in pieces of how many bytes the others come.
+///
+/// # Panics
+/// When the pieces make a difference, frames are out of order, or an error changes the tracks.
+pub fn read(bytes: &[u8]) {
+    let Some((&piece, text)) = bytes.split_first() else {
+        return;
+    };
+    let whole = answers(FrameReader::new(text, "tracker"), text.len());
+    let pieces = BufReader::with_capacity(1 + usize::from(piece), text);
+    assert_eq!(
+        answers(FrameReader::new(pieces, "tracker"), text.len()),
+        whole
+    );
+    let mut tracks = LiveTracks::new().completing(Completion::USUAL);
+    let mut last = None;
+    for frame in whole.iter().flatten() {
+        assert!(last < Some(frame.number), "{frame:?} after {last:?}");
+        last = Some(frame.number);
+        let people = || frame.people.iter().copied();
+        assert!(
+            people().all(|(_, place)| place.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT))
+        );
+        let window = tracks
+            .push(frame.number, people())
+            .expect("frames that were read can be pushed");
+        assert_eq!(window, tracks.window());
+        let before = tracks.clone();
+        assert!(tracks.push(frame.number, people()).is_err());
+        assert_eq!(tracks, before);
+    }
+}
+
+/// Every frame and every complaint until the end.
+fn answers<R: std::io::BufRead>(
+    mut reader: FrameReader<R>,
+    length: usize,
+) -> Vec<Result<Frame, String>> {
+    let mut answers = Vec::new();
+    loop {
+        match reader.next_frame() {
+            Ok(None) => return answers,
+            Ok(Some(frame)) => answers.push(Ok(frame)),
+            Err(error) => answers.push(Err(error.to_string())),
+        }
+        assert!(answers.len() <= 2 * length + 2, "the reader does not go on");
+    }
+}

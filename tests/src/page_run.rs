@@ -1,0 +1,249 @@
+//! A folder in which the commands of a page are run, one after the other, in one shell.
+
+use crate::console::Command;
+use crate::{answer, page_inputs, program};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use tempfile::TempDir;
+
+/// A shell is given this long to begin what takes longer.
+const GLANCE: &str = "timeout --preserve-status --signal INT 3";
+
+/// How far a command is run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Depth {
+    /// To its end; its exit code and its answer must be as the page says.
+    Whole,
+    /// Begun, without recordings, and interrupted after a moment: its arguments must be right.
+    Begun,
+}
+
+/// What a reader of the page has before the first command.
+#[derive(Debug)]
+pub struct PageFolder {
+    folder: TempDir,
+    bin: TempDir,
+    datasets: Option<PathBuf>,
+}
+
+/// What one command did.
+#[derive(Debug)]
+struct Answered {
+    code: i32,
+    stdout: String,
+    stderr: String,
+}
+
+impl PageFolder {
+    /// The files of [`page_inputs`], `ddl` and `tracker` on the search path, `target/release/ddl`, and the checkout's `crates`.
+    ///
+    /// # Panics
+    /// If it cannot be made, or the program was not built.
+    #[must_use]
+    pub fn new(checkout: &Path, datasets: Option<PathBuf>) -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        let bin = tempfile::tempdir().expect("a temporary folder can be made");
+        let here = folder.path();
+        page_inputs::write(here);
+        let link = |from: &Path, to: PathBuf| {
+            std::os::unix::fs::symlink(from, to).expect("a link can be made");
+        };
+        std::fs::create_dir_all(here.join("target/release")).expect("a folder can be made");
+        link(program::path(), here.join("target/release/ddl"));
+        link(program::path(), bin.path().join("ddl"));
+        link(&checkout.join("crates"), here.join("crates"));
+        write_tracker(bin.path());
+        Self {
+            folder,
+            bin,
+            datasets,
+        }
+    }
+
+    /// Where the commands run.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Runs commands in one shell; what is wrong is returned, a text for each command.
+    ///
+    /// # Panics
+    /// If there is no shell.
+    #[must_use]
+    pub fn run(&self, commands: &[(&Command, Depth)]) -> Vec<String> {
+        let notes = tempfile::tempdir().expect("a temporary folder can be made");
+        let empty = tempfile::tempdir().expect("a temporary folder can be made");
+        let mut script = String::new();
+        for (i, (command, depth)) in commands.iter().enumerate() {
+            let typed = match depth {
+                Depth::Whole => command.typed.clone(),
+                Depth::Begun => {
+                    // What times a program may not be there.
+                    let typed = command.typed.trim_start_matches("/usr/bin/time ");
+                    let folder = empty.path().display();
+                    format!("(cd {folder}; unset DDL_DATASETS; {GLANCE} {typed}\n)")
+                }
+            };
+            let at = notes.path().join(i.to_string());
+            let at = at.display();
+            // a `String` takes everything
+            let _ = writeln!(
+                script,
+                "{{ {typed}\n}} > {at}.out 2> {at}.err < /dev/null\necho $? > {at}.code"
+            );
+        }
+        let mut shell = std::process::Command::new("bash");
+        let search = std::env::var("PATH").unwrap_or_default();
+        shell
+            .args(["-c", &script])
+            .current_dir(self.path())
+            .env("PATH", format!("{}:{search}", self.bin.path().display()))
+            .env("OMP_NUM_THREADS", "1")
+            .env_remove("DDL_DATASETS")
+            .env_remove("DDL_COMMIT")
+            .stdin(Stdio::null());
+        if let Some(datasets) = &self.datasets {
+            shell.env("DDL_DATASETS", datasets);
+        }
+        let output = shell.output().expect("the commands of a page need bash");
+        let said = String::from_utf8_lossy(&output.stderr);
+        let judged = commands
+            .iter()
+            .enumerate()
+            .filter_map(|(i, (command, depth))| {
+                let Some(answered) = Answered::read(&notes.path().join(i.to_string())) else {
+                    return Some(format!(
+                        "line {}: `{}` was not run: {said}",
+                        command.line, command.typed
+                    ));
+                };
+                let problem = answered.problem(command, *depth)?;
+                Some(format!(
+                    "line {}: `{}`: {problem}\n{answered:#?}",
+                    command.line, command.typed
+                ))
+            });
+        judged.collect()
+    }
+}
+
+fn write_tracker(bin: &Path) {
+    use std::os::unix::fs::PermissionsExt as _;
+    let program = bin.join("tracker");
+    let text = format!("#!/bin/sh\ncat <<'END'\n{}END\n", page_inputs::tracker());
+    std::fs::write(&program, text).expect("a program can be written");
+    let mode = std::fs::Permissions::from_mode(0o755);
+    std::fs::set_permissions(&program, mode).expect("a program can be made executable");
+}
+
+impl Answered {
+    fn read(at: &Path) -> Option<Self> {
+        let read = |kind: &str| std::fs::read(at.with_extension(kind)).ok();
+        let text = |kind: &str| Some(String::from_utf8_lossy(&read(kind)?).into_owned());
+        Some(Self {
+            code: text("code")?.trim().parse().ok()?,
+            stdout: text("out")?,
+            stderr: text("err")?,
+        })
+    }
+
+    fn problem(&self, command: &Command, depth: Depth) -> Option<String> {
+        if depth == Depth::Begun {
+            // No recordings, no such run: 1. Interrupted: 130. Wrong arguments: 2.
+            let begun = [0, 1, 130].contains(&self.code);
+            return (!begun).then(|| format!("it cannot be begun: exit code {}", self.code));
+        }
+        let expected = expected_code(&command.answered);
+        if self.code != expected {
+            return Some(format!("exit code {}, not {expected}", self.code));
+        }
+        let answers = [
+            format!("{}{}", self.stdout, self.stderr),
+            format!("{}{}", self.stderr, self.stdout),
+        ];
+        let missing =
+            answers.map(|text| answer::first_missing(&command.answered, &text).map(str::to_owned));
+        let [Some(missing), Some(_)] = missing else {
+            return None;
+        };
+        Some(format!("its answer has no line `{missing}`, or not there"))
+    }
+}
+
+/// A shown error stands for the exit code 1; one of the arguments, which ends with the advice to ask for help, for 2.
+fn expected_code(answered: &[String]) -> i32 {
+    let says = |start: &str| answered.iter().any(|line| line.starts_with(start));
+    match (says("error: "), says("For more information, try '--help'.")) {
+        (true, true) => 2,
+        (true, false) => 1,
+        (false, _) => 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn command(typed: &str, answered: &[&str]) -> Command {
+        Command {
+            line: 1,
+            typed: typed.to_owned(),
+            answered: answered.iter().map(|&line| line.to_owned()).collect(),
+        }
+    }
+
+    fn answered(code: i32, stdout: &str, stderr: &str) -> Answered {
+        Answered {
+            code,
+            stdout: stdout.to_owned(),
+            stderr: stderr.to_owned(),
+        }
+    }
+
+    #[test]
+    fn a_page_that_says_something_else_is_caught() {
+        let problem = |shown: &[&str], code, stdout: &str, stderr: &str| {
+            answered(code, stdout, stderr).problem(&command("x", shown), Depth::Whole)
+        };
+        assert_eq!(problem(&["a", "note: ..."], 0, "a\nb\n", "note: c\n"), None);
+        assert_eq!(
+            problem(&["warning: c", "a"], 0, "a\n", "warning: c\n"),
+            None
+        );
+        assert_eq!(problem(&["error: e"], 1, "", "error: e\n"), None);
+        assert_eq!(
+            problem(
+                &["error: e", "For more information, try '--help'."],
+                2,
+                "",
+                "error: e\n\nFor more information, try '--help'.\n"
+            ),
+            None
+        );
+        assert!(
+            problem(&[], 1, "", "error: e\n")
+                .unwrap()
+                .contains("exit code 1, not 0")
+        );
+        assert!(
+            problem(&["error: e"], 0, "", "")
+                .unwrap()
+                .contains("exit code 0, not 1")
+        );
+        assert!(
+            problem(&["b"], 0, "a\n", "")
+                .unwrap()
+                .contains("no line `b`")
+        );
+    }
+
+    #[test]
+    fn what_is_only_begun_must_have_right_arguments() {
+        let begun =
+            |code| answered(code, "", "").problem(&command("x", &["not looked at"]), Depth::Begun);
+        assert!([0, 1, 130].iter().all(|&code| begun(code).is_none()));
+        assert!([2, 101, 127].iter().all(|&code| begun(code).is_some()));
+    }
+}

@@ -1,0 +1,59 @@
+//! A safetensors file taken apart by hand: its length, its header, its numbers.
+
+use serde_json::Value;
+
+/// Header and numbers of a file.
+///
+/// # Errors
+/// In words, what is not whole.
+pub fn parts(bytes: &[u8]) -> Result<(Value, &[u8]), String> {
+    let (length, rest) = bytes
+        .split_first_chunk::<8>()
+        .ok_or("shorter than the length of a header")?;
+    let length = usize::try_from(u64::from_le_bytes(*length)).map_err(|error| error.to_string())?;
+    let (header, numbers) = rest
+        .split_at_checked(length)
+        .ok_or("ends within its header")?;
+    let header: Value = serde_json::from_slice(header).map_err(|error| error.to_string())?;
+    let tensors = header.as_object().ok_or("the header is no object")?;
+    let ends = tensors
+        .values()
+        .filter_map(|tensor| tensor["data_offsets"][1].as_u64());
+    let end = ends.max().unwrap_or(0);
+    if end != numbers.len() as u64 {
+        return Err(format!(
+            "{} bytes of numbers, {end} expected",
+            numbers.len()
+        ));
+    }
+    Ok((header, numbers))
+}
+
+/// The bytes of a file of these parts.
+#[must_use]
+pub fn join(header: &Value, numbers: &[u8]) -> Vec<u8> {
+    let mut header = header.to_string();
+    // Numbers begin at a multiple of eight bytes.
+    header.extend(std::iter::repeat_n(
+        ' ',
+        header.len().next_multiple_of(8) - header.len(),
+    ));
+    let length = (header.len() as u64).to_le_bytes();
+    [&length[..], header.as_bytes(), numbers].concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{join, parts};
+    use serde_json::json;
+
+    #[test]
+    fn what_was_joined_is_parted_and_half_of_it_is_not_whole() {
+        let header = json!({"a": {"dtype": "F32", "shape": [1], "data_offsets": [0, 4]}});
+        let whole = join(&header, &[1, 2, 3, 4]);
+        assert_eq!(parts(&whole), Ok((header, &[1, 2, 3, 4][..])));
+        for length in 0..whole.len() {
+            assert!(parts(&whole[..length]).is_err(), "{length}");
+        }
+    }
+}
