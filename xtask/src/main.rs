@@ -11,6 +11,7 @@
 //! | `benchmark` | profiles, the plan, the executor that works it off, progress |
 //! | `site` | the documentation site: what it is made of, and that its links lead somewhere |
 //! | `browser` | where a browser is or how to get one, and what drives it |
+//! | `cargo_tool` | programs of other people that checks run, one pinned version each |
 //! | `tidy` | the invariants of `docs/architecture.md`, as checks |
 #![allow(
     clippy::print_stdout,
@@ -19,6 +20,7 @@
 
 mod benchmark;
 mod browser;
+mod cargo_tool;
 mod command;
 mod data;
 mod digest;

@@ -31,7 +31,7 @@ const STAGE: &str = "target/site-stage";
 
 /// Makes the whole site and checks every link in it; returns its first page.
 pub(crate) fn build(workspace: &Workspace) -> Result<PathBuf> {
-    let mdbook = mdbook::ensure(workspace)?;
+    let mdbook = mdbook::TOOL.ensure(workspace)?;
     let site = workspace.path(SITE);
     empty(&site)?;
     let libraries = api::libraries(workspace)?;

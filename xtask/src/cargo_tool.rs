@@ -1,0 +1,150 @@
+//! Programs of other people that checks run: one pinned version each, built by cargo once for a machine.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use anyhow::{Context, Result, bail};
+
+use crate::libtorch::user_cache;
+use crate::workspace::{Workspace, find_on_path};
+
+/// The tools run for a second each: their build is what takes time, and is made short.
+const BUILD: [(&str, &str); 5] = [
+    ("CARGO_PROFILE_RELEASE_OPT_LEVEL", "0"),
+    ("CARGO_PROFILE_RELEASE_DEBUG", "false"),
+    ("CARGO_PROFILE_RELEASE_LTO", "off"),
+    ("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16"),
+    ("CARGO_PROFILE_RELEASE_STRIP", "true"),
+];
+
+/// A program that cargo can install.
+pub(crate) struct CargoTool {
+    /// Its package, which is also what it is called.
+    pub(crate) name: &'static str,
+    pub(crate) version: &'static str,
+    /// Further options of `cargo install`.
+    pub(crate) options: &'static [&'static str],
+}
+
+impl CargoTool {
+    /// The tool of the pinned version: from the search path, from the user's cache, or built from its sources now.
+    pub(crate) fn ensure(&self, workspace: &Workspace) -> Result<PathBuf> {
+        let installed = find_on_path(OsStr::new(self.name));
+        if let Some(program) = installed.filter(|program| self.is_pinned(program)) {
+            return Ok(program);
+        }
+        let cache = user_cache()?;
+        let folder = cache.join(format!("{}-{}", self.name, self.version));
+        let program = self.program_in(&folder);
+        if !self.is_pinned(&program) {
+            self.build(workspace, &cache, &folder)?;
+        }
+        if !self.is_pinned(&program) {
+            bail!(
+                "{} does not run: delete {} and try again",
+                program.display(),
+                folder.display()
+            );
+        }
+        Ok(program)
+    }
+
+    fn program_in(&self, folder: &Path) -> PathBuf {
+        let suffix = std::env::consts::EXE_SUFFIX;
+        folder.join(format!("bin/{}{suffix}", self.name))
+    }
+
+    /// Whether a program says of itself that it is the pinned version.
+    fn is_pinned(&self, program: &Path) -> bool {
+        let output = Command::new(program)
+            .arg("--version")
+            .stdin(Stdio::null())
+            .stderr(Stdio::null())
+            .output();
+        output.is_ok_and(|output| {
+            let said = String::from_utf8_lossy(&output.stdout);
+            let version = said.trim().strip_prefix(self.name).map(str::trim_start);
+            output.status.success()
+                && version.map(|version| version.trim_start_matches('v')) == Some(self.version)
+        })
+    }
+
+    /// Everything happens in a temporary folder of the cache; the finished one takes its name at the very end.
+    fn build(&self, workspace: &Workspace, cache: &Path, folder: &Path) -> Result<()> {
+        let Self { name, version, .. } = self;
+        fs::create_dir_all(cache)
+            .with_context(|| format!("{} cannot be created", cache.display()))?;
+        let work = tempfile::Builder::new()
+            .prefix(&format!(".{name}-incoming-"))
+            .tempdir_in(cache)
+            .with_context(|| format!("{} cannot be written to", cache.display()))?;
+        eprintln!("{name} {version}: building it, once, for two to three minutes");
+        let mut cargo = workspace.cargo_process();
+        cargo
+            .args(["install", name, "--locked", "--quiet", "--version"])
+            .arg(format!("={version}"))
+            .args(self.options)
+            .arg("--root")
+            .arg(work.path().join("tool"))
+            .arg("--target-dir")
+            .arg(work.path().join("build"))
+            .envs(BUILD)
+            .stdin(Stdio::null())
+            // The workspace's own configuration, with the path to libtorch, is not for tools.
+            .current_dir(work.path());
+        let status = cargo.status().context("cargo cannot be started")?;
+        if !status.success() {
+            bail!(
+                "{name} {version} cannot be built (above): connect to the package index, or put a {name} {version} on the search path"
+            );
+        }
+        if folder.exists() {
+            fs::rename(folder, work.path().join("replaced"))
+                .with_context(|| format!("the damaged {} cannot be replaced", folder.display()))?;
+        }
+        match fs::rename(work.path().join("tool"), folder) {
+            // Somebody else was faster.
+            Err(_) if self.is_pinned(&self.program_in(folder)) => Ok(()),
+            outcome => outcome.with_context(|| format!("{} cannot be created", folder.display())),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TOOL: CargoTool = CargoTool {
+        name: "hammer",
+        version: "1.2.3",
+        options: &[],
+    };
+
+    #[test]
+    fn only_the_pinned_version_is_trusted() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(!TOOL.is_pinned(&TOOL.program_in(folder.path())));
+        assert!(!TOOL.is_pinned(Path::new("sh")));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_program_is_known_by_what_it_says() {
+        use std::os::unix::fs::PermissionsExt as _;
+        let folder = tempfile::tempdir().unwrap();
+        for (says, pinned) in [
+            ("hammer 1.2.3", true),
+            ("hammer v1.2.3", true),
+            ("hammer 1.2.30", false),
+            ("hammer 0.14.2", false),
+            ("anvil 1.2.3", false),
+        ] {
+            let program = folder.path().join(says.replace(' ', "-"));
+            fs::write(&program, format!("#!/bin/sh\necho {says}\n")).unwrap();
+            fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+            assert_eq!(TOOL.is_pinned(&program), pinned, "{says}");
+        }
+    }
+}
