@@ -163,7 +163,22 @@ fn what_cannot_be_live_is_refused() {
     assert!(fails("forecast - --model . --fps 24").contains("9.6000 frames"));
     assert!(fails("goals - --model .").contains("ddl forecast -"));
     // standard input is empty
-    assert!(fails("forecast - --model .").contains("nobody was seen"));
+    assert!(fails("forecast - --model .").contains("holds no tracks"));
+}
+
+/// Pixels are seen in the speeds as soon as somebody was seen whole, and told once.
+#[test]
+fn speeds_that_nobody_walks_at_are_told_once() {
+    let folder = tiny_model::folder(Variant::Full);
+    let mut rows = own_tracks::three_people(12);
+    for row in &mut rows {
+        row.2 *= 100.0;
+    }
+    let mut live = Live::start(folder.path(), "--frame-step 10 --one");
+    live.write(&own_tracks::csv(&rows));
+    let (_, told, code) = live.end();
+    assert_eq!(code, Some(0), "{told}");
+    assert_eq!(told.matches("warning: half of the steps").count(), 1);
 }
 
 /// Who has seen enough may go.

@@ -40,7 +40,7 @@ fn late_comers_and_holes_are_forecast_and_flagged() {
     let finished = forecast(&rows, "--certificate --last");
     assert!(
         finished.stderr.contains(
-            "of 3 forecasts 1 are of people seen for less than 8 frames, and 1 over holes"
+            "of 3 forecasts 1 are of people seen for less than 8 steps, and 1 over holes"
         ),
         "{finished:?}"
     );

@@ -190,11 +190,11 @@ def check_player(opened, moments):
     assert opened.time() > before and opened.picture() != picture and opened.text("#now-words") != words
     page.focus(".stage")
     page.keyboard.press("Home")
-    assert opened.time() == 0 and "observed frame 1 of 8" in opened.text("#time-words")
+    assert opened.time() == 0 and "observed step 1 of 8" in opened.text("#time-words")
     for step in range(1, 20):
         page.keyboard.press("ArrowRight")
         assert opened.time() == step
-    assert "forecast frame 12 of 12" in opened.text("#time-words")
+    assert "forecast step 12 of 12" in opened.text("#time-words")
     page.keyboard.press("ArrowLeft")
     assert opened.time() == 18 and page.input_value("#time") == "19"
     page.keyboard.press("End")

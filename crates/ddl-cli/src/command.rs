@@ -112,7 +112,7 @@ fn clearance(text: &str) -> Result<Clearance, String> {
 /// How progress is told.
 #[derive(Debug, Args)]
 pub(crate) struct Telling {
-    /// Progress: a bar on a terminal (auto), a JSON object a line (json), or none
+    /// Progress: a bar on a terminal, elsewhere a line every half a minute (auto), a JSON object a line (json), or none
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) progress: ProgressMode,
     /// Results on standard output as JSON, for programs

@@ -1,14 +1,20 @@
-//! Progress for people (a bar on the terminal) or for programs (a JSON object a line).
+//! Progress for people (a bar on the terminal, a line now and then elsewhere) or for programs (a JSON object a line).
 
+use crate::telling::tell;
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
+use std::cell::Cell;
 use std::io::{IsTerminal as _, Write as _};
+use std::time::{Duration, Instant};
+
+/// How often somebody who reads a log is told how far the work has come: what takes less time is quiet.
+const LINE_EVERY: Duration = Duration::from_secs(30);
 
 /// How progress is told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ProgressMode {
-    /// A bar when standard error is a terminal, nothing otherwise.
+    /// A bar when standard error is a terminal, otherwise a line there every half a minute.
     Auto,
     /// One JSON object a line on standard output.
     Json,
@@ -22,6 +28,8 @@ pub(crate) struct Progress {
     stage: &'static str,
     mode: ProgressMode,
     bar: ProgressBar,
+    /// When the last line was told, where there is no bar.
+    told: Cell<Instant>,
 }
 
 #[derive(Serialize)]
@@ -50,13 +58,25 @@ impl Progress {
                 .progress_chars("=> "),
         );
         bar.set_prefix(stage);
-        Self { stage, mode, bar }
+        Self {
+            stage,
+            mode,
+            bar,
+            told: Cell::new(Instant::now()),
+        }
     }
 
     pub(crate) fn tell(&self, done: u64, total: u64, message: &str) {
         self.bar.set_length(total);
         self.bar.set_position(done);
         self.bar.set_message(message.to_owned());
+        let line_is_due = self.mode == ProgressMode::Auto
+            && self.bar.is_hidden()
+            && self.told.get().elapsed() >= LINE_EVERY;
+        if line_is_due {
+            self.told.set(Instant::now());
+            tell(format_args!("{}: {done} of {total} {message}", self.stage));
+        }
         if self.mode == ProgressMode::Json
             && let Ok(line) = serde_json::to_string(&Line {
                 stage: self.stage,

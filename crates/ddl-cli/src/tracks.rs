@@ -1,11 +1,12 @@
 //! A user's own tracks.
 
-use crate::clock::Clock;
+use crate::clock::{Clock, FrameNumber};
 use crate::telling::tell;
 use crate::units::{InSteps, Units};
 use anyhow::bail;
 use clap::Args;
 use ddl::data::{Completion, Doubt, Homography, MadeUp, OBSERVED, Recording, Window};
+use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
 /// Which tracks to read, and what their numbers mean. A command that needs them requires `file`.
@@ -19,15 +20,23 @@ pub(crate) struct Tracks {
     file: Option<PathBuf>,
     #[command(flatten)]
     units: Units,
-    /// Only who was seen in each of the last 8 frames
+    /// Only who was seen at each of the last 8 steps
     ///
-    /// Otherwise who was seen in 2 of them or more is forecast too: holes of up to 2 frames are filled on a straight line, and what begins late is
+    /// Otherwise who was seen at 2 of them or more is forecast too: holes of up to 2 frames are filled on a straight line, and what begins late is
     /// padded at the mean velocity seen. The columns `padded` and `filled` count such positions.
     #[arg(long, requires = "file")]
     whole: bool,
     /// Only the last frame that can be forecast from, instead of every one
     #[arg(long, requires = "file")]
     last: bool,
+}
+
+/// So many frames, in words.
+fn frames(count: FrameNumber) -> String {
+    match count {
+        FrameNumber::Whole(1) => "1 frame".to_owned(),
+        count => format!("{count} frames"),
+    }
 }
 
 /// What can be forecast from.
@@ -85,21 +94,28 @@ impl Tracks {
         self.units.live_frame_step()
     }
 
-    /// Windows of 8 observed frames, one a frame that has anybody to forecast.
+    /// Windows of 8 observed steps, one a frame that has anybody to forecast.
     pub(crate) fn observed(&self) -> anyhow::Result<Observed> {
         let InSteps { recording, clock } = self.units.read(self.file())?;
         let mut windows = recording.completed_windows(self.completion());
         if windows.is_empty() {
             bail!(
-                "{}: nobody was seen {} (steps of {} frames); give --fps where frame numbers are not 0.4 s apart, or --frame-step",
+                "{}: nobody was seen {} (a step of 0.4 s is taken to be {}); give --fps where frame numbers are not 0.4 s apart, or --frame-step",
                 self.file().display(),
                 if self.whole {
-                    "for 8 frames in a row, 3.2 s"
+                    "at 8 steps in a row, 3.2 s"
                 } else {
-                    "at two frames 0.4 s apart"
+                    "at two steps in a row"
                 },
-                clock.number(recording.frame_step())
+                frames(clock.number(recording.frame_step()))
             );
+        }
+        // Who looks at a terminal may be trying the tracks for the first time; scripts are left in peace.
+        if !self.units.say_the_rate() && std::io::stderr().is_terminal() {
+            tell(format_args!(
+                "note: a step of 0.4 s is taken to be {}, the most common difference of two rows; --fps, --dt or --frame-step says otherwise",
+                frames(clock.number(recording.frame_step()))
+            ));
         }
         // Wrong units or a wrong rate give forecasts that look confident and mean nothing.
         if let Some(doubt @ (Doubt::Fast { .. } | Doubt::Slow { .. } | Doubt::Jump(_))) =
@@ -130,7 +146,7 @@ impl Observed {
         let holes = all.iter().filter(|made_up| made_up.filled > 0).count();
         if late + holes > 0 {
             tell(format_args!(
-                "note: of {} forecasts {late} are of people seen for less than {OBSERVED} frames, and {holes} over holes that were filled (columns \
+                "note: of {} forecasts {late} are of people seen for less than {OBSERVED} steps, and {holes} over holes that were filled (columns \
                  padded and filled); --whole leaves them out",
                 all.len()
             ));

@@ -34,8 +34,7 @@ pub(crate) struct InSteps {
 impl Units {
     /// Whether any of them was given.
     pub(crate) fn are_given(&self) -> bool {
-        let rate = self.fps.or(self.dt).is_some();
-        rate || self.frame_step.is_some() || self.homography.is_some()
+        self.say_the_rate() || self.homography.is_some()
     }
 
     /// What another command takes for the same.
@@ -94,6 +93,15 @@ impl Units {
     }
 
     fn in_metres(&self, file: &Path) -> anyhow::Result<Recording> {
+        if file.as_os_str() == "-" {
+            bail!("standard input is read by `ddl forecast -` alone; name a file of tracks");
+        }
+        if file.is_dir() {
+            bail!(
+                "{} is a folder; name one of its files of tracks (`ddl data {0}` tells of each)",
+                file.display()
+            );
+        }
         let bytes =
             std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
         let format = Format::guess(file, &bytes);
@@ -117,6 +125,11 @@ impl Units {
             .with_context(|| format!("cannot read {}", path.display()))?;
         let homography = text.parse().with_context(|| path.display().to_string())?;
         Ok(Some(homography))
+    }
+
+    /// Whether it was said how fast frames follow each other.
+    pub(crate) fn say_the_rate(&self) -> bool {
+        self.frame_time().is_some() || self.frame_step.is_some()
     }
 
     /// Seconds from one frame number to the next, as far as they were given.

@@ -69,7 +69,7 @@ pub enum FormatProblem {
         detail: String,
     },
     /// A field that must be a whole number is none.
-    #[error("{name} must be a whole number below 2^53 in size, found {found:?}")]
+    #[error("{name} must be a whole number below 2^53 in size, found {found:?}{}", advice_on_integer(.name, .found))]
     NotInteger {
         /// What the field holds: `frame` or `pedestrian`.
         name: &'static str,
@@ -77,7 +77,7 @@ pub enum FormatProblem {
         found: String,
     },
     /// A field that must be a number is none, or is infinite or NaN.
-    #[error("{name} must be a finite number in metres, found {found:?}")]
+    #[error("{name} must be a finite number in metres, found {found:?}{}", advice_on_number(.found))]
     NotFinite {
         /// What the field holds: `x` or `y`.
         name: &'static str,
@@ -180,6 +180,27 @@ pub enum FormatProblem {
         /// The reader's own words.
         detail: String,
     },
+}
+
+/// What to do about a number of a frame or of a person that is no whole one.
+fn advice_on_integer(name: &str, found: &str) -> &'static str {
+    let is_number = found.parse::<f64>().is_ok_and(f64::is_finite);
+    match name {
+        "frame" if is_number && found.contains('.') => {
+            "; is it a time? Count frames instead: 0, 1, 2, and so on"
+        }
+        "pedestrian" if !is_number => "; number people: 1, 2, 3, and so on",
+        _ => advice_on_number(found),
+    }
+}
+
+/// What to do about text that is no number.
+fn advice_on_number(found: &str) -> &'static str {
+    if found.replacen(',', ".", 1).parse::<f64>().is_ok() && found.contains(',') {
+        "; write decimals with a point"
+    } else {
+        ""
+    }
 }
 
 /// Why observations do not make a [`Recording`](crate::Recording).

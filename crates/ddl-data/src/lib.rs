@@ -33,7 +33,7 @@ pub use neighbours::{NEIGHBOUR_HALF_WIDTH, NeighbourMask};
 pub use rate::{InSteps, RateError, whole_frame_step};
 pub use recording::Recording;
 pub use rule::WindowRule;
-pub use summary::{Doubt, Fastest, Summary};
+pub use summary::{Doubt, Fastest, Hole, Summary};
 pub use track::{
     COORDINATE_LIMIT, HORIZON, OBSERVED, Observation, PedestrianId, Position, TIME_STEP, WINDOW,
 };

@@ -59,6 +59,8 @@ pub struct Summary {
     pub fastest: Option<Fastest>,
     /// Times that somebody was not seen for some steps and then again.
     pub holes: usize,
+    /// The longest of them.
+    pub longest_hole: Option<Hole>,
     /// Moments of people who can be forecast, seen at 2 or more of 8 steps ([`Completion::USUAL`]).
     pub to_forecast: usize,
     /// Of these, moments of people seen at all 8 steps.
@@ -77,6 +79,18 @@ pub struct Fastest {
     pub pedestrian: PedestrianId,
     /// The raw frame at which it ends.
     pub frame: i64,
+}
+
+/// A time in which somebody was not seen, and after which they were again.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Hole {
+    /// Who was not seen.
+    pub pedestrian: PedestrianId,
+    /// The raw frame at which they were last seen before it.
+    pub after: i64,
+    /// From that frame to the one at which they were seen again, s.
+    pub seconds: f64,
 }
 
 /// Something that looks wrong; in words it says what may be done about it.
@@ -225,8 +239,15 @@ impl Recording {
         let tracks = self.tracks();
         let speeds = self.speeds(&tracks);
         let step = self.frame_step();
-        let holes = tracks.values().flat_map(|track| track.windows(2));
-        let holes = holes.filter(|pair| pair[1].frame - pair[0].frame > step);
+        let pairs = tracks.values().flat_map(|track| track.windows(2));
+        let holes: Vec<Hole> = pairs
+            .filter(|pair| pair[1].frame - pair[0].frame > step)
+            .map(|pair| Hole {
+                pedestrian: pair[0].pedestrian,
+                after: pair[0].frame,
+                seconds: (pair[1].frame - pair[0].frame) as f64 * TIME_STEP / step as f64,
+            })
+            .collect();
         let walkers = |windows: &[crate::Window]| windows.iter().map(crate::Window::len).sum();
         let corner = |pick: fn(f64, f64) -> f64, from: f64| {
             let places = self.observations().iter().map(|seen| seen.position);
@@ -249,7 +270,10 @@ impl Recording {
             median_speed: speeds.median,
             fastest: speeds.fastest,
             farthest: speeds.farthest,
-            holes: holes.count(),
+            holes: holes.len(),
+            longest_hole: holes
+                .into_iter()
+                .max_by(|a, b| a.seconds.total_cmp(&b.seconds)),
             to_forecast: walkers(&self.completed_windows(Completion::USUAL)),
             seen_whole: walkers(&self.observed_windows()),
             to_learn_from: walkers(&self.windows(WindowRule::Complete)),

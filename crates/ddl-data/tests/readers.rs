@@ -178,7 +178,7 @@ fn every_mistake_of_a_table_file_is_named_with_its_place() {
                 "frame,pedestrian,x,x\n",
                 "f, line 1, field 4: the header must name",
             ),
-            ("0,1,2.0,3.0\n", "f, line 1, field 1: the header must name"),
+            ("0,1,2.0,3.0\n", "f, line 1: the header must name"),
             (
                 "frame,pedestrian,x,y\n0,1,2\n",
                 "f, line 2: 3 fields where 4 are expected",
@@ -337,10 +337,38 @@ fn headers_as_others_write_them() {
         ("time,pedestrian,x,y", "count frames"),
         ("frame;pedestrian;x;y", "commas"),
         ("frame,pedestrian,x,vx", "leave it out"),
+        (
+            "0,1,2.5,-3.0",
+            "these are numbers; put the line frame,pedestrian,x,y above them",
+        ),
     ] {
         let message = read(header).unwrap_err().to_string();
         assert!(
             message.contains("line 1") && message.contains(advice),
+            "{message}"
+        );
+    }
+}
+
+/// What tables of other programs hold in place of the numbers asked for is known.
+#[test]
+fn rows_as_others_write_them() {
+    for (row, place, advice) in [
+        (
+            "0.4,1,2.0,3.0",
+            "line 2, field 1",
+            "is it a time? Count frames",
+        ),
+        ("0,anna,2.0,3.0", "line 2, field 2", "number people"),
+        ("0,1,\"2,5\",3.0", "line 2, field 3", "with a point"),
+        ("0,1,2,5,3,0", "line 2", "write a point"),
+    ] {
+        let text = format!("frame,pedestrian,x,y\n{row}\n");
+        let message = parse_recording(text.as_bytes(), "t", Format::Table)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.contains(place) && message.contains(advice),
             "{message}"
         );
     }

@@ -53,6 +53,9 @@ fn holes_and_what_can_be_learned_from_are_counted() {
         (summary.holes, summary.pedestrians, summary.frames),
         (1, 1, 99)
     );
+    let hole = summary.longest_hole.unwrap();
+    assert_eq!((hole.pedestrian.0, hole.after), (1, 49));
+    assert!((hole.seconds - 0.8).abs() < 1e-12);
     // 50 and 49 positions in a row: 31 and 30 windows of 20
     assert_eq!(summary.to_learn_from, 61);
     let few = Recording::new("yard", 1, walk(0.5)[..12].to_vec()).unwrap();

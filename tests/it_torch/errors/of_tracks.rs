@@ -42,13 +42,28 @@ fn tracks_too_short_to_forecast_are_refused() {
     let tracks = |frames| own_tracks::csv(&own_tracks::three_people(frames));
     std::fs::write(folder.path().join("tracks.csv"), tracks(7)).unwrap();
     let whole = format!("{FORECAST} --whole");
-    fails(folder.path(), &whole, &["tracks.csv", "8 frames"]);
+    fails(
+        folder.path(),
+        &whole,
+        &["tracks.csv", "8 steps", "10 frames"],
+    );
     std::fs::write(folder.path().join("tracks.csv"), tracks(1)).unwrap();
     fails(
         folder.path(),
         FORECAST,
-        &["tracks.csv", "two frames", "--fps"],
+        &["tracks.csv", "two steps", "--fps"],
     );
+}
+
+#[test]
+fn what_is_no_file_of_tracks_is_named() {
+    let folder = folder_with_model();
+    fails(
+        folder.path(),
+        "forecast --model run .",
+        &[". is a folder", "ddl data ."],
+    );
+    fails(folder.path(), "data -", &["ddl forecast -", "name a file"]);
 }
 
 #[test]

@@ -54,6 +54,9 @@ fn facts(summary: &Summary, clock: Clock) -> serde_json::Result<Value> {
     ] {
         facts[name] = serde_json::to_value(clock.number(frame))?;
     }
+    if let Some(hole) = &summary.longest_hole {
+        facts["longest_hole"]["after"] = serde_json::to_value(clock.number(hole.after))?;
+    }
     if let Some(fastest) = &summary.fastest {
         facts["fastest"]["frame"] = serde_json::to_value(clock.number(fastest.frame))?;
     }
@@ -95,10 +98,16 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std
     )?;
     writeln!(
         out,
-        "  to forecast: {}, {} of them seen at all 8 steps; {} in the tracks",
+        "  to forecast: {}, {} of them seen at all 8 steps; {} in the tracks{}",
         many(s.to_forecast, "moment of a person", "moments of people"),
         s.seen_whole,
         many(s.holes, "hole", "holes"),
+        s.longest_hole.map_or_else(String::new, |hole| format!(
+            ", the longest {:.1} s (pedestrian {} after frame {})",
+            hole.seconds,
+            hole.pedestrian,
+            clock.number(hole.after)
+        )),
     )?;
     writeln!(
         out,

@@ -14,6 +14,7 @@ use clap::{Args, ValueEnum};
 use ddl::data::{HORIZON, OBSERVED, Window};
 use ddl::dynamics::LyapunovCertificate;
 use ddl::{CertifiedForecast, Ddl, Forecaster as _};
+use std::io::IsTerminal as _;
 use std::path::PathBuf;
 
 /// Forecast the next 4.8 s of your own tracks
@@ -79,6 +80,9 @@ impl Forecast {
         let model = self.model()?;
         let text = self.text(&model, &observed.windows, observed.clock, true)?;
         write_output(self.output.as_deref(), &text)?;
+        if self.output.is_none() {
+            warn_of_flood(&text);
+        }
         observed.tell_what_is_made_up();
         Ok(())
     }
@@ -165,6 +169,19 @@ impl<'a> Moment<'a> {
         let (last, step) = (self.window.frames()[OBSERVED - 1], self.window.frame_step());
         let frames = (1..=HORIZON as i64).map(|t| self.clock.number(last + t * step));
         frames.collect()
+    }
+}
+
+/// Lines that a person can be expected to look through on a terminal.
+const LOOKED_THROUGH: usize = 100;
+
+/// On a terminal thousands of lines are of no use: says how to have fewer of them, or have them elsewhere.
+fn warn_of_flood(text: &str) {
+    let lines = text.lines().count();
+    if std::io::stdout().is_terminal() && lines > LOOKED_THROUGH {
+        tell(format_args!(
+            "note: {lines} lines; --output FILE writes them to a file, --last and --one make fewer of them, `ddl view` shows them"
+        ));
     }
 }
 

@@ -9,7 +9,9 @@ use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use ddl::data::{Convention, Fold};
 use ddl::star::{LearningRateSchedule, ProposalTraining, StarConfig, TrainingConfig};
-use ddl::{GoalRecipe, RunDirectory, TrainingRequest, TrainingStage, TrainingStep, Variant};
+use ddl::{
+    DdlError, GoalRecipe, RunDirectory, TrainingRequest, TrainingStage, TrainingStep, Variant,
+};
 use std::path::PathBuf;
 
 /// Share of own recordings kept for validation.
@@ -145,13 +147,15 @@ impl Train {
         };
         // Each stage has its bar, from its first step on.
         let (mut goals, mut network) = (None, None);
+        let mut stood = "before its first step".to_owned();
         let mut losses = String::new();
         let bar = |stage| move || Progress::new(stage, self.telling.progress);
-        ddl::train(&request, &dataset, |now| {
+        let trained = ddl::train(&request, &dataset, |now| {
             let (done, total) = now.steps;
             match &now.step {
                 TrainingStep::Goals(step) => {
                     let goals = goals.get_or_insert_with(bar("goals"));
+                    stood = format!("after {done} of {total} batches of goals");
                     goals.tell(done, total, &format!("within {:.2} m", step.distance));
                 }
                 TrainingStep::Network(step) => {
@@ -161,12 +165,18 @@ impl Train {
                     }
                     goals = None;
                     let network = network.get_or_insert_with(bar("train"));
+                    stood = format!("in epoch {}, after {done} of {total} batches", step.epoch);
                     network.tell(done, total, &format!("epoch {}{losses}", step.epoch));
                 }
             }
             interrupt.flow()
-        })?;
+        });
         drop((goals, network));
+        trained.map_err(|error| match error {
+            DdlError::Interrupted => anyhow::Error::new(error)
+                .context(format!("{}, {stood}", request.out.path().display())),
+            error => error.into(),
+        })?;
         finished::tell(&request, &self.recordings, &self.telling)
     }
 

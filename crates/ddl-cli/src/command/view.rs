@@ -103,7 +103,7 @@ fn page(
          far as it was seen.",
         windows.len(),
         observed.windows.len(),
-        file.display()
+        file.file_name().unwrap_or_default().display()
     );
     let mut notes = vec![format!(
         "Forecast by {} ({}); goals {}.",

@@ -7,6 +7,14 @@ use super::{Place, field};
 use crate::error::{FormatError, FormatProblem};
 
 const COLUMNS: [&str; 4] = ["frame", "pedestrian", "x", "y"];
+/// The fields of a row that has too many of them.
+const FEWER: &str =
+    "frame, pedestrian, x, y; a decimal comma would part a number in two, write a point";
+
+/// What the fields of a row hold, for one that has too few or too many.
+fn names(expected: usize, found: usize) -> &'static str {
+    if found > expected { FEWER } else { FIELDS }
+}
 
 pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
     if text.trim().is_empty() {
@@ -55,7 +63,7 @@ impl Columns {
             let problem = FormatProblem::FieldCount {
                 expected: self.count,
                 found: record.len(),
-                names: FIELDS,
+                names: names(self.count, record.len()),
             };
             return Err(Place { line, field: None }.wrong(origin, problem));
         }
@@ -66,6 +74,11 @@ impl Columns {
         let wrong = |field: Option<usize>, detail: String| {
             Place { line, field }.wrong(origin, FormatProblem::Header { detail })
         };
+        if header.iter().all(|name| name.parse::<f64>().is_ok()) {
+            let detail =
+                "these are numbers; put the line frame,pedestrian,x,y above them".to_owned();
+            return Err(wrong(None, detail));
+        }
         let mut places = [None; 4];
         for (index, name) in header.iter().enumerate() {
             // Spreadsheets like capitals.
@@ -123,7 +136,7 @@ fn advice(name: &str) -> &'static str {
             "rename it pedestrian"
         }
         "t" | "time" | "frame_id" => "rename it frame, and count frames",
-        text if text.contains(';') => "separate columns by commas",
+        text if text.contains(';') => "separate columns by commas, and write decimals with a point",
         _ => "leave it out",
     }
 }
@@ -160,7 +173,7 @@ fn table_error(error: &csv::Error, origin: &str) -> FormatError {
         } => FormatProblem::FieldCount {
             expected: *expected_len as usize,
             found: *len as usize,
-            names: FIELDS,
+            names: names(*expected_len as usize, *len as usize),
         },
         _ => FormatProblem::Table {
             detail: error.to_string(),

@@ -4,7 +4,10 @@ use super::Forecast;
 use crate::clock::Clock;
 use crate::telling::tell;
 use anyhow::{Context as _, bail};
-use ddl::data::{Completion, Frame, FrameReader, Homography, LiveTracks, Observation, Window};
+use ddl::data::{
+    Completion, Doubt, Frame, FrameReader, Homography, LiveTracks, MadeUp, Observation, Recording,
+    Window,
+};
 use std::fs::File;
 use std::io::{ErrorKind, Write, stdin, stdout};
 
@@ -26,7 +29,7 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
         ),
     };
     let mut frames = FrameReader::new(stdin().lock(), "standard input");
-    let mut headed = true;
+    let (mut headed, mut empty, mut looked_at) = (true, true, false);
     let mut wrong = None;
     while wrong.is_none() {
         let frame = frames.next_frame().or_else(|error| {
@@ -35,10 +38,14 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
             Ok::<_, anyhow::Error>(frames.unfinished())
         })?;
         let Some(frame) = frame else { break };
+        empty = false;
         let frame = on_the_ground(frame, homography.as_ref())?;
         let Some(window) = tracking.push(frame)? else {
             continue;
         };
+        if !looked_at {
+            looked_at = warn_of_speeds(&window)?;
+        }
         let text = forecast.text(&model, &[window], Clock::WHOLE, headed)?;
         headed = false;
         let written = output.write_all(text.as_bytes());
@@ -54,12 +61,38 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
     if let Some(wrong) = wrong {
         return Err(wrong.into());
     }
+    if empty {
+        bail!(
+            "standard input holds no tracks: the first line is frame,pedestrian,x,y, then a row for each person and frame"
+        );
+    }
     if headed {
         bail!(
             "standard input: nobody was seen long enough to be forecast; give --fps where frame numbers are not 0.4 s apart, or --frame-step"
         );
     }
     Ok(())
+}
+
+/// Says what looks wrong with the speeds of the first people that were seen whole; whether there were any.
+fn warn_of_speeds(window: &Window) -> anyhow::Result<bool> {
+    let whole = (0..window.len()).filter(|&i| window.made_up(i) == MadeUp::default());
+    let seen: Vec<Observation> = whole
+        .flat_map(|i| {
+            let pedestrian = window.pedestrians()[i];
+            let places = window.frames().iter().zip(window.observed(i));
+            places.map(move |(&frame, &place)| Observation::new(frame, pedestrian, place))
+        })
+        .collect();
+    if seen.is_empty() {
+        return Ok(false);
+    }
+    let recording = Recording::new("standard input", window.frame_step(), seen)?;
+    // A jump is no matter of units, and somebody may be slow for 3.2 s.
+    if let Some(doubt @ Doubt::Fast { .. }) = recording.speed_doubt() {
+        tell(format_args!("warning: {doubt} (--homography, --fps)"));
+    }
+    Ok(true)
 }
 
 fn on_the_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Result<Frame> {

@@ -30,7 +30,11 @@ pub(super) fn tell(
     if telling.progress == ProgressMode::Json {
         return Ok(());
     }
-    let (run, count) = (run.display(), epochs.len());
+    let run = run.display();
+    let epochs = match epochs.len() {
+        1 => "1 epoch".to_owned(),
+        count => format!("{count} epochs"),
+    };
     let data = recordings.as_options();
     let part = match request.fold.as_str() {
         Fold::WHOLE => "validation",
@@ -44,12 +48,12 @@ pub(super) fn tell(
     } else {
         match best {
             None => (
-                format!("trained, {count} epochs"),
+                format!("trained, {epochs}"),
                 format!("evaluate --model {run}{data}"),
             ),
             Some((error, epoch)) => (
                 format!(
-                    "trained, {count} epochs; epoch {epoch} is the model: minADE of 20 hypotheses {error:.3} m on the validation part"
+                    "trained, {epochs}; epoch {epoch} is the model: minADE of 20 hypotheses {error:.3} m on the validation part"
                 ),
                 format!("evaluate --model {run}{data} --validation"),
             ),

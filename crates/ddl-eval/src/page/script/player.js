@@ -42,14 +42,14 @@ function makePlayer(moments) {
     return `${moment.recording}${fold}${who}`;
   }
 
-  // What of the observed frames was not seen.
+  // What of the observed steps was not seen.
   function madeUpWords(who) {
     const { padded, filled } = who.madeUp;
     if (padded + filled === 0) return "";
     const parts = [];
     if (padded > 0) parts.push(`${padded} before it came`);
     if (filled > 0) parts.push(`${filled} in holes`);
-    return `Of its ${OBSERVED} observed frames ${padded + filled} are made up (${parts.join(", ")}). `;
+    return `Of its ${OBSERVED} observed steps ${padded + filled} are made up (${parts.join(", ")}). `;
   }
 
   function momentAt(at) {
@@ -102,7 +102,7 @@ function makePlayer(moments) {
     state.time = time;
     const frame = Math.floor(time + 1e-9);
     const seconds = (time - (OBSERVED - 1)) * SECONDS_A_FRAME;
-    const part = frame < OBSERVED ? `observed frame ${frame + 1} of ${OBSERVED}` : `forecast frame ${frame - OBSERVED + 1} of ${HORIZON}`;
+    const part = frame < OBSERVED ? `observed step ${frame + 1} of ${OBSERVED}` : `forecast step ${frame - OBSERVED + 1} of ${HORIZON}`;
     const sign = seconds < -1e-9 ? "−" : seconds > 1e-9 ? "+" : "";
     byId("time-words").textContent = `${sign}${Math.abs(seconds).toFixed(1)} s, ${part}`;
     byId("time").value = frame + 1;
@@ -125,12 +125,14 @@ function makePlayer(moments) {
     const chosen = chosenHypothesis();
     byId("choose-walker").value = state.walker;
     byId("walker-name").textContent = `Walker ${who.pedestrian}`;
+    // Errors of somebody who was not seen on are not known: no empty places are left for them.
+    stage.classList.toggle("unmeasured", errors.minAde === null);
     byId("min-ade").textContent = errorWords(errors.minAde);
     byId("min-fde").textContent = errorWords(errors.minFde);
     const count = who.hypotheses.length;
     const best = count === 1 ? "Of its one hypothesis" : `Best of ${count} hypotheses, two minima of their own`;
     const measured = errors.minAde === null
-      ? `Not measured: seen for ${who.truth.length} of the ${HORIZON} forecast frames. `
+      ? `Not measured: seen for ${who.truth.length} of the ${HORIZON} forecast steps. `
       : `${best}; from positions rounded to the millimetre. `;
     byId("convention-words").textContent =
       measured + madeUpWords(who) +
@@ -141,7 +143,7 @@ function makePlayer(moments) {
     );
     chart.draw(who, chosen);
     list.draw(who, errors, chosen);
-    byId("certificate-words").textContent = `Hypothesis ${chosen + 1}: ${verdictWords(who, who.hypotheses[chosen])}.`;
+    showVerdict();
     fit();
     showTime(state.time);
   }
@@ -152,8 +154,15 @@ function makePlayer(moments) {
     const chosen = chosenHypothesis();
     list.mark(chosen);
     chart.draw(walker(), chosen);
-    byId("certificate-words").textContent = `Hypothesis ${chosen + 1}: ${verdictWords(walker(), walker().hypotheses[chosen])}.`;
+    showVerdict();
     showTime(state.time);
+  }
+
+  function showVerdict() {
+    const who = walker();
+    const chosen = chosenHypothesis();
+    const stands = chosen === who.representative && who.hypotheses.length > 1 ? ", which stands for all" : "";
+    byId("certificate-words").textContent = `Hypothesis ${chosen + 1}${stands}: ${verdictWords(who, who.hypotheses[chosen])}.`;
   }
 
   function chooseWalker(at) {
@@ -237,8 +246,13 @@ function makePlayer(moments) {
   new ResizeObserver(fit).observe(canvas);
   if (document.body.dataset.first === "busiest") {
     setShow("whole", true);
-    const people = moments.map((moment) => moment.walkers.length);
-    chooseMoment(people.indexOf(Math.max(...people)));
+    // Most people of whom it is known what they then did; where it is known of nobody, most people.
+    const known = moments.map(({ walkers }) => walkers.filter((who) => who.truth.length === 2 * HORIZON).length);
+    const people = moments.map(({ walkers }) => walkers.length);
+    const score = Math.max(...known) > 0 ? known : people;
+    const first = score.indexOf(Math.max(...score));
+    const who = momentAt(first).walkers.findIndex(({ truth }) => truth.length === HORIZON);
+    chooseMoment(first, Math.max(who, 0));
   } else {
     chooseMoment(0);
   }
