@@ -268,6 +268,30 @@ def check_player(opened, moments):
     check_walker(opened, moments[at], int(button.get_attribute("data-walker")))
 
 
+def check_viewer(opened):
+    """The player alone begins where most is known of what then happened, and leaves no empty places for what is not."""
+    moments = list(decoded(json.loads(embedded(opened, "moments-json"))))
+    known = [sum(len(walker["truth"]) == 12 for walker in moment["walkers"]) for moment in moments]
+    assert 0 in known and max(known) > 0, known
+    chosen = int(opened.page.locator("#choose-moment").input_value())
+    assert known[chosen] == max(known), (chosen, known)
+    errors_seen = ["#min-ade", "#min-fde", "#hypotheses thead [data-sort=ade]", "#hypotheses tbody td:nth-child(4)"]
+
+    def shown(walker, measured):
+        for selector in errors_seen:
+            assert opened.page.locator(selector).first.is_visible() == measured, (selector, measured)
+        said = f"seen for {len(walker['truth'])} of the 12" in opened.text("#convention-words")
+        assert said != measured, opened.text("#convention-words")
+        assert "which stands for all" in opened.text("#certificate-words")
+
+    walkers = moments[chosen]["walkers"]
+    shown(walkers[int(opened.page.locator("#choose-walker").input_value())], True)
+    opened.page.select_option("#choose-moment", str(known.index(0)))
+    for at, walker in enumerate(moments[known.index(0)]["walkers"]):
+        opened.page.select_option("#choose-walker", str(at))
+        shown(walker, False)
+
+
 def check_theme(opened):
     """The button goes from the system's colours to light and to dark, and the picture with it."""
     paper = "getComputedStyle(document.body).backgroundColor"
@@ -392,6 +416,8 @@ def main():
         with Opened(browser, path_of_page) as opened:
             check_player(opened, moments)
             print(f"player: {len(moments)} moments, numbers as computed from moments.json")
+        with Opened(browser, folder / "viewer.html") as opened:
+            check_viewer(opened)
         with Opened(browser, path_of_page) as opened:
             check_theme(opened)
         with Opened(browser, path_of_page, NARROW) as opened:
@@ -399,7 +425,7 @@ def main():
         with Opened(browser, path_of_page, motion="reduce") as opened:
             check_focus(opened)
             check_reduced_motion(opened)
-        pages = {"page": path_of_page}
+        pages = {"page": path_of_page, "viewer": folder / "viewer.html"}
         pages |= {page.stem: page for page in variants(path_of_page.read_text(), data, pathlib.Path(temporary))}
         for name, page in pages.items():
             for size, viewport in (("wide", WIDE), ("narrow", NARROW)):

@@ -1,5 +1,5 @@
 //! Writes the report page of the simulated crowds: `report_page FOLDER` makes `page.html`, `figures/*.svg`, and the data
-//! they show, `report.json` and `moments.json`.
+//! they show, `report.json` and `moments.json`; and `viewer.html`, the player alone, of people who go out of sight.
 //!
 //! The forecaster is a stand-in with 20 weighted goals, the training curves are made up, and both say so on the page.
 
@@ -12,7 +12,7 @@ use ddl_eval::{
     baseline::{self, GoalSource, StraightLine, WeightedGoals},
     gallery::{Pick, Show},
     metric::{displacement::distance, stability::RolloutStability},
-    page::Page,
+    page::{Page, Viewer},
 };
 
 /// Goals a walker: turns and speeds of the fan.
@@ -226,6 +226,32 @@ fn shown(show: Show, window: &Window) -> Option<Vec<usize>> {
     }
 }
 
+/// The player alone, as for tracks that are still going on: what then happened was seen of everybody at first, of some later, of nobody
+/// at the end.
+fn viewer(windows: &[Window]) -> Result<Viewer, Box<dyn Error>> {
+    let spread = windows.iter().step_by((windows.len() / MOMENTS).max(1));
+    let mut moments = Vec::new();
+    for (at, window) in spread.enumerate() {
+        let under_way = window.without_future();
+        let forecast = Bending.forecast(&under_way)?;
+        let seen: Vec<Vec<Position>> = (0..window.len())
+            .map(|i| {
+                let steps =
+                    HORIZON.saturating_sub(5 * at * (i % 3)) * usize::from(at + 1 < MOMENTS);
+                window.track(i)[OBSERVED..OBSERVED + steps].to_vec()
+            })
+            .collect();
+        moments.push(Moment::under_way(
+            Bending.name(),
+            &under_way,
+            &forecast,
+            &seen,
+        )?);
+    }
+    Ok(Viewer::new("People who go out of sight", moments)
+        .lead("A simulated crowd, and a stand-in for a forecaster."))
+}
+
 /// Curves that look like a training's. Nothing was trained.
 fn made_up(folds: &[&str]) -> Vec<TrainingCurve> {
     let mut curves = Vec::new();
@@ -282,6 +308,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     std::fs::create_dir_all(folder.join("figures"))?;
     std::fs::write(folder.join("page.html"), page.to_html()?)?;
+    let crowd = dataset.folds()[0].test_windows(WindowRule::Published);
+    let viewer = viewer(&crowd)?.to_html()?;
+    std::fs::write(folder.join("viewer.html"), viewer)?;
     for (name, svg) in page.figures()? {
         std::fs::write(folder.join("figures").join(name), svg)?;
     }

@@ -1,7 +1,6 @@
 //! The models that come with the program.
 
 use crate::model_source::ModelSource;
-use crate::packed_model;
 use crate::{DdlError, RunConfig};
 use std::fmt;
 use std::str::FromStr;
@@ -56,7 +55,7 @@ impl BuiltinModel {
     /// # Errors
     /// Never, as long as the program was built from files that belong together; a test holds that.
     pub fn config(self) -> Result<RunConfig, DdlError> {
-        packed_model::config(self.bytes(), &ModelSource::Builtin(self))
+        ModelSource::Builtin(self).config()
     }
 
     /// The packed model.

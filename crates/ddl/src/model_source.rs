@@ -1,6 +1,6 @@
 //! Where a model is taken from: the directory of a run, a packed file, or the program itself.
 
-use crate::{BuiltinModel, DdlError, RunDirectory};
+use crate::{BuiltinModel, DdlError, RunConfig, RunDirectory, packed_model};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -41,6 +41,27 @@ impl ModelSource {
         match builtin {
             Some(builtin) if !name.exists() => Self::Builtin(builtin),
             _ => Self::at(name),
+        }
+    }
+
+    /// What the model was made with, without making its networks: cheap, also for a file that may be no model at all.
+    ///
+    /// # Errors
+    /// When there is no run, or the file is no whole packed model.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl::{BuiltinModel, ModelSource};
+    /// let config = ModelSource::Builtin(BuiltinModel::Zara1).config()?;
+    /// assert_eq!(config.data.fold, "zara1");
+    /// # Ok::<(), ddl::DdlError>(())
+    /// ```
+    pub fn config(&self) -> Result<RunConfig, DdlError> {
+        match self {
+            Self::Run(run) => run.config(),
+            Self::Packed(_) | Self::Builtin(_) => {
+                packed_model::config(&packed_model::bytes(self)?, self)
+            }
         }
     }
 

@@ -46,8 +46,9 @@ pub const READERS: [Reader; 15] = [
 
 /// The readers of models, which need libtorch.
 #[cfg(feature = "torch")]
-pub const MODEL_READERS: [Reader; 6] = [
+pub const MODEL_READERS: [Reader; 7] = [
     ("packed_model", model_files::read_packed),
+    ("packed_config", model_files::read_packed_config),
     ("run_config", model_files::read_config),
     ("metrics", model_files::read_metrics),
     ("weights", model_files::read_weights),

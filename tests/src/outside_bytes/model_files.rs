@@ -9,7 +9,9 @@ use ddl::star::{
     ComputeDevice, ProposalConfig, ProposalNetwork, StarConfig, StarNetwork, Trainer,
     TrainingConfig, load_parameters, numbers_digest, save_parameters, to_half,
 };
-use ddl::{BuiltinModel, Ddl, DeviceChoice, GoalModel, GoalRecipe, RunConfig, RunDirectory};
+use ddl::{
+    BuiltinModel, Ddl, DeviceChoice, GoalModel, GoalRecipe, ModelSource, RunConfig, RunDirectory,
+};
 use ddl_data::{PedestrianId, Window};
 use safetensors::tensor::{Dtype, TensorView};
 use serde_json::Value;
@@ -196,6 +198,38 @@ fn with_file<T>(path: &Path, bytes: &[u8], read: impl FnOnce(&Path) -> T) -> T {
 /// When a file is read that does not hold what its networks need, or the one without edits is refused.
 pub fn read_packed(bytes: &[u8]) {
     let small = small();
+    let (file, sound) = edited_packed(&small, bytes);
+    let path = small.folder.path().join("packed.safetensors");
+    match with_file(&path, &file, |path| Ddl::load(path, DeviceChoice::Cpu)) {
+        Ok(model) => {
+            let config = model.config();
+            assert!(config.star.check().is_ok() && config.goals.check().is_ok());
+        }
+        Err(error) => {
+            assert!(!sound, "a sound file: {error}");
+            // Errors about the configuration's fields name those, all others the file.
+            assert!(!error.to_string().is_empty());
+        }
+    }
+}
+
+/// The same without making the networks of a file that is whole, which is what takes time.
+///
+/// # Panics
+/// When a file is refused without being named, or the one without edits is refused.
+pub fn read_packed_config(bytes: &[u8]) {
+    let small = small();
+    let (file, sound) = edited_packed(&small, bytes);
+    let path = small.folder.path().join("config-of-packed.safetensors");
+    let read = with_file(&path, &file, |path| ModelSource::at(path).config());
+    if let Err(error) = read {
+        assert!(!sound, "a sound file: {error}");
+        names_file(&error, "config-of-packed.safetensors");
+    }
+}
+
+/// A packed file as the bytes say, and whether it is a sound one without edits.
+fn edited_packed(small: &Small, bytes: &[u8]) -> (Vec<u8>, bool) {
     let mut choices = Choices::new(bytes);
     let way = choices.byte() % 4;
     let file = match way {
@@ -213,18 +247,7 @@ pub fn read_packed(bytes: &[u8]) {
             packed(&small.config_text, &halves)
         }
     };
-    let path = small.folder.path().join("packed.safetensors");
-    match with_file(&path, &file, |path| Ddl::load(path, DeviceChoice::Cpu)) {
-        Ok(model) => {
-            let config = model.config();
-            assert!(config.star.check().is_ok() && config.goals.check().is_ok());
-        }
-        Err(error) => {
-            assert!(!(way > 0 && bytes.len() <= 1), "a sound file: {error}");
-            // Errors about the configuration's fields name those, all others the file.
-            assert!(!error.to_string().is_empty());
-        }
-    }
+    (file, way > 0 && bytes.len() <= 1)
 }
 
 /// Another shape, name or content for one of the tensors.

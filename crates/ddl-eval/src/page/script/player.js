@@ -246,13 +246,15 @@ function makePlayer(moments) {
   new ResizeObserver(fit).observe(canvas);
   if (document.body.dataset.first === "busiest") {
     setShow("whole", true);
-    // Most people of whom it is known what they then did; where it is known of nobody, most people.
+    // Where it is known of most people what they then did; where it is known of nobody, most people.
     const known = moments.map(({ walkers }) => walkers.filter((who) => who.truth.length === 2 * HORIZON).length);
     const people = moments.map(({ walkers }) => walkers.length);
     const score = Math.max(...known) > 0 ? known : people;
     const first = score.indexOf(Math.max(...score));
-    const who = momentAt(first).walkers.findIndex(({ truth }) => truth.length === HORIZON);
-    chooseMoment(first, Math.max(who, 0));
+    // Of these, who went farthest.
+    const far = ({ truth }) => (truth.length === HORIZON ? distance(truth[0], truth[HORIZON - 1]) : -1);
+    const ways = momentAt(first).walkers.map(far);
+    chooseMoment(first, ways.indexOf(Math.max(...ways)));
   } else {
     chooseMoment(0);
   }
