@@ -25,8 +25,16 @@ fn commit() -> String {
         Path::new(&folder).join("HEAD")
     };
     println!("cargo::rerun-if-changed={}", moves.display());
-    println!("cargo::rerun-if-changed=build.rs");
-    git(&["rev-parse", "--short=12", "HEAD"]).unwrap_or_else(unknown)
+    // Whatever is edited makes it another program than the commit's.
+    println!("cargo::rerun-if-changed=../../crates");
+    git(&[
+        "describe",
+        "--always",
+        "--dirty",
+        "--exclude=*",
+        "--abbrev=12",
+    ])
+    .unwrap_or_else(unknown)
 }
 
 /// What git answers, in one line.

@@ -181,6 +181,18 @@ fn speeds_that_nobody_walks_at_are_told_once() {
     assert_eq!(told.matches("warning: half of the steps").count(), 1);
 }
 
+/// An input without a forecast replaces nothing.
+#[test]
+fn a_file_from_before_stays_until_there_is_a_forecast() {
+    let folder = tiny_model::folder(Variant::Full);
+    let file = folder.path().join("out.csv");
+    std::fs::write(&file, "from before").unwrap();
+    let line = "forecast - --model . --output out.csv";
+    let message = program::run(folder.path(), line).fails();
+    assert!(message.contains("holds no tracks"), "{message}");
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), "from before");
+}
+
 /// Who has seen enough may go.
 #[test]
 fn a_reader_that_leaves_ends_it_quietly() {

@@ -104,11 +104,27 @@ fn results_name_the_commit_that_the_program_was_built_from() {
     let commit = info["commit"].as_str().unwrap();
     let checkout = Path::new(env!("CARGO_MANIFEST_DIR")).join("../.git");
     if checkout.exists() {
-        let is_hash = commit.chars().all(|c| c.is_ascii_hexdigit());
-        assert!(commit.len() >= 12 && is_hash, "{commit}");
+        // of a checkout that was changed since
+        let hash = commit.strip_suffix("-dirty").unwrap_or(commit);
+        let is_hash = hash.chars().all(|c| c.is_ascii_hexdigit());
+        assert!(hash.len() >= 12 && is_hash, "{commit}");
     } else {
         assert_eq!(commit, "unknown");
     }
+}
+
+/// What is told to people is in the facts for programs too.
+#[test]
+fn what_looks_wrong_is_in_the_json() {
+    let place = tempfile::tempdir().unwrap();
+    let rows: Vec<own_tracks::Row> = (0..9).map(|t| (t, 1, 30.0 * t as f64, 0.0)).collect();
+    std::fs::write(place.path().join("pixels.csv"), own_tracks::csv(&rows)).unwrap();
+    let told = program::run(place.path(), "data pixels.csv --json").succeeds();
+    let facts: serde_json::Value = serde_json::from_str(&told).unwrap();
+    assert_eq!(facts[0]["file"], "pixels.csv");
+    let doubts = facts[0]["doubts"].as_array().unwrap();
+    assert_eq!(doubts.len(), 2);
+    assert!(doubts[0].as_str().unwrap().contains("metres"), "{told}");
 }
 
 #[test]

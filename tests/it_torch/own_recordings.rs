@@ -87,16 +87,11 @@ fn own_recordings_are_told_trained_on_and_measured_with() {
         "{min_ade} {errors:?}"
     );
 
-    // What it has learned from is no test, whatever it is called, and alone too.
-    std::fs::copy(folder.join("mine/yard.csv"), folder.join("renamed.csv")).unwrap();
-    for data in ["mine", "mine/lobby.csv", "renamed.csv"] {
-        let command_line = format!("evaluate --model run --data {data} --threads 1");
-        let message = run(&command_line).fails();
-        assert!(message.contains("was trained on"), "{message}");
-    }
+    what_it_learned_from_is_no_test(folder);
     // Its results are kept with it, and make a report.
     let _ = run("report run --out report").succeeds();
     assert!(folder.join("report/report.html").is_file());
+    a_damaged_best_epoch_is_named(folder, &run_directory);
     // A hole in the record would choose among some of the epochs.
     std::fs::remove_file(run_directory.model()).unwrap();
     std::fs::remove_file(folder.join("run/metrics.jsonl")).unwrap();
@@ -113,6 +108,47 @@ fn own_recordings_are_told_trained_on_and_measured_with() {
     );
 }
 
+/// Whatever it is called, and alone too.
+fn what_it_learned_from_is_no_test(folder: &Path) {
+    let run = |command_line: &str| program::run(folder, command_line);
+    std::fs::copy(folder.join("mine/yard.csv"), folder.join("renamed.csv")).unwrap();
+    for data in ["mine", "mine/lobby.csv", "renamed.csv"] {
+        let command_line = format!("evaluate --model run --data {data} --threads 1");
+        let message = run(&command_line).fails();
+        assert!(message.contains("was trained on"), "{message}");
+    }
+    // A file of that name that is only cut, resampled or rounded would be no test.
+    std::fs::create_dir(folder.join("other")).unwrap();
+    let text = std::fs::read_to_string(folder.join("mine/yard.csv")).unwrap();
+    let cut: Vec<&str> = text.lines().take(text.lines().count() - 1).collect();
+    std::fs::write(folder.join("other/yard.csv"), cut.join("\n")).unwrap();
+    let message = run("evaluate --model run --data other --threads 1").fails();
+    assert!(
+        message.contains("called \"yard\" as well") && message.contains("another name"),
+        "{message}"
+    );
+}
+
+/// The best epoch is read before it becomes the model: nothing else is removed.
+fn a_damaged_best_epoch_is_named(folder: &Path, run_directory: &RunDirectory) {
+    let run = |command_line: &str| program::run(folder, command_line);
+    std::fs::remove_file(run_directory.model()).unwrap();
+    let best = run_directory.epoch(run_directory.kept_epochs().unwrap()[0]);
+    let whole = std::fs::read(&best).unwrap();
+    let mut damaged = whole.clone();
+    *damaged.last_mut().unwrap() ^= 1;
+    std::fs::write(&best, &damaged).unwrap();
+    let message = run(&format!("train --data mine --out run {SMALL}")).fails();
+    assert!(
+        message.contains("epochs") && message.contains("is damaged"),
+        "{message}"
+    );
+    assert!(!run_directory.is_trained());
+    std::fs::write(&best, &whole).unwrap();
+    let _ = run(&format!("train --data mine --out run {SMALL}")).succeeds();
+    assert_eq!(std::fs::read(run_directory.model()).unwrap(), whole);
+}
+
 #[test]
 fn a_recording_can_be_left_out_and_the_run_goes_on_where_it_stopped() {
     let place = tempfile::tempdir().unwrap();
@@ -122,7 +158,7 @@ fn a_recording_can_be_left_out_and_the_run_goes_on_where_it_stopped() {
     let train = format!("train --data mine --convention own --fold yard --patience 1 {SMALL}");
     let told = run(&format!("{train} --out run")).succeeds();
     assert!(
-        told.contains("next: ddl evaluate --model run --data mine --validation"),
+        told.contains("next: ddl evaluate --model run --data mine\n"),
         "{told}"
     );
     // Stopped after the goals, then finished by the same command: the same bytes.
@@ -146,6 +182,14 @@ fn mistakes_with_own_recordings_say_what_to_do() {
     std::fs::write(folder.join("short.csv"), own_tracks::csv(&short)).unwrap();
     for (command_line, words) in [
         ("train --out run", "your own recordings (--data FOLDER)"),
+        (
+            "train --data mine --out run --last-epoch-only",
+            "--patience 0",
+        ),
+        (
+            "baselines --convention own --data mine --fold none",
+            "it has lobby, yard",
+        ),
         ("train --data empty --out run", "holds no recordings"),
         ("train --data nowhere --out run", "cannot read nowhere"),
         ("train --data short.csv --out run", "no training windows"),

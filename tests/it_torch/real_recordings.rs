@@ -31,7 +31,7 @@ fn a_tiny_run_of_the_hotel_fold() {
     let train = "train --fold hotel --epochs 1 --train-walkers 60 --batch-walkers 30 --proposal-steps 10 --out run \
                  --threads 1";
     assert!(
-        run_on_data(train).starts_with("run: trained, 1 epochs\nnext: ddl evaluate --model run")
+        run_on_data(train).starts_with("run: trained, 1 epoch\nnext: ddl evaluate --model run")
     );
     let run = RunDirectory::new(here.join("run"));
     let config = run.config().unwrap();

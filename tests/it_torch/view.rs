@@ -53,4 +53,7 @@ fn a_page_that_cannot_be_made_is_an_error() {
         let message = program::run(place.path(), command_line).fails();
         assert!(message.contains(words), "{command_line}: {message}");
     }
+    let finished = program::run(place.path(), "view");
+    assert_eq!(finished.code, Some(2), "{finished:?}");
+    assert!(finished.stderr.contains("<TRACKS>"), "{finished:?}");
 }

@@ -11,15 +11,10 @@ const WRITING: &str = ".writing-";
 /// The same where the program writes a report.
 const WRITING_REPORT: &str = ".report-";
 
-/// Removes what killed processes were writing into a folder and the folders in it. Only for who has the folder to himself; what cannot be
-/// removed does no harm.
-pub(crate) fn remove_half_written(folder: &Path, depth: usize) {
+/// Removes what killed processes were writing into a folder. Only for who has the folder to himself; what cannot be removed does no harm.
+pub(crate) fn remove_half_written(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
-        if is_folder && depth > 0 {
-            remove_half_written(&entry.path(), depth - 1);
-            continue;
-        }
         let name = entry.file_name();
         let name = name.to_string_lossy();
         if !is_folder
@@ -72,20 +67,20 @@ mod tests {
     #[test]
     fn what_was_half_written_is_removed_and_nothing_else() {
         let folder = tempfile::tempdir().unwrap();
-        let deep = folder.path().join("task/run");
+        let deep = folder.path().join("task");
         fs::create_dir_all(&deep).unwrap();
         for name in [
-            "task/.writing-a1",
+            ".writing-a1",
             ".report-c3",
-            "task/goals.json",
-            "task/run/.writing-b2",
+            "goals.json",
+            "task/.writing-b2",
         ] {
             fs::write(folder.path().join(name), "half").unwrap();
         }
         // what lies deeper belongs to somebody else
-        remove_half_written(folder.path(), 1);
-        assert!(folder.path().join("task/goals.json").is_file());
-        assert!(!folder.path().join("task/.writing-a1").exists());
+        remove_half_written(folder.path());
+        assert!(folder.path().join("goals.json").is_file());
+        assert!(!folder.path().join(".writing-a1").exists());
         assert!(!folder.path().join(".report-c3").exists());
         assert!(deep.join(".writing-b2").is_file());
     }

@@ -109,9 +109,9 @@ fn clearance(text: &str) -> Result<Clearance, String> {
     Clearance::new(metres).map_err(|error| error.to_string())
 }
 
-/// How progress is told.
+/// How results are printed, and progress told.
 #[derive(Debug, Args)]
-pub(crate) struct Telling {
+pub(crate) struct Reporting {
     /// Progress: a bar on a terminal, elsewhere a line every half a minute (auto), a JSON object a line (json), or none
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) progress: ProgressMode,
@@ -123,9 +123,9 @@ pub(crate) struct Telling {
     pub(crate) commit: String,
 }
 
-impl Telling {
-    /// Tells results: for programs as JSON where asked for, else for people; `rest` says where more of them is.
-    fn tell(&self, report: &Report, rest: &str) -> anyhow::Result<()> {
+impl Reporting {
+    /// Prints results: for programs as JSON where asked for, else for people; `rest` says where more of them is.
+    fn print(&self, report: &Report, rest: &str) -> anyhow::Result<()> {
         if self.json {
             output::print(&(report.to_json()? + "\n"))
         } else if self.progress == ProgressMode::Json {
@@ -157,7 +157,9 @@ impl RecordingsAt {
     /// What another command takes to read the same.
     fn as_options(&self) -> String {
         let data = self.data.as_ref();
-        let data = data.map_or_else(String::new, |data| format!(" --data {}", data.display()));
+        let data = data.map_or_else(String::new, |data| {
+            format!(" --data {}", output::shell_word(data))
+        });
         data + &self.units.as_options()
     }
 

@@ -25,8 +25,8 @@ use std::process::ExitCode;
     help_template = "{about}\n\n{usage-heading} {usage}\n\n{subcommands}{after-help}",
     after_help = "Trained models come with the program: `ddl forecast tracks.csv` works at once.\n\
     `ddl COMMAND --help` lists options. Exit codes: 0 done, or whoever read the\n\
-    output has gone, 1 failed, 2 wrong arguments, 130 interrupted (saved: the same\n\
-    command goes on)."
+    output has gone, 1 failed, 2 wrong arguments, 130 interrupted (a training is\n\
+    saved: the same command goes on)."
 )]
 struct Cli {
     #[command(subcommand)]

@@ -1,7 +1,7 @@
 //! Where output goes: standard output, or a file that is replaced as a whole.
 
 use anyhow::Context as _;
-use std::io::{ErrorKind, Write as _};
+use std::io::Write as _;
 use std::path::Path;
 
 /// Writes a whole output: to standard output, or to a file under a temporary name that is renamed.
@@ -18,11 +18,16 @@ pub(crate) fn write_output(path: Option<&Path>, text: &str) -> anyhow::Result<()
 /// Writes to standard output.
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        // whoever reads has seen enough, as in `ddl forecast .. | head`
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-        result => result.context("cannot write to standard output"),
-    }
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .context("cannot write to standard output")
+}
+
+/// A path as a shell takes it for one word.
+pub(crate) fn shell_word(path: &Path) -> String {
+    let path = path.display().to_string();
+    // A path with a zero byte, which has no quoted form, is none that a file system has.
+    shlex::try_quote(&path).map_or_else(|_| path.clone(), Into::into)
 }
 
 /// Writes facts to standard output as JSON for programs.

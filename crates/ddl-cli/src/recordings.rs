@@ -3,6 +3,7 @@
 use crate::telling::tell;
 use crate::units::{InSteps, Units};
 use anyhow::{Context as _, bail};
+use ddl::data::Doubt;
 use std::path::{Path, PathBuf};
 
 /// What files of recordings are called; others in a folder are not looked at.
@@ -54,11 +55,18 @@ pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<InSte
 pub(crate) fn warn_of_doubts(read: &[InSteps]) {
     for InSteps { recording, clock } in read {
         if let Some(doubt) = recording.speed_doubt() {
-            tell(format_args!(
-                "warning: {}: {} (--homography, --fps)",
-                recording.name(),
-                clock.of_doubt(doubt)
-            ));
+            warn_of(clock.of_doubt(doubt), Some(recording.name()));
         }
     }
+}
+
+/// Says what looks wrong, with the options that may mend it; of a recording by name, where there are several.
+pub(crate) fn warn_of(doubt: Doubt, recording: Option<&str>) {
+    let place = recording.map_or_else(String::new, |name| format!("{name}: "));
+    let options = match doubt {
+        Doubt::Fast { .. } => " (--homography, --fps)",
+        Doubt::Slow { .. } | Doubt::NoSteps { .. } => " (--fps)",
+        _ => "",
+    };
+    tell(format_args!("warning: {place}{doubt}{options}"));
 }

@@ -16,9 +16,9 @@ pub(crate) fn reader_has_gone(error: &anyhow::Error) -> bool {
 /// What to do about an error of the system, where there is something to be done.
 pub(crate) fn advice(error: &anyhow::Error) -> Option<&'static str> {
     kinds(error).find_map(|kind| match kind {
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => Some(
-            "make room and run the same command again; nothing that was written before is lost",
-        ),
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            Some("make room and run the same command again")
+        }
         ErrorKind::ReadOnlyFilesystem => Some("choose a place that may be written to"),
         ErrorKind::PermissionDenied => Some("ask for the right to it, or choose another place"),
         _ => None,

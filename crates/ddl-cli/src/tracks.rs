@@ -1,6 +1,7 @@
 //! A user's own tracks.
 
 use crate::clock::{Clock, FrameNumber};
+use crate::recordings;
 use crate::telling::tell;
 use crate::units::{InSteps, Units};
 use anyhow::bail;
@@ -121,8 +122,7 @@ impl Tracks {
         if let Some(doubt @ (Doubt::Fast { .. } | Doubt::Slow { .. } | Doubt::Jump(_))) =
             recording.speed_doubt()
         {
-            let doubt = clock.of_doubt(doubt);
-            tell(format_args!("warning: {doubt} (--homography, --fps)"));
+            recordings::warn_of(clock.of_doubt(doubt), None);
         }
         if self.last {
             windows.drain(..windows.len() - 1);

@@ -1,6 +1,7 @@
 //! What the numbers of tracks mean: how fast frames follow each other, and where a pixel is.
 
 use crate::clock::Clock;
+use crate::output::shell_word;
 use crate::telling::tell;
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -17,7 +18,7 @@ pub(crate) struct Units {
     #[arg(long, conflicts_with = "frame_step", value_name = "SECONDS", value_parser = positive)]
     dt: Option<f64>,
     /// Frame numbers in 0.4 s [default: the most common difference between two rows]
-    #[arg(long)]
+    #[arg(long, value_parser = clap::value_parser!(i64).range(1..=1 << 31))]
     frame_step: Option<i64>,
     /// Positions are pixels: a file of three lines of three numbers, the homography from pixels to metres
     #[arg(long, value_name = "FILE")]
@@ -45,9 +46,7 @@ impl Units {
             ("frame-step", self.frame_step.map(|step| step.to_string())),
             (
                 "homography",
-                self.homography
-                    .as_ref()
-                    .map(|file| file.display().to_string()),
+                self.homography.as_ref().map(|file| shell_word(file)),
             ),
         ];
         let given = numbers.into_iter();

@@ -76,14 +76,14 @@ impl Dataset {
     ///
     /// # Examples
     /// ```
-    /// use ddl_data::{Dataset, Fold, Observation, PedestrianId, Recording, WindowRule};
+    /// use ddl_data::{Dataset, Observation, PedestrianId, Recording, WindowRule};
     ///
     /// let walk = |name: &str| {
     ///     let seen = (0..25).map(|t| Observation::new(t, PedestrianId(1), [0.5 * t as f64, 0.0]));
     ///     Recording::new(name, 1, seen.collect())
     /// };
     /// let own = Dataset::own(vec![walk("lobby")?, walk("yard")?])?;
-    /// assert_eq!(own.fold(Fold::WHOLE)?.training_recordings().len(), 2);
+    /// assert_eq!(own.whole().training_recordings().len(), 2);
     /// assert_eq!(own.fold("lobby")?.test_windows(WindowRule::Complete).len(), 6);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -148,8 +148,13 @@ impl Dataset {
         }
     }
 
-    /// The fold of this name: test on its recordings, train on all others. Own recordings also have [`Fold::WHOLE`], which trains on
-    /// all of them.
+    /// The fold that leaves no recording out: all are trained on, none is tested on. It is called [`Fold::WHOLE`].
+    #[must_use]
+    pub fn whole(&self) -> Fold<'_> {
+        Fold::new(Fold::WHOLE, &[], &self.recordings)
+    }
+
+    /// The fold of this name: test on its recordings, train on all others.
     ///
     /// # Errors
     /// If there is none; the message lists those there are.
@@ -160,9 +165,6 @@ impl Dataset {
             known: self.fold_names().into_iter().map(str::to_owned).collect(),
         };
         if self.convention == Convention::Own {
-            if name == Fold::WHOLE {
-                return Ok(Fold::new(Fold::WHOLE, &[], &self.recordings));
-            }
             let left_out = self.recordings.iter().find(|r| r.name() == name);
             let name = left_out.ok_or_else(unknown)?.name();
             return Ok(Fold::new(name, &[name.to_owned()], &self.recordings));

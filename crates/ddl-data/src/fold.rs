@@ -53,7 +53,7 @@ pub struct SocialGanSplit {
 }
 
 impl<'a> Fold<'a> {
-    /// Name of the fold of own recordings that leaves none out.
+    /// Name of the fold that leaves no recording out ([`Dataset::whole`](crate::Dataset::whole)).
     pub const WHOLE: &'static str = "none";
 
     pub(crate) fn new(name: &'a str, test_names: &[String], recordings: &'a [Recording]) -> Self {

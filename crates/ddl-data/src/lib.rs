@@ -4,6 +4,7 @@ mod augment;
 mod completion;
 mod convention;
 mod dataset;
+mod doubt;
 mod error;
 mod fold;
 pub mod format;
@@ -23,6 +24,7 @@ pub use augment::Rotation;
 pub use completion::{Completion, CompletionError, MadeUp};
 pub use convention::Convention;
 pub use dataset::Dataset;
+pub use doubt::Doubt;
 pub use error::{DataError, FormatError, FormatProblem, RecordingError, UnknownName, WindowError};
 pub use fold::{Fold, SocialGanSplit, TrainingSplit};
 pub use format::{Format, Frame, FrameReader, parse_recording, read_recording};
@@ -33,7 +35,7 @@ pub use neighbours::{NEIGHBOUR_HALF_WIDTH, NeighbourMask};
 pub use rate::{InSteps, RateError, whole_frame_step};
 pub use recording::Recording;
 pub use rule::WindowRule;
-pub use summary::{Doubt, Fastest, Hole, Summary};
+pub use summary::{Fastest, Hole, Summary};
 pub use track::{
     COORDINATE_LIMIT, HORIZON, OBSERVED, Observation, PedestrianId, Position, TIME_STEP, WINDOW,
 };

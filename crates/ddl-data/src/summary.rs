@@ -1,20 +1,13 @@
 //! What a recording holds, and what about it looks wrong.
 
 use std::collections::BTreeMap;
-use std::fmt;
 
 use serde::Serialize;
 
-use crate::{Completion, Observation, PedestrianId, Position, Recording, TIME_STEP, WindowRule};
-
-/// Faster than anybody walks, m/s: who seems to is measured in pixels, or in steps of another length.
-const IMPLAUSIBLE: f64 = 4.0;
-/// Where nobody is faster than this, m/s, though somebody has come far, frames follow each other faster than 0.4 s.
-const CREEPING: f64 = 0.6;
-/// How far somebody has come, m.
-const FAR: f64 = 2.0;
-/// A step beyond this is a track that jumps from one person to another, m/s: the fastest sprinters reach 12.
-const JUMP: f64 = 12.0;
+use crate::doubt::Speeds;
+use crate::{
+    Completion, Doubt, Observation, PedestrianId, Position, Recording, TIME_STEP, WindowRule,
+};
 
 /// What a recording holds, in steps of 0.4 s.
 ///
@@ -93,92 +86,6 @@ pub struct Hole {
     pub seconds: f64,
 }
 
-/// Something that looks wrong; in words it says what may be done about it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Doubt {
-    /// Nobody was seen at two frames so far apart, which are taken for 0.4 s.
-    NoSteps {
-        /// Raw frames in a step.
-        frame_step: i64,
-    },
-    /// The median speed is no walker's, m/s: pixels, or another rate.
-    Fast {
-        /// The median speed, m/s.
-        median: f64,
-    },
-    /// Nobody is ever faster than this, m/s, though somebody has come metres far: another rate.
-    Slow {
-        /// The largest speed, m/s.
-        fastest: f64,
-    },
-    /// A track goes on somewhere else.
-    Jump(Fastest),
-    /// No window of 20 steps: forecasts are possible, training and measuring are not.
-    NothingToLearnFrom,
-}
-
-impl fmt::Display for Doubt {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoSteps { frame_step } => write!(
-                f,
-                "nobody was seen at two frames {frame_step} apart, which are taken for 0.4 s: give the rate of the frames"
-            ),
-            Self::Fast { median } => write!(
-                f,
-                "half of the steps are faster than {median:.1} m/s; are the positions in metres, and the rows of a pedestrian 0.4 s apart?"
-            ),
-            Self::Slow { fastest } => write!(
-                f,
-                "nobody is ever faster than {fastest:.2} m/s; are the rows of a pedestrian 0.4 s apart, or those of a faster camera?"
-            ),
-            Self::Jump(Fastest {
-                speed,
-                pedestrian,
-                frame,
-            }) => write!(
-                f,
-                "pedestrian {pedestrian} jumps at frame {frame}, {speed:.1} m/s over one step; does the track go on with somebody else?"
-            ),
-            Self::NothingToLearnFrom => f.write_str(
-                "nobody was seen at 20 steps in a row: nothing can be trained on these tracks, or measured with them",
-            ),
-        }
-    }
-}
-
-/// How people move, step by step.
-struct Speeds {
-    frame_step: i64,
-    median: Option<f64>,
-    fastest: Option<Fastest>,
-    /// Largest distance between anybody's first and last position, m.
-    farthest: f64,
-}
-
-impl Speeds {
-    /// What looks wrong with them.
-    fn doubt(&self) -> Option<Doubt> {
-        let (Some(median), Some(fastest)) = (self.median, self.fastest) else {
-            return Some(Doubt::NoSteps {
-                frame_step: self.frame_step,
-            });
-        };
-        if median > IMPLAUSIBLE {
-            Some(Doubt::Fast { median })
-        } else if fastest.speed > JUMP {
-            Some(Doubt::Jump(fastest))
-        } else if fastest.speed < CREEPING && self.farthest > FAR {
-            Some(Doubt::Slow {
-                fastest: fastest.speed,
-            })
-        } else {
-            None
-        }
-    }
-}
-
 impl Summary {
     /// What looks wrong; nothing where all looks well.
     #[must_use]
@@ -199,38 +106,12 @@ impl Summary {
 }
 
 impl Recording {
-    /// What looks wrong with the speeds of its people, if anything: the first of the doubts of [its summary](Self::summary), for less work.
-    #[must_use]
-    pub fn speed_doubt(&self) -> Option<Doubt> {
-        self.speeds(&self.tracks()).doubt()
-    }
-
-    fn tracks(&self) -> BTreeMap<PedestrianId, Vec<&Observation>> {
+    pub(crate) fn tracks(&self) -> BTreeMap<PedestrianId, Vec<&Observation>> {
         let mut tracks: BTreeMap<PedestrianId, Vec<&Observation>> = BTreeMap::new();
         for seen in self.observations() {
             tracks.entry(seen.pedestrian).or_default().push(seen);
         }
         tracks
-    }
-
-    fn speeds(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> Speeds {
-        let step = self.frame_step();
-        let mut speeds: Vec<Fastest> = Vec::new();
-        for track in tracks.values() {
-            speeds.extend(track.iter().filter_map(|seen| {
-                let before = track
-                    .binary_search_by_key(&(seen.frame - step), |other| other.frame)
-                    .ok()?;
-                Some(fastness(track[before].position, seen))
-            }));
-        }
-        speeds.sort_by(|a, b| a.speed.total_cmp(&b.speed));
-        Speeds {
-            frame_step: step,
-            median: speeds.get(speeds.len() / 2).map(|fastest| fastest.speed),
-            fastest: speeds.last().copied(),
-            farthest: tracks.values().map(|track| way(track)).fold(0.0, f64::max),
-        }
     }
 
     /// What the recording holds.
@@ -278,20 +159,5 @@ impl Recording {
             seen_whole: walkers(&self.observed_windows()),
             to_learn_from: walkers(&self.windows(WindowRule::Complete)),
         }
-    }
-}
-
-/// How far a track leads, m.
-fn way(track: &[&Observation]) -> f64 {
-    let (first, last) = (track[0].position, track[track.len() - 1].position);
-    (last[0] - first[0]).hypot(last[1] - first[1])
-}
-
-fn fastness(from: Position, to: &Observation) -> Fastest {
-    let way = (to.position[0] - from[0]).hypot(to.position[1] - from[1]);
-    Fastest {
-        speed: way / TIME_STEP,
-        pedestrian: to.pedestrian,
-        frame: to.frame,
     }
 }

@@ -16,7 +16,7 @@ pub const HORIZON: usize = 12;
 /// Steps of a whole window: observed and to forecast.
 pub const WINDOW: usize = OBSERVED + HORIZON;
 
-/// Coordinates that are read from files and streams are at most this in size (m): coordinates of maps (UTM's reach 10,000 km) lie within, and
+/// Coordinates that are read from files and streams are at most this in size (m): coordinates of UTM, which reach 10,000 km, lie within, those of a world map need not, and
 /// what is computed with such numbers keeps its precision.
 pub const COORDINATE_LIMIT: f64 = 1e7;
 

@@ -114,9 +114,7 @@ pub enum DdlError {
         source: std::io::Error,
     },
     /// The caller asked to stop. Training has saved its steps; an evaluation starts anew.
-    #[error(
-        "interrupted; finished steps of training are saved, the same command goes on from there"
-    )]
+    #[error("interrupted; what training has saved stays, and the same command goes on from there")]
     Interrupted,
 }
 

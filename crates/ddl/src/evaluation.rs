@@ -66,7 +66,7 @@ pub struct Evaluation {
 /// Measures the model and the baselines on the test windows of the model's fold.
 ///
 /// # Errors
-/// When the data is not the convention the model was trained on, or forecasting or scoring fails;
+/// When the data is neither of the convention the model was trained on nor somebody's own, when the model has learned from it, or forecasting or scoring fails;
 /// [`DdlError::Interrupted`] when the observer asks to stop.
 pub fn evaluate(
     model: &Ddl,

@@ -3,6 +3,7 @@
 use crate::run_directory::{read_json, write_json};
 use crate::run_lock::RunLock;
 use crate::{Clearance, Ddl, DdlError, EvaluationRequest, RunDirectory};
+use ddl_data::Convention;
 use ddl_eval::{Moment, Report};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -35,12 +36,17 @@ impl Record {
     }
 }
 
-/// Whether the model's run already holds the results of exactly this evaluation; a packed model holds none.
+/// Whether the model's run already holds the results of exactly this evaluation, on the recordings of its convention; a packed model holds none.
+///
+/// Own recordings may be others than last time: of those it is never known.
 #[must_use]
 pub fn is_evaluated(model: &Ddl, request: &EvaluationRequest) -> bool {
     let Some(run) = model.run() else {
         return false;
     };
+    if model.config().data.convention == Convention::Own {
+        return false;
+    }
     let record = record_file(run);
     if ![&record, &run.report(), &run.moments()]
         .iter()
@@ -52,7 +58,7 @@ pub fn is_evaluated(model: &Ddl, request: &EvaluationRequest) -> bool {
     read_json::<Record>(&record).is_ok_and(|done| done == Record::new(model, request))
 }
 
-/// Writes `report.json` and `moments.json` of the model's run, then the record of what was asked for.
+/// Writes `report.json` and `moments.json` of the model's run, on recordings of the run's convention, then the record of what was asked for.
 ///
 /// # Errors
 /// When a file cannot be written, or the model is packed and has no run.

@@ -5,6 +5,7 @@ use ddl_data::{Convention, WindowRule};
 use ddl_star::{Objective, Origin, StarConfig, TrainingConfig};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// Version of the run directory's layout.
 pub const FORMAT: u32 = 5;
@@ -119,10 +120,10 @@ pub struct TrainingData {
     pub walkers: usize,
     /// SHA-256 of their positions.
     pub sha256: String,
-    /// SHA-256 of the positions of each own recording that was trained or validated on, whatever it is called: none of them is a test. Empty for
-    /// recordings whose folds are known.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub recordings: Vec<String>,
+    /// The own recordings that were trained or validated on, by name, with the SHA-256 of their frames, people and positions: none of these names, and none of
+    /// these contents under another name, is a test. Empty for recordings whose folds are known.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub recordings: BTreeMap<String, String>,
 }
 
 #[cfg(test)]
@@ -148,7 +149,7 @@ mod tests {
                 windows: 3,
                 walkers: 9,
                 sha256: "00".to_owned(),
-                recordings: Vec::new(),
+                recordings: BTreeMap::new(),
             },
             keep_every: 1,
             patience: None,

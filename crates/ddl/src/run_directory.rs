@@ -164,25 +164,30 @@ impl RunDirectory {
         Ok(epochs)
     }
 
-    /// Makes the weights kept after `epoch` those of the model, and removes those of other epochs.
+    /// The weights of the epoch that metrics.jsonl says is the best.
     ///
     /// # Errors
-    /// When a file cannot be read, written or removed.
-    pub(crate) fn take_epoch(&self, epoch: usize) -> Result<(), DdlError> {
+    /// When they are not there.
+    pub(crate) fn best_epoch(&self, epoch: usize) -> Result<PathBuf, DdlError> {
         let best = self.epoch(epoch);
-        if !best.is_file() {
-            let problem = "is not there, but it is the best epoch by metrics.jsonl; put the file back, or remove the directory and train anew";
-            return Err(DdlError::run(&best, problem));
+        if best.is_file() {
+            return Ok(best);
         }
-        let weights = std::fs::read(&best).map_err(|error| DdlError::io(&best, error))?;
-        for other in self.kept_epochs()? {
-            if other != epoch {
-                let file = self.epoch(other);
-                std::fs::remove_file(&file).map_err(|error| DdlError::io(&file, error))?;
-            }
+        let problem = "is not there, but it is the best epoch by metrics.jsonl; put the file back, or remove the directory and train anew";
+        Err(DdlError::run(&best, problem))
+    }
+
+    /// Removes the weights of all epochs but one.
+    ///
+    /// # Errors
+    /// When a file cannot be removed.
+    pub(crate) fn remove_epochs_but(&self, epoch: usize) -> Result<(), DdlError> {
+        let others = self.kept_epochs()?;
+        for other in others.into_iter().filter(|&other| other != epoch) {
+            let file = self.epoch(other);
+            std::fs::remove_file(&file).map_err(|error| DdlError::io(&file, error))?;
         }
-        // Last: with a model the run is finished, and nothing of this is done again.
-        write_atomically(&self.model(), &weights)
+        Ok(())
     }
 
     /// Claims the directory for a run: makes it, or checks that what it holds is the same run. It is claimed until what is
@@ -266,7 +271,7 @@ impl RunDirectory {
             .enumerate()
             .map(|(index, line)| {
                 serde_json::from_str(line)
-                    .map_err(|error| DdlError::run(&path, format!("line {} is damaged ({error}); delete the file to go on without the record of earlier epochs", index + 1)))
+                    .map_err(|error| DdlError::run(&path, format!("line {} is damaged ({error}); put the file back as it was; without it a run whose best epoch is chosen has to be trained anew, others go on", index + 1)))
             })
             .collect()
     }

@@ -1,12 +1,12 @@
 //! The windows a model is measured on: the test windows of its fold under the headline rule and the
 //! one printed beside it, or the validation part of its training recordings.
 
-use crate::training::{digest, digest_of_recording};
+use crate::training::{digest, digest_of_recording, fold_of};
 use crate::{DdlError, EvaluationSplit, GoalModel};
 use ddl_data::{Convention, Dataset, Fold, PedestrianId, Recording, Window, WindowRule};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Seed of the test subset: one for all runs, so that all are tested on the same windows.
 const SUBSET_SEED: u64 = 0;
@@ -47,9 +47,7 @@ impl TestSet {
                 dataset.convention()
             ));
         }
-        let fold = dataset
-            .fold(&data.fold)?
-            .set_apart(&data.validation_recordings)?;
+        let fold = fold_of(dataset, &data.fold)?.set_apart(&data.validation_recordings)?;
         match on {
             EvaluationSplit::Test => Ok(Self::new(&fold, data.convention, walkers)),
             EvaluationSplit::Validation
@@ -89,10 +87,21 @@ impl TestSet {
         if tested.is_empty() {
             tested = all.iter().collect();
         }
+        let learned: BTreeSet<&String> = data.recordings.values().collect();
         let known = tested
             .iter()
-            .filter(|recording| data.recordings.contains(&digest_of_recording(recording)));
+            .filter(|recording| learned.contains(&digest_of_recording(recording)));
         let known: Vec<&str> = known.map(|recording| recording.name()).collect();
+        let namesake = tested
+            .iter()
+            .find(|recording| data.recordings.contains_key(recording.name()));
+        if let (true, Some(namesake)) = (known.is_empty(), namesake) {
+            return Err(goals.source().wrong(format!(
+                "was trained on a recording that is called {0:?} as well, of other frames or positions: cut, resampled or rounded it would be no test; give the \
+                 file another name if {0:?} shows another time or place",
+                namesake.name()
+            )));
+        }
         if !known.is_empty() {
             return Err(goals.source().wrong(format!(
                 "was trained on {}; measure it on what it kept for validation, on other recordings, or on one that it is trained without (`ddl \

@@ -4,13 +4,15 @@ use crate::early_stopping::{EarlyStopping, best_epoch};
 use crate::run_config::{FORMAT, RunConfig, TrainingData};
 use crate::run_directory::{RunDirectory, SAVE_EVERY};
 use crate::{Ddl, DdlError, GoalModel, GoalRecipe, goal_training, sha256};
-use ddl_data::{Convention, Dataset, Fold, Recording, Window, WindowRule};
+use ddl_data::{Convention, DataError, Dataset, Fold, Recording, Window, WindowRule};
 use ddl_goal::RetrievalFrame;
 use ddl_star::{
     ComputeDevice, DeviceChoice, EpochReport, LIBTORCH_VERSION, Objective, Origin, ProposalStep,
-    StarConfig, StarError, StarNetwork, StepReport, Trainer, TrainingConfig, save_parameters,
+    StarConfig, StarError, StarNetwork, StepReport, Trainer, TrainingConfig, load_parameters,
+    save_parameters,
 };
 use sha2::{Digest as _, Sha256};
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -96,9 +98,7 @@ pub fn train(
         return Err(DdlError::Validation(request.validation));
     }
     let device = ComputeDevice::open(request.device)?;
-    let fold = dataset
-        .fold(&request.fold)?
-        .set_apart(&request.validation_recordings)?;
+    let fold = fold_of(dataset, &request.fold)?.set_apart(&request.validation_recordings)?;
     let window_rule = training_rule(dataset.convention());
     let windows = if request.validation > 0.0 {
         fold.training_split(window_rule, request.validation)
@@ -127,8 +127,10 @@ pub fn train(
             walkers: windows.iter().map(Window::len).sum(),
             sha256: digest(&windows),
             recordings: match dataset.convention() {
-                Convention::Own => learned_from(&fold).map(digest_of_recording).collect(),
-                _ => Vec::new(),
+                Convention::Own => learned_from(&fold)
+                    .map(|recording| (recording.name().to_owned(), digest_of_recording(recording)))
+                    .collect(),
+                _ => BTreeMap::new(),
             },
         },
         keep_every: match (request.patience, request.last_epoch_only) {
@@ -297,11 +299,14 @@ fn run_epochs(
             return Err(DdlError::Interrupted);
         }
     }
-    match best_epoch(&epochs) {
-        None => save_parameters(trainer.network().parameters(), origin, &run.model())?,
-        Some(best) => run.take_epoch(best.epoch)?,
+    let parameters = trainer.network().parameters();
+    if let Some(best) = best_epoch(&epochs) {
+        // Read as any weights are, so that a file that was damaged since is named, before others are removed.
+        load_parameters(parameters, origin, &run.best_epoch(best.epoch)?)?;
+        run.remove_epochs_but(best.epoch)?;
     }
-    Ok(())
+    // Last: with a model the run is finished, and nothing of this is done again.
+    Ok(save_parameters(parameters, origin, &run.model())?)
 }
 
 /// Training uses every complete window of the convention.
@@ -309,6 +314,15 @@ pub(crate) fn training_rule(convention: Convention) -> WindowRule {
     match convention {
         Convention::SocialGan => WindowRule::SocialGan { min_pedestrians: 1 },
         _ => WindowRule::Complete,
+    }
+}
+
+/// The fold that a run is of: of own recordings also the one that leaves none out.
+pub(crate) fn fold_of<'a>(dataset: &'a Dataset, name: &str) -> Result<Fold<'a>, DataError> {
+    if dataset.convention() == Convention::Own && name == Fold::WHOLE {
+        Ok(dataset.whole())
+    } else {
+        dataset.fold(name)
     }
 }
 

@@ -17,6 +17,7 @@ use super::child::{BEAT, Children};
 use super::executor::{End, Executor, Stop, Watch};
 use super::plan::{Plan, Task};
 use super::record;
+use crate::whole_file;
 
 /// Share of a training that its first stage, the goals, is shown as.
 const GOALS: f64 = 0.15;
@@ -145,6 +146,8 @@ impl Local {
             watch.advanced(task, 0.0, "waits for a process of an earlier benchmark");
             thread::sleep(BEAT);
         }
+        // Nobody else is at work there now; the folder of the run is the program's own.
+        whole_file::remove_half_written(&task.folder(out));
         let start = Instant::now();
         let train = task.train_cost / task.cost();
         let steps = [

@@ -120,8 +120,8 @@ impl Arguments {
         let plan = self.plan(workspace, &chosen)?;
         let out = self.out_folder(workspace, &plan)?;
         let _locked = Lock::take(&out)?;
-        // The folders of runs are the program's own.
-        whole_file::remove_half_written(&out, 1);
+        // In the folders of tasks a process of an earlier benchmark may still be at work.
+        whole_file::remove_half_written(&out);
         plan.write(&out)?;
         let (program, commit) = self.program(workspace)?;
         let cores = thread::available_parallelism().map_or(1, std::num::NonZero::get);

@@ -111,6 +111,18 @@ impl Arguments {
                 names.join(", ")
             );
         }
+        let needs_torch = |name: &&String| {
+            let mut targets = all.iter();
+            targets.any(|target| target.name == **name && target.needs_torch)
+        };
+        if let Some(name) = self
+            .targets
+            .iter()
+            .find(needs_torch)
+            .filter(|_| self.no_torch)
+        {
+            bail!("the fuzz target {name} needs libtorch: leave --no-torch out");
+        }
         let asked = |target: &Target| {
             (self.targets.is_empty() || self.targets.contains(&target.name))
                 && !(self.no_torch && target.needs_torch)

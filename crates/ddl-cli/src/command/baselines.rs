@@ -1,6 +1,6 @@
 //! `ddl baselines`.
 
-use super::{RecordingsAt, Telling, at_least_one};
+use super::{RecordingsAt, Reporting, at_least_one};
 use clap::Args;
 use ddl::Protocol;
 use ddl::data::Convention;
@@ -31,7 +31,7 @@ pub(crate) struct Baselines {
     #[arg(long)]
     out: Option<PathBuf>,
     #[command(flatten)]
-    telling: Telling,
+    reporting: Reporting,
 }
 
 impl Baselines {
@@ -44,7 +44,7 @@ impl Baselines {
             self.folds
         };
         let (protocols, walkers) = (&self.protocols, self.test_walkers);
-        let commit = &self.telling.commit;
+        let commit = &self.reporting.commit;
         let rows = ddl::measure_baselines(&dataset, &folds, protocols, walkers, commit)?;
         let report = Report::new(format!("Baselines: {}", self.convention), rows)?;
         let rest = match &self.out {
@@ -54,6 +54,6 @@ impl Baselines {
             }
             None => "all metrics, as a page and as files: with --out FOLDER".to_owned(),
         };
-        self.telling.tell(&report, &rest)
+        self.reporting.print(&report, &rest)
     }
 }

@@ -7,7 +7,7 @@ use clap::Args;
 use ddl::data::Summary;
 use serde_json::Value;
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Tell what recordings hold, and what looks wrong with them
 ///
@@ -31,8 +31,10 @@ impl Data {
         let read = recordings::read(&files, &self.units)?;
         let summaries = read.iter().map(|of| (of.recording.summary(), of.clock));
         if self.json {
-            let facts: Result<Vec<Value>, _> = summaries
-                .map(|(summary, clock)| facts(&summary, clock))
+            let facts: Result<Vec<Value>, _> = files
+                .iter()
+                .zip(summaries)
+                .map(|(file, (summary, clock))| facts(file, &summary, clock))
                 .collect();
             return output::print_json(&facts?);
         }
@@ -45,8 +47,13 @@ impl Data {
 }
 
 /// The summary with frames numbered as the tracks number them.
-fn facts(summary: &Summary, clock: Clock) -> serde_json::Result<Value> {
+fn facts(file: &Path, summary: &Summary, clock: Clock) -> serde_json::Result<Value> {
     let mut facts = serde_json::to_value(summary)?;
+    facts["file"] = file.display().to_string().into();
+    let doubts = summary.doubts().into_iter();
+    facts["doubts"] = doubts
+        .map(|doubt| clock.of_doubt(doubt).to_string())
+        .collect();
     for (name, frame) in [
         ("first_frame", summary.first_frame),
         ("last_frame", summary.last_frame),

@@ -2,7 +2,7 @@
 
 mod forecasts;
 
-use super::{Exactness, KeepClear, Machine, RecordingsAt, Telling, at_least_one};
+use super::{Exactness, KeepClear, Machine, RecordingsAt, Reporting, at_least_one};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use anyhow::Context as _;
@@ -52,16 +52,16 @@ pub(crate) struct Evaluate {
     #[command(flatten)]
     exactness: Exactness,
     #[command(flatten)]
-    telling: Telling,
+    reporting: Reporting,
 }
 
 impl Evaluate {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         match (&self.other.forecasts, &self.model) {
             (Some(file), _) => {
-                let (data, commit) = (&self.recordings, &self.telling.commit);
+                let (data, commit) = (&self.recordings, &self.reporting.commit);
                 let report = self.other.evaluate(file, &self.protocols, data, commit)?;
-                self.telling.tell(&report, &self.other.written())
+                self.reporting.print(&report, &self.other.written())
             }
             (None, Some(name)) => self.measure(&ModelSource::named(name)),
             (None, None) => self.measure(&ModelSource::Builtin(self.other.builtin_model()?)),
@@ -82,7 +82,7 @@ impl Evaluate {
                 EvaluationSplit::Test
             },
             test_walkers: self.test_walkers,
-            commit: self.telling.commit.clone(),
+            commit: self.reporting.commit.clone(),
         };
         let trained_on = model.config().data.convention;
         let convention = self.other.windows.convention.unwrap_or(trained_on);
@@ -97,17 +97,15 @@ impl Evaluate {
         // Results on other recordings than those of the run's convention are not the run's.
         let kept = model.run().filter(|_| convention == trained_on);
         if let Some(run) = kept
-            // own recordings may be others than last time
-            && convention != Convention::Own
             && ddl::is_evaluated(&model, &request)
         {
             self.save_elsewhere(|| Results::of(&title, &[run.path()]))?;
             return self
-                .telling
-                .tell(&Report::load(&run.report())?, &self.written(kept));
+                .reporting
+                .print(&Report::load(&run.report())?, &self.written(kept));
         }
         let dataset = self.recordings.dataset(convention)?;
-        let progress = Progress::new("evaluate", self.telling.progress);
+        let progress = Progress::new("evaluate", self.reporting.progress);
         let evaluation = ddl::evaluate(&model, &dataset, &request, |now| {
             let (done, total) = now.walkers;
             progress.tell(done as u64, total as u64, now.protocol.name());
@@ -121,7 +119,7 @@ impl Evaluate {
         } else {
             self.save_elsewhere(|| Ok(Results::new(report.clone(), evaluation.moments)))?;
         }
-        self.telling.tell(&report, &self.written(kept))
+        self.reporting.print(&report, &self.written(kept))
     }
 
     /// Writes the whole report to the folder asked for, if any.

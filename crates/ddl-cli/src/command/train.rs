@@ -2,7 +2,7 @@
 
 mod finished;
 
-use super::{Machine, RecordingsAt, Telling};
+use super::{Machine, RecordingsAt, Reporting};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use anyhow::{Context as _, bail};
@@ -66,7 +66,7 @@ pub(crate) struct Train {
     /// How the step size changes: constant or cosine [default: cosine, published constant]
     #[arg(long)]
     learning_rate_schedule: Option<LearningRateSchedule>,
-    /// Share of the training recordings' time, at their ends, kept for validation [default: 0, of own recordings 0.2]
+    /// Share of the training recordings' time, at their ends, kept for validation [default: 0, of own recordings 0.2 unless some are kept whole]
     #[arg(long)]
     validation: Option<f64>,
     /// Training recordings kept for validation whole, such as `uni_examples,zara03`
@@ -96,7 +96,7 @@ pub(crate) struct Train {
     #[command(flatten)]
     machine: Machine,
     #[command(flatten)]
-    telling: Telling,
+    reporting: Reporting,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -120,13 +120,19 @@ impl Train {
         let goals = self.goal_recipe()?;
         let (star, training) = self.recipe();
         let own = convention == Convention::Own;
+        let whole = !self.validation_recordings.is_empty();
         let validation = self
             .validation
-            .unwrap_or(if own { VALIDATION } else { 0.0 });
-        let kept = validation > 0.0 || !self.validation_recordings.is_empty();
+            .unwrap_or(if own && !whole { VALIDATION } else { 0.0 });
+        let kept = validation > 0.0 || whole;
         let patience = self
             .patience
             .unwrap_or(if own && kept { PATIENCE } else { 0 });
+        if patience > 0 && self.last_epoch_only {
+            bail!(
+                "--last-epoch-only keeps no other epoch that may be the best: add --patience 0 to take the last one"
+            );
+        }
         let request = TrainingRequest {
             fold,
             star,
@@ -143,13 +149,13 @@ impl Train {
             },
             out: RunDirectory::new(self.out),
             device: self.machine.device,
-            commit: self.telling.commit.clone(),
+            commit: self.reporting.commit.clone(),
         };
         // Each stage has its bar, from its first step on.
         let (mut goals, mut network) = (None, None);
         let mut stood = "before its first step".to_owned();
         let mut losses = String::new();
-        let bar = |stage| move || Progress::new(stage, self.telling.progress);
+        let bar = |stage| move || Progress::new(stage, self.reporting.progress);
         let trained = ddl::train(&request, &dataset, |now| {
             let (done, total) = now.steps;
             match &now.step {
@@ -177,7 +183,7 @@ impl Train {
                 .context(format!("{}, {stood}", request.out.path().display())),
             error => error.into(),
         })?;
-        finished::tell(&request, &self.recordings, &self.telling)
+        finished::print(&request, &self.recordings, &self.reporting)
     }
 
     /// The convention and the fold to train.

@@ -18,6 +18,7 @@ use std::path::{Path, PathBuf};
 /// Writes one page that needs no network: a player of moments of the recording, with everybody's hypotheses, their weights, goals and
 /// certificates, and what then happened as far as it was seen.
 #[derive(Debug, Args)]
+#[command(mut_arg("file", |file| file.required(true)))]
 #[command(
     after_help = "Examples:\n  ddl view tracks.csv\n  ddl view camera.csv --fps 25 --homography H.txt --output lobby.html --no-open"
 )]

@@ -2,6 +2,7 @@
 
 use super::Forecast;
 use crate::clock::Clock;
+use crate::recordings;
 use crate::telling::tell;
 use anyhow::{Context as _, bail};
 use ddl::data::{
@@ -9,7 +10,8 @@ use ddl::data::{
     Window,
 };
 use std::fs::File;
-use std::io::{ErrorKind, Write, stdin, stdout};
+use std::io::{Write, stdin, stdout};
+use std::path::Path;
 
 /// Frames apart that are believed to be 0.4 s: more may be a hole, or a clock.
 const LONGEST_STEP: i64 = 1000;
@@ -22,12 +24,8 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
     )?;
     let homography = forecast.tracks.homography()?;
     let model = forecast.model()?;
-    let mut output: Box<dyn Write> = match &forecast.output {
-        None => Box::new(stdout().lock()),
-        Some(path) => Box::new(
-            File::create(path).with_context(|| format!("cannot write {}", path.display()))?,
-        ),
-    };
+    // A file from before is replaced by the first forecast, not by an input that has none.
+    let mut output: Option<Box<dyn Write>> = None;
     let mut frames = FrameReader::new(stdin().lock(), "standard input");
     let (mut headed, mut empty, mut looked_at) = (true, true, false);
     let mut wrong = None;
@@ -48,14 +46,19 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
         }
         let text = forecast.text(&model, &[window], Clock::WHOLE, headed)?;
         headed = false;
-        let written = output.write_all(text.as_bytes());
-        match written.and_then(|()| output.flush()) {
-            // whoever reads has seen enough
-            Err(error) if error.kind() == ErrorKind::BrokenPipe => return Ok(()),
-            result => result.with_context(|| match &forecast.output {
-                Some(path) => format!("cannot write to {}", path.display()),
+        if output.is_none() {
+            output = Some(open(forecast.output.as_deref())?);
+        }
+        if let Some(output) = &mut output {
+            let written = output.write_all(text.as_bytes());
+            let flushed = written.and_then(|()| output.flush());
+            flushed.with_context(|| match &forecast.output {
+                Some(path) => format!(
+                    "cannot write on to {0}, which holds the forecasts so far (another run with --output {0} replaces them)",
+                    path.display()
+                ),
                 None => "cannot write to standard output".to_owned(),
-            })?,
+            })?;
         }
     }
     if let Some(wrong) = wrong {
@@ -74,6 +77,15 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Standard output, or the file.
+fn open(path: Option<&Path>) -> anyhow::Result<Box<dyn Write>> {
+    let Some(path) = path else {
+        return Ok(Box::new(stdout().lock()));
+    };
+    let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
+    Ok(Box::new(file))
+}
+
 /// Says what looks wrong with the speeds of the first people that were seen whole; whether there were any.
 fn warn_of_speeds(window: &Window) -> anyhow::Result<bool> {
     let whole = (0..window.len()).filter(|&i| window.made_up(i) == MadeUp::default());
@@ -90,7 +102,7 @@ fn warn_of_speeds(window: &Window) -> anyhow::Result<bool> {
     let recording = Recording::new("standard input", window.frame_step(), seen)?;
     // A jump is no matter of units, and somebody may be slow for 3.2 s.
     if let Some(doubt @ Doubt::Fast { .. }) = recording.speed_doubt() {
-        tell(format_args!("warning: {doubt} (--homography, --fps)"));
+        recordings::warn_of(doubt, None);
     }
     Ok(true)
 }

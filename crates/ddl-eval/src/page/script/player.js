@@ -204,8 +204,9 @@ function makePlayer(moments) {
     const at = [event.clientX - box.left, event.clientY - box.top];
     let best = null;
     current().walkers.forEach((who, index) => {
-      const here = view.px(placeAt(who.observed, who.truth, state.time));
-      const others = [...who.observed, ...who.truth].map(view.px);
+      const ahead = shownAhead(who, state.show, state.time);
+      const here = view.px(placeAt(who.observed, ahead, state.time));
+      const others = [...who.observed, ...ahead].map(view.px);
       const reach = Math.min(Math.hypot(here[0] - at[0], here[1] - at[1]) - 8, ...others.map((p) => Math.hypot(p[0] - at[0], p[1] - at[1])));
       if (reach < 22 && (!best || reach < best.reach)) best = { index, reach };
     });
