@@ -63,10 +63,15 @@ pub(crate) fn warn_of_doubts(read: &[InSteps]) {
 /// Says what looks wrong, with the options that may mend it; of a recording by name, where there are several.
 pub(crate) fn warn_of(doubt: Doubt, recording: Option<&str>) {
     let place = recording.map_or_else(String::new, |name| format!("{name}: "));
+    tell(format_args!("warning: {place}{}", words(doubt)));
+}
+
+/// What looks wrong, with the options that may mend it.
+pub(crate) fn words(doubt: Doubt) -> String {
     let options = match doubt {
         Doubt::Fast { .. } => " (--homography, --fps)",
         Doubt::Slow { .. } | Doubt::NoSteps { .. } => " (--fps)",
         _ => "",
     };
-    tell(format_args!("warning: {place}{doubt}{options}"));
+    format!("{doubt}{options}")
 }

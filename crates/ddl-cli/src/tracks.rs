@@ -23,7 +23,7 @@ pub(crate) struct Tracks {
     units: Units,
     /// Only who was seen at each of the last 8 steps
     ///
-    /// Otherwise who was seen at 2 of them or more is forecast too: holes of up to 2 frames are filled on a straight line, and what begins late is
+    /// Otherwise who was seen at 2 of them or more is forecast too: holes of up to 2 steps are filled on a straight line, and what begins late is
     /// padded at the mean velocity seen. The columns `padded` and `filled` count such positions.
     #[arg(long, requires = "file")]
     whole: bool,
@@ -48,6 +48,8 @@ pub(crate) struct Observed {
     /// One a frame that has anybody to forecast.
     pub(crate) windows: Vec<Window>,
     pub(crate) clock: Clock,
+    /// What looks wrong with them: wrong units or a wrong rate give forecasts that look confident and mean nothing.
+    pub(crate) doubt: Option<Doubt>,
 }
 
 impl Tracks {
@@ -118,11 +120,12 @@ impl Tracks {
                 frames(clock.number(recording.frame_step()))
             ));
         }
-        // Wrong units or a wrong rate give forecasts that look confident and mean nothing.
-        if let Some(doubt @ (Doubt::Fast { .. } | Doubt::Slow { .. } | Doubt::Jump(_))) =
-            recording.speed_doubt()
-        {
-            recordings::warn_of(clock.of_doubt(doubt), None);
+        let doubt = recording
+            .speed_doubt()
+            .filter(|doubt| !matches!(doubt, Doubt::NoSteps { .. }))
+            .map(|doubt| clock.of_doubt(doubt));
+        if let Some(doubt) = doubt {
+            recordings::warn_of(doubt, None);
         }
         if self.last {
             windows.drain(..windows.len() - 1);
@@ -131,6 +134,7 @@ impl Tracks {
             recording,
             windows,
             clock,
+            doubt,
         })
     }
 }

@@ -80,9 +80,12 @@ impl Units {
             .in_steps(frame_time)
             .with_context(|| file.display().to_string())?;
         if steps.resampled {
+            let reason = match whole_frame_step(frame_time) {
+                Some(step) => format!("frames do not lie {step} apart, which are 0.4 s"),
+                None => format!("0.4 s are {:.4} frames", TIME_STEP / frame_time),
+            };
             tell(format_args!(
-                "note: 0.4 s are {:.4} frames: positions are taken on straight lines between frames, every 0.4 s back from the last one",
-                TIME_STEP / frame_time
+                "note: {reason}: positions are taken on straight lines between frames, every 0.4 s back from the last one"
             ));
         }
         Ok(InSteps {

@@ -13,6 +13,11 @@ const CREEPING: f64 = 0.6;
 const FAR: f64 = 2.0;
 /// A step beyond this is a track that jumps from one person to another, m/s: the fastest sprinters reach 12.
 const JUMP: f64 = 12.0;
+/// Where nobody comes farther than this over many steps, m, numbers are not metres: even who stands sways, and trackers tremble.
+const STILL: f64 = 0.02;
+const MANY_STEPS: usize = 20;
+/// Share of frames without somebody between their first and last from which on it is told.
+const OFTEN: f64 = 0.03;
 
 /// Something that looks wrong; in words it says what may be done about it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,6 +37,16 @@ pub enum Doubt {
     Slow {
         /// The largest speed, m/s.
         fastest: f64,
+    },
+    /// Nobody ever leaves the place, over many steps: degrees, kilometres.
+    Still {
+        /// The farthest that anybody came, m.
+        farthest: f64,
+    },
+    /// People are often not seen between two frames at which they are, so that steps of theirs are missing.
+    Unseen {
+        /// Share of the frames between somebody's first and last at which that person is not there.
+        share: f64,
     },
     /// A track goes on somewhere else.
     Jump(Fastest),
@@ -54,6 +69,16 @@ impl fmt::Display for Doubt {
                 f,
                 "nobody is ever faster than {fastest:.2} m/s; are the rows of a pedestrian 0.4 s apart, or those of a faster camera?"
             ),
+            Self::Still { farthest } => write!(
+                f,
+                "nobody comes farther than {farthest:.3} m; are the positions in metres, or in degrees or kilometres?"
+            ),
+            Self::Unseen { share } => write!(
+                f,
+                "people are not seen in {:.0} % of the frames between their first and their last; a step counts where somebody is seen at its very frame, so \
+                 fill short gaps where the tracker can",
+                100.0 * share
+            ),
             Self::Jump(Fastest {
                 speed,
                 pedestrian,
@@ -72,6 +97,7 @@ impl fmt::Display for Doubt {
 /// How people move, step by step.
 pub(crate) struct Speeds {
     pub(crate) frame_step: i64,
+    pub(crate) steps: usize,
     pub(crate) median: Option<f64>,
     pub(crate) fastest: Option<Fastest>,
     /// Largest distance between anybody's first and last position, m.
@@ -86,7 +112,11 @@ impl Speeds {
                 frame_step: self.frame_step,
             });
         };
-        if median > IMPLAUSIBLE {
+        if self.farthest < STILL && self.steps >= MANY_STEPS {
+            Some(Doubt::Still {
+                farthest: self.farthest,
+            })
+        } else if median > IMPLAUSIBLE {
             Some(Doubt::Fast { median })
         } else if fastest.speed > JUMP {
             Some(Doubt::Jump(fastest))
@@ -121,11 +151,17 @@ impl Recording {
         speeds.sort_by(|a, b| a.speed.total_cmp(&b.speed));
         Speeds {
             frame_step: step,
+            steps: speeds.len(),
             median: speeds.get(speeds.len() / 2).map(|fastest| fastest.speed),
             fastest: speeds.last().copied(),
             farthest: tracks.values().map(|track| way(track)).fold(0.0, f64::max),
         }
     }
+}
+
+/// The doubt about frames at which people are not seen between others at which they are.
+pub(crate) fn unseen(share: f64) -> Option<Doubt> {
+    (share >= OFTEN).then_some(Doubt::Unseen { share })
 }
 
 /// How far a track leads, m.

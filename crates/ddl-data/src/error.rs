@@ -30,6 +30,9 @@ pub enum FormatProblem {
     /// The bytes are not UTF-8 text.
     #[error("the text is not UTF-8; export the file as plain UTF-8 or ASCII text")]
     NotUtf8,
+    /// The bytes are those of a compressed file, or of a spreadsheet, which is one.
+    #[error("the file is compressed; unpack it, or export the spreadsheet as csv")]
+    Compressed,
     /// A line is absent.
     #[error("line missing: the format has exactly {expected} lines ({names}), the file ends here")]
     MissingLine {
@@ -196,7 +199,9 @@ fn advice_on_integer(name: &str, found: &str) -> &'static str {
 
 /// What to do about text that is no number.
 fn advice_on_number(found: &str) -> &'static str {
-    if found.replacen(',', ".", 1).parse::<f64>().is_ok() && found.contains(',') {
+    if found.is_empty() || found.eq_ignore_ascii_case("nan") {
+        "; where somebody was not seen, write no row"
+    } else if found.replacen(',', ".", 1).parse::<f64>().is_ok() && found.contains(',') {
         "; write decimals with a point"
     } else {
         ""

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::doubt::Speeds;
+use crate::doubt::{self, Speeds};
 use crate::{
     Completion, Doubt, Observation, PedestrianId, Position, Recording, TIME_STEP, WindowRule,
 };
@@ -44,12 +44,16 @@ pub struct Summary {
     pub low: Position,
     /// Largest x and y, m.
     pub high: Position,
+    /// Pairs of positions of one person a step apart.
+    pub steps: usize,
     /// Median speed over single steps, m/s; `None` where nobody was seen at two frames a step apart.
     pub median_speed: Option<f64>,
     /// Largest distance between anybody's first and last position, m.
     pub farthest: f64,
     /// Largest speed over a single step, and whose.
     pub fastest: Option<Fastest>,
+    /// Share of the frames between somebody's first and last at which that person was not seen; frames that nobody is in do not count.
+    pub unseen: f64,
     /// Times that somebody was not seen for some steps and then again.
     pub holes: usize,
     /// The longest of them.
@@ -92,6 +96,7 @@ impl Summary {
     pub fn doubts(&self) -> Vec<Doubt> {
         let speeds = Speeds {
             frame_step: self.frame_step,
+            steps: self.steps,
             median: self.median_speed,
             fastest: self.fastest,
             farthest: self.farthest,
@@ -100,6 +105,7 @@ impl Summary {
         speeds
             .doubt()
             .into_iter()
+            .chain(doubt::unseen(self.unseen))
             .chain(learning.then_some(Doubt::NothingToLearnFrom))
             .collect()
     }
@@ -112,6 +118,15 @@ impl Recording {
             tracks.entry(seen.pedestrian).or_default().push(seen);
         }
         tracks
+    }
+
+    /// Share of the frames between somebody's first and last at which that person was not seen.
+    fn unseen(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> f64 {
+        let index = |frame: i64| self.frames().partition_point(|&other| other < frame);
+        let spans = tracks
+            .values()
+            .map(|track| index(track[track.len() - 1].frame) - index(track[0].frame) + 1);
+        1.0 - self.observations().len() as f64 / spans.sum::<usize>() as f64
     }
 
     /// What the recording holds.
@@ -148,9 +163,11 @@ impl Recording {
             observations: self.observations().len(),
             low: corner(f64::min, f64::INFINITY),
             high: corner(f64::max, f64::NEG_INFINITY),
+            steps: speeds.steps,
             median_speed: speeds.median,
             fastest: speeds.fastest,
             farthest: speeds.farthest,
+            unseen: self.unseen(&tracks),
             holes: holes.len(),
             longest_hole: holes
                 .into_iter()

@@ -336,7 +336,13 @@ fn headers_as_others_write_them() {
         ("frame,id,x,y", "rename it pedestrian"),
         ("time,pedestrian,x,y", "count frames"),
         ("frame;pedestrian;x;y", "commas"),
-        ("frame,pedestrian,x,vx", "leave it out"),
+        ("frame,pedestrian,x,y,vx", "; leave it out"),
+        ("frame,pedestrian,x,vx", "missing yet: y"),
+        ("frame,TrackID,x,y", "rename it pedestrian"),
+        ("frame,pedestrian,x [m],y [m]", "rename it x"),
+        ("frame_number,pedestrian,pos_x,pos_y", "rename it frame"),
+        ("frame\tpedestrian\tx\ty", "separate columns by commas"),
+        ("[{\"frame\": 0}]", "no table"),
         (
             "0,1,2.5,-3.0",
             "these are numbers; put the line frame,pedestrian,x,y above them",
@@ -361,7 +367,10 @@ fn rows_as_others_write_them() {
         ),
         ("0,anna,2.0,3.0", "line 2, field 2", "number people"),
         ("0,1,\"2,5\",3.0", "line 2, field 3", "with a point"),
-        ("0,1,2,5,3,0", "line 2", "write a point"),
+        ("0,1,2,5,3,0", "line 2", "decimal point"),
+        ("0,1,2.5,3.0,", "line 2", "at the end of a row"),
+        ("0;1;2.5;3.0", "line 2", "separated by commas"),
+        ("0,1,,3.0", "line 2, field 3", "write no row"),
     ] {
         let text = format!("frame,pedestrian,x,y\n{row}\n");
         let message = parse_recording(text.as_bytes(), "t", Format::Table)
@@ -371,6 +380,14 @@ fn rows_as_others_write_them() {
             message.contains(place) && message.contains(advice),
             "{message}"
         );
+    }
+}
+
+#[test]
+fn compressed_files_are_known() {
+    for bytes in [&b"\x1f\x8b\x08\x00"[..], b"PK\x03\x04\x14"] {
+        let error = parse_recording(bytes, "tracks.csv", Format::Table).unwrap_err();
+        assert!(error.to_string().contains("is compressed"), "{error}");
     }
 }
 

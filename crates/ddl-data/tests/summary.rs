@@ -27,6 +27,34 @@ fn speeds_that_nobody_walks_at_are_doubted() {
 }
 
 #[test]
+fn degrees_are_doubted() {
+    // a walk through a park in degrees of latitude
+    assert!(matches!(
+        doubts(walk(5e-6))[..],
+        [Doubt::Still { farthest }] if farthest < 1e-3
+    ));
+}
+
+/// A camera of 25 frames a second whose tracker loses every tenth detection: the places of steps are gone with them.
+#[test]
+fn detections_that_drop_out_are_told() {
+    let seen: Vec<Observation> = (0..1000)
+        .flat_map(|t| {
+            [1, 2].map(|id| Observation::new(t, PedestrianId(id), [0.05 * t as f64, id as f64]))
+        })
+        .filter(|seen| (seen.frame + 5 * seen.pedestrian.0) % 10 != 7)
+        .collect();
+    let summary = Recording::new("film", 10, seen).unwrap().summary();
+    assert!((summary.unseen - 0.1).abs() < 0.002, "{}", summary.unseen);
+    let [Doubt::Unseen { share }, ..] = summary.doubts()[..] else {
+        panic!("{:?}", summary.doubts());
+    };
+    assert_eq!(share.to_bits(), summary.unseen.to_bits());
+    let whole = Recording::new("yard", 1, walk(0.5)).unwrap().summary();
+    assert_eq!(whole.unseen.to_bits(), 0.0_f64.to_bits());
+}
+
+#[test]
 fn a_track_that_jumps_is_named_with_its_frame() {
     let mut seen = walk(0.5);
     for observation in &mut seen[40..] {

@@ -74,8 +74,8 @@ pub enum DdlError {
     },
     /// The training set holds fewer tracks than the published goal estimator retrieves.
     #[error(
-        "{tracks} tracks of 20 frames to train on, but the published goal estimator, which \
-         evaluation runs too, retrieves {experts}; train on more recordings"
+        "{tracks} tracks of 20 steps to train on, but the published goal estimator, which evaluation runs too, retrieves {experts}; train on more or longer \
+         recordings (what is kept for validation does not count)"
     )]
     TooFewTracks {
         /// Tracks there are.

@@ -202,8 +202,13 @@ impl RunDirectory {
         let has_config = self.config_file().exists();
         if has_config && let Some(difference) = self.config()?.origin().difference(&config.origin())
         {
+            let hint = if difference.starts_with("data.") {
+                " (other recordings, or the same read otherwise: rate, homography)"
+            } else {
+                ""
+            };
             let problem = format!(
-                "holds another run: its {difference} as asked for; choose another directory, or remove this one"
+                "holds another run: its {difference} as asked for{hint}; choose another directory, or remove this one"
             );
             return Err(DdlError::run(&self.0, problem));
         }

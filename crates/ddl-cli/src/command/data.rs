@@ -52,7 +52,7 @@ fn facts(file: &Path, summary: &Summary, clock: Clock) -> serde_json::Result<Val
     facts["file"] = file.display().to_string().into();
     let doubts = summary.doubts().into_iter();
     facts["doubts"] = doubts
-        .map(|doubt| clock.of_doubt(doubt).to_string())
+        .map(|doubt| recordings::words(clock.of_doubt(doubt)))
         .collect();
     for (name, frame) in [
         ("first_frame", summary.first_frame),
@@ -122,7 +122,11 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std
         many(s.to_learn_from, "walker", "walkers")
     )?;
     for doubt in s.doubts() {
-        writeln!(out, "  doubtful: {}", clock.of_doubt(doubt))?;
+        writeln!(
+            out,
+            "  doubtful: {}",
+            recordings::words(clock.of_doubt(doubt))
+        )?;
     }
     Ok(())
 }

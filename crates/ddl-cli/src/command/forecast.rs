@@ -62,6 +62,11 @@ enum OutputFormat {
     Jsonl,
 }
 
+/// Lines that a person can be expected to look through on a terminal.
+const LOOKED_THROUGH: usize = 100;
+/// Bytes of a file that few expect of some tracks.
+const LARGE: usize = 50 << 20;
+
 /// What was observed until one frame, and what is forecast from there.
 struct Moment<'a> {
     window: &'a Window,
@@ -80,11 +85,25 @@ impl Forecast {
         let model = self.model()?;
         let text = self.text(&model, &observed.windows, observed.clock, true)?;
         write_output(self.output.as_deref(), &text)?;
-        if self.output.is_none() {
-            warn_of_flood(&text);
-        }
+        self.warn_of_flood(&text);
         observed.tell_what_is_made_up();
         Ok(())
+    }
+
+    /// Says how to have fewer lines, or have them elsewhere: on a terminal thousands are of no use, and every frame of a camera makes a large file.
+    fn warn_of_flood(&self, text: &str) {
+        let on_terminal = self.output.is_none() && std::io::stdout().is_terminal();
+        let lines = text.lines().count();
+        if on_terminal && lines > LOOKED_THROUGH {
+            tell(format_args!(
+                "note: {lines} lines; --output FILE writes them to a file, --last and --one make fewer of them, `ddl view` shows them"
+            ));
+        } else if text.len() > LARGE {
+            tell(format_args!(
+                "note: {} MiB, because everybody is forecast from every frame; --last and --one make less of it",
+                text.len() >> 20
+            ));
+        }
     }
 
     fn model(&self) -> anyhow::Result<Ddl> {
@@ -169,19 +188,6 @@ impl<'a> Moment<'a> {
         let (last, step) = (self.window.frames()[OBSERVED - 1], self.window.frame_step());
         let frames = (1..=HORIZON as i64).map(|t| self.clock.number(last + t * step));
         frames.collect()
-    }
-}
-
-/// Lines that a person can be expected to look through on a terminal.
-const LOOKED_THROUGH: usize = 100;
-
-/// On a terminal thousands of lines are of no use: says how to have fewer of them, or have them elsewhere.
-fn warn_of_flood(text: &str) {
-    let lines = text.lines().count();
-    if std::io::stdout().is_terminal() && lines > LOOKED_THROUGH {
-        tell(format_args!(
-            "note: {lines} lines; --output FILE writes them to a file, --last and --one make fewer of them, `ddl view` shows them"
-        ));
     }
 }
 

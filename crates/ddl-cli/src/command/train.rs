@@ -162,7 +162,11 @@ impl Train {
                 TrainingStep::Goals(step) => {
                     let goals = goals.get_or_insert_with(bar("goals"));
                     stood = format!("after {done} of {total} batches of goals");
-                    goals.tell(done, total, &format!("within {:.2} m", step.distance));
+                    goals.tell(
+                        done,
+                        total,
+                        &format!("batches, ends within {:.2} m", step.distance),
+                    );
                 }
                 TrainingStep::Network(step) => {
                     // On CUDA not every step knows: the last loss that was read stays.
@@ -172,7 +176,11 @@ impl Train {
                     goals = None;
                     let network = network.get_or_insert_with(bar("train"));
                     stood = format!("in epoch {}, after {done} of {total} batches", step.epoch);
-                    network.tell(done, total, &format!("epoch {}{losses}", step.epoch));
+                    network.tell(
+                        done,
+                        total,
+                        &format!("batches, epoch {}{losses}", step.epoch),
+                    );
                 }
             }
             interrupt.flow()

@@ -99,13 +99,15 @@ fn page(
     };
     let pairs = windows.iter().zip(&forecasts);
     let moments: Vec<Moment> = pairs.map(moment).collect::<anyhow::Result<_>>()?;
-    let lead = format!(
-        "{} of {} moments of {}: what was observed of each person, where each may go in the next 4.8 s, and what then happened as \
+    let doubt = observed.doubt.map(|doubt| format!("Doubtful: {doubt} "));
+    let lead = doubt.unwrap_or_default()
+        + &format!(
+            "{} of {} moments of {}: what was observed of each person, where each may go in the next 4.8 s, and what then happened as \
          far as it was seen.",
-        windows.len(),
-        observed.windows.len(),
-        file.file_name().unwrap_or_default().display()
-    );
+            windows.len(),
+            observed.windows.len(),
+            file.file_name().unwrap_or_default().display()
+        );
     let mut notes = vec![format!(
         "Forecast by {} ({}); goals {}.",
         model.name(),

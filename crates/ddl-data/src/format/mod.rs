@@ -129,6 +129,13 @@ pub fn read_recording(path: &Path, format: Format) -> Result<Recording, DataErro
 /// );
 /// ```
 pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Recording, DataError> {
+    if COMPRESSED.iter().any(|magic| bytes.starts_with(magic)) {
+        let place = Place {
+            line: 1,
+            field: None,
+        };
+        return Err(place.wrong(origin, FormatProblem::Compressed).into());
+    }
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = bytes[..error.valid_up_to()]
             .split(|&byte| byte == b'\n')
@@ -146,6 +153,15 @@ pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Rec
     }?;
     rows::into_recording(rows, origin)
 }
+
+/// How files begin that gzip, zip (and so spreadsheets), bzip2, xz and zstd have made.
+const COMPRESSED: [&[u8]; 5] = [
+    b"\x1f\x8b",
+    b"PK\x03\x04",
+    b"BZh",
+    b"\xfd7zXZ",
+    b"\x28\xb5\x2f\xfd",
+];
 
 /// A place within a file, both counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -8,12 +8,17 @@ use crate::error::{FormatError, FormatProblem};
 
 const COLUMNS: [&str; 4] = ["frame", "pedestrian", "x", "y"];
 /// The fields of a row that has too many of them.
-const FEWER: &str =
-    "frame, pedestrian, x, y; a decimal comma would part a number in two, write a point";
+const FEWER: &str = "frame, pedestrian, x, y; a comma stands between two fields, not at the end of a row and not for a decimal point";
+/// The fields of a row that is one field.
+const ONE: &str = "frame, pedestrian, x, y, separated by commas";
 
 /// What the fields of a row hold, for one that has too few or too many.
 fn names(expected: usize, found: usize) -> &'static str {
-    if found > expected { FEWER } else { FIELDS }
+    match found {
+        1 => ONE,
+        _ if found > expected => FEWER,
+        _ => FIELDS,
+    }
 }
 
 pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
@@ -84,7 +89,9 @@ impl Columns {
             // Spreadsheets like capitals.
             let column = COLUMNS.iter().position(|c| name.eq_ignore_ascii_case(c));
             let Some(column) = column else {
-                let detail = format!("unknown column {name:?}; {}", advice(name));
+                let advice = advice(name, header);
+                let name = field::quoted(name);
+                let detail = format!("unknown column {name:?}; {advice}");
                 return Err(wrong(Some(index + 1), detail));
             };
             if places[column].replace(index).is_some() {
@@ -130,14 +137,37 @@ impl Columns {
 }
 
 /// What to do about a column that is none of the four.
-fn advice(name: &str) -> &'static str {
-    match name.to_ascii_lowercase().as_str() {
-        "id" | "ped" | "ped_id" | "agent" | "agent_id" | "track" | "track_id" => {
-            "rename it pedestrian"
-        }
-        "t" | "time" | "frame_id" => "rename it frame, and count frames",
-        text if text.contains(';') => "separate columns by commas, and write decimals with a point",
-        _ => "leave it out",
+fn advice(name: &str, header: &StringRecord) -> String {
+    let known = |column: &str| header.iter().any(|name| name.eq_ignore_ascii_case(column));
+    let letters = name.chars().filter(char::is_ascii_alphanumeric);
+    let plain = letters.collect::<String>().to_ascii_lowercase();
+    let meant = match plain.as_str() {
+        "id" | "ped" | "pedid" | "pedestrianid" | "agent" | "agentid" | "track" | "trackid"
+        | "person" | "personid" | "object" | "objectid" => Some("pedestrian"),
+        "t" | "time" | "timestamp" => return "rename it frame, and count frames".to_owned(),
+        "frameid" | "framenumber" | "frameno" | "framenr" | "frameindex" => Some("frame"),
+        "posx" | "xpos" | "positionx" | "xm" | "px" | "centerx" | "worldx" => Some("x"),
+        "posy" | "ypos" | "positiony" | "ym" | "py" | "centery" | "worldy" => Some("y"),
+        _ => None,
+    };
+    let missing: Vec<&str> = COLUMNS
+        .into_iter()
+        .filter(|column| !known(column))
+        .collect();
+    if let Some(meant) = meant.filter(|meant| missing.contains(meant)) {
+        return format!("rename it {meant}");
+    }
+    if header.len() == 1 && name.contains(['{', '[']) {
+        "this is no table; tracks as JSON are TrajNet++ ndjson, an object a line".to_owned()
+    } else if name.contains([';', '\t']) {
+        "separate columns by commas, and write decimals with a point".to_owned()
+    } else if missing.is_empty() {
+        "leave it out".to_owned()
+    } else {
+        format!(
+            "missing yet: {}; rename it, or leave it out",
+            missing.join(", ")
+        )
     }
 }
 
