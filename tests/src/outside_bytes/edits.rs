@@ -47,6 +47,8 @@ impl<'a> Choices<'a> {
     }
 
     /// Everything that is left.
+    // Only readers of models take their input so.
+    #[cfg(feature = "torch")]
     pub(super) fn rest(&mut self) -> &'a [u8] {
         std::mem::take(&mut self.0)
     }

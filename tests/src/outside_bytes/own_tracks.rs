@@ -1,12 +1,17 @@
 //! A user's own tracks, as `ddl forecast` takes them: format guessed, rate given, windows cut.
 
-use ddl_data::{Completion, Format, OBSERVED, Recording, WindowRule, parse_recording};
+use ddl_data::{
+    COORDINATE_LIMIT, Completion, Format, OBSERVED, Recording, WindowRule, parse_recording,
+};
 
 use super::recording::bounded;
 
 const NAMES: [&str; 4] = ["a.csv", "a.txt", "a.ndjson", "a"];
 /// Seconds a frame that the second byte chooses from.
 const FRAME_TIMES: [f64; 6] = [0.4, 0.04, 1.0 / 30.0, 0.1, 1e-9, 7.0];
+
+/// How far away positions are padded, m.
+const PADDED_LIMIT: f64 = (1.0 + 6.0 * 2.0) * COORDINATE_LIMIT;
 
 /// The first byte chooses the name of a file of tracks, the second the rate; the others are its content.
 ///
@@ -38,9 +43,10 @@ fn cut(recording: &Recording) {
         assert_eq!(window.steps(), OBSERVED);
         assert!(window.frames().last() <= last.as_ref());
         for i in 0..window.len() {
-            // What is padded at its start walks on a straight line, back to 7 steps of one step's length or hole's.
-            let far = window.observed(i).as_flattened().iter();
-            assert!(far.clone().all(|c| c.abs() <= 2e7), "{window:?}");
+            // Up to 6 positions are padded at its start, on a straight line at the mean velocity seen: at most from one end of the bound to
+            // the other in a step.
+            let mut far = window.observed(i).as_flattened().iter();
+            assert!(far.all(|c| c.abs() <= PADDED_LIMIT), "{window:?}");
         }
     }
     for rule in [
