@@ -10,7 +10,7 @@ use ddl::data::{
     Window,
 };
 use std::fs::File;
-use std::io::{Write, stdin, stdout};
+use std::io::{Write as _, stdin, stdout};
 use std::path::Path;
 
 /// Frames apart that are believed to be 0.4 s: more may be a hole, or a clock.
@@ -24,8 +24,7 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
     )?;
     let homography = forecast.tracks.homography()?;
     let model = forecast.model()?;
-    // A file from before is replaced by the first forecast, not by an input that has none.
-    let mut output: Option<Box<dyn Write>> = None;
+    let mut output = Output::open(forecast.output.as_deref())?;
     let mut frames = FrameReader::new(stdin().lock(), "standard input");
     let (mut headed, mut empty, mut looked_at) = (true, true, false);
     let mut wrong = None;
@@ -46,20 +45,15 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
         }
         let text = forecast.text(&model, &[window], Clock::WHOLE, headed)?;
         headed = false;
-        if output.is_none() {
-            output = Some(open(forecast.output.as_deref())?);
-        }
-        if let Some(output) = &mut output {
-            let written = output.write_all(text.as_bytes());
-            let flushed = written.and_then(|()| output.flush());
-            flushed.with_context(|| match &forecast.output {
+        output
+            .write(&text)
+            .with_context(|| match &forecast.output {
                 Some(path) => format!(
                     "cannot write on to {0}, which holds the forecasts so far (another run with --output {0} replaces them)",
                     path.display()
                 ),
                 None => "cannot write to standard output".to_owned(),
             })?;
-        }
     }
     if let Some(wrong) = wrong {
         return Err(wrong.into());
@@ -77,13 +71,44 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Standard output, or the file.
-fn open(path: Option<&Path>) -> anyhow::Result<Box<dyn Write>> {
-    let Some(path) = path else {
-        return Ok(Box::new(stdout().lock()));
-    };
-    let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
-    Ok(Box::new(file))
+/// Where forecasts go.
+enum Output {
+    Printed,
+    /// A file from before is replaced by the first forecast, not by an input that has none.
+    Untouched(File),
+    Begun(File),
+}
+
+impl Output {
+    /// Opened before there is a forecast: whoever connects a tracker learns at once that it cannot be written to.
+    fn open(path: Option<&Path>) -> anyhow::Result<Self> {
+        let Some(path) = path else {
+            return Ok(Self::Printed);
+        };
+        let mut options = File::options();
+        let options = options.write(true).create(true).truncate(false);
+        let file = options.open(path);
+        let file = file.with_context(|| format!("cannot write {}", path.display()))?;
+        Ok(Self::Untouched(file))
+    }
+
+    fn write(&mut self, text: &str) -> std::io::Result<()> {
+        if let Self::Untouched(file) = self {
+            // A device or a pipe has no earlier content.
+            if file.metadata()?.is_file() {
+                file.set_len(0)?;
+            }
+            *self = Self::Begun(file.try_clone()?);
+        }
+        match self {
+            Self::Printed => {
+                let mut out = stdout().lock();
+                out.write_all(text.as_bytes())?;
+                out.flush()
+            }
+            Self::Untouched(file) | Self::Begun(file) => file.write_all(text.as_bytes()),
+        }
+    }
 }
 
 /// Says what looks wrong with the speeds of the first people that were seen whole; whether there were any.
