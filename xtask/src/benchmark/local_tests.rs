@@ -7,7 +7,8 @@ use super::*;
 use crate::benchmark::{Settings, Stop};
 
 /// Trains in twenty short epochs, each saved; resumes; exits 130 on an interrupt; scores in one
-/// step, measures goals in none. Fold `broken` fails to train, fold `stubborn` ignores the first interrupt.
+/// step, measures goals in none. Fold `broken` fails to train, fold `stubborn` ignores the first interrupt, fold `patient` waits for one
+/// halfway, however slow the machine that sends it.
 const STAND_IN: &str = r#"#!/bin/sh
 verb=$1; shift
 while [ $# -gt 0 ]; do
@@ -25,12 +26,14 @@ if [ "$verb" = train ]; then
   stopped=
   [ "$fold" = stubborn ] && trap '' INT || trap 'stopped=1' INT
   epoch=$(cat "$run/epoch" 2>/dev/null || echo 0)
+  begun=$epoch
   echo "from epoch $epoch" >&2
   while [ "$epoch" -lt 20 ]; do
     sleep 0.05
     epoch=$((epoch + 1)); echo "$epoch" > "$run/epoch"
     echo "{\"stage\":\"train\",\"done\":$epoch,\"total\":20,\"message\":\"epoch $epoch\"}"
     [ "$fold" = stubborn ] && sleep 5
+    while [ "$fold" = patient ] && [ "$begun" = 0 ] && [ "$epoch" -ge 10 ] && [ -z "$stopped" ]; do sleep 0.05; done
     [ -n "$stopped" ] && exit 130
   done
   exit 0
@@ -189,7 +192,7 @@ fn a_failed_task_shows_its_log_and_lets_the_others_run() {
 #[test]
 fn an_interrupt_lets_tasks_save_and_a_second_run_goes_on() {
     let bench = Bench::new(2);
-    let plan = plan(&["a", "b", "c"]);
+    let plan = plan(&["patient", "b", "c"]);
     let stop = Stop::default();
     let heard = Heard {
         stop_at: Some((0.2, stop.clone())),
@@ -202,7 +205,7 @@ fn an_interrupt_lets_tasks_save_and_a_second_run_goes_on() {
     assert_eq!(ends, [End::Interrupted, End::Interrupted, End::Interrupted]);
     // The third was not begun.
     assert!(!bench.out().join("c-full-1").exists());
-    let saved = fs::read_to_string(bench.out().join("a-full-1/run/epoch")).unwrap();
+    let saved = fs::read_to_string(bench.out().join("patient-full-1/run/epoch")).unwrap();
     let saved: u32 = saved.trim().parse().unwrap();
     assert!((1..20).contains(&saved), "{saved}");
     let ends = bench
@@ -215,7 +218,7 @@ fn an_interrupt_lets_tasks_save_and_a_second_run_goes_on() {
     );
     assert!(
         bench
-            .log("a-full-1")
+            .log("patient-full-1")
             .contains(&format!("from epoch {saved}"))
     );
 }
