@@ -93,8 +93,8 @@ impl Forecast {
     /// Says how to have fewer lines, or have them elsewhere: on a terminal thousands are of no use, and every frame of a camera makes a large file.
     fn warn_of_flood(&self, text: &str) {
         let on_terminal = self.output.is_none() && std::io::stdout().is_terminal();
-        let lines = text.lines().count();
-        if on_terminal && lines > LOOKED_THROUGH {
+        if on_terminal && text.lines().nth(LOOKED_THROUGH).is_some() {
+            let lines = text.lines().count();
             tell(format_args!(
                 "note: {lines} lines; --output FILE writes them to a file, --last and --one make fewer of them, `ddl view` shows them"
             ));

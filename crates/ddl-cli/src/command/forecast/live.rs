@@ -72,42 +72,40 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
 }
 
 /// Where forecasts go.
-enum Output {
-    Printed,
-    /// A file from before is replaced by the first forecast, not by an input that has none.
-    Untouched(File),
-    Begun(File),
+struct Output {
+    /// Standard output where there is none.
+    file: Option<File>,
+    /// Whether a forecast was written: a file from before is replaced by the first, not by an input that has none.
+    begun: bool,
 }
 
 impl Output {
     /// Opened before there is a forecast: whoever connects a tracker learns at once that it cannot be written to.
     fn open(path: Option<&Path>) -> anyhow::Result<Self> {
-        let Some(path) = path else {
-            return Ok(Self::Printed);
-        };
         let mut options = File::options();
         let options = options.write(true).create(true).truncate(false);
-        let file = options.open(path);
-        let file = file.with_context(|| format!("cannot write {}", path.display()))?;
-        Ok(Self::Untouched(file))
+        let open = |path: &Path| {
+            let file = options.open(path);
+            file.with_context(|| format!("cannot write {}", path.display()))
+        };
+        Ok(Self {
+            file: path.map(open).transpose()?,
+            begun: false,
+        })
     }
 
     fn write(&mut self, text: &str) -> std::io::Result<()> {
-        if let Self::Untouched(file) = self {
-            // A device or a pipe has no earlier content.
-            if file.metadata()?.is_file() {
-                file.set_len(0)?;
-            }
-            *self = Self::Begun(file.try_clone()?);
+        let Some(file) = &mut self.file else {
+            let mut out = stdout().lock();
+            out.write_all(text.as_bytes())?;
+            return out.flush();
+        };
+        // A device or a pipe has no earlier content.
+        if !self.begun && file.metadata()?.is_file() {
+            file.set_len(0)?;
         }
-        match self {
-            Self::Printed => {
-                let mut out = stdout().lock();
-                out.write_all(text.as_bytes())?;
-                out.flush()
-            }
-            Self::Untouched(file) | Self::Begun(file) => file.write_all(text.as_bytes()),
-        }
+        self.begun = true;
+        file.write_all(text.as_bytes())
     }
 }
 
