@@ -256,7 +256,7 @@ pub(crate) fn read(
         return Err(bad(path, problem));
     }
     let file = SafeTensors::deserialize(&bytes).map_err(broken)?;
-    check_numbers(&file, digest.as_deref()).map_err(|problem| bad(path, problem))?;
+    check_numbers(&file, digest.as_deref()).map_err(|error| bad(path, error.to_string()))?;
     file.iter()
         .map(|(name, view)| {
             let kind = match view.dtype() {

@@ -58,7 +58,7 @@ pub use forecast::{Noise, WindowRollout};
 pub use half_precision::{HalfTensor, from_half, to_half};
 pub use layers::Mode;
 pub use loss::{mean_distance, mean_squared_distance};
-pub use numbers_digest::{check_numbers, numbers_digest};
+pub use numbers_digest::{DamagedNumbers, check_numbers, numbers_digest};
 pub use origin::Origin;
 pub use parameters::Parameters;
 pub use precision::Precision;

@@ -40,11 +40,19 @@ pub fn numbers_digest<'a>(tensors: impl IntoIterator<Item = (&'a str, TensorView
     })
 }
 
+/// The numbers of a file are not those that were written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "is damaged: the SHA-256 of its numbers is not the one in its header; copy it again, or delete it and run the same \
+     training again"
+)]
+pub struct DamagedNumbers;
+
 /// Whether the numbers of a file are those that were written, as far as its header says.
 ///
 /// # Errors
-/// In words, what is wrong and what to do.
-pub fn check_numbers(file: &SafeTensors<'_>, expected: Option<&str>) -> Result<(), String> {
+/// When they are not.
+pub fn check_numbers(file: &SafeTensors<'_>, expected: Option<&str>) -> Result<(), DamagedNumbers> {
     // Earlier versions wrote none.
     let Some(expected) = expected else {
         return Ok(());
@@ -56,11 +64,8 @@ pub fn check_numbers(file: &SafeTensors<'_>, expected: Option<&str>) -> Result<(
             .map(|(name, view)| (name.as_str(), view.clone())),
     );
     if found == expected {
-        return Ok(());
+        Ok(())
+    } else {
+        Err(DamagedNumbers)
     }
-    Err(
-        "is damaged: the SHA-256 of its numbers is not the one in its header; copy it again, or delete it and run the same \
-         training again"
-            .to_owned(),
-    )
 }

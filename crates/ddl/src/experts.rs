@@ -81,7 +81,8 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         ));
     }
     let file = SafeTensors::deserialize(&bytes).map_err(broken)?;
-    check_numbers(&file, digest.as_deref()).map_err(|problem| DdlError::run(path, problem))?;
+    check_numbers(&file, digest.as_deref())
+        .map_err(|error| DdlError::run(path, error.to_string()))?;
     let view = file
         .tensor(TRACKS)
         .map_err(|error| DdlError::run(path, error.to_string()))?;
@@ -103,7 +104,15 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
                 .collect()
         })
         .collect();
-    Ok(ExpertLibrary::new(tracks, TIME_STEP)?)
+    ExpertLibrary::new(tracks, TIME_STEP).map_err(|error| damaged(&error, path))
+}
+
+/// A library whose tracks are none that anybody walked.
+pub(crate) fn damaged(error: &dyn std::error::Error, path: &Path) -> DdlError {
+    let problem = format!(
+        "is damaged ({error}); copy it again, or delete it and run the same training again"
+    );
+    DdlError::run(path, problem)
 }
 
 fn number(bytes: &[u8]) -> f64 {

@@ -85,7 +85,8 @@ impl GoalModel {
         let library = experts::load(&config.goals_origin(), config.data.walkers, &run.experts())?;
         let clusters = config.goals.retrieval.clone().check()?.clusters();
         let params = config.goals.retrieval.clone().query(QuerySpan::Observed);
-        let estimator = GoalEstimator::new(params.check()?, library)?;
+        let estimator = GoalEstimator::new(params.check()?, library)
+            .map_err(|error| experts::damaged(&error, &run.experts()))?;
         let origin = match &config.goals.proposal {
             None => GoalOrigin::Retrieved(estimator),
             Some(recipe) => {
