@@ -1,5 +1,7 @@
 //! The learned tensors, by name and in order, and their seeded initial values.
 
+use crate::StarError;
+use crate::checkpoint::plain;
 use crate::numbers::numbers;
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
@@ -44,6 +46,25 @@ impl Parameters {
     /// How many numbers are learned in all.
     pub fn count(&self) -> usize {
         self.flat.numel()
+    }
+
+    /// A copy of all learned numbers in single precision, one tensor after the other.
+    ///
+    /// # Errors
+    /// [`StarError::Torch`] when they cannot be fetched from their device.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_star::{ComputeDevice, DeviceChoice, StarConfig, StarNetwork, Variant};
+    ///
+    /// let device = ComputeDevice::open(DeviceChoice::Cpu)?;
+    /// let network = StarNetwork::new(StarConfig::recommended(Variant::Full), 1, device)?;
+    /// let weights = network.parameters().to_vec()?;
+    /// assert_eq!(weights.len(), network.parameters().count());
+    /// # Ok::<(), ddl_star::StarError>(())
+    /// ```
+    pub fn to_vec(&self) -> Result<Vec<f32>, StarError> {
+        Ok(Vec::try_from(plain(&self.flat).f_to_kind(Kind::Float)?)?)
     }
 
     /// All learned numbers as one vector that shares its memory with the tensors.

@@ -29,6 +29,18 @@ impl<'a> Choices<'a> {
         Self(bytes)
     }
 
+    /// As many edits of `whole` as there are choices for.
+    // Only readers of models take their input so.
+    #[cfg(feature = "torch")]
+    pub(super) fn edited(bytes: &'a [u8], whole: &[u8]) -> Vec<u8> {
+        let mut edited = whole.to_vec();
+        let mut choices = Self::new(bytes);
+        while !choices.is_empty() {
+            choices.edit(&mut edited);
+        }
+        edited
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

@@ -46,12 +46,11 @@ pub const READERS: [Reader; 15] = [
 
 /// The readers of models, which need libtorch.
 #[cfg(feature = "torch")]
-pub const MODEL_READERS: [Reader; 7] = [
-    ("packed_model", model_files::read_packed),
-    ("packed_config", model_files::read_packed_config),
-    ("run_config", model_files::read_config),
-    ("metrics", model_files::read_metrics),
-    ("weights", model_files::read_weights),
-    ("experts", model_files::read_experts),
-    ("training_state", model_files::read_training_state),
+pub const MODEL_READERS: [Reader; 6] = [
+    ("packed_model", model_files::packed_model::read),
+    ("run_config", model_files::run_config::read),
+    ("metrics", model_files::metrics::read),
+    ("weights", model_files::weights::read),
+    ("experts", model_files::experts::read),
+    ("training_state", model_files::training_state::read),
 ];

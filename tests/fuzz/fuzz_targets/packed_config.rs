@@ -1,5 +1,0 @@
-#![no_main]
-
-use ddl_fuzz as _;
-
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| ddl_tests::outside_bytes::model_files::read_packed_config(bytes));

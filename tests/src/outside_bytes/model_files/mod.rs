@@ -1,0 +1,23 @@
+//! The files of a model: a run's `config.json`, `metrics.jsonl` and safetensors files, and the packed model.
+
+mod digested;
+pub mod experts;
+pub mod metrics;
+mod packed_file;
+pub mod packed_model;
+pub mod run_config;
+mod smallest;
+pub mod training_state;
+pub mod weights;
+
+use std::path::Path;
+
+/// Writes a file and hands it to a reader.
+fn with_file<T>(path: &Path, bytes: &[u8], read: impl FnOnce(&Path) -> T) -> T {
+    std::fs::write(path, bytes).expect("the file can be written");
+    read(path)
+}
+
+fn names_file(error: &impl std::fmt::Display, name: &str) {
+    assert!(error.to_string().contains(name), "{error}");
+}
