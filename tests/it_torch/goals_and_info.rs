@@ -96,6 +96,11 @@ fn info_describes_program_and_model() {
     assert!(parameters > 10_000);
 
     let for_people = info("--model .");
+    let walkers = &config["data"]["walkers"];
+    let sentence = format!(
+        ".: variant no-goal-shift, trained on {walkers} walkers of simulated recordings, without corridor; goals "
+    );
+    assert!(for_people.starts_with(&sentence), "{for_people}");
     assert!(
         for_people.contains("variant: no-goal-shift"),
         "{for_people}"

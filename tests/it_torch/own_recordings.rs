@@ -108,6 +108,48 @@ fn own_recordings_are_told_trained_on_and_measured_with() {
     );
 }
 
+/// The sound files are told of, and each broken one is named, so that all can be mended at once.
+#[test]
+fn every_file_that_cannot_be_read_is_named() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    recordings(folder);
+    std::fs::write(
+        folder.join("mine/roof.csv"),
+        "frame,pedestrian,x,y\n1,1,a,0\n",
+    )
+    .unwrap();
+    let run = |command_line: &str| program::run(folder, command_line);
+    let told = run("data mine");
+    assert_eq!(told.code, Some(1));
+    for name in ["lobby", "yard"] {
+        assert!(
+            told.stdout.contains(&format!("mine/{name}.csv")),
+            "{told:?}"
+        );
+    }
+    assert!(told.stderr.starts_with("error: mine/roof.csv"), "{told:?}");
+
+    for index in 0..11 {
+        std::fs::write(folder.join(format!("mine/empty{index}.txt")), "").unwrap();
+    }
+    for command_line in ["data mine", "train --data mine --out run"] {
+        let told = run(command_line);
+        assert_eq!(told.code, Some(1));
+        let lines: Vec<&str> = told.stderr.lines().collect();
+        assert!(
+            lines.iter().all(|line| line.starts_with("error: ")),
+            "{told:?}"
+        );
+        assert!(lines[0].contains("mine/empty0.txt"), "{told:?}");
+        assert_eq!(
+            (lines.len(), lines[10]),
+            (11, "error: 12 of 14 files cannot be read")
+        );
+    }
+    assert!(!folder.join("run").exists());
+}
+
 /// Whatever it is called, and alone too.
 fn what_it_learned_from_is_no_test(folder: &Path) {
     let run = |command_line: &str| program::run(folder, command_line);

@@ -76,23 +76,8 @@ fn main() -> ExitCode {
                 Some(ddl::DdlError::Interrupted)
             );
             let who = if interrupted { "ddl" } else { "error" };
-            telling::tell(format_args!("{who}: {}", message(&error)));
+            telling::tell(format_args!("{who}: {}", telling::words(&error)));
             ExitCode::from(if interrupted { 130 } else { 1 })
         }
     }
-}
-
-/// An error and its causes, each said once, as some errors already say their cause themselves, and what to do about a full disk and the like.
-fn message(error: &anyhow::Error) -> String {
-    let mut message = String::new();
-    for cause in error.chain().map(ToString::to_string) {
-        if !message.contains(&cause) {
-            let separator = if message.is_empty() { "" } else { ": " };
-            message = message + separator + &cause;
-        }
-    }
-    if let Some(advice) = telling::advice(error) {
-        message = message + "; " + advice;
-    }
-    message
 }

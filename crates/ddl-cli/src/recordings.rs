@@ -1,13 +1,15 @@
 //! A user's own recordings: one file each, in a folder or named one by one.
 
-use crate::telling::tell;
+use crate::telling::{self, tell};
 use crate::units::{InSteps, Units};
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, anyhow, bail};
 use ddl::data::Doubt;
 use std::path::{Path, PathBuf};
 
 /// What files of recordings are called; others in a folder are not looked at.
 const EXTENSIONS: [&str; 3] = ["csv", "txt", "ndjson"];
+/// Files that cannot be read and are told of; the same mistake is mostly in all of them.
+const MOST_TOLD: usize = 10;
 
 /// The files of recordings in these folders, by name, and the files named themselves.
 pub(crate) fn files(paths: &[PathBuf], units: &Units) -> anyhow::Result<Vec<PathBuf>> {
@@ -46,9 +48,36 @@ fn in_folder(folder: &Path, units: &Units) -> anyhow::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Reads them in steps of 0.4 s; the first that cannot be read is named.
+/// Reads them all in steps of 0.4 s; those that cannot be read are told of.
 pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<InSteps>> {
-    files.iter().map(|file| units.read(file)).collect()
+    let (read, unread) = read_each(files, units);
+    unread.map(|()| read.into_iter().map(|(_, of)| of).collect())
+}
+
+/// Those that can be read in steps of 0.4 s; the others are told of, so that all of them can be mended at once.
+pub(crate) fn read_each<'f>(
+    files: &'f [PathBuf],
+    units: &Units,
+) -> (Vec<(&'f Path, InSteps)>, anyhow::Result<()>) {
+    let mut read = Vec::new();
+    let mut errors = Vec::new();
+    for file in files {
+        match units.read(file) {
+            Ok(of) => read.push((file.as_path(), of)),
+            Err(error) => errors.push(error),
+        }
+    }
+    let unread = match errors.len() {
+        0 => Ok(()),
+        1 => Err(errors.remove(0)),
+        many => {
+            for error in errors.iter().take(MOST_TOLD) {
+                tell(format_args!("error: {}", telling::words(error)));
+            }
+            Err(anyhow!("{many} of {} files cannot be read", files.len()))
+        }
+    };
+    (read, unread)
 }
 
 /// Says what looks wrong with speeds: what is learned from wrong units, or measured with them, means nothing.

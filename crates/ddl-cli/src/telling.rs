@@ -13,8 +13,23 @@ pub(crate) fn reader_has_gone(error: &anyhow::Error) -> bool {
     kinds(error).any(|kind| kind == ErrorKind::BrokenPipe)
 }
 
+/// An error and its causes, each said once, as some errors already say their cause themselves, and what to do about a full disk and the like.
+pub(crate) fn words(error: &anyhow::Error) -> String {
+    let mut message = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if !message.contains(&cause) {
+            let separator = if message.is_empty() { "" } else { ": " };
+            message = message + separator + &cause;
+        }
+    }
+    if let Some(advice) = advice(error) {
+        message = message + "; " + advice;
+    }
+    message
+}
+
 /// What to do about an error of the system, where there is something to be done.
-pub(crate) fn advice(error: &anyhow::Error) -> Option<&'static str> {
+fn advice(error: &anyhow::Error) -> Option<&'static str> {
     kinds(error).find_map(|kind| match kind {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
             Some("make room and run the same command again")

@@ -28,21 +28,23 @@ pub(crate) struct Data {
 impl Data {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         let files = recordings::files(&self.paths, &self.units)?;
-        let read = recordings::read(&files, &self.units)?;
-        let summaries = read.iter().map(|of| (of.recording.summary(), of.clock));
+        let (read, unread) = recordings::read_each(&files, &self.units);
+        let summaries = read
+            .iter()
+            .map(|(file, of)| (file, of.recording.summary(), of.clock));
         if self.json {
-            let facts: Result<Vec<Value>, _> = files
-                .iter()
-                .zip(summaries)
-                .map(|(file, (summary, clock))| facts(file, &summary, clock))
+            let facts: Result<Vec<Value>, _> = summaries
+                .map(|(file, summary, clock)| facts(file, &summary, clock))
                 .collect();
-            return output::print_json(&facts?);
+            output::print_json(&facts?)?;
+            return unread;
         }
         let mut text = String::new();
-        for (file, (summary, clock)) in files.iter().zip(summaries) {
+        for (file, summary, clock) in summaries {
             write_summary(&mut text, &file.display().to_string(), &summary, clock)?;
         }
-        output::print(&text)
+        output::print(&text)?;
+        unread
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::output;
 use clap::Args;
+use ddl::data::Fold;
 use ddl::{BuiltinModel, Ddl, DeviceChoice, GoalModel, ModelSource, RunDirectory};
 use serde_json::json;
 use std::fmt::Write as _;
@@ -28,31 +29,62 @@ pub(crate) struct Info {
 
 impl Info {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        let facts = match self.model.as_ref().or(self.named.as_ref()) {
-            None => json!({
-                "version": env!("CARGO_PKG_VERSION"),
-                "commit": env!("DDL_BUILT_FROM"),
-                "cuda": ddl::cuda_status(),
-                "models": BuiltinModel::ALL.map(BuiltinModel::name),
-            }),
+        let (sentence, facts) = match self.model.as_ref().or(self.named.as_ref()) {
+            None => (None, of_program()),
             Some(name) => {
                 let source = ModelSource::named(name);
                 if source.run().is_none_or(RunDirectory::is_trained) {
                     let model = Ddl::open(&source, DeviceChoice::Cpu)?;
-                    facts_of(model.goal_model(), &json!(model.parameter_count()))?
+                    let goals = model.goal_model();
+                    let parameters = json!(model.parameter_count());
+                    (
+                        Some(sentence(goals, "trained")),
+                        facts_of(goals, &parameters)?,
+                    )
                 } else {
                     let goals = GoalModel::open(&source, DeviceChoice::Cpu)?;
-                    facts_of(&goals, &json!("not trained yet"))?
+                    let parameters = json!("not trained yet");
+                    (
+                        Some(sentence(&goals, "to be trained")),
+                        facts_of(&goals, &parameters)?,
+                    )
                 }
             }
         };
         if self.json {
             return output::print_json(&facts);
         }
-        let mut text = String::new();
+        let mut text = sentence.map_or_else(String::new, |sentence| sentence + "\n\n");
         write_facts(&mut text, &facts, 0)?;
         output::print(&text)
     }
+}
+
+fn of_program() -> serde_json::Value {
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "commit": env!("DDL_BUILT_FROM"),
+        "cuda": ddl::cuda_status(),
+        "models": BuiltinModel::ALL.map(BuiltinModel::name),
+    })
+}
+
+/// What a model is, to be read before its facts.
+fn sentence(goals: &GoalModel, trained: &str) -> String {
+    let config = goals.config();
+    let data = &config.data;
+    let left_out = match data.fold.as_str() {
+        Fold::WHOLE => String::new(),
+        scene => format!(", without {scene}"),
+    };
+    format!(
+        "{}: variant {}, {trained} on {} walkers of {} recordings{left_out}; goals {}",
+        goals.source(),
+        config.star.variant,
+        data.walkers,
+        data.convention,
+        goals.words()
+    )
 }
 
 /// What a run was made with; `parameters` is what is known of its forecasting network.
