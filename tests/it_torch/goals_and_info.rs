@@ -98,9 +98,13 @@ fn info_describes_program_and_model() {
     let for_people = info("--model .");
     let walkers = &config["data"]["walkers"];
     let sentence = format!(
-        ".: variant no-goal-shift, trained on {walkers} walkers of simulated recordings, without corridor; goals "
+        ".: variant no-goal-shift, trained on {walkers} walks of 20 steps (convention simulated, without corridor); goals "
     );
     assert!(for_people.starts_with(&sentence), "{for_people}");
+    std::fs::remove_file(here.join("model.safetensors")).unwrap();
+    let unfinished = info("--model .");
+    let sentence = sentence.replace("trained on", "to be trained on");
+    assert!(unfinished.starts_with(&sentence), "{unfinished}");
     assert!(
         for_people.contains("variant: no-goal-shift"),
         "{for_people}"

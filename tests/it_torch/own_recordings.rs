@@ -108,9 +108,9 @@ fn own_recordings_are_told_trained_on_and_measured_with() {
     );
 }
 
-/// The sound files are told of, and each broken one is named, so that all can be mended at once.
+/// The sound files are told of, and the broken ones named, so that they can be mended at once.
 #[test]
-fn every_file_that_cannot_be_read_is_named() {
+fn files_that_cannot_be_read_are_named_together() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path();
     recordings(folder);
@@ -144,10 +144,18 @@ fn every_file_that_cannot_be_read_is_named() {
         assert!(lines[0].contains("mine/empty0.txt"), "{told:?}");
         assert_eq!(
             (lines.len(), lines[10]),
-            (11, "error: 12 of 14 files cannot be read")
+            (
+                11,
+                "error: 12 of 14 files cannot be read; the first 10 are named above"
+            )
         );
     }
     assert!(!folder.join("run").exists());
+    let told = run("data mine --json");
+    assert_eq!(
+        (told.code, json(&told.stdout).as_array().unwrap().len()),
+        (Some(1), 2)
+    );
 }
 
 /// Whatever it is called, and alone too.

@@ -2,13 +2,13 @@
 
 use crate::telling::{self, tell};
 use crate::units::{InSteps, Units};
-use anyhow::{Context as _, anyhow, bail};
+use anyhow::{Context as _, bail};
 use ddl::data::Doubt;
 use std::path::{Path, PathBuf};
 
 /// What files of recordings are called; others in a folder are not looked at.
 const EXTENSIONS: [&str; 3] = ["csv", "txt", "ndjson"];
-/// Files that cannot be read and are told of; the same mistake is mostly in all of them.
+/// So many files that cannot be read are named; the rest would push them off the screen.
 const MOST_TOLD: usize = 10;
 
 /// The files of recordings in these folders, by name, and the files named themselves.
@@ -48,36 +48,49 @@ fn in_folder(folder: &Path, units: &Units) -> anyhow::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Reads them all in steps of 0.4 s; those that cannot be read are told of.
+/// Reads them all in steps of 0.4 s.
+///
+/// # Errors
+/// As [`all_read`], when there are some that cannot be read.
 pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<InSteps>> {
-    let (read, unread) = read_each(files, units);
-    unread.map(|()| read.into_iter().map(|(_, of)| of).collect())
+    let (read, errors) = read_each(files, units);
+    all_read(errors, files.len())?;
+    Ok(read.into_iter().map(|(_, in_steps)| in_steps).collect())
 }
 
-/// Those that can be read in steps of 0.4 s; the others are told of, so that all of them can be mended at once.
+/// Those that can be read in steps of 0.4 s, and why the others cannot.
 pub(crate) fn read_each<'f>(
     files: &'f [PathBuf],
     units: &Units,
-) -> (Vec<(&'f Path, InSteps)>, anyhow::Result<()>) {
+) -> (Vec<(&'f Path, InSteps)>, Vec<anyhow::Error>) {
     let mut read = Vec::new();
     let mut errors = Vec::new();
     for file in files {
         match units.read(file) {
-            Ok(of) => read.push((file.as_path(), of)),
+            Ok(in_steps) => read.push((file.as_path(), in_steps)),
             Err(error) => errors.push(error),
         }
     }
-    let unread = match errors.len() {
-        0 => Ok(()),
-        1 => Err(errors.remove(0)),
-        many => {
-            for error in errors.iter().take(MOST_TOLD) {
-                tell(format_args!("error: {}", telling::words(error)));
-            }
-            Err(anyhow!("{many} of {} files cannot be read", files.len()))
-        }
+    (read, errors)
+}
+
+/// Tells why some of `files` could not be read, together, so that they can be mended together.
+///
+/// # Errors
+/// When there is one.
+pub(crate) fn all_read(mut errors: Vec<anyhow::Error>, files: usize) -> anyhow::Result<()> {
+    if errors.len() < 2 {
+        return errors.pop().map_or(Ok(()), Err);
+    }
+    for error in errors.iter().take(MOST_TOLD) {
+        tell(format_args!("error: {}", telling::words(error)));
+    }
+    let told = if errors.len() > MOST_TOLD {
+        format!("; the first {MOST_TOLD} are named above")
+    } else {
+        String::new()
     };
-    (read, unread)
+    bail!("{} of {files} files cannot be read{told}", errors.len());
 }
 
 /// Says what looks wrong with speeds: what is learned from wrong units, or measured with them, means nothing.

@@ -40,7 +40,7 @@ pub fn numbers_digest<'a>(tensors: impl IntoIterator<Item = (&'a str, TensorView
     })
 }
 
-/// The numbers of a file are not those that were written.
+/// The numbers of a file are not those that were written. Its words are to follow the name of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
     "is damaged: the SHA-256 of its numbers is not the one in its header; copy it again, or delete it and run the same \
@@ -51,7 +51,7 @@ pub struct DamagedNumbers;
 /// Whether the numbers of a file are those that were written, as far as its header says.
 ///
 /// # Errors
-/// When they are not.
+/// [`DamagedNumbers`] when they are not. Files of earlier versions have no digest, and pass.
 pub fn check_numbers(file: &SafeTensors<'_>, expected: Option<&str>) -> Result<(), DamagedNumbers> {
     // Earlier versions wrote none.
     let Some(expected) = expected else {

@@ -1,7 +1,6 @@
 //! The learned tensors, by name and in order, and their seeded initial values.
 
 use crate::StarError;
-use crate::checkpoint::plain;
 use crate::numbers::numbers;
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
@@ -48,7 +47,7 @@ impl Parameters {
         self.flat.numel()
     }
 
-    /// A copy of all learned numbers in single precision, one tensor after the other.
+    /// A copy of all learned numbers in single precision, in the order of [`iter`](Self::iter).
     ///
     /// # Errors
     /// [`StarError::Torch`] when they cannot be fetched from their device.
@@ -64,7 +63,8 @@ impl Parameters {
     /// # Ok::<(), ddl_star::StarError>(())
     /// ```
     pub fn to_vec(&self) -> Result<Vec<f32>, StarError> {
-        Ok(Vec::try_from(plain(&self.flat).f_to_kind(Kind::Float)?)?)
+        let here = self.flat.detach().f_to_device(Device::Cpu)?;
+        Ok(Vec::try_from(here.f_to_kind(Kind::Float)?)?)
     }
 
     /// All learned numbers as one vector that shares its memory with the tensors.

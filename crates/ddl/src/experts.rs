@@ -13,6 +13,8 @@ use std::path::Path;
 const TRACKS: &str = "tracks";
 /// Bytes of a track: 20 positions of two f64.
 const TRACK_BYTES: usize = WINDOW * 2 * 8;
+/// What to do about a file that is not what was written.
+const MEND: &str = "copy it again, or delete it and run the same training again";
 /// Room for the header of the file.
 const HEADER_BYTES: u64 = 1 << 20;
 
@@ -85,10 +87,10 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         .map_err(|error| DdlError::run(path, error.to_string()))?;
     let view = file
         .tensor(TRACKS)
-        .map_err(|error| DdlError::run(path, error.to_string()))?;
+        .map_err(|error| DdlError::run(path, format!("has no tracks ({error}); {MEND}")))?;
     if view.dtype() != Dtype::F64 || view.shape() != [tracks, WINDOW, 2] {
         let problem = format!(
-            "`{TRACKS}` is {:?} {:?}, expected {tracks} f64 tracks of {WINDOW} positions",
+            "has {:?} {:?} for `{TRACKS}`, expected {tracks} f64 tracks of {WINDOW} positions; {MEND}",
             view.dtype(),
             view.shape()
         );
@@ -104,19 +106,50 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
                 .collect()
         })
         .collect();
-    ExpertLibrary::new(tracks, TIME_STEP).map_err(|error| damaged(&error, path))
+    ExpertLibrary::new(tracks, TIME_STEP).map_err(|error| unusable(&error, path))
 }
 
-/// A library whose tracks are none that anybody walked.
-pub(crate) fn damaged(error: &dyn std::error::Error, path: &Path) -> DdlError {
-    let problem = format!(
-        "is damaged ({error}); copy it again, or delete it and run the same training again"
-    );
-    DdlError::run(path, problem)
+/// The error about a library of the right shape that goals cannot be retrieved from: tracks that nobody can have walked, or too few.
+pub(crate) fn unusable(error: &dyn std::error::Error, path: &Path) -> DdlError {
+    DdlError::run(path, format!("cannot be used: {error}; {MEND}"))
 }
 
 fn number(bytes: &[u8]) -> f64 {
     let mut eight = [0; 8];
     eight.copy_from_slice(&bytes[..8]);
     f64::from_le_bytes(eight)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A library of two walkers, read from a file without the SHA-256 that would tell of any change.
+    fn read(change: impl FnOnce(&mut [f64])) -> Result<ExpertLibrary, DdlError> {
+        let mut numbers: Vec<f64> = (0..2 * WINDOW * 2).map(|i| 0.25 * i as f64).collect();
+        change(&mut numbers);
+        let bytes: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
+        let view = TensorView::new(Dtype::F64, vec![2, WINDOW, 2], &bytes).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("experts.safetensors");
+        std::fs::write(
+            &path,
+            safetensors::serialize([(TRACKS, view)], None).unwrap(),
+        )
+        .unwrap();
+        load(&Origin::default(), 2, &path)
+    }
+
+    #[test]
+    fn a_library_that_nobody_can_have_walked_is_named() {
+        assert_eq!(read(|_| ()).unwrap().len(), 2);
+        for (number, part) in [
+            (f64::NAN, "position 3 is (NaN"),
+            (f64::INFINITY, "must be finite"),
+        ] {
+            let error = read(|numbers| numbers[6] = number).unwrap_err().to_string();
+            assert!(error.contains("experts.safetensors"), "{error}");
+            assert!(error.contains(part) && error.contains(MEND), "{error}");
+        }
+    }
 }

@@ -74,6 +74,7 @@ impl GoalModel {
             let problem = "has no goals yet; run the same `ddl train` command again to go on";
             return Err(source.wrong(problem));
         }
+        config.check(source)?;
         Self::of_run(run.clone(), config, ComputeDevice::open(device)?)
     }
 
@@ -86,7 +87,7 @@ impl GoalModel {
         let clusters = config.goals.retrieval.clone().check()?.clusters();
         let params = config.goals.retrieval.clone().query(QuerySpan::Observed);
         let estimator = GoalEstimator::new(params.check()?, library)
-            .map_err(|error| experts::damaged(&error, &run.experts()))?;
+            .map_err(|error| experts::unusable(&error, &run.experts()))?;
         let origin = match &config.goals.proposal {
             None => GoalOrigin::Retrieved(estimator),
             Some(recipe) => {

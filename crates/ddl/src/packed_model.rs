@@ -193,8 +193,7 @@ pub(crate) fn unpack(
     device: ComputeDevice,
 ) -> Result<Unpacked, DdlError> {
     let (config, tensors) = contents(bytes, source)?;
-    config.star.check()?;
-    config.goals.check()?;
+    config.check(source)?;
     let Some(recipe) = &config.goals.proposal else {
         return Err(source.wrong("has no proposal network for its goals; pack another run"));
     };

@@ -1,6 +1,6 @@
 //! Everything that decides what a run computes: its `config.json`.
 
-use crate::GoalRecipe;
+use crate::{DdlError, GoalRecipe, ModelSource};
 use ddl_data::{Convention, WindowRule};
 use ddl_star::{Objective, Origin, StarConfig, TrainingConfig};
 use serde::{Deserialize, Serialize};
@@ -39,6 +39,19 @@ pub struct RunConfig {
 }
 
 impl RunConfig {
+    /// Checks what the networks and goals of a model are made by.
+    ///
+    /// # Errors
+    /// Naming the model, and the first field that is out of range.
+    pub(crate) fn check(&self, source: &ModelSource) -> Result<(), DdlError> {
+        let star = self.star.check().map_err(DdlError::from);
+        star.and_then(|()| self.goals.check()).map_err(|error| {
+            source.wrong(format!(
+                "has a configuration that no model can be made by ({error}); put back the file as it was written"
+            ))
+        })
+    }
+
     /// What the weights of the forecasting network, and the state of its training, are of.
     #[must_use]
     pub fn network_origin(&self) -> Origin {
@@ -116,7 +129,7 @@ pub struct TrainingData {
     pub validation_recordings: Vec<String>,
     /// Training windows.
     pub windows: usize,
-    /// Walkers in them.
+    /// Walkers in them, each counted once a window.
     pub walkers: usize,
     /// SHA-256 of their positions.
     pub sha256: String,

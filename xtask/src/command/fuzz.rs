@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     /// Sanitizer to build with; libtorch is not built for any
     #[arg(long, value_enum, default_value_t = Sanitizer::None)]
     sanitizer: Sanitizer,
-    /// Do not trace what is compared: readers of models, whose inputs are edits and hold none of it, run twice as fast
+    /// Do not trace comparisons: for inputs that only choose edits, which what is compared cannot be put into
     #[arg(long)]
     no_trace_compares: bool,
     /// Only targets that need no libtorch; nothing is set up

@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 /// Tell what recordings hold, and what looks wrong with them
 ///
 /// How many people, for how long, how fast; how many moments can be forecast, and how many walkers a model can learn from.
+/// Files that cannot be read are named on standard error, and the others told of all the same (exit code 1).
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  ddl data tracks.csv\n  ddl data recordings --fps 25 --json")]
 pub(crate) struct Data {
@@ -28,23 +29,23 @@ pub(crate) struct Data {
 impl Data {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         let files = recordings::files(&self.paths, &self.units)?;
-        let (read, unread) = recordings::read_each(&files, &self.units);
+        let (read, errors) = recordings::read_each(&files, &self.units);
         let summaries = read
             .iter()
-            .map(|(file, of)| (file, of.recording.summary(), of.clock));
+            .map(|(file, in_steps)| (file, in_steps.recording.summary(), in_steps.clock));
         if self.json {
             let facts: Result<Vec<Value>, _> = summaries
                 .map(|(file, summary, clock)| facts(file, &summary, clock))
                 .collect();
             output::print_json(&facts?)?;
-            return unread;
+            return recordings::all_read(errors, files.len());
         }
         let mut text = String::new();
         for (file, summary, clock) in summaries {
             write_summary(&mut text, &file.display().to_string(), &summary, clock)?;
         }
         output::print(&text)?;
-        unread
+        recordings::all_read(errors, files.len())
     }
 }
 

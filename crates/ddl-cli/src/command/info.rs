@@ -29,7 +29,7 @@ pub(crate) struct Info {
 
 impl Info {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        let (sentence, facts) = match self.model.as_ref().or(self.named.as_ref()) {
+        let (summary_line, facts) = match self.model.as_ref().or(self.named.as_ref()) {
             None => (None, of_program()),
             Some(name) => {
                 let source = ModelSource::named(name);
@@ -38,14 +38,14 @@ impl Info {
                     let goals = model.goal_model();
                     let parameters = json!(model.parameter_count());
                     (
-                        Some(sentence(goals, "trained")),
+                        Some(summary(goals, "trained")),
                         facts_of(goals, &parameters)?,
                     )
                 } else {
                     let goals = GoalModel::open(&source, DeviceChoice::Cpu)?;
                     let parameters = json!("not trained yet");
                     (
-                        Some(sentence(&goals, "to be trained")),
+                        Some(summary(&goals, "to be trained")),
                         facts_of(&goals, &parameters)?,
                     )
                 }
@@ -54,12 +54,13 @@ impl Info {
         if self.json {
             return output::print_json(&facts);
         }
-        let mut text = sentence.map_or_else(String::new, |sentence| sentence + "\n\n");
+        let mut text = summary_line.map_or_else(String::new, |line| line + "\n\n");
         write_facts(&mut text, &facts, 0)?;
         output::print(&text)
     }
 }
 
+/// Version, and what this machine can do.
 fn of_program() -> serde_json::Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"),
@@ -70,7 +71,7 @@ fn of_program() -> serde_json::Value {
 }
 
 /// What a model is, to be read before its facts.
-fn sentence(goals: &GoalModel, trained: &str) -> String {
+fn summary(goals: &GoalModel, trained: &str) -> String {
     let config = goals.config();
     let data = &config.data;
     let left_out = match data.fold.as_str() {
@@ -78,7 +79,7 @@ fn sentence(goals: &GoalModel, trained: &str) -> String {
         scene => format!(", without {scene}"),
     };
     format!(
-        "{}: variant {}, {trained} on {} walkers of {} recordings{left_out}; goals {}",
+        "{}: variant {}, {trained} on {} walks of 20 steps (convention {}{left_out}); goals {}",
         goals.source(),
         config.star.variant,
         data.walkers,

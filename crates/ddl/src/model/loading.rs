@@ -80,6 +80,7 @@ impl Ddl {
             };
             return Err(DdlError::run(run.path(), problem));
         }
+        config.check(&ModelSource::Run(run.clone()))?;
         let device = ComputeDevice::open(device)?;
         let network = load_network(&config, device, &run.model())?;
         Ok(Self {
@@ -115,7 +116,6 @@ fn load_network(
     device: ComputeDevice,
     weights: &Path,
 ) -> Result<StarNetwork, DdlError> {
-    config.star.check()?;
     enough_weights::require(weights, config.star.least_numbers())?;
     let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
     load_parameters(network.parameters(), &config.network_origin(), weights)?;

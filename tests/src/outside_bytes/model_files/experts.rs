@@ -7,8 +7,9 @@ use tempfile::TempDir;
 
 use super::digested::Digested;
 use super::{names_file, smallest, with_file};
+use crate::tiny_model::use_one_thread;
 
-/// A run whose goals come from its library alone, and the sound file of that.
+/// A run whose goals come from its library alone, and its sound file.
 struct Sound {
     run: RunDirectory,
     file: Digested,
@@ -17,6 +18,7 @@ struct Sound {
 
 impl Sound {
     fn make() -> Result<Self, Box<dyn std::error::Error>> {
+        use_one_thread();
         let mut config = smallest::config();
         config.goals = GoalRecipe::retrieved(1);
         let positions: Vec<u8> = (0..2 * 20 * 2)
@@ -52,7 +54,7 @@ pub fn read(bytes: &[u8]) {
         });
         if let Err(error) = read {
             assert!(bytes.len() > 1, "a sound file: {error}");
-            names_file(&error, &sound.run.path().display().to_string());
+            names_file(&error, &sound.run.experts().display().to_string());
         }
     });
 }

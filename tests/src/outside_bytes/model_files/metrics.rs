@@ -5,6 +5,8 @@ use tempfile::TempDir;
 
 use super::{names_file, with_file};
 
+/// Bytes as they are.
+///
 /// # Panics
 /// When an error does not name the file.
 pub fn read(bytes: &[u8]) {

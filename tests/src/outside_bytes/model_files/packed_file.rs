@@ -9,6 +9,9 @@ use sha2::{Digest as _, Sha256};
 use super::smallest;
 use crate::outside_bytes::edits::Choices;
 
+/// Tensors of a file that no network is made of.
+const FEW: usize = 4;
+
 /// A sound file and its parts.
 pub(super) struct PackedFile {
     config: String,
@@ -36,9 +39,9 @@ impl PackedFile {
         Self::of(config, tensors)
     }
 
-    /// With the first tensors alone, for readers that make no networks: most of a file is the names of its tensors.
+    /// With few tensors, for readers that make no networks: edits then hit the rest of the header more often, most of which is names of tensors.
     pub(super) fn of_few_tensors(&self) -> Self {
-        Self::of(self.config.clone(), self.tensors[..4].to_vec())
+        Self::of(self.config.clone(), self.tensors[..FEW].to_vec())
     }
 
     fn of(config: String, tensors: Vec<HalfTensor>) -> Self {

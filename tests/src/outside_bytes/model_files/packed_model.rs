@@ -33,7 +33,7 @@ impl Sound {
 /// The first byte says whether the networks are made as well, which takes most of the time: one in four does.
 ///
 /// # Panics
-/// When a file is read that does not hold what its networks need, or a sound one is refused.
+/// When a file is read that does not hold what its networks need, an error does not name the file, or a sound one is refused.
 pub fn read(bytes: &[u8]) {
     thread_local! {
         static SOUND: Sound = Sound::make();
@@ -70,8 +70,7 @@ fn read_whole(sound: &Sound, bytes: &[u8]) {
         }
         Err(error) => {
             assert!(!is_sound, "a sound file: {error}");
-            // Errors about the configuration's fields name those, all others the file.
-            assert!(!error.to_string().is_empty());
+            names_file(&error, "packed.safetensors");
         }
     }
 }

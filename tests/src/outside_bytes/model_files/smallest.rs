@@ -1,13 +1,13 @@
 //! The smallest networks there are: what is fuzzed is the reading.
 
 use ddl::star::{ComputeDevice, ProposalConfig, ProposalNetwork, StarConfig, StarNetwork};
-use ddl::{BuiltinModel, DeviceChoice, GoalRecipe, ModelSource, RunConfig};
+use ddl::{BuiltinModel, DeviceChoice, GoalRecipe, RunConfig};
 
 use crate::tiny_model::use_one_thread;
 
-/// Of a run whose goals are proposed.
+/// The configuration of a run with the smallest networks, whose goals are proposed.
 pub(super) fn config() -> RunConfig {
-    let mut config = ModelSource::Builtin(BuiltinModel::default())
+    let mut config = BuiltinModel::default()
         .config()
         .expect("the built-in models are whole");
     config.star = StarConfig {
@@ -40,10 +40,17 @@ fn device() -> ComputeDevice {
     ComputeDevice::open(DeviceChoice::Cpu).expect("the CPU is always there")
 }
 
+/// The forecasting network.
 pub(super) fn network(config: &RunConfig) -> StarNetwork {
-    StarNetwork::new(config.star.clone(), 1, device()).expect("a sound configuration")
+    network_of_seed(config, 1)
 }
 
+/// The forecasting network with other numbers.
+pub(super) fn network_of_seed(config: &RunConfig, seed: u64) -> StarNetwork {
+    StarNetwork::new(config.star.clone(), seed, device()).expect("a sound configuration")
+}
+
+/// The network that proposes goals.
 pub(super) fn proposal(config: &RunConfig) -> ProposalNetwork {
     let recipe = config.goals.proposal.clone().expect("goals are proposed");
     ProposalNetwork::new(recipe.network, 1, device()).expect("a sound configuration")

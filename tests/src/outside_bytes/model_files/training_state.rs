@@ -48,7 +48,7 @@ impl Sound {
 /// Edits of a sound file.
 ///
 /// # Panics
-/// When a state is read that has more steps than the training, or the sound one is refused.
+/// When a state is read that has more steps than the training, an error changes the steps or does not name the file, or the sound file is refused.
 pub fn read(bytes: &[u8]) {
     // libtorch's tensors stay on their thread.
     thread_local! {
@@ -62,9 +62,11 @@ pub fn read(bytes: &[u8]) {
             path,
             ..
         } = sound;
+        let before = trainer.steps();
         if let Err(error) = with_file(path, &file, |path| trainer.resume(origin, path)) {
             assert!(bytes.len() > 1, "a sound file: {error}");
             names_file(&error, "optimizer.safetensors");
+            assert_eq!(trainer.steps(), before, "an error changes nothing");
         } else {
             let (steps, total) = trainer.steps();
             assert!(steps <= total);

@@ -12,8 +12,11 @@ use super::{names_file, smallest, with_file};
 struct Sound {
     network: StarNetwork,
     origin: Origin,
-    numbers: Vec<f32>,
     file: Digested,
+    /// The numbers of the file.
+    numbers: Vec<f32>,
+    /// The file of other numbers, which the network has when a file is read.
+    others: PathBuf,
     path: PathBuf,
     _folder: TempDir,
 }
@@ -25,9 +28,15 @@ impl Sound {
         let folder = tempfile::tempdir()?;
         let path = folder.path().join("model.safetensors");
         save_parameters(network.parameters(), &origin, &path)?;
+        let numbers = network.parameters().to_vec()?;
+        let others = folder.path().join("others.safetensors");
+        let other = smallest::network_of_seed(&config, 2);
+        save_parameters(other.parameters(), &origin, &others)?;
+        load_parameters(network.parameters(), &origin, &others)?;
         Ok(Self {
-            numbers: network.parameters().to_vec()?,
             file: Digested::new(std::fs::read(&path)?),
+            numbers,
+            others,
             network,
             origin,
             path,
@@ -44,16 +53,17 @@ impl Sound {
 /// Edits of a sound file.
 ///
 /// # Panics
-/// When an error changes the network, or what is read is no number or, of a file without edits, another one.
+/// When an error changes the network or does not name the file, when the sound file is refused or reads as other numbers, or when what is read is not finite.
 pub fn read(bytes: &[u8]) {
     // libtorch's tensors stay on their thread.
     thread_local! {
         static SOUND: Sound = Sound::make().expect("the sound file can be made");
     }
     SOUND.with(|sound| {
+        let (parameters, origin) = (sound.network.parameters(), &sound.origin);
         let before = sound.now();
         let read = with_file(&sound.path, &sound.file.edited(bytes), |path| {
-            load_parameters(sound.network.parameters(), &sound.origin, path)
+            load_parameters(parameters, origin, path)
         });
         let now = sound.now();
         if let Err(error) = read {
@@ -63,6 +73,7 @@ pub fn read(bytes: &[u8]) {
         } else {
             assert!(now.iter().all(|number| number.is_finite()));
             assert!(bytes.len() > 1 || now == sound.numbers);
+            load_parameters(parameters, origin, &sound.others).expect("a sound file");
         }
     });
 }
