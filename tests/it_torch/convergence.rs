@@ -100,6 +100,7 @@ fn stable_share(network: &StarNetwork, integrator: StepRule) -> f64 {
             &[vec![goals.clone()]],
             Noise::Expected,
             integrator,
+            None,
         )
         .unwrap()
         .remove(0);
@@ -119,7 +120,7 @@ fn plain_euler_steps_overshoot_where_stable_ones_do_not() {
     for seed in 0..4 {
         let config = StarConfig::published(Variant::Full);
         let network = StarNetwork::new(config, seed, device).unwrap();
-        let stable = stable_share(&network, StepRule::StableEuler);
+        let stable = stable_share(&network, StepRule::Bounded);
         assert!((stable - 1.0).abs() < f64::EPSILON, "seed {seed}: {stable}");
         overshooting += usize::from(stable_share(&network, StepRule::Euler) < 1.0);
     }
@@ -159,7 +160,8 @@ fn run_on_every_walker_arrives() {
                 std::slice::from_ref(&window),
                 std::slice::from_ref(&given),
                 Noise::Expected,
-                StepRule::StableEuler,
+                StepRule::Bounded,
+                None,
             )
             .unwrap()
             .remove(0);

@@ -7,7 +7,15 @@ use std::path::Path;
 /// Those that the tests below run.
 const RUN: [&str; 3] = ["forecast_csv", "live", "training_steps"];
 /// Those that are not run here, and why.
-const ELSEWHERE: [(&str, &str); 2] = [
+const ELSEWHERE: [(&str, &str); 4] = [
+    (
+        "calibrate",
+        "it writes constants, from recordings of other places",
+    ),
+    (
+        "elsewhere",
+        "it measures recordings of other places, for minutes",
+    ),
     ("draw_forecast", "it draws a run's own test scene"),
     (
         "one_forecast",

@@ -26,6 +26,7 @@ struct CsvRow {
     y: f64,
     padded: usize,
     filled: usize,
+    familiarity: f64,
 }
 
 /// A line of the JSON lines.
@@ -37,6 +38,9 @@ struct JsonLine {
     padded: usize,
     filled: usize,
     frames: Vec<i64>,
+    familiarity: f64,
+    #[serde(default)]
+    spread: Vec<f64>,
     hypotheses: Vec<Hypothesis>,
 }
 
@@ -127,10 +131,12 @@ fn json_lines_hold_the_same_numbers_as_csv() {
                     ),
                     (line.observed_until, line.pedestrian, k, frame)
                 );
-                assert_eq!([row.x, row.y].map(f64::to_bits), position.map(f64::to_bits));
-                let goal = Some([row.goal_x, row.goal_y]);
-                assert_eq!(goal, hypothesis.goal);
+                assert!(own_tracks::alike_in_a_table([row.x, row.y], *position));
+                let goal = hypothesis.goal.unwrap();
+                assert!(own_tracks::alike_in_a_table([row.goal_x, row.goal_y], goal));
                 assert_eq!((row.padded, row.filled), (line.padded, line.filled));
+                assert!((row.familiarity - line.familiarity).abs() < 1e-4);
+                assert!(line.spread.is_sorted() && line.spread.len() == 12);
                 assert_eq!((row.padded, row.filled), (0, 0));
                 assert_eq!(row.weight.to_bits(), hypothesis.weight.to_bits());
             }
@@ -224,4 +230,56 @@ fn output_goes_to_the_file_named_and_nowhere_else() {
     );
     let written = after[Path::new("out.csv")].clone().unwrap();
     assert_eq!(String::from_utf8(written).unwrap(), printed);
+}
+
+/// Regions: a radius a row in csv and discs in JSON lines, the same ones; the region of 90 % is the larger, and grows with time.
+#[test]
+fn regions_are_written_as_radii_and_as_discs() {
+    let rows = own_tracks::three_people(9);
+    let table = forecast(&rows, "--last --region 0.5,0.9");
+    let mut lines = table.lines();
+    let header = lines.next().unwrap();
+    assert!(
+        header.ends_with("familiarity,radius_0.5,radius_0.9"),
+        "{header}"
+    );
+    let mut of_table = 0;
+    for line in lines {
+        let fields: Vec<&str> = line.split(',').collect();
+        let [half, most] =
+            [fields[12], fields[13]].map(|radius| radius.parse::<f64>().unwrap_or(0.0));
+        assert!(most >= half && half >= 0.0, "{line}");
+        of_table += usize::from(most > 0.0);
+    }
+    let mut of_lines = 0;
+    for line in forecast(&rows, "--last --region 0.5,0.9 --format jsonl").lines() {
+        let line: serde_json::Value = serde_json::from_str(line).unwrap();
+        let regions = line["regions"].as_array().unwrap();
+        let levels: Vec<f64> = regions
+            .iter()
+            .map(|r| r["probability"].as_f64().unwrap())
+            .collect();
+        assert_eq!(levels, [0.5, 0.9]);
+        let largest = |step: usize| {
+            let discs = regions[1]["discs"][step].as_array().unwrap().iter();
+            discs
+                .map(|disc| disc[2].as_f64().unwrap())
+                .fold(0.0, f64::max)
+        };
+        assert!(largest(0) > 0.0 && largest(11) > largest(0));
+        let steps = regions[1]["discs"].as_array().unwrap().iter();
+        of_lines += steps
+            .map(|discs| discs.as_array().unwrap().len())
+            .sum::<usize>();
+    }
+    assert_eq!(of_table, of_lines);
+    let refused = program::forecast(
+        tiny_model::folder(Variant::Full).path(),
+        &rows,
+        "--region 1.5",
+    );
+    assert!(
+        refused.stderr.contains("a region has a probability of"),
+        "{refused:?}"
+    );
 }

@@ -49,6 +49,7 @@ fn evaluate(model: &Ddl, dataset: &Dataset) -> Vec<ResultRow> {
     let request = EvaluationRequest {
         protocols: Protocol::ALL.to_vec(),
         on: EvaluationSplit::Test,
+        validation_recordings: Vec::new(),
         test_walkers: None,
         commit: String::new(),
     };

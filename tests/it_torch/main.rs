@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+mod bounded_motion;
 mod builtin;
 mod certificates;
 mod convergence;
@@ -20,7 +21,9 @@ mod live_program;
 mod manners;
 mod other_program;
 mod outside_bytes;
+mod outside_recordings;
 mod own_recordings;
+mod own_training;
 mod packed;
 mod precision;
 mod prepare;

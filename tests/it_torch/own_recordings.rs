@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// Options that make a training one of seconds.
 const SMALL: &str =
-    "--epochs 3 --train-walkers 64 --batch-walkers 16 --proposal-steps 20 --threads 1";
+    "--from none --epochs 3 --train-walkers 64 --batch-walkers 16 --proposal-steps 20 --threads 1";
 
 /// Recordings of the simulated crowds as csv, as somebody may have them: two files in a folder.
 fn recordings(folder: &Path) {

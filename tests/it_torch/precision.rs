@@ -42,6 +42,7 @@ fn reports_name_it() {
     let request = EvaluationRequest {
         protocols: vec![Protocol::Single],
         on: EvaluationSplit::Test,
+        validation_recordings: Vec::new(),
         test_walkers: Some(20),
         commit: String::new(),
     };

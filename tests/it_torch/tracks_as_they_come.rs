@@ -93,7 +93,7 @@ fn a_rate_that_meets_no_step_is_resampled_and_said() {
         .collect();
     let finished = forecast(&rows, "--fps 24 --last");
     assert!(
-        finished.stderr.contains("0.4 s are 9.6000 frames"),
+        finished.stderr.contains("0.4 s are 9.6 frames"),
         "{finished:?}"
     );
     let all = lines(&finished.succeeds());

@@ -30,6 +30,12 @@ pub fn three_people(frames: i64) -> Vec<Row> {
         .collect()
 }
 
+/// Whether a position of a table, which has 0.1 mm, is this one.
+#[must_use]
+pub fn alike_in_a_table(printed: [f64; 2], position: [f64; 2]) -> bool {
+    (0..2).all(|axis| (printed[axis] - position[axis]).abs() <= 0.5001e-4)
+}
+
 /// The rows as the program reads them.
 #[must_use]
 pub fn csv(rows: &[Row]) -> String {

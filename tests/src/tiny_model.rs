@@ -149,6 +149,8 @@ pub fn request(fold: &str, variant: Variant, walkers: usize, out: &Path) -> Trai
         validation: 0.0,
         validation_recordings: Vec::new(),
         patience: None,
+        from: None,
+        units: None,
         last_epoch_only: false,
         until: TrainingStage::Network,
         out: RunDirectory::new(out),

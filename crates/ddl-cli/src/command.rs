@@ -24,7 +24,7 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{Convention, Dataset, locate};
 use ddl::eval::Report;
-use ddl::{Clearance, Ddl, DdlError, DeviceChoice, Precision};
+use ddl::{Clearance, Ddl, DdlError, DeviceChoice, Precision, RunConfig};
 use std::path::{Path, PathBuf};
 
 /// Seed of the simulated crowds: one data set for everybody.
@@ -109,15 +109,22 @@ fn clearance(text: &str) -> Result<Clearance, String> {
     Clearance::new(metres).map_err(|error| error.to_string())
 }
 
-/// How results are printed, and progress told.
+/// How progress is told, and whether results are for programs: options of every command that has either.
 #[derive(Debug, Args)]
-pub(crate) struct Reporting {
-    /// Progress: a bar on a terminal, elsewhere a line every half a minute (auto), a JSON object a line (json), or none
+pub(crate) struct Telling {
+    /// Progress of what takes long: a bar on a terminal, elsewhere a line every half a minute (auto), a JSON object a line (json), or none
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) progress: ProgressMode,
     /// Results on standard output as JSON, for programs
-    #[arg(long, conflicts_with = "progress")]
+    #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// How results are printed, and progress told.
+#[derive(Debug, Args)]
+pub(crate) struct Reporting {
+    #[command(flatten)]
+    pub(crate) telling: Telling,
     /// Commit to be named in results: that of the checkout it was built from
     #[arg(long, env = "DDL_COMMIT", default_value = env!("DDL_BUILT_FROM"), hide = true)]
     pub(crate) commit: String,
@@ -126,9 +133,9 @@ pub(crate) struct Reporting {
 impl Reporting {
     /// Prints results: for programs as JSON where asked for, else for people; `rest` says where more of them is.
     fn print(&self, report: &Report, rest: &str) -> anyhow::Result<()> {
-        if self.json {
+        if self.telling.json {
             output::print(&(report.to_json()? + "\n"))
-        } else if self.progress == ProgressMode::Json {
+        } else if self.telling.progress == ProgressMode::Json {
             // standard output has lines of progress
             Ok(())
         } else {
@@ -140,8 +147,7 @@ impl Reporting {
 /// Where recordings are, and what the numbers of own ones mean.
 #[derive(Debug, Args)]
 pub(crate) struct RecordingsAt {
-    /// Folder of the recordings; of own ones (--convention own) any files of tracks, or one such file [default: `$DDL_DATASETS`, then
-    /// `datasets/eth_ucy`]
+    /// Folder of the recordings; of own ones any files of tracks, or one such file [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
     #[arg(long)]
     data: Option<PathBuf>,
     #[command(flatten)]
@@ -163,9 +169,41 @@ impl RecordingsAt {
         data + &self.units.as_options()
     }
 
+    /// The convention of what lies there, where none is asked for: that of the model, or own recordings where a place is named that does not hold
+    /// the model's files.
+    fn convention(&self, asked: Option<Convention>, of_model: Convention) -> Convention {
+        asked.unwrap_or_else(|| convention_of(self.data.as_deref(), of_model))
+    }
+
     /// The recordings of a convention, from a folder or simulated.
     fn dataset(&self, convention: Convention) -> anyhow::Result<Dataset> {
         dataset(convention, self.data.as_deref(), &self.units)
+    }
+
+    /// The same for a model: own recordings are read as its own ones were, as far as nothing else is said.
+    fn dataset_for(&self, run: &RunConfig, convention: Convention) -> anyhow::Result<Dataset> {
+        if convention != Convention::Own {
+            return self.dataset(convention);
+        }
+        dataset(
+            convention,
+            self.data.as_deref(),
+            &self.units.or_those_of(run),
+        )
+    }
+}
+
+/// The convention of what lies in a folder, or in the usual one: that of the model where one of its files is there, else own recordings.
+fn convention_of(data: Option<&Path>, of_model: Convention) -> Convention {
+    let Some(data) = data else { return of_model };
+    let holds_some = |folder: &Path| of_model.file_names().any(|f| folder.join(f).is_file());
+    if holds_some(data)
+        || holds_some(&data.join(of_model.name()))
+        || locate(of_model, Some(data)).is_ok()
+    {
+        of_model
+    } else {
+        Convention::Own
     }
 }
 
@@ -175,6 +213,7 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
         let data = data.context("give the folder of your own recordings: --data FOLDER")?;
         let files = recordings::files(&[data.to_owned()], units)?;
         let read = recordings::read(&files, units)?;
+        recordings::tell_notes(&read);
         recordings::warn_of_doubts(&read);
         return Ok(Dataset::own(
             read.into_iter().map(|of| of.recording).collect(),

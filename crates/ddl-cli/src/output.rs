@@ -23,6 +23,12 @@ pub(crate) fn print(text: &str) -> anyhow::Result<()> {
         .context("cannot write to standard output")
 }
 
+/// A coordinate as tables write it: to 0.1 mm.
+pub(crate) fn table_metres(metres: f64) -> f64 {
+    // no `-0`
+    (1e4 * metres).round() / 1e4 + 0.0
+}
+
 /// A path as a shell takes it for one word.
 pub(crate) fn shell_word(path: &Path) -> String {
     let path = path.display().to_string();

@@ -58,6 +58,32 @@ pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<InSte
     Ok(read.into_iter().map(|(_, in_steps)| in_steps).collect())
 }
 
+/// What is to be told of recordings, by name: what holds for several is told once.
+fn tell_grouped<'a>(kind: &str, of: impl IntoIterator<Item = (&'a str, String)>) {
+    let mut told: Vec<(String, Vec<&str>)> = Vec::new();
+    for (name, words) in of {
+        match told.iter_mut().find(|(known, _)| *known == words) {
+            Some((_, names)) => names.push(name),
+            None => told.push((words, vec![name])),
+        }
+    }
+    for (words, names) in told {
+        match names[..] {
+            [one] => tell(format_args!("{kind}: {one}: {words}")),
+            _ => tell(format_args!("{kind}: {} recordings: {words}", names.len())),
+        }
+    }
+}
+
+/// Says what was found out about the rates of recordings.
+pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a InSteps>) {
+    let notes = read.into_iter().flat_map(|of| {
+        let notes = of.notes.iter();
+        notes.map(move |note| (of.recording.name(), note.clone()))
+    });
+    tell_grouped("note", notes);
+}
+
 /// Those that can be read in steps of 0.4 s, and why the others cannot.
 pub(crate) fn read_each<'f>(
     files: &'f [PathBuf],
@@ -95,21 +121,20 @@ pub(crate) fn all_read(mut errors: Vec<anyhow::Error>, files: usize) -> anyhow::
 
 /// Says what looks wrong with speeds: what is learned from wrong units, or measured with them, means nothing.
 pub(crate) fn warn_of_doubts(read: &[InSteps]) {
-    for InSteps { recording, clock } in read {
-        if let Some(doubt) = recording.speed_doubt() {
-            warn_of(clock.of_doubt(doubt), Some(recording.name()));
-        }
-    }
+    let doubtful = read.iter().filter_map(|of| {
+        let doubt = of.recording.speed_doubt()?;
+        Some((of.recording.name(), words(&of.clock.of_doubt(doubt))))
+    });
+    tell_grouped("warning", doubtful);
 }
 
-/// Says what looks wrong, with the options that may mend it; of a recording by name, where there are several.
-pub(crate) fn warn_of(doubt: Doubt, recording: Option<&str>) {
-    let place = recording.map_or_else(String::new, |name| format!("{name}: "));
-    tell(format_args!("warning: {place}{}", words(doubt)));
+/// Says what looks wrong with the only recording there is, with the options that may mend it.
+pub(crate) fn warn_of(doubt: &Doubt) {
+    tell(format_args!("warning: {}", words(doubt)));
 }
 
 /// What looks wrong, with the options that may mend it.
-pub(crate) fn words(doubt: Doubt) -> String {
+pub(crate) fn words(doubt: &Doubt) -> String {
     let options = match doubt {
         Doubt::Fast { .. } => " (--homography, --fps)",
         Doubt::Slow { .. } | Doubt::NoSteps { .. } => " (--fps)",

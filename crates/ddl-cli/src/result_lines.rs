@@ -1,8 +1,12 @@
 //! Results for people, in the terminal.
 
 use ddl::Protocol;
-use ddl::eval::{Report, ResultRow};
+use ddl::data::Convention;
+use ddl::eval::{RecordingErrors, Report, ResultRow};
 use std::fmt::{Result, Write as _};
+
+/// What a model is to beat, recording by recording.
+const VELOCITY: &str = "constant velocity (last step)";
 
 /// One line a result, under what it has in common with others; `rest` says where everything else is.
 pub(crate) fn lines(report: &Report, rest: &str) -> String {
@@ -28,21 +32,31 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
             Protocol::Single => ("ADE/FDE", "of one hypothesis"),
             _ => ("minADE/minFDE", "best of K"),
         };
+        let of_table = || {
+            report
+                .rows()
+                .iter()
+                .filter(|row| common(row) == common(first))
+        };
+        let folds = of_table().map(|row| row.conditions.fold.chars().count());
+        let width = folds.max().unwrap_or(0).max(10);
+        // of own recordings as of published ones a pedestrian counts once in every window
+        let counted = match convention {
+            Convention::Own => "pedestrian-windows",
+            _ => "walkers",
+        };
+        let counts = counted.len();
         writeln!(
             out,
             "\nconvention {convention}, protocol {protocol}, windows {rule}; {errors} in metres, {of}\n\
-             {:10} {:>7} {:>3}  {errors:15}  forecaster",
-            "fold", "walkers", "K"
+             {:width$} {counted} {:>3}  {errors:15}  forecaster",
+            "fold", "K"
         )?;
-        for row in report
-            .rows()
-            .iter()
-            .filter(|row| common(row) == common(first))
-        {
+        for row in of_table() {
             let (conditions, scores) = (&row.conditions, &row.scores);
             writeln!(
                 out,
-                "{:10} {:>7} {:>3}  {:15}  {}",
+                "{:width$} {:>counts$} {:>3}  {:15}  {}",
                 conditions.fold,
                 scores.pedestrians,
                 scores.hypotheses,
@@ -50,6 +64,44 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
                 conditions.label()
             )?;
         }
+        if first.conditions.convention == Convention::Own {
+            let velocity = of_table().find(|row| row.conditions.forecaster == VELOCITY);
+            write_recordings(out, first, velocity)?;
+        }
     }
     writeln!(out, "\n{rest}")
+}
+
+/// A line a recording, where several were measured together: the first forecaster, and what it is to beat.
+fn write_recordings(out: &mut String, first: &ResultRow, other: Option<&ResultRow>) -> Result {
+    let recordings = first.by_recording();
+    if recordings.len() < 2 {
+        return Ok(());
+    }
+    let widths = recordings.iter().map(|of| of.recording.chars().count());
+    let width = widths.max().unwrap_or(0).max(10);
+    let label = first.conditions.label();
+    let column = label.chars().count().max(15);
+    let of_other = other.map(ResultRow::by_recording).unwrap_or_default();
+    let errors = |of: &RecordingErrors| format!("{:.3}/{:.3}", of.min_ade, of.min_fde);
+    let beside = other.map_or("", |_| VELOCITY);
+    writeln!(
+        out,
+        "\n{:width$} {:>7}  {label:column$}  {beside}",
+        "recording", "walkers"
+    )?;
+    for of in &recordings {
+        let same = of_other
+            .iter()
+            .find(|other| other.recording == of.recording);
+        writeln!(
+            out,
+            "{:width$} {:>7}  {:column$}  {}",
+            of.recording,
+            of.pedestrians,
+            errors(of),
+            same.map(errors).unwrap_or_default()
+        )?;
+    }
+    Ok(())
 }

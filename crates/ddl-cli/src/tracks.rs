@@ -99,7 +99,14 @@ impl Tracks {
 
     /// Windows of 8 observed steps, one a frame that has anybody to forecast.
     pub(crate) fn observed(&self) -> anyhow::Result<Observed> {
-        let InSteps { recording, clock } = self.units.read(self.file())?;
+        let InSteps {
+            recording,
+            clock,
+            notes,
+        } = self.units.read(self.file())?;
+        for note in notes {
+            tell(format_args!("note: {note}"));
+        }
         let mut windows = recording.completed_windows(self.completion());
         if windows.is_empty() {
             bail!(
@@ -114,7 +121,8 @@ impl Tracks {
             );
         }
         // Who looks at a terminal may be trying the tracks for the first time; scripts are left in peace.
-        if !self.units.say_the_rate() && std::io::stderr().is_terminal() {
+        let said = self.units.say_the_rate() || recording.rate().is_some();
+        if !said && std::io::stderr().is_terminal() {
             tell(format_args!(
                 "note: a step of 0.4 s is taken to be {}, the most common difference of two rows; --fps, --dt or --frame-step says otherwise",
                 frames(clock.number(recording.frame_step()))
@@ -124,8 +132,8 @@ impl Tracks {
             .speed_doubt()
             .filter(|doubt| !matches!(doubt, Doubt::NoSteps { .. }))
             .map(|doubt| clock.of_doubt(doubt));
-        if let Some(doubt) = doubt {
-            recordings::warn_of(doubt, None);
+        if let Some(doubt) = &doubt {
+            recordings::warn_of(doubt);
         }
         if self.last {
             windows.drain(..windows.len() - 1);

@@ -20,7 +20,7 @@ const MANY_STEPS: usize = 20;
 const OFTEN: f64 = 0.03;
 
 /// Something that looks wrong; in words it says what may be done about it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Doubt {
     /// Nobody was seen at two frames so far apart, which are taken for 0.4 s.
@@ -107,7 +107,7 @@ pub(crate) struct Speeds {
 impl Speeds {
     /// What looks wrong with them.
     pub(crate) fn doubt(&self) -> Option<Doubt> {
-        let (Some(median), Some(fastest)) = (self.median, self.fastest) else {
+        let (Some(median), Some(fastest)) = (self.median, &self.fastest) else {
             return Some(Doubt::NoSteps {
                 frame_step: self.frame_step,
             });
@@ -119,7 +119,7 @@ impl Speeds {
         } else if median > IMPLAUSIBLE {
             Some(Doubt::Fast { median })
         } else if fastest.speed > JUMP {
-            Some(Doubt::Jump(fastest))
+            Some(Doubt::Jump(fastest.clone()))
         } else if fastest.speed < CREEPING && self.farthest > FAR {
             Some(Doubt::Slow {
                 fastest: fastest.speed,
@@ -139,21 +139,25 @@ impl Recording {
 
     pub(crate) fn speeds(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> Speeds {
         let step = self.frame_step();
-        let mut speeds: Vec<Fastest> = Vec::new();
+        let mut speeds: Vec<(f64, &Observation)> = Vec::new();
         for track in tracks.values() {
             speeds.extend(track.iter().filter_map(|seen| {
                 let before = track
                     .binary_search_by_key(&(seen.frame - step), |other| other.frame)
                     .ok()?;
-                Some(fastness(track[before].position, seen))
+                Some((speed(track[before].position, seen.position), *seen))
             }));
         }
-        speeds.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+        speeds.sort_by(|a, b| a.0.total_cmp(&b.0));
         Speeds {
             frame_step: step,
             steps: speeds.len(),
-            median: speeds.get(speeds.len() / 2).map(|fastest| fastest.speed),
-            fastest: speeds.last().copied(),
+            median: speeds.get(speeds.len() / 2).map(|(speed, _)| *speed),
+            fastest: speeds.last().map(|(speed, seen)| Fastest {
+                speed: *speed,
+                pedestrian: self.names().of(seen.pedestrian),
+                frame: seen.frame,
+            }),
             farthest: tracks.values().map(|track| way(track)).fold(0.0, f64::max),
         }
     }
@@ -170,11 +174,7 @@ fn way(track: &[&Observation]) -> f64 {
     (last[0] - first[0]).hypot(last[1] - first[1])
 }
 
-fn fastness(from: Position, to: &Observation) -> Fastest {
-    let way = (to.position[0] - from[0]).hypot(to.position[1] - from[1]);
-    Fastest {
-        speed: way / TIME_STEP,
-        pedestrian: to.pedestrian,
-        frame: to.frame,
-    }
+/// Of a step, m/s.
+fn speed(from: Position, to: Position) -> f64 {
+    (to[0] - from[0]).hypot(to[1] - from[1]) / TIME_STEP
 }

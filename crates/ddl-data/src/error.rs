@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::{Convention, PedestrianId};
+use crate::{Convention, PedestrianId, PedestrianName};
 
 /// Why a file of tracks cannot be read: the file, the line, the field and the problem.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -126,6 +126,24 @@ pub enum FormatProblem {
         /// The field, such as `track.f`.
         name: &'static str,
     },
+    /// The rate of a scene is no rate.
+    #[error("scene.fps must be a number above 0, the frames in a second, found {found}")]
+    Rate {
+        /// What it is, shortened.
+        found: String,
+    },
+    /// Scenes of one file name different rates.
+    #[error(
+        "scene.fps is {found}, but {first} on line {first_line}; a file is of one recording, whose frames have one rate"
+    )]
+    RateChanges {
+        /// Line of the first rate.
+        first_line: usize,
+        /// The first rate.
+        first: String,
+        /// The rate of this line.
+        found: String,
+    },
     /// Overlapping scenes repeat a track with another position.
     #[error(
         "pedestrian {pedestrian} is in frame {frame} at {found}, but on line {first_line} at {first}; \
@@ -133,7 +151,7 @@ pub enum FormatProblem {
     )]
     Disagreement {
         /// The pedestrian.
-        pedestrian: PedestrianId,
+        pedestrian: Box<PedestrianName>,
         /// The raw frame number.
         frame: i64,
         /// Line of the first occurrence.
@@ -147,7 +165,7 @@ pub enum FormatProblem {
     #[error("pedestrian {pedestrian} is in frame {frame} already (line {first_line}); keep one")]
     Duplicate {
         /// The pedestrian.
-        pedestrian: PedestrianId,
+        pedestrian: Box<PedestrianName>,
         /// The raw frame number.
         frame: i64,
         /// Line of the first occurrence.
@@ -192,7 +210,6 @@ fn advice_on_integer(name: &str, found: &str) -> &'static str {
         "frame" if is_number && found.contains('.') => {
             "; is it a time? Count frames instead: 0, 1, 2, and so on"
         }
-        "pedestrian" if !is_number => "; number people: 1, 2, 3, and so on",
         _ => advice_on_number(found),
     }
 }

@@ -1,8 +1,12 @@
 //! From pixels of a camera to metres on the ground.
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::{COORDINATE_LIMIT, Observation, PedestrianId, Position, Recording, RecordingError};
+use crate::{
+    COORDINATE_LIMIT, Observation, PedestrianName, PedestrianNames, Position, Recording,
+    RecordingError,
+};
 
 /// Rows and columns.
 const SIZE: usize = 3;
@@ -19,8 +23,17 @@ const SIZE: usize = 3;
 /// assert_eq!(ground.apply([320.0, 240.0]), Some([0.0, 0.0]));
 /// # Ok::<(), ddl_data::HomographyError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "[[f64; SIZE]; SIZE]")]
 pub struct Homography([[f64; SIZE]; SIZE]);
+
+impl TryFrom<[[f64; SIZE]; SIZE]> for Homography {
+    type Error = HomographyError;
+
+    fn try_from(rows: [[f64; SIZE]; SIZE]) -> Result<Self, HomographyError> {
+        Self::new(rows)
+    }
+}
 
 impl Homography {
     /// The matrix, row by row: it takes (u, v, 1) in pixels to (X, Y, W), of which X / W and Y / W are metres.
@@ -55,16 +68,21 @@ impl Homography {
         near.then_some(place)
     }
 
-    /// Where somebody who was seen at a pixel is on the ground (m).
+    /// Where somebody who was seen at a pixel, and is named so, is on the ground (m).
     ///
     /// # Errors
     /// [`HomographyError::Horizon`] where that is nowhere.
-    pub fn place(&self, seen: &Observation) -> Result<Position, HomographyError> {
-        self.apply(seen.position).ok_or(HomographyError::Horizon {
-            pedestrian: seen.pedestrian,
+    pub fn place(
+        &self,
+        seen: &Observation,
+        names: &PedestrianNames,
+    ) -> Result<Position, HomographyError> {
+        let horizon = || HomographyError::Horizon {
+            pedestrian: names.of(seen.pedestrian),
             frame: seen.frame,
             pixel: seen.position,
-        })
+        };
+        self.apply(seen.position).ok_or_else(horizon)
     }
 
     /// A recording in pixels, in metres.
@@ -74,13 +92,9 @@ impl Homography {
     pub fn on_the_ground(&self, recording: &Recording) -> Result<Recording, HomographyError> {
         let mut observations = recording.observations().to_vec();
         for seen in &mut observations {
-            seen.position = self.place(seen)?;
+            seen.position = self.place(seen, recording.names())?;
         }
-        Ok(Recording::new(
-            recording.name(),
-            recording.frame_step(),
-            observations,
-        )?)
+        Ok(recording.with_observations(recording.frame_step(), observations)?)
     }
 }
 
@@ -161,7 +175,7 @@ pub enum HomographyError {
     )]
     Horizon {
         /// Who.
-        pedestrian: PedestrianId,
+        pedestrian: PedestrianName,
         /// When.
         frame: i64,
         /// Where in the image.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use crate::recording::{FRAME_LIMIT, FRAME_STEP_LIMIT};
-use crate::{Completion, OBSERVED, PedestrianId, Position, Recording, Window};
+use crate::{Completion, OBSERVED, PedestrianId, PedestrianNames, Position, Recording, Window};
 
 const NAME: &str = "live";
 
@@ -42,6 +42,8 @@ const NAME: &str = "live";
 pub struct LiveTracks {
     /// What windows name as their recording.
     name: Arc<str>,
+    /// How the recording names its pedestrians.
+    names: PedestrianNames,
     frame_step: i64,
     completion: Completion,
     last_frame: Option<i64>,
@@ -69,6 +71,7 @@ impl LiveTracks {
     pub fn new() -> Self {
         Self {
             name: NAME.into(),
+            names: PedestrianNames::default(),
             frame_step: 1,
             completion: Completion::NONE,
             last_frame: None,
@@ -94,6 +97,7 @@ impl LiveTracks {
     pub(crate) fn of(recording: &Recording) -> Self {
         Self {
             name: recording.shared_name(),
+            names: recording.names().clone(),
             frame_step: recording.frame_step(),
             ..Self::new()
         }
@@ -197,6 +201,7 @@ impl LiveTracks {
         walkers.extend(earlier.filter_map(|absent| self.remembered(absent, frame)));
         Ok(Self {
             name: Arc::clone(&self.name),
+            names: self.names.clone(),
             frame_step: self.frame_step,
             completion: self.completion,
             last_frame: Some(frame),
@@ -243,9 +248,9 @@ impl LiveTracks {
         }
         let frames = (1 - OBSERVED as i64..=0).map(|t| last + t * self.frame_step);
         let (step, frames) = (self.frame_step, frames.collect());
-        Some(
-            Window::cut(Arc::clone(&self.name), step, frames, ids, positions).with_made_up(made_up),
-        )
+        let window = Window::cut(Arc::clone(&self.name), step, frames, ids, positions);
+        let names = self.names.clone();
+        Some(window.with_names(names).with_made_up(made_up))
     }
 }
 

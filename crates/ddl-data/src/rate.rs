@@ -115,6 +115,13 @@ impl Recording {
         self.resampled(parts, step)
     }
 
+    /// Seconds from one frame number to the next as the file tells them by its [`rate`](Self::rate): its frames are usually
+    /// [`frame_step`](Self::frame_step) numbers apart, as long as that was not set.
+    #[must_use]
+    pub fn frame_time_told(&self) -> Option<f64> {
+        Some(1.0 / (self.rate()? * self.frame_step() as f64))
+    }
+
     /// Whether frames keep time.
     fn is_even(&self) -> bool {
         let differences = self.frames().windows(2).map(|pair| pair[1] - pair[0]);
@@ -165,7 +172,7 @@ impl Recording {
                 }
             }
         }
-        let recording = Recording::new(self.name(), step, observations)?;
+        let recording = self.with_observations(step, observations)?;
         Ok(InSteps {
             recording,
             parts,

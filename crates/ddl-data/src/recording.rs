@@ -6,8 +6,8 @@ use std::sync::Arc;
 use crate::error::RecordingError;
 use crate::rule;
 use crate::{
-    Completion, HORIZON, LiveTracks, OBSERVED, Observation, PedestrianId, Position, Window,
-    WindowRule,
+    Completion, HORIZON, LiveTracks, OBSERVED, Observation, PedestrianId, PedestrianNames,
+    Position, Window, WindowRule,
 };
 
 /// Frames are below this in size: exact in an `f64`, and far from overflow when counting on.
@@ -38,6 +38,9 @@ pub struct Recording {
     frames: Vec<i64>,
     /// `starts[k]..starts[k + 1]` are the observations of `frames[k]`.
     starts: Vec<usize>,
+    /// Frames with observations a second, where the file says so.
+    rate: Option<f64>,
+    names: PedestrianNames,
 }
 
 impl Recording {
@@ -102,7 +105,42 @@ impl Recording {
             observations,
             frames,
             starts,
+            rate: None,
+            names: PedestrianNames::default(),
         })
+    }
+
+    /// Other observations of the same recording.
+    pub(crate) fn with_observations(
+        &self,
+        frame_step: i64,
+        observations: Vec<Observation>,
+    ) -> Result<Self, RecordingError> {
+        Ok(Self {
+            rate: self.rate,
+            names: self.names.clone(),
+            ..Self::new(self.shared_name(), frame_step, observations)?
+        })
+    }
+
+    /// The same recording, whose file says how many of its frames follow each other in a second.
+    pub(crate) fn with_rate(self, rate: Option<f64>) -> Self {
+        Self { rate, ..self }
+    }
+
+    /// The same recording, whose file names pedestrians so.
+    pub(crate) fn with_names(self, names: PedestrianNames) -> Self {
+        Self { names, ..self }
+    }
+
+    /// How the file names its pedestrians.
+    pub fn names(&self) -> &PedestrianNames {
+        &self.names
+    }
+
+    /// How many of the annotated frames follow each other in a second, where the file says so, whatever their numbers: the `fps` of TrajNet++ scenes.
+    pub fn rate(&self) -> Option<f64> {
+        self.rate
     }
 
     /// The same recording under another name.
@@ -241,6 +279,8 @@ impl Recording {
                 .map(|start| start - first)
                 .collect(),
             frames: self.frames[frames].to_vec(),
+            rate: self.rate,
+            names: self.names.clone(),
         })
     }
 

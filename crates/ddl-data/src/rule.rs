@@ -230,12 +230,13 @@ impl<'a> Links<'a> {
             .map(|o| o.position)
             .collect();
         let name = self.recording.shared_name();
-        Some(Window::cut(
+        let window = Window::cut(
             name,
             self.recording.frame_step(),
             frames,
             pedestrians,
             positions,
-        ))
+        );
+        Some(window.with_names(self.recording.names().clone()))
     }
 }

@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use crate::doubt::{self, Speeds};
 use crate::{
-    Completion, Doubt, Observation, PedestrianId, Position, Recording, TIME_STEP, WindowRule,
+    Completion, Doubt, Observation, PedestrianId, PedestrianName, Position, Recording, TIME_STEP,
+    WindowRule,
 };
 
 /// What a recording holds, in steps of 0.4 s.
@@ -62,28 +63,30 @@ pub struct Summary {
     pub to_forecast: usize,
     /// Of these, moments of people seen at all 8 steps.
     pub seen_whole: usize,
-    /// Walkers in windows of 20 steps in a row: what a model can be trained on and measured with ([`WindowRule::Complete`]).
+    /// Windows of 20 steps in a row ([`WindowRule::Complete`]).
+    pub windows: usize,
+    /// Pedestrians in these windows, each counted once a window: what a model can be trained on and measured with.
     pub to_learn_from: usize,
 }
 
 /// The fastest step of a recording.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Fastest {
     /// Its speed, m/s.
     pub speed: f64,
     /// Whose it is.
-    pub pedestrian: PedestrianId,
+    pub pedestrian: PedestrianName,
     /// The raw frame at which it ends.
     pub frame: i64,
 }
 
 /// A time in which somebody was not seen, and after which they were again.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Hole {
     /// Who was not seen.
-    pub pedestrian: PedestrianId,
+    pub pedestrian: PedestrianName,
     /// The raw frame at which they were last seen before it.
     pub after: i64,
     /// From that frame to the one at which they were seen again, s.
@@ -98,7 +101,7 @@ impl Summary {
             frame_step: self.frame_step,
             steps: self.steps,
             median: self.median_speed,
-            fastest: self.fastest,
+            fastest: self.fastest.clone(),
             farthest: self.farthest,
         };
         let learning = self.to_learn_from == 0 && self.median_speed.is_some();
@@ -139,7 +142,7 @@ impl Recording {
         let holes: Vec<Hole> = pairs
             .filter(|pair| pair[1].frame - pair[0].frame > step)
             .map(|pair| Hole {
-                pedestrian: pair[0].pedestrian,
+                pedestrian: self.names().of(pair[0].pedestrian),
                 after: pair[0].frame,
                 seconds: (pair[1].frame - pair[0].frame) as f64 * TIME_STEP / step as f64,
             })
@@ -152,6 +155,7 @@ impl Recording {
             })
         };
         let (first, last) = (self.frames()[0], self.frames()[self.frames().len() - 1]);
+        let windows = self.windows(WindowRule::Complete);
         Summary {
             recording: self.name().to_owned(),
             frames: self.frames().len(),
@@ -174,7 +178,8 @@ impl Recording {
                 .max_by(|a, b| a.seconds.total_cmp(&b.seconds)),
             to_forecast: walkers(&self.completed_windows(Completion::USUAL)),
             seen_whole: walkers(&self.observed_windows()),
-            to_learn_from: walkers(&self.windows(WindowRule::Complete)),
+            windows: windows.len(),
+            to_learn_from: walkers(&windows),
         }
     }
 }

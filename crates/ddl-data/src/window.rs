@@ -6,7 +6,7 @@ use crate::augment::Rotation;
 use crate::error::WindowError;
 use crate::neighbours::NeighbourMask;
 use crate::recording::{FRAME_LIMIT, FRAME_STEP_LIMIT};
-use crate::{MadeUp, OBSERVED, PedestrianId, Position, WINDOW};
+use crate::{MadeUp, OBSERVED, PedestrianId, PedestrianName, PedestrianNames, Position, WINDOW};
 
 /// The pedestrians of one scene over 8 observed steps and, where known, the 12 that follow.
 ///
@@ -31,6 +31,7 @@ pub struct Window {
     /// Raw frame of each step; `steps()` many.
     frames: Vec<i64>,
     pedestrians: Vec<PedestrianId>,
+    names: PedestrianNames,
     /// Pedestrian-major: pedestrian i holds `positions[i * T..(i + 1) * T]`.
     positions: Vec<Position>,
     /// One a pedestrian, or none where nothing is.
@@ -99,6 +100,7 @@ impl Window {
             frame_step,
             frames,
             pedestrians,
+            names: PedestrianNames::default(),
             positions,
             made_up: Vec::new(),
         })
@@ -120,9 +122,30 @@ impl Window {
             frame_step,
             frames,
             pedestrians,
+            names: PedestrianNames::default(),
             positions,
             made_up: Vec::new(),
         }
+    }
+
+    /// The same, naming its pedestrians so.
+    #[must_use]
+    pub fn with_names(self, names: PedestrianNames) -> Self {
+        Self { names, ..self }
+    }
+
+    /// How the file or stream names the i-th pedestrian: by the number, unless it has words.
+    ///
+    /// # Panics
+    /// If `i >= len()`.
+    pub fn name(&self, i: usize) -> PedestrianName {
+        self.names.of(self.pedestrians[i])
+    }
+
+    /// Which pedestrian has this name; `None` where nobody has.
+    pub fn named(&self, name: &PedestrianName) -> Option<usize> {
+        let mut ids = self.pedestrians.iter();
+        ids.position(|&id| self.names.names(id, name))
     }
 
     /// The same with what of each pedestrian's observation was made up.
@@ -252,6 +275,7 @@ impl Window {
             frame_step: self.frame_step,
             frames: self.frames[..OBSERVED].to_vec(),
             pedestrians: self.pedestrians.clone(),
+            names: self.names.clone(),
             positions,
             made_up: self.made_up.clone(),
         }
@@ -281,6 +305,7 @@ impl Window {
             frame_step: self.frame_step,
             frames: self.frames.clone(),
             pedestrians: kept.iter().map(|&i| self.pedestrians[i]).collect(),
+            names: self.names.clone(),
             positions: kept.iter().flat_map(|&i| self.track(i)).copied().collect(),
             made_up: Vec::new(),
         };

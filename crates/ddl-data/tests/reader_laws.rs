@@ -183,9 +183,15 @@ fn one_spoiled_field_of_a_real_file_is_found() {
             .to_string()
     };
     let mut lines: Vec<_> = text.lines().map(str::to_owned).collect();
-    lines[3000] = lines[3000].replacen('\t', "\tNaN", 1);
-    let expected = "f, line 3001, field 2: pedestrian must be a whole number";
+    let mut fields: Vec<&str> = lines[3000].split('\t').collect();
+    fields[2] = "NaN";
+    let spoiled = fields.join("\t");
+    let sound = std::mem::replace(&mut lines[3000], spoiled);
+    let expected = "f, line 3001, field 3: x must be a finite number";
     assert!(complaint(&lines).starts_with(expected));
+    lines[3000] = sound.replacen('\t', "\tNaN", 1);
+    // a word is the name of another pedestrian
+    assert!(parse_recording(lines.join("\n").as_bytes(), "f", Format::SocialGan).is_ok());
     lines[3000] = lines[17].clone();
     let expected = "f, line 3001: pedestrian";
     let complaint = complaint(&lines);

@@ -238,7 +238,11 @@ fn every_mistake_of_a_trajnet_file_is_named_with_its_place() {
             "f, line 2: track.f must be a whole number",
         ),
         (
-            second(r#"{"track": {"f": 1, "p": "two", "x": 1, "y": 3.0}}"#),
+            second(r#"{"track": {"f": 1, "p": " ", "x": 1, "y": 3.0}}"#),
+            "f, line 2: track.p must be a whole number",
+        ),
+        (
+            second(r#"{"track": {"f": 1, "p": [2], "x": 1, "y": 3.0}}"#),
             "f, line 2: track.p must be a whole number",
         ),
         (
@@ -365,7 +369,8 @@ fn rows_as_others_write_them() {
             "line 2, field 1",
             "is it a time? Count frames",
         ),
-        ("0,anna,2.0,3.0", "line 2, field 2", "number people"),
+        ("0,1.5,2.0,3.0", "line 2, field 2", "must be a whole number"),
+        ("0,,2.0,3.0", "line 2, field 2", "write no row"),
         ("0,1,\"2,5\",3.0", "line 2, field 3", "with a point"),
         ("0,1,2,5,3,0", "line 2", "decimal point"),
         ("0,1,2.5,3.0,", "line 2", "at the end of a row"),

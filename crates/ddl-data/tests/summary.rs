@@ -61,10 +61,13 @@ fn a_track_that_jumps_is_named_with_its_frame() {
         observation.position[1] += 20.0;
     }
     let doubts = doubts(seen);
-    let [Doubt::Jump(fastest)] = doubts[..] else {
+    let [Doubt::Jump(fastest)] = &doubts[..] else {
         panic!("{doubts:?}");
     };
-    assert_eq!((fastest.pedestrian.0, fastest.frame), (1, 40));
+    assert_eq!(
+        (&fastest.pedestrian, fastest.frame),
+        (&PedestrianId(1).into(), 40)
+    );
     assert!(
         doubts[0]
             .to_string()
@@ -82,7 +85,10 @@ fn holes_and_what_can_be_learned_from_are_counted() {
         (1, 1, 99)
     );
     let hole = summary.longest_hole.unwrap();
-    assert_eq!((hole.pedestrian.0, hole.after), (1, 49));
+    assert_eq!(
+        (&hole.pedestrian, hole.after),
+        (&PedestrianId(1).into(), 49)
+    );
     assert!((hole.seconds - 0.8).abs() < 1e-12);
     // 50 and 49 positions in a row: 31 and 30 windows of 20
     assert_eq!(summary.to_learn_from, 61);

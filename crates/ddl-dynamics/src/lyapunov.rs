@@ -1,6 +1,7 @@
 //! Lyapunov certificates: the evidence that a rollout kept the guarantee.
 
 mod certified_step;
+mod motion;
 mod violation;
 
 use nalgebra::SVector;
@@ -11,11 +12,13 @@ use crate::{
     error::{DynamicsError, ensure_finite, ensure_time_step},
     flow::Flow,
     metric::CholeskyMetric,
+    motion_bounds::MotionBounds,
     real::Real,
     state::State,
 };
 
 pub use certified_step::CertifiedStep;
+pub use motion::{Bounded, MotionEvidence};
 pub use violation::Violation;
 
 /// The evidence that a rollout went to its goal: for every step what the theory speaks about.
@@ -59,6 +62,45 @@ pub struct LyapunovCertificate<T> {
     time_step: T,
     steps: Vec<CertifiedStep<T>>,
     final_potential: T,
+    /// Of motions within bounds.
+    #[serde(default = "Option::default", skip_serializing_if = "Option::is_none")]
+    motion: Option<MotionEvidence<T>>,
+}
+
+impl<T: Real> LyapunovCertificate<T> {
+    /// The same certificate, which also says how fast, how abrupt and how far off the straight way the motion was, and whether it
+    /// arrived, each with the bound that [`MotionBounds`] set to it: [`holds`](Self::holds) judges these too.
+    ///
+    /// # Shapes
+    /// `path`: the positions that the certificate is of (metres), the start first. `alone` unless obstacles were minded, which may hold
+    /// a pedestrian up: only its speed is bounded then.
+    ///
+    /// # Errors
+    /// [`DynamicsError::LengthMismatch`] when there is not one position more than steps.
+    pub fn within(
+        self,
+        path: &[SVector<T, 2>],
+        attractor: &Attractor<T, 2>,
+        bounds: &MotionBounds<T>,
+        alone: bool,
+    ) -> Result<Self, DynamicsError> {
+        if path.len() != self.steps.len() + 1 {
+            return Err(DynamicsError::LengthMismatch {
+                positions: path.len(),
+                metrics: self.steps.len(),
+            });
+        }
+        let motion = MotionEvidence::new(path, attractor, bounds, self.time_step, alone);
+        Ok(Self {
+            motion: Some(motion),
+            ..self
+        })
+    }
+
+    /// How fast, how abrupt and how far off the straight way the motion was, and whether it arrived; `None` where no bounds were set.
+    pub fn motion(&self) -> Option<&MotionEvidence<T>> {
+        self.motion.as_ref()
+    }
 }
 
 impl<T: Real> LyapunovCertificate<T> {
@@ -104,6 +146,7 @@ impl<T: Real> LyapunovCertificate<T> {
             time_step: dt,
             steps,
             final_potential: attractor.distance(last),
+            motion: None,
         })
     }
 
@@ -154,7 +197,8 @@ impl<T: Real> LyapunovCertificate<T> {
     }
 
     /// Whether the guarantee was kept: `P` positive definite and `d Phi / dt < 0` at every step
-    /// away from the goal, `Phi` strictly smaller after every such step, and rest at the goal.
+    /// away from the goal, `Phi` strictly smaller after every such step, and rest at the goal; and, where
+    /// [bounds were set](Self::within), every figure of the [motion](Self::motion) within its bound.
     ///
     /// # Errors
     /// The [`Violation`] of the first step that breaks it.
@@ -164,7 +208,8 @@ impl<T: Real> LyapunovCertificate<T> {
             .iter()
             .zip(after)
             .enumerate()
-            .try_for_each(|(step, (evidence, after))| evidence.check(step, after))
+            .try_for_each(|(step, (evidence, after))| evidence.check(step, after))?;
+        self.motion.as_ref().map_or(Ok(()), MotionEvidence::check)
     }
 
     /// The goal (metres), `D` components.

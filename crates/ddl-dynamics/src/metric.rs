@@ -55,6 +55,15 @@ impl<T: Real> CholeskyMetric<T, 2> {
     pub fn planar(a: T, b: T, c: T, sigma: T) -> Result<Self, DynamicsError> {
         Self::new(SMatrix::<T, 2, 2>::new(a, T::zero(), b, c), sigma)
     }
+
+    /// `axis axis^T + sigma I`: one eigenvalue along `axis` ((m/s)^(1/2)), `sigma` across. Both must be
+    /// finite, and `sigma` positive.
+    pub(crate) fn of_axis(axis: SVector<T, 2>, sigma: T) -> Self {
+        Self {
+            factor: SMatrix::<T, 2, 2>::new(axis.x, T::zero(), axis.y, T::zero()),
+            sigma,
+        }
+    }
 }
 
 impl<T: Real, const D: usize> CholeskyMetric<T, D> {

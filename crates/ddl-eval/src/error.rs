@@ -55,6 +55,16 @@ pub enum ForecastShapeError {
         /// The weight.
         weight: f64,
     },
+    /// A spread is not positive, or a familiarity not in (0, 1].
+    #[error("the {field} of pedestrian {pedestrian} is {value}, out of range")]
+    OutOfRange {
+        /// `spread` or `familiarity`.
+        field: &'static str,
+        /// Row of the pedestrian in the window.
+        pedestrian: usize,
+        /// The value.
+        value: f64,
+    },
     /// The weights of a pedestrian do not sum to 1.
     #[error(
         "the weights of pedestrian {pedestrian} sum to {sum}, not to 1; divide them by their sum"

@@ -1,8 +1,10 @@
 //! A forecast of one window: several weighted futures for every pedestrian.
 
+use std::sync::Arc;
+
 use ddl_data::{HORIZON, Position};
 
-use crate::error::ForecastShapeError;
+use crate::{error::ForecastShapeError, region::RegionTable};
 
 /// How far the weights of a pedestrian may sum from 1.
 pub(crate) const WEIGHT_TOLERANCE: f64 = 1e-6;
@@ -15,7 +17,9 @@ pub(crate) const WEIGHT_TOLERANCE: f64 = 1e-6;
 /// # Shapes
 /// positions `[N][K][12]` in metres, weights `[N][K]` (sum 1 a pedestrian), goals `[N][K]` in metres:
 /// the point hypothesis `k` is meant to end at, when the model has such a notion; certified `[N][K]`:
-/// whether the model's proof that hypothesis `k` goes to its goal holds, when it gives one.
+/// whether the model's proof that hypothesis `k` goes to its goal holds, when it gives one; spread `[N][12]` in metres: the standard
+/// deviation in every direction of where a pedestrian is about the position of the right hypothesis, when the model says so;
+/// familiarity `[N]`, 0 to 1: how much the observed motion is like those that the model was trained on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
     pedestrians: usize,
@@ -24,6 +28,8 @@ pub struct Forecast {
     weights: Vec<f64>,
     goals: Option<Vec<Position>>,
     certified: Option<Vec<bool>>,
+    spread: Option<(Vec<f64>, Arc<RegionTable>)>,
+    familiarity: Option<Vec<f64>>,
 }
 
 impl Forecast {
@@ -75,6 +81,8 @@ impl Forecast {
             weights,
             goals,
             certified: None,
+            spread: None,
+            familiarity: None,
         })
     }
 
@@ -123,6 +131,101 @@ impl Forecast {
             certified: Some(certified),
             ..self
         })
+    }
+
+    /// The same forecast with its spread about the positions of the hypotheses, standard deviations in every direction (metres), and
+    /// the table by which its [regions](Self::region) hold a pedestrian with a given probability.
+    ///
+    /// # Shapes
+    /// `[N][12]`.
+    ///
+    /// # Errors
+    /// The array has the wrong length, or a deviation is not finite and positive.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_eval::{Forecast, RegionTable};
+    /// let forecast = Forecast::equally_likely(1, 2, vec![[0.0, 0.0]; 2 * 12])?;
+    /// assert_eq!(forecast.spread(0, 11), None);
+    /// let regions = RegionTable::of(&[[1.0; 12]], &[0.9]).expect("a score and a level");
+    /// let forecast = forecast.with_spread(vec![0.3; 12], regions.into())?;
+    /// assert_eq!(forecast.spread(0, 11), Some(0.3));
+    /// # Ok::<(), ddl_eval::ForecastShapeError>(())
+    /// ```
+    pub fn with_spread(
+        self,
+        spread: Vec<f64>,
+        regions: Arc<RegionTable>,
+    ) -> Result<Self, ForecastShapeError> {
+        check_length(
+            "spread",
+            "pedestrian, frame",
+            self.pedestrians * HORIZON,
+            spread.len(),
+        )?;
+        check_range("spread", &spread, HORIZON, f64::MAX)?;
+        Ok(Self {
+            spread: Some((spread, regions)),
+            ..self
+        })
+    }
+
+    /// The same forecast with the familiarity of each pedestrian's observed motion, 0 to 1.
+    ///
+    /// # Shapes
+    /// `[N]`.
+    ///
+    /// # Errors
+    /// The array has the wrong length, or a number is not above 0 and at most 1.
+    pub fn with_familiarity(self, familiarity: Vec<f64>) -> Result<Self, ForecastShapeError> {
+        check_length(
+            "familiarity",
+            "pedestrian",
+            self.pedestrians,
+            familiarity.len(),
+        )?;
+        check_range("familiarity", &familiarity, 1, 1.0)?;
+        Ok(Self {
+            familiarity: Some(familiarity),
+            ..self
+        })
+    }
+
+    /// Standard deviation in every direction of where pedestrian `i` is `t` + 1 steps ahead, about the position of the
+    /// right hypothesis (metres); `None` for forecasts without a spread.
+    ///
+    /// # Panics
+    /// When `i` or `t` is out of range.
+    #[must_use]
+    pub fn spread(&self, i: usize, t: usize) -> Option<f64> {
+        assert!(
+            i < self.pedestrians && t < HORIZON,
+            "step {t} of pedestrian {i} asked"
+        );
+        self.spread
+            .as_ref()
+            .map(|(spread, _)| spread[i * HORIZON + t])
+    }
+
+    /// The table of its regions; `None` for forecasts without a spread.
+    #[must_use]
+    pub fn regions(&self) -> Option<&RegionTable> {
+        self.spread.as_ref().map(|(_, regions)| regions.as_ref())
+    }
+
+    /// How much the observed motion of pedestrian `i` is like those that the model was trained on, 0 to 1; `None` for
+    /// forecasts of models that do not say.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn familiarity(&self, i: usize) -> Option<f64> {
+        assert!(
+            i < self.pedestrians,
+            "pedestrian {i} asked of {}",
+            self.pedestrians
+        );
+        self.familiarity.as_ref().map(|familiarity| familiarity[i])
     }
 
     /// Number of pedestrians, N.
@@ -223,6 +326,9 @@ impl Forecast {
             weights: vec![1.0; self.pedestrians],
             goals: rows().map(|(i, &k)| self.goal(i, k)).collect(),
             certified: rows().map(|(i, &k)| self.certified(i, k)).collect(),
+            // about one of many hypotheses, not about the one that stands for all
+            spread: None,
+            familiarity: self.familiarity.clone(),
         }
     }
 
@@ -243,6 +349,14 @@ impl Forecast {
             weights: rows(&self.weights, k, pedestrians),
             goals: self.goals.as_ref().map(|all| rows(all, k, pedestrians)),
             certified: self.certified.as_ref().map(|all| rows(all, k, pedestrians)),
+            spread: self
+                .spread
+                .as_ref()
+                .map(|(all, regions)| (rows(all, HORIZON, pedestrians), Arc::clone(regions))),
+            familiarity: self
+                .familiarity
+                .as_ref()
+                .map(|all| rows(all, 1, pedestrians)),
         }
     }
 
@@ -272,6 +386,24 @@ fn check_length(
         expected,
         found,
     })
+}
+
+/// Whether all numbers are above 0 and at most `most`.
+fn check_range(
+    field: &'static str,
+    numbers: &[f64],
+    per_pedestrian: usize,
+    most: f64,
+) -> Result<(), ForecastShapeError> {
+    // false for NaN
+    match numbers.iter().position(|&x| !(x > 0.0 && x <= most)) {
+        None => Ok(()),
+        Some(at) => Err(ForecastShapeError::OutOfRange {
+            field,
+            pedestrian: at / per_pedestrian,
+            value: numbers[at],
+        }),
+    }
 }
 
 fn check_finite(

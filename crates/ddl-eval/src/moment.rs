@@ -1,6 +1,6 @@
 //! One moment of a recording and what was forecast then, as data for galleries and the player.
 
-use ddl_data::{HORIZON, MadeUp, OBSERVED, Position, Window};
+use ddl_data::{HORIZON, MadeUp, OBSERVED, PedestrianName, Position, Window};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -13,6 +13,8 @@ use crate::{
 
 /// Decimals of the positions and weights kept: a millimetre, a thousandth.
 const KEPT: f64 = 1e3;
+/// Probability of the region that is shown.
+const REGION: f64 = 0.9;
 
 /// What was observed, what was forecast and what then happened, at one moment of a recording.
 ///
@@ -42,8 +44,8 @@ pub struct Moment {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct MomentWalker {
-    /// The person's number in the recording.
-    pub pedestrian: i64,
+    /// The person's number or word in the recording.
+    pub pedestrian: PedestrianName,
     /// 8 observed positions, m.
     pub observed: Vec<Position>,
     /// What then happened: 12 true positions, m; the first of them where no more were seen.
@@ -51,6 +53,9 @@ pub struct MomentWalker {
     /// How many of the observed positions were made up; `None` where all were seen.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub made_up: Option<MadeUp>,
+    /// How much the observed motion is like those of the training, 0 to 1; `None` where the forecaster does not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub familiarity: Option<f64>,
     /// K hypotheses.
     pub hypotheses: Vec<MomentHypothesis>,
 }
@@ -63,6 +68,10 @@ pub struct MomentHypothesis {
     pub weight: f64,
     /// 12 positions, m.
     pub positions: Vec<Position>,
+    /// Radii of its discs in the region that holds the pedestrian with a probability of 90 %, one a step, m; 0 where it has none, no radii for
+    /// forecasts without regions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub radii: Vec<f64>,
     /// Where it heads, m; `None` for forecasts without goals.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub goal: Option<Position>,
@@ -197,6 +206,12 @@ fn walker(window: &Window, forecast: &Forecast, truth: &[Position], i: usize) ->
         MomentHypothesis {
             weight: round(forecast.weight(i, k)),
             positions: positions(path),
+            radii: match forecast.regions() {
+                None => Vec::new(),
+                Some(_) => (0..HORIZON)
+                    .map(|t| round(forecast.region_radius(i, k, t, REGION).unwrap_or(0.0)))
+                    .collect(),
+            },
             goal: goal.map(|goal| goal.map(round)),
             decreasing: goal.map(|goal| RolloutStability::of(last, path, goal).decreasing),
             certified: forecast.certified(i, k),
@@ -204,10 +219,11 @@ fn walker(window: &Window, forecast: &Forecast, truth: &[Position], i: usize) ->
     };
     let made_up = window.made_up(i);
     MomentWalker {
-        pedestrian: window.pedestrians()[i].0,
+        pedestrian: window.name(i),
         observed: positions(window.observed(i)),
         truth: positions(truth),
         made_up: (made_up != MadeUp::default()).then_some(made_up),
+        familiarity: forecast.familiarity(i).map(round),
         hypotheses: (0..forecast.hypotheses()).map(hypothesis).collect(),
     }
 }

@@ -107,6 +107,19 @@ pub struct Scores {
     /// Mean distance between the ends of two hypotheses, metres; `None` for one hypothesis.
     #[serde(default)]
     pub end_diversity: Option<f64>,
+    /// Mean of -ln of the weight of the hypothesis whose goal is nearest to the true end, nats; equal weights have ln K. `None` for one
+    /// hypothesis.
+    #[serde(default)]
+    pub weight_log_loss: Option<f64>,
+    /// Share of true positions inside the regions of 50 % and of 90 %, in [0, 1]; `None` for forecasts without regions.
+    #[serde(default)]
+    pub coverage: Option<[f64; 2]>,
+    /// Mean radius of a disc as large as these regions at the last step, metres.
+    #[serde(default)]
+    pub region_radius: Option<[f64; 2]>,
+    /// Mean familiarity of the observed motions, 0 to 1; `None` for forecasters that do not say.
+    #[serde(default)]
+    pub familiarity: Option<f64>,
     /// The walkers by kind of motion, in the order of [`Category::all`](crate::category::Category::all);
     /// categories that nobody is in are left out.
     #[serde(default)]
@@ -213,9 +226,27 @@ impl Scores {
             amv: several.then(|| amv(mean_covariance(scenes, total))),
             diversity: of_several(|w| w.diversity.map(|d| d.path)),
             end_diversity: of_several(|w| w.diversity.map(|d| d.ends)),
+            weight_log_loss: of_several(|w| w.weight_log_loss),
+            coverage: of_all(scenes, total, |w| Some(w.regions?.coverage)),
+            region_radius: of_all(scenes, total, |w| Some(w.regions?.end_radius)),
+            familiarity: of_all(scenes, total, |w| w.familiarity.map(|f| [f])).map(|[f]| f),
             categories: CategoryScores::of(scenes.iter().flat_map(|s| &s.walkers)),
         }
     }
+}
+
+/// The mean of what all pedestrians have; `None` where one has none.
+fn of_all<const N: usize>(
+    scenes: &[SceneScores],
+    pedestrians: f64,
+    of: impl Fn(&WalkerScores) -> Option<[f64; N]>,
+) -> Option<[f64; N]> {
+    let mut walkers = scenes.iter().flat_map(|s| &s.walkers);
+    let sum = walkers.try_fold([0.0; N], |sum, walker| {
+        let more = of(walker)?;
+        Some(std::array::from_fn(|n| sum[n] + more[n]))
+    })?;
+    Some(sum.map(|sum| sum / pedestrians))
 }
 
 fn mean_covariance(scenes: &[SceneScores], pedestrians: f64) -> Covariance {

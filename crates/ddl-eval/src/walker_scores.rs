@@ -12,6 +12,7 @@ use crate::{
         goal::goal_fde,
         kde::kde_nll,
         miss::{MISS_DISTANCES, is_miss},
+        region::{RegionScores, weight_log_loss},
         true_neighbour_collision::collides_with_truth,
     },
 };
@@ -35,6 +36,10 @@ pub(crate) struct WalkerScores {
     pub(crate) kde_nll: Option<f64>,
     pub(crate) distribution: Option<DistributionErrors>,
     pub(crate) diversity: Option<Diversity>,
+    /// -ln of the weight of the hypothesis whose goal is nearest to the true end, nats.
+    pub(crate) weight_log_loss: Option<f64>,
+    pub(crate) regions: Option<RegionScores>,
+    pub(crate) familiarity: Option<f64>,
     pub(crate) categories: Vec<Category>,
 }
 
@@ -63,6 +68,9 @@ impl WalkerScores {
                 kde_nll: kde_nll(scene, i),
                 distribution: DistributionErrors::of(scene, i),
                 diversity: Diversity::of(scene, i),
+                weight_log_loss: weight_log_loss(scene, i),
+                regions: RegionScores::of(scene, i),
+                familiarity: forecast.familiarity(i),
                 categories: Category::of(scene.everybody(), scene.place(i)),
             })
             .collect()

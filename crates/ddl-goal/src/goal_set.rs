@@ -31,6 +31,8 @@ use crate::points::squared_distance;
 pub struct GoalSet {
     goals: Vec<[f64; 2]>,
     weights: Vec<f64>,
+    /// The weights before they were tempered.
+    estimated: Option<Vec<f64>>,
     experts: Vec<Expert>,
 }
 
@@ -48,6 +50,7 @@ impl GoalSet {
         Self {
             goals,
             weights,
+            estimated: None,
             experts,
         }
     }
@@ -69,19 +72,59 @@ impl GoalSet {
         &self.weights
     }
 
+    /// The same set with every goal farther than `radius` (m, not negative) from `centre` drawn to that distance.
+    #[must_use]
+    pub fn within(mut self, centre: [f64; 2], radius: f64) -> Self {
+        for goal in &mut self.goals {
+            let way = [goal[0] - centre[0], goal[1] - centre[1]];
+            let distance = way[0].hypot(way[1]);
+            if distance > radius {
+                *goal = [0, 1].map(|axis| centre[axis] + way[axis] / distance * radius);
+            }
+        }
+        self
+    }
+
+    /// The same goals with flatter or steeper weights: each to the `power` (positive), divided by their sum, and then with the share `uniform` (0
+    /// to 1) of the probability divided equally among all. Order and [`median`](Self::median) stay as they are.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_goal::{GoalSet, HeadingFrame};
+    /// let frame = HeadingFrame::new(&[[0.0, 0.0], [1.0, 0.0]])?;
+    /// let set = GoalSet::of_ends(&frame, &[[4.0, 0.0], [9.0, 0.0]], &[0.8, 0.2], 2)?;
+    /// let flatter = set.tempered(0.5, 0.1); // roots are as 2 to 1
+    /// assert!((flatter.weights()[0] - (0.9 * 2.0 / 3.0 + 0.05)).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn tempered(mut self, power: f64, uniform: f64) -> Self {
+        let powers: Vec<f64> = self
+            .weights
+            .iter()
+            .map(|weight| weight.powf(power))
+            .collect();
+        let total: f64 = powers.iter().sum();
+        let equal = uniform / powers.len().max(1) as f64;
+        let tempered = powers.iter().map(|w| (1.0 - uniform) * w / total + equal);
+        let weights = std::mem::replace(&mut self.weights, tempered.collect());
+        self.estimated.get_or_insert(weights);
+        self
+    }
+
     /// Index of the goal with the largest weight: always 0.
     pub fn most_likely(&self) -> usize {
         0
     }
 
     /// The geometric median of the goals: it minimises the mean distance to them under their weights raised to the power
-    /// [`SHARPNESS`](Self::SHARPNESS). No goal of the set need be there.
+    /// [`SHARPNESS`](Self::SHARPNESS), before they were [tempered](Self::tempered). No goal of the set need be there.
     ///
     /// # Numerics
     /// A goal itself where one outweighs all others, otherwise iterated until a step is below 0.1 mm, at most 100 times: no goal is better.
     pub fn median(&self) -> [f64; 2] {
-        let sharpened: Vec<f64> = self
-            .weights
+        let estimated = self.estimated.as_ref().unwrap_or(&self.weights);
+        let sharpened: Vec<f64> = estimated
             .iter()
             .map(|weight| weight.powf(Self::SHARPNESS))
             .collect();

@@ -16,6 +16,8 @@ pub struct SceneBatch {
     pub(crate) positions: Tensor,
     pub(crate) neighbours: Rc<Neighbours>,
     pub(crate) scene_means: SceneMeans,
+    /// Share of the network's metric in what shapes a step, `[1]` or `[1, P, 1]`.
+    pub(crate) share: Tensor,
 }
 
 impl SceneBatch {
@@ -61,6 +63,7 @@ impl SceneBatch {
                 .f_to_device(device)?,
             scene_means: SceneMeans::new(neighbours.scenes(), device, kind),
             neighbours: Rc::new(neighbours),
+            share: Tensor::ones([1], (kind, device)),
         })
     }
 
@@ -89,6 +92,7 @@ impl SceneBatch {
             positions: self.positions.shallow_clone(),
             neighbours: Rc::clone(&self.neighbours),
             scene_means: self.scene_means.shallow_clone(),
+            share: self.share.shallow_clone(),
         }
     }
 

@@ -50,7 +50,8 @@ impl StarNetwork {
     ///
     /// # Shapes
     /// `goals[w][i]` holds the goals of pedestrian i of window w, as many for every pedestrian; one
-    /// hypothesis a goal, or, with a single goal, one a noise vector.
+    /// hypothesis a goal, or, with a single goal, one a noise vector. `shares[w][i]`, 0 to 1, is the share of the network's
+    /// metric in what shapes the bounded steps of pedestrian i; all of it where there are none.
     ///
     /// # Errors
     /// [`StarError::Shape`] when the goals do not fit the windows, or several goals meet several
@@ -61,7 +62,9 @@ impl StarNetwork {
         goals: &[Vec<Vec<Position>>],
         noise: Noise,
         rule: StepRule,
+        shares: Option<&[Vec<f64>]>,
     ) -> Result<Vec<WindowRollout>, StarError> {
+        check_shares(windows, shares)?;
         let goal_count = check_goals(windows, goals, noise)?;
         let _guard = tch::no_grad_guard();
         let noise = self.noise(noise);
@@ -79,10 +82,10 @@ impl StarNetwork {
             let range = first..last;
             rollouts.extend(self.forecast_batch(
                 &windows[range.clone()],
-                &goals[range],
-                goal_count,
+                (&goals[range.clone()], goal_count),
                 &noise,
                 rule,
+                shares.map(|shares| &shares[range]),
             )?);
             first = last;
         }
@@ -92,10 +95,10 @@ impl StarNetwork {
     fn forecast_batch(
         &self,
         windows: &[Window],
-        goals: &[Vec<Vec<Position>>],
-        goal_count: usize,
+        (goals, goal_count): (&[Vec<Vec<Position>>], usize),
         noise: &NoiseInput,
         rule: StepRule,
+        shares: Option<&[Vec<f64>]>,
     ) -> Result<Vec<WindowRollout>, StarError> {
         // The network sees differences of positions only. They are taken in f64 here, from a point of
         // each scene, so that tracks in map coordinates lose nothing in f32.
@@ -107,7 +110,7 @@ impl StarNetwork {
             .collect();
         let views: Vec<&Window> = local.iter().collect();
         let half_box = self.config().neighbour_box;
-        let batch = SceneBatch::new(
+        let mut batch = SceneBatch::new(
             &views,
             OBSERVED,
             OBSERVED,
@@ -116,6 +119,12 @@ impl StarNetwork {
             self.kind(),
         )?;
         let walkers = batch.walkers();
+        if let Some(shares) = shares {
+            batch.share = Tensor::from_slice(&shares.concat())
+                .f_reshape([1, walkers as i64, 1])?
+                .f_to_kind(self.kind())?
+                .f_to_device(self.device())?;
+        }
         let mut flat = Vec::with_capacity(goal_count * walkers * 2);
         for k in 0..goal_count {
             for (goals, &origin) in goals.iter().zip(&origins) {
@@ -193,6 +202,21 @@ fn origin(window: &Window) -> Position {
 
 fn relative(position: Position, origin: Position) -> Position {
     [position[0] - origin[0], position[1] - origin[1]]
+}
+
+fn check_shares(windows: &[Window], shares: Option<&[Vec<f64>]>) -> Result<(), StarError> {
+    let Some(shares) = shares else {
+        return Ok(());
+    };
+    let lengths = windows.iter().map(Window::len);
+    if lengths.eq(shares.iter().map(Vec::len)) {
+        return Ok(());
+    }
+    Err(StarError::Shape {
+        operation: "forecast",
+        expected: format!("a share for every pedestrian of {} windows", windows.len()),
+        got: format!("those of {}", shares.len()),
+    })
 }
 
 fn check_goals(

@@ -1,9 +1,12 @@
-//! A walker's own frame: the first axis points from where it was last observed to its goal.
+//! A pedestrian's own frame: the first axis points from where it was last observed to its goal, and lengths are in
+//! its own [unit](crate::unit).
 //!
-//! What the network reads and emits in this frame turns with the walker and its goal, so that one walk in one direction
-//! teaches it all directions.
+//! What the network reads and emits in this frame turns with the pedestrian and its goal, so that one walk in one direction
+//! teaches it all directions; and a runner looks to it like somebody who walks fast.
 
 use crate::numbers::numbers;
+use crate::unit;
+use ddl_data::OBSERVED;
 use tch::Tensor;
 
 /// Nearer to its goal than this (metres) a walker has the axes of the world.
@@ -11,14 +14,15 @@ const SMALLEST_DISTANCE: f64 = 1e-6;
 /// Squares of pivots below this count as this, in m/s.
 const SMALLEST_PIVOT: f64 = 1e-12;
 
-/// The first axis of every walker in every hypothesis, as cosine and sine.
+/// The first axis of every pedestrian in every hypothesis, as cosine and sine, and its unit.
 ///
 /// # Shapes
-/// `[G, P, 1]` each.
+/// `[G, P, 1]`, the unit `[1, P, 1]` (no unit: metres a metre).
 #[derive(Debug)]
 pub(crate) struct GoalFrame {
     cos: Tensor,
     sin: Tensor,
+    unit: Tensor,
 }
 
 /// The frame of one walker in one hypothesis, on plain numbers.
@@ -26,13 +30,14 @@ pub(crate) struct GoalFrame {
 pub(crate) struct FrameNumbers {
     cos: f32,
     sin: f32,
+    unit: f32,
 }
 
 impl GoalFrame {
     /// # Shapes
-    /// `last` `[1, P, 2]`, last observed positions; `goals` `[G, P, 2]`.
-    pub(crate) fn new(last: &Tensor, goals: &Tensor) -> Self {
-        let towards = goals - last;
+    /// `observed` `[8, P, 2]`; `goals` `[G, P, 2]`; `time_step` in seconds.
+    pub(crate) fn new(observed: &Tensor, goals: &Tensor, time_step: f64) -> Self {
+        let towards = goals - observed.narrow(0, OBSERVED as i64 - 1, 1);
         let distance = towards.norm_scalaropt_dim(2, [-1i64].as_slice(), true);
         let near = distance.lt(SMALLEST_DISTANCE);
         let along = |axis: i64, near_goal: f64| {
@@ -41,10 +46,11 @@ impl GoalFrame {
         Self {
             cos: along(0, 1.0),
             sin: along(1, 0.0),
+            unit: unit::of_tensor(observed, time_step),
         }
     }
 
-    /// Vectors of the world in the walkers' axes.
+    /// Vectors of the world in the pedestrians' axes and units.
     ///
     /// # Shapes
     /// `[.., P, 2]`, broadcast with `[G, P, 1]`.
@@ -56,7 +62,7 @@ impl GoalFrame {
                 &self.cos * &y - &self.sin * &x,
             ],
             -1,
-        )
+        ) / &self.unit
     }
 
     /// The reverse of [`of_world`](Self::of_world).
@@ -68,7 +74,7 @@ impl GoalFrame {
                 &self.cos * &y + &self.sin * &x,
             ],
             -1,
-        )
+        ) * &self.unit
     }
 
     /// The lower-triangular factor of the same metric in the world: L' L'^T = R^T L L^T R.
@@ -92,12 +98,13 @@ impl GoalFrame {
 
     /// The same on plain numbers, for every walker of every one of `hypotheses`.
     pub(crate) fn numbers(&self, hypotheses: i64) -> Vec<FrameNumbers> {
-        let both = Tensor::cat(&[&self.cos, &self.sin], -1).expand([hypotheses, -1, -1], false);
-        let both = numbers(&both);
-        let (frames, _) = both.as_chunks::<2>();
+        let each = |x: &Tensor| x.expand([hypotheses, -1, -1], false);
+        let all = Tensor::cat(&[each(&self.cos), each(&self.sin), each(&self.unit)], -1);
+        let all = numbers(&all);
+        let (frames, _) = all.as_chunks::<3>();
         frames
             .iter()
-            .map(|&[cos, sin]| FrameNumbers { cos, sin })
+            .map(|&[cos, sin, unit]| FrameNumbers { cos, sin, unit })
             .collect()
     }
 }
@@ -105,19 +112,19 @@ impl GoalFrame {
 impl FrameNumbers {
     /// [`GoalFrame::of_world`] of one vector.
     pub(crate) fn of_world(self, [x, y]: [f32; 2]) -> [f32; 2] {
-        let Self { cos, sin } = self;
-        [cos * x + sin * y, cos * y - sin * x]
+        let Self { cos, sin, unit } = self;
+        [(cos * x + sin * y) / unit, (cos * y - sin * x) / unit]
     }
 
     /// [`GoalFrame::to_world`] of one vector.
     pub(crate) fn to_world(self, [x, y]: [f32; 2]) -> [f32; 2] {
-        let Self { cos, sin } = self;
-        [cos * x - sin * y, cos * y + sin * x]
+        let Self { cos, sin, unit } = self;
+        [(cos * x - sin * y) * unit, (cos * y + sin * x) * unit]
     }
 
     /// [`GoalFrame::factors_to_world`] of one factor.
     pub(crate) fn factor_to_world(self, [a, b, c]: [f32; 3]) -> [f32; 3] {
-        let Self { cos, sin } = self;
+        let Self { cos, sin, .. } = self;
         let (x1, x2) = (cos * a - sin * b, -(sin * c));
         let (y1, y2) = (sin * a + cos * b, cos * c);
         let first = (x1 * x1 + x2 * x2).max(SMALLEST_PIVOT as f32).sqrt();
@@ -135,11 +142,11 @@ mod tests {
     fn the_metric_turns_with_the_frame() {
         tch::manual_seed(5);
         let options = (Kind::Double, Device::Cpu);
-        let (last, goals) = (
-            Tensor::randn([1, 40, 2], options),
+        let (observed, goals) = (
+            Tensor::randn([8, 40, 2], options),
             Tensor::randn([3, 40, 2], options),
         );
-        let frame = GoalFrame::new(&last, &goals);
+        let frame = GoalFrame::new(&observed, &goals, 0.4);
         let factors = Tensor::randn([3, 40, 3], options);
         let u = Tensor::randn([3, 40, 2], options);
         let turned = frame.factors_to_world(&factors);
@@ -151,7 +158,7 @@ mod tests {
 
         let [turned, factors, own, world] = [&turned, &factors, &frame.of_world(&u), &u].map(plain);
         let single = |x: &Tensor| x.to_kind(Kind::Float);
-        let frame = GoalFrame::new(&single(&last), &single(&goals));
+        let frame = GoalFrame::new(&single(&observed), &single(&goals), 0.4);
         for (i, each) in frame.numbers(3).into_iter().enumerate() {
             let factor = each.factor_to_world(std::array::from_fn(|j| factors[3 * i + j]));
             for (j, number) in factor.into_iter().enumerate() {
@@ -169,7 +176,7 @@ mod tests {
         let options = (Kind::Double, Device::Cpu);
         let last = Tensor::from_slice(&[1.0, 2.0, 5.0, 5.0]).reshape([1, 2, 2]);
         let goals = Tensor::from_slice(&[1.0, 4.0, 5.0, 5.0]).reshape([1, 2, 2]);
-        let frame = GoalFrame::new(&last, &goals);
+        let frame = GoalFrame::new(&last.expand([8, -1, -1], false), &goals, 0.4);
         let ahead = frame.of_world(&(&goals - &last));
         assert_eq!(
             Vec::<f64>::try_from(ahead.reshape([-1])).unwrap_or_default(),

@@ -6,9 +6,10 @@ mod on_rows;
 use crate::batch::SceneBatch;
 use crate::config::Frame;
 use crate::emission::NoiseInput;
-use crate::flow::{FlowConstants, StepRule};
+use crate::flow::{FlowConstants, StepBounds, StepRule};
 use crate::goal_frame::GoalFrame;
 use crate::layers::Mode;
+use crate::own_motion;
 use crate::pass::Pass;
 use crate::star::{GraphMemory, StarNetwork};
 use crate::tokens::Tokens;
@@ -62,7 +63,7 @@ impl StarNetwork {
         let spatial = self
             .spatial_tokens(&centred, &seen(0..steps), pass)
             .each_entry(pass);
-        let course = self.course(batch, goals);
+        let course = self.course(batch, goals, StepRule::Euler);
         let before = Tensor::cat(
             &[
                 positions.narrow(0, 0, 1),
@@ -84,7 +85,7 @@ impl StarNetwork {
             })
             .collect();
         let emitted = course.to_world(&self.emission(noise).of(&Tokens::joined(&tokens, pass)));
-        course.next_positions(&positions, goals, &emitted, self.flow(StepRule::Euler))
+        course.next_positions(&positions, goals, &emitted, (0, steps))
     }
 
     /// Forecast positions: 8 frames observed, then every forecast is the input of the next step.
@@ -125,7 +126,7 @@ impl StarNetwork {
         let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
         let last = OBSERVED as i64 - 1;
         let hypotheses = goals.size()[0].max(noise.count());
-        let course = self.course(batch, goals);
+        let course = self.course(batch, goals, rule);
         let spatial = self.spatial_tokens(
             &Tokens::of(&centre(batch, &observed), pass),
             &batch.neighbours.during(0..OBSERVED),
@@ -151,7 +152,7 @@ impl StarNetwork {
         let seen = batch.neighbours.during(OBSERVED - 1..OBSERVED);
         let emission = self.emission(noise);
         if let (Tokens::Rows(_), false) = (&token, pass.is_taped()) {
-            return OnRows::new(batch, goals, &course, hypotheses, rule).walk(
+            return OnRows::new(batch, goals, &course, hypotheses).walk(
                 self,
                 batch,
                 &emission,
@@ -171,7 +172,8 @@ impl StarNetwork {
         for t in OBSERVED..OBSERVED + horizon {
             let emitted = course.to_world(&emission.of(&Tokens::joined(from_ref(&token), pass)));
             let before = position.detach();
-            position = course.next_positions(&position, goals, &emitted, self.flow(rule));
+            let steps = (t - OBSERVED, OBSERVED + horizon - t);
+            position = course.next_positions(&position, goals, &emitted, steps);
             path.push(position.shallow_clone());
             factors.push(emitted);
             if t + 1 < OBSERVED + horizon {
@@ -195,8 +197,10 @@ impl StarNetwork {
     /// # Shapes
     /// `batch` of at least 8 frames, unless the network reads positions relative to the goal in the world's frame; `goals`
     /// `[.., P, 2]`.
-    fn course(&self, batch: &SceneBatch, goals: &Tensor) -> Course {
+    fn course(&self, batch: &SceneBatch, goals: &Tensor, rule: StepRule) -> Course {
         let config = self.config();
+        let time_step = config.time_step;
+        let observed = || batch.positions.narrow(0, 0, OBSERVED as i64);
         let last = || batch.positions.narrow(0, OBSERVED as i64 - 1, 1);
         let goals = if goals.dim() == 2 {
             goals.unsqueeze(0)
@@ -205,7 +209,7 @@ impl StarNetwork {
         };
         let frame = match config.frame {
             Frame::World => None,
-            Frame::Goal => Some(GoalFrame::new(&last(), &goals)),
+            Frame::Goal => Some(GoalFrame::new(&observed(), &goals, time_step)),
         };
         Course {
             reference: if config.variant.goal_shift() {
@@ -215,16 +219,19 @@ impl StarNetwork {
             },
             frame,
             dynamics: config.variant.dynamics(),
-            time_step: config.time_step,
-        }
-    }
-
-    fn flow(&self, rule: StepRule) -> FlowConstants {
-        let config = self.config();
-        FlowConstants {
-            sigma: config.sigma,
-            time_step: config.time_step,
-            rule,
+            constants: FlowConstants {
+                sigma: config.sigma,
+                time_step,
+            },
+            bounds: match rule {
+                StepRule::Euler => None,
+                StepRule::Bounded => Some(StepBounds {
+                    top_speed: own_motion::top_speeds(&observed(), time_step),
+                    velocity: own_motion::velocities(&observed(), time_step),
+                    share: batch.share.shallow_clone(),
+                    absolute: config.frame == Frame::World,
+                }),
+            },
         }
     }
 }

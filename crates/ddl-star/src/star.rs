@@ -18,7 +18,7 @@ use crate::seed::{Stage, stream};
 use crate::spatial::SpatialEncoder;
 use crate::temporal::{TemporalEncoder, TemporalMemory};
 use crate::tokens::Tokens;
-use tch::{Device, Kind};
+use tch::{Device, Kind, Tensor};
 
 /// STAR with the three outputs (a, b, c) of the Cholesky factor (paper eq. 12), or two for the
 /// variants without dynamics.
@@ -37,6 +37,19 @@ pub struct StarNetwork {
     temporal_encoder_2: TemporalEncoder,
     fusion: Linear,
     output: Linear,
+}
+
+/// How much smaller the first weights of an output layer are that begins near L = I.
+const NEAR_NEUTRAL: f64 = 0.1;
+
+/// Sets the output layer to L = I and little else: the neutral motion, from which training departs.
+fn start_neutral(output: &Linear) {
+    let _guard = tch::no_grad_guard();
+    let identity = Tensor::from_slice(&[1.0, 0.0, 1.0])
+        .to_kind(output.bias.kind())
+        .to_device(output.bias.device());
+    output.bias.shallow_clone().copy_(&identity);
+    let _ = output.weight.shallow_clone().g_mul_scalar_(NEAR_NEUTRAL);
 }
 
 /// What both temporal encoders remember of the frames so far.
@@ -95,6 +108,9 @@ impl StarNetwork {
         let output = Linear::new(init, "output_layer", output_inputs, config.output_width());
         let fusion = Linear::new(init, "fusion_layer", 2 * width, width);
         let parameters = initializer.finish();
+        if config.variant.dynamics() && config.frame == Frame::Goal {
+            start_neutral(&output);
+        }
         Ok(Self {
             config,
             parameters,

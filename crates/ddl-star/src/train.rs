@@ -304,7 +304,7 @@ impl Trainer {
                 Ok(mean_squared_distance(&forecast, &after(1)?))
             }
             Objective::Walk => {
-                let (goals, steps) = (goals.unsqueeze(0), (HORIZON, StepRule::StableEuler));
+                let (goals, steps) = (goals.unsqueeze(0), (HORIZON, StepRule::Bounded));
                 let noise = NoiseInput::Expected;
                 let walk = self
                     .network

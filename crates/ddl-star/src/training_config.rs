@@ -157,8 +157,8 @@ impl TrainingConfig {
         };
         Self {
             objective,
-            epochs: 40,
-            learning_rate: 3e-3,
+            epochs: 20,
+            learning_rate: 1e-3,
             learning_rate_schedule: LearningRateSchedule::Cosine,
             batch_walkers: 64,
             mirror: true,

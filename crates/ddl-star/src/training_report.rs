@@ -24,7 +24,7 @@ pub struct StepReport {
 /// One line of `metrics.jsonl`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EpochReport {
-    /// Counted from 1.
+    /// Counted from 1. Number 0, where a caller measured the network before its first step, has neither loss nor batches.
     pub epoch: usize,
     /// Mean of the batches' losses, square metres.
     pub loss: f64,

@@ -3,8 +3,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use ddl_dynamics::{Attractor, CholeskyMetric, Euler, NaturalGradientFlow, StableEuler, rollout};
-use ddl_star::{FlowConstants, StepRule, natural_gradient_step};
+use ddl_dynamics::{
+    Attractor, CholeskyMetric, Euler, MotionBounds, NaturalGradientFlow, StableEuler, StepTime,
+    rollout,
+};
+use ddl_star::{FlowConstants, StepBounds, bounded_step, natural_gradient_step};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 use tch::{Kind, Tensor};
@@ -13,32 +16,88 @@ const SIGMA: f64 = 1e-8;
 /// Steps of a forecast.
 const HORIZON: i64 = 12;
 
-fn twin(p: [f64; 2], goal: [f64; 2], factor: [f64; 3], dt: f64, rule: StepRule) -> [f64; 2] {
+/// Top speed, own velocity and share of bounded steps, and whether metrics are in m/s.
+type Bounds = (f64, [f64; 2], f64, bool);
+
+/// A plain Euler step, or one within bounds with that much time left.
+fn tensor_step(
+    p: &Tensor,
+    goal: &Tensor,
+    factor: &Tensor,
+    (dt, bounds): (f64, Option<(Bounds, StepTime<f64>)>),
+) -> Tensor {
     let constants = FlowConstants {
         sigma: SIGMA,
         time_step: dt,
-        rule,
     };
-    let next = natural_gradient_step(
-        &Tensor::from_slice(&p),
-        &Tensor::from_slice(&goal),
-        &Tensor::from_slice(&factor),
-        constants,
-    );
+    match bounds {
+        None => natural_gradient_step(p, goal, factor, constants),
+        Some(((top, own, share, absolute), time)) => {
+            let like = |numbers: &[f64]| Tensor::from_slice(numbers).to_kind(p.kind());
+            let bounds = StepBounds {
+                top_speed: like(&[top]),
+                velocity: like(&own),
+                share: like(&[share]),
+                absolute,
+            };
+            bounded_step(p, goal, factor, constants, &bounds, time)
+        }
+    }
+}
+
+fn twin(
+    p: [f64; 2],
+    goal: [f64; 2],
+    factor: [f64; 3],
+    how: (f64, Option<(Bounds, StepTime<f64>)>),
+) -> [f64; 2] {
+    let [p, goal] = [p, goal].map(|place| Tensor::from_slice(&place));
+    let next = tensor_step(&p, &goal, &Tensor::from_slice(&factor), how);
     let next: Vec<f64> = Vec::try_from(next).unwrap();
     [next[0], next[1]]
 }
 
-fn oracle(p: [f64; 2], goal: [f64; 2], [a, b, c]: [f64; 3], dt: f64, rule: StepRule) -> [f64; 2] {
+fn oracle(
+    p: [f64; 2],
+    goal: [f64; 2],
+    [a, b, c]: [f64; 3],
+    (dt, bounds): (f64, Option<(Bounds, StepTime<f64>)>),
+) -> [f64; 2] {
     let attractor = Attractor::new(Vector2::from(goal)).unwrap();
     let metric = CholeskyMetric::planar(a, b, c, SIGMA).unwrap();
-    let flow = NaturalGradientFlow::new(attractor, metric);
     let start = Vector2::from(p);
-    let path = match rule {
-        StepRule::Euler => rollout(&flow, &Euler, start, dt, 1),
-        StepRule::StableEuler => rollout(&flow, &StableEuler, start, dt, 1),
+    let path = match bounds {
+        None => rollout(
+            &NaturalGradientFlow::new(attractor, metric),
+            &Euler,
+            start,
+            dt,
+            1,
+        ),
+        Some(((top, own, share, absolute), time)) => {
+            let bounds = MotionBounds::new(top, own.into(), share).unwrap();
+            let bounds = if absolute { bounds.absolute() } else { bounds };
+            let metric = bounds.shape(&metric, &(attractor.goal() - start), time);
+            rollout(
+                &NaturalGradientFlow::new(attractor, metric),
+                &StableEuler,
+                start,
+                dt,
+                1,
+            )
+        }
     };
     path.unwrap()[1].into()
+}
+
+/// Bounds of any pedestrian, and a step of its twelve.
+fn bounds(dt: f64) -> impl Strategy<Value = (Bounds, StepTime<f64>)> {
+    let own = prop::array::uniform2(-4.0..4.0);
+    let draw = (0.5..8.0, own, 0.0..=1.0, any::<bool>(), 0..12_usize);
+    draw.prop_map(move |(top, own, share, absolute, done)| {
+        let left = 12 - done;
+        ((top, own, share, absolute), StepTime { done, left, dt })
+    })
 }
 
 /// Anywhere in a scene; sometimes the origin, where offsets of 1e-12 m keep all their digits.
@@ -70,14 +129,9 @@ fn goal_and_walker() -> impl Strategy<Value = ([f64; 2], [f64; 2])> {
 fn gradients_of_a_chain(
     walkers: &[([f64; 2], [f64; 2])],
     factors: &[f64],
-    rule: StepRule,
+    bounds: Option<Bounds>,
     kind: Kind,
 ) -> [Tensor; 2] {
-    let constants = FlowConstants {
-        sigma: SIGMA,
-        time_step: 0.4,
-        rule,
-    };
     let count = walkers.len() as i64;
     let leaf = |numbers: &[f64], shape: &[i64]| {
         let tensor = Tensor::from_slice(numbers).reshape(shape);
@@ -92,7 +146,18 @@ fn gradients_of_a_chain(
     let mut positions = starts.shallow_clone();
     let mut path = Vec::new();
     for t in 0..HORIZON {
-        positions = natural_gradient_step(&positions, &goals, &factors.get(t), constants);
+        let (done, left) = (t as usize, (HORIZON - t) as usize);
+        let bounds = bounds.map(|bounds| {
+            (
+                bounds,
+                StepTime {
+                    done,
+                    left,
+                    dt: 0.4,
+                },
+            )
+        });
+        positions = tensor_step(&positions, &goals, &factors.get(t), (0.4, bounds));
         path.push(positions.shallow_clone());
     }
     // off the goals, so that the loss has a slope there
@@ -113,11 +178,12 @@ proptest! {
         (goal, p) in goal_and_walker(),
         factor in prop::array::uniform3(-3.0..3.0),
         dt in 1e-3..10.0f64,
+        bounds in bounds(0.4),
     ) {
-        for rule in [StepRule::Euler, StepRule::StableEuler] {
-            let (ours, theirs) = (twin(p, goal, factor, dt, rule), oracle(p, goal, factor, dt, rule));
+        for how in [(dt, None), (0.4, Some(bounds))] {
+            let (ours, theirs) = (twin(p, goal, factor, how), oracle(p, goal, factor, how));
             let difference = (ours[0] - theirs[0]).hypot(ours[1] - theirs[1]);
-            prop_assert!(difference < 1e-6, "{rule:?}: {ours:?} against {theirs:?}");
+            prop_assert!(difference < 1e-6, "{how:?}: {ours:?} against {theirs:?}");
         }
     }
 
@@ -125,14 +191,16 @@ proptest! {
     fn no_gradient_of_a_step_is_nan(
         (goal, p) in goal_and_walker(),
         factor in prop::array::uniform3(-3.0..3.0),
+        bounds in bounds(0.4),
     ) {
-        for rule in [StepRule::Euler, StepRule::StableEuler] {
+        for how in [(0.4, None), (0.4, Some(bounds))] {
             let p = Tensor::from_slice(&p).set_requires_grad(true);
             let l = Tensor::from_slice(&factor).set_requires_grad(true);
-            let constants = FlowConstants { sigma: SIGMA, time_step: 0.4, rule };
-            let next = natural_gradient_step(&p, &Tensor::from_slice(&goal), &l, constants);
-            (next - 0.5).square().sum(Kind::Double).backward();
-            prop_assert!(are_numbers(&p.grad()) && are_numbers(&l.grad()), "{rule:?}");
+            let next = tensor_step(&p, &Tensor::from_slice(&goal), &l, how);
+            // the last step does not depend on the factor
+            let loss = (next - 0.5).square().sum(Kind::Double) + l.sum(Kind::Double) * 0.0;
+            loss.backward();
+            prop_assert!(are_numbers(&p.grad()) && are_numbers(&l.grad()), "{how:?}");
         }
     }
 }
@@ -149,31 +217,34 @@ proptest! {
         walkers in prop::collection::vec(goal_and_walker(), SIDE_BY_SIDE),
         factors in prop::collection::vec(-3.0..3.0f64, 3 * HORIZON as usize * SIDE_BY_SIDE),
     ) {
-        for rule in [StepRule::Euler, StepRule::StableEuler] {
+        for bounds in [None, Some((2.15, [1.0, -0.5], 1.0, false))] {
             for kind in [Kind::Double, Kind::Float] {
-                for gradient in gradients_of_a_chain(&walkers, &factors, rule, kind) {
-                    prop_assert!(are_numbers(&gradient), "{rule:?}, {kind:?}: {gradient}");
+                for gradient in gradients_of_a_chain(&walkers, &factors, bounds, kind) {
+                    prop_assert!(are_numbers(&gradient), "{bounds:?}, {kind:?}: {gradient}");
                 }
             }
         }
     }
 }
 
-/// L = 1.25^(1/2) I walks 0.5 m a step: at the goal after 2 m, and there for the other eight steps.
+/// A metric within the bounds learns: a longer factor at the first step changes where the walk leads, also through the steps after it.
 #[test]
-fn gradients_reach_back_from_beyond_the_arrival() {
-    let round = 1.25_f64.sqrt();
-    let factors: Vec<f64> = [round, 0.0, round].repeat(HORIZON as usize);
+fn gradients_reach_back_to_the_first_step() {
+    let factors: Vec<f64> = [1.1, 0.2, 0.9].repeat(HORIZON as usize);
     let [start, shape] = gradients_of_a_chain(
-        &[([0.0, 0.0], [2.0, 0.0])],
+        &[([0.0, 0.0], [4.8, 0.0])],
         &factors,
-        StepRule::StableEuler,
+        Some((2.15, [1.0, 0.0], 1.0, false)),
         Kind::Double,
     );
     assert!(
         are_numbers(&start) && are_numbers(&shape),
         "{start} {shape}"
     );
-    // before the arrival a longer factor shortens the way left
     assert!(shape.get(0).abs().max().double_value(&[]) > 1e-3, "{shape}");
+    // the last step ends on the goal, whatever was emitted
+    assert!(
+        shape.get(HORIZON - 1).abs().max().double_value(&[]) < 1e-12,
+        "{shape}"
+    );
 }

@@ -3,10 +3,14 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use ddl_data::{Dataset, HORIZON, OBSERVED, Position, Window, WindowRule};
-use ddl_dynamics::{Attractor, CholeskyMetric, Euler, NaturalGradientFlow, StableEuler, rollout};
+use ddl_dynamics::{
+    Attractor, CholeskyMetric, Euler, NaturalGradientFlow, StableEuler, StepTime, rollout,
+};
 use ddl_star::{
     ComputeDevice, DeviceChoice, Noise, StarConfig, StarError, StarNetwork, StepRule, Variant,
+    motion_bounds,
 };
+use nalgebra::Vector2;
 
 fn network(variant: Variant) -> StarNetwork {
     ddl_star::set_threads(1);
@@ -59,7 +63,7 @@ fn forecasts_move_with_the_scene_even_to_map_coordinates() {
         let network = network(variant);
         let forecast = |windows: &[Window], goals: &[Vec<Vec<Position>>]| {
             network
-                .forecast_windows(windows, goals, Noise::Expected, StepRule::StableEuler)
+                .forecast_windows(windows, goals, Noise::Expected, StepRule::Bounded, None)
                 .unwrap()
         };
         for (near, far) in forecast(&windows, &goals)
@@ -80,15 +84,38 @@ fn distance(a: Position, b: Position) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// One step of `ddl-dynamics` in f64, with an emitted factor.
-fn step(from: Position, goal: Position, [a, b, c]: [f64; 3], rule: StepRule) -> Position {
+/// Step `done` of `ddl-dynamics` in f64, with an emitted factor, of a pedestrian that was observed so.
+fn step(
+    (from, goal): (Position, Position),
+    [a, b, c]: [f64; 3],
+    rule: StepRule,
+    (observed, done): (&[Position], usize),
+) -> Position {
     let config = StarConfig::published(Variant::Full);
+    let (start, dt): (Vector2<f64>, f64) = (from.into(), config.time_step);
+    let attractor = Attractor::new(goal.into()).unwrap();
     let metric = CholeskyMetric::planar(a, b, c, config.sigma).unwrap();
-    let flow = NaturalGradientFlow::new(Attractor::new(goal.into()).unwrap(), metric);
-    let (start, dt) = (from.into(), config.time_step);
     match rule {
-        StepRule::Euler => rollout(&flow, &Euler, start, dt, 1),
-        StepRule::StableEuler => rollout(&flow, &StableEuler, start, dt, 1),
+        StepRule::Euler => rollout(
+            &NaturalGradientFlow::new(attractor, metric),
+            &Euler,
+            start,
+            dt,
+            1,
+        ),
+        StepRule::Bounded => {
+            let left = HORIZON - done;
+            let towards = attractor.goal() - start;
+            let bounds = motion_bounds(observed, dt, 1.0).absolute(); // of the published frame
+            let metric = bounds.shape(&metric, &towards, StepTime { done, left, dt });
+            rollout(
+                &NaturalGradientFlow::new(attractor, metric),
+                &StableEuler,
+                start,
+                dt,
+                1,
+            )
+        }
     }
     .unwrap()[1]
         .into()
@@ -99,10 +126,10 @@ fn step(from: Position, goal: Position, [a, b, c]: [f64; 3], rule: StepRule) -> 
 fn the_factors_are_those_of_the_steps() {
     let (windows, goals) = scene();
     for variant in [Variant::Full, Variant::NoGoalShift] {
-        for rule in [StepRule::Euler, StepRule::StableEuler] {
+        for rule in [StepRule::Euler, StepRule::Bounded] {
             let mut compared = 0;
             let rollouts = network(variant)
-                .forecast_windows(&windows, &goals, Noise::Expected, rule)
+                .forecast_windows(&windows, &goals, Noise::Expected, rule, None)
                 .unwrap();
             for ((window, goals), rollout) in windows.iter().zip(&goals).zip(&rollouts) {
                 let factors = rollout.factors.as_ref().unwrap();
@@ -113,9 +140,10 @@ fn the_factors_are_those_of_the_steps() {
                 for (pair, (path, factors)) in shaped.enumerate() {
                     let (i, k) = (pair / 3, pair % 3);
                     let mut here = window.observed(i)[OBSERVED - 1];
-                    for (&next, &factor) in path.iter().zip(factors) {
+                    for (done, (&next, &factor)) in path.iter().zip(factors).enumerate() {
                         let goal = goals[i][k];
-                        let expected = step(here, goal, factor, rule);
+                        let seen = (window.observed(i), done);
+                        let expected = step((here, goal), factor, rule, seen);
                         let off = distance(next, expected);
                         // next to the goal, rounding decides where a plain step leads to
                         let undecided = rule == StepRule::Euler && distance(here, goal) < 1e-2;
@@ -134,7 +162,7 @@ fn the_factors_are_those_of_the_steps() {
     }
     for variant in [Variant::NoDynamics, Variant::Star] {
         let rollouts = network(variant)
-            .forecast_windows(&windows, &goals, Noise::Expected, StepRule::StableEuler)
+            .forecast_windows(&windows, &goals, Noise::Expected, StepRule::Bounded, None)
             .unwrap();
         assert!(rollouts.iter().all(|rollout| rollout.factors.is_none()));
     }
@@ -146,10 +174,21 @@ fn goals_that_do_not_fit_the_windows_are_refused() {
     let network = network(Variant::Full);
     let refuse = |goals: &[Vec<Vec<Position>>], noise: Noise| {
         let error = network
-            .forecast_windows(&windows, goals, noise, StepRule::Euler)
+            .forecast_windows(&windows, goals, noise, StepRule::Euler, None)
             .unwrap_err();
         assert!(matches!(error, StarError::Shape { .. }), "{error}");
     };
+    let shares = vec![vec![1.0]; windows.len() + 1];
+    let error = network
+        .forecast_windows(
+            &windows,
+            &goals,
+            Noise::Expected,
+            StepRule::Bounded,
+            Some(&shares),
+        )
+        .unwrap_err();
+    assert!(matches!(error, StarError::Shape { .. }), "{error}");
     refuse(&goals[1..], Noise::Expected);
     refuse(&goals, Noise::Draws { count: 2, seed: 1 });
     refuse(&goals, Noise::Draws { count: 0, seed: 1 });

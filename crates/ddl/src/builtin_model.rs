@@ -1,7 +1,9 @@
 //! The models that come with the program.
 
+use crate::familiarity::TrainingMotions;
 use crate::model_source::ModelSource;
-use crate::{DdlError, RunConfig};
+use crate::{DdlError, RunConfig, packed_model};
+use ddl_data::Window;
 use std::fmt;
 use std::str::FromStr;
 
@@ -56,6 +58,19 @@ impl BuiltinModel {
     /// Never, as long as the program was built from files that belong together; a test holds that.
     pub fn config(self) -> Result<RunConfig, DdlError> {
         ModelSource::Builtin(self).config()
+    }
+
+    /// How much the observed motions of these windows are like those that the model was trained on, one list a window: as
+    /// [`GoalModel::familiarity`](crate::GoalModel::familiarity), without loading the networks.
+    ///
+    /// # Errors
+    /// Never, as long as the program was built from files that belong together; a test holds that.
+    pub fn familiarity(self, windows: &[Window]) -> Result<Vec<Vec<f64>>, DdlError> {
+        let source = ModelSource::Builtin(self);
+        let (config, motions) = packed_model::motions(self.bytes(), &source)?;
+        let time_step = config.star.time_step;
+        let of = |window: &Window| TrainingMotions::of_window(motions.as_ref(), window, time_step);
+        Ok(windows.iter().map(of).collect())
     }
 
     /// The packed model.

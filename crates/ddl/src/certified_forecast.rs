@@ -1,11 +1,12 @@
 //! A forecast with the evidence, for each of its hypotheses, that it goes to its goal.
 
+use crate::calibration::Calibration;
 use crate::clearance::Clearance;
 use crate::walk::{Course, Gait, Walk};
-use ddl_data::{HORIZON, OBSERVED, Position, Window};
-use ddl_dynamics::{DynamicsError, LyapunovCertificate, Violation};
+use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
+use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds, Violation};
 use ddl_eval::{Forecast, ForecastError};
-use ddl_star::{StarConfig, Variant};
+use ddl_star::{Frame, StarConfig, Variant, motion_bounds};
 
 /// A forecast whose every hypothesis carries a Lyapunov certificate.
 ///
@@ -96,8 +97,8 @@ pub enum CertificateError {
         recording: String,
         /// First frame of the window.
         start_frame: i64,
-        /// The pedestrian, as the recording numbers it.
-        pedestrian: i64,
+        /// The pedestrian, as the recording names it.
+        pedestrian: PedestrianName,
         /// Index of the hypothesis.
         hypothesis: usize,
         /// What is wrong, and in which step.
@@ -117,6 +118,10 @@ pub(crate) struct Walked<'a> {
     pub(crate) rolled_out: Vec<Position>,
     /// `[N][K][12]`: (a, b, c) of the factor of P; `None` where there is no flow.
     pub(crate) factors: Option<Vec<[f64; 3]>>,
+    /// N: share of the network's metric in what shapes a pedestrian's steps.
+    pub(crate) shares: Vec<f64>,
+    /// N: how familiar the observed motions are; `None` where that is not asked.
+    pub(crate) familiarity: Option<Vec<f64>>,
     /// `[N][K]`
     pub(crate) weights: Vec<f64>,
     /// `[N][K]`
@@ -129,10 +134,31 @@ impl Walked<'_> {
         if self.factors.is_some() {
             return Ok(self.certified()?.forecast);
         }
+        let positions = self.rolled_out.clone();
+        self.at(positions)
+    }
+
+    /// The forecast of these positions, with its spread where there are several hypotheses.
+    fn at(&self, positions: Vec<Position>) -> Result<Forecast, ForecastError> {
         let (pedestrians, hypotheses) = (self.window.len(), self.hypotheses);
-        let (positions, goals) = (self.rolled_out, Some(self.goals));
-        let forecast = Forecast::new(pedestrians, hypotheses, positions, self.weights, goals);
-        Ok(forecast?)
+        let (weights, goals) = (self.weights.clone(), Some(self.goals.clone()));
+        let forecast = Forecast::new(pedestrians, hypotheses, positions, weights, goals)?;
+        let Some(familiarity) = &self.familiarity else {
+            return Ok(forecast);
+        };
+        let forecast = forecast.with_familiarity(familiarity.clone())?;
+        if hypotheses == 1 {
+            return Ok(forecast);
+        }
+        let calibration = Calibration::fitted();
+        let goals = self.goals.chunks_exact(hypotheses);
+        let pairs = goals.zip(self.weights.chunks_exact(hypotheses)).enumerate();
+        let spread = pairs
+            .flat_map(|(i, goals)| {
+                calibration.spread(self.window.observed(i), goals, self.config.time_step)
+            })
+            .collect();
+        Ok(forecast.with_spread(spread, Calibration::shared_regions())?)
     }
 
     /// The forecast with a certificate for each hypothesis.
@@ -152,10 +178,7 @@ impl Walked<'_> {
             .iter()
             .map(|certificate| certificate.holds().is_ok())
             .collect();
-        let (pedestrians, hypotheses) = (self.window.len(), self.hypotheses);
-        let goals = Some(self.goals);
-        let forecast = Forecast::new(pedestrians, hypotheses, positions, self.weights, goals)?
-            .with_certified(held)?;
+        let forecast = self.at(positions)?.with_certified(held)?;
         Ok(CertifiedForecast {
             forecast,
             certificates,
@@ -204,6 +227,15 @@ impl Walked<'_> {
         })
     }
 
+    fn bounds(&self, i: usize) -> MotionBounds<f64> {
+        let observed = self.window.observed(i);
+        let bounds = motion_bounds(observed, self.config.time_step, self.shares[i]);
+        match self.config.frame {
+            Frame::World => bounds.absolute(),
+            Frame::Goal => bounds,
+        }
+    }
+
     /// What is made of each walker, hypothesis by hypothesis, in order; a failure is told with its place.
     fn each<R>(
         &self,
@@ -220,12 +252,13 @@ impl Walked<'_> {
                     goal,
                     sigma: self.config.sigma,
                     time_step: self.config.time_step,
+                    bounds: self.bounds(i),
                 };
                 of(i, &course, factors).map_err(|cause| {
                     failed(CertificateError::Walk {
                         recording: self.window.recording().to_owned(),
                         start_frame: self.window.start_frame(),
-                        pedestrian: self.window.pedestrians()[i].0,
+                        pedestrian: self.window.name(i),
                         hypothesis,
                         cause,
                     })

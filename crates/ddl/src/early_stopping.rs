@@ -1,12 +1,13 @@
 //! The validation windows of a training under way: how good each epoch is, and when none better is to be expected.
 
+use crate::starting_model::StartingWeights;
 use crate::test_set::TestSet;
 use crate::walk::Gait;
-use crate::{DdlError, GoalModel, network_forecast};
+use crate::{DdlError, GoalModel, RunConfig, RunDirectory, network_forecast};
 use ddl_data::{Fold, Window};
 use ddl_eval::{Scene, metric::displacement::DisplacementErrors};
 use ddl_goal::GoalSet;
-use ddl_star::{EpochReport, StarNetwork};
+use ddl_star::{EpochReport, ProposalNetwork, StarNetwork};
 
 /// Validation walkers that each epoch is measured on, at least, where there are so many.
 const WALKERS: usize = 1000;
@@ -17,7 +18,9 @@ pub(crate) struct EarlyStopping {
     patience: usize,
     windows: Vec<Window>,
     goals: Vec<Vec<GoalSet>>,
+    familiarity: Vec<Vec<f64>>,
     seed: u64,
+    starts_trained: bool,
 }
 
 impl EarlyStopping {
@@ -35,16 +38,24 @@ impl EarlyStopping {
         Ok(Some(Self {
             patience,
             goals: goals.goals(&windows)?,
+            familiarity: windows
+                .iter()
+                .map(|window| goals.familiarity(window))
+                .collect(),
             windows,
             seed: config.training.seed,
+            starts_trained: config.from.is_some(),
         }))
     }
 
     /// minADE over the walkers, metres: the best hypothesis of each, as under the protocol `fair`.
     pub(crate) fn min_ade(&self, network: &StarNetwork) -> Result<f64, DdlError> {
-        let (windows, goals) = (&self.windows, self.goals.clone());
+        let (windows, led) = (
+            &self.windows,
+            (self.goals.clone(), self.familiarity.clone()),
+        );
         let forecasts =
-            network_forecast::towards(network, self.seed, windows, goals, Gait::Stable(None))?;
+            network_forecast::towards(network, self.seed, windows, led, Gait::Stable(None))?;
         let (mut sum, mut walkers) = (0.0, 0);
         for (window, forecast) in windows.iter().zip(&forecasts) {
             let errors = DisplacementErrors::of(&Scene::new(window, forecast)?);
@@ -54,10 +65,41 @@ impl EarlyStopping {
         Ok(sum / walkers as f64)
     }
 
+    /// The first epoch that is measured: number 0 is the network before its first step, which counts where it is a trained one.
+    pub(crate) fn first_epoch(&self) -> usize {
+        usize::from(!self.starts_trained)
+    }
+
     /// Whether no better epoch is to be expected.
     pub(crate) fn is_over(&self, epochs: &[EpochReport]) -> bool {
         is_over(epochs, self.patience)
     }
+}
+
+/// The better proposal network for a training that begins with the weights of another model: that model's own, or what has become of it. Better is whose
+/// goals the forecasting network comes nearer the truth by, which has not been trained yet; without early stopping the trained one is taken.
+///
+/// # Errors
+/// As [`EarlyStopping::of`] and [`EarlyStopping::min_ade`].
+pub(crate) fn better_goals(
+    start: StartingWeights,
+    trained: ProposalNetwork,
+    (run, config): (&RunDirectory, &RunConfig),
+    fold: &Fold<'_>,
+) -> Result<ProposalNetwork, DdlError> {
+    let Some(untrained) = start.proposal else {
+        return Ok(trained);
+    };
+    let measured = |proposal| -> Result<(f64, GoalModel), DdlError> {
+        let goals = GoalModel::with_network(run.clone(), config.clone(), Some(proposal))?;
+        let stopping = EarlyStopping::of(&goals, fold)?;
+        let error = stopping.map_or(Ok(0.0), |stopping| stopping.min_ade(&start.network))?;
+        Ok((error, goals))
+    };
+    let (before, after) = (measured(untrained)?, measured(trained)?);
+    let (_, better) = if before.0 < after.0 { before } else { after };
+    let network = better.into_proposal_network();
+    network.ok_or_else(|| DdlError::run(run.path(), "has no proposal network"))
 }
 
 /// The epoch with the least validation error, the first of them; `None` where none was measured.

@@ -38,6 +38,9 @@ pub struct EvaluationRequest {
     pub protocols: Vec<Protocol>,
     /// On which windows.
     pub on: EvaluationSplit,
+    /// Recordings that are the validation part of own recordings, instead of that which a training would keep; only for models that know none of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub validation_recordings: Vec<String>,
     /// On at least so many test walkers, a seeded part; on all when `None`.
     pub test_walkers: Option<usize>,
     /// Commit of the program, for the record.
@@ -74,12 +77,8 @@ pub fn evaluate(
     request: &EvaluationRequest,
     observe: impl FnMut(&EvaluationProgress) -> ControlFlow<()>,
 ) -> Result<Evaluation, DdlError> {
-    let test = TestSet::of_run(
-        model.goal_model(),
-        dataset,
-        request.on,
-        request.test_walkers,
-    )?;
+    let part = (request.on, request.validation_recordings.as_slice());
+    let test = TestSet::of_run_with(model.goal_model(), dataset, part, request.test_walkers)?;
     let passes = usize::from(request.protocols.contains(&Protocol::Published))
         + usize::from(
             request
@@ -138,7 +137,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let model = self.model;
         let manners = Manner::all(model, &self.request.protocols);
         let goal = "the estimated goals";
-        // The one forecast of `single` is a straight line itself.
+        // Straight lines lead to many goals.
         let lines_asked = protocols.iter().any(|&p| p != Protocol::Single);
         // Its library is copied: only where it is asked for.
         let given = |manner: &Manner| manner.goals == GivenGoals::Published;
@@ -166,7 +165,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 };
                 match manner.way {
                     Way::Shaped(gait) => model.forecast_towards(windows, goals, gait),
-                    Way::Straight(clearance) => model.forecast_straight(windows, goals, clearance),
+                    Way::Neutral(clearance) => model.forecast_neutral(windows, goals, clearance),
                 }
             };
             Ok(Forecasts {

@@ -122,7 +122,7 @@ pub fn evaluate_goals(
         |subset| format!("{subset}, {rule}"),
     );
     let evaluation = GoalEvaluation {
-        fold: model.config().data.fold.clone(),
+        fold: test.fold,
         goals: model.words(),
         windows: words,
         clusters: model.clusters(),

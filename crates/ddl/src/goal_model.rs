@@ -1,10 +1,12 @@
 //! Where the goals of a model come from: the expert library of its run, its proposal network, or both.
 
+use crate::calibration::Calibration;
+use crate::familiarity::TrainingMotions;
 use crate::model_source::ModelSource;
 use crate::packed_model::{self, Unpacked};
 use crate::run_config::RunConfig;
 use crate::run_directory::RunDirectory;
-use crate::{DdlError, GoalRecipe, enough_weights, experts, goals, views};
+use crate::{DdlError, GoalRecipe, enough_weights, experts, goals, reach, views};
 use ddl_data::{Position, WINDOW, Window};
 use ddl_eval::ForecastError;
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
@@ -35,6 +37,8 @@ pub struct GoalModel {
     origin: GoalOrigin,
     /// Goals a walker.
     clusters: usize,
+    /// What it was trained on, by which motions are familiar; `None` where too little is known of them.
+    motions: Option<TrainingMotions>,
 }
 
 /// What goals are made of.
@@ -83,13 +87,8 @@ impl GoalModel {
         config: RunConfig,
         device: ComputeDevice,
     ) -> Result<Self, DdlError> {
-        let library = experts::load(&config.goals_origin(), config.data.walkers, &run.experts())?;
-        let clusters = config.goals.retrieval.clone().check()?.clusters();
-        let params = config.goals.retrieval.clone().query(QuerySpan::Observed);
-        let estimator = GoalEstimator::new(params.check()?, library)
-            .map_err(|error| experts::unusable(&error, &run.experts()))?;
-        let origin = match &config.goals.proposal {
-            None => GoalOrigin::Retrieved(estimator),
+        let network = match &config.goals.proposal {
+            None => None,
             Some(recipe) => {
                 recipe.network.check()?;
                 enough_weights::require(&run.proposal(), recipe.network.least_numbers())?;
@@ -100,14 +99,36 @@ impl GoalModel {
                     &config.goals_origin(),
                     &run.proposal(),
                 )?;
+                Some(network)
+            }
+        };
+        Self::with_network(run, config, network)
+    }
+
+    /// The goals of a run with this proposal network, which need not be the one that is in its file.
+    pub(crate) fn with_network(
+        run: RunDirectory,
+        config: RunConfig,
+        network: Option<ProposalNetwork>,
+    ) -> Result<Self, DdlError> {
+        let library = experts::load(&config.goals_origin(), config.data.walkers, &run.experts())?;
+        let clusters = config.goals.retrieval.clone().check()?.clusters();
+        let params = config.goals.retrieval.clone().query(QuerySpan::Observed);
+        let estimator = GoalEstimator::new(params.check()?, library)
+            .map_err(|error| experts::unusable(&error, &run.experts()))?;
+        let motions = TrainingMotions::learn(estimator.library().tracks(), config.star.time_step);
+        let origin = match (&config.goals.proposal, network) {
+            (Some(recipe), Some(network)) => {
                 GoalOrigin::Both(network, estimator, recipe.retrieved_share)
             }
+            _ => GoalOrigin::Retrieved(estimator),
         };
         Ok(Self {
             source: ModelSource::Run(run),
             config,
             origin,
             clusters,
+            motions,
         })
     }
 
@@ -120,6 +141,7 @@ impl GoalModel {
             config,
             network,
             proposal,
+            motions,
         } = unpacked;
         let clusters = config.goals.retrieval.clone().check()?.clusters();
         let goals = Self {
@@ -127,6 +149,7 @@ impl GoalModel {
             config,
             origin: GoalOrigin::Proposed(proposal),
             clusters,
+            motions,
         };
         Ok((goals, network))
     }
@@ -175,6 +198,14 @@ impl GoalModel {
         }
     }
 
+    /// That network itself.
+    pub(crate) fn into_proposal_network(self) -> Option<ProposalNetwork> {
+        match self.origin {
+            GoalOrigin::Retrieved(_) => None,
+            GoalOrigin::Proposed(network) | GoalOrigin::Both(network, ..) => Some(network),
+        }
+    }
+
     /// Whether the goals would be others without the expert library, and there would be some.
     pub(crate) fn has_library_beside_network(&self) -> bool {
         matches!(self.origin, GoalOrigin::Both(..))
@@ -194,13 +225,38 @@ impl GoalModel {
     /// # Errors
     /// When positions are so far apart that distances leave the range of `f64`, or libtorch fails.
     pub fn goals(&self, windows: &[Window]) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
-        match &self.origin {
-            GoalOrigin::Retrieved(estimator) => goals::retrieved(estimator, windows),
-            GoalOrigin::Proposed(network) => self.standing_for_ends(network, None, windows),
+        let sets = match &self.origin {
+            GoalOrigin::Retrieved(estimator) => goals::retrieved(estimator, windows)?,
+            GoalOrigin::Proposed(network) => self.standing_for_ends(network, None, windows)?,
             GoalOrigin::Both(network, estimator, share) => {
-                self.standing_for_ends(network, Some((estimator, *share)), windows)
+                self.standing_for_ends(network, Some((estimator, *share)), windows)?
             }
-        }
+        };
+        Ok(self.plausible(windows, sets))
+    }
+
+    /// The sets with goals beyond reach drawn in, and weights as flat as the trust in the motion asks for.
+    fn plausible(&self, windows: &[Window], sets: Vec<Vec<GoalSet>>) -> Vec<Vec<GoalSet>> {
+        let time_step = self.config.star.time_step;
+        let of_window = |(window, sets)| {
+            let sets = reach::within(window, sets, time_step).into_iter();
+            let familiarity = self.familiarity(window);
+            let tempered = |(set, familiarity)| Calibration::fitted().tempered(set, familiarity);
+            sets.zip(familiarity).map(tempered).collect()
+        };
+        windows.iter().zip(sets).map(of_window).collect()
+    }
+
+    /// How much the observed motion of each pedestrian of a window is like those that the model was trained on: the share of training
+    /// motions kept apart that are at least as unusual, in (0, 1]. 1 where nothing is known of these.
+    #[must_use]
+    pub fn familiarity(&self, window: &Window) -> Vec<f64> {
+        TrainingMotions::of_window(self.motions(), window, self.config.star.time_step)
+    }
+
+    /// The training motions, as a packed model holds them.
+    pub(crate) fn motions(&self) -> Option<&TrainingMotions> {
+        self.motions.as_ref()
     }
 
     /// The goals that the model would have without its expert library; its own where none of them are proposed.
@@ -213,7 +269,10 @@ impl GoalModel {
     ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
         match self.proposal_network() {
             None => self.goals(windows),
-            Some(network) => self.standing_for_ends(network, None, windows),
+            Some(network) => {
+                let sets = self.standing_for_ends(network, None, windows)?;
+                Ok(self.plausible(windows, sets))
+            }
         }
     }
 
@@ -226,16 +285,30 @@ impl GoalModel {
     ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
         let mut seen = Vec::new();
         for window in windows {
-            let walkers = views::of_window(window, network.config().neighbours).map_err(failed)?;
+            let walkers = views::of_window(
+                window,
+                network.config().neighbours,
+                network.config().time_step,
+            )
+            .map_err(failed)?;
             seen.extend(walkers);
         }
-        let (frames, views): (Vec<_>, Vec<_>) =
-            seen.into_iter().map(|seen| (seen.frame, seen.view)).unzip();
+        let mut views = Vec::with_capacity(seen.len());
+        let mut frames = Vec::with_capacity(seen.len());
+        for seen in seen {
+            frames.push((seen.frame, seen.unit));
+            views.push(seen.view);
+        }
         let mut proposed = network.propose(&views).map_err(failed)?;
+        for (proposed, (_, unit)) in proposed.iter_mut().zip(&frames) {
+            for end in &mut proposed.ends {
+                *end = end.map(|coordinate| coordinate * unit);
+            }
+        }
         if let Some((estimator, share)) = retrieval {
             let retrieved = goals::retrieved(estimator, windows)?;
             let retrieved = retrieved.into_iter().flatten();
-            for ((proposed, frame), set) in proposed.iter_mut().zip(&frames).zip(retrieved) {
+            for ((proposed, (frame, _)), set) in proposed.iter_mut().zip(&frames).zip(retrieved) {
                 for weight in &mut proposed.weights {
                     *weight *= 1.0 - share;
                 }
@@ -249,7 +322,7 @@ impl GoalModel {
         let clusters = self.clusters;
         let sets: Vec<GoalSet> = (frames, proposed)
             .into_par_iter()
-            .map(|(frame, ProposedEnds { ends, weights })| {
+            .map(|((frame, _), ProposedEnds { ends, weights })| {
                 GoalSet::of_ends(&frame, &ends, &weights, clusters)
             })
             .collect::<Result<_, _>>()

@@ -10,9 +10,14 @@ use ddl_star::{
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-/// Writes the expert library and trains the proposal network, whatever of it is not there yet.
+/// Writes the expert library and trains the proposal network, whatever of it is not there yet; from the weights of `start` where there is one, and then
+/// the network that is kept is the one of `choose`.
 pub(crate) fn train(
     recipe: Option<&ProposalRecipe>,
+    (start, choose): (
+        Option<ProposalNetwork>,
+        impl FnOnce(ProposalNetwork) -> Result<ProposalNetwork, DdlError>,
+    ),
     windows: &[Window],
     (run, origin): (&RunDirectory, &Origin),
     device: ComputeDevice,
@@ -25,12 +30,16 @@ pub(crate) fn train(
         return Ok(());
     };
     let seen = |windows: &[Window]| {
-        views::examples(windows, recipe.network.neighbours).map_err(GoalError::from)
+        views::examples(windows, recipe.network.neighbours, recipe.network.time_step)
+            .map_err(GoalError::from)
     };
     let examples = seen(windows)?;
     let whole = windows.iter().filter(|window| window.has_future());
     let reversed = seen(&whole.map(Window::reversed).collect::<Vec<_>>())?;
-    let network = ProposalNetwork::new(recipe.network.clone(), recipe.training.seed, device)?;
+    let network = match start {
+        Some(start) => start,
+        None => ProposalNetwork::new(recipe.network.clone(), recipe.training.seed, device)?,
+    };
     let mut trainer = ProposalTrainer::new(network, &examples, &reversed, recipe.training.clone())?;
     drop((examples, reversed));
     let state = run.proposal_state();
@@ -49,7 +58,7 @@ pub(crate) fn train(
             return Err(DdlError::Interrupted);
         }
     }
-    let network = trainer.into_network()?;
+    let network = choose(trainer.into_network()?)?;
     save_parameters(network.parameters(), origin, &run.proposal())?;
     // of no use any more; a file that cannot be removed does no harm
     let _ = std::fs::remove_file(&state);

@@ -2,14 +2,17 @@
 
 mod baselines;
 mod builtin_model;
+mod calibration;
 mod certified_forecast;
 mod clearance;
+mod comparison;
 mod early_stopping;
 mod enough_weights;
 mod error;
 mod evaluation;
 mod evaluation_record;
 mod experts;
+mod familiarity;
 mod goal_evaluation;
 mod goal_model;
 mod goal_picture;
@@ -24,17 +27,20 @@ mod model_source;
 mod network_forecast;
 mod packed_model;
 mod published;
+mod reach;
 mod result_rows;
 mod results;
 mod run_config;
 mod run_directory;
 mod run_lock;
 mod sha256;
+mod starting_model;
 mod straight_lines;
-mod straight_walk;
 mod test_set;
+mod track_units;
 mod training;
 mod training_words;
+mod validation_part;
 mod views;
 mod walk;
 
@@ -47,8 +53,10 @@ pub use ddl_star as star;
 
 pub use baselines::measure_baselines;
 pub use builtin_model::BuiltinModel;
+pub use calibration::Calibration;
 pub use certified_forecast::{CertificateError, CertifiedForecast};
 pub use clearance::Clearance;
+pub use comparison::{BestOfTwenty, Comparison, compare_on_validation};
 pub use ddl_eval::{Forecast, Forecaster, Protocol};
 pub use ddl_star::{DeviceChoice, Precision, Variant};
 pub use early_stopping::best_epoch;
@@ -57,6 +65,7 @@ pub use evaluation::{
     Evaluation, EvaluationProgress, EvaluationRequest, EvaluationSplit, evaluate,
 };
 pub use evaluation_record::{is_evaluated, save_evaluation};
+pub use familiarity::UNFAMILIAR;
 pub use goal_evaluation::{GoalErrors, GoalEvaluation, MeasuredGoals, evaluate_goals};
 pub use goal_model::GoalModel;
 pub use goal_picture::goal_picture;
@@ -68,7 +77,13 @@ pub use model_source::ModelSource;
 pub use results::Results;
 pub use run_config::{FORMAT, RunConfig, TrainingData};
 pub use run_directory::{RunDirectory, write_atomically};
-pub use training::{TrainingProgress, TrainingRequest, TrainingStage, TrainingStep, train};
+pub use starting_model::{StartingModel, goals_trained_further, training_further};
+pub use test_set::name_of;
+pub use track_units::TrackUnits;
+pub use training::{
+    TrainingProgress, TrainingRequest, TrainingStage, TrainingStep, fold_of, train,
+};
+pub use validation_part::ValidationPart;
 
 /// The examples of the guide, run as those of this documentation are.
 #[cfg(doctest)]

@@ -34,8 +34,8 @@ pub(crate) enum GivenGoals {
 pub(crate) enum Way {
     /// As the network shapes it.
     Shaped(Gait),
-    /// Straight on, alone or keeping clear of the others.
-    Straight(Option<Clearance>),
+    /// The neutral motion, alone or keeping clear of the others.
+    Neutral(Option<Clearance>),
 }
 
 impl Manner {
@@ -70,7 +70,7 @@ impl Manner {
             if asked(Protocol::Single) {
                 manners.push(Self {
                     goals: GivenGoals::Central,
-                    way: Way::Straight(clearance),
+                    way: Way::Neutral(clearance),
                     change,
                     protocols: &[Protocol::Single],
                 });

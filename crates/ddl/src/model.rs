@@ -9,13 +9,12 @@ use crate::model_source::ModelSource;
 use crate::network_forecast;
 use crate::run_config::RunConfig;
 use crate::run_directory::RunDirectory;
-use crate::straight_walk;
 use crate::walk::Gait;
 use crate::{DdlError, GoalModel};
-use ddl_data::{Position, Window};
+use ddl_data::{HORIZON, Position, Window};
 use ddl_eval::{Forecast, ForecastError, Forecaster};
 use ddl_goal::GoalSet;
-use ddl_star::{ComputeDevice, Precision, StarNetwork};
+use ddl_star::{ComputeDevice, Precision, ProposalNetwork, StarNetwork};
 
 /// The name of the model in tables.
 pub(crate) const NAME: &str = "DDL";
@@ -126,6 +125,11 @@ impl Ddl {
         &self.goals
     }
 
+    /// The network that forecasts and the one that proposes goals, where there is one, to be trained further.
+    pub(crate) fn into_networks(self) -> (StarNetwork, Option<ProposalNetwork>) {
+        (self.network, self.goals.into_proposal_network())
+    }
+
     /// Forecasts the windows, with the evidence for every hypothesis that it goes to its goal.
     ///
     /// # Errors
@@ -151,13 +155,14 @@ impl Ddl {
     ) -> Result<Vec<CertifiedForecast>, ForecastError> {
         certified_forecast::ensure_flow(self.config().star.variant)?;
         let goals = self.goals.goals(windows)?;
-        network_forecast::walked(&self.network, windows, goals, Gait::Stable(self.clearance))?
+        let led = (goals, self.familiarities(windows));
+        network_forecast::walked(&self.network, windows, led, Gait::Stable(self.clearance))?
             .map(Walked::certified)
             .collect()
     }
 
-    /// One forecast a pedestrian, for who may have only one: straight on to the goal that stands for all its goals
-    /// ([`GoalSet::central`]), at constant speed. The forecasting network has no part in it: what it knows is how people go to a goal that is sure
+    /// One forecast a pedestrian, for who may have only one: the neutral motion to the goal that stands for all its goals
+    /// ([`GoalSet::central`]). The forecasting network has no part in it: what it knows is how people go to a goal that is sure
     /// (`docs/accuracy.md`). So all variants with goals go the same way; that without makes its noise samples. The flow is as stable as those to the
     /// goals, and `Forecast::certified` holds the verdict of each walk.
     ///
@@ -168,7 +173,7 @@ impl Ddl {
     /// As [`forecast_all`](Forecaster::forecast_all).
     pub fn forecast_one(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
         let goals = goals::only_central(windows, &self.goals.goals(windows)?);
-        self.forecast_straight(windows, goals, self.clearance)
+        self.forecast_neutral(windows, goals, self.clearance)
     }
 
     /// [`forecast_one`](Self::forecast_one) with the evidence for every walk that it goes to its goal.
@@ -185,13 +190,13 @@ impl Ddl {
             certified_forecast::ensure_flow(variant)?;
         }
         let goals = goals::only_central(windows, &self.goals.goals(windows)?);
-        self.straight(windows, goals, self.clearance)
+        self.neutral(windows, goals, self.clearance)
             .map(Walked::certified)
             .collect()
     }
 
-    /// One straight walk for every pedestrian, to the one goal of its set; for the variant without goals, noise samples.
-    pub(crate) fn forecast_straight(
+    /// One neutral walk for every pedestrian, to the one goal of its set; for the variant without goals, noise samples.
+    pub(crate) fn forecast_neutral(
         &self,
         windows: &[Window],
         sets: Vec<Vec<GoalSet>>,
@@ -201,13 +206,13 @@ impl Ddl {
             let seed = self.config().training.seed;
             return network_forecast::without_goals(&self.network, seed, windows);
         }
-        self.straight(windows, sets, clearance)
+        self.neutral(windows, sets, clearance)
             .map(Walked::forecast)
             .collect()
     }
 
-    /// The straight walks, of which each becomes a forecast when it is its turn.
-    fn straight<'a>(
+    /// The neutral walks, of which each becomes a forecast when it is its turn.
+    fn neutral<'a>(
         &'a self,
         windows: &'a [Window],
         sets: Vec<Vec<GoalSet>>,
@@ -222,7 +227,9 @@ impl Ddl {
                 window,
                 hypotheses: 1,
                 rolled_out: Vec::new(),
-                factors: Some(straight_walk::factors(window, &goals, config.time_step)),
+                shares: vec![0.0; window.len()],
+                familiarity: Some(self.goals.familiarity(window)),
+                factors: Some(vec![[1.0, 0.0, 1.0]; goals.len() * HORIZON]),
                 weights: vec![1.0; goals.len()],
                 goals,
             }
@@ -238,7 +245,13 @@ impl Ddl {
         gait: Gait,
     ) -> Result<Vec<Forecast>, ForecastError> {
         let seed = self.config().training.seed;
-        network_forecast::towards(&self.network, seed, windows, sets, gait)
+        let led = (sets, self.familiarities(windows));
+        network_forecast::towards(&self.network, seed, windows, led, gait)
+    }
+
+    fn familiarities(&self, windows: &[Window]) -> Vec<Vec<f64>> {
+        let of = |window| self.goals.familiarity(window);
+        windows.iter().map(of).collect()
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a forecasting network makes of windows and their goals, trained or still in training.
 
+use crate::calibration::Calibration;
 use crate::certified_forecast::Walked;
 use crate::model::NAME;
 use crate::walk::Gait;
@@ -11,19 +12,19 @@ use ddl_star::{Noise, StarNetwork, StepRule, WindowRollout};
 /// Hypotheses of the variant without goals: as many noise vectors.
 const NOISE_HYPOTHESES: usize = 20;
 
-/// One hypothesis a goal for every pedestrian, with the goal's weight; for the variant without
-/// goals, one a noise vector of that seed, all equally likely.
+/// One hypothesis a goal for every pedestrian, with the goal's weight, shaped by the network as far as the pedestrian's motion is
+/// familiar; for the variant without goals, one a noise vector of that seed, all equally likely.
 pub(crate) fn towards(
     network: &StarNetwork,
     seed: u64,
     windows: &[Window],
-    sets: Vec<Vec<GoalSet>>,
+    (sets, familiarity): (Vec<Vec<GoalSet>>, Vec<Vec<f64>>),
     gait: Gait,
 ) -> Result<Vec<Forecast>, ForecastError> {
     if !network.config().variant.uses_goal() {
         return without_goals(network, seed, windows);
     }
-    walked(network, windows, sets, gait)?
+    walked(network, windows, (sets, familiarity), gait)?
         .map(Walked::forecast)
         .collect()
 }
@@ -33,27 +34,37 @@ pub(crate) fn towards(
 pub(crate) fn walked<'a>(
     network: &'a StarNetwork,
     windows: &'a [Window],
-    sets: Vec<Vec<GoalSet>>,
+    (sets, familiarity): (Vec<Vec<GoalSet>>, Vec<Vec<f64>>),
     gait: Gait,
 ) -> Result<impl Iterator<Item = Walked<'a>>, ForecastError> {
     let goals: Vec<Vec<Vec<Position>>> = sets
         .iter()
         .map(|sets| sets.iter().map(|set| set.goals().to_vec()).collect())
         .collect();
+    let share = |&familiarity: &f64| Calibration::fitted().share(familiarity);
+    let shares: Vec<Vec<f64>> = familiarity
+        .iter()
+        .map(|window| window.iter().map(share).collect())
+        .collect();
     let rollouts = network
-        .forecast_windows(windows, &goals, Noise::Expected, gait.rule())
+        .forecast_windows(windows, &goals, Noise::Expected, gait.rule(), Some(&shares))
         .map_err(|error| ForecastError::model(NAME, error))?;
     let shaped = rollouts.into_iter().zip(windows).zip(sets);
-    Ok(shaped.map(move |((rollout, window), sets)| Walked {
-        config: network.config(),
-        gait,
-        window,
-        hypotheses: rollout.hypotheses,
-        rolled_out: rollout.positions,
-        factors: rollout.factors,
-        weights: sets.iter().flat_map(GoalSet::weights).copied().collect(),
-        goals: sets.iter().flat_map(GoalSet::goals).copied().collect(),
-    }))
+    let trusted = shares.into_iter().zip(familiarity);
+    Ok(shaped.zip(trusted).map(
+        move |(((rollout, window), sets), (shares, familiarity))| Walked {
+            shares,
+            familiarity: Some(familiarity),
+            config: network.config(),
+            gait,
+            window,
+            hypotheses: rollout.hypotheses,
+            rolled_out: rollout.positions,
+            factors: rollout.factors,
+            weights: sets.iter().flat_map(GoalSet::weights).copied().collect(),
+            goals: sets.iter().flat_map(GoalSet::goals).copied().collect(),
+        },
+    ))
 }
 
 /// Plain STAR: noise samples, all equally likely.
@@ -71,7 +82,8 @@ pub(crate) fn without_goals(
             windows,
             &unused_goals(windows),
             noise,
-            StepRule::StableEuler,
+            StepRule::Bounded,
+            None,
         )
         .map_err(|error| ForecastError::model(NAME, error))?
         .into_iter()

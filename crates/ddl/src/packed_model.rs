@@ -4,6 +4,7 @@
 //! network, and in its header, as one entry, the whole `config.json` of the run with a SHA-256 of configuration and tensors.
 //! The expert library is trajectory data and stays where it is.
 
+use crate::familiarity::TrainingMotions;
 use crate::model_source::ModelSource;
 use crate::run_config::{FORMAT, RunConfig};
 use crate::{DdlError, GoalModel, sha256};
@@ -18,7 +19,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 /// Version of the file's layout.
-const LAYOUT: u32 = 1;
+const LAYOUT: u32 = 2;
 /// Name of the header's entry.
 const ENTRY: &str = "ddl";
 /// Heads the names of the forecasting network's tensors.
@@ -35,6 +36,9 @@ struct Header {
     layout: u32,
     /// The run's `config.json`, as a text, so that its digest does not depend on how JSON is written.
     config: String,
+    /// The training motions, as JSON, by which motions are familiar.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    motions: Option<String>,
     sha256: String,
 }
 
@@ -49,6 +53,7 @@ pub(crate) struct Unpacked {
     pub(crate) config: RunConfig,
     pub(crate) network: StarNetwork,
     pub(crate) proposal: ProposalNetwork,
+    pub(crate) motions: Option<TrainingMotions>,
 }
 
 /// The bytes of the file.
@@ -75,10 +80,13 @@ pub(crate) fn pack(network: &StarNetwork, goals: &GoalModel) -> Result<Vec<u8>, 
     }
     let failed = |error: &dyn std::fmt::Display| source.wrong(format!("cannot be packed: {error}"));
     let config = serde_json::to_string(goals.config()).map_err(|error| failed(&error))?;
+    let motions = goals.motions().map(serde_json::to_string).transpose();
+    let motions = motions.map_err(|error| failed(&error))?;
     let header = Header {
         layout: LAYOUT,
-        sha256: digest(&config, &tensors),
+        sha256: digest([&config, motions.as_deref().unwrap_or_default()], &tensors),
         config,
+        motions,
     };
     let header = serde_json::to_string(&header).map_err(|error| failed(&error))?;
     let views = tensors
@@ -119,8 +127,11 @@ fn read(path: &Path) -> Result<Vec<u8>, DdlError> {
     Ok(bytes)
 }
 
-/// The configuration of a packed model and its tensors, which belong together.
-fn contents(bytes: &[u8], source: &ModelSource) -> Result<(RunConfig, Vec<HalfTensor>), DdlError> {
+/// What a packed model holds, as far as it is read without making networks.
+type Contents = (RunConfig, Option<TrainingMotions>, Vec<HalfTensor>);
+
+/// The configuration of a packed model, its training motions and its tensors, which belong together.
+fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
     let damaged = |error: &dyn std::fmt::Display| {
         source.wrong(format!(
             "is no whole packed model ({error}); copy it again, or make it anew with `ddl pack`"
@@ -138,6 +149,7 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<(RunConfig, Vec<HalfTe
     let Header {
         layout,
         config,
+        motions,
         sha256,
     } = serde_json::from_str(entry).map_err(|error| damaged(&error))?;
     if layout != LAYOUT {
@@ -158,7 +170,8 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<(RunConfig, Vec<HalfTe
         });
     }
     // Before anything is made by what the configuration says.
-    if digest(&config, &tensors) != sha256 {
+    let parts = [config.as_str(), motions.as_deref().unwrap_or_default()];
+    if digest(parts, &tensors) != sha256 {
         return Err(damaged(
             &"its SHA-256 is not that of its configuration and weights",
         ));
@@ -175,12 +188,29 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<(RunConfig, Vec<HalfTe
         )));
     }
     let config = serde_json::from_str(&config).map_err(|error| other(&error))?;
-    Ok((config, tensors))
+    let motions = motions
+        .map(|motions| serde_json::from_str(&motions))
+        .transpose();
+    let motions: Option<TrainingMotions> = motions.map_err(|error| other(&error))?;
+    if motions.as_ref().is_some_and(|motions| !motions.is_valid()) {
+        return Err(
+            source.wrong("has training motions with numbers that cannot be; pack its run anew")
+        );
+    }
+    Ok((config, motions, tensors))
 }
 
 /// The configuration alone.
 pub(crate) fn config(bytes: &[u8], source: &ModelSource) -> Result<RunConfig, DdlError> {
-    contents(bytes, source).map(|(config, _)| config)
+    contents(bytes, source).map(|(config, ..)| config)
+}
+
+/// The configuration and the training motions, without making networks.
+pub(crate) fn motions(
+    bytes: &[u8],
+    source: &ModelSource,
+) -> Result<(RunConfig, Option<TrainingMotions>), DdlError> {
+    contents(bytes, source).map(|(config, motions, _)| (config, motions))
 }
 
 /// The networks of a packed model.
@@ -192,7 +222,7 @@ pub(crate) fn unpack(
     source: &ModelSource,
     device: ComputeDevice,
 ) -> Result<Unpacked, DdlError> {
-    let (config, tensors) = contents(bytes, source)?;
+    let (config, motions, tensors) = contents(bytes, source)?;
     config.check(source)?;
     let Some(recipe) = &config.goals.proposal else {
         return Err(source.wrong("has no proposal network for its goals; pack another run"));
@@ -238,11 +268,12 @@ pub(crate) fn unpack(
         config,
         network,
         proposal,
+        motions,
     })
 }
 
-/// SHA-256 of the configuration and of every tensor's name, shape and bytes, the tensors by name.
-fn digest(config: &str, tensors: &[HalfTensor]) -> String {
+/// SHA-256 of the header's texts and of every tensor's name, shape and bytes, the tensors by name.
+fn digest(texts: [&str; 2], tensors: &[HalfTensor]) -> String {
     let mut by_name: Vec<&HalfTensor> = tensors.iter().collect();
     by_name.sort_by(|one, other| one.name.cmp(&other.name));
     let mut hasher = Sha256::new();
@@ -251,7 +282,9 @@ fn digest(config: &str, tensors: &[HalfTensor]) -> String {
         hasher.update((bytes.len() as u64).to_le_bytes());
         hasher.update(bytes);
     };
-    part(config.as_bytes());
+    for text in texts {
+        part(text.as_bytes());
+    }
     for tensor in by_name {
         part(tensor.name.as_bytes());
         let shape: Vec<u8> = tensor

@@ -91,7 +91,7 @@ impl Published {
         };
         let rollouts = self
             .network
-            .forecast_windows(windows, &single, noise, Gait::PlainEuler.rule())
+            .forecast_windows(windows, &single, noise, Gait::PlainEuler.rule(), None)
             .map_err(|error| ForecastError::model(model::NAME, error))?;
         let rolled = rollouts.into_iter().zip(windows).zip(goals);
         rolled
@@ -100,6 +100,8 @@ impl Published {
                     return network_forecast::equally_likely(rollout);
                 }
                 let walked = Walked {
+                    shares: vec![1.0; window.len()],
+                    familiarity: None,
                     config,
                     gait: Gait::PlainEuler,
                     window,

@@ -60,7 +60,9 @@ impl Results {
                 continue;
             }
             let config = run.config()?;
-            let epochs = run.metrics()?.into_iter().map(|epoch| EpochPoint {
+            // epoch 0, the weights that a training began with, has no loss
+            let trained = run.metrics()?.into_iter().filter(|epoch| epoch.epoch > 0);
+            let epochs = trained.map(|epoch| EpochPoint {
                 epoch: epoch.epoch,
                 loss: epoch.loss,
                 validation: epoch.validation,

@@ -1,6 +1,6 @@
 //! Everything that decides what a run computes: its `config.json`.
 
-use crate::{DdlError, GoalRecipe, ModelSource};
+use crate::{DdlError, GoalRecipe, ModelSource, StartingModel, TrackUnits};
 use ddl_data::{Convention, WindowRule};
 use ddl_star::{Objective, Origin, StarConfig, TrainingConfig};
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Version of the run directory's layout.
-pub const FORMAT: u32 = 5;
+pub const FORMAT: u32 = 6;
 
 /// Everything that decides what a run computes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -30,6 +30,12 @@ pub struct RunConfig {
     /// and the last is the model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub patience: Option<usize>,
+    /// The model whose weights both networks began with; `None`: random ones.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from: Option<StartingModel>,
+    /// What the numbers of own recordings mean, as far as training was told: they are measured on by the same, unless something else is said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub units: Option<TrackUnits>,
     /// Commit of the program that began it, as far as known.
     pub commit: String,
     /// libtorch that it was begun with.
@@ -57,22 +63,22 @@ impl RunConfig {
     pub fn network_origin(&self) -> Origin {
         match self.training.objective {
             Objective::NextStep => {
-                self.origin_of(&["format", "star", "training", "data", "patience"])
+                self.origin_of(&["format", "star", "training", "data", "patience", "from"])
             }
             // Who has learned walks to the proposed goals has learned from these.
-            Objective::Walk => {
-                self.origin_of(&["format", "star", "training", "data", "goals", "patience"])
-            }
+            Objective::Walk => self.origin_of(&[
+                "format", "star", "training", "data", "goals", "patience", "from",
+            ]),
         }
     }
 
     /// What the expert library and the proposal network are of.
     #[must_use]
     pub fn goals_origin(&self) -> Origin {
-        self.origin_of(&["format", "goals", "data"])
+        self.origin_of(&["format", "goals", "data", "from"])
     }
 
-    /// What the run is of: everything but commit, libtorch and device, which may change while it is trained.
+    /// What the run is of: everything but commit, libtorch and device, which may change while it is trained, and units, which the windows show.
     #[must_use]
     pub fn origin(&self) -> Origin {
         self.origin_of(&[
@@ -83,6 +89,7 @@ impl RunConfig {
             "data",
             "keep_every",
             "patience",
+            "from",
         ])
     }
 
@@ -99,6 +106,16 @@ impl RunConfig {
         }
         leaves.into_iter().collect()
     }
+}
+
+/// The leaves of plain data, each under its path, which begins with `name`.
+pub(crate) fn leaves(name: &str, data: &impl Serialize) -> Origin {
+    let mut leaves = Vec::new();
+    // Plain data always becomes JSON; what did not would agree with nothing that did.
+    if let Ok(value) = serde_json::to_value(data) {
+        push_leaves(name.to_owned(), &value, &mut leaves);
+    }
+    leaves.into_iter().collect()
 }
 
 fn push_leaves(path: String, value: &Value, leaves: &mut Vec<(String, String)>) {
@@ -166,6 +183,8 @@ mod tests {
             },
             keep_every: 1,
             patience: None,
+            from: None,
+            units: None,
             commit: commit.to_owned(),
             libtorch: "2".to_owned(),
             device: "cpu".to_owned(),

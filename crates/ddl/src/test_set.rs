@@ -2,7 +2,7 @@
 //! one printed beside it, or the validation part of its training recordings.
 
 use crate::training::{digest, digest_of_recording, fold_of};
-use crate::{DdlError, EvaluationSplit, GoalModel};
+use crate::{DdlError, EvaluationSplit, GoalModel, ValidationPart};
 use ddl_data::{Convention, Dataset, Fold, PedestrianId, Recording, Window, WindowRule};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -35,10 +35,28 @@ impl TestSet {
         on: EvaluationSplit,
         walkers: Option<usize>,
     ) -> Result<Self, DdlError> {
+        Self::of_run_with(goals, dataset, (on, &[]), walkers)
+    }
+
+    /// The same, where other recordings than the usual ones may be taken for the validation part of own recordings.
+    ///
+    /// # Errors
+    /// As [`of_run`](Self::of_run).
+    pub(crate) fn of_run_with(
+        goals: &GoalModel,
+        dataset: &Dataset,
+        (on, whole): (EvaluationSplit, &[String]),
+        walkers: Option<usize>,
+    ) -> Result<Self, DdlError> {
         let data = &goals.config().data;
         let wrong = |problem: String| Err(goals.source().wrong(problem));
-        if dataset.convention() == Convention::Own && on == EvaluationSplit::Test {
-            return Self::of_own(goals, dataset, walkers);
+        let own = dataset.convention() == Convention::Own;
+        match on {
+            EvaluationSplit::Test if own => return Self::of_own(goals, dataset, walkers),
+            EvaluationSplit::Validation if own && !knows_some(goals, dataset) => {
+                return Self::own_validation(goals, dataset, whole, walkers);
+            }
+            _ => {}
         }
         if data.convention != dataset.convention() {
             return wrong(format!(
@@ -46,6 +64,11 @@ impl TestSet {
                 data.convention,
                 dataset.convention()
             ));
+        }
+        if !whole.is_empty() && whole != data.validation_recordings {
+            return wrong(
+                "kept a validation part of its own when it was trained, and is measured on that: leave --validation-recordings out".to_owned(),
+            );
         }
         let fold = fold_of(dataset, &data.fold)?.set_apart(&data.validation_recordings)?;
         match on {
@@ -67,6 +90,33 @@ impl TestSet {
                 wrong("kept nothing for validation; train it with --validation 0.2 or --validation-recordings".to_owned())
             }
         }
+    }
+
+    /// The part of own recordings that a model trained on them would be validated on, for a model that knows none of them.
+    fn own_validation(
+        goals: &GoalModel,
+        dataset: &Dataset,
+        whole: &[String],
+        walkers: Option<usize>,
+    ) -> Result<Self, DdlError> {
+        let part = if whole.is_empty() {
+            ValidationPart::of_own(&dataset.whole())
+        } else {
+            ValidationPart {
+                share: 0.0,
+                recordings: whole.to_vec(),
+            }
+        };
+        let fold = dataset.whole().set_apart(&part.recordings)?;
+        let kept = (dataset.convention().headline_rule(), part.share);
+        let set = Self::validation(&fold, dataset.convention(), kept, walkers);
+        if set.windows.is_empty() {
+            return Err(goals.source().wrong(
+                "cannot be measured on the validation part of these recordings: nobody in it was seen at 20 steps in a row; name whole \
+                 recordings (--validation-recordings), or measure it on all of them, without --validation",
+            ));
+        }
+        Ok(set)
     }
 
     /// Somebody's own recordings: the one that the model was trained without, where it is there, else all of them.
@@ -116,10 +166,9 @@ impl TestSet {
                 "cannot be measured on these recordings: nobody in them was seen at 20 steps in a row",
             ));
         }
-        let names: Vec<&str> = tested.iter().map(|recording| recording.name()).collect();
         let set = Self {
             convention: dataset.convention(),
-            fold: names.join("+"),
+            fold: name_of(&tested),
             rules: vec![(rule, (0..windows.len()).collect())],
             windows,
             subset: None,
@@ -277,6 +326,30 @@ impl TestSet {
             subset: None,
             ..self
         }
+    }
+}
+
+/// Whether the model has learned from, or was validated on, one of these recordings, or one of the same name.
+fn knows_some(goals: &GoalModel, dataset: &Dataset) -> bool {
+    let learned = &goals.config().data.recordings;
+    let digests: BTreeSet<&String> = learned.values().collect();
+    dataset.recordings().iter().any(|recording| {
+        learned.contains_key(recording.name()) || digests.contains(&digest_of_recording(recording))
+    })
+}
+
+/// What results call recordings that are tested on together: as short for a hundred as for two.
+#[must_use]
+pub fn name_of(tested: &[&Recording]) -> String {
+    match tested {
+        [] => String::new(),
+        [only] => only.name().to_owned(),
+        [first, .., last] => format!(
+            "{} recordings, {} to {}",
+            tested.len(),
+            first.name(),
+            last.name()
+        ),
     }
 }
 

@@ -1,9 +1,10 @@
 //! Training of one fold into a run directory, stopped and resumed at will.
 
-use crate::early_stopping::{EarlyStopping, best_epoch};
+use crate::early_stopping::{EarlyStopping, best_epoch, better_goals};
 use crate::run_config::{FORMAT, RunConfig, TrainingData};
 use crate::run_directory::{RunDirectory, SAVE_EVERY};
-use crate::{Ddl, DdlError, GoalModel, GoalRecipe, goal_training, sha256};
+use crate::starting_model::StartingWeights;
+use crate::{Ddl, DdlError, GoalModel, GoalRecipe, ModelSource, TrackUnits, goal_training, sha256};
 use ddl_data::{Convention, DataError, Dataset, Fold, Recording, Window, WindowRule};
 use ddl_goal::RetrievalFrame;
 use ddl_star::{
@@ -13,7 +14,7 @@ use ddl_star::{
 };
 use sha2::{Digest as _, Sha256};
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, RangeInclusive};
 use std::time::Instant;
 
 /// Weights of at most about this many epochs are kept for the protocol `published`.
@@ -34,9 +35,14 @@ pub struct TrainingRequest {
     pub validation_recordings: Vec<String>,
     /// What the goals come from.
     pub goals: GoalRecipe,
+    /// The model whose weights both networks begin with; `None`: random ones. With [`patience`](Self::patience) it is an epoch like the others, number 0: the
+    /// result forecasts the validation part no worse than it does.
+    pub from: Option<ModelSource>,
     /// End early when the validation error has not fallen for so many epochs, and take the best epoch for the model; `None`: all epochs, and the
     /// last is the model.
     pub patience: Option<usize>,
+    /// What the numbers of own recordings mean, for the record; `None` where nothing was said.
+    pub units: Option<TrackUnits>,
     /// Keep the weights of the last epoch alone, and not those of some 20 among which the protocol `published` chooses.
     pub last_epoch_only: bool,
     /// The last stage to train; a later call may go on.
@@ -84,6 +90,10 @@ pub enum TrainingStep {
 /// # Errors
 /// Unreadable data, a directory that holds another run, a device that is not there, or a loss that
 /// is no longer a number (the last good state is kept).
+#[expect(
+    clippy::too_many_lines,
+    reason = "the stages of a training, one after the other"
+)]
 pub fn train(
     request: &TrainingRequest,
     dataset: &Dataset,
@@ -111,6 +121,13 @@ pub fn train(
     }
     ensure_patience(request, &fold, window_rule)?;
     ensure_enough_tracks(&request.goals, &windows)?;
+    let starting_weights = || {
+        let from = request.from.as_ref();
+        let sizes = (&request.star, &request.goals);
+        from.map(|source| StartingWeights::of(source, sizes, request.device))
+            .transpose()
+    };
+    let start = starting_weights()?;
     let run = &request.out;
     let config = RunConfig {
         format: FORMAT,
@@ -140,13 +157,22 @@ pub fn train(
             (None, false) => request.training.epochs.div_ceil(KEPT_EPOCHS),
         },
         patience: request.patience,
+        from: start.as_ref().map(|start| start.record.clone()),
+        units: request.units,
         commit: request.commit.clone(),
         libtorch: LIBTORCH_VERSION.to_owned(),
         device: device.name().to_owned(),
     };
     let _claimed = run.claim(&config)?;
+    let (network, proposal) =
+        start.map_or((None, None), |start| (Some(start.network), start.proposal));
+    let better = |trained| match starting_weights()? {
+        None => Ok(trained),
+        Some(start) => better_goals(start, trained, (run, &config), &fold),
+    };
     goal_training::train(
         config.goals.proposal.as_ref(),
+        (proposal, better),
         &windows,
         (run, &config.goals_origin()),
         device,
@@ -165,7 +191,11 @@ pub fn train(
     let origin = config.network_origin();
     let goals = GoalModel::of_run(run.clone(), config.clone(), device)?;
     let early_stopping = EarlyStopping::of(&goals, &fold)?;
-    let mut trainer = trainer(&config, windows, &goals, device)?;
+    let network = match network {
+        Some(network) => network,
+        None => StarNetwork::new(config.star.clone(), config.training.seed, device)?,
+    };
+    let mut trainer = trainer(&config, windows, &goals, network)?;
     if run.optimizer().is_file() {
         trainer.resume(&origin, &run.optimizer())?;
     }
@@ -213,14 +243,13 @@ fn ensure_enough_tracks(goals: &GoalRecipe, windows: &[Window]) -> Result<(), Dd
     Ok(())
 }
 
-/// The forecasting network at the start of its training: on single steps, or on walks to goals that those of the run estimate.
+/// The training of the forecasting network: on single steps, or on walks to goals that those of the run estimate.
 fn trainer(
     config: &RunConfig,
     windows: Vec<Window>,
     goals: &GoalModel,
-    device: ComputeDevice,
+    network: StarNetwork,
 ) -> Result<Trainer, DdlError> {
-    let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
     let training = config.training.clone();
     Ok(match training.objective {
         Objective::NextStep => Trainer::new(network, windows, training)?,
@@ -235,14 +264,14 @@ fn trainer(
 /// The model is chosen by the record: with a hole in it, it would be chosen among some of the epochs.
 fn ensure_every_epoch_is_recorded(
     epochs: &[EpochReport],
-    completed: usize,
+    mut measured: RangeInclusive<usize>,
     run: &RunDirectory,
 ) -> Result<(), DdlError> {
     let recorded = |epoch: usize| {
-        let report = epochs.get(epoch - 1);
-        report.is_some_and(|report| report.epoch == epoch && report.validation.is_some())
+        let mut reports = epochs.iter();
+        reports.any(|report| report.epoch == epoch && report.validation.is_some())
     };
-    match (1..=completed).find(|&epoch| !recorded(epoch)) {
+    match measured.find(|&epoch| !recorded(epoch)) {
         None => Ok(()),
         Some(epoch) => Err(DdlError::run(
             run.path(),
@@ -262,9 +291,25 @@ fn run_epochs(
     mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
 ) -> Result<(), DdlError> {
     let mut epochs = run.metrics()?;
-    epochs.truncate(trainer.completed_epochs());
-    if early_stopping.is_some() {
-        ensure_every_epoch_is_recorded(&epochs, trainer.completed_epochs(), run)?;
+    epochs.retain(|report| report.epoch <= trainer.completed_epochs());
+    if let Some(stopping) = early_stopping
+        && stopping.first_epoch() == 0
+        && trainer.steps().0 == 0
+    {
+        // Before the first step the network is the one that it began with.
+        save_parameters(trainer.network().parameters(), origin, &run.epoch(0))?;
+        epochs = vec![EpochReport {
+            epoch: 0,
+            loss: 0.0,
+            batches: 0,
+            seconds: 0.0,
+            validation: Some(stopping.min_ade(trainer.network())?),
+        }];
+        run.write_metrics(&epochs)?;
+    }
+    if let Some(stopping) = early_stopping {
+        let measured = stopping.first_epoch()..=trainer.completed_epochs();
+        ensure_every_epoch_is_recorded(&epochs, measured, run)?;
     }
     let mut saved = Instant::now();
     let is_over =
@@ -317,8 +362,11 @@ pub(crate) fn training_rule(convention: Convention) -> WindowRule {
     }
 }
 
-/// The fold that a run is of: of own recordings also the one that leaves none out.
-pub(crate) fn fold_of<'a>(dataset: &'a Dataset, name: &str) -> Result<Fold<'a>, DataError> {
+/// The fold of that name; of own recordings also the one that leaves none out ([`Fold::WHOLE`]).
+///
+/// # Errors
+/// When there is none; the message lists those there are.
+pub fn fold_of<'a>(dataset: &'a Dataset, name: &str) -> Result<Fold<'a>, DataError> {
     if dataset.convention() == Convention::Own && name == Fold::WHOLE {
         Ok(dataset.whole())
     } else {

@@ -2,30 +2,37 @@
 
 use ddl_data::{OBSERVED, Position, Window};
 use ddl_goal::{HeadingFrame, TrackError};
-use ddl_star::{ProposalExample, WalkerView};
+use ddl_star::{ProposalExample, WalkerView, motion_unit};
 
-/// A walker's own frame, and what is seen from it.
+/// A walker's own frame and unit of length, and what is seen from it.
 #[derive(Debug)]
 pub(crate) struct Seen {
     pub(crate) frame: HeadingFrame,
+    /// Metres a unit of the view.
+    pub(crate) unit: f64,
     pub(crate) view: WalkerView,
 }
 
-/// Every pedestrian of a window with its `neighbours` nearest others, from the observed frames.
+/// Every pedestrian of a window with its `neighbours` nearest others, from the observed frames, `time_step` seconds apart.
 ///
 /// # Errors
 /// When positions are too far apart for their differences to be finite.
-pub(crate) fn of_window(window: &Window, neighbours: usize) -> Result<Vec<Seen>, TrackError> {
+pub(crate) fn of_window(
+    window: &Window,
+    neighbours: usize,
+    time_step: f64,
+) -> Result<Vec<Seen>, TrackError> {
     (0..window.len())
         .map(|i| {
             let frame = HeadingFrame::new(window.observed(i))?;
+            let unit = motion_unit(window.observed(i), time_step);
             let view = WalkerView {
-                own: in_frame(&frame, window.observed(i)),
+                own: in_frame((&frame, unit), window.observed(i)),
                 neighbours: nearest(window, i, neighbours)
-                    .map(|j| in_frame(&frame, window.observed(j)))
+                    .map(|j| in_frame((&frame, unit), window.observed(j)))
                     .collect(),
             };
-            Ok(Seen { frame, view })
+            Ok(Seen { frame, unit, view })
         })
         .collect()
 }
@@ -37,11 +44,15 @@ pub(crate) fn of_window(window: &Window, neighbours: usize) -> Result<Vec<Seen>,
 pub(crate) fn examples(
     windows: &[Window],
     neighbours: usize,
+    time_step: f64,
 ) -> Result<Vec<ProposalExample>, TrackError> {
     let mut examples = Vec::new();
     for window in windows.iter().filter(|window| window.has_future()) {
-        for (i, seen) in of_window(window, neighbours)?.into_iter().enumerate() {
-            let future = in_frame(&seen.frame, &window.track(i)[OBSERVED..]);
+        for (i, seen) in of_window(window, neighbours, time_step)?
+            .into_iter()
+            .enumerate()
+        {
+            let future = in_frame((&seen.frame, seen.unit), &window.track(i)[OBSERVED..]);
             let view = seen.view;
             examples.push(ProposalExample { view, future });
         }
@@ -67,6 +78,9 @@ fn nearest(window: &Window, i: usize, count: usize) -> impl Iterator<Item = usiz
     others.into_iter().map(|(_, j)| j)
 }
 
-fn in_frame<const T: usize>(frame: &HeadingFrame, track: &[Position]) -> [Position; T] {
-    std::array::from_fn(|t| frame.to_frame(track[t]))
+fn in_frame<const T: usize>(
+    (frame, unit): (&HeadingFrame, f64),
+    track: &[Position],
+) -> [Position; T] {
+    std::array::from_fn(|t| frame.to_frame(track[t]).map(|coordinate| coordinate / unit))
 }

@@ -6,8 +6,9 @@
 use crate::clearance::Clearance;
 use ddl_data::{HORIZON, Position};
 use ddl_dynamics::{
-    Attractor, AvoidingFlow, CholeskyMetric, DynamicsError, Flow, LyapunovCertificate,
-    MetricSchedule, NaturalGradientFlow, ObstacleSchedule, StableEuler, rollout_into,
+    ArrivingSchedule, Attractor, AvoidingFlow, CholeskyMetric, DynamicsError, Flow,
+    LyapunovCertificate, MotionBounds, NaturalGradientFlow, ObstacleSchedule, StableEuler,
+    rollout_into,
 };
 use ddl_star::StepRule;
 use nalgebra::Vector2;
@@ -17,7 +18,7 @@ use nalgebra::Vector2;
 pub(crate) enum Gait {
     /// The published steps, which may pass the goal.
     PlainEuler,
-    /// `StableEuler`, everybody alone or keeping clear of the others.
+    /// `StableEuler` within bounds, everybody alone or keeping clear of the others.
     Stable(Option<Clearance>),
 }
 
@@ -26,7 +27,7 @@ impl Gait {
     pub(crate) fn rule(self) -> StepRule {
         match self {
             Self::PlainEuler => StepRule::Euler,
-            Self::Stable(_) => StepRule::StableEuler,
+            Self::Stable(_) => StepRule::Bounded,
         }
     }
 }
@@ -42,6 +43,8 @@ pub(crate) struct Course {
     pub(crate) sigma: f64,
     /// Seconds a step.
     pub(crate) time_step: f64,
+    /// Of the motion.
+    pub(crate) bounds: MotionBounds<f64>,
 }
 
 /// A walk with the evidence that it goes to its goal.
@@ -53,12 +56,12 @@ pub(crate) struct Walk {
 }
 
 /// The flow to a goal, shaped by a metric a step.
-type ShapedFlow = NaturalGradientFlow<f64, 2, MetricSchedule<f64, 2>>;
+type ShapedFlow = NaturalGradientFlow<f64, 2, ArrivingSchedule<f64>>;
 
 impl Course {
     /// Walks the course with `StableEuler` steps in `f64`, shaped by one factor (a, b, c) a step.
     pub(crate) fn walk(&self, factors: &[[f64; 3]]) -> Result<Walk, DynamicsError> {
-        self.follow(&self.flow(factors)?)
+        self.follow(&self.flow(factors)?, true)
     }
 
     /// The same, keeping clear of others.
@@ -68,21 +71,23 @@ impl Course {
         factors: &[[f64; 3]],
     ) -> Result<Walk, DynamicsError> {
         let flow = AvoidingFlow::new(self.flow(factors)?, others, Clearance::MARGIN)?;
-        self.follow(&flow)
+        self.follow(&flow, false)
     }
 
     fn flow(&self, factors: &[[f64; 3]]) -> Result<ShapedFlow, DynamicsError> {
         let attractor = Attractor::new(Vector2::from(self.goal))?;
-        let metrics = MetricSchedule::new(self.metrics(factors)?)?;
+        let metrics = self.metrics(factors)?;
+        let metrics = ArrivingSchedule::new(metrics, attractor, self.bounds, self.time_step)?;
         Ok(NaturalGradientFlow::new(attractor, metrics))
     }
 
-    fn follow(&self, flow: &impl Flow<f64, 2>) -> Result<Walk, DynamicsError> {
+    fn follow(&self, flow: &impl Flow<f64, 2>, alone: bool) -> Result<Walk, DynamicsError> {
         let mut path = [Vector2::zeros(); HORIZON + 1];
         let start = Vector2::from(self.start);
         rollout_into(flow, &StableEuler, start, self.time_step, &mut path)?;
+        let certificate = LyapunovCertificate::of_rollout(flow, &path, self.time_step)?;
         Ok(Walk {
-            certificate: LyapunovCertificate::of_rollout(flow, &path, self.time_step)?,
+            certificate: certificate.within(&path, flow.attractor(), &self.bounds, alone)?,
             positions: std::array::from_fn(|t| path[t + 1].into()),
         })
     }
@@ -120,35 +125,43 @@ mod tests {
 
     use super::*;
 
-    const COURSE: Course = Course {
-        start: [0.0, 0.0],
-        goal: [3.0, 0.0],
-        sigma: 1e-8,
-        time_step: 0.5,
-    };
+    fn course() -> Course {
+        Course {
+            start: [0.0, 0.0],
+            goal: [3.0, 0.0],
+            sigma: 1e-8,
+            time_step: 0.5,
+            bounds: MotionBounds::new(2.15, Vector2::new(0.5, 0.0), 1.0).unwrap(),
+        }
+    }
 
-    /// L = I, so P u = u (1 + sigma): 1 m/s straight on, at the goal after six steps of 0.5 m.
+    /// 3 m in 12 steps of 0.5 s at the velocity that arrives, and L = I, which asks for no departure: straight on.
     #[test]
-    fn straight_on_at_one_metre_a_second() {
-        let walk = COURSE.walk(&[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
+    fn straight_on_at_half_a_metre_a_second() {
+        let course = course();
+        let walk = course.walk(&[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
         for (t, position) in (1..).zip(walk.positions) {
-            let x = (0.5 * f64::from(t)).min(3.0);
+            let x = 0.25 * f64::from(t);
             assert!((position[0] - x).abs() < 1e-7 && position[1].abs() < 1e-12);
         }
-        let bits = |p: Position| p.map(f64::to_bits);
-        assert_eq!(bits(walk.positions[HORIZON - 1]), bits(COURSE.goal));
         assert_eq!(walk.certificate.holds(), Ok(()));
-        let certified = COURSE
+        let motion = walk.certificate.motion().unwrap();
+        assert!(
+            (motion.speed.largest - 0.5).abs() < 1e-6 && (motion.speed.bound - 2.15).abs() < 1e-6
+        );
+        assert!(motion.distance_left.unwrap().largest < 1e-9);
+        let certified = course
             .certify(&walk.positions, &[[1.0, 0.0, 1.0]; HORIZON])
             .unwrap();
-        assert_eq!(certified, walk.certificate);
+        assert_eq!(certified.holds(), Ok(()));
+        assert_eq!(certified.motion(), None);
     }
 
     /// Somebody stands in the way: passed at the distance asked for, and the goal is still neared at every
     /// step.
     #[test]
     fn somebody_in_the_way_is_passed() {
-        let factors = [[1.0, 0.0, 1.0]; HORIZON];
+        let (course, factors) = (course(), [[1.0, 0.0, 1.0]; HORIZON]);
         let clearance = Clearance::new(0.5).unwrap();
         let stands = [[1.5, 0.1]; HORIZON];
         let others = clearance
@@ -158,19 +171,20 @@ mod tests {
             let distances = walk.positions.map(|[x, y]| (x - 1.5).hypot(y - 0.1));
             distances.into_iter().fold(f64::INFINITY, f64::min)
         };
-        assert!(apart(&COURSE.walk(&factors).unwrap()) < 0.15);
-        let walk = COURSE.walk_among(&others, &factors).unwrap();
+        assert!(apart(&course.walk(&factors).unwrap()) < 0.15);
+        let walk = course.walk_among(&others, &factors).unwrap();
         assert!(apart(&walk) > 0.5);
         assert_eq!(walk.certificate.holds(), Ok(()));
+        assert_eq!(walk.certificate.motion().unwrap().distance_left, None);
         let nobody = clearance.others(0, &[stands]).unwrap();
-        let alone = COURSE.walk_among(&nobody, &factors).unwrap();
-        assert_eq!(alone.positions, COURSE.walk(&factors).unwrap().positions);
+        let alone = course.walk_among(&nobody, &factors).unwrap();
+        assert_eq!(alone.positions, course.walk(&factors).unwrap().positions);
     }
 
     #[test]
     fn a_walk_past_the_goal_is_certified_as_it_is() {
         let overshoots: Vec<Position> = (1..=12).map(|t| [2.0 * f64::from(t), 0.0]).collect();
-        let certificate = COURSE
+        let certificate = course()
             .certify(&overshoots, &[[2.0, 0.0, 2.0]; HORIZON])
             .unwrap();
         // 3 m, 1 m, 1 m behind it: the second step is the first that comes no nearer
@@ -183,8 +197,8 @@ mod tests {
         let mut factors = [[1.0, 0.0, 1.0]; HORIZON];
         factors[7][1] = f64::NAN;
         for error in [
-            COURSE.walk(&factors).unwrap_err(),
-            COURSE
+            course().walk(&factors).unwrap_err(),
+            course()
                 .certify(&[[0.0, 0.0]; HORIZON], &factors)
                 .unwrap_err(),
         ] {

@@ -1,6 +1,6 @@
 //! The homography of a camera.
 
-use ddl_data::{Homography, Observation, PedestrianId};
+use ddl_data::{Homography, Observation, PedestrianId, PedestrianNames};
 
 /// Pixels that are asked for: corners, the middle, and beyond the image.
 const PIXELS: [[f64; 2]; 4] = [[0.0, 0.0], [320.0, 240.0], [-1e6, 1e6], [1e-300, -0.0]];
@@ -16,7 +16,7 @@ pub fn read(bytes: &[u8]) {
     };
     for pixel in PIXELS {
         let seen = Observation::new(0, PedestrianId(1), pixel);
-        if let Ok(place) = homography.place(&seen) {
+        if let Ok(place) = homography.place(&seen, &PedestrianNames::default()) {
             assert!(
                 place.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT),
                 "{pixel:?}: {place:?}"

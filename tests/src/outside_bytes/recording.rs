@@ -13,6 +13,14 @@ pub(super) fn check(bytes: &[u8], format: Format, written: fn(&[Observation]) ->
         }
     };
     bounded(&recording);
+    // The rows below are written with numbers; words have tests of their own in `ddl-data`.
+    if recording
+        .observations()
+        .iter()
+        .any(|seen| seen.pedestrian.0 >= 1 << 53)
+    {
+        return;
+    }
     let mut rows = recording.observations().to_vec();
     rows.reverse();
     let text = written(&rows);

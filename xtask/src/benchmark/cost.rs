@@ -77,7 +77,7 @@ mod tests {
         let cost = |fold| Cost::of(fold, Published, 1, Some(100), None).total();
         assert!(cost("univ") > cost("zara2") && cost("zara2") > cost("hotel"));
         assert!(cost("somewhere else") > 0.0);
-        let whole = |fold| Cost::of(fold, Recommended, 40, None, None).total();
+        let whole = |fold| Cost::of(fold, Recommended, 20, None, None).total();
         assert!(whole("univ") > whole("zara2") && whole("zara2") > whole("hotel"));
     }
 
@@ -93,7 +93,7 @@ mod tests {
 
     #[test]
     fn the_recommended_recipe_takes_the_same_walkers_in_every_fold_unless_told() {
-        let cost = |fold, walkers| Cost::of(fold, Recommended, 40, walkers, Some(1000));
+        let cost = |fold, walkers| Cost::of(fold, Recommended, 20, walkers, Some(1000));
         assert_eq!(cost("eth", None), cost("univ", Some(RECOMMENDED_WALKERS)));
         assert!(cost("eth", Some(10_000)).total() > cost("eth", None).total());
     }

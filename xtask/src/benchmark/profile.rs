@@ -58,20 +58,20 @@ const PROFILES: [Profile; 4] = [
     // Numbers worth reading, in minutes on two cores.
     Profile {
         name: "quick", folds: 5, proposal_steps: None, test_walkers: Some(2500),
-        recommended: training(RECOMMENDED, 20, None),
+        recommended: training(RECOMMENDED, 10, None),
         published: training(SHORT, 10, Some(4000)),
     },
     // Every window, trained until little more is learned: by the published recipe an evening on two cores. The recommended one
     // has reached its end by then.
     Profile {
         name: "evening", folds: 5, proposal_steps: None, test_walkers: None,
-        recommended: training(RECOMMENDED, 40, None),
+        recommended: training(RECOMMENDED, 20, None),
         published: training(FADING, 60, None),
     },
     // As much training as the recipe says, on every window.
     Profile {
         name: "paper", folds: 5, proposal_steps: None, test_walkers: None,
-        recommended: training(RECOMMENDED, 40, None),
+        recommended: training(RECOMMENDED, 20, None),
         published: training(PUBLISHED, 200, None),
     },
 ];

@@ -1,17 +1,21 @@
 //! `ddl data`.
 
+use super::Telling;
 use crate::clock::Clock;
+use crate::telling::tell;
 use crate::units::Units;
 use crate::{output, recordings};
 use clap::Args;
-use ddl::data::Summary;
+use ddl::BuiltinModel;
+use ddl::data::{Recording, Summary, WindowRule};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Tell what recordings hold, and what looks wrong with them
 ///
-/// How many people, for how long, how fast; how many moments can be forecast, and how many walkers a model can learn from.
+/// How many pedestrians, for how long, how fast; how many pedestrian-windows can be forecast, and from how many a model can learn: a pedestrian counts
+/// once in every window.
 /// Files that cannot be read are named on standard error, and the others told of all the same (exit code 1).
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  ddl data tracks.csv\n  ddl data recordings --fps 25 --json")]
@@ -21,19 +25,19 @@ pub(crate) struct Data {
     paths: Vec<PathBuf>,
     #[command(flatten)]
     units: Units,
-    /// As JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    telling: Telling,
 }
 
 impl Data {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         let files = recordings::files(&self.paths, &self.units)?;
         let (read, errors) = recordings::read_each(&files, &self.units);
+        recordings::tell_notes(read.iter().map(|(_, in_steps)| in_steps));
         let summaries = read
             .iter()
             .map(|(file, in_steps)| (file, in_steps.recording.summary(), in_steps.clock));
-        if self.json {
+        if self.telling.json {
             let facts: Result<Vec<Value>, _> = summaries
                 .map(|(file, summary, clock)| facts(file, &summary, clock))
                 .collect();
@@ -41,12 +45,80 @@ impl Data {
             return recordings::all_read(errors, files.len());
         }
         let mut text = String::new();
+        let mut total = Total::default();
         for (file, summary, clock) in summaries {
             write_summary(&mut text, &file.display().to_string(), &summary, clock)?;
+            total.add(&summary);
+        }
+        if total.recordings > 1 {
+            writeln!(text, "{total}")?;
         }
         output::print(&text)?;
+        warn_of_unfamiliar(read.iter().map(|(_, in_steps)| &in_steps.recording))?;
         recordings::all_read(errors, files.len())
     }
+}
+
+/// Says so where many motions are unlike those that the built-in model was trained on.
+fn warn_of_unfamiliar<'r>(recordings: impl Iterator<Item = &'r Recording>) -> anyhow::Result<()> {
+    let model = BuiltinModel::default();
+    let (mut all, mut unfamiliar) = (0, 0);
+    for recording in recordings {
+        let familiarity = model.familiarity(&recording.windows(WindowRule::Complete))?;
+        let familiarity = familiarity.concat();
+        all += familiarity.len();
+        unfamiliar += familiarity.iter().filter(|&&f| f < ddl::UNFAMILIAR).count();
+    }
+    let share =
+        100.0 * f64::from(u32::try_from(unfamiliar)?) / f64::from(u32::try_from(all.max(1))?);
+    if share > MANY_UNFAMILIAR {
+        tell(format_args!(
+            "warning: {share:.0} % of the motions are unlike those that the built-in model {model} was trained on (familiarity below {}): their \
+             forecasts are less certain; `ddl train --data` trains a model on these recordings",
+            ddl::UNFAMILIAR
+        ));
+    }
+    Ok(())
+}
+
+/// Share of unfamiliar motions (%) above which there is something to say: five times what training recordings have.
+const MANY_UNFAMILIAR: f64 = 5.0;
+
+/// What all recordings hold together.
+#[derive(Debug, Default)]
+struct Total {
+    recordings: usize,
+    pedestrians: usize,
+    windows: usize,
+    seconds: f64,
+}
+
+impl Total {
+    fn add(&mut self, summary: &Summary) {
+        self.recordings += 1;
+        self.pedestrians += summary.pedestrians;
+        self.windows += summary.windows;
+        self.seconds += summary.seconds;
+    }
+}
+
+impl std::fmt::Display for Total {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (pedestrians, windows) = (
+            many(self.pedestrians, "pedestrian", "pedestrians"),
+            many(self.windows, "window", "windows"),
+        );
+        write!(
+            f,
+            "in all: {} recordings, {pedestrians}, {windows} of 20 steps, {:.2} hours",
+            self.recordings,
+            self.seconds / 3600.0
+        )
+    }
+}
+
+fn many(count: usize, one: &str, more: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { more })
 }
 
 /// The summary with frames numbered as the tracks number them.
@@ -55,7 +127,7 @@ fn facts(file: &Path, summary: &Summary, clock: Clock) -> serde_json::Result<Val
     facts["file"] = file.display().to_string().into();
     let doubts = summary.doubts().into_iter();
     facts["doubts"] = doubts
-        .map(|doubt| recordings::words(clock.of_doubt(doubt)))
+        .map(|doubt| recordings::words(&clock.of_doubt(doubt)))
         .collect();
     for (name, frame) in [
         ("first_frame", summary.first_frame),
@@ -74,17 +146,14 @@ fn facts(file: &Path, summary: &Summary, clock: Clock) -> serde_json::Result<Val
 }
 
 fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std::fmt::Result {
-    let many = |count: usize, one: &str, more: &str| {
-        format!("{count} {}", if count == 1 { one } else { more })
-    };
     writeln!(out, "{file}")?;
     writeln!(
         out,
         "  {} in {} ({} to {}, {} a step of 0.4 s: {:.1} s), {}",
-        many(s.pedestrians, "person", "people"),
+        many(s.pedestrians, "pedestrian", "pedestrians"),
         many(s.frames, "frame", "frames"),
-        clock.number(s.first_frame),
-        clock.number(s.last_frame),
+        clock.nearest(s.first_frame),
+        clock.nearest(s.last_frame),
         clock.number(s.frame_step),
         s.seconds,
         many(s.observations, "position", "positions"),
@@ -101,34 +170,37 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std
                 "median speed {median:.2} m/s, the fastest step {:.2} m/s (pedestrian {} at frame {})",
                 fastest.speed,
                 fastest.pedestrian,
-                clock.number(fastest.frame)
+                clock.nearest(fastest.frame)
             ),
             _ => "no speeds".to_owned(),
         }
     )?;
     writeln!(
         out,
-        "  to forecast: {}, {} of them seen at all 8 steps; {} in the tracks{}",
-        many(s.to_forecast, "moment of a person", "moments of people"),
+        "  to forecast: {} of 8 steps, {} of them seen at all 8; {} in the tracks{}",
+        many(s.to_forecast, "pedestrian-window", "pedestrian-windows"),
         s.seen_whole,
         many(s.holes, "hole", "holes"),
-        s.longest_hole.map_or_else(String::new, |hole| format!(
-            ", the longest {:.1} s (pedestrian {} after frame {})",
-            hole.seconds,
-            hole.pedestrian,
-            clock.number(hole.after)
-        )),
+        s.longest_hole
+            .as_ref()
+            .map_or_else(String::new, |hole| format!(
+                ", the longest {:.1} s (pedestrian {} after frame {})",
+                hole.seconds,
+                hole.pedestrian,
+                clock.nearest(hole.after)
+            )),
     )?;
     writeln!(
         out,
-        "  to train on and to measure with: {} in windows of 20 steps",
-        many(s.to_learn_from, "walker", "walkers")
+        "  to train on and to measure with: {} in {} of 20 steps",
+        many(s.to_learn_from, "pedestrian-window", "pedestrian-windows"),
+        many(s.windows, "window", "windows")
     )?;
     for doubt in s.doubts() {
         writeln!(
             out,
             "  doubtful: {}",
-            recordings::words(clock.of_doubt(doubt))
+            recordings::words(&clock.of_doubt(doubt))
         )?;
     }
     Ok(())

@@ -5,12 +5,13 @@ mod forecasts;
 use super::{Exactness, KeepClear, Machine, RecordingsAt, Reporting, at_least_one};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::Convention;
 use ddl::eval::Report;
 use ddl::{
-    Ddl, DdlError, EvaluationRequest, EvaluationSplit, ModelSource, Protocol, Results, RunDirectory,
+    BuiltinModel, Ddl, DdlError, EvaluationRequest, EvaluationSplit, ModelSource, Protocol,
+    Results, RunDirectory,
 };
 use forecasts::OtherProgram;
 use std::path::PathBuf;
@@ -21,16 +22,14 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
         ddl evaluate --fold zara1\n  \
+        ddl evaluate --data recordings\n  \
+        ddl evaluate --model runs/own --data recordings --validation\n  \
         ddl evaluate --model runs/eth --protocol fair --protocol single\n  \
         ddl evaluate --forecasts mine.jsonl --fold zara1 --out results")]
 pub(crate) struct Evaluate {
-    /// Model, measured on the scene it was trained without, or on your own recordings (--data FOLDER --convention own): the directory of a run, a
-    /// packed file, or the name of a built-in model [default: the built-in model that was trained without --fold]
-    #[arg(
-        long,
-        required_unless_present_any = ["forecasts", "fold"],
-        conflicts_with_all = ["forecasts", "fold", "window_rule"]
-    )]
+    /// Model, measured on the scene it was trained without, or on your own recordings (--data FOLDER): the directory of a run, a
+    /// packed file, or the name of a built-in model [default: the built-in model that was trained without --fold; on your own recordings hotel]
+    #[arg(long, conflicts_with_all = ["forecasts", "fold", "window_rule"])]
     model: Option<PathBuf>,
     #[command(flatten)]
     other: OtherProgram,
@@ -39,9 +38,13 @@ pub(crate) struct Evaluate {
     /// published, fair or single; may be repeated
     #[arg(long = "protocol", default_values = ["fair", "single"])]
     protocols: Vec<Protocol>,
-    /// Measure on the validation part of the training recordings instead of the test scene
+    /// Measure on the validation part of the training recordings instead of the test scene; of own recordings that the model does not know, on what
+    /// a training would keep: the last fifth of each, or every fifth recording where they are short
     #[arg(long, conflicts_with = "forecasts")]
     validation: bool,
+    /// Own recordings that are the validation part whole, such as `lobby,yard`
+    #[arg(long, value_delimiter = ',', requires = "validation")]
+    validation_recordings: Vec<String>,
     /// Measure a seeded part of the test windows with about so many walkers by the widest window rule [default: all]
     #[arg(long, value_parser = at_least_one, conflicts_with = "forecasts")]
     test_walkers: Option<usize>,
@@ -64,7 +67,26 @@ impl Evaluate {
                 self.reporting.print(&report, &self.other.written())
             }
             (None, Some(name)) => self.measure(&ModelSource::named(name)),
-            (None, None) => self.measure(&ModelSource::Builtin(self.other.builtin_model()?)),
+            (None, None) => self.measure(&ModelSource::Builtin(self.builtin_model()?)),
+        }
+    }
+
+    /// The built-in model where none is named: that of the fold, or the one that forecasts, where there are own recordings to measure it on.
+    fn builtin_model(&self) -> anyhow::Result<BuiltinModel> {
+        let windows = &self.other.windows;
+        if windows.fold.is_some() {
+            return self.other.builtin_model();
+        }
+        let default = BuiltinModel::default();
+        match self
+            .recordings
+            .convention(windows.convention, Convention::Star)
+        {
+            Convention::Own => Ok(default),
+            _ => bail!(
+                "say what to measure: a model (--model), a built-in one on the scene that it was trained without (--fold eth, hotel, univ, zara1 or \
+                 zara2) or on your own recordings (--data FOLDER), or another program's forecasts (--forecasts)"
+            ),
         }
     }
 
@@ -81,11 +103,16 @@ impl Evaluate {
             } else {
                 EvaluationSplit::Test
             },
+            validation_recordings: self.validation_recordings.clone(),
             test_walkers: self.test_walkers,
             commit: self.reporting.commit.clone(),
         };
         let trained_on = model.config().data.convention;
-        let convention = self.other.windows.convention.unwrap_or(trained_on);
+        let windows = &self.other.windows;
+        let asked = windows
+            .convention
+            .or(windows.fold.as_ref().map(|_| trained_on));
+        let convention = self.recordings.convention(asked, trained_on);
         let title = match convention {
             Convention::Own => format!("own recordings, {}", model.config().star.variant),
             _ => format!(
@@ -104,8 +131,8 @@ impl Evaluate {
                 .reporting
                 .print(&Report::load(&run.report())?, &self.written(kept));
         }
-        let dataset = self.recordings.dataset(convention)?;
-        let progress = Progress::new("evaluate", self.reporting.progress);
+        let dataset = self.recordings.dataset_for(model.config(), convention)?;
+        let progress = Progress::new("evaluate", self.reporting.telling.progress);
         let evaluation = ddl::evaluate(&model, &dataset, &request, |now| {
             let (done, total) = now.walkers;
             progress.tell(done as u64, total as u64, now.protocol.name());

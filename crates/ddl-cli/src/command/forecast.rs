@@ -13,7 +13,7 @@ use crate::tracks::Tracks;
 use clap::{Args, ValueEnum};
 use ddl::data::{HORIZON, OBSERVED, Window};
 use ddl::dynamics::LyapunovCertificate;
-use ddl::{CertifiedForecast, Ddl, Forecaster as _};
+use ddl::{Calibration, CertifiedForecast, Ddl, Forecaster as _};
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
 
@@ -33,7 +33,7 @@ pub(crate) struct Forecast {
     /// File to write [default: standard output]
     #[arg(long, short)]
     output: Option<PathBuf>,
-    /// csv: a row a position; jsonl: a JSON object a pedestrian
+    /// csv: a row a position, to 0.1 mm; jsonl: a JSON object a pedestrian, with all digits
     #[arg(long, value_enum, default_value = "csv")]
     format: OutputFormat,
     /// One forecast a pedestrian, for who may have only one: straight on to the goal that stands for all 20
@@ -43,11 +43,17 @@ pub(crate) struct Forecast {
     ///
     /// A certificate holds when the distance to the goal falls at every one of the 12 steps, along a
     /// flow that descends everywhere, and a walker at its goal stays. It speaks of the very positions
-    /// printed. csv: two columns, the distance to the goal at that frame (metres) and the verdict;
+    /// in JSON lines, which csv has to 0.1 mm. csv: two columns, the distance to the goal at that frame (metres) and the verdict;
     /// jsonl: the verdict and its evidence, step by step. It says that the forecast is stable, not
     /// that people will do as forecast. The variants star and no-dynamics have no certificates (with --one, star alone).
     #[arg(long)]
     certificate: bool,
+    /// Regions that hold the pedestrian with these probabilities at each step, such as 0.5,0.9: discs about the hypotheses
+    ///
+    /// csv: a column of radii (metres) for each, empty where a hypothesis has no disc; jsonl: the discs of each step. They hold on average over
+    /// places like those they were calibrated on; in one new place the share that they hold may be off by 25 points (docs/elsewhere.md).
+    #[arg(long, value_name = "PROBABILITIES", value_delimiter = ',', value_parser = probability, conflicts_with = "one")]
+    region: Vec<f64>,
     #[command(flatten)]
     clear: KeepClear,
     #[command(flatten)]
@@ -132,7 +138,10 @@ impl Forecast {
             let moments: Vec<Moment<'_>> =
                 pairs.map(|pair| Moment::certified(pair, clock)).collect();
             warn_of_violation(&moments);
-            self.format.text(&moments, headed)
+            if headed {
+                warn_of_unfamiliar(&moments);
+            }
+            self.format.text(&moments, headed, &self.region)
         } else {
             let forecasts = if self.one {
                 model.forecast_one(windows)?
@@ -141,16 +150,29 @@ impl Forecast {
             };
             let pairs = windows.iter().zip(&forecasts);
             let moments: Vec<Moment<'_>> = pairs.map(|pair| Moment::plain(pair, clock)).collect();
-            self.format.text(&moments, headed)
+            if headed {
+                warn_of_unfamiliar(&moments);
+            }
+            self.format.text(&moments, headed, &self.region)
         }
     }
 }
 
+/// A probability that the table of regions reaches.
+fn probability(text: &str) -> Result<f64, String> {
+    let [low, high] = Calibration::fitted().regions.range();
+    let level: f64 = text.trim().parse().map_err(|error| format!("{error}"))?;
+    if (low..=high).contains(&level) {
+        return Ok(level);
+    }
+    Err(format!("a region has a probability of {low} to {high}"))
+}
+
 impl OutputFormat {
-    fn text(self, moments: &[Moment<'_>], headed: bool) -> anyhow::Result<String> {
+    fn text(self, moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyhow::Result<String> {
         match self {
-            Self::Csv => table::csv(moments, headed),
-            Self::Jsonl => json_lines::json_lines(moments),
+            Self::Csv => table::csv(moments, headed, regions),
+            Self::Jsonl => json_lines::json_lines(moments, regions),
         }
     }
 }
@@ -191,6 +213,29 @@ impl<'a> Moment<'a> {
     }
 }
 
+/// Warns of motions unlike those of the training: their forecasts are less certain.
+fn warn_of_unfamiliar(moments: &[Moment<'_>]) {
+    let all = moments
+        .iter()
+        .flat_map(|moment| (0..moment.window.len()).map(move |i| (moment, i)));
+    let familiarity = |&(moment, i): &(&Moment<'_>, usize)| moment.forecast.familiarity(i);
+    let mut unfamiliar = all
+        .clone()
+        .filter(|of| familiarity(of).is_some_and(|f| f < ddl::UNFAMILIAR));
+    let Some((moment, i)) = unfamiliar.next() else {
+        return;
+    };
+    let count = 1 + unfamiliar.count();
+    tell(format_args!(
+        "warning: {count} of {} motions are unlike those that the model was trained on (familiarity below {}), the first that of pedestrian {} observed \
+         until frame {}: they are forecast nearly without the network, and less sharply weighted",
+        all.count(),
+        ddl::UNFAMILIAR,
+        moment.window.name(i),
+        moment.observed_until(),
+    ));
+}
+
 /// Stable steps cannot break the guarantee, whatever the network emits. If one does, a user who acts on
 /// the forecasts must know.
 fn warn_of_violation(moments: &[Moment<'_>]) {
@@ -202,7 +247,7 @@ fn warn_of_violation(moments: &[Moment<'_>]) {
         tell(format_args!(
             "warning: not every certificate holds; the first that does not is that of pedestrian {}, \
              observed until frame {}, hypothesis {hypothesis}: {violation}",
-            moment.window.pedestrians()[i].0,
+            moment.window.name(i),
             moment.observed_until(),
         ));
     }

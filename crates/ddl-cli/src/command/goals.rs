@@ -1,13 +1,13 @@
 //! `ddl goals`.
 
 use super::model::ModelChoice;
-use super::{Machine, dataset};
+use super::{Machine, Telling, convention_of, dataset};
 use crate::clock::FrameNumber;
-use crate::output::write_output;
+use crate::output::{table_metres, write_output};
 use crate::tracks::{Observed, Tracks};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
-use ddl::data::OBSERVED;
+use ddl::data::{OBSERVED, PedestrianName};
 use ddl::goal::GoalSet;
 use ddl::{EvaluationSplit, GoalEvaluation};
 use serde::Serialize;
@@ -25,15 +25,15 @@ pub(crate) struct Goals {
     model: ModelChoice,
     #[command(flatten)]
     tracks: Tracks,
-    /// Compare the goals with the true ends of the recordings the model was trained without
+    /// Compare the goals with the true ends of the recordings the model was trained without, or of your own (--data)
     #[arg(long, value_enum, conflicts_with_all = ["file", "last", "whole"])]
     measure: Option<Measure>,
-    /// Folder of the recordings to measure on [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
+    /// Recordings to measure on: the folder of those that the model is of, or your own, a folder or a file [default: `$DDL_DATASETS`, then
+    /// `datasets/eth_ucy`]
     #[arg(long)]
     data: Option<PathBuf>,
-    /// The measurement as JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    telling: Telling,
     /// Also draw walkers with typical errors, one of each kind of motion, as an SVG
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
@@ -56,7 +56,7 @@ enum Measure {
 #[derive(Serialize)]
 struct Row {
     observed_until: FrameNumber,
-    pedestrian: i64,
+    pedestrian: PedestrianName,
     goal: usize,
     weight: f64,
     x: f64,
@@ -67,7 +67,9 @@ struct Row {
 
 impl Goals {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        if self.measure.is_none() && (self.json || self.svg.is_some() || self.data.is_some()) {
+        if self.measure.is_none()
+            && (self.telling.json || self.svg.is_some() || self.data.is_some())
+        {
             bail!("--json, --svg and --data go with --measure test or --measure validation");
         }
         let tracks = &self.tracks;
@@ -95,8 +97,10 @@ impl Goals {
     fn measure(&self, measure: Measure) -> anyhow::Result<String> {
         self.machine.prepare()?;
         let model = self.model.load_goals(self.machine.device)?;
-        let convention = model.config().data.convention;
-        let dataset = dataset(convention, self.data.as_deref(), self.tracks.units())?;
+        let data = self.data.as_deref();
+        let convention = convention_of(data, model.config().data.convention);
+        let units = self.tracks.units().or_those_of(model.config());
+        let dataset = dataset(convention, data, &units)?;
         let on = match measure {
             Measure::Test => EvaluationSplit::Test,
             Measure::Validation => EvaluationSplit::Validation,
@@ -106,7 +110,7 @@ impl Goals {
             write_output(Some(path), &ddl::goal_picture(&model, &measured)?)?;
         }
         let evaluation = &measured.evaluation;
-        Ok(if self.json {
+        Ok(if self.telling.json {
             serde_json::to_string_pretty(evaluation)? + "\n"
         } else {
             words(evaluation)
@@ -118,16 +122,17 @@ fn csv(observed: &Observed, sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for (window, sets) in observed.windows.iter().zip(sets) {
         let last = observed.clock.number(window.frames()[OBSERVED - 1]);
-        for (i, (pedestrian, set)) in window.pedestrians().iter().zip(sets).enumerate() {
+        for (i, set) in sets.iter().enumerate() {
             let made_up = window.made_up(i);
             for (goal, (position, weight)) in set.goals().iter().zip(set.weights()).enumerate() {
+                let [x, y] = position.map(table_metres);
                 writer.serialize(Row {
                     observed_until: last,
-                    pedestrian: pedestrian.0,
+                    pedestrian: window.name(i),
                     goal,
                     weight: *weight,
-                    x: position[0],
-                    y: position[1],
+                    x,
+                    y,
                     padded: made_up.padded,
                     filled: made_up.filled,
                 })?;

@@ -1,5 +1,6 @@
 //! `ddl info`.
 
+use super::Telling;
 use crate::output;
 use clap::Args;
 use ddl::data::Fold;
@@ -22,9 +23,8 @@ pub(crate) struct Info {
         hide = true
     )]
     named: Option<PathBuf>,
-    /// As JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    telling: Telling,
 }
 
 impl Info {
@@ -51,7 +51,7 @@ impl Info {
                 }
             }
         };
-        if self.json {
+        if self.telling.json {
             return output::print_json(&facts);
         }
         let mut text = summary_line.map_or_else(String::new, |line| line + "\n\n");

@@ -1,5 +1,6 @@
 //! `ddl pack`.
 
+use super::Telling;
 use crate::output;
 use clap::Args;
 use ddl::{Ddl, DeviceChoice, ModelSource};
@@ -20,9 +21,8 @@ pub(crate) struct Pack {
     /// File to write
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// What was written on standard output as JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    telling: Telling,
 }
 
 impl Pack {
@@ -30,7 +30,7 @@ impl Pack {
         let model = Ddl::open(&ModelSource::named(&self.model), DeviceChoice::Cpu)?;
         model.pack(&self.out)?;
         let numbers = model.parameter_count() + model.goal_model().parameter_count();
-        if self.json {
+        if self.telling.json {
             return output::print_json(&json!({"file": self.out, "weights": numbers}));
         }
         output::print(&format!("{}: {numbers} weights\n", self.out.display()))

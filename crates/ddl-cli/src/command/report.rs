@@ -1,5 +1,6 @@
 //! `ddl report`.
 
+use super::Telling;
 use crate::output;
 use clap::Args;
 use ddl::Results;
@@ -20,16 +21,15 @@ pub(crate) struct Report {
     /// Folder to write to
     #[arg(long)]
     out: PathBuf,
-    /// The gathered results on standard output as JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    telling: Telling,
 }
 
 impl Report {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         let results = Results::of(self.title, &self.runs)?;
         results.save(&self.out)?;
-        output::print(&if self.json {
+        output::print(&if self.telling.json {
             results.report.to_json()? + "\n"
         } else {
             format!("{}\n", self.out.join("report.html").display())

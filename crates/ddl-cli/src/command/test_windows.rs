@@ -3,16 +3,16 @@
 use super::RecordingsAt;
 use anyhow::bail;
 use clap::Args;
-use ddl::data::{Convention, Window, WindowRule};
+use ddl::data::{Convention, Recording, Window, WindowRule};
 
 /// The test windows of a fold.
 #[derive(Debug, Args)]
 pub(crate) struct TestWindows {
-    /// Data convention: star, social-gan, simulated or own [default: star]
+    /// Data convention: star, social-gan, simulated or own [default: star; own where --data names recordings that are not those of star, and no --fold is given]
     #[arg(long)]
     pub(crate) convention: Option<Convention>,
     /// Scene to test on: eth, hotel, univ, zara1, zara2 (simulated: corridor, crossing, plaza, bottleneck,
-    /// doorway; own: the name of a file, without its extension)
+    /// doorway; own: the name of a file, without its extension [default of own ones: all])
     #[arg(long)]
     pub(crate) fold: Option<String>,
     /// Which stretches count as windows: published, complete, social-gan (at least 2 pedestrians) or social-gan-1
@@ -22,36 +22,34 @@ pub(crate) struct TestWindows {
 }
 
 impl TestWindows {
-    /// The convention asked for, or the default one.
-    pub(crate) fn convention(&self) -> Convention {
-        self.convention.unwrap_or(Convention::Star)
+    /// The convention asked for, or that of what lies there.
+    pub(crate) fn convention(&self, recordings: &RecordingsAt) -> Convention {
+        let of_fold = self.fold.as_ref().map(|_| Convention::Star);
+        recordings.convention(self.convention.or(of_fold), Convention::Star)
     }
 
     /// The rule asked for, or the headline's.
-    pub(crate) fn rule(&self) -> WindowRule {
+    pub(crate) fn rule(&self, convention: Convention) -> WindowRule {
         self.window_rule
-            .unwrap_or_else(|| self.convention().headline_rule())
+            .unwrap_or_else(|| convention.headline_rule())
     }
 
-    /// The fold's name.
-    pub(crate) fn fold(&self) -> anyhow::Result<&str> {
-        let known: Vec<&str> = self.convention().fold_names().collect();
-        self.fold.as_deref().ok_or_else(|| {
-            if known.is_empty() {
-                return anyhow::anyhow!(
-                    "give the --fold to test on: the name of a recording, without its extension"
-                );
-            }
-            anyhow::anyhow!("give the --fold to test on, one of {}", known.join(", "))
-        })
+    /// The fold's name; `None` for all own recordings.
+    fn fold(&self, convention: Convention) -> anyhow::Result<Option<&str>> {
+        if self.fold.is_none() && convention != Convention::Own {
+            let known: Vec<&str> = convention.fold_names().collect();
+            bail!("give the --fold to test on, one of {}", known.join(", "));
+        }
+        Ok(self.fold.as_deref())
     }
 
     /// Refuses windows that no built-in model is measured on.
     pub(crate) fn ensure_of_builtin_models(&self) -> anyhow::Result<()> {
-        let convention = self.convention();
+        let convention = self.convention.unwrap_or(Convention::Star);
         if convention == Convention::Own {
             bail!(
-                "say which model to measure on your own recordings: --model hotel, or the directory of a run"
+                "--fold of your own recordings is for a run that was trained without it (--model) or for --forecasts; to measure a built-in model on one file, \
+                 name that: --data FILE"
             );
         }
         if convention != Convention::Star {
@@ -68,10 +66,20 @@ impl TestWindows {
         Ok(())
     }
 
-    /// The windows, read from a folder of recordings or simulated.
-    pub(crate) fn windows(&self, recordings: &RecordingsAt) -> anyhow::Result<Vec<Window>> {
-        let fold = self.fold()?;
-        let dataset = recordings.dataset(self.convention())?;
-        Ok(dataset.fold(fold)?.test_windows(self.rule()))
+    /// The windows, read from a folder of recordings or simulated, and what results call them.
+    pub(crate) fn windows(
+        &self,
+        recordings: &RecordingsAt,
+    ) -> anyhow::Result<(String, Vec<Window>)> {
+        let convention = self.convention(recordings);
+        let fold = self.fold(convention)?;
+        let dataset = recordings.dataset(convention)?;
+        let rule = self.rule(convention);
+        let Some(fold) = fold else {
+            let all: Vec<&Recording> = dataset.recordings().iter().collect();
+            let windows = all.iter().flat_map(|recording| recording.windows(rule));
+            return Ok((ddl::name_of(&all), windows.collect()));
+        };
+        Ok((fold.to_owned(), dataset.fold(fold)?.test_windows(rule)))
     }
 }

@@ -1,21 +1,24 @@
 //! `ddl train`.
 
+mod compared;
 mod finished;
 
 use super::{Machine, RecordingsAt, Reporting};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
+use crate::telling::tell;
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
-use ddl::data::{Convention, Fold};
+use ddl::data::{Convention, Dataset, Fold, Window};
 use ddl::star::{LearningRateSchedule, ProposalTraining, StarConfig, TrainingConfig};
 use ddl::{
-    DdlError, GoalRecipe, RunDirectory, TrainingRequest, TrainingStage, TrainingStep, Variant,
+    BuiltinModel, DdlError, GoalRecipe, ModelSource, RunDirectory, TrainingRequest, TrainingStage,
+    TrainingStep, ValidationPart, Variant,
 };
 use std::path::PathBuf;
 
-/// Share of own recordings kept for validation.
-const VALIDATION: f64 = 0.2;
+/// Own recordings of fewer pedestrian-windows to learn from are too few to learn everything from.
+const FEW: usize = 10_000;
 /// Epochs to wait for a smaller validation error, on own recordings.
 const PATIENCE: usize = 10;
 
@@ -25,6 +28,7 @@ const PATIENCE: usize = 10;
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
         ddl train --data recordings --out runs/own\n  \
+        ddl train --data recordings --from hotel --out runs/further\n  \
         ddl train --data recordings --convention own --fold lobby --out runs/without-lobby\n  \
         ddl train --fold eth --epochs 10 --out runs/eth")]
 pub(crate) struct Train {
@@ -48,10 +52,15 @@ pub(crate) struct Train {
     /// (docs/performance.md) [default: 128, published 2048]
     #[arg(long)]
     feed_forward_width: Option<i64>,
+    /// Model to begin with, instead of random weights: a built-in one, such as hotel, a packed file or the directory of a run, of the same sizes; none for
+    /// random weights. It is trained on in fewer and smaller steps, and kept as it was where that forecasts the validation part no better [default:
+    /// none; for own recordings with fewer than 10000 pedestrian-windows to learn from hotel]
+    #[arg(long, value_name = "MODEL")]
+    from: Option<PathBuf>,
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Epochs [default: 40, published 200]
+    /// Epochs [default: 20, published 200, with --from 5]
     #[arg(long)]
     epochs: Option<usize>,
     /// Walkers an epoch, going round the training set [default: 5000, published all]
@@ -60,13 +69,14 @@ pub(crate) struct Train {
     /// Walkers a batch [default: 64, published 256]
     #[arg(long)]
     batch_walkers: Option<usize>,
-    /// Largest step size of Adam [default: 3e-3, published 1.5e-3]
+    /// Largest step size of Adam [default: 1e-3, published 1.5e-3, with --from 1e-4]
     #[arg(long)]
     learning_rate: Option<f64>,
     /// How the step size changes: constant or cosine [default: cosine, published constant]
     #[arg(long)]
     learning_rate_schedule: Option<LearningRateSchedule>,
-    /// Share of the training recordings' time, at their ends, kept for validation [default: 0, of own recordings 0.2 unless some are kept whole]
+    /// Share of the training recordings' time, at their ends, kept for validation [default: 0, of own recordings 0.2 unless some are kept whole, which is done
+    /// where the ends of short ones hold next to no windows]
     #[arg(long)]
     validation: Option<f64>,
     /// Training recordings kept for validation whole, such as `uni_examples,zara03`
@@ -79,7 +89,7 @@ pub(crate) struct Train {
     /// Where goals come from: proposed by a network trained first, or retrieved from the training tracks
     #[arg(long, value_enum, default_value_t = GoalsFrom::Proposed)]
     goals: GoalsFrom,
-    #[arg(long, help = format!("Batches that the proposal network is trained on [default: {}]", ProposalTraining::default().steps))]
+    #[arg(long, help = format!("Batches that the proposal network is trained on [default: {}, with --from 300]", ProposalTraining::default().steps))]
     proposal_steps: Option<u64>,
     /// JSON file with all of it: a run's config.json, or its part `goals`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["goals", "proposal_steps"])]
@@ -112,19 +122,15 @@ enum GoalsFrom {
 }
 
 impl Train {
+    #[expect(clippy::too_many_lines, reason = "one option after the other")]
     pub(crate) fn run(self) -> anyhow::Result<()> {
         self.machine.prepare()?;
         let interrupt = Interrupt::catch()?;
         let (convention, fold) = self.scene()?;
         let dataset = self.recordings.dataset(convention)?;
-        let goals = self.goal_recipe()?;
-        let (star, training) = self.recipe();
         let own = convention == Convention::Own;
-        let whole = !self.validation_recordings.is_empty();
-        let validation = self
-            .validation
-            .unwrap_or(if own && !whole { VALIDATION } else { 0.0 });
-        let kept = validation > 0.0 || whole;
+        let part = self.validation_part(&dataset, &fold)?;
+        let kept = part.share > 0.0 || !part.recordings.is_empty();
         let patience = self
             .patience
             .unwrap_or(if own && kept { PATIENCE } else { 0 });
@@ -133,14 +139,19 @@ impl Train {
                 "--last-epoch-only keeps no other epoch that may be the best: add --patience 0 to take the last one"
             );
         }
+        let from = self.begin_with(&dataset, &fold, &part)?;
+        let goals = self.goal_recipe(from.is_some())?;
+        let (star, training) = self.recipe(from.is_some());
         let request = TrainingRequest {
             fold,
             star,
             training,
-            validation,
-            validation_recordings: self.validation_recordings,
+            validation: part.share,
+            validation_recordings: part.recordings,
+            from,
             patience: (patience > 0).then_some(patience),
             goals,
+            units: self.recordings.units.told()?,
             last_epoch_only: self.last_epoch_only,
             until: if self.only_goals {
                 TrainingStage::Goals
@@ -155,7 +166,7 @@ impl Train {
         let (mut goals, mut network) = (None, None);
         let mut stood = "before its first step".to_owned();
         let mut losses = String::new();
-        let bar = |stage| move || Progress::new(stage, self.reporting.progress);
+        let bar = |stage| move || Progress::new(stage, self.reporting.telling.progress);
         let trained = ddl::train(&request, &dataset, |now| {
             let (done, total) = now.steps;
             match &now.step {
@@ -191,7 +202,77 @@ impl Train {
                 .context(format!("{}, {stood}", request.out.path().display())),
             error => error.into(),
         })?;
-        finished::print(&request, &self.recordings, &self.reporting)
+        let compared = compared::with_builtin(&request, &dataset, &self.reporting, &interrupt)?;
+        finished::print(
+            &request,
+            compared.as_ref(),
+            &self.recordings,
+            &self.reporting,
+        )
+    }
+
+    /// What is kept for validation.
+    fn validation_part(&self, dataset: &Dataset, fold: &str) -> anyhow::Result<ValidationPart> {
+        let recordings = &self.validation_recordings;
+        let part = ValidationPart {
+            share: self.validation.unwrap_or(0.0),
+            recordings: recordings.clone(),
+        };
+        let said = self.validation.is_some() || !recordings.is_empty();
+        if said || dataset.convention() != Convention::Own {
+            return Ok(part);
+        }
+        let part = ValidationPart::of_own(&ddl::fold_of(dataset, fold)?);
+        if !part.recordings.is_empty() {
+            let count = part.recordings.len();
+            let whole = if count == 1 {
+                "1 recording is"
+            } else {
+                "some recordings are"
+            };
+            tell(format_args!(
+                "note: the ends of these recordings hold next to no windows to validate on: {whole} kept for validation whole \
+                 (--validation-recordings {})",
+                part.recordings.join(",")
+            ));
+        }
+        Ok(part)
+    }
+
+    /// The model to begin with: the one that is named, or for few own recordings the built-in one, where it is of the sizes asked for.
+    fn begin_with(
+        &self,
+        dataset: &Dataset,
+        fold: &str,
+        part: &ValidationPart,
+    ) -> anyhow::Result<Option<ModelSource>> {
+        if let Some(named) = &self.from {
+            let none = named.as_os_str() == "none";
+            return Ok((!none).then(|| ModelSource::named(named)));
+        }
+        let usual = self.variant == Variant::Full
+            && self.recipe == Recipe::Recommended
+            && self.feed_forward_width.is_none()
+            && self.goals == GoalsFrom::Proposed
+            && self.goal_recipe.is_none();
+        if dataset.convention() != Convention::Own || !usual {
+            return Ok(None);
+        }
+        let fold = ddl::fold_of(dataset, fold)?.set_apart(&part.recordings)?;
+        let rule = dataset.convention().headline_rule();
+        let windows = fold
+            .training_split(rule, part.share.clamp(0.0, 1.0))
+            .training;
+        let pedestrians: usize = windows.iter().map(Window::len).sum();
+        if pedestrians == 0 || pedestrians >= FEW {
+            return Ok(None);
+        }
+        let model = BuiltinModel::default();
+        tell(format_args!(
+            "note: {pedestrians} pedestrian-windows to learn from are few: training begins with the weights of the built-in model {model} (--from none \
+             for random ones)"
+        ));
+        Ok(Some(ModelSource::Builtin(model)))
     }
 
     /// The convention and the fold to train.
@@ -221,11 +302,15 @@ impl Train {
     }
 
     /// Network and training of the recipe, with what the options change of it.
-    fn recipe(&self) -> (StarConfig, TrainingConfig) {
+    fn recipe(&self, further: bool) -> (StarConfig, TrainingConfig) {
         let (mut star, mut training) = match self.recipe {
             Recipe::Recommended => (
                 StarConfig::recommended(self.variant),
-                TrainingConfig::recommended(self.variant),
+                if further {
+                    ddl::training_further(self.variant)
+                } else {
+                    TrainingConfig::recommended(self.variant)
+                },
             ),
             Recipe::Published => (
                 StarConfig::published(self.variant),
@@ -247,7 +332,7 @@ impl Train {
         (star, training)
     }
 
-    fn goal_recipe(&self) -> anyhow::Result<GoalRecipe> {
+    fn goal_recipe(&self, further: bool) -> anyhow::Result<GoalRecipe> {
         if let Some(path) = &self.goal_recipe {
             let text = std::fs::read_to_string(path)
                 .with_context(|| format!("cannot read {}", path.display()))?;
@@ -266,7 +351,11 @@ impl Train {
             }
             (GoalsFrom::Retrieved, None) => Ok(GoalRecipe::retrieved(self.seed)),
             (GoalsFrom::Proposed, steps) => {
-                let mut recipe = GoalRecipe::proposed(self.seed);
+                let mut recipe = if further {
+                    ddl::goals_trained_further(self.seed)
+                } else {
+                    GoalRecipe::proposed(self.seed)
+                };
                 if let (Some(proposal), Some(steps)) = (&mut recipe.proposal, steps) {
                     proposal.training.steps = steps;
                 }

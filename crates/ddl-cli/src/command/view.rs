@@ -99,7 +99,8 @@ fn page(
     };
     let pairs = windows.iter().zip(&forecasts);
     let moments: Vec<Moment> = pairs.map(moment).collect::<anyhow::Result<_>>()?;
-    let doubt = observed.doubt.map(|doubt| format!("Doubtful: {doubt} "));
+    let doubt = observed.doubt.as_ref();
+    let doubt = doubt.map(|doubt| format!("Doubtful: {doubt} "));
     let lead = doubt.unwrap_or_default()
         + &format!(
             "{} of {} moments of {}: what was observed of each person, where each may go in the next 4.8 s, and what then happened as \
@@ -115,8 +116,28 @@ fn page(
         model.goal_model().words()
     )];
     notes.extend(certificates(&forecasts));
+    notes.extend(unfamiliar(&forecasts));
     let viewer = Viewer::new(observed.recording.name(), moments);
     Ok(viewer.lead(lead).notes(notes).to_html()?)
+}
+
+/// How many motions are unlike those of the training, in words; nothing where none is.
+fn unfamiliar(forecasts: &[Forecast]) -> Option<String> {
+    let all = forecasts
+        .iter()
+        .flat_map(|of| (0..of.pedestrians()).filter_map(move |i| of.familiarity(i)));
+    let unlike = all
+        .clone()
+        .filter(|&familiarity| familiarity < ddl::UNFAMILIAR)
+        .count();
+    (unlike > 0).then(|| {
+        format!(
+            "{unlike} of {} motions are unlike those that the model was trained on (familiarity below {}): they are forecast nearly without the \
+             network, and less sharply weighted.",
+            all.count(),
+            ddl::UNFAMILIAR
+        )
+    })
 }
 
 /// What the certificates say, in words; nothing where there are none.

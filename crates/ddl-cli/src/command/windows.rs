@@ -28,7 +28,7 @@ pub(crate) struct Windows {
 
 impl Windows {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        let windows = self.of.windows(&self.recordings)?;
+        let (_, windows) = self.of.windows(&self.recordings)?;
         let mut text = Vec::new();
         foreign::write_windows(&windows, &mut text)?;
         write_output(self.output.as_deref(), std::str::from_utf8(&text)?)

@@ -1,7 +1,10 @@
 //! Single fields: whole numbers and coordinates.
 
+use std::borrow::Cow;
+
 use crate::COORDINATE_LIMIT;
 use crate::error::FormatProblem;
+use crate::names::is_plain;
 use crate::recording::FRAME_LIMIT;
 
 /// Longest piece of a file that an error message quotes, in characters.
@@ -21,6 +24,42 @@ pub(super) fn integer(text: &str, name: &'static str) -> Result<i64, FormatProbl
             name,
             found: quoted(text),
         })
+}
+
+/// A pedestrian as a field has it.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Who {
+    /// A number, and how it is written where that is not its digits, such as `12.0`.
+    Number(i64, Option<Box<str>>),
+    /// What cannot be a number.
+    Word(Box<str>),
+}
+
+impl Who {
+    /// What the file says, letter by letter.
+    pub(super) fn written(&self) -> Cow<'_, str> {
+        match self {
+            Self::Number(_, Some(text)) | Self::Word(text) => text.as_ref().into(),
+            Self::Number(number, None) => number.to_string().into(),
+        }
+    }
+}
+
+/// A pedestrian: a number as [`integer`] reads it, or a word. What is a number but no whole one, or none at all, is refused.
+pub(super) fn pedestrian(text: &str, name: &'static str) -> Result<Who, FormatProblem> {
+    let text = text.trim();
+    match integer(text, name) {
+        Ok(number) => Ok(Who::Number(number, (!is_plain(text)).then(|| text.into()))),
+        Err(problem) if text.is_empty() || is_number(text) => Err(problem),
+        Err(_) => Ok(Who::Word(text.into())),
+    }
+}
+
+/// Whether a text is a number, be it NaN or infinite. `12e4567` is not: too large for one, it is a word.
+fn is_number(text: &str) -> bool {
+    let digit = text.starts_with(|c: char| c.is_ascii_digit());
+    text.parse::<f64>()
+        .is_ok_and(|number| number.is_finite() || !digit)
 }
 
 /// A coordinate (m).
@@ -83,6 +122,30 @@ mod tests {
             "0x10",
         ] {
             assert!(integer(text, "frame").is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn pedestrians_are_numbers_or_words() {
+        for (text, number, written) in [
+            ("12", Some(12), "12"),
+            (" 12.0", Some(12), "12.0"),
+            ("-0", Some(0), "-0"),
+            ("007", Some(7), "007"),
+            ("7f3e", None, "7f3e"),
+            ("12e4567", None, "12e4567"),
+            (" a b ", None, "a b"),
+        ] {
+            let who = pedestrian(text, "pedestrian").unwrap();
+            assert_eq!(who.written(), written);
+            let found = match who {
+                Who::Number(number, _) => Some(number),
+                Who::Word(_) => None,
+            };
+            assert_eq!(found, number, "{text}");
+        }
+        for text in ["", " ", "1.5", "NaN", "-inf", "9007199254740992"] {
+            assert!(pedestrian(text, "pedestrian").is_err(), "{text}");
         }
     }
 

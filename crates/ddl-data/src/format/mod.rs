@@ -144,14 +144,18 @@ pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Rec
     })?;
     // Spreadsheets mark UTF-8 text with a byte-order mark, which is no content.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut rate = None;
     let rows = match format {
         Format::StarCsv => star_csv::parse(text, origin),
         Format::SocialGan => social_gan::parse(text, origin),
         Format::Table => table::parse(text, origin),
-        Format::TrajNet => trajnet::parse(text, origin),
+        Format::TrajNet => trajnet::parse(text, origin).map(|(rows, told)| {
+            rate = told.frames_a_second;
+            rows
+        }),
         Format::Obsmat => obsmat::parse(text, origin),
     }?;
-    rows::into_recording(rows, origin)
+    Ok(rows::into_recording(rows, origin)?.with_rate(rate))
 }
 
 /// How files begin that gzip, zip (and so spreadsheets), bzip2, xz and zstd have made.

@@ -1,5 +1,6 @@
 //! The `obsmat` text of the ETH recordings: eight columns of floats, one observation a line.
 
+use super::field::Who;
 use super::rows::{self, Row};
 use super::{Place, field};
 use crate::error::{FormatError, FormatProblem};
@@ -38,5 +39,10 @@ pub(super) fn row(text: &str, line: usize, origin: &str) -> Result<Row, FormatEr
     for (column, text) in [(3, z), (5, v_x), (6, v_z), (7, v_y)] {
         field::number(text, COLUMNS[column]).map_err(at(column))?;
     }
-    Ok(Row::new(frame, pedestrian, position, here))
+    Ok(Row {
+        frame,
+        who: Who::Number(pedestrian, None),
+        position,
+        place: here,
+    })
 }

@@ -3,9 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::Place;
+use super::field::Who;
 use crate::error::{DataError, FormatError, FormatProblem};
+use crate::names::Numbering;
 use crate::recording::{FRAME_STEP_LIMIT, Recording};
-use crate::{Observation, PedestrianId};
+use crate::{Observation, PedestrianId, PedestrianNames, Position};
 
 /// What the four fields of a row hold, for messages.
 pub(super) const FIELDS: &str = "frame, pedestrian, x, y";
@@ -13,16 +15,14 @@ pub(super) const FIELDS: &str = "frame, pedestrian, x, y";
 /// One observation and where in the file it is.
 #[derive(Debug)]
 pub(super) struct Row {
-    pub(super) observation: Observation,
+    pub(super) frame: i64,
+    pub(super) who: Who,
+    pub(super) position: Position,
     pub(super) place: Place,
 }
 
-impl Row {
-    pub(super) fn new(frame: i64, pedestrian: i64, [x, y]: [f64; 2], place: Place) -> Self {
-        let observation = Observation::new(frame, PedestrianId(pedestrian), [x, y]);
-        Self { observation, place }
-    }
-}
+/// An observation and where in the file it is.
+type Placed = (Observation, Place);
 
 /// The rows of a text of one observation a line: `row` reads a line, given its number and where it is from.
 pub(super) fn of_lines(
@@ -39,7 +39,7 @@ pub(super) fn of_lines(
 }
 
 /// The recording of all rows; its frame step is inferred.
-pub(super) fn into_recording(mut rows: Vec<Row>, origin: &str) -> Result<Recording, DataError> {
+pub(super) fn into_recording(rows: Vec<Row>, origin: &str) -> Result<Recording, DataError> {
     if rows.is_empty() {
         let nowhere = Place {
             line: 1,
@@ -47,42 +47,69 @@ pub(super) fn into_recording(mut rows: Vec<Row>, origin: &str) -> Result<Recordi
         };
         return Err(nowhere.wrong(origin, FormatProblem::Empty).into());
     }
-    refuse_duplicates(&mut rows, origin)?;
-    let frame_step = infer_frame_step(&rows);
-    let observations = rows.into_iter().map(|row| row.observation).collect();
-    Recording::new(origin, frame_step, observations).map_err(|source| DataError::Recording {
+    let (mut placed, names) = numbered(rows);
+    refuse_duplicates(&mut placed, &names, origin)?;
+    let frame_step = infer_frame_step(&placed);
+    let observations = placed.into_iter().map(|(seen, _)| seen).collect();
+    let recording = Recording::new(origin, frame_step, observations);
+    let recording = recording.map_err(|source| DataError::Recording {
         name: origin.to_owned(),
         source,
-    })
+    })?;
+    Ok(recording.with_names(names))
+}
+
+/// The observations with everybody numbered: by the file, or, where it has a word anywhere, all in the order in which they come.
+fn numbered(rows: Vec<Row>) -> (Vec<Placed>, PedestrianNames) {
+    let words = rows.iter().any(|row| matches!(row.who, Who::Word(_)));
+    let mut numbering = Numbering::remembering(usize::MAX);
+    let mut names = BTreeMap::new();
+    let placed = rows.into_iter().map(|row| {
+        let pedestrian = match row.who {
+            Who::Number(number, _) if !words => PedestrianId(number),
+            who => {
+                let (id, word) = numbering.number(&who.written());
+                names.entry(id).or_insert(word);
+                id
+            }
+        };
+        let seen = Observation::new(row.frame, pedestrian, row.position);
+        (seen, row.place)
+    });
+    (placed.collect(), PedestrianNames::new(names))
 }
 
 /// Sorts the rows by frame and pedestrian; of several duplicates, the first of the file is reported.
-fn refuse_duplicates(rows: &mut [Row], origin: &str) -> Result<(), FormatError> {
-    let key = |row: &Row| (row.observation.frame, row.observation.pedestrian);
-    rows.sort_unstable_by_key(|row| (key(row), row.place));
+fn refuse_duplicates(
+    rows: &mut [Placed],
+    names: &PedestrianNames,
+    origin: &str,
+) -> Result<(), FormatError> {
+    let key = |(seen, _): &Placed| (seen.frame, seen.pedestrian);
+    rows.sort_unstable_by_key(|row| (key(row), row.1));
     let pairs = rows
         .windows(2)
         .filter(|pair| key(&pair[0]) == key(&pair[1]));
-    match pairs.min_by_key(|pair| pair[1].place) {
+    match pairs.min_by_key(|pair| pair[1].1) {
         None => Ok(()),
         Some(pair) => {
             let (frame, pedestrian) = key(&pair[1]);
-            let first_line = pair[0].place.line;
+            let first_line = pair[0].1.line;
             let problem = FormatProblem::Duplicate {
-                pedestrian,
+                pedestrian: Box::new(names.of(pedestrian)),
                 frame,
                 first_line,
             };
-            Err(pair[1].place.wrong(origin, problem))
+            Err(pair[1].1.wrong(origin, problem))
         }
     }
 }
 
 /// The most common difference of two successive frames; 1 if there is only one frame.
-fn infer_frame_step(sorted: &[Row]) -> i64 {
+fn infer_frame_step(sorted: &[Placed]) -> i64 {
     let mut counts = BTreeMap::<i64, usize>::new();
     for pair in sorted.windows(2) {
-        let difference = pair[1].observation.frame - pair[0].observation.frame;
+        let difference = pair[1].0.frame - pair[0].0.frame;
         if (1..=FRAME_STEP_LIMIT).contains(&difference) {
             *counts.entry(difference).or_default() += 1;
         }
@@ -106,7 +133,12 @@ mod tests {
         };
         let rows = frames
             .iter()
-            .map(|&f| Row::new(f, 1, [0.0, 0.0], place))
+            .map(|&frame| Row {
+                frame,
+                who: Who::Number(1, None),
+                position: [0.0, 0.0],
+                place,
+            })
             .collect();
         into_recording(rows, "t").unwrap().frame_step()
     }

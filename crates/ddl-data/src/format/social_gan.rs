@@ -29,8 +29,13 @@ pub(super) fn row(text: &str, line: usize, origin: &str) -> Result<Row, FormatEr
         }
     };
     let frame = field::integer(frame, "frame").map_err(at(1))?;
-    let pedestrian = field::integer(pedestrian, "pedestrian").map_err(at(2))?;
+    let who = field::pedestrian(pedestrian, "pedestrian").map_err(at(2))?;
     let x = field::coordinate(x, "x").map_err(at(3))?;
     let y = field::coordinate(y, "y").map_err(at(4))?;
-    Ok(Row::new(frame, pedestrian, [x, y], here))
+    Ok(Row {
+        frame,
+        who,
+        position: [x, y],
+        place: here,
+    })
 }

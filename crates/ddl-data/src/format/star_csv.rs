@@ -1,5 +1,6 @@
 //! The `star` csv: four long lines that run in parallel.
 
+use super::field::Who;
 use super::rows::Row;
 use super::{Place, field};
 use crate::error::{FormatError, FormatProblem};
@@ -47,7 +48,12 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
         // The third line is y and the fourth x: that is how STAR and DDL read these files.
         let y = metres(3, ys[index], "y")?;
         let x = metres(4, xs[index], "x")?;
-        rows.push(Row::new(frame, pedestrian, [x, y], place(2)));
+        rows.push(Row {
+            frame,
+            who: Who::Number(pedestrian, None),
+            position: [x, y],
+            place: place(2),
+        });
     }
     Ok(rows)
 }

@@ -2,17 +2,22 @@
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, Read as _};
+use std::sync::Arc;
 
+use super::field::Who;
 use super::rows::Row;
 use super::table::Columns;
 use super::{Format, Place, obsmat, social_gan, trajnet};
 use crate::error::{DataError, FormatError, FormatProblem};
-use crate::{PedestrianId, Position};
+use crate::names::Numbering;
+use crate::{PedestrianId, PedestrianNames, Position};
 
 /// Bytes of the longest line.
 const LONGEST_LINE: usize = 1 << 16;
 /// People of the fullest frame: beyond any crowd a tracker sees. A frame number that stands still must not fill the memory.
 const LARGEST_CROWD: usize = 100_000;
+/// Words that are remembered: more than there are in any frame.
+const MOST_WORDS: usize = 2 * LARGEST_CROWD;
 
 /// Everybody at one moment.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +27,8 @@ pub struct Frame {
     pub number: i64,
     /// Who is where (m), in the order of the lines.
     pub people: Vec<(PedestrianId, Position)>,
+    /// The words of those whom the lines know by words.
+    pub names: PedestrianNames,
 }
 
 /// Reads tracks frame by frame, as a tracker writes them: in order of time, one observation a line.
@@ -30,7 +37,8 @@ pub struct Frame {
 /// the first: a header (`table`), a JSON object (`trajnet`), or four or eight columns parted by blanks (`social-gan`, `obsmat`). The files of the `star`
 /// convention are of four lines, which do not arrive in order of time.
 ///
-/// Memory is bounded by the people of a frame, of whom there may be 100,000. A last line that was cut off is read as far as it goes.
+/// Pedestrians may be words; a number stays one, also beside words. Memory is bounded by the people of a frame, of whom there may be 100,000, and the last
+/// 200,000 words: whose word was forgotten meanwhile is somebody new. A last line that was cut off is read as far as it goes.
 ///
 /// ```
 /// use ddl_data::FrameReader;
@@ -49,6 +57,9 @@ pub struct FrameReader<R> {
     origin: String,
     lines: usize,
     kind: Option<Kind>,
+    /// What scenes say of it.
+    rate: trajnet::Rate,
+    words: Numbering,
     /// The frame that is being read.
     current: Option<Growing>,
     /// The last frame that was given out.
@@ -62,6 +73,7 @@ struct Growing {
     frame: Frame,
     /// The line of everybody in it.
     lines: BTreeMap<PedestrianId, usize>,
+    words: BTreeMap<PedestrianId, Arc<str>>,
 }
 
 /// What the lines are.
@@ -81,6 +93,8 @@ impl<R: BufRead> FrameReader<R> {
             origin: origin.into(),
             lines: 0,
             kind: None,
+            rate: trajnet::Rate::default(),
+            words: Numbering::remembering(MOST_WORDS),
             current: None,
             last: None,
             ended: false,
@@ -107,7 +121,7 @@ impl<R: BufRead> FrameReader<R> {
             let Some(row) = self.row(&text)? else {
                 continue;
             };
-            if let Some(frame) = self.add(&row)? {
+            if let Some(frame) = self.add(row)? {
                 return Ok(Some(frame));
             }
         }
@@ -117,6 +131,11 @@ impl<R: BufRead> FrameReader<R> {
     /// The frame that is being read, as far as it has been: for who gives up after an error.
     pub fn unfinished(&mut self) -> Option<Frame> {
         self.whole()
+    }
+
+    /// How many frames follow each other in a second, where a line so far has said so: the `fps` of TrajNet++ scenes.
+    pub fn rate(&self) -> Option<f64> {
+        self.rate.frames_a_second
     }
 
     /// The next line without its end; `None` at the end of the file.
@@ -188,15 +207,20 @@ impl<R: BufRead> FrameReader<R> {
             Kind::Obsmat => obsmat::row(text, line, origin).map(Some),
             Kind::TrajNet => {
                 let place = Place { line, field: None };
-                let found = trajnet::observation(text).map_err(|problem| self.wrong(problem))?;
-                Ok(found.map(|(frame, who, position)| Row::new(frame, who, position, place)))
+                let found = trajnet::observation(text, line, &mut self.rate);
+                let found = found.map_err(|problem| place.wrong(origin, problem))?;
+                Ok(found.map(|seen| Row {
+                    frame: seen.frame,
+                    who: seen.who,
+                    position: seen.position,
+                    place,
+                }))
             }
         }
     }
 
     /// Adds an observation; the frame before, if this is the first of a new one.
-    fn add(&mut self, row: &Row) -> Result<Option<Frame>, FormatError> {
-        let seen = row.observation;
+    fn add(&mut self, seen: Row) -> Result<Option<Frame>, FormatError> {
         let reached = self.current.as_ref().map(|growing| growing.frame.number);
         if let Some(last) = reached.or(self.last)
             && (seen.frame < last || (reached.is_none() && seen.frame == last))
@@ -214,12 +238,25 @@ impl<R: BufRead> FrameReader<R> {
             frame: Frame {
                 number: seen.frame,
                 people: Vec::new(),
+                names: PedestrianNames::default(),
             },
             lines: BTreeMap::new(),
+            words: BTreeMap::new(),
         });
-        if let Some(&first_line) = growing.lines.get(&seen.pedestrian) {
+        let pedestrian = match seen.who {
+            // after a word, `1e3` is one as well
+            Who::Number(number, None) => PedestrianId(number),
+            Who::Number(number, _) if self.words.is_empty() => PedestrianId(number),
+            who => {
+                let (id, word) = self.words.number(&who.written());
+                growing.words.insert(id, word);
+                id
+            }
+        };
+        if let Some(&first_line) = growing.lines.get(&pedestrian) {
+            let names = PedestrianNames::new(std::mem::take(&mut growing.words));
             let problem = FormatProblem::Duplicate {
-                pedestrian: seen.pedestrian,
+                pedestrian: Box::new(names.of(pedestrian)),
                 frame: seen.frame,
                 first_line,
             };
@@ -229,8 +266,8 @@ impl<R: BufRead> FrameReader<R> {
             let (frame, limit) = (seen.frame, LARGEST_CROWD);
             return Err(self.wrong(FormatProblem::Crowd { frame, limit }));
         }
-        growing.lines.insert(seen.pedestrian, line);
-        growing.frame.people.push((seen.pedestrian, seen.position));
+        growing.lines.insert(pedestrian, line);
+        growing.frame.people.push((pedestrian, seen.position));
         Ok(before)
     }
 
@@ -238,7 +275,10 @@ impl<R: BufRead> FrameReader<R> {
     fn whole(&mut self) -> Option<Frame> {
         let growing = self.current.take()?;
         self.last = Some(growing.frame.number);
-        Some(growing.frame)
+        Some(Frame {
+            names: PedestrianNames::new(growing.words),
+            ..growing.frame
+        })
     }
 
     /// The error that something is wrong with the last line.

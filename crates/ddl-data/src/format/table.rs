@@ -124,15 +124,15 @@ impl Columns {
             }
         };
         let place = Place { line, field: None };
-        Ok(Row::new(
-            field::integer(text(frame), "frame").map_err(at(frame))?,
-            field::integer(text(pedestrian), "pedestrian").map_err(at(pedestrian))?,
-            [
+        Ok(Row {
+            frame: field::integer(text(frame), "frame").map_err(at(frame))?,
+            who: field::pedestrian(text(pedestrian), "pedestrian").map_err(at(pedestrian))?,
+            position: [
                 field::coordinate(text(x), "x").map_err(at(x))?,
                 field::coordinate(text(y), "y").map_err(at(y))?,
             ],
             place,
-        ))
+        })
     }
 }
 

@@ -6,11 +6,12 @@ use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
+use super::field::Who;
 use super::json_section::Section;
 use super::rows::Row;
 use super::{Place, field};
 use crate::error::{FormatError, FormatProblem};
-use crate::{PedestrianId, Position};
+use crate::{PedestrianName, Position};
 
 /// The tracks that were observed: those of forecasts, which name a `prediction_number`, are left out.
 ///
@@ -20,27 +21,46 @@ use crate::{PedestrianId, Position};
     clippy::float_cmp,
     reason = "a repeated track is written with the same digits"
 )]
-pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
-    let mut seen: BTreeMap<(i64, i64), (Position, usize)> = BTreeMap::new();
+pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<Row>, Rate), FormatError> {
+    let mut seen: BTreeMap<(i64, Who), (Position, usize)> = BTreeMap::new();
     let mut rows = Vec::new();
+    let mut rate = Rate::default();
     for (index, text) in text.lines().enumerate() {
         let place = Place {
             line: index + 1,
             field: None,
         };
-        let found = observation(text).map_err(|problem| place.wrong(origin, problem))?;
-        let Some((frame, pedestrian, position)) = found else {
+        let found = observation(text, place.line, &mut rate);
+        let found = found.map_err(|problem| place.wrong(origin, problem))?;
+        let Some(Seen {
+            frame,
+            who,
+            position,
+        }) = found
+        else {
             continue;
         };
-        match seen.get(&(frame, pedestrian)) {
+        let key = match &who {
+            Who::Number(number, _) => Who::Number(*number, None),
+            word @ Who::Word(_) => word.clone(),
+        };
+        match seen.get(&(frame, key.clone())) {
             None => {
-                seen.insert((frame, pedestrian), (position, place.line));
-                rows.push(Row::new(frame, pedestrian, position, place));
+                seen.insert((frame, key), (position, place.line));
+                rows.push(Row {
+                    frame,
+                    who,
+                    position,
+                    place,
+                });
             }
             Some((known, _)) if *known == position => {}
             Some(&(known, first_line)) => {
                 let problem = FormatProblem::Disagreement {
-                    pedestrian: PedestrianId(pedestrian),
+                    pedestrian: Box::new(match key {
+                        Who::Number(number, _) => PedestrianName::Number(number),
+                        Who::Word(word) => PedestrianName::Word(word.into()),
+                    }),
                     frame,
                     first_line,
                     // shortest digits that tell the two apart
@@ -51,16 +71,56 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
             }
         }
     }
-    Ok(rows)
+    Ok((rows, rate))
+}
+
+/// How many frames follow each other in a second, as the scenes of a file say it.
+#[derive(Debug, Default)]
+pub(super) struct Rate {
+    /// The line that was the first to say it.
+    line: usize,
+    pub(super) frames_a_second: Option<f64>,
+}
+
+impl Rate {
+    /// Takes what the scene on a line says.
+    #[expect(clippy::float_cmp, reason = "one rate is written with the same digits")]
+    fn take(&mut self, scene: &Scene, line: usize) -> Result<(), FormatProblem> {
+        let Some(told) = scene.fps.as_ref().filter(|fps| !fps.is_null()) else {
+            return Ok(());
+        };
+        let rate = told.as_f64().filter(|fps| fps.is_finite() && *fps > 0.0);
+        let found = || field::quoted(&told.to_string());
+        let rate = rate.ok_or_else(|| FormatProblem::Rate { found: found() })?;
+        match self.frames_a_second {
+            None => (self.line, self.frames_a_second) = (line, Some(rate)),
+            Some(first) if first != rate => {
+                return Err(FormatProblem::RateChanges {
+                    first_line: self.line,
+                    first: first.to_string(),
+                    found: found(),
+                });
+            }
+            Some(_) => {}
+        }
+        Ok(())
+    }
 }
 
 /// The parts of a line that are read; others may stand beside them. A part that is there twice is refused.
 #[derive(Deserialize)]
 struct Line {
     #[serde(default)]
-    scene: Option<Section<IgnoredAny>>,
+    scene: Option<Section<Scene>>,
     #[serde(default)]
     track: Option<Section<Track>>,
+}
+
+/// What is read of a scene, as it is written.
+#[derive(Deserialize)]
+struct Scene {
+    #[serde(default)]
+    fps: Option<Value>,
 }
 
 /// The fields of a track, as they are written.
@@ -83,8 +143,20 @@ fn as_written<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value
     Value::deserialize(deserializer).map(Some)
 }
 
-/// Frame, pedestrian and position of a line, if it holds an observation.
-pub(super) fn observation(text: &str) -> Result<Option<(i64, i64, Position)>, FormatProblem> {
+/// What a line of observations says.
+#[derive(Debug)]
+pub(super) struct Seen {
+    pub(super) frame: i64,
+    pub(super) who: Who,
+    pub(super) position: Position,
+}
+
+/// The observation of a line, if it holds one; the rate of a scene is taken.
+pub(super) fn observation(
+    text: &str,
+    number: usize,
+    rate: &mut Rate,
+) -> Result<Option<Seen>, FormatProblem> {
     if text.trim().is_empty() {
         return Ok(None);
     }
@@ -95,8 +167,10 @@ pub(super) fn observation(text: &str) -> Result<Option<(i64, i64, Position)>, Fo
         Section::Fields(line) => line,
         Section::Other(found) => return Err(not_one(format!("found {found}"))),
     };
-    // A scene is not used, but one that is no object shows that the file is not what it seems.
-    fields(line.scene, "scene")?;
+    // One that is no object shows that the file is not what it seems.
+    if let Some(scene) = fields(line.scene, "scene")? {
+        rate.take(&scene, number)?;
+    }
     let Some(track) = fields(line.track, "track")? else {
         return Ok(None);
     };
@@ -109,10 +183,23 @@ pub(super) fn observation(text: &str) -> Result<Option<(i64, i64, Position)>, Fo
         Some(value) => Ok(value.to_string()),
     };
     let frame = field::integer(&text(track.f, "track.f")?, "track.f")?;
-    let pedestrian = field::integer(&text(track.p, "track.p")?, "track.p")?;
+    let who = match track.p {
+        // in quotes it is a word, whatever its letters
+        Some(Value::String(word)) if !word.trim().is_empty() => Who::Word(word.trim().into()),
+        Some(Value::Number(number)) => field::pedestrian(&number.to_string(), "track.p")?,
+        other => {
+            let number = field::integer(&text(other, "track.p")?, "track.p")?;
+            Who::Number(number, None)
+        }
+    };
     let x = field::coordinate(&text(track.x, "track.x")?, "track.x")?;
     let y = field::coordinate(&text(track.y, "track.y")?, "track.y")?;
-    Ok(Some((frame, pedestrian, [x, y])))
+    let position = [x, y];
+    Ok(Some(Seen {
+        frame,
+        who,
+        position,
+    }))
 }
 
 /// The fields of a part; none where there is none, or null.

@@ -48,4 +48,14 @@ pub enum Violation {
         /// `d Phi / dt` (m/s).
         rate: f64,
     },
+    /// A figure of the motion exceeds the bound that was set to it.
+    #[error("the {figure} is {value}, more than its bound {bound}")]
+    OutOfBounds {
+        /// Which figure, with its unit.
+        figure: String,
+        /// What it reached.
+        value: f64,
+        /// What it was to stay within.
+        bound: f64,
+    },
 }

@@ -18,6 +18,7 @@ mod euler;
 mod goal;
 mod map_draw;
 mod metric;
+mod motion_bounds;
 mod refused_maps;
 mod stable_euler;
 mod straightening;

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use ddl_data::PedestrianName;
+
 use crate::error::{EvaluationError, ForecastError, ForecastShapeError, MeasureError};
 
 /// Forecasts of another program cannot be read, matched or scored.
@@ -213,6 +215,20 @@ pub enum ForeignProblem {
         /// The frames found, in short.
         found: String,
     },
+    /// The frames of a scene are not those of the window that starts with it.
+    #[error(
+        "the scene has the frames {found}; the window that starts there has the observed frames {observed} and the forecast frames \
+         {ahead}: a scene is 8 or 9 observed and 12 forecast frames, {step} s apart",
+        step = ddl_data::TIME_STEP
+    )]
+    SceneFrames {
+        /// First and last frame of the scene.
+        found: String,
+        /// The observed frames of the window, in short.
+        observed: String,
+        /// The frames to forecast, in short.
+        ahead: String,
+    },
     /// Hypotheses differ in number.
     #[error(
         "{found} hypotheses, but {expected} on line {first_line}; the best of K needs one K for all walkers"
@@ -314,7 +330,7 @@ pub enum ForeignProblem {
     )]
     Neighbours {
         /// The pedestrian.
-        pedestrian: i64,
+        pedestrian: PedestrianName,
         /// Line of the other forecast.
         first_line: usize,
     },

@@ -30,7 +30,7 @@ impl Unknown {
         self.count += 1;
         let name = who.recording.as_deref().or(recording);
         if self.first.len() < NAMED {
-            let text = named(name, who.observed_until, who.pedestrian);
+            let text = named(name, who.observed_until, &who.pedestrian);
             self.first.push(text);
         }
         if let (None, Some(name)) = (recording, name)

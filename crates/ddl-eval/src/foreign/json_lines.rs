@@ -2,14 +2,14 @@
 
 use std::io::BufRead;
 
-use ddl_data::{HORIZON, Position};
+use ddl_data::{HORIZON, PedestrianName, Position};
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
 use super::bounds::within_bounds;
 use super::error::{ForeignError, ForeignProblem};
 use super::lines::{Lines, Wrong, in_field};
-use super::repair::{self, finite, kind, list, optional, position, required, whole};
+use super::repair::{self, finite, kind, list, optional, pedestrian, position, required, whole};
 use super::walkers::{WalkerForecast, Walkers, Who};
 use crate::Protocol;
 
@@ -18,7 +18,7 @@ use crate::Protocol;
 struct Line {
     recording: Option<String>,
     observed_until: i64,
-    pedestrian: i64,
+    pedestrian: PedestrianName,
     frames: Option<Vec<i64>>,
     hypotheses: Vec<Hypothesis>,
 }
@@ -126,8 +126,9 @@ fn field_by_field(text: &str) -> Result<Line, Wrong> {
         Some(Value::String(name)) => Some(name.clone()),
         Some(other) => return Err(in_field("recording", kind("a name in quotes", other))),
     };
-    let number = |key: &str| whole(required(&object, key, key)?, key);
-    let (observed_until, pedestrian) = (number("observed_until")?, number("pedestrian")?);
+    let field = |key: &str| required(&object, key, key);
+    let observed_until = whole(field("observed_until")?, "observed_until")?;
+    let pedestrian = pedestrian(field("pedestrian")?, "pedestrian")?;
     let frames = match optional(&object, "frames") {
         None => None,
         Some(frames) => Some(each(frames, "frames", whole)?),

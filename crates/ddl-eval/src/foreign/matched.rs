@@ -156,29 +156,25 @@ impl Walkers<'_> {
     fn first_missing(&self) -> Vec<String> {
         let rows = self.windows.iter().zip(&self.slots);
         rows.flat_map(|(window, slots)| {
-            let people = window.pedestrians().iter().zip(slots);
-            people.map(move |(pedestrian, slot)| (window, pedestrian, slot))
+            let missing = (0..window.len()).filter(|&i| slots[i].is_none());
+            missing.map(move |i| (window, i))
         })
-        .filter(|(_, _, slot)| slot.is_none())
         .take(NAMED)
-        .map(|(window, pedestrian, _)| {
-            named(
-                Some(window.recording()),
-                last_observed(window),
-                pedestrian.0,
-            )
+        .map(|(window, i)| {
+            let name = window.name(i);
+            named(Some(window.recording()), last_observed(window), &name)
         })
         .collect()
     }
 
     fn refuse_conflicts(&self) -> Result<(), ForeignError> {
         for (window, slots) in self.windows.iter().zip(&self.slots) {
-            for (pedestrian, slot) in window.pedestrians().iter().zip(slots) {
+            for (i, slot) in slots.iter().enumerate() {
                 if let Some(slot) = slot
                     && let Some(line) = slot.conflict
                 {
                     let problem = ForeignProblem::Neighbours {
-                        pedestrian: pedestrian.0,
+                        pedestrian: window.name(i),
                         first_line: slot.line,
                     };
                     return Err(self.wrong(line, problem));

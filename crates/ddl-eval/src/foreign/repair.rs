@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use ddl_data::Position;
+use ddl_data::{PedestrianName, Position};
 use serde_json::{Map, Value};
 
 use super::unique;
@@ -84,6 +84,15 @@ pub(super) fn whole(value: &Value, path: &str) -> Result<i64, Wrong> {
         (number.fract() == 0.0 && number.abs() < LIMIT).then_some(number as i64)
     });
     number.ok_or_else(|| in_field(path, kind("a whole number", value)))
+}
+
+/// A pedestrian: a whole number, however it is written, or a word in quotes.
+pub(super) fn pedestrian(value: &Value, path: &str) -> Result<PedestrianName, Wrong> {
+    match value {
+        Value::String(word) if !word.is_empty() => Ok(PedestrianName::Word(word.clone())),
+        value if value.is_number() => whole(value, path).map(PedestrianName::Number),
+        _ => Err(in_field(path, kind("a whole number or a word", value))),
+    }
 }
 
 /// A finite number.

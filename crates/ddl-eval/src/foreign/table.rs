@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::io::BufRead;
 
 use csv::StringRecord;
-use ddl_data::{HORIZON, Position};
+use ddl_data::{HORIZON, PedestrianName, Position};
 
 use super::bounds::within_bounds;
 use super::error::{ForeignError, ForeignProblem};
@@ -114,7 +114,7 @@ impl Columns {
                 .filter(|name| !name.is_empty())
                 .map(str::to_owned),
             observed_until: whole(observed_until, REQUIRED[0])?,
-            pedestrian: whole(pedestrian, REQUIRED[1])?,
+            pedestrian: name(pedestrian)?,
         };
         let hypothesis = match self.hypothesis {
             None => 0,
@@ -250,6 +250,22 @@ fn whole(text: &str, name: &'static str) -> Result<i64, Wrong> {
         let (expected, found) = ("a whole number", format!("{:?}", quoted(text)));
         in_field(name, ForeignProblem::Kind { expected, found })
     })
+}
+
+/// A pedestrian: a whole number, or a word, which is no number at all.
+fn name(text: &str) -> Result<PedestrianName, Wrong> {
+    let wrong = text.is_empty()
+        || text
+            .parse::<f64>()
+            .is_ok_and(|n| !n.is_infinite() && n.fract() != 0.0);
+    if wrong {
+        let (expected, found) = ("a whole number or a word", format!("{:?}", quoted(text)));
+        return Err(in_field(
+            REQUIRED[1],
+            ForeignProblem::Kind { expected, found },
+        ));
+    }
+    Ok(PedestrianName::of_text(text))
 }
 
 fn finite(text: &str, name: &'static str) -> Result<f64, Wrong> {

@@ -1,6 +1,6 @@
-//! TrajNet++ ndjson: scenes of 8 observed and 12 forecast frames, and the tracks that were forecast in them.
+//! TrajNet++ ndjson: scenes of 8 or 9 observed and 12 forecast frames, and the tracks that were forecast in them.
 //!
-//! A scene stands for the window of its recording that starts at its first frame. Its primary pedestrian is forecast
+//! A scene stands for the window of its recording that starts at its first frame, or of 9 observed frames at the second. Its primary pedestrian is forecast
 //! for its own sake; a neighbour's forecast counts where no scene of the window has that walker as its primary
 //! one. Neighbours who are not in the window (they left before its end) are not scored, and left out. Walkers that are
 //! forecast in several scenes have no joint future: hypothesis k of a window is then put together from those scenes.
@@ -15,7 +15,7 @@ use super::numbering::Numbering;
 use super::trajnet_line::{Line, Scene, Track};
 use super::walkers::{WalkerForecast, Walkers, Who, frames_ahead, in_short};
 use crate::Protocol;
-use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
 
 /// What one pedestrian of a scene is forecast to do: for each prediction number, frames and positions.
 type Predictions = BTreeMap<i64, Vec<(i64, Position)>>;
@@ -27,7 +27,7 @@ struct Open<'a> {
     /// The window it stands for.
     window: Option<&'a Window>,
     /// By pedestrian, with the line of the first row.
-    tracks: BTreeMap<i64, (usize, Predictions)>,
+    tracks: BTreeMap<PedestrianName, (usize, Predictions)>,
 }
 
 pub(super) fn read(
@@ -120,10 +120,16 @@ impl<'w, 'a> Reading<'w, 'a> {
     /// Finds the window of a scene.
     fn open(&self, scene: Scene) -> Result<Open<'a>, Wrong> {
         let recording = self.walkers.recording(scene.recording.as_deref())?;
-        let window = recording.and_then(|r| self.by_start.get(&(r, scene.s)));
-        let window: Option<&'a Window> = window.map(|&index| &self.walkers.windows[index]);
-        if let Some(window) = window {
-            check_end(window, &scene)?;
+        let starting_at = |frame: i64| -> Option<&'a Window> {
+            let index = *self.by_start.get(&(recording?, frame))?;
+            Some(&self.walkers.windows[index])
+        };
+        let at_first = starting_at(scene.s);
+        let at_second = starting_at(scene.s.saturating_add(self.step()));
+        let ends = |window: &&Window| ends_at(window, scene.e);
+        let window = at_first.filter(ends).or(at_second.filter(ends));
+        if let (None, Some(first)) = (window, at_first) {
+            return Err(wrong_end(first, &scene));
         }
         let tracks = BTreeMap::new();
         Ok(Open {
@@ -140,14 +146,14 @@ impl<'w, 'a> Reading<'w, 'a> {
         prediction: i64,
         number: usize,
     ) -> Result<(), Wrong> {
-        let in_window = |w: &Window| w.pedestrians().iter().any(|p| p.0 == track.p);
+        let in_window = |w: &Window| w.named(&track.p).is_some();
         if track.p != open.scene.p && !open.window.is_some_and(in_window) {
             return Ok(());
         }
-        let who = || self.who(&open.scene, open.window, track.p);
+        let who = || self.who(&open.scene, open.window, track.p.clone());
         let (_, predictions) = open
             .tracks
-            .entry(track.p)
+            .entry(track.p.clone())
             .or_insert_with(|| (number, Predictions::new()));
         if predictions.len() == Protocol::MOST_HYPOTHESES && !predictions.contains_key(&prediction)
         {
@@ -166,7 +172,7 @@ impl<'w, 'a> Reading<'w, 'a> {
         Ok(())
     }
 
-    fn who(&self, scene: &Scene, window: Option<&Window>, pedestrian: i64) -> Who {
+    fn who(&self, scene: &Scene, window: Option<&Window>, pedestrian: PedestrianName) -> Who {
         Who {
             recording: scene.recording.clone(),
             observed_until: window
@@ -201,22 +207,29 @@ impl<'w, 'a> Reading<'w, 'a> {
 
     /// The last observed frame of a scene that is no window, for messages.
     fn unknown_last(&self, scene: &Scene) -> i64 {
-        let step = self.walkers.windows.first().map_or(1, Window::frame_step);
-        scene.s.saturating_add((OBSERVED as i64 - 1) * step)
+        scene.e.saturating_sub(HORIZON as i64 * self.step())
+    }
+
+    /// Raw frames in a step.
+    fn step(&self) -> i64 {
+        self.walkers.windows.first().map_or(1, Window::frame_step)
     }
 }
 
-/// A scene of 9 + 12 frames, or of another step, is not the window.
-fn check_end(window: &Window, scene: &Scene) -> Result<(), Wrong> {
+/// Whether a frame is the last of the 12 to forecast.
+fn ends_at(window: &Window, frame: i64) -> bool {
     let last = frames_ahead(window).map(|frames| frames.last().copied());
-    if last.contains(&Some(scene.e)) {
-        return Ok(());
-    }
-    let problem = ForeignProblem::Frames {
-        expected: format!("{} to {}", scene.s, last[0].unwrap_or_default()),
+    last.contains(&Some(frame))
+}
+
+/// A scene of other frames than 8 or 9 observed and 12 to forecast is not the window that starts with it.
+fn wrong_end(window: &Window, scene: &Scene) -> Wrong {
+    let problem = ForeignProblem::SceneFrames {
         found: format!("{} to {}", scene.s, scene.e),
+        observed: in_short(&window.frames()[..OBSERVED]),
+        ahead: in_short(&frames_ahead(window)[0]),
     };
-    Err(in_field(format!("scene {}", scene.id), problem))
+    in_field(format!("scene {}", scene.id), problem)
 }
 
 /// All hypotheses of a pedestrian, by their numbers.

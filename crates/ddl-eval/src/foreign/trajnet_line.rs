@@ -1,10 +1,11 @@
 //! A line of TrajNet++ ndjson.
 
+use ddl_data::PedestrianName;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use super::lines::{Wrong, in_field};
-use super::repair::{self, finite, kind, optional, required, whole};
+use super::repair::{self, finite, kind, optional, pedestrian, required, whole};
 
 /// Lines and fields of other names may stand between.
 #[derive(Debug, Deserialize)]
@@ -17,7 +18,7 @@ pub(super) struct Line {
 #[derive(Debug, Clone, Deserialize)]
 pub(super) struct Scene {
     pub(super) id: i64,
-    pub(super) p: i64,
+    pub(super) p: PedestrianName,
     pub(super) s: i64,
     pub(super) e: i64,
     pub(super) recording: Option<String>,
@@ -26,7 +27,7 @@ pub(super) struct Scene {
 #[derive(Debug, Deserialize)]
 pub(super) struct Track {
     pub(super) f: i64,
-    pub(super) p: i64,
+    pub(super) p: PedestrianName,
     pub(super) x: f64,
     pub(super) y: f64,
     pub(super) prediction_number: Option<i64>,
@@ -88,7 +89,7 @@ fn scene(object: &Map<String, Value>) -> Result<Scene, Wrong> {
     };
     Ok(Scene {
         id: number("id")?,
-        p: number("p")?,
+        p: pedestrian(required(object, "p", "scene.p")?, "scene.p")?,
         s: number("s")?,
         e: number("e")?,
         recording,
@@ -110,7 +111,7 @@ fn track(object: &Map<String, Value>) -> Result<Track, Wrong> {
     };
     Ok(Track {
         f: number("f")?,
-        p: number("p")?,
+        p: pedestrian(required(object, "p", "track.p")?, "track.p")?,
         x: coordinate("x")?,
         y: coordinate("y")?,
         prediction_number: or_none("prediction_number")?,

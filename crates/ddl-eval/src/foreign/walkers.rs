@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
 
 use super::error::{ForeignError, ForeignProblem};
 use super::hint::Unknown;
@@ -16,7 +16,7 @@ pub(super) struct Who {
     pub(super) recording: Option<String>,
     /// Raw frame number of the last observed frame.
     pub(super) observed_until: i64,
-    pub(super) pedestrian: i64,
+    pub(super) pedestrian: PedestrianName,
 }
 
 impl Who {
@@ -25,7 +25,7 @@ impl Who {
         named(
             self.recording.as_deref(),
             self.observed_until,
-            self.pedestrian,
+            &self.pedestrian,
         )
     }
 
@@ -174,8 +174,7 @@ impl<'a> Walkers<'a> {
         let recording = self.recording(who.recording.as_deref())?;
         let window = recording.and_then(|r| self.window(r, who.observed_until));
         let found = window.and_then(|window| {
-            let people = self.windows[window].pedestrians();
-            let walker = people.iter().position(|p| p.0 == who.pedestrian)?;
+            let walker = self.windows[window].named(&who.pedestrian)?;
             Some((window, walker))
         });
         let Some((window, walker)) = found else {
@@ -233,10 +232,7 @@ impl<'a> Walkers<'a> {
         let known = recording.map(|r| self.recordings[r]);
         let in_window = |until: i64| {
             let window = recording.and_then(|r| self.window(r, until));
-            window.is_some_and(|w| {
-                let people = self.windows[w].pedestrians();
-                people.iter().any(|p| p.0 == who.pedestrian)
-            })
+            window.is_some_and(|w| self.windows[w].named(&who.pedestrian).is_some())
         };
         let step = self.windows.first().map_or(1, Window::frame_step);
         let as_first_frame = in_window(
@@ -255,7 +251,11 @@ pub(super) fn last_observed(window: &Window) -> i64 {
 }
 
 /// A walker, for messages.
-pub(super) fn named(recording: Option<&str>, observed_until: i64, pedestrian: i64) -> String {
+pub(super) fn named(
+    recording: Option<&str>,
+    observed_until: i64,
+    pedestrian: &PedestrianName,
+) -> String {
     let recording = recording
         .map(|name| format!("`{name}` "))
         .unwrap_or_default();

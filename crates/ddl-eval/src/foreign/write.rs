@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use ddl_data::{Position, Window};
+use ddl_data::{PedestrianName, Position, Window};
 use serde::Serialize;
 
 use super::error::ForeignError;
@@ -13,7 +13,7 @@ use crate::Forecast;
 struct Walker<'a> {
     recording: &'a str,
     observed_until: i64,
-    pedestrian: i64,
+    pedestrian: PedestrianName,
     observed: &'a [Position],
 }
 
@@ -21,7 +21,7 @@ struct Walker<'a> {
 struct Forecasts<'a> {
     recording: &'a str,
     observed_until: i64,
-    pedestrian: i64,
+    pedestrian: PedestrianName,
     hypotheses: Vec<Hypothesis<'a>>,
 }
 
@@ -47,11 +47,11 @@ struct Hypothesis<'a> {
 /// [`ForeignError::Io`] when it cannot be written.
 pub fn write_windows(windows: &[Window], mut writer: impl Write) -> Result<(), ForeignError> {
     for window in windows {
-        for (i, pedestrian) in window.pedestrians().iter().enumerate() {
+        for i in 0..window.len() {
             let line = Walker {
                 recording: window.recording(),
                 observed_until: last_observed(window),
-                pedestrian: pedestrian.0,
+                pedestrian: window.name(i),
                 observed: window.observed(i),
             };
             write_line(&mut writer, &line)?;
@@ -84,7 +84,7 @@ pub fn write_forecasts(
             }
             .into());
         }
-        for (i, pedestrian) in window.pedestrians().iter().enumerate() {
+        for i in 0..window.len() {
             let hypotheses = (0..forecast.hypotheses())
                 .map(|k| Hypothesis {
                     weight: forecast.weight(i, k),
@@ -95,7 +95,7 @@ pub fn write_forecasts(
             let line = Forecasts {
                 recording: window.recording(),
                 observed_until: last_observed(window),
-                pedestrian: pedestrian.0,
+                pedestrian: window.name(i),
                 hypotheses,
             };
             write_line(&mut writer, &line)?;

@@ -11,7 +11,7 @@
 //!
 //! The two belong together: a wider distribution has a smaller AMD and a larger AMV. Eigenvalues of C
 //! below (1 cm)^2 are raised to it, in both: identical hypotheses, or hypotheses on one line, have no
-//! inverse. A forecast of one hypothesis is no distribution.
+//! inverse. A forecast of one hypothesis is no distribution. Where a forecast has a spread about its hypotheses, its variance is part of C.
 //!
 //! # Beside the published code
 //! Social-Implicit draws 1,000 samples and fits a mixture of up to four Gaussians to them, as many as
@@ -62,8 +62,14 @@ impl DistributionErrors {
         let (mut distance, mut covariance) = (0.0, Covariance::default());
         for (t, p) in scene.truth(i).iter().enumerate() {
             let moments = Moments::of(&scene.positions_at(i, t), &weights);
+            let about = scene.forecast().spread(i, t).unwrap_or(0.0).powi(2);
             let axes = moments
                 .covariance
+                .plus(Covariance {
+                    xx: about,
+                    xy: 0.0,
+                    yy: about,
+                })
                 .principal_axes()
                 .raised_to(LEAST_DEVIATION * LEAST_DEVIATION);
             let off = [p[0] - moments.mean[0], p[1] - moments.mean[1]];

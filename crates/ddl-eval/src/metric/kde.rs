@@ -12,6 +12,9 @@
 //! KDE NLL = - mean over frames and pedestrians of max(ln f(p), -20)        nats
 //! ```
 //!
+//! A forecast that says how far pedestrians spread about its hypotheses is a mixture of bells already: with that
+//! [spread](crate::Forecast::spread) s, H is s^2 times the identity.
+//!
 //! This is `scipy.stats.gaussian_kde(x, weights=w).logpdf(p)`, clipped as in Trajectron++ and
 //! Social-Implicit, but for the smallest bandwidth: identical hypotheses, or hypotheses on one line,
 //! have a singular C, for which scipy fails and Social-Implicit's code leaves the frame out. Here
@@ -29,7 +32,7 @@
 
 use ddl_data::Position;
 
-use super::gaussian::Moments;
+use super::gaussian::{Moments, PrincipalAxes};
 use crate::Scene;
 
 /// Log densities below this count as this, nats: one far miss shall not decide the mean.
@@ -71,6 +74,15 @@ pub fn log_density(points: &[Position], weights: &[f64], at: Position) -> f64 {
         .scaled(factor)
         .principal_axes()
         .raised_to(LEAST_DEVIATION * LEAST_DEVIATION);
+    mixture_log_density((points, weights), bandwidth, at)
+}
+
+/// `ln f(at)` of a mixture of bells of one shape about weighted points.
+fn mixture_log_density(
+    (points, weights): (&[Position], &[f64]),
+    bandwidth: PrincipalAxes,
+    at: Position,
+) -> f64 {
     let exponent =
         |p: &Position| -0.5 * bandwidth.mahalanobis_squared([at[0] - p[0], at[1] - p[1]]);
     let terms = || points.iter().zip(weights).filter(|(_, w)| **w > 0.0);
@@ -102,7 +114,19 @@ pub fn kde_nll(scene: &Scene<'_>, i: usize) -> Option<f64> {
         .iter()
         .enumerate()
         .map(|(t, &at)| {
-            log_density(&scene.positions_at(i, t), &weights, at).max(LOWEST_LOG_DENSITY)
+            let positions = scene.positions_at(i, t);
+            let density = match scene.forecast().spread(i, t) {
+                None => log_density(&positions, &weights, at),
+                Some(spread) => {
+                    let variances = [spread * spread; 2];
+                    let round = PrincipalAxes {
+                        variances,
+                        axis: [1.0, 0.0],
+                    };
+                    mixture_log_density((&positions, &weights), round, at)
+                }
+            };
+            density.max(LOWEST_LOG_DENSITY)
         })
         .sum();
     Some(-sum / truth.len() as f64)

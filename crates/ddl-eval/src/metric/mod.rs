@@ -13,6 +13,7 @@ pub mod goal;
 pub mod joint;
 pub mod kde;
 pub mod miss;
+pub mod region;
 pub mod stability;
 pub mod true_neighbour_collision;
 

@@ -45,7 +45,7 @@ pub(super) fn html(moments: &[Moment]) -> String {
         let who: Vec<String> = pick
             .walkers
             .iter()
-            .map(|&walker| moment.walkers[walker].pedestrian.to_string())
+            .map(|&walker| escape(&moment.walkers[walker].pedestrian.to_string()))
             .collect();
         let fold = if moment.fold == moment.recording {
             String::new()

@@ -6,6 +6,8 @@
 //! paths     [[dx, dy, ...], ...]    the same, one a hypothesis                 mm
 //! goals     [[dx, dy] or null, ...] from the last observed position            mm
 //! weights   [...]                   thousandths
+//! radii     [[...], ...]            of the discs of the region of 90 %, one a step, mm; left out where there are no regions
+//! familiarity                       thousandths; left out where nothing is known
 //! representative                    index of the hypothesis that stands for all
 //! falls, certified                  one letter a hypothesis: y, n, - (nothing known)
 //! made_up                           how many observed positions were; left out where none was
@@ -13,7 +15,7 @@
 //!
 //! Moments hold whole millimetres, so that nothing is lost: `x / 1000` is the number that was there.
 
-use ddl_data::{HORIZON, MadeUp, OBSERVED, Position};
+use ddl_data::{HORIZON, MadeUp, OBSERVED, PedestrianName, Position};
 use serde::Serialize;
 
 use super::error::{MomentProblem, PageError};
@@ -31,17 +33,21 @@ pub(super) struct MomentData<'a> {
     frame: i64,
     frame_step: i64,
     picks: &'a [Pick],
-    walkers: Vec<WalkerData>,
+    walkers: Vec<WalkerData<'a>>,
 }
 
 #[derive(Serialize)]
-struct WalkerData {
-    pedestrian: i64,
+struct WalkerData<'a> {
+    pedestrian: &'a PedestrianName,
     observed: Vec<i64>,
     truth: Vec<i64>,
     paths: Vec<Vec<i64>>,
     goals: Vec<Option<[i64; 2]>>,
     weights: Vec<i64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    radii: Vec<Vec<i64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    familiarity: Option<i64>,
     representative: usize,
     falls: String,
     certified: String,
@@ -168,14 +174,14 @@ impl<'a> MomentData<'a> {
     }
 }
 
-impl WalkerData {
-    fn of(walker: &MomentWalker) -> Self {
+impl<'a> WalkerData<'a> {
+    fn of(walker: &'a MomentWalker) -> Self {
         let last = walker.observed[OBSERVED - 1];
         let all = &walker.hypotheses;
         let letters =
             |of: fn(&MomentHypothesis) -> Option<bool>| all.iter().map(of).map(letter).collect();
         Self {
-            pedestrian: walker.pedestrian,
+            pedestrian: &walker.pedestrian,
             observed: steps([0.0, 0.0], &walker.observed),
             truth: steps(last, &walker.truth),
             paths: all.iter().map(|h| steps(last, &h.positions)).collect(),
@@ -187,6 +193,14 @@ impl WalkerData {
                 })
                 .collect(),
             weights: all.iter().map(|h| mm(h.weight)).collect(),
+            radii: if all.iter().all(|h| h.radii.len() == HORIZON) {
+                let in_mm =
+                    |h: &MomentHypothesis| h.radii.iter().map(|&radius| mm(radius)).collect();
+                all.iter().map(in_mm).collect()
+            } else {
+                Vec::new()
+            },
+            familiarity: walker.familiarity.map(mm),
             representative: walker.representative(),
             falls: letters(|h| h.decreasing),
             certified: letters(|h| h.certified),

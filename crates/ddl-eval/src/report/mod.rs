@@ -13,6 +13,7 @@ mod content;
 mod further;
 mod group;
 mod published;
+mod recordings;
 mod section;
 mod significance;
 mod spread;

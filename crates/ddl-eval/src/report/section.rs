@@ -2,7 +2,7 @@
 
 use ddl_data::WindowRule;
 
-use super::{categories, further, group::Group, significance, whole_forecast};
+use super::{categories, further, group::Group, recordings, significance, whole_forecast};
 use crate::document::{Part, Table};
 
 /// What a table shows where there is nothing to show.
@@ -34,6 +34,7 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
     }
     parts.push(Part::Table(headline(group).captioned(caption(group))));
     parts.push(Part::List(conditions(group)));
+    parts.extend(recordings::parts(group));
     let metrics = |name: &str, columns: &[further::Column]| {
         let caption = format!("{name}. {}", group.conditions_in_words());
         let table = further::table(group, columns).captioned(caption);

@@ -1,10 +1,11 @@
 //! What is read, matched with windows, and scored.
 
-use ddl_data::{Convention, PedestrianId, Window, WindowRule};
+use ddl_data::{Convention, Format, PedestrianId, Window, WindowRule, parse_recording};
 use ddl_eval::baseline::{self, SocialForce};
 use ddl_eval::category::TrajectoryType;
 use ddl_eval::foreign::{self, Coverage, ForeignError, ForeignFormat};
-use ddl_eval::{Category, Conditions, Forecaster as _, Protocol, Scores};
+use ddl_eval::{Category, Conditions, Forecast, Forecaster as _, Protocol, Scores};
+use std::fmt::Write as _;
 
 use crate::files::{
     HEADER, complaint, expected, hypothesis, line, ndjson, read, rows, scene, still, table, tracks,
@@ -45,6 +46,70 @@ fn a_neighbour_counts_where_no_scene_has_it_as_its_own() {
         + &tracks(2, 5, 0, 80, 3.0);
     let matched = read(&text, ForeignFormat::TrajNet, Coverage::Whole).unwrap();
     assert_eq!(matched.forecasts, expected());
+}
+
+/// The benchmark of TrajNet++ shows a frame more before the forecast; that of the second scene is the first of the other window.
+#[test]
+fn scenes_of_9_observed_frames_are_the_windows_of_their_last_8() {
+    let text = [(0, 3, 0), (1, 5, 0), (2, 5, 10)].map(|(id, primary, start)| {
+        let of_8 = scene(id, primary, start);
+        of_8.replace(
+            &format!("\"s\": {start},"),
+            &format!("\"s\": {},", start - 10),
+        )
+    });
+    let text = text.concat()
+        + &tracks(0, 3, 0, 70, 1.0)
+        + &tracks(1, 5, 0, 70, 2.0)
+        + &tracks(2, 5, 0, 80, 3.0);
+    let matched = read(&text, ForeignFormat::TrajNet, Coverage::Whole).unwrap();
+    assert_eq!(matched.forecasts, expected());
+}
+
+/// Walkers whom the recording knows by words are forecast under their words, in every format.
+#[test]
+fn walkers_may_have_words_for_names() {
+    let words = ["7f3e-aa41", "007"];
+    let mut seen = "frame,pedestrian,x,y\n".to_owned();
+    for t in 0..20 {
+        for (y, word) in words.iter().enumerate() {
+            writeln!(seen, "{},{word},{t},{y}", 10 * t).unwrap();
+        }
+    }
+    let recording = parse_recording(seen.as_bytes(), "yard", Format::Table).unwrap();
+    let windows = recording.windows(WindowRule::Complete);
+    let mut asked = Vec::new();
+    foreign::write_windows(&windows, &mut asked).unwrap();
+    let asked = String::from_utf8(asked).unwrap();
+    assert!(asked.contains("\"pedestrian\":\"007\""), "{asked}");
+
+    let (mut lines, mut table) = (String::new(), HEADER.to_owned());
+    let mut scenes = String::new();
+    for (id, word) in (0..).zip(words) {
+        let quoted = format!("\"{word}\"");
+        lines += &line(70, 1, &hypothesis(1.0)).replace(":1,\"hyp", &format!(":{quoted},\"hyp"));
+        table += &rows("yard", 70, 4, 0, 1.0, 1.0).replace(",70,4,", &format!(",70,{word},"));
+        let scene = scene(id, 4, 0) + &tracks(id, 4, 0, 70, 1.0);
+        scenes += &scene.replace("\"p\": 4", &format!("\"p\": {quoted}"));
+    }
+    for (text, format) in [
+        (lines, ForeignFormat::JsonLines),
+        (table, ForeignFormat::Table),
+        (scenes, ForeignFormat::TrajNet),
+    ] {
+        let matched = foreign::read_from(text.as_bytes(), "f", format, &windows, Coverage::Whole);
+        let both = [still(1.0, 0.0), still(1.0, 0.0)].concat();
+        let both = Forecast::equally_likely(2, 1, both).unwrap();
+        assert_eq!(matched.unwrap().forecasts, [both], "{format}");
+    }
+    let one = line(70, 1, &hypothesis(1.0)).replace(":1,\"hyp", ":\"007\",\"hyp");
+    let (format, whole) = (ForeignFormat::JsonLines, Coverage::Whole);
+    let missing = foreign::read_from(one.as_bytes(), "f", format, &windows, whole);
+    let told = missing.unwrap_err().to_string();
+    assert!(
+        told.contains("observed until 70 pedestrian 7f3e-aa41"),
+        "{told}"
+    );
 }
 
 #[test]

@@ -295,8 +295,9 @@ fn every_mistake_of_trajnet_is_named_with_its_place() {
             "f, line 2, prediction_number 0: the forecast is of the frames 81, 90 to 190",
         ),
         (
-            good.replacen("\"e\": 190", "\"e\": 200", 1),
-            "f, line 2, scene 0: the forecast is of the frames 0 to 200",
+            good.replacen("\"e\": 190", "\"e\": 210", 1),
+            "f, line 2, scene 0: the scene has the frames 0 to 210; the window that starts there has the observed frames 0, 10 to 70 and the forecast \
+             frames 80, 90 to 190: a scene is 8 or 9 observed and 12 forecast frames",
         ),
         (
             good.clone() + &own.lines().next().unwrap().replace("190", "200"),

@@ -438,3 +438,43 @@ fn categories_are_pooled_over_walkers() {
     let row = cells(line(&page, "| turning left "));
     assert_eq!(row, ["turning left", "40", "0.200/0.400"]);
 }
+
+/// Two recordings of 100 and 10 pedestrians: the mean over all is not that over the recordings.
+#[test]
+fn own_recordings_have_a_row_each_and_one_for_all() {
+    let mut measured = row(Protocol::Fair, "2 recordings, lobby to yard", 1, 0.25);
+    measured.conditions.convention = Convention::Own;
+    measured.blocks = blocks("lobby", 0.2);
+    let of_yard = BlockErrors {
+        recording: "yard".to_owned(),
+        block: 0,
+        pedestrians: 10,
+        min_ade: 7.5,
+        min_fde: 15.0,
+    };
+    measured.blocks.push(of_yard);
+    measured.scores.pedestrians = 110;
+    let of_one = measured.by_recording();
+    assert_eq!(
+        of_one
+            .iter()
+            .map(|of| (of.recording.as_str(), of.pedestrians))
+            .collect::<Vec<_>>(),
+        [("lobby", 100), ("yard", 10)]
+    );
+    let page = Report::new("Own", [measured.clone()])
+        .unwrap()
+        .to_markdown();
+    assert_eq!(
+        cells(line(&page, "| lobby ")),
+        ["lobby", "100", "0.200/0.400"]
+    );
+    assert_eq!(cells(line(&page, "| yard ")), ["yard", "10", "0.750/1.500"]);
+    assert_eq!(cells(line(&page, "| all ")), ["all", "110", "0.250/0.500"]);
+    // One recording is the whole table already, and folds of ETH/UCY are named by their columns.
+    measured.blocks.pop();
+    let page = Report::new("Own", [measured]).unwrap().to_markdown();
+    assert!(!page.contains("By recording"));
+    let plain = Report::new("Plain", five_folds(Protocol::Fair, 1, 0.2)).unwrap();
+    assert!(!plain.to_markdown().contains("By recording"));
+}

@@ -109,7 +109,7 @@ fn kernels_and_tape_give_the_gradients_of_a_walk() {
             };
             let batch = &batches(kind)[scenes];
             let goals = batch.positions().narrow(0, WINDOW as i64 - 1, 1) + 0.3;
-            let steps = (12, StepRule::StableEuler);
+            let steps = (12, StepRule::Bounded);
             let walk = network.roll_out_in(batch, &goals, &NoiseInput::Expected, steps, &pass);
             let truth = batch.positions().narrow(0, 8, 12);
             let loss = mean_distance(&walk.positions.squeeze_dim(1), &truth);
@@ -162,8 +162,7 @@ fn kernels_give_the_forecasts_of_libtorch() {
                     )
                 };
                 for _ in 0..2 {
-                    let rollout =
-                        network.roll_out(&batch, &goals, &noise, 12, StepRule::StableEuler);
+                    let rollout = network.roll_out(&batch, &goals, &noise, 12, StepRule::Bounded);
                     assert_eq!(rollout.positions.size()[1], 3);
                     forecasts.push(rollout.positions);
                     forecasts.extend(rollout.factors);

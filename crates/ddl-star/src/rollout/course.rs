@@ -1,7 +1,8 @@
 //! Where the walkers of a batch are led, and what the network's input and output mean on the way.
 
-use crate::flow::{FlowConstants, natural_gradient_step};
+use crate::flow::{FlowConstants, StepBounds, bounded_step, natural_gradient_step};
 use crate::goal_frame::GoalFrame;
+use ddl_dynamics::StepTime;
 use tch::Tensor;
 
 /// What the walkers of a batch are told of where they go, and what their output means there.
@@ -12,8 +13,9 @@ pub(super) struct Course {
     /// The frame they are read in; `None` for that of the world.
     pub(super) frame: Option<GoalFrame>,
     pub(super) dynamics: bool,
-    /// Seconds.
-    pub(super) time_step: f64,
+    pub(super) constants: FlowConstants,
+    /// Of the steps; `None` for plain Euler steps.
+    pub(super) bounds: Option<StepBounds>,
 }
 
 impl Course {
@@ -26,7 +28,7 @@ impl Course {
         match &self.frame {
             None => relative,
             Some(frame) => {
-                let velocity = frame.of_world(&((positions - before) / self.time_step));
+                let velocity = frame.of_world(&((positions - before) / self.constants.time_step));
                 let place = frame.of_world(&relative);
                 Tensor::cat(
                     &[place.expand_as(&velocity), velocity.expand_as(&place)],
@@ -45,17 +47,25 @@ impl Course {
         }
     }
 
+    /// One step on: with `done` steps made and `left` of them left, this one included.
     pub(super) fn next_positions(
         &self,
         positions: &Tensor,
         goals: &Tensor,
         emitted: &Tensor,
-        constants: FlowConstants,
+        (done, left): (usize, usize),
     ) -> Tensor {
-        if self.dynamics {
-            natural_gradient_step(positions, goals, emitted, constants)
-        } else {
-            &self.reference + emitted
+        if !self.dynamics {
+            return &self.reference + emitted;
+        }
+        let constants = self.constants;
+        match &self.bounds {
+            None => natural_gradient_step(positions, goals, emitted, constants),
+            Some(bounds) => {
+                let dt = constants.time_step;
+                let time = StepTime { done, left, dt };
+                bounded_step(positions, goals, emitted, constants, bounds, time)
+            }
         }
     }
 }

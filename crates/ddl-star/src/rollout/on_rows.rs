@@ -5,7 +5,8 @@ use std::rc::Rc;
 
 use ddl_data::OBSERVED;
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, DynamicsError, Euler, NaturalGradientFlow, StableEuler, rollout_into,
+    Attractor, CholeskyMetric, DynamicsError, Euler, MotionBounds, NaturalGradientFlow,
+    StableEuler, StepTime, rollout_into,
 };
 use nalgebra::Vector2;
 use tch::{Kind, Tensor};
@@ -13,7 +14,6 @@ use tch::{Kind, Tensor};
 use super::Course;
 use crate::batch::SceneBatch;
 use crate::emission::Emission;
-use crate::flow::StepRule;
 use crate::goal_frame::FrameNumbers;
 use crate::kernel::Buffer;
 use crate::neighbours::Seen;
@@ -36,7 +36,8 @@ pub(super) struct OnRows {
     references: Buffer,
     /// The frame of everybody, `[H, P]`; `None` for that of the world.
     frames: Option<Vec<FrameNumbers>>,
-    rule: StepRule,
+    /// Of everybody's steps, `[H, P]`; `None` for plain Euler steps.
+    bounds: Option<Vec<MotionBounds<f32>>>,
 }
 
 impl OnRows {
@@ -49,7 +50,6 @@ impl OnRows {
         goals: &Tensor,
         course: &Course,
         hypotheses: i64,
-        rule: StepRule,
     ) -> Self {
         let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
         let last = observed.narrow(0, OBSERVED as i64 - 1, 1);
@@ -62,7 +62,25 @@ impl OnRows {
             goals: each(goals),
             references: each(&course.reference),
             frames: course.frame.as_ref().map(|frame| frame.numbers(hypotheses)),
-            rule,
+            bounds: course.bounds.as_ref().map(|bounds| {
+                let shape = |width: i64| [hypotheses, batch.walkers() as i64, width];
+                let each = |x: &Tensor, width: i64| numbers(&x.expand(shape(width), false));
+                let (tops, shares) = (each(&bounds.top_speed, 1), each(&bounds.share, 1));
+                let velocities = each(&bounds.velocity, 2);
+                let (velocities, _) = velocities.as_chunks::<2>();
+                let all = tops.iter().zip(velocities).zip(shares.iter());
+                // What is no speed is told by whoever walks the same way in f64.
+                all.map(|((&top, &own), &share)| MotionBounds::new(top, own.into(), share))
+                    .map(Option::unwrap_or_default)
+                    .map(|each| {
+                        if bounds.absolute {
+                            each.absolute()
+                        } else {
+                            each
+                        }
+                    })
+                    .collect()
+            }),
         }
     }
 
@@ -85,7 +103,7 @@ impl OnRows {
             self.turn_to_world(&mut emitted, shaped);
             self.before.copy_from_slice(&self.positions);
             if shaped {
-                self.follow(&emitted, network);
+                self.follow(&emitted, network, (t - OBSERVED, OBSERVED + horizon - t));
                 factors.extend_from_slice(&emitted);
             } else {
                 for ((p, r), e) in self.places().zip(emitted.iter()) {
@@ -132,15 +150,17 @@ impl OnRows {
     }
 
     /// One step of the dynamics for everybody, by the reference implementation.
-    fn follow(&mut self, factors: &[f32], network: &StarNetwork) {
+    fn follow(&mut self, factors: &[f32], network: &StarNetwork, (done, left): (usize, usize)) {
         let config = network.config();
         let (sigma, dt) = (config.sigma as f32, config.time_step as f32);
+        let time = StepTime { done, left, dt };
         let (places, _) = self.positions.as_chunks_mut::<2>();
         let (goals, _) = self.goals.as_chunks::<2>();
         let (factors, _) = factors.as_chunks::<3>();
-        for ((place, goal), factor) in places.iter_mut().zip(goals).zip(factors) {
+        for (i, ((place, goal), factor)) in places.iter_mut().zip(goals).zip(factors).enumerate() {
+            let bounds = self.bounds.as_ref().map(|bounds| &bounds[i]);
             // What the network makes of numbers that are none is no number, and told by whoever walks the same way in f64.
-            *place = next(*place, *goal, *factor, sigma, dt, self.rule).unwrap_or([f32::NAN; 2]);
+            *place = next(*place, *goal, *factor, (sigma, time), bounds).unwrap_or([f32::NAN; 2]);
         }
     }
 
@@ -203,17 +223,23 @@ fn next(
     place: [f32; 2],
     goal: [f32; 2],
     [a, b, c]: [f32; 3],
-    sigma: f32,
-    dt: f32,
-    rule: StepRule,
+    (sigma, time): (f32, StepTime<f32>),
+    bounds: Option<&MotionBounds<f32>>,
 ) -> Result<[f32; 2], DynamicsError> {
     let attractor = Attractor::new(Vector2::from(goal))?;
-    let flow = NaturalGradientFlow::new(attractor, CholeskyMetric::planar(a, b, c, sigma)?);
+    let metric = CholeskyMetric::planar(a, b, c, sigma)?;
     let start = Vector2::from(place);
     let mut path = [start; 2];
-    match rule {
-        StepRule::Euler => rollout_into(&flow, &Euler, start, dt, &mut path)?,
-        StepRule::StableEuler => rollout_into(&flow, &StableEuler, start, dt, &mut path)?,
+    match bounds {
+        None => {
+            let flow = NaturalGradientFlow::new(attractor, metric);
+            rollout_into(&flow, &Euler, start, time.dt, &mut path)?;
+        }
+        Some(bounds) => {
+            let metric = bounds.shape(&metric, &(attractor.goal() - start), time);
+            let flow = NaturalGradientFlow::new(attractor, metric);
+            rollout_into(&flow, &StableEuler, start, time.dt, &mut path)?;
+        }
     }
     Ok(path[1].into())
 }

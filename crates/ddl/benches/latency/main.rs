@@ -122,7 +122,7 @@ fn forecast(run: &Path, window: &Window, turns: usize) -> Result<Row> {
     let goals: Vec<Vec<Position>> = sets.iter().map(|set| set.goals().to_vec()).collect();
     let all = vec![goals.clone()];
     let roll_out =
-        || network.forecast_windows(windows, &all, Noise::Expected, StepRule::StableEuler);
+        || network.forecast_windows(windows, &all, Noise::Expected, StepRule::Bounded, None);
     let rollout = roll_out()?.remove(0);
     let parts: [&mut dyn FnMut() -> Result<()>; 4] = [
         &mut || model.forecast(window).map(drop).map_err(Into::into),

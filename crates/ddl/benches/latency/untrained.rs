@@ -29,6 +29,8 @@ pub(crate) fn run(dataset: &Dataset, folder: &Path) -> Result<RunDirectory> {
         validation_recordings: Vec::new(),
         goals,
         patience: None,
+        from: None,
+        units: None,
         last_epoch_only: false,
         until: TrainingStage::Network,
         out: run.clone(),

@@ -116,6 +116,8 @@ fn packed(config: &str, tensors: &[HalfTensor]) -> Vec<u8> {
         hasher.update(bytes);
     };
     part(config.as_bytes());
+    // no training motions
+    part(b"");
     for tensor in by_name {
         part(tensor.name.as_bytes());
         let sizes = tensor.shape.iter();
@@ -129,7 +131,7 @@ fn packed(config: &str, tensors: &[HalfTensor]) -> Vec<u8> {
         [byte >> 4, byte & 15].map(|digit| char::from(b"0123456789abcdef"[usize::from(digit)]))
     };
     let sha256: String = hasher.finalize().iter().flat_map(digits).collect();
-    let entry = serde_json::json!({ "layout": 1, "config": config, "sha256": sha256 });
+    let entry = serde_json::json!({ "layout": 2, "config": config, "sha256": sha256 });
     let header = HashMap::from([("ddl".to_owned(), entry.to_string())]);
     let views = tensors.iter().filter_map(|tensor| {
         let view = TensorView::new(Dtype::F16, tensor.shape.clone(), &tensor.bytes).ok()?;

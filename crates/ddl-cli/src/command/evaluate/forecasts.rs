@@ -4,6 +4,7 @@ use super::super::RecordingsAt;
 use super::super::test_windows::TestWindows;
 use anyhow::Context as _;
 use clap::Args;
+use ddl::data::{Convention, WindowRule};
 use ddl::eval::foreign::{self, Coverage, ForeignFormat};
 use ddl::eval::{Conditions, Report, baseline, gallery};
 use ddl::{BuiltinModel, Protocol, Results};
@@ -38,10 +39,11 @@ pub(crate) struct OtherProgram {
 }
 
 impl OtherProgram {
-    /// The built-in model to measure, where neither forecasts nor a model are given: that of the fold.
+    /// The built-in model to measure, where neither forecasts nor a model are given but a fold: its model.
     pub(crate) fn builtin_model(&self) -> anyhow::Result<BuiltinModel> {
         self.windows.ensure_of_builtin_models()?;
-        Ok(self.windows.fold()?.parse()?)
+        let fold = self.windows.fold.as_deref().unwrap_or_default();
+        Ok(fold.parse()?)
     }
 
     /// Where the rest of the results is.
@@ -60,26 +62,26 @@ impl OtherProgram {
         recordings: &RecordingsAt,
         commit: &str,
     ) -> anyhow::Result<Report> {
-        let fold = self.windows.fold()?;
         if protocols.contains(&Protocol::Published) {
             return Err(foreign::ForeignError::Published.into());
         }
-        let windows = self.windows.windows(recordings)?;
+        let (fold, windows) = self.windows.windows(recordings)?;
+        let convention = self.windows.convention(recordings);
+        let rule = self.windows.rule(convention);
         let coverage = if self.intersection {
             Coverage::Intersection
         } else {
             Coverage::Whole
         };
         let matched = foreign::read(file, ForeignFormat::of_file(file), &windows, coverage)
-            .map_err(|error| named(error, &self.windows))?;
+            .map_err(|error| named(error, &(convention, &fold, rule)))?;
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
         let name = self.name.as_deref().unwrap_or(&stem);
         let mut rows = Vec::new();
         for &protocol in protocols {
-            let (convention, rule) = (self.windows.convention(), self.windows.rule());
             let conditions = Conditions {
                 commit: commit.to_owned(),
-                ..Conditions::new(convention, rule, protocol, fold, name)
+                ..Conditions::new(convention, rule, protocol, &*fold, name)
             };
             rows.extend(foreign::measure(
                 &conditions,
@@ -89,7 +91,7 @@ impl OtherProgram {
         }
         let report = Report::new(format!("{name} on {fold}"), rows)?;
         if let Some(folder) = &self.out {
-            let moments = gallery::moments(fold, name, &matched.windows, &matched.forecasts)?;
+            let moments = gallery::moments(&fold, name, &matched.windows, &matched.forecasts)?;
             Results::new(report.clone(), moments)
                 .save(folder)
                 .with_context(|| format!("cannot write to {}", folder.display()))?;
@@ -99,18 +101,17 @@ impl OtherProgram {
 }
 
 /// Where file and windows are not of the same walkers, which windows these were and which option scores the rest.
-fn named(error: foreign::ForeignError, windows: &TestWindows) -> anyhow::Error {
+fn named(
+    error: foreign::ForeignError,
+    (convention, fold, rule): &(Convention, &String, WindowRule),
+) -> anyhow::Error {
     let differ = matches!(
         error,
         foreign::ForeignError::Missing { .. } | foreign::ForeignError::Unknown { .. }
     );
     if differ {
         anyhow::anyhow!(
-            "{error} (the windows are those of --convention {} --fold {}, rule {}; --intersection scores the walkers \
-             in both)",
-            windows.convention(),
-            windows.fold.as_deref().unwrap_or_default(),
-            windows.rule()
+            "{error} (the windows are those of --convention {convention} --fold {fold}, rule {rule}; --intersection scores the walkers in both)"
         )
     } else {
         error.into()

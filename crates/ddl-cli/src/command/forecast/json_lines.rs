@@ -2,6 +2,7 @@
 
 use super::Moment;
 use crate::clock::FrameNumber;
+use ddl::data::{HORIZON, PedestrianName};
 use ddl::dynamics::{LyapunovCertificate, Violation};
 use serde::Serialize;
 
@@ -9,12 +10,39 @@ use serde::Serialize;
 #[derive(Serialize)]
 struct Line<'a> {
     observed_until: FrameNumber,
-    pedestrian: i64,
+    pedestrian: PedestrianName,
     /// Positions before the first that was seen, and in holes.
     padded: usize,
     filled: usize,
     frames: Vec<FrameNumber>,
+    /// How much the observed motion is like those of the training, 0 to 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    familiarity: Option<f64>,
+    /// Standard deviation about the right hypothesis at each step, metres.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    spread: Vec<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    regions: Vec<Region>,
     hypotheses: Vec<Hypothesis<'a>>,
+}
+
+/// Where the pedestrian is with this probability: at each step in one of some discs, x, y and radius (m).
+#[derive(Serialize)]
+struct Region {
+    probability: f64,
+    discs: Vec<Vec<[f64; 3]>>,
+}
+
+impl Region {
+    fn of(forecast: &ddl::Forecast, i: usize, probability: f64) -> Option<Self> {
+        let discs = |t: usize| {
+            let region = forecast.region(i, t, probability)?;
+            let disc = |disc: &ddl::eval::Disc| [disc.centre[0], disc.centre[1], disc.radius];
+            Some(region.iter().map(disc).collect())
+        };
+        let discs = (0..HORIZON).map(discs).collect::<Option<_>>()?;
+        Some(Self { probability, discs })
+    }
 }
 
 #[derive(Serialize)]
@@ -52,11 +80,11 @@ impl<'a> Certificate<'a> {
     }
 }
 
-pub(super) fn json_lines(moments: &[Moment<'_>]) -> anyhow::Result<String> {
+pub(super) fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> anyhow::Result<String> {
     let mut text = String::new();
     for moment in moments {
         let forecast = moment.forecast;
-        for (i, pedestrian) in moment.window.pedestrians().iter().enumerate() {
+        for i in 0..moment.window.len() {
             let hypotheses = (0..forecast.hypotheses())
                 .map(|k| Hypothesis {
                     weight: forecast.weight(i, k),
@@ -68,10 +96,16 @@ pub(super) fn json_lines(moments: &[Moment<'_>]) -> anyhow::Result<String> {
             let made_up = moment.window.made_up(i);
             let line = Line {
                 observed_until: moment.observed_until(),
-                pedestrian: pedestrian.0,
+                pedestrian: moment.window.name(i),
                 padded: made_up.padded,
                 filled: made_up.filled,
                 frames: moment.frames(),
+                familiarity: forecast.familiarity(i),
+                spread: (0..HORIZON).filter_map(|t| forecast.spread(i, t)).collect(),
+                regions: regions
+                    .iter()
+                    .filter_map(|&probability| Region::of(forecast, i, probability))
+                    .collect(),
                 hypotheses,
             };
             text += &serde_json::to_string(&line)?;

@@ -4,6 +4,7 @@ use super::Forecast;
 use crate::clock::Clock;
 use crate::recordings;
 use crate::telling::tell;
+use crate::units::live_step;
 use anyhow::{Context as _, bail};
 use ddl::data::{
     Completion, Doubt, Frame, FrameReader, Homography, LiveTracks, MadeUp, Observation, Recording,
@@ -37,9 +38,11 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
         let Some(frame) = frame else { break };
         empty = false;
         let frame = on_the_ground(frame, homography.as_ref())?;
-        let Some(window) = tracking.push(frame)? else {
+        let names = frame.names.clone();
+        let Some(window) = tracking.push(frame, frames.rate())? else {
             continue;
         };
+        let window = window.with_names(names);
         if !looked_at {
             looked_at = warn_of_speeds(&window)?;
         }
@@ -124,8 +127,8 @@ fn warn_of_speeds(window: &Window) -> anyhow::Result<bool> {
     }
     let recording = Recording::new("standard input", window.frame_step(), seen)?;
     // A jump is no matter of units, and somebody may be slow for 3.2 s.
-    if let Some(doubt @ Doubt::Fast { .. }) = recording.speed_doubt() {
-        recordings::warn_of(doubt, None);
+    if let Some(doubt @ Doubt::Fast { .. }) = &recording.speed_doubt() {
+        recordings::warn_of(doubt);
     }
     Ok(true)
 }
@@ -136,7 +139,9 @@ fn on_the_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::R
     };
     for (pedestrian, position) in &mut frame.people {
         let seen = Observation::new(frame.number, *pedestrian, *position);
-        *position = homography.place(&seen).context("standard input")?;
+        *position = homography
+            .place(&seen, &frame.names)
+            .context("standard input")?;
     }
     Ok(frame)
 }
@@ -162,8 +167,8 @@ impl Tracking {
         })
     }
 
-    /// Adds a frame; the window that ends there, if anybody can be forecast.
-    fn push(&mut self, frame: Frame) -> anyhow::Result<Option<Window>> {
+    /// Adds a frame; the window that ends there, if anybody can be forecast. `rate`: frames that follow each other in a second, where the lines say so.
+    fn push(&mut self, frame: Frame, rate: Option<f64>) -> anyhow::Result<Option<Window>> {
         if let Some(tracks) = &mut self.tracks {
             return Ok(tracks.push(frame.number, frame.people)?);
         }
@@ -171,14 +176,24 @@ impl Tracking {
             self.first = Some(frame);
             return Ok(None);
         };
-        let step = frame.number - first.number;
-        if step > LONGEST_STEP {
+        let apart = frame.number - first.number;
+        if apart > LONGEST_STEP {
             bail!(
-                "standard input: the first two frames are {step} apart; say with --fps or --frame-step how many that are in 0.4 s"
+                "standard input: the first two frames are {apart} apart; say with --fps or --frame-step how many that are in 0.4 s"
             );
         }
+        let step = match rate {
+            None => apart,
+            Some(rate) => live_step(1.0 / (rate * apart as f64)).with_context(|| {
+                format!("standard input: the scenes say fps {rate}, and the first two frames are {apart} apart")
+            })?,
+        };
+        let reason = match rate {
+            None => "as the first two are".to_owned(),
+            Some(rate) => format!("by the fps of the scenes, {rate}"),
+        };
         tell(format_args!(
-            "note: frames are taken to be {step} apart in 0.4 s, as the first two are; --fps or --frame-step says otherwise"
+            "note: frames are taken to be {step} apart in 0.4 s, {reason}; --fps or --frame-step says otherwise"
         ));
         let tracks = LiveTracks::with_frame_step(step)?.completing(self.completion);
         let tracks = self.tracks.insert(tracks);

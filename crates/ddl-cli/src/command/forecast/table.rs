@@ -2,14 +2,16 @@
 
 use super::Moment;
 use crate::clock::FrameNumber;
+use crate::output::table_metres;
 use anyhow::Context as _;
+use ddl::data::PedestrianName;
 use serde::Serialize;
 
 /// A forecast position.
 #[derive(Serialize)]
 struct Row {
     observed_until: FrameNumber,
-    pedestrian: i64,
+    pedestrian: PedestrianName,
     hypothesis: usize,
     weight: f64,
     /// Empty where the model has no goals.
@@ -21,22 +23,44 @@ struct Row {
     /// Positions before the first that was seen, and in holes.
     padded: usize,
     filled: usize,
+    /// Empty where the model does not say.
+    familiarity: Option<f64>,
 }
 
-/// What its certificate says of a position: further columns of the row.
-#[derive(Serialize)]
-struct Certified {
-    distance_to_goal: f64,
-    certified: bool,
-}
+/// The columns of [`Row`].
+const COLUMNS: [&str; 12] = [
+    "observed_until",
+    "pedestrian",
+    "hypothesis",
+    "weight",
+    "goal_x",
+    "goal_y",
+    "frame",
+    "x",
+    "y",
+    "padded",
+    "filled",
+    "familiarity",
+];
+/// Further columns: what its certificate says of a position.
+const CERTIFIED: [&str; 2] = ["distance_to_goal", "certified"];
 
-pub(super) fn csv(moments: &[Moment<'_>], headed: bool) -> anyhow::Result<String> {
+/// The table of these moments, with a column for the radius of each of the regions asked for.
+pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyhow::Result<String> {
     let mut writer = csv::WriterBuilder::new()
-        .has_headers(headed)
+        .has_headers(false)
         .from_writer(Vec::new());
+    if headed {
+        let certified = moments.iter().any(|moment| moment.certified.is_some());
+        let columns = COLUMNS
+            .iter()
+            .chain(certified.then_some(&CERTIFIED).into_iter().flatten());
+        let names = columns.map(|&name| name.to_owned());
+        writer.write_record(names.chain(regions.iter().map(|level| format!("radius_{level}"))))?;
+    }
     for moment in moments {
         let frames = moment.frames();
-        for (i, pedestrian) in moment.window.pedestrians().iter().enumerate() {
+        for i in 0..moment.window.len() {
             let made_up = moment.window.made_up(i);
             for hypothesis in 0..moment.forecast.hypotheses() {
                 let certificate = moment.certificate(i, hypothesis);
@@ -45,29 +69,31 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool) -> anyhow::Result<String
                 let mut distances = certificate.map(|certificate| certificate.potentials().skip(1));
                 let positions = moment.forecast.hypothesis(i, hypothesis);
                 let goal = moment.forecast.goal(i, hypothesis);
-                for (position, &frame) in positions.iter().zip(&frames) {
+                let goal = goal.map(|goal| goal.map(table_metres));
+                for (t, (position, &frame)) in positions.iter().zip(&frames).enumerate() {
+                    let [x, y] = position.map(table_metres);
                     let row = Row {
                         observed_until: moment.observed_until(),
-                        pedestrian: pedestrian.0,
+                        pedestrian: moment.window.name(i),
                         hypothesis,
                         weight: moment.forecast.weight(i, hypothesis),
                         goal_x: goal.map(|[x, _]| x),
                         goal_y: goal.map(|[_, y]| y),
                         frame,
-                        x: position[0],
-                        y: position[1],
+                        x,
+                        y,
                         padded: made_up.padded,
                         filled: made_up.filled,
+                        familiarity: moment.forecast.familiarity(i).map(table_metres),
                     };
+                    let radius = |&level: &f64| {
+                        let radius = moment.forecast.region_radius(i, hypothesis, t, level);
+                        radius.map(table_metres)
+                    };
+                    let radii: Vec<Option<f64>> = regions.iter().map(radius).collect();
                     match distances.as_mut().and_then(Iterator::next) {
-                        None => writer.serialize(row)?,
-                        Some(distance_to_goal) => writer.serialize((
-                            row,
-                            Certified {
-                                distance_to_goal,
-                                certified: holds,
-                            },
-                        ))?,
+                        None => writer.serialize((row, radii))?,
+                        Some(distance) => writer.serialize((row, distance, holds, radii))?,
                     }
                 }
             }

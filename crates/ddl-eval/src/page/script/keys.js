@@ -1,6 +1,6 @@
 // The keys of the player. They work while something of the player has the focus; `?` works everywhere.
 
-const SWITCHES = { t: "truth", h: "hypotheses", g: "goals", o: "others", e: "everything", z: "whole" };
+const SWITCHES = { t: "truth", h: "hypotheses", g: "goals", a: "region", o: "others", e: "everything", z: "whole" };
 
 function bindKeys(player) {
   const dialog = document.getElementById("keys");

@@ -33,6 +33,8 @@ function decodeWalker(data) {
       index,
       weight: data.weights[index] / 1000,
       path: walked(last, steps),
+      // Of the region that holds the walker with a probability of 90 %, in metres; 0 where this hypothesis has no disc.
+      radii: data.radii?.[index].map((radius) => radius / 1000),
       goal: goal && [(last[0] + goal[0]) / 1000, (last[1] + goal[1]) / 1000],
       falls: verdict(data.falls[index]),
       certified: verdict(data.certified[index]),
@@ -45,6 +47,7 @@ function decodeWalker(data) {
     truth: walked(last, data.truth),
     madeUp: data.made_up ?? { padded: 0, filled: 0 },
     hypotheses,
+    familiarity: data.familiarity === undefined ? null : data.familiarity / 1000,
     representative: data.representative,
     heaviest: Math.max(...hypotheses.map((h) => h.weight), 1e-9),
   };

@@ -21,7 +21,7 @@ function makePlayer(moments) {
     walker: 0,
     hypothesis: null,
     time: OBSERVED - 1,
-    show: { truth: true, hypotheses: true, goals: true, others: true, everything: false, whole: false },
+    show: { truth: true, hypotheses: true, goals: true, region: true, others: true, everything: false, whole: false },
   };
   let palette = readPalette();
   let size = { width: 0, height: 0, ratio: 1 };
@@ -50,6 +50,13 @@ function makePlayer(moments) {
     if (padded > 0) parts.push(`${padded} before it came`);
     if (filled > 0) parts.push(`${filled} in holes`);
     return `Of its ${OBSERVED} observed steps ${padded + filled} are made up (${parts.join(", ")}). `;
+  }
+
+  // How much the observed motion is like those that the forecaster was trained on.
+  function familiarityWords(who) {
+    if (who.familiarity === null) return "";
+    const share = who.familiarity < 0.01 ? "less than 1" : Math.round(100 * who.familiarity);
+    return `Familiarity ${who.familiarity.toFixed(2)}: ${share} % of training motions are as unusual. `;
   }
 
   function momentAt(at) {
@@ -135,7 +142,7 @@ function makePlayer(moments) {
       ? `Not measured: seen for ${who.truth.length} of the ${HORIZON} forecast steps. `
       : `${best}; from positions rounded to the millimetre. `;
     byId("convention-words").textContent =
-      measured + madeUpWords(who) +
+      measured + madeUpWords(who) + familiarityWords(who) +
       `Forecast by ${moment.forecaster}; ${moment.recording}, frame ${moment.frame}.`;
     canvas.setAttribute(
       "aria-label",

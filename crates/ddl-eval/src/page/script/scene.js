@@ -160,9 +160,27 @@ function drawHypotheses(context, view, walker, state, palette, strength, chosen 
   }
 }
 
+// The region of 90 % at the step reached: discs about the hypotheses, as one area.
+function drawRegion(context, view, walker, time, palette) {
+  const step = Math.min(Math.ceil(time), FRAMES - 1) - OBSERVED;
+  if (step < 0 || !walker.hypotheses[0].radii) return;
+  context.globalAlpha = 0.14;
+  context.fillStyle = palette.accent;
+  context.beginPath();
+  for (const { path, radii } of walker.hypotheses) {
+    if (radii[step] <= 0) continue;
+    const [x, y] = view.px(path[step]);
+    context.moveTo(x + radii[step] * view.scale, y);
+    context.arc(x, y, radii[step] * view.scale, 0, 2 * Math.PI);
+  }
+  context.fill();
+  context.globalAlpha = 1;
+}
+
 function drawChosen(context, view, walker, state, palette) {
   const { time, show } = state;
   const now = OBSERVED - 1;
+  if (show.region) drawRegion(context, view, walker, time, palette);
   const known = knownUntil(walker);
   const hypothesis = walker.hypotheses[state.hypothesis ?? walker.representative];
   const toPixels = (places) => places.map(view.px);

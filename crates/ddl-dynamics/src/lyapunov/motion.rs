@@ -1,0 +1,178 @@
+//! What a certificate says of the motion itself: how fast, how abrupt, how far off the straight way, and whether it arrived.
+
+use nalgebra::SVector;
+use serde::{Deserialize, Serialize};
+
+use super::Violation;
+use crate::{attractor::Attractor, motion_bounds::MotionBounds, real::Real};
+
+/// Share of a bound that rounding may add to it.
+const ROUNDING: f64 = 1e-9;
+/// Roundings of the coordinates that a position may be off.
+const ROUNDINGS: f64 = 16.0;
+
+/// A figure of a motion with the bound that it is under.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bounded<T> {
+    /// What the motion reached.
+    pub largest: T,
+    /// What it cannot exceed, whatever shaped it; the rounding of its positions included.
+    pub bound: T,
+}
+
+impl<T: Real> Bounded<T> {
+    fn holds(&self) -> bool {
+        // false for NaN
+        self.largest <= self.bound
+    }
+}
+
+/// Figures of a motion within [`MotionBounds`], each with its bound.
+///
+/// `docs/stability.md` states the theorem whose constants these are. For a motion that minds obstacles, which
+/// may hold it up, `deviation` and `distance_left` have no bound.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MotionEvidence<T> {
+    /// Speed of a step (m/s).
+    pub speed: Bounded<T>,
+    /// Difference between the speeds of two steps in a row (m/s).
+    pub speed_change: Bounded<T>,
+    /// Distance from the straight line between start and goal (m).
+    #[serde(default = "Option::default", skip_serializing_if = "Option::is_none")]
+    pub deviation: Option<Bounded<T>>,
+    /// Distance from the goal after the last step (m).
+    #[serde(default = "Option::default", skip_serializing_if = "Option::is_none")]
+    pub distance_left: Option<Bounded<T>>,
+}
+
+impl<T: Real> MotionEvidence<T> {
+    /// The evidence of `path` (metres; the start first), whose steps of `dt` seconds were shaped within `bounds`;
+    /// `alone` unless obstacles were minded.
+    pub(super) fn new(
+        path: &[SVector<T, 2>],
+        attractor: &Attractor<T, 2>,
+        bounds: &MotionBounds<T>,
+        dt: T,
+        alone: bool,
+    ) -> Self {
+        let coordinates = path.iter().chain([attractor.goal()]);
+        let largest_coordinate = coordinates.map(SVector::amax).fold(T::zero(), T::max);
+        let off = T::rounded(ROUNDINGS) * T::EPSILON * largest_coordinate;
+        let rounded = |bound: T, off: T| bound * T::rounded(1.0 + ROUNDING) + off;
+        let steps = path.len().saturating_sub(1);
+        let speeds: Vec<T> = path.windows(2).map(|p| (p[1] - p[0]).norm() / dt).collect();
+        let ranges: Vec<_> = path[..steps]
+            .iter()
+            .enumerate()
+            .map(|(k, p)| bounds.eigenvalues(attractor.distance(p), steps - k, dt))
+            .collect();
+        let between = |a: T, b: T| (a - b).abs();
+        let change = speeds.windows(2).map(|pair| between(pair[0], pair[1]));
+        let most_change = ranges.windows(2).map(|pair| {
+            let [before, after] = [pair[0], pair[1]];
+            (after.largest - before.smallest).max(before.largest - after.smallest)
+        });
+        let top = bounds.top_speed();
+        let largest = |figures: &mut dyn Iterator<Item = T>| figures.fold(T::zero(), T::max);
+        let speed = Bounded {
+            largest: largest(&mut speeds.iter().copied()),
+            bound: rounded(top, off / dt),
+        };
+        let speed_change = Bounded {
+            largest: largest(&mut change.into_iter()),
+            bound: rounded(
+                if alone {
+                    largest(&mut most_change.into_iter()).min(top)
+                } else {
+                    top
+                },
+                (off + off) / dt,
+            ),
+        };
+        let (deviation, distance_left) = if alone {
+            let half = T::rounded(0.5);
+            let sideways = ranges
+                .iter()
+                .map(|range| (range.largest - range.smallest) * dt * half);
+            let left = path
+                .last()
+                .map_or(T::zero(), |last| attractor.distance(last));
+            (
+                Some(Bounded {
+                    largest: farthest_from_line(path, attractor.goal()),
+                    bound: rounded(
+                        sideways.fold(T::zero(), |sum, s| sum + s),
+                        off * T::rounded(steps as f64 + 1.0),
+                    ),
+                }),
+                Some(Bounded {
+                    largest: left,
+                    bound: rounded(
+                        out_of_reach(path, attractor, bounds, dt),
+                        off * T::rounded(steps as f64 + 1.0),
+                    ),
+                }),
+            )
+        } else {
+            (None, None)
+        };
+        Self {
+            speed,
+            speed_change,
+            deviation,
+            distance_left,
+        }
+    }
+
+    /// # Errors
+    /// The first figure that exceeds its bound.
+    pub(super) fn check(&self) -> Result<(), Violation> {
+        let named = [
+            ("speed (m/s)", Some(self.speed)),
+            (
+                "change of speed between steps (m/s)",
+                Some(self.speed_change),
+            ),
+            ("distance from the straight line (m)", self.deviation),
+            ("distance from the goal at the end (m)", self.distance_left),
+        ];
+        let exceeded = named.into_iter().find_map(|(figure, bounded)| {
+            let bounded = bounded.filter(|bounded| !bounded.holds())?;
+            Some(Violation::OutOfBounds {
+                figure: figure.to_owned(),
+                value: bounded.largest.as_f64(),
+                bound: bounded.bound.as_f64(),
+            })
+        });
+        exceeded.map_or(Ok(()), Err)
+    }
+}
+
+/// How far the goal lies beyond what the top speed covers: 0 for goals within reach.
+fn out_of_reach<T: Real>(
+    path: &[SVector<T, 2>],
+    attractor: &Attractor<T, 2>,
+    bounds: &MotionBounds<T>,
+    dt: T,
+) -> T {
+    let reach = bounds.top_speed() * dt * T::rounded(path.len().saturating_sub(1) as f64);
+    let start = path
+        .first()
+        .map_or(T::zero(), |start| attractor.distance(start));
+    (start - reach).max(T::zero())
+}
+
+/// The largest distance of a position from the line through the first one and the goal; from the goal where that is the first one.
+fn farthest_from_line<T: Real>(path: &[SVector<T, 2>], goal: &SVector<T, 2>) -> T {
+    let Some(start) = path.first() else {
+        return T::zero();
+    };
+    let axis = (goal - start).try_normalize(T::zero());
+    let off = |p: &SVector<T, 2>| {
+        let way = p - start;
+        axis.map_or(way.norm(), |axis| way.perp(&axis).abs())
+    };
+    path.iter().map(off).fold(T::zero(), T::max)
+}

@@ -1,0 +1,259 @@
+//! Motions within bounds: never faster, nearer at every step, never past the goal, and there with the last one.
+
+use ddl_dynamics::{
+    ArrivingSchedule, Attractor, CholeskyMetric, LyapunovCertificate, MotionBounds,
+    NaturalGradientFlow, Real, StableEuler, StepTime, rollout,
+};
+use nalgebra::Vector2;
+use proptest::{prelude::*, test_runner::TestCaseResult};
+
+use crate::draw::{METRICS, SceneDraw, any_scene, formed};
+
+/// Top speed relative to what the goal asks for, share of the metric, seconds a step, own velocity in top speeds, and whether metrics are in
+/// m/s.
+type BoundsDraw = (f64, f64, f64, [f64; 2], bool);
+
+fn any_bounds() -> impl Strategy<Value = BoundsDraw> {
+    let spare = prop_oneof![1 => Just(1.0), 3 => 1.0..4.0_f64];
+    let share = prop_oneof![1 => Just(0.0), 2 => Just(1.0), 2 => 0.0..=1.0_f64];
+    let velocity = prop_oneof![1 => Just([0.0; 2]), 4 => prop::array::uniform2(-1.0..1.0_f64)];
+    (spare, share, 0.01..2.0_f64, velocity, any::<bool>())
+}
+
+struct Walk<T: Real> {
+    path: Vec<Vector2<T>>,
+    attractor: Attractor<T, 2>,
+    bounds: MotionBounds<T>,
+    certificate: LyapunovCertificate<T>,
+    dt: T,
+}
+
+fn walk<T: Real>(
+    scene: &SceneDraw,
+    (spare, share, dt, own, absolute): BoundsDraw,
+) -> Option<Walk<T>> {
+    let (start, attractor, dt) = (
+        scene.start::<T, 2>(),
+        scene.attractor::<T, 2>(),
+        T::rounded(dt),
+    );
+    let distance = attractor.distance(&start);
+    let arriving = distance / (dt * T::rounded(METRICS as f64));
+    let top_speed = (arriving * T::rounded(spare)).max(T::rounded(1e-3));
+    let own = Vector2::from(own).map(T::rounded) * top_speed;
+    let bounds = MotionBounds::new(top_speed, own, T::rounded(share))?;
+    let bounds = if absolute { bounds.absolute() } else { bounds };
+    let schedule = ArrivingSchedule::new(scene.metrics(), attractor, bounds, dt).unwrap();
+    let flow = NaturalGradientFlow::new(attractor, schedule);
+    let path = rollout(&flow, &StableEuler, start, dt, METRICS).unwrap();
+    let certificate = LyapunovCertificate::of_rollout(&flow, &path, dt).unwrap();
+    let certificate = certificate
+        .within(&path, &attractor, &bounds, true)
+        .unwrap();
+    Some(Walk {
+        path,
+        attractor,
+        bounds,
+        certificate,
+        dt,
+    })
+}
+
+/// What the theorem says, measured on the positions and not by the certificate; and the certificate says so too.
+fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCaseResult {
+    let Some(Walk {
+        path,
+        attractor,
+        bounds,
+        certificate,
+        dt,
+    }) = walk::<T>(scene, draw)
+    else {
+        return Ok(());
+    };
+    let far = path
+        .iter()
+        .chain([attractor.goal()])
+        .map(|p| p.amax().as_f64())
+        .fold(0.0, f64::max);
+    let off = 64.0 * T::EPSILON.as_f64() * far;
+    let dt = dt.as_f64();
+    let top = bounds.top_speed().as_f64();
+    for (k, step) in path.windows(2).enumerate() {
+        let [from, to] = [step[0], step[1]].map(|p| p.map(Real::as_f64));
+        let goal = attractor.goal().map(Real::as_f64);
+        let speed = (to - from).norm() / dt;
+        prop_assert!(
+            speed <= top * (1.0 + 1e-6) + off / dt,
+            "step {k}: {speed} m/s over {top}"
+        );
+        let (d, after) = ((goal - from).norm(), (goal - to).norm());
+        prop_assert!(after <= d + off);
+        // the angle of Kantorovich, and never past the goal
+        let range = bounds.eigenvalues(T::rounded(d), METRICS - k, T::rounded(dt));
+        let sine = range.largest_deviation_sine().as_f64();
+        if d > 1e3 * off && speed * dt > 1e3 * off {
+            let (ahead, moved) = ((goal - from).normalize(), (to - from).normalize());
+            prop_assert!(ahead.perp(&moved).abs() <= sine + 1e-2 && ahead.dot(&moved) > 0.0);
+            prop_assert!((to - from).dot(&ahead) <= d * (1.0 + 1e-5) + off);
+        }
+    }
+    let left = attractor.distance(&path[METRICS]).as_f64();
+    prop_assert!(left <= off + 1e-5 * top * dt, "{left} m left");
+    prop_assert_eq!(certificate.holds(), Ok(()));
+    Ok(())
+}
+
+/// Whoever already walks at the arriving velocity goes straight on at constant speed, unless a metric has a share.
+fn straight_without_a_share<T: Real>(scene: &SceneDraw, spare: f64, dt: f64) -> TestCaseResult {
+    let way = scene.attractor::<T, 2>().goal() - scene.start::<T, 2>();
+    let arriving = way.map(|x| x.as_f64() / (dt * METRICS as f64));
+    let top_speed = (arriving.norm() * spare).max(1e-3);
+    let arriving = (arriving / top_speed).into();
+    let Some(Walk {
+        path, attractor, ..
+    }) = walk::<T>(scene, (spare, 0.0, dt, arriving, false))
+    else {
+        return Ok(());
+    };
+    let far = path.iter().map(|p| p.amax().as_f64()).fold(0.0, f64::max);
+    let way = attractor.goal() - path[0];
+    for (k, p) in path.iter().enumerate() {
+        let right = path[0] + way * T::rounded(k as f64 / METRICS as f64);
+        prop_assert!(
+            (p - right).norm().as_f64() <= 1e3 * T::EPSILON.as_f64() * (far + way.norm().as_f64())
+        );
+    }
+    Ok(())
+}
+
+/// The shaped metric lies within the bounds, keeps its axes, and is the metric itself where that lies within.
+fn shaped_within<T: Real>(scene: &SceneDraw, distance: f64, left: usize) -> TestCaseResult {
+    let (distance, dt) = (T::rounded(distance), T::rounded(0.4));
+    let towards = Vector2::new(distance, T::zero());
+    let time = StepTime {
+        done: 12 - left,
+        left,
+        dt,
+    };
+    for metric in scene.metrics::<T, 2>() {
+        let bounds = MotionBounds::<T>::default().absolute();
+        let range = bounds.eigenvalues(distance, left, dt);
+        let shaped = bounds.shape(&metric, &towards, time);
+        let (before, after) = (metric.eigenvalue_range(), shaped.eigenvalue_range());
+        let near = T::rounded(1e-4);
+        prop_assert!(after.smallest >= range.smallest * (T::one() - near));
+        prop_assert!(after.largest <= range.largest * (T::one() + near));
+        let inside = before.smallest >= range.smallest && before.largest <= range.largest;
+        if inside {
+            let change = (formed(&shaped) - formed(&metric)).norm();
+            prop_assert!(change <= 1e-4 * before.largest.as_f64(), "{change}");
+        }
+        // the same eigenvectors: the matrices commute
+        let (a, b) = (formed(&shaped), formed(&metric));
+        let commutator = (a * b - b * a).norm();
+        prop_assert!(commutator <= 1e-4 * a.norm() * b.norm(), "{commutator}");
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn arrives_within_bounds_f32(scene in any_scene(), draw in any_bounds()) {
+        arrives_within_bounds::<f32>(&scene, draw)?;
+    }
+
+    #[test]
+    fn arrives_within_bounds_f64(scene in any_scene(), draw in any_bounds()) {
+        arrives_within_bounds::<f64>(&scene, draw)?;
+    }
+
+    #[test]
+    fn straight_without_a_share_f64(scene in any_scene(), spare in 1.0..4.0_f64, dt in 0.01..2.0_f64) {
+        straight_without_a_share::<f64>(&scene, spare, dt)?;
+    }
+
+    #[test]
+    fn shaped_within_f64(scene in any_scene(), distance in 0.0..10.0_f64, left in 1..13_usize) {
+        shaped_within::<f64>(&scene, distance, left)?;
+    }
+
+    #[test]
+    fn shaped_within_f32(scene in any_scene(), distance in 0.0..10.0_f64, left in 1..13_usize) {
+        shaped_within::<f32>(&scene, distance, left)?;
+    }
+}
+
+/// Worked by hand: 4.8 m in 12 steps of 0.4 s are 1 m/s. P = diag(9, 0.04) becomes diag(2, 0.25); with no share and the own velocity (1, 1) m/s
+/// it is the metric of the flow (1, 0.5) if half of that velocity is left: [1 0.5; 0.5 1.5].
+#[test]
+fn eigenvalues_by_hand() {
+    let metric = CholeskyMetric::planar(3.0_f64, 0.0, 0.2, 1e-12).unwrap();
+    let first = StepTime {
+        done: 0,
+        left: 12,
+        dt: 0.4,
+    };
+    let g = MotionBounds::<f64>::momentum(first);
+    assert!((g - 0.75 * (-0.2_f64).exp()).abs() < 1e-15);
+    let own = Vector2::new(1.0, 0.5 / g);
+    for (share, expected) in [
+        (1.0, [2.0, 0.0, 0.25]),
+        (0.0, [1.0, 0.5, 1.5]),
+        (0.5, [1.5, 0.25, 0.875]),
+    ] {
+        let bounds = MotionBounds::new(2.15, own, share).unwrap().absolute();
+        let shaped = bounds
+            .shape(&metric, &Vector2::new(4.8, 0.0), first)
+            .to_matrix();
+        for (found, expected) in [shaped.m11, shaped.m12, shaped.m22]
+            .into_iter()
+            .zip(expected)
+        {
+            assert!((found - expected).abs() < 1e-12, "{shaped}");
+        }
+    }
+}
+
+/// Worked by hand: Q = 2.25 I asks for 1.25 arriving speeds more than the neutral motion, which for somebody who walks at the arriving velocity is
+/// I: out of bounds, 2. Q = I asks for nothing, and Q = 0.5 I for half of it.
+#[test]
+fn departures_by_hand() {
+    let first = StepTime {
+        done: 0,
+        left: 12,
+        dt: 0.4,
+    };
+    let bounds = MotionBounds::new(2.15, Vector2::new(1.0, 0.0), 1.0).unwrap();
+    for (root, expected) in [(1.5_f64, 2.0), (1.0, 1.0), (0.5_f64.sqrt(), 0.5)] {
+        let metric = CholeskyMetric::planar(root, 0.0, root, 1e-12).unwrap();
+        let shaped = bounds
+            .shape(&metric, &Vector2::new(4.8, 0.0), first)
+            .to_matrix();
+        assert!(
+            (shaped.m11 - expected).abs() < 1e-9 && (shaped.m22 - expected).abs() < 1e-9,
+            "{shaped}"
+        );
+    }
+}
+
+/// A goal that is out of reach is headed for at the top speed, and the certificate tells how far it is.
+#[test]
+fn out_of_reach() {
+    let attractor = Attractor::new(Vector2::new(20.0_f64, 0.0)).unwrap();
+    let metrics = vec![CholeskyMetric::planar(5.0, 3.0, 1.0, 1e-8).unwrap(); 12];
+    let bounds = MotionBounds::new(2.0, Vector2::zeros(), 1.0).unwrap();
+    let schedule = ArrivingSchedule::new(metrics, attractor, bounds, 0.4).unwrap();
+    let flow = NaturalGradientFlow::new(attractor, schedule);
+    let path = rollout(&flow, &StableEuler, Vector2::zeros(), 0.4, 12).unwrap();
+    assert!((path[12] - Vector2::new(9.6, 0.0)).norm() < 1e-12);
+    let certificate = LyapunovCertificate::of_rollout(&flow, &path, 0.4).unwrap();
+    let certificate = certificate
+        .within(&path, &attractor, &bounds, true)
+        .unwrap();
+    assert_eq!(certificate.holds(), Ok(()));
+    let left = certificate.motion().unwrap().distance_left.unwrap();
+    assert!((left.largest - 10.4).abs() < 1e-9 && (left.bound - 10.4).abs() < 1e-6);
+}

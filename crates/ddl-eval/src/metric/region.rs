@@ -1,0 +1,101 @@
+//! What weights and regions are worth: the probability given to what came, and the share of true positions that regions hold.
+
+use ddl_data::HORIZON;
+
+use crate::{
+    Scene,
+    metric::displacement::final_displacement,
+    region::{equal_radius, holds},
+};
+
+/// Probabilities of the regions that are measured.
+pub const LEVELS: [f64; 2] = [0.5, 0.9];
+/// Smallest weight that is told from 0 in the log loss.
+const SMALLEST_WEIGHT: f64 = 1e-6;
+
+/// Of one pedestrian, for each of the [`LEVELS`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RegionScores {
+    /// Share of the 12 true positions inside their regions, in [0, 1].
+    pub coverage: [f64; LEVELS.len()],
+    /// Radius of a disc as large as the region of the last step, metres.
+    pub end_radius: [f64; LEVELS.len()],
+}
+
+impl RegionScores {
+    /// Of pedestrian `i`; `None` for forecasts without regions.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
+        let forecast = scene.forecast();
+        forecast.regions()?;
+        let region = |t: usize, level: f64| forecast.region(i, t, level).unwrap_or_default();
+        Some(Self {
+            coverage: LEVELS.map(|level| {
+                let truth = scene.truth(i).iter().enumerate();
+                let inside = truth.filter(|&(t, &at)| holds(&region(t, level), at));
+                inside.count() as f64 / HORIZON as f64
+            }),
+            end_radius: LEVELS.map(|level| equal_radius(&region(HORIZON - 1, level))),
+        })
+    }
+}
+
+/// -ln of the weight of the hypothesis that leads nearest to the true end: by its goal, or by its last position where it has
+/// none; nats. `None` for forecasts of one hypothesis. Equal weights have ln K.
+///
+/// # Panics
+/// When `i` is out of range.
+#[must_use]
+pub fn weight_log_loss(scene: &Scene<'_>, i: usize) -> Option<f64> {
+    let forecast = scene.forecast();
+    let truth = scene.truth(i);
+    let off = |k: usize| match (forecast.goal(i, k), truth.last()) {
+        (Some(goal), Some(end)) => (goal[0] - end[0]).hypot(goal[1] - end[1]),
+        _ => final_displacement(forecast.hypothesis(i, k), truth),
+    };
+    let nearest = (0..scene.hypotheses()).min_by(|&a, &b| off(a).total_cmp(&off(b)))?;
+    let weight = forecast.weight(i, nearest).max(SMALLEST_WEIGHT);
+    (scene.hypotheses() > 1).then(|| -weight.ln())
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::{
+        Forecast, RegionTable,
+        metric::fixture::{walk, window},
+    };
+
+    /// Standing hypotheses at (0, 0) and (10, 0), weights 0.8 and 0.2; the truth stands 0.5 m from the second. With a spread of 0.5 m its score
+    /// is 0.5 - ln 0.2 = 2.11: inside where the quantile is 3, outside where it is 2.
+    #[test]
+    fn by_hand() {
+        let still = [0.0, 0.0];
+        let window = window(&[[10.5, 0.0]], &[still]);
+        let walks = [walk(still, still), walk([10.0, 0.0], still)].concat();
+        let bare = Forecast::new(1, 2, walks, vec![0.8, 0.2], None).unwrap();
+        let table = RegionTable::of(
+            &[[2.0; HORIZON], [2.0; HORIZON], [3.0; HORIZON]],
+            &[0.5, 0.9],
+        )
+        .unwrap();
+        let scene = Scene::new(&window, &bare).unwrap();
+        assert_relative_eq!(
+            weight_log_loss(&scene, 0).unwrap(),
+            -(0.2_f64.ln()),
+            epsilon = 1e-12
+        );
+        assert_eq!(RegionScores::of(&scene, 0), None);
+        let forecast = bare.with_spread(vec![0.5; HORIZON], table.into()).unwrap();
+        let scores = RegionScores::of(&Scene::new(&window, &forecast).unwrap(), 0).unwrap();
+        assert_relative_eq!(scores.coverage[0], 0.0);
+        assert_relative_eq!(scores.coverage[1], 1.0);
+        let area = 2.0 * 0.25 * ((3.0 + 0.8_f64.ln()) + (3.0 + 0.2_f64.ln()));
+        assert_relative_eq!(scores.end_radius[1], area.sqrt(), epsilon = 0.1);
+    }
+}

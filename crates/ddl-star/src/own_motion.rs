@@ -1,0 +1,108 @@
+//! What a pedestrian's own motion was when it was last observed: how fast it can be, and at which velocity it goes on.
+
+use crate::unit::step_lengths;
+use ddl_data::Position;
+use ddl_dynamics::MotionBounds;
+use nalgebra::Vector2;
+use tch::{Kind, Tensor};
+
+/// Mean length of the second differences of positions (m) that takes the last step all but a third of its say.
+const JITTER: f64 = 0.06;
+/// Steps whose mean velocity counts where the last step alone says little.
+const RECENT: usize = 3;
+
+/// The bounds of the motion of a pedestrian observed at these positions (m), `time_step` seconds apart, of whose
+/// metric this `share` (0 to 1) counts.
+///
+/// Its own velocity is that of the last step where the steps are even, and the mean of the last three where they
+/// tremble: with w the mean length of the second differences, the last step has the share exp(-(w / 6 cm)^2).
+#[must_use]
+pub fn motion_bounds(observed: &[Position], time_step: f64, share: f64) -> MotionBounds<f64> {
+    let points: Vec<Vector2<f64>> = observed.iter().map(|&p| p.into()).collect();
+    let steps: Vec<Vector2<f64>> = points.array_windows().map(|[a, b]| b - a).collect();
+    let Some(&last) = steps.last() else {
+        return MotionBounds::default();
+    };
+    let fastest = steps.iter().map(Vector2::norm).fold(0.0, f64::max) / time_step;
+    let changes = steps.array_windows().map(|[a, b]| (b - a).norm());
+    let tremble = changes.clone().sum::<f64>() / changes.len().max(1) as f64;
+    let recent = &steps[steps.len().saturating_sub(RECENT)..];
+    let mean = recent.iter().sum::<Vector2<f64>>() / recent.len() as f64;
+    let even = (-(tremble / JITTER).powi(2)).exp();
+    let velocity = (mean + (last - mean) * even) / time_step;
+    MotionBounds::new(MotionBounds::top_speed_after(fastest), velocity, share).unwrap_or_default()
+}
+
+/// Top speeds of all pedestrians in a batch, m/s.
+///
+/// # Shapes
+/// `observed` `[T, P, 2]` -> `[1, P, 1]`.
+pub(crate) fn top_speeds(observed: &Tensor, time_step: f64) -> Tensor {
+    let fastest = step_lengths(observed).amax([0i64].as_slice(), true) / time_step;
+    (fastest * MotionBounds::<f64>::SPEEDING_UP + MotionBounds::<f64>::SPEED_MARGIN)
+        .clamp_min(MotionBounds::<f64>::LEAST_TOP_SPEED)
+}
+
+/// Own velocities of all pedestrians in a batch, m/s.
+///
+/// # Shapes
+/// `observed` `[T, P, 2]`, T at least 4 -> `[1, P, 2]`.
+pub(crate) fn velocities(observed: &Tensor, time_step: f64) -> Tensor {
+    let frames = observed.size()[0];
+    let steps = observed.narrow(0, 1, frames - 1) - observed.narrow(0, 0, frames - 1);
+    let tremble = step_lengths(&steps).mean_dim([0i64].as_slice(), true, None::<Kind>);
+    let recent = steps.narrow(0, frames - 1 - RECENT as i64, RECENT as i64);
+    let mean = recent.mean_dim([0i64].as_slice(), true, None::<Kind>);
+    let even = (-(tremble / JITTER).square()).exp();
+    let last = steps.narrow(0, frames - 2, 1);
+    (&mean + (last - &mean) * even) / time_step
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Both ways agree.
+        #[test]
+        fn tensors_and_positions_agree(
+            track in prop::collection::vec([-0.2..0.2f64, -0.2..0.2f64], 8),
+            [vx, vy] in [-4.0..4.0f64, -4.0..4.0f64],
+            tremble in 0.0..1.0f64,
+        ) {
+            let at = |(t, p): (usize, &[f64; 2])| [0.4 * vx * t as f64 + tremble * p[0], 0.4 * vy * t as f64 + tremble * p[1]];
+            let track: Vec<Position> = track.iter().enumerate().map(at).collect();
+            let tensor = Tensor::from_slice(track.as_flattened()).reshape([8, 1, 2]);
+            let top = top_speeds(&tensor, 0.4).double_value(&[0, 0, 0]);
+            let velocity = [0, 1].map(|axis| velocities(&tensor, 0.4).double_value(&[0, 0, axis]));
+            let bounds = motion_bounds(&track, 0.4, 0.5);
+            let other = MotionBounds::new(top, velocity.into(), 0.5).unwrap();
+            prop_assert!((bounds.top_speed() - other.top_speed()).abs() < 1e-12);
+            prop_assert!((bounds.velocity() - other.velocity()).norm() < 1e-12);
+        }
+    }
+
+    /// Steps of 0.4 m and a last one of 0.8 m; even steps, and steps that tremble by far more than 6 cm.
+    #[test]
+    fn the_last_step_counts_where_steps_are_even() {
+        let even: Vec<Position> = (0..8).map(|t| [0.4 * f64::from(t), 1.0]).collect();
+        let bounds = motion_bounds(&even, 0.4, 1.0);
+        assert!((bounds.velocity() - Vector2::new(1.0, 0.0)).norm() < 1e-12);
+        assert!((bounds.top_speed() - 2.15).abs() < 1e-12);
+        let mut askew = even;
+        for (t, p) in askew.iter_mut().enumerate() {
+            p[1] += if t % 2 == 0 { 3.0 } else { 0.0 };
+        }
+        // the last three steps go 3 m up, down and up again in 1.2 s
+        let velocity = motion_bounds(&askew, 0.4, 1.0).velocity();
+        assert!(
+            (velocity - Vector2::new(1.0, -3.0 / 1.2)).norm() < 1e-9,
+            "{velocity}"
+        );
+        assert_eq!(
+            motion_bounds(&[[1.0, 2.0]], 0.4, 1.0),
+            MotionBounds::default()
+        );
+    }
+}

@@ -1,0 +1,65 @@
+//! Recordings of places that no model was trained on, folder by folder.
+
+use ddl::data::{Format, Recording, Window, WindowRule, parse_recording};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+/// Which recordings of a folder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// Every other file, or of one file the first half of its windows: what constants are fitted on.
+    Calibration,
+    /// All of them.
+    #[allow(dead_code, reason = "each example takes one part")]
+    Whole,
+}
+
+/// A folder's windows.
+pub(crate) struct Place {
+    pub(crate) name: String,
+    #[allow(dead_code, reason = "for tables")]
+    pub(crate) rate: String,
+    #[allow(dead_code, reason = "for tables")]
+    pub(crate) recordings: usize,
+    pub(crate) windows: Vec<Window>,
+}
+
+impl Place {
+    /// Reads `FOLDER=FPS`, csv files in metres, in steps of 0.4 s; as many windows, evenly spread, as hold about `pedestrians`.
+    pub(crate) fn read(
+        place: &str,
+        part: Part,
+        pedestrians: usize,
+    ) -> Result<Self, Box<dyn Error>> {
+        let (folder, rate) = place.split_once('=').ok_or("a place is FOLDER=FPS")?;
+        let frame_time = 1.0 / rate.parse::<f64>()?;
+        let mut files: Vec<PathBuf> = std::fs::read_dir(folder)?
+            .map(|entry| Ok(entry?.path()))
+            .collect::<std::io::Result<_>>()?;
+        files.sort();
+        let fitted = part == Part::Calibration;
+        let (alone, every) = (files.len() == 1, if fitted { 2 } else { 1 });
+        let recordings = files.iter().step_by(every).map(|file| {
+            let name = file.file_stem().unwrap_or_default().to_string_lossy();
+            let recording = parse_recording(&std::fs::read(file)?, &name, Format::Table)?;
+            Ok(recording.in_steps(frame_time)?.recording)
+        });
+        let recordings: Vec<Recording> = recordings.collect::<Result<_, Box<dyn Error>>>()?;
+        let windows = recordings
+            .iter()
+            .flat_map(|r| r.windows(WindowRule::Complete));
+        let mut windows: Vec<Window> = windows.collect();
+        if alone && fitted {
+            windows.truncate(windows.len() / 2);
+        }
+        let all: usize = windows.iter().map(Window::len).sum();
+        let every = all.div_ceil(pedestrians).max(1);
+        let name = Path::new(folder).file_name().unwrap_or_default();
+        Ok(Self {
+            name: name.to_string_lossy().into_owned(),
+            rate: rate.to_owned(),
+            recordings: recordings.len(),
+            windows: windows.into_iter().step_by(every).collect(),
+        })
+    }
+}

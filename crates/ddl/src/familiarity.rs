@@ -1,0 +1,237 @@
+//! How much an observed motion is like those that a model was trained on.
+//!
+//! A motion is summed up in five numbers: how fast, how uneven its steps are, whether the last step and the second half are
+//! faster than the rest, and how straight it is. Its distance from the training motions is that of Mahalanobis, by their mean and
+//! covariance. Familiarity is the share of training motions kept apart that lie at least as far out: 0.5 for an ordinary motion,
+//! 0.01 for one that one in a hundred exceeds. Beyond all of them it falls exponentially.
+
+use ddl_data::{OBSERVED, Position, Window};
+use nalgebra::{SMatrix, SVector};
+use serde::{Deserialize, Serialize};
+
+/// Numbers that sum up a motion.
+const FEATURES: usize = 5;
+/// Parts of equal probability that the distances of motions kept apart are divided into.
+const PARTS: usize = 100;
+/// Motions in a row that are kept apart, or not: neighbours in the library show the same pedestrian.
+const BLOCK: usize = 100;
+/// One block in so many is kept apart.
+const APART: usize = 5;
+/// The least there is, so that it is never 0.
+const LEAST: f64 = 1e-9;
+/// Familiarity below which a user is told: fewer than one in a hundred training motions are as unusual.
+pub const UNFAMILIAR: f64 = 0.01;
+
+/// Speeds (m/s) and lengths (m) below which logarithms tell little apart.
+const SPEED: f64 = 0.1;
+const TREMBLE: f64 = 0.005;
+
+/// The training motions, as far as familiarity goes: no tracks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TrainingMotions {
+    mean: [f64; FEATURES],
+    /// The inverse of the covariance, row by row.
+    precision: [[f64; FEATURES]; FEATURES],
+    /// Distances of motions kept apart, rising: the first is the least, the last the largest.
+    distances: Vec<f64>,
+}
+
+impl TrainingMotions {
+    /// Of tracks whose first 8 positions (m) are `time_step` seconds apart; `None` for too few or too equal ones.
+    pub(crate) fn learn(tracks: &[Vec<Position>], time_step: f64) -> Option<Self> {
+        let features = |track: &Vec<Position>| features(track.get(..OBSERVED)?, time_step);
+        let all: Vec<SVector<f64, FEATURES>> =
+            tracks.iter().map(features).collect::<Option<_>>()?;
+        let (mut learned, mut apart) = (Vec::new(), Vec::new());
+        for (block, motions) in all.chunks(BLOCK).enumerate() {
+            let to = if block % APART == 0 && all.len() > BLOCK {
+                &mut apart
+            } else {
+                &mut learned
+            };
+            to.extend_from_slice(motions);
+        }
+        let apart = if apart.is_empty() { &learned } else { &apart };
+        let count = learned.len() as f64;
+        let mean = learned.iter().sum::<SVector<f64, FEATURES>>() / count;
+        let spread = learned.iter().map(|x| (x - mean) * (x - mean).transpose());
+        let covariance = spread.sum::<SMatrix<f64, FEATURES, FEATURES>>() / count;
+        // So that motions that are all alike in one respect still have a covariance.
+        let covariance = covariance + SMatrix::identity() * 1e-6;
+        let precision = covariance.try_inverse()?;
+        let mut motions = Self {
+            mean: mean.into(),
+            precision: std::array::from_fn(|i| std::array::from_fn(|j| precision[(i, j)])),
+            distances: Vec::new(),
+        };
+        let mut distances: Vec<f64> = apart.iter().map(|x| motions.distance(x)).collect();
+        distances.sort_by(f64::total_cmp);
+        let last = distances.len().checked_sub(1)?;
+        motions.distances = (0..=PARTS)
+            .map(|part| distances[part * last / PARTS])
+            .collect();
+        motions.is_valid().then_some(motions)
+    }
+
+    /// The familiarity of everybody in a window; 1 where nothing is known of the training motions.
+    pub(crate) fn of_window(motions: Option<&Self>, window: &Window, time_step: f64) -> Vec<f64> {
+        let of = |i: usize| motions.map_or(1.0, |m| m.familiarity(window.observed(i), time_step));
+        (0..window.len()).map(of).collect()
+    }
+
+    /// Whether its numbers can have come from motions.
+    pub(crate) fn is_valid(&self) -> bool {
+        let numbers = self.mean.iter().chain(self.precision.as_flattened());
+        numbers.chain(&self.distances).all(|x| x.is_finite())
+            && self.distances.len() == PARTS + 1
+            && self.distances.is_sorted()
+    }
+
+    /// The familiarity of an observed motion (m), in (0, 1].
+    pub(crate) fn familiarity(&self, observed: &[Position], time_step: f64) -> f64 {
+        let Some(features) = features(observed, time_step) else {
+            return LEAST;
+        };
+        let distance = self.distance(&features);
+        if !distance.is_finite() {
+            return LEAST;
+        }
+        let largest = self.distances[PARTS];
+        let tail = 1.0 / PARTS as f64;
+        let share = if distance >= largest {
+            tail * (largest - distance).exp()
+        } else {
+            let above = self.distances.partition_point(|&d| d <= distance).max(1);
+            let [from, to] = [self.distances[above - 1], self.distances[above]];
+            let part = if to > from {
+                ((distance - from) / (to - from)).max(0.0)
+            } else {
+                0.0
+            };
+            let below = ((above - 1) as f64 + part) / PARTS as f64;
+            (1.0 - below) * (1.0 - tail) + tail
+        };
+        share.clamp(LEAST, 1.0)
+    }
+
+    fn distance(&self, features: &SVector<f64, FEATURES>) -> f64 {
+        let off = features - SVector::from(self.mean);
+        let precision = SMatrix::from_fn(|i, j| self.precision[i][j]);
+        off.dot(&(precision * off)).max(0.0).sqrt()
+    }
+}
+
+/// What sums up a motion; `None` for fewer than 5 positions, and where they are too far apart for numbers.
+fn features(observed: &[Position], time_step: f64) -> Option<SVector<f64, FEATURES>> {
+    let way = |a: Position, b: Position| [b[0] - a[0], b[1] - a[1]];
+    let length = |[x, y]: [f64; 2]| x.hypot(y);
+    let steps: Vec<[f64; 2]> = observed.array_windows().map(|&[a, b]| way(a, b)).collect();
+    let (first, last) = (*observed.first()?, *observed.last()?);
+    let half = observed.len() / 2;
+    if half < 2 {
+        return None;
+    }
+    let speed = |way: [f64; 2], steps: usize| length(way) / (steps as f64 * time_step);
+    let mean = steps.iter().map(|&step| speed(step, 1)).sum::<f64>() / steps.len() as f64;
+    let changes = steps.array_windows().map(|&[a, b]| length(way(a, b)));
+    let tremble = changes.clone().sum::<f64>() / changes.len() as f64;
+    let relative = |a: f64, b: f64| ((a + 2.0 * SPEED) / (b + 2.0 * SPEED)).ln();
+    let before = speed(way(first, observed[half]), half);
+    let middle = observed.len() - 1 - half;
+    let after = speed(way(observed[middle], last), half);
+    let straight = speed(way(first, last), steps.len()) / (mean + SPEED);
+    let features = SVector::from([
+        (mean + SPEED).ln(),
+        (tremble + TREMBLE).ln(),
+        relative(speed(*steps.last()?, 1), mean),
+        relative(after, before),
+        straight,
+    ]);
+    features.iter().all(|x| x.is_finite()).then_some(features)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Walks of 0.3 to 1.8 m/s that tremble by up to 5 cm; the numbers are those of a linear congruence.
+    fn tracks() -> Vec<Vec<Position>> {
+        let mut state = 7_u64;
+        let mut draw = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / (1_u64 << 24) as f64
+        };
+        (0..4000)
+            .map(|_| {
+                let (speed, tremble) = (0.3 + 1.5 * draw(), 0.05 * draw());
+                (0..20)
+                    .map(|t| {
+                        [
+                            0.4 * speed * f64::from(t) + tremble * (draw() - 0.5),
+                            tremble * (draw() - 0.5),
+                        ]
+                    })
+                    .collect()
+            })
+            .collect()
+    }
+
+    /// Of motions like the training's, a share p has a familiarity below p: what calibration means.
+    #[test]
+    fn familiarity_is_calibrated() {
+        let all = tracks();
+        let motions = TrainingMotions::learn(&all[..3000], 0.4).unwrap();
+        let of = |track: &Vec<Position>| motions.familiarity(&track[..OBSERVED], 0.4);
+        for level in [0.05, 0.2, 0.5, 0.8] {
+            let below = all[3000..].iter().filter(|track| of(track) < level).count();
+            let share = below as f64 / 1000.0;
+            assert!((share - level).abs() < 0.05, "{share} below {level}");
+        }
+        let json = serde_json::to_string(&motions).unwrap();
+        let back: TrainingMotions = serde_json::from_str(&json).unwrap();
+        assert!(back.is_valid());
+    }
+
+    #[test]
+    fn runners_and_jumps_are_unfamiliar() {
+        let motions = TrainingMotions::learn(&tracks(), 0.4).unwrap();
+        let at = |speed: f64| {
+            (0..8)
+                .map(|t| [0.4 * speed * f64::from(t), 0.01 * f64::from(t % 2)])
+                .collect::<Vec<_>>()
+        };
+        let familiar = motions.familiarity(&at(1.0), 0.4);
+        let runner = motions.familiarity(&at(6.0), 0.4);
+        assert!(
+            familiar > 0.1 && runner < UNFAMILIAR && runner > 0.0,
+            "{familiar} {runner}"
+        );
+        let mut jump = at(1.0);
+        jump[7][1] += 8.0;
+        assert!(motions.familiarity(&jump, 0.4) < UNFAMILIAR);
+        assert!(motions.familiarity(&[[1e200, 0.0]; 8], 0.4) > 0.0);
+        assert_eq!(TrainingMotions::learn(&[], 0.4), None);
+    }
+
+    proptest! {
+        /// A number in (0, 1] for every finite motion, and one that changes little with the speed.
+        #[test]
+        fn familiarity_is_a_smooth_share(
+            track in prop::collection::vec([-1e6..1e6f64, -1e6..1e6f64], 8),
+            speed in 0.0..12.0f64,
+        ) {
+            let motions = TrainingMotions::learn(&tracks(), 0.4).unwrap();
+            let share = motions.familiarity(&track, 0.4);
+            prop_assert!(share > 0.0 && share <= 1.0);
+            let at = |speed: f64| (0..8).map(|t| [0.4 * speed * f64::from(t), 0.02 * f64::from(t % 2)]).collect::<Vec<_>>();
+            let step = (motions.familiarity(&at(speed), 0.4) - motions.familiarity(&at(speed + 1e-3), 0.4)).abs();
+            prop_assert!(step < 0.05, "{step}");
+        }
+    }
+}

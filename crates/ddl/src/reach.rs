@@ -1,0 +1,19 @@
+//! How far the goals of a pedestrian can lie, by how fast it can be.
+
+use ddl_data::{HORIZON, OBSERVED, Window};
+use ddl_goal::GoalSet;
+use ddl_star::motion_bounds;
+
+/// The goal sets of a window with goals beyond reach drawn in: to the distance that the pedestrian covers at
+/// its top speed until the horizon.
+pub(crate) fn within(window: &Window, sets: Vec<GoalSet>, time_step: f64) -> Vec<GoalSet> {
+    let each = |(i, set): (usize, GoalSet)| {
+        let observed = window.observed(i);
+        let top_speed = motion_bounds(observed, time_step, 0.0).top_speed();
+        set.within(
+            observed[OBSERVED - 1],
+            top_speed * time_step * HORIZON as f64,
+        )
+    };
+    sets.into_iter().enumerate().map(each).collect()
+}

@@ -1,0 +1,22 @@
+//! What a run remembers of the numbers of the recordings it was trained on.
+
+use ddl_data::Homography;
+use serde::{Deserialize, Serialize};
+
+/// What the numbers of somebody's own recordings mean, as far as training was told: at most one of the rates, and a homography where positions are pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct TrackUnits {
+    /// Frame numbers count so many a second.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fps: Option<f64>,
+    /// Seconds from one frame number to the next.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dt: Option<f64>,
+    /// Frame numbers in 0.4 s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frame_step: Option<i64>,
+    /// From pixels to metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub homography: Option<Homography>,
+}

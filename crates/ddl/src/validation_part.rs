@@ -1,0 +1,72 @@
+//! Which part of own recordings choices are made on, where nobody says it.
+
+use ddl_data::{Convention, Fold, Recording, Window};
+
+/// Share of the time of own recordings, at their ends, that is kept for validation.
+const SHARE: f64 = 0.2;
+/// Ends that hold a smaller share than this of all pedestrian-windows are too little to choose by.
+const LEAST_AT_THE_ENDS: f64 = 0.05;
+/// Of so many recordings one is kept whole.
+const RECORDINGS_A_WHOLE_ONE: usize = 5;
+
+/// The part of recordings that is kept out of training, for choices to be made on.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ValidationPart {
+    /// Share of the recordings' time, at their ends; 0 for none.
+    pub share: f64,
+    /// Recordings that are kept whole.
+    pub recordings: Vec<String>,
+}
+
+impl ValidationPart {
+    /// What is kept of own recordings unless it is said: the last fifth of each. Where these ends hold next to no windows, because the recordings are
+    /// short, a fifth of the recordings whole, at least one, spread evenly over those that hold windows.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl::ValidationPart;
+    /// use ddl::data::{Dataset, Observation, PedestrianId, Recording};
+    ///
+    /// let walk = |name: &str, steps: i64| {
+    ///     let seen = (0..steps).map(|t| Observation::new(t, PedestrianId(1), [0.5 * t as f64, 0.0]));
+    ///     Recording::new(name, 1, seen.collect())
+    /// };
+    /// let long = Dataset::own(vec![walk("lobby", 500)?, walk("yard", 500)?])?;
+    /// assert_eq!(ValidationPart::of_own(&long.whole()).share, 0.2);
+    /// let short = Dataset::own(vec![walk("a", 25)?, walk("b", 25)?, walk("c", 25)?])?;
+    /// assert_eq!(ValidationPart::of_own(&short.whole()).recordings, ["b"]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn of_own(fold: &Fold<'_>) -> Self {
+        let ends = Self {
+            share: SHARE,
+            recordings: Vec::new(),
+        };
+        let rule = Convention::Own.headline_rule();
+        let walkers = |windows: &[Window]| windows.iter().map(Window::len).sum::<usize>() as f64;
+        let at_the_ends = walkers(&fold.training_split(rule, SHARE).validation);
+        let in_all = walkers(&fold.training_windows(rule));
+        if at_the_ends > LEAST_AT_THE_ENDS * in_all {
+            return ends;
+        }
+        let with_windows = |recording: &&&Recording| !recording.windows(rule).is_empty();
+        let recordings: Vec<&&Recording> = fold
+            .training_recordings()
+            .iter()
+            .filter(with_windows)
+            .collect();
+        // Of a single recording nothing would be left to learn from.
+        if recordings.len() < 2 {
+            return ends;
+        }
+        let count = recordings.len().div_ceil(RECORDINGS_A_WHOLE_ONE);
+        let in_the_middle_of = |part: usize| (2 * part + 1) * recordings.len() / (2 * count);
+        Self {
+            share: 0.0,
+            recordings: (0..count)
+                .map(|part| recordings[in_the_middle_of(part)].name().to_owned())
+                .collect(),
+        }
+    }
+}
