@@ -7,6 +7,8 @@ use std::fmt::{Result, Write as _};
 
 /// What a model is to beat, recording by recording.
 const VELOCITY: &str = "constant velocity (last step)";
+/// A pedestrian counts once in every window.
+const PEDESTRIAN_WINDOWS: &str = "pedestrian-windows";
 
 /// One line a result, under what it has in common with others; `rest` says where everything else is.
 pub(crate) fn lines(report: &Report, rest: &str) -> String {
@@ -40,9 +42,8 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
         };
         let folds = of_table().map(|row| row.conditions.fold.chars().count());
         let width = folds.max().unwrap_or(0).max(10);
-        // of own recordings as of published ones a pedestrian counts once in every window
         let counted = match convention {
-            Convention::Own => "pedestrian-windows",
+            Convention::Own => PEDESTRIAN_WINDOWS,
             _ => "walkers",
         };
         let counts = counted.len();
@@ -83,12 +84,13 @@ fn write_recordings(out: &mut String, first: &ResultRow, other: Option<&ResultRo
     let label = first.conditions.label();
     let column = label.chars().count().max(15);
     let of_other = other.map(ResultRow::by_recording).unwrap_or_default();
+    let counts = PEDESTRIAN_WINDOWS.len();
     let errors = |of: &RecordingErrors| format!("{:.3}/{:.3}", of.min_ade, of.min_fde);
     let beside = other.map_or("", |_| VELOCITY);
     writeln!(
         out,
-        "\n{:width$} {:>7}  {label:column$}  {beside}",
-        "recording", "walkers"
+        "\n{:width$} {:>counts$}  {label:column$}  {beside}",
+        "recording", PEDESTRIAN_WINDOWS
     )?;
     for of in &recordings {
         let same = of_other
@@ -96,7 +98,7 @@ fn write_recordings(out: &mut String, first: &ResultRow, other: Option<&ResultRo
             .find(|other| other.recording == of.recording);
         writeln!(
             out,
-            "{:width$} {:>7}  {:column$}  {}",
+            "{:width$} {:>counts$}  {:column$}  {}",
             of.recording,
             of.pedestrians,
             errors(of),

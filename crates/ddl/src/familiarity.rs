@@ -3,7 +3,8 @@
 //! A motion is summed up in five numbers: how fast, how uneven its steps are, whether the last step and the second half are
 //! faster than the rest, and how straight it is. Its distance from the training motions is that of Mahalanobis, by their mean and
 //! covariance. Familiarity is the share of training motions kept apart that lie at least as far out: 0.5 for an ordinary motion,
-//! 0.01 for one that one in a hundred exceeds. Beyond all of them it falls exponentially.
+//! 0.01 for one that one in a hundred exceeds. Beyond all of them it falls exponentially, and so it does with the speed beyond the
+//! fastest of them: pedestrians who stand make logarithms of speeds vary so much that a runner's alone would hardly be unusual.
 
 use ddl_data::{OBSERVED, Position, Window};
 use nalgebra::{SMatrix, SVector};
@@ -17,6 +18,8 @@ const PARTS: usize = 100;
 const BLOCK: usize = 100;
 /// One block in so many is kept apart.
 const APART: usize = 5;
+/// Speed (m/s) above that of the fastest training motion at which familiarity is less by a factor e.
+const FASTER: f64 = 1.0;
 /// The least there is, so that it is never 0.
 const LEAST: f64 = 1e-9;
 /// Familiarity below which a user is told: fewer than one in a hundred training motions are as unusual.
@@ -35,6 +38,8 @@ pub(crate) struct TrainingMotions {
     precision: [[f64; FEATURES]; FEATURES],
     /// Distances of motions kept apart, rising: the first is the least, the last the largest.
     distances: Vec<f64>,
+    /// Mean speed (m/s) of the fastest of all.
+    fastest: f64,
 }
 
 impl TrainingMotions {
@@ -64,6 +69,7 @@ impl TrainingMotions {
             mean: mean.into(),
             precision: std::array::from_fn(|i| std::array::from_fn(|j| precision[(i, j)])),
             distances: Vec::new(),
+            fastest: all.iter().map(mean_speed).fold(0.0, f64::max),
         };
         let mut distances: Vec<f64> = apart.iter().map(|x| motions.distance(x)).collect();
         distances.sort_by(f64::total_cmp);
@@ -84,6 +90,7 @@ impl TrainingMotions {
     pub(crate) fn is_valid(&self) -> bool {
         let numbers = self.mean.iter().chain(self.precision.as_flattened());
         numbers.chain(&self.distances).all(|x| x.is_finite())
+            && (0.0..f64::INFINITY).contains(&self.fastest)
             && self.distances.len() == PARTS + 1
             && self.distances.is_sorted()
     }
@@ -112,7 +119,8 @@ impl TrainingMotions {
             let below = ((above - 1) as f64 + part) / PARTS as f64;
             (1.0 - below) * (1.0 - tail) + tail
         };
-        share.clamp(LEAST, 1.0)
+        let faster = (mean_speed(&features) - self.fastest).max(0.0) / FASTER;
+        (share * (-faster).exp()).clamp(LEAST, 1.0)
     }
 
     fn distance(&self, features: &SVector<f64, FEATURES>) -> f64 {
@@ -120,6 +128,11 @@ impl TrainingMotions {
         let precision = SMatrix::from_fn(|i, j| self.precision[i][j]);
         off.dot(&(precision * off)).max(0.0).sqrt()
     }
+}
+
+/// The mean speed (m/s) of a motion that is summed up so.
+fn mean_speed(features: &SVector<f64, FEATURES>) -> f64 {
+    features[0].exp() - SPEED
 }
 
 /// What sums up a motion; `None` for fewer than 5 positions, and where they are too far apart for numbers.
@@ -207,10 +220,10 @@ mod tests {
                 .collect::<Vec<_>>()
         };
         let familiar = motions.familiarity(&at(1.0), 0.4);
-        let runner = motions.familiarity(&at(6.0), 0.4);
+        let runners = [4.0, 6.0, 8.0].map(|speed| motions.familiarity(&at(speed), 0.4));
         assert!(
-            familiar > 0.1 && runner < UNFAMILIAR && runner > 0.0,
-            "{familiar} {runner}"
+            familiar > 0.1 && runners[0] < UNFAMILIAR && runners.is_sorted_by(|a, b| a > b),
+            "{familiar} {runners:?}"
         );
         let mut jump = at(1.0);
         jump[7][1] += 8.0;

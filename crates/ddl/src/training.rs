@@ -3,7 +3,7 @@
 use crate::early_stopping::{EarlyStopping, best_epoch, better_goals};
 use crate::run_config::{FORMAT, RunConfig, TrainingData};
 use crate::run_directory::{RunDirectory, SAVE_EVERY};
-use crate::starting_model::StartingWeights;
+use crate::starting_model::{StartingModel, StartingWeights};
 use crate::{Ddl, DdlError, GoalModel, GoalRecipe, ModelSource, TrackUnits, goal_training, sha256};
 use ddl_data::{Convention, DataError, Dataset, Fold, Recording, Window, WindowRule};
 use ddl_goal::RetrievalFrame;
@@ -90,10 +90,6 @@ pub enum TrainingStep {
 /// # Errors
 /// Unreadable data, a directory that holds another run, a device that is not there, or a loss that
 /// is no longer a number (the last good state is kept).
-#[expect(
-    clippy::too_many_lines,
-    reason = "the stages of a training, one after the other"
-)]
 pub fn train(
     request: &TrainingRequest,
     dataset: &Dataset,
@@ -129,40 +125,13 @@ pub fn train(
     };
     let start = starting_weights()?;
     let run = &request.out;
-    let config = RunConfig {
-        format: FORMAT,
-        star: request.star.clone(),
-        training: request.training.clone(),
-        goals: request.goals.clone(),
-        data: TrainingData {
-            convention: dataset.convention(),
-            fold: fold.name().to_owned(),
-            window_rule,
-            validation: request.validation,
-            validation_recordings: request.validation_recordings.clone(),
-            windows: windows.len(),
-            walkers: windows.iter().map(Window::len).sum(),
-            sha256: digest(&windows),
-            recordings: match dataset.convention() {
-                Convention::Own => learned_from(&fold)
-                    .map(|recording| (recording.name().to_owned(), digest_of_recording(recording)))
-                    .collect(),
-                _ => BTreeMap::new(),
-            },
-        },
-        keep_every: match (request.patience, request.last_epoch_only) {
-            // any of them may be the best
-            (Some(_), _) => 1,
-            (None, true) => request.training.epochs,
-            (None, false) => request.training.epochs.div_ceil(KEPT_EPOCHS),
-        },
-        patience: request.patience,
-        from: start.as_ref().map(|start| start.record.clone()),
-        units: request.units,
-        commit: request.commit.clone(),
-        libtorch: LIBTORCH_VERSION.to_owned(),
-        device: device.name().to_owned(),
-    };
+    let began_with = start.as_ref().map(|start| start.record.clone());
+    let config = config_of(
+        request,
+        dataset,
+        (&fold, window_rule, &windows),
+        (began_with, device),
+    );
     let _claimed = run.claim(&config)?;
     let (network, proposal) =
         start.map_or((None, None), |start| (Some(start.network), start.proposal));
@@ -201,6 +170,49 @@ pub fn train(
     }
     let kept = (config.keep_every, early_stopping.as_ref());
     run_epochs(&mut trainer, (run, &origin), kept, observe)
+}
+
+/// What a run's `config.json` says: the request, what is learned from, and what it is computed with.
+fn config_of(
+    request: &TrainingRequest,
+    dataset: &Dataset,
+    (fold, window_rule, windows): (&Fold<'_>, WindowRule, &[Window]),
+    (began_with, device): (Option<StartingModel>, ComputeDevice),
+) -> RunConfig {
+    RunConfig {
+        format: FORMAT,
+        star: request.star.clone(),
+        training: request.training.clone(),
+        goals: request.goals.clone(),
+        data: TrainingData {
+            convention: dataset.convention(),
+            fold: fold.name().to_owned(),
+            window_rule,
+            validation: request.validation,
+            validation_recordings: request.validation_recordings.clone(),
+            windows: windows.len(),
+            walkers: windows.iter().map(Window::len).sum(),
+            sha256: digest(windows),
+            recordings: match dataset.convention() {
+                Convention::Own => learned_from(fold)
+                    .map(|recording| (recording.name().to_owned(), digest_of_recording(recording)))
+                    .collect(),
+                _ => BTreeMap::new(),
+            },
+        },
+        keep_every: match (request.patience, request.last_epoch_only) {
+            // any of them may be the best
+            (Some(_), _) => 1,
+            (None, true) => request.training.epochs,
+            (None, false) => request.training.epochs.div_ceil(KEPT_EPOCHS),
+        },
+        patience: request.patience,
+        from: began_with,
+        units: request.units,
+        commit: request.commit.clone(),
+        libtorch: LIBTORCH_VERSION.to_owned(),
+        device: device.name().to_owned(),
+    }
 }
 
 /// Early stopping needs something to measure epochs on.

@@ -147,20 +147,20 @@ fn csv(observed: &Observed, sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
 fn words(evaluation: &GoalEvaluation) -> String {
     let mut lines = vec![
         format!(
-            "fold {}, {} goals a walker, {}",
+            "fold {}, {} goals a pedestrian, {}",
             evaluation.fold, evaluation.clusters, evaluation.goals
         ),
         evaluation.windows.clone(),
         format!(
-            "{:14} {:>7}  {:>20}  {:>14}",
-            "recording", "walkers", "nearest goal off (m)", "likeliest (m)"
+            "{:14} {:>18}  {:>20}  {:>14}",
+            "recording", "pedestrian-windows", "nearest goal off (m)", "likeliest (m)"
         ),
     ];
     let all = ("all".to_owned(), evaluation.all);
     let by_recording = evaluation.recordings.iter().map(|(n, e)| (n.clone(), *e));
     for (name, errors) in by_recording.chain([all]) {
         lines.push(format!(
-            "{name:14} {:>7}  {:>20.3}  {:>14.3}",
+            "{name:14} {:>18}  {:>20.3}  {:>14.3}",
             errors.walkers, errors.oracle_fde, errors.likeliest_fde
         ));
     }

@@ -1,19 +1,20 @@
 //! `ddl train`.
 
+mod bars;
 mod compared;
 mod finished;
 
 use super::{Machine, RecordingsAt, Reporting};
 use crate::interrupt::Interrupt;
-use crate::progress::Progress;
 use crate::telling::tell;
 use anyhow::{Context as _, bail};
+use bars::TrainingBars;
 use clap::{Args, ValueEnum};
 use ddl::data::{Convention, Dataset, Fold, Window};
 use ddl::star::{LearningRateSchedule, ProposalTraining, StarConfig, TrainingConfig};
 use ddl::{
     BuiltinModel, DdlError, GoalRecipe, ModelSource, RunDirectory, TrainingRequest, TrainingStage,
-    TrainingStep, ValidationPart, Variant,
+    ValidationPart, Variant,
 };
 use std::path::PathBuf;
 
@@ -122,7 +123,6 @@ enum GoalsFrom {
 }
 
 impl Train {
-    #[expect(clippy::too_many_lines, reason = "one option after the other")]
     pub(crate) fn run(self) -> anyhow::Result<()> {
         self.machine.prepare()?;
         let interrupt = Interrupt::catch()?;
@@ -162,41 +162,12 @@ impl Train {
             device: self.machine.device,
             commit: self.reporting.commit.clone(),
         };
-        // Each stage has its bar, from its first step on.
-        let (mut goals, mut network) = (None, None);
-        let mut stood = "before its first step".to_owned();
-        let mut losses = String::new();
-        let bar = |stage| move || Progress::new(stage, self.reporting.telling.progress);
+        let mut progress = TrainingBars::new(self.reporting.telling.progress);
         let trained = ddl::train(&request, &dataset, |now| {
-            let (done, total) = now.steps;
-            match &now.step {
-                TrainingStep::Goals(step) => {
-                    let goals = goals.get_or_insert_with(bar("goals"));
-                    stood = format!("after {done} of {total} batches of goals");
-                    goals.tell(
-                        done,
-                        total,
-                        &format!("batches, ends within {:.2} m", step.distance),
-                    );
-                }
-                TrainingStep::Network(step) => {
-                    // On CUDA not every step knows: the last loss that was read stays.
-                    if let Some(loss) = step.loss {
-                        losses = format!(" loss {loss:.4}");
-                    }
-                    goals = None;
-                    let network = network.get_or_insert_with(bar("train"));
-                    stood = format!("in epoch {}, after {done} of {total} batches", step.epoch);
-                    network.tell(
-                        done,
-                        total,
-                        &format!("batches, epoch {}{losses}", step.epoch),
-                    );
-                }
-            }
+            progress.tell(now);
             interrupt.flow()
         });
-        drop((goals, network));
+        let stood = progress.close();
         trained.map_err(|error| match error {
             DdlError::Interrupted => anyhow::Error::new(error)
                 .context(format!("{}, {stood}", request.out.path().display())),

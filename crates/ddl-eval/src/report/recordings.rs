@@ -39,7 +39,7 @@ fn table(group: &Group<'_>, fold: &str) -> Option<Table> {
     if recordings.len() < 2 {
         return None;
     }
-    let columns = ["recording".to_owned(), "walkers".to_owned()];
+    let columns = ["recording".to_owned(), "pedestrian-windows".to_owned()];
     let forecasters = measured.iter().map(|(label, ..)| label.clone());
     let mut table = Table::new(columns.into_iter().chain(forecasters));
     for of in recordings {
