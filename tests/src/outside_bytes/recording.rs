@@ -23,7 +23,11 @@ pub(super) fn check(bytes: &[u8], format: Format, written: fn(&[Observation]) ->
     }
     let mut rows = recording.observations().to_vec();
     rows.reverse();
-    let text = written(&rows);
+    // the format's rate is no part of its rows
+    let rate = recording
+        .rate()
+        .map(|fps| format!("{{\"scene\": {{\"fps\": {fps}}}}}\n"));
+    let text = rate.unwrap_or_default() + &written(&rows);
     let again = parse_recording(text.as_bytes(), "fuzzed", format)
         .unwrap_or_else(|error| panic!("what was read is refused when written: {error}\n{text}"));
     assert_eq!(again, recording, "{text}");

@@ -134,6 +134,13 @@ impl Train {
         let patience = self
             .patience
             .unwrap_or(if own && kept { PATIENCE } else { 0 });
+        if self.patience.is_some_and(|patience| patience > 0) && !kept {
+            let validation = part.share;
+            bail!(DdlError::Patience {
+                patience,
+                validation
+            });
+        }
         if patience > 0 && self.last_epoch_only {
             bail!(
                 "--last-epoch-only keeps no other epoch that may be the best: add --patience 0 to take the last one"

@@ -98,18 +98,18 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
     };
     let all = "--protocol published,fair,single --profile";
     for (words, expected) in [
-        ("", "star-quick 5 2500: --epochs 20 --recipe recommended"),
+        ("", "star-quick 5 2500: --epochs 10 --recipe recommended"),
         (
             "--profile smoke",
             "star-smoke 2 150: --epochs 1 --train-walkers 600 --proposal-steps 40 --recipe recommended",
         ),
         (
             "--profile evening",
-            "star-evening 5 all: --epochs 40 --recipe recommended",
+            "star-evening 5 all: --epochs 20 --recipe recommended",
         ),
         (
             "--profile paper --protocol single",
-            "star-paper 5 all: --epochs 40 --recipe recommended",
+            "star-paper 5 all: --epochs 20 --recipe recommended",
         ),
         (
             "--epochs 3 --train-walkers 70 --test-walkers 80",
