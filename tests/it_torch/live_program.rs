@@ -181,6 +181,35 @@ fn speeds_that_nobody_walks_at_are_told_once() {
     assert_eq!(told.matches("warning: half of the steps").count(), 1);
 }
 
+/// Somebody who moves as nobody in the training did comes late in the stream, and is told of once.
+#[test]
+fn an_unfamiliar_motion_is_told_of_once_whenever_it_comes() {
+    let place = tempfile::tempdir().unwrap();
+    let mut rows = own_tracks::three_people(20);
+    // From side to side, 8 m a step.
+    rows.extend((8..20).map(|t| (10 * t, 4, t as f64, 8.0 * (t % 2) as f64)));
+    rows.sort_by_key(|row| (row.0, row.1));
+    let line = "forecast - --threads 1 --whole --frame-step 10";
+    for options in ["", " --certificate --one"] {
+        let mut child = program::command(place.path(), &format!("{line}{options}"))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut input = child.stdin.take().unwrap();
+        input.write_all(own_tracks::csv(&rows).as_bytes()).unwrap();
+        drop(input);
+        let told = String::from_utf8(child.wait_with_output().unwrap().stderr).unwrap();
+        let unlike = "motions are unlike those that the model was trained on";
+        assert_eq!(told.matches(unlike).count(), 1, "{told}");
+        assert!(
+            told.contains("that of pedestrian 4 observed until frame 150"),
+            "{told}"
+        );
+    }
+}
+
 /// An input without a forecast replaces nothing.
 #[test]
 fn a_file_from_before_stays_until_there_is_a_forecast() {

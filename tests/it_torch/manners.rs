@@ -121,8 +121,9 @@ fn what_looks_wrong_is_in_the_json() {
     std::fs::write(place.path().join("pixels.csv"), own_tracks::csv(&rows)).unwrap();
     let told = program::run(place.path(), "data pixels.csv --json").succeeds();
     let facts: serde_json::Value = serde_json::from_str(&told).unwrap();
-    assert_eq!(facts[0]["file"], "pixels.csv");
-    let doubts = facts[0]["doubts"].as_array().unwrap();
+    let facts = &facts["recordings"][0];
+    assert_eq!(facts["file"], "pixels.csv");
+    let doubts = facts["doubts"].as_array().unwrap();
     assert_eq!(doubts.len(), 2);
     assert!(doubts[0].as_str().unwrap().contains("metres"), "{told}");
 }

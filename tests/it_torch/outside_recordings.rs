@@ -182,8 +182,7 @@ fn the_rate_of_scenes_is_used() {
     };
 
     let two = ask("two.ndjson");
-    let told =
-        "note: the scenes say that 2 frames follow each other in a second, 10 apart (--fps 20)";
+    let told = "note: the file's scenes give 2 frames a second, and its frame numbers rise by 10: read as --fps 20\n";
     assert!(two.stderr.contains(told), "{two:?}");
     assert_eq!(two.stdout, ask("plain.ndjson --fps 20").succeeds());
 
@@ -192,7 +191,7 @@ fn the_rate_of_scenes_is_used() {
     assert_eq!(usual.stdout, ask("plain.ndjson").succeeds());
 
     let other = ask("two.ndjson --fps 25");
-    let told = "note: --fps 25 is followed, though the scenes say that 2 frames follow";
+    let told = "note: read as --fps 25, although the file's scenes give 2 frames a second";
     assert!(other.stderr.contains(told), "{other:?}");
     assert_eq!(other.stdout, ask("plain.ndjson --fps 25").succeeds());
     let same = ask("two.ndjson --fps 20");
@@ -218,6 +217,65 @@ fn the_rate_of_scenes_is_used() {
             .unwrap();
         let stderr = String::from_utf8(live.stderr).unwrap();
         assert_eq!(live.status.code(), Some(code), "{stderr}");
+        assert!(stderr.contains(told), "{stderr}");
+    }
+}
+
+/// Options say what numbers mean, then the file, then the run.
+#[test]
+fn the_rate_of_a_run_yields_to_files_and_options() {
+    let folder = tiny_model::folder(Variant::Full);
+    let folder = folder.path();
+    let file = folder.join("config.json");
+    let mut config: Value = serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();
+    config["units"] = serde_json::json!({"fps": 50.0});
+    std::fs::write(&file, config.to_string()).unwrap();
+    let rows = own_tracks::three_people(40);
+    let scene = "{\"scene\": {\"id\": 0, \"p\": 1, \"s\": 0, \"e\": 200, \"fps\": 2}}\n";
+    std::fs::write(folder.join("two.ndjson"), scene.to_owned() + &ndjson(&rows)).unwrap();
+    std::fs::write(folder.join("plain.csv"), own_tracks::csv(&rows)).unwrap();
+    let note = "note: the numbers are read as in the run's training (--fps 50); give --fps, --dt, --frame-step or --homography to read them differently\n";
+    let run = |line: &str| program::run(folder, &format!("{line} --model . --threads 1"));
+    for command in ["forecast", "goals", "view --no-open -o page.html"] {
+        let told = run(&format!("{command} plain.csv --last"));
+        assert!(told.stderr.contains(note), "{told:?}");
+        let page = std::fs::read(folder.join("page.html")).ok();
+        let same = run(&format!("{command} plain.csv --last --fps 50"));
+        assert!(!same.stderr.contains("training"), "{same:?}");
+        assert_eq!(told.succeeds(), same.succeeds());
+        assert_eq!(page, std::fs::read(folder.join("page.html")).ok());
+        let of_file = run(&format!("{command} two.ndjson --last"));
+        assert!(
+            of_file.stderr.contains(": read as --fps 20\n"),
+            "{of_file:?}"
+        );
+        assert!(!of_file.stderr.contains("training"), "{of_file:?}");
+    }
+    let two = run("forecast two.ndjson --last").succeeds();
+    assert_eq!(two, run("forecast plain.csv --last --fps 20").succeeds());
+
+    for (file, options, told) in [
+        (
+            "plain.csv",
+            "",
+            "20 apart in 0.4 s, as in the run's training (--fps 50)",
+        ),
+        (
+            "two.ndjson",
+            "",
+            "8 apart in 0.4 s, by the fps of the scenes, 2",
+        ),
+        ("plain.csv", "--fps 25", ""),
+    ] {
+        let lines = std::fs::File::open(folder.join(file)).unwrap();
+        let line = format!("forecast - --model . --threads 1 --one {options}");
+        let live = program::command(folder, &line)
+            .stdin(lines)
+            .output()
+            .unwrap();
+        let stderr = String::from_utf8(live.stderr).unwrap();
+        assert_eq!(live.status.code(), Some(0), "{stderr}");
+        assert_eq!(stderr.contains("apart"), !told.is_empty(), "{stderr}");
         assert!(stderr.contains(told), "{stderr}");
     }
 }
@@ -285,9 +343,27 @@ fn a_run_remembers_rate_and_homography() {
     assert!(kept.homography.is_some());
     let measure = "evaluate --model run --data film --validation --protocol single --threads 1";
     let measured = run(measure);
-    let told = "note: the recordings are read as the run's were: --fps 23.98 and its homography; options say otherwise";
-    assert!(measured.stderr.contains(told), "{measured:?}");
+    let told = "the numbers are read as in the run's training (--fps 23.98 and its homography); give --fps, --dt, --frame-step or --homography to read \
+                them differently";
+    let note = format!("note: 3 recordings: {told}\n");
+    assert!(measured.stderr.contains(&note), "{measured:?}");
     let _ = measured.succeeds();
+    // so are tracks that it forecasts
+    let forecast = "forecast film/hall.csv --model run --last --threads 1";
+    let remembered = run(forecast);
+    let note = format!("note: {told}\n");
+    assert!(remembered.stderr.contains(&note), "{remembered:?}");
+    let said = run(&format!("{forecast} {units}"));
+    assert!(!said.stderr.contains("training"), "{said:?}");
+    assert_eq!(remembered.succeeds(), said.succeeds());
+    let live = program::command(folder, "forecast - --model run --threads 1")
+        .stdin(std::fs::File::open(folder.join("film/hall.csv")).unwrap())
+        .output()
+        .unwrap();
+    let refused = String::from_utf8(live.stderr).unwrap();
+    let message = "error: the run was trained with --fps 23.98: 0.4 s are 9.592 frames";
+    assert!(refused.contains(message), "{refused}");
+    other_recordings_are_in_metres(folder);
     std::fs::remove_file(folder.join("film/H.txt")).unwrap();
     let _ = run(&format!("{measure} --protocol fair")).succeeds();
     // with another rate these are other recordings than those it was trained on
@@ -295,6 +371,23 @@ fn a_run_remembers_rate_and_homography() {
     assert_eq!(refused.code, Some(1), "{refused:?}");
     let message = refused.stderr;
     assert!(message.contains("trained on other recordings"), "{message}");
+}
+
+/// What the run of [`a_run_remembers_rate_and_homography`] remembers does not hold for a file that gives its rate, nor for metres.
+fn other_recordings_are_in_metres(folder: &Path) {
+    let scene = "{\"scene\": {\"id\": 0, \"p\": 1, \"s\": 0, \"e\": 200, \"fps\": 2}}\n";
+    let rows = own_tracks::three_people(40);
+    std::fs::write(folder.join("two.ndjson"), scene.to_owned() + &ndjson(&rows)).unwrap();
+    let measure = "evaluate --model run --data two.ndjson --protocol single --threads 1";
+    let measure = format!("{measure} --homography none");
+    let of_file = program::run(folder, &measure);
+    assert!(
+        of_file.stderr.contains(": read as --fps 20\n"),
+        "{of_file:?}"
+    );
+    assert!(!of_file.stderr.contains("training"), "{of_file:?}");
+    let said = program::run(folder, &format!("{measure} --fps 20"));
+    assert_eq!(of_file.succeeds(), said.succeeds());
 }
 
 /// Tables have positions to 0.1 mm.

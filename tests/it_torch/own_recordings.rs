@@ -42,10 +42,17 @@ fn own_recordings_are_told_trained_on_and_measured_with() {
     let run = |command_line: &str| program::run(folder, command_line);
 
     let told = json(&run("data mine --json").succeeds());
-    assert_eq!(told.as_array().unwrap().len(), 2);
-    assert_eq!(told[0]["recording"], "lobby");
-    assert_eq!(told[0]["frame_step"], 10);
-    assert!(told[1]["to_learn_from"].as_u64().unwrap() > 100, "{told}");
+    let each = told["recordings"].as_array().unwrap();
+    assert_eq!(each.len(), 2);
+    assert_eq!(each[0]["recording"], "lobby");
+    assert_eq!(each[0]["frame_step"], 10);
+    let windows = |of: &serde_json::Value| of["to_learn_from"].as_u64().unwrap();
+    assert!(windows(&each[1]) > 100, "{told}");
+    let total = windows(&told["total"]);
+    assert_eq!(total, windows(&each[0]) + windows(&each[1]));
+    let words = run("data mine").succeeds();
+    let in_all = format!(" {total} pedestrian-windows in ");
+    assert!(words.lines().last().unwrap().contains(&in_all), "{words}");
 
     let trained = json(&run(&format!("train --data mine --out run {SMALL} --json")).succeeds());
     let run_directory = RunDirectory::new(folder.join("run"));
@@ -153,8 +160,8 @@ fn files_that_cannot_be_read_are_named_together() {
     assert!(!folder.join("run").exists());
     let told = run("data mine --json");
     assert_eq!(
-        (told.code, json(&told.stdout).as_array().unwrap().len()),
-        (Some(1), 2)
+        (told.code, &json(&told.stdout)["total"]["recordings"]),
+        (Some(1), &serde_json::json!(2))
     );
 }
 
@@ -222,12 +229,33 @@ fn a_recording_can_be_left_out_and_the_run_goes_on_where_it_stopped() {
     assert!(told.contains("yard") && !told.contains("lobby"), "{told}");
 }
 
+/// Where a folder holds none of the ETH/UCY recordings, a fold is one of its own.
+#[test]
+fn a_fold_of_own_recordings_needs_no_convention() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    recordings(folder);
+    let run = |command_line: &str| program::run(folder, command_line);
+    let of = "--data mine --fold yard";
+    let windows = run(&format!("windows {of}")).succeeds();
+    assert!(windows.lines().count() > 100);
+    assert!(!windows.contains("lobby"));
+    let measure = "--test-walkers 40 --protocol single --threads 1";
+    let told = run(&format!("evaluate {of} {measure}")).succeeds();
+    assert!(told.contains("\nyard "), "{told}");
+    let same = run(&format!("evaluate --data mine/yard.csv {measure}")).succeeds();
+    assert_eq!(told, same);
+}
+
 #[test]
 fn mistakes_with_own_recordings_say_what_to_do() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path();
     recordings(folder);
     std::fs::create_dir(folder.join("empty")).unwrap();
+    // A folder that holds a recording of ETH/UCY.
+    std::fs::create_dir(folder.join("star")).unwrap();
+    std::fs::write(folder.join("star/zara01.csv"), "").unwrap();
     let short = own_tracks::three_people(12);
     std::fs::write(folder.join("short.csv"), own_tracks::csv(&short)).unwrap();
     for (command_line, words) in [
@@ -259,7 +287,20 @@ fn mistakes_with_own_recordings_say_what_to_do() {
             "train --convention simulated --fold plaza --fps 25 --out run",
             "your own recordings",
         ),
+        (
+            "train --data mine --validation-recordings nope --out run",
+            "\"nope\" is not one of these recordings: lobby, yard",
+        ),
         ("evaluate --model hotel --convention own", "--data FOLDER"),
+        ("evaluate --data mine --fold attic", "it has lobby, yard"),
+        ("windows --data mine --fold attic", "it has lobby, yard"),
+        ("evaluate --data star --fold attic", "add --convention own"),
+        ("windows --data star --fold attic", "add --convention own"),
+        (
+            "evaluate --data mine --window-rule complete",
+            "leave --window-rule out",
+        ),
+        ("forecast short.csv --region 0.5,0.50", "0.5 twice"),
         (
             "evaluate --model hotel --convention own --data short.csv",
             "20 steps in a row",

@@ -194,6 +194,37 @@ fn short_clips_are_validated_on_whole_and_begin_with_the_builtin_model() {
             .collect();
         assert_eq!(recordings.len(), 2, "{words}");
         assert!(recordings[0].starts_with("clip1 ") && recordings[1].starts_with("clip4 "));
+        assert!(
+            words.contains("\nvalidation: clip1, clip4 whole\n"),
+            "{words}"
+        );
+    }
+}
+
+/// A recording whose last fifth holds no window of 8 s: its run cannot be measured on that.
+#[test]
+fn an_empty_validation_part_is_no_result() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    clips(folder, "plaza", 900, 1);
+    let run = |command_line: &str| program::run(folder, command_line);
+    let train = format!("train --data clips --out run --epochs 1 --from none {SMALL}");
+    let message = run(&train).fails();
+    assert!(
+        message.contains("--validation 0.4") && !message.contains("--validation-recordings"),
+        "{message}"
+    );
+    let _ = run(&format!("{train} --patience 0")).succeeds();
+    let of = "--model run --data clips --threads 1";
+    for command_line in [
+        format!("evaluate {of} --validation"),
+        format!("goals {of} --measure validation"),
+    ] {
+        let message = run(&command_line).fails();
+        assert!(
+            message.contains("--validation 0.4") && message.contains("20 steps in a row"),
+            "{message}"
+        );
     }
 }
 

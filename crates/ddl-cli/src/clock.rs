@@ -58,9 +58,19 @@ impl Clock {
     }
 }
 
+impl FrameNumber {
+    /// To four decimals at most, as tables and messages have it.
+    pub(crate) fn rounded(self) -> Self {
+        match self {
+            Self::Whole(frame) => Self::Whole(frame),
+            Self::Between(frame) => Self::Between((frame * 1e4).round() / 1e4),
+        }
+    }
+}
+
 impl std::fmt::Display for FrameNumber {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
+        match self.rounded() {
             Self::Whole(frame) => frame.fmt(f),
             Self::Between(frame) => frame.fmt(f),
         }

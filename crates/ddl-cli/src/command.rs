@@ -109,6 +109,9 @@ fn clearance(text: &str) -> Result<Clearance, String> {
     Clearance::new(metres).map_err(|error| error.to_string())
 }
 
+/// What the help of commands that tell no progress says of the option, which every command that reports takes.
+pub(crate) const NO_PROGRESS: &str = "Has no effect: this command shows no progress, but programs may give all commands the same options";
+
 /// How progress is told, and whether results are for programs: options of every command that has either.
 #[derive(Debug, Args)]
 pub(crate) struct Telling {

@@ -29,6 +29,12 @@ pub(crate) fn table_metres(metres: f64) -> f64 {
     (1e4 * metres).round() / 1e4 + 0.0
 }
 
+/// A share as tables write it: to 3 significant digits.
+pub(crate) fn table_share(share: f64) -> f64 {
+    // what is written so is a number
+    format!("{share:.2e}").parse().unwrap_or(share)
+}
+
 /// A path as a shell takes it for one word.
 pub(crate) fn shell_word(path: &Path) -> String {
     let path = path.display().to_string();

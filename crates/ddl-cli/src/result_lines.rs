@@ -49,8 +49,15 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
         let counts = counted.len();
         writeln!(
             out,
-            "\nconvention {convention}, protocol {protocol}, windows {rule}; {errors} in metres, {of}\n\
-             {:width$} {counted} {:>3}  {errors:15}  forecaster",
+            "\nconvention {convention}, protocol {protocol}, windows {rule}; {errors} in metres, {of}"
+        )?;
+        // of all rows: they were measured together
+        if let Some(subset) = &first.conditions.test_subset {
+            writeln!(out, "{subset}")?;
+        }
+        writeln!(
+            out,
+            "{:width$} {counted} {:>3}  {errors:15}  forecaster",
             "fold", "K"
         )?;
         for row in of_table() {

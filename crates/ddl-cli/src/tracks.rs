@@ -6,7 +6,8 @@ use crate::telling::tell;
 use crate::units::{InSteps, Units};
 use anyhow::bail;
 use clap::Args;
-use ddl::data::{Completion, Doubt, Homography, MadeUp, OBSERVED, Recording, Window};
+use ddl::RunConfig;
+use ddl::data::{Completion, Doubt, MadeUp, OBSERVED, Recording, Window};
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
@@ -73,11 +74,6 @@ impl Tracks {
         &self.units
     }
 
-    /// From pixels to metres, where positions are pixels.
-    pub(crate) fn homography(&self) -> anyhow::Result<Option<Homography>> {
-        self.units.homography()
-    }
-
     /// What is made up of observations that are not whole.
     pub(crate) fn completion(&self) -> Completion {
         if self.whole {
@@ -87,23 +83,24 @@ impl Tracks {
         }
     }
 
-    /// Frame numbers in a step of live tracks, as far as they were given.
-    pub(crate) fn live_frame_step(&self) -> anyhow::Result<Option<i64>> {
+    /// What the numbers of live tracks mean, to a run.
+    pub(crate) fn live_units(&self, run: &RunConfig) -> anyhow::Result<Units> {
         if self.last {
             bail!(
                 "--last has no meaning for tracks that have no end yet: every frame of standard input is forecast from as it comes"
             );
         }
-        self.units.live_frame_step()
+        Ok(self.units.or_those_of(run))
     }
 
-    /// Windows of 8 observed steps, one a frame that has anybody to forecast.
-    pub(crate) fn observed(&self) -> anyhow::Result<Observed> {
+    /// Windows of 8 observed steps, one a frame that has anybody to forecast, for a run.
+    pub(crate) fn observed(&self, run: &RunConfig) -> anyhow::Result<Observed> {
         let InSteps {
             recording,
             clock,
+            guessed,
             notes,
-        } = self.units.read(self.file())?;
+        } = self.units.or_those_of(run).read(self.file())?;
         for note in notes {
             tell(format_args!("note: {note}"));
         }
@@ -121,10 +118,9 @@ impl Tracks {
             );
         }
         // Who looks at a terminal may be trying the tracks for the first time; scripts are left in peace.
-        let said = self.units.say_the_rate() || recording.rate().is_some();
-        if !said && std::io::stderr().is_terminal() {
+        if guessed && std::io::stderr().is_terminal() {
             tell(format_args!(
-                "note: a step of 0.4 s is taken to be {}, the most common difference of two rows; --fps, --dt or --frame-step says otherwise",
+                "note: a step of 0.4 s is taken to be {}, the most common difference of two rows; give --fps, --dt or --frame-step to read them differently",
                 frames(clock.number(recording.frame_step()))
             ));
         }

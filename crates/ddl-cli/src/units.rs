@@ -2,18 +2,17 @@
 
 use crate::clock::Clock;
 use crate::output::shell_word;
-use crate::telling::tell;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{Format, Homography, Recording, TIME_STEP, parse_recording, whole_frame_step};
 use ddl::{RunConfig, TrackUnits};
 use std::path::{Path, PathBuf};
 
-/// What frame numbers and positions mean.
+/// What frame numbers and positions mean: as options say it, then the file itself, then the run.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Units {
     /// Frame numbers count so many a second, such as 25: steps of 0.4 s are found, and resampled where they are no whole number of frames [default: the
-    /// rate that scenes of TrajNet++ files say]
+    /// rate that scenes of TrajNet++ files give, then that of the run's training]
     #[arg(long, conflicts_with_all = ["dt", "frame_step"], value_parser = positive)]
     fps: Option<f64>,
     /// Seconds from one frame number to the next, such as 0.1
@@ -22,12 +21,13 @@ pub(crate) struct Units {
     /// Frame numbers in 0.4 s [default: the most common difference between two rows]
     #[arg(long, value_parser = clap::value_parser!(i64).range(1..=1 << 31))]
     frame_step: Option<i64>,
-    /// Positions are pixels: a file of three lines of three numbers, the homography from pixels to metres
+    /// Positions are pixels: a file of three lines of three numbers, the homography from pixels to metres; `none` where they are metres [default: that of
+    /// the run's training, if it had one]
     #[arg(long, value_name = "FILE")]
     homography: Option<PathBuf>,
-    /// The homography that a run remembers.
+    /// What a run remembers.
     #[arg(skip)]
-    remembered: Option<Homography>,
+    remembered: TrackUnits,
 }
 
 /// A recording in steps of 0.4 s.
@@ -35,6 +35,8 @@ pub(crate) struct Units {
 pub(crate) struct InSteps {
     pub(crate) recording: Recording,
     pub(crate) clock: Clock,
+    /// Whether nobody said how fast frames follow each other.
+    pub(crate) guessed: bool,
     /// What was found out about its rate, for [`tell_notes`](crate::recordings::tell_notes).
     pub(crate) notes: Vec<String>,
 }
@@ -43,64 +45,44 @@ pub(crate) struct InSteps {
 const SAME: f64 = 0.005;
 
 impl Units {
-    /// The same; where nothing else is said, as a run on own recordings was told in training, and that is told.
+    /// The same; what neither options nor files say is as a run on own recordings was told in training.
     pub(crate) fn or_those_of(&self, run: &RunConfig) -> Self {
-        let mut units = self.clone();
-        let Some(told) = run.units else {
-            return units;
-        };
-        let mut taken = String::new();
-        if !self.say_the_rate() {
-            (units.fps, units.dt, units.frame_step) = (told.fps, told.dt, told.frame_step);
-            taken += &units.rate_options();
+        Self {
+            remembered: run.units.unwrap_or_default(),
+            ..self.clone()
         }
-        if self.homography.is_none() && told.homography.is_some() {
-            units.remembered = told.homography;
-            taken += " and its homography";
-        }
-        let taken = taken.trim_start().trim_start_matches("and ");
-        if !taken.is_empty() {
-            tell(format_args!(
-                "note: the recordings are read as the run's were: {taken}; options say otherwise"
-            ));
-        }
-        units
     }
 
     /// What a run remembers of them; nothing where nothing was given.
     pub(crate) fn told(&self) -> anyhow::Result<Option<TrackUnits>> {
         let told = TrackUnits {
+            homography: self.homography()?,
+            ..self.rate()
+        };
+        Ok((told != TrackUnits::default()).then_some(told))
+    }
+
+    /// The rate that options give.
+    fn rate(&self) -> TrackUnits {
+        TrackUnits {
             fps: self.fps,
             dt: self.dt,
             frame_step: self.frame_step,
-            homography: self.homography()?,
-        };
-        Ok(self.are_given().then_some(told))
+            homography: None,
+        }
     }
 
     /// Whether any of them was given.
     pub(crate) fn are_given(&self) -> bool {
-        self.say_the_rate() || self.homography.is_some()
+        self.rate().say_the_rate() || self.homography.is_some()
     }
 
     /// What another command takes for the same.
     pub(crate) fn as_options(&self) -> String {
         let homography = self.homography.as_ref();
         let homography = homography.map(|file| format!(" --homography {}", shell_word(file)));
-        self.rate_options() + &homography.unwrap_or_default()
-    }
-
-    fn rate_options(&self) -> String {
-        let numbers = [
-            ("fps", self.fps.map(|fps| fps.to_string())),
-            ("dt", self.dt.map(|dt| dt.to_string())),
-            ("frame-step", self.frame_step.map(|step| step.to_string())),
-        ];
-        let given = numbers.into_iter();
-        given
-            .filter_map(|(name, value)| Some(format!(" --{name} {}", value?)))
-            .collect::<Vec<_>>()
-            .concat()
+        let rate = rate_option(&self.rate()).map(|rate| format!(" {rate}"));
+        rate.unwrap_or_default() + &homography.unwrap_or_default()
     }
 
     /// Whether this file is the homography, which may lie beside recordings.
@@ -111,22 +93,33 @@ impl Units {
             let text = std::fs::read_to_string(file);
             text.is_ok_and(|text| text.parse() == Ok(told))
         };
-        (homography.is_some() && homography == place(file)) || self.remembered.is_some_and(says)
+        (homography.is_some() && homography == place(file))
+            || self.remembered.homography.is_some_and(says)
     }
 
     /// The recording in the file, in metres and steps of 0.4 s, in the format that the file looks like. It is read once, so that it may be a pipe.
     pub(crate) fn read(&self, file: &Path) -> anyhow::Result<InSteps> {
         let recording = self.in_metres(file)?;
-        let mut notes: Vec<String> = self.note_of_rate(&recording).into_iter().collect();
-        let told = recording.frame_time_told().filter(|_| !self.say_the_rate());
-        let Some(frame_time) = self.frame_time().or(told) else {
-            let recording = match self.frame_step {
+        let told = recording.frame_time_told();
+        let notes = self.note_of_rate(&recording).into_iter();
+        let mut notes: Vec<String> = notes.chain(self.note_of_run(told.is_none())).collect();
+        let rate = match told {
+            _ if self.rate().say_the_rate() => self.rate(),
+            Some(frame_time) => TrackUnits {
+                dt: Some(frame_time),
+                ..TrackUnits::default()
+            },
+            None => self.remembered,
+        };
+        let Some(frame_time) = rate.frame_time() else {
+            let recording = match rate.frame_step {
                 None => recording,
                 Some(step) => recording.with_frame_step(step)?,
             };
             return Ok(InSteps {
                 recording,
                 clock: Clock::WHOLE,
+                guessed: !rate.say_the_rate(),
                 notes,
             });
         };
@@ -145,29 +138,53 @@ impl Units {
         Ok(InSteps {
             recording: steps.recording,
             clock: Clock::of_parts(steps.parts),
+            guessed: false,
             notes,
         })
     }
 
-    /// What is to be said of a rate that the file itself says, where it is another than was given, or than is taken where nothing is said.
+    /// What is to be said of a rate that the file itself says, where it is another than the one given, remembered or guessed.
     fn note_of_rate(&self, recording: &Recording) -> Option<String> {
         let (rate, told) = (recording.rate()?, recording.frame_time_told()?);
         let apart = recording.frame_step();
         let of_step = |step: i64| TIME_STEP / step as f64;
-        let taken = self.frame_time().or(self.frame_step.map(of_step));
-        let same = (taken.unwrap_or(of_step(apart)) / told - 1.0).abs() <= SAME;
+        let given = self.rate();
+        let otherwise = if given.say_the_rate() {
+            given
+        } else {
+            self.remembered
+        };
+        let otherwise = otherwise.frame_time().or(otherwise.frame_step.map(of_step));
+        let same = (otherwise.unwrap_or(of_step(apart)) / told - 1.0).abs() <= SAME;
         let scenes = format!(
-            "the scenes say that {rate} frames follow each other in a second, {apart} apart (--fps {})",
-            rounded(1.0 / told)
+            "the file's scenes give {rate} frames a second, and its frame numbers rise by {apart}"
         );
-        match taken {
+        let of_file = format!("--fps {}", rounded(1.0 / told));
+        match rate_option(&given) {
             _ if same => None,
-            None => Some(scenes),
-            Some(_) => Some(format!(
-                "{} is followed, though {scenes}",
-                self.rate_options().trim()
-            )),
+            None => Some(format!("{scenes}: read as {of_file}")),
+            Some(option) => Some(format!("read as {option}, although {scenes} ({of_file})")),
         }
+    }
+
+    /// What is to be said of what the run remembers, where it is taken; `rate`: whether no file says its rate.
+    pub(crate) fn note_of_run(&self, rate: bool) -> Option<String> {
+        let rate = if rate && !self.rate().say_the_rate() {
+            rate_option(&self.remembered)
+        } else {
+            None
+        };
+        let positions = self.homography.is_none() && self.remembered.homography.is_some();
+        let taken = rate
+            .into_iter()
+            .chain(positions.then(|| "its homography".to_owned()));
+        let taken: Vec<String> = taken.collect();
+        (!taken.is_empty()).then(|| {
+            format!(
+                "the numbers are read as in the run's training ({}); give --fps, --dt, --frame-step or --homography to read them differently",
+                taken.join(" and ")
+            )
+        })
     }
 
     fn in_metres(&self, file: &Path) -> anyhow::Result<Recording> {
@@ -196,8 +213,10 @@ impl Units {
 
     /// From pixels to metres, where positions are pixels.
     pub(crate) fn homography(&self) -> anyhow::Result<Option<Homography>> {
-        let Some(path) = &self.homography else {
-            return Ok(self.remembered);
+        let path = match &self.homography {
+            None => return Ok(self.remembered.homography),
+            Some(none) if none.as_os_str() == "none" => return Ok(None),
+            Some(path) => path,
         };
         let text = std::fs::read_to_string(path)
             .with_context(|| format!("cannot read {}", path.display()))?;
@@ -205,22 +224,34 @@ impl Units {
         Ok(Some(homography))
     }
 
-    /// Whether it was said how fast frames follow each other.
-    pub(crate) fn say_the_rate(&self) -> bool {
-        self.frame_time().is_some() || self.frame_step.is_some()
-    }
-
-    /// Seconds from one frame number to the next, as far as they were given.
-    fn frame_time(&self) -> Option<f64> {
-        self.dt.or(self.fps.map(|fps| 1.0 / fps))
-    }
-
-    /// Frame numbers in a step of live tracks, as far as they were given.
+    /// Frame numbers in a step of live tracks, as far as options give them.
     pub(crate) fn live_frame_step(&self) -> anyhow::Result<Option<i64>> {
-        match self.frame_time() {
-            None => Ok(self.frame_step),
-            Some(frame_time) => live_step(frame_time).map(Some),
-        }
+        live_step_of(&self.rate())
+    }
+
+    /// The same as the run remembers it, and that in words.
+    pub(crate) fn remembered_live_frame_step(&self) -> anyhow::Result<Option<(i64, String)>> {
+        let Some(rate) = rate_option(&self.remembered) else {
+            return Ok(None);
+        };
+        let step = live_step_of(&self.remembered);
+        let step = step.with_context(|| format!("the run was trained with {rate}"))?;
+        Ok(step.map(|step| (step, format!("as in the run's training ({rate})"))))
+    }
+}
+
+/// The option that gives this rate; `None` where there is none.
+fn rate_option(rate: &TrackUnits) -> Option<String> {
+    let fps = rate.fps.map(|fps| format!("--fps {fps}"));
+    let dt = rate.dt.map(|dt| format!("--dt {dt}"));
+    let step = rate.frame_step.map(|step| format!("--frame-step {step}"));
+    dt.or(fps).or(step)
+}
+
+fn live_step_of(rate: &TrackUnits) -> anyhow::Result<Option<i64>> {
+    match rate.frame_time() {
+        None => Ok(rate.frame_step),
+        Some(frame_time) => live_step(frame_time).map(Some),
     }
 }
 

@@ -380,7 +380,7 @@ pub enum DataError {
         known: Vec<String>,
     },
     /// A recording to set apart that the fold does not train on.
-    #[error("{name:?} is no training recording of fold {fold}; those are {}", .known.join(", "))]
+    #[error("{name:?} is not one of these recordings: {}", .known.join(", "))]
     NotATrainingRecording {
         /// The fold.
         fold: String,

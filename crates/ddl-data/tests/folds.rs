@@ -88,7 +88,7 @@ fn recordings_set_apart_are_validated_on_whole_and_not_trained_on() {
         .unwrap_err()
         .to_string();
     assert!(
-        error.starts_with("\"plaza\" is no training recording of fold plaza; those are corridor"),
+        error.starts_with("\"plaza\" is not one of these recordings: corridor"),
         "{error}"
     );
 }

@@ -77,3 +77,15 @@ fn numbers_stay_numbers_however_they_are_written() {
         assert_eq!(recording.names().of(id), PedestrianName::Number(id.0));
     }
 }
+
+/// A word among the pedestrians of a stream changes nothing for those who are there.
+#[test]
+fn a_number_of_a_stream_stays_one_when_words_come() {
+    let text = "frame,pedestrian,x,y\n0,17.0,0,0\n1,17.0,0,0\n2,17.0,0,0\n2,ab,5,5\n3,17.0,0,0\n3,ab,5,5\n";
+    let mut frames = FrameReader::new(text.as_bytes(), "tracker");
+    let mut first = Vec::new();
+    while let Some(frame) = frames.next_frame().unwrap() {
+        first.push(frame.people[0].0);
+    }
+    assert_eq!(first, [PedestrianId(17); 4]);
+}

@@ -184,6 +184,15 @@ pub enum DynamicsError {
         metrics: usize,
     },
 
+    /// A position is not the one that a certificate is of.
+    #[error(
+        "position {position} is not as far from the goal as the certificate says: it is of another path or goal"
+    )]
+    OtherPath {
+        /// Index of the position, from 0.
+        position: usize,
+    },
+
     /// A step of a rollout failed.
     #[error("step {step} of the rollout failed: {cause}")]
     Step {

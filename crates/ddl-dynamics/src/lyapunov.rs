@@ -76,7 +76,8 @@ impl<T: Real> LyapunovCertificate<T> {
     /// a pedestrian up: only its speed is bounded then.
     ///
     /// # Errors
-    /// [`DynamicsError::LengthMismatch`] when there is not one position more than steps.
+    /// [`DynamicsError::LengthMismatch`] when there is not one position more than steps, [`DynamicsError::OtherPath`] when the
+    /// distances from the goal are not those that the certificate is of, as with a [chart](Flow::chart).
     pub fn within(
         self,
         path: &[SVector<T, 2>],
@@ -89,6 +90,13 @@ impl<T: Real> LyapunovCertificate<T> {
                 positions: path.len(),
                 metrics: self.steps.len(),
             });
+        }
+        let certified = self.steps.iter().map(|step| step.potential);
+        let certified = certified.chain([self.final_potential]);
+        let distances = path.iter().map(|p| attractor.distance(p));
+        // NaN equals nothing
+        if let Some(position) = distances.zip(certified).position(|(a, b)| a != b) {
+            return Err(DynamicsError::OtherPath { position });
         }
         let motion = MotionEvidence::new(path, attractor, bounds, self.time_step, alone);
         Ok(Self {

@@ -147,7 +147,7 @@ impl Forecast {
     /// use ddl_eval::{Forecast, RegionTable};
     /// let forecast = Forecast::equally_likely(1, 2, vec![[0.0, 0.0]; 2 * 12])?;
     /// assert_eq!(forecast.spread(0, 11), None);
-    /// let regions = RegionTable::of(&[[1.0; 12]], &[0.9]).expect("a score and a level");
+    /// let regions = RegionTable::of(&[[1.0; 12]; 9], &[0.9]).expect("scores and a level");
     /// let forecast = forecast.with_spread(vec![0.3; 12], regions.into())?;
     /// assert_eq!(forecast.spread(0, 11), Some(0.3));
     /// # Ok::<(), ddl_eval::ForecastShapeError>(())

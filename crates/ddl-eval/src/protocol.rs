@@ -62,7 +62,7 @@ impl Protocol {
             }
             Self::Single => {
                 "one forecast a pedestrian from the 8 observed frames alone: what a forecaster gives as its one \
-                 forecast (DDL: straight to the central goal), otherwise the hypothesis of least expected ADE under \
+                 forecast (DDL: the neutral motion to its central goal), otherwise the hypothesis of least expected ADE under \
                  their own weights (all alike where there are none); nothing is chosen with the truth"
             }
         }

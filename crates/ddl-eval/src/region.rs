@@ -4,12 +4,13 @@
 //! position `x` is
 //!
 //! ```text
-//! score(x) = min_k |x - p_k|^2 / (2 s^2) - ln w_k                 no unit
+//! score(x) = min_k |x - p_k|^2 / (2 s^2) - ln(w_k / max w)        no unit
 //! ```
 //!
 //! The region of a level is where the score is at most a quantile `q` of the scores of true positions that the level of them
 //! does not exceed, found on recordings that were kept for this (split-conformal prediction): one disc about each hypothesis,
-//! of the radius `s sqrt(2 (q + ln w_k))`, and none where that is no number. A likelier hypothesis has a larger disc.
+//! of the radius `s sqrt(2 (q + ln(w_k / max w)))`, and none where that is no number. A likelier hypothesis has a larger disc, and the
+//! likeliest one always has one.
 //!
 //! What was calibrated on some places holds on average over places like these; in one new place the coverage of a fixed region may
 //! be off by 25 points.
@@ -27,12 +28,47 @@ const CELLS: usize = 24;
 
 /// Quantiles of scores, for levels and steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Columns", into = "Columns")]
+pub struct RegionTable(Columns);
+
+/// The table as it is written, before it is checked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RegionTable {
+struct Columns {
     /// Rising, in (0, 1).
     levels: Vec<f64>,
     /// `[levels][12]`.
     quantiles: Vec<[f64; HORIZON]>,
+}
+
+impl TryFrom<Columns> for RegionTable {
+    type Error = &'static str;
+
+    fn try_from(columns: Columns) -> Result<Self, Self::Error> {
+        let inside = |level: &f64| *level > 0.0 && *level < 1.0;
+        let is_valid = !columns.levels.is_empty()
+            && columns.levels.len() == columns.quantiles.len()
+            && columns.levels.iter().all(inside)
+            && columns.levels.is_sorted_by(|a, b| a < b)
+            && columns
+                .quantiles
+                .as_flattened()
+                .iter()
+                .all(|q| q.is_finite());
+        if is_valid {
+            Ok(Self(columns))
+        } else {
+            Err(
+                "a table of regions has rising levels between 0 and 1, each with 12 finite quantiles",
+            )
+        }
+    }
+}
+
+impl From<RegionTable> for Columns {
+    fn from(table: RegionTable) -> Self {
+        table.0
+    }
 }
 
 /// A disc of a region.
@@ -56,63 +92,57 @@ impl RegionTable {
     /// them, do not exceed.
     ///
     /// # Shapes
-    /// `scores` `[pedestrians][12]`, at least one; `levels` rising, in (0, 1), at least one. `None` otherwise.
+    /// `scores` `[pedestrians][12]`; `levels` rising, in (0, 1), at least one. `None` otherwise, and where a level needs more scores:
+    /// n scores serve levels up to n / (n + 1).
     #[must_use]
     pub fn of(scores: &[[f64; HORIZON]], levels: &[f64]) -> Option<Self> {
-        if scores.is_empty() {
-            return None;
-        }
         let of_step = |t: usize| {
             let mut step: Vec<f64> = scores.iter().map(|scores| scores[t]).collect();
             step.sort_by(f64::total_cmp);
             step
         };
         let steps: Vec<Vec<f64>> = (0..HORIZON).map(of_step).collect();
-        let quantile = |level: f64, step: &[f64]| {
-            let rank = (level * (step.len() + 1) as f64).ceil() as usize;
-            step[rank.clamp(1, step.len()) - 1]
+        let of_level = |&level: &f64| {
+            let rank = (level * (scores.len() + 1) as f64).ceil() as usize;
+            let place = rank.checked_sub(1).filter(|&place| place < scores.len())?;
+            Some(std::array::from_fn(|t| steps[t][place]))
         };
-        let of_level = |&level: &f64| std::array::from_fn(|t| quantile(level, &steps[t]));
-        let table = Self {
+        let columns = Columns {
             levels: levels.to_vec(),
-            quantiles: levels.iter().map(of_level).collect(),
+            quantiles: levels.iter().map(of_level).collect::<Option<_>>()?,
         };
-        table.is_valid().then_some(table)
-    }
-
-    /// Whether there are levels, in order, with finite quantiles for each.
-    #[must_use]
-    pub fn is_valid(&self) -> bool {
-        let inside = |level: &f64| *level > 0.0 && *level < 1.0;
-        !self.levels.is_empty()
-            && self.levels.len() == self.quantiles.len()
-            && self.levels.iter().all(inside)
-            && self.levels.is_sorted_by(|a, b| a < b)
-            && self.quantiles.as_flattened().iter().all(|q| q.is_finite())
+        columns.try_into().ok()
     }
 
     /// The lowest and the highest level there are quantiles for.
     #[must_use]
     pub fn range(&self) -> [f64; 2] {
-        let first = self.levels.first().copied().unwrap_or_default();
-        [first, self.levels.last().copied().unwrap_or_default()]
+        let levels = &self.0.levels;
+        [levels[0], levels[levels.len() - 1]]
     }
 
-    /// The quantile of a level, `t` + 1 steps ahead, linear between the levels of the table and constant beyond them.
+    /// The quantile of a level, `t` + 1 steps ahead, linear between the levels of the table; `None` beyond its
+    /// [range](Self::range).
     ///
     /// # Panics
     /// When `t` is not below 12.
     #[must_use]
-    pub fn quantile(&self, level: f64, t: usize) -> f64 {
-        let above = self.levels.partition_point(|&l| l < level);
-        let last = self.levels.len() - 1;
-        if above == 0 || above > last {
-            return self.quantiles[above.min(last)][t];
+    pub fn quantile(&self, level: f64, t: usize) -> Option<f64> {
+        let Columns { levels, quantiles } = &self.0;
+        let [lowest, highest] = self.range();
+        if !(lowest..=highest).contains(&level) {
+            return None;
         }
-        let [before, after] = [above - 1, above];
-        let share = (level - self.levels[before]) / (self.levels[after] - self.levels[before]);
-        let [low, high] = [before, after].map(|at| self.quantiles[at][t]);
-        low + share * (high - low)
+        let after = levels.partition_point(|&l| l < level);
+        let before = after.saturating_sub(1);
+        let [low, high] = [before, after].map(|at| quantiles[at][t]);
+        let width = levels[after] - levels[before];
+        let share = if width > 0.0 {
+            (level - levels[before]) / width
+        } else {
+            0.0
+        };
+        Some(low + share * (high - low))
     }
 }
 
@@ -128,25 +158,32 @@ impl Forecast {
         let of_hypothesis = |k: usize| {
             let p = self.hypothesis(i, k)[t];
             let off = (at[0] - p[0]).hypot(at[1] - p[1]) / spread;
-            0.5 * off * off - self.weight(i, k).ln()
+            0.5 * off * off - self.log_weight(i, k)
         };
         (0..self.hypotheses()).map(of_hypothesis).reduce(f64::min)
     }
 
+    /// ln of the weight of a hypothesis, in weights of the likeliest one of that pedestrian.
+    fn log_weight(&self, i: usize, k: usize) -> f64 {
+        (self.weight(i, k) / self.weight(i, self.most_likely(i))).ln()
+    }
+
     /// The radius (m) of the disc about hypothesis `k` of pedestrian `i`, `t` + 1 steps ahead, in the region of a level; `None`
-    /// where the region has no such disc, and for forecasts without regions.
+    /// where the region has no such disc, for levels beyond the [range](RegionTable::range) of the table, and for forecasts
+    /// without regions.
     ///
     /// # Panics
     /// When `i`, `k` or `t` is out of range.
     #[must_use]
     pub fn region_radius(&self, i: usize, k: usize, t: usize, level: f64) -> Option<f64> {
-        let quantile = self.regions()?.quantile(level, t);
-        let left = quantile + self.weight(i, k).ln();
-        (left > 0.0).then(|| self.spread(i, t).map(|spread| spread * (2.0 * left).sqrt()))?
+        let quantile = self.regions()?.quantile(level, t)?;
+        let left = quantile + self.log_weight(i, k);
+        (left >= 0.0).then(|| self.spread(i, t).map(|spread| spread * (2.0 * left).sqrt()))?
     }
 
     /// The region that holds pedestrian `i`, `t` + 1 steps ahead, with the probability `level`: at most one disc a
-    /// hypothesis; `None` for forecasts without regions.
+    /// hypothesis, and one of the likeliest; `None` for levels beyond the [range](RegionTable::range) of the table, and for
+    /// forecasts without regions.
     ///
     /// # Panics
     /// When `i` or `t` is out of range.
@@ -167,7 +204,7 @@ impl Forecast {
     /// ```
     #[must_use]
     pub fn region(&self, i: usize, t: usize, level: f64) -> Option<Vec<Disc>> {
-        self.regions()?;
+        self.regions()?.quantile(level, t)?;
         let disc = |k: usize| {
             let radius = self.region_radius(i, k, t, level)?;
             let centre = self.hypothesis(i, k)[t];
@@ -221,15 +258,19 @@ mod tests {
     fn quantiles_by_hand() {
         let scores: Vec<[f64; HORIZON]> = (1..=99).map(|s| [f64::from(s); HORIZON]).collect();
         let table = RegionTable::of(&scores, &[0.5, 0.9]).unwrap();
-        for (level, expected) in [
-            (0.5, 50.0),
-            (0.9, 90.0),
-            (0.7, 70.0),
-            (0.2, 50.0),
-            (0.99, 90.0),
-        ] {
-            assert!((table.quantile(level, 3) - expected).abs() < 1e-12);
+        for (level, expected) in [(0.5, 50.0), (0.9, 90.0), (0.7, 70.0)] {
+            let quantile = table.quantile(level, 3).unwrap();
+            assert!((quantile - expected).abs() < 1e-12);
         }
+        for beyond in [0.2, 0.99, f64::NAN] {
+            assert_eq!(table.quantile(beyond, 3), None);
+        }
+        // 99 scores do not say what one in a hundred exceeds
+        assert!(RegionTable::of(&scores, &[0.99]).is_some());
+        assert_eq!(RegionTable::of(&scores[..98], &[0.99]), None);
+        let empty: Result<RegionTable, _> =
+            serde_json::from_str(r#"{"levels": [], "quantiles": []}"#);
+        assert!(empty.is_err());
         assert_eq!(RegionTable::of(&[], &[0.5]), None);
         assert_eq!(RegionTable::of(&scores, &[0.9, 0.5]), None);
     }
@@ -261,14 +302,15 @@ mod tests {
             let bare = Forecast::new(1, 5, positions, weights, None).unwrap();
             let spread = vec![spread; HORIZON];
             let table = |scores: &[[f64; HORIZON]]| RegionTable::of(scores, &[level]).unwrap().into();
-            let any = bare.clone().with_spread(spread.clone(), table(&[[1.0; HORIZON]])).unwrap();
+            let any = bare.clone().with_spread(spread.clone(), table(&[[1.0; HORIZON]; 40])).unwrap();
             let scores: Vec<[f64; HORIZON]> = truths
                 .iter()
                 .map(|&at| std::array::from_fn(|t| any.region_score(0, t, at).unwrap()))
                 .collect();
             let forecast = bare.with_spread(spread, table(&scores)).unwrap();
             let region = forecast.region(0, 5, level).unwrap();
-            let quantile = forecast.regions().unwrap().quantile(level, 5);
+            prop_assert!(!region.is_empty());
+            let quantile = forecast.regions().unwrap().quantile(level, 5).unwrap();
             let mut inside = 0;
             for (&at, score) in truths.iter().zip(&scores) {
                 // the one on the edge may be either

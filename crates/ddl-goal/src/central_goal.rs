@@ -27,8 +27,8 @@ impl GoalSet {
     /// - b = 0.7 (1 - n) exp(-(w / 6 cm)²) |a|² / (|a|² + (w/2)²): how much the last step says, 0 of who stands and trembles;
     /// - x = exp(-(w / 5 mm)²): whether the motion goes on as it is.
     ///
-    /// The goal is g + x (p + 12 s - g) with g = m + b (p + 12 s - m) + 0.3 n (p + 12 a - m). The constants were chosen on places that no model
-    /// was trained on (`docs/accuracy.md`).
+    /// The goal is g + x (p + 12 s - g) with g = m + b (p + 12 s - m) + 0.3 n (p + 12 a - m). `docs/accuracy.md` tells on which
+    /// recordings the constants were chosen.
     ///
     /// # Shapes
     /// `observed`: the observed positions (m), the last one last. Fewer than three show no change: the median stands alone.
@@ -46,8 +46,12 @@ impl GoalSet {
         let lengths = changes.iter().map(|[x, y]| x.hypot(*y));
         let change = lengths.sum::<f64>() / changes.len() as f64;
         let noise = noise_share(&changes);
-        let walking = mean[0].hypot(mean[1]).powi(2);
-        let walking = walking / (walking + (STANDING * change).powi(2)).max(f64::MIN_POSITIVE);
+        let standing = if change > 0.0 {
+            STANDING * change / mean[0].hypot(mean[1])
+        } else {
+            0.0
+        };
+        let walking = 1.0 / (1.0 + standing.powi(2));
         let trust = TRUST * (1.0 - noise) * (-(change / JITTER).powi(2)).exp() * walking;
         let exact = (-(change / EXACT).powi(2)).exp();
         std::array::from_fn(|axis| {
@@ -78,7 +82,8 @@ fn noise_share(changes: &[[f64; 2]]) -> f64 {
         return 0.0;
     }
     let correlation = pairs.sum::<f64>() / count as f64 / square;
-    (correlation / OF_ERRORS).clamp(0.0, 1.0)
+    // 0 of NaN, where squares overflow
+    (correlation / OF_ERRORS).max(0.0).min(1.0)
 }
 
 #[cfg(test)]

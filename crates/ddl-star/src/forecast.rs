@@ -208,15 +208,23 @@ fn check_shares(windows: &[Window], shares: Option<&[Vec<f64>]>) -> Result<(), S
     let Some(shares) = shares else {
         return Ok(());
     };
+    let fault = |got: String| {
+        let windows = windows.len();
+        Err(StarError::Shape {
+            operation: "forecast",
+            expected: format!("a share from 0 to 1 for every pedestrian of {windows} windows"),
+            got,
+        })
+    };
     let lengths = windows.iter().map(Window::len);
-    if lengths.eq(shares.iter().map(Vec::len)) {
-        return Ok(());
+    if !lengths.eq(shares.iter().map(Vec::len)) {
+        return fault(format!("those of {}", shares.len()));
     }
-    Err(StarError::Shape {
-        operation: "forecast",
-        expected: format!("a share for every pedestrian of {} windows", windows.len()),
-        got: format!("those of {}", shares.len()),
-    })
+    let is_share = |share: &&f64| (0.0..=1.0).contains(*share);
+    match shares.iter().flatten().find(|share| !is_share(share)) {
+        Some(share) => fault(share.to_string()),
+        None => Ok(()),
+    }
 }
 
 fn check_goals(

@@ -12,7 +12,7 @@ const JITTER: f64 = 0.06;
 const RECENT: usize = 3;
 
 /// The bounds of the motion of a pedestrian observed at these positions (m), `time_step` seconds apart, of whose
-/// metric this `share` (0 to 1) counts.
+/// metric this `share` counts: 0 to 1, what is beyond is brought within, and NaN is 0.
 ///
 /// Its own velocity is that of the last step where the steps are even, and the mean of the last three where they
 /// tremble: with w the mean length of the second differences, the last step has the share exp(-(w / 6 cm)^2).
@@ -30,6 +30,8 @@ pub fn motion_bounds(observed: &[Position], time_step: f64, share: f64) -> Motio
     let mean = recent.iter().sum::<Vector2<f64>>() / recent.len() as f64;
     let even = (-(tremble / JITTER).powi(2)).exp();
     let velocity = (mean + (last - mean) * even) / time_step;
+    // 0 of NaN
+    let share = share.max(0.0).min(1.0);
     MotionBounds::new(MotionBounds::top_speed_after(fastest), velocity, share).unwrap_or_default()
 }
 
@@ -100,6 +102,14 @@ mod tests {
             (velocity - Vector2::new(1.0, -3.0 / 1.2)).norm() < 1e-9,
             "{velocity}"
         );
+        // a share out of range keeps the runner's bounds
+        let runner: Vec<Position> = (0..8).map(|t| [2.4 * f64::from(t), 0.0]).collect();
+        for (share, kept) in [(1.000_000_1, 1.0), (-1.0, 0.0), (f64::NAN, 0.0)] {
+            assert_eq!(
+                motion_bounds(&runner, 0.4, share),
+                motion_bounds(&runner, 0.4, kept)
+            );
+        }
         assert_eq!(
             motion_bounds(&[[1.0, 2.0]], 0.4, 1.0),
             MotionBounds::default()

@@ -74,7 +74,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let held = |level: f64| {
                 let inside = |of: &[f64; HORIZON]| {
                     (0..HORIZON)
-                        .filter(|&t| of[t] <= table.quantile(level, t))
+                        .filter(|&t| table.quantile(level, t).is_some_and(|q| of[t] <= q))
                         .count()
                 };
                 let all = scores[left_out].iter().map(inside).sum::<usize>();

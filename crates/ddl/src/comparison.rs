@@ -1,7 +1,7 @@
 //! A trained run beside another model, on what the run kept for validation.
 
 use crate::test_set::TestSet;
-use crate::{Ddl, DdlError, EvaluationSplit};
+use crate::{Ddl, DdlError};
 use ddl_data::{Dataset, Window};
 use ddl_eval::Protocol;
 use ddl_eval::significance::{
@@ -58,8 +58,7 @@ pub fn compare_on_validation(
     dataset: &Dataset,
     mut observe: impl FnMut(usize, usize) -> ControlFlow<()>,
 ) -> Result<Comparison, DdlError> {
-    let on = EvaluationSplit::Validation;
-    let windows = TestSet::of_run(run.goal_model(), dataset, on, None)?.windows;
+    let windows = TestSet::kept_by(run.goal_model(), dataset, None)?.windows;
     let total = 2 * windows.len();
     let mut done = 0;
     let mut measured = |model: &Ddl| -> Result<Vec<BlockErrors>, DdlError> {

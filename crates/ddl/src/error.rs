@@ -43,9 +43,13 @@ pub enum DdlError {
     Validation(f64),
     /// Early stopping has nothing to measure epochs on.
     #[error(
-        "no windows of 20 steps to validate on at the ends of the recordings; keep a larger share for validation, or whole recordings"
+        "nobody in the part kept for validation was seen at 20 steps in a row; keep {}",
+        more_for_validation(*.recordings)
     )]
-    NothingToValidateOn,
+    NothingToValidateOn {
+        /// Recordings that are learned from or validated on.
+        recordings: usize,
+    },
     /// Early stopping without validation, or without patience.
     #[error(
         "a patience of {patience} epochs with {validation} of the recordings' time for validation is not allowed: at least 1 epoch, \
@@ -116,6 +120,15 @@ pub enum DdlError {
     /// The caller asked to stop. Training has saved its steps; an evaluation starts anew.
     #[error("interrupted; what training has saved stays, and the same command goes on from there")]
     Interrupted,
+}
+
+/// What to keep where the validation part of so many recordings holds no window.
+pub(crate) fn more_for_validation(recordings: usize) -> String {
+    let whole = match recordings {
+        0 | 1 => "",
+        _ => ", or whole recordings (--validation-recordings NAME)",
+    };
+    format!("a larger share, such as --validation 0.4{whole}")
 }
 
 impl DdlError {

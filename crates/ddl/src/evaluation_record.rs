@@ -2,7 +2,7 @@
 
 use crate::run_directory::{read_json, write_json};
 use crate::run_lock::RunLock;
-use crate::{Clearance, Ddl, DdlError, EvaluationRequest, RunDirectory};
+use crate::{Calibration, Clearance, Ddl, DdlError, EvaluationRequest, RunDirectory};
 use ddl_data::Convention;
 use ddl_eval::{Moment, Report};
 use serde::{Deserialize, Serialize};
@@ -19,11 +19,14 @@ struct Record {
     /// Which rows there are; results with fewer are measured anew.
     #[serde(default)]
     rows: u32,
+    /// SHA-256 of the constants that forecasts depend on besides the run.
+    #[serde(default)]
+    calibration: String,
 }
 
 /// 1: with the row without an expert library. 2: the central goal is drawn towards where the last step leads.
-/// 3: the one forecast walks straight.
-const ROWS: u32 = 3;
+/// 3: the one forecast walks straight. 4: motion is bounded.
+const ROWS: u32 = 4;
 
 impl Record {
     fn new(model: &Ddl, request: &EvaluationRequest) -> Self {
@@ -32,6 +35,7 @@ impl Record {
             device: model.computed_on(),
             clearance: model.clearance(),
             rows: ROWS,
+            calibration: Calibration::digest(),
         }
     }
 }

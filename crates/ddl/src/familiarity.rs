@@ -18,7 +18,7 @@ const PARTS: usize = 100;
 const BLOCK: usize = 100;
 /// One block in so many is kept apart.
 const APART: usize = 5;
-/// Speed (m/s) above that of the fastest training motion at which familiarity is less by a factor e.
+/// Speed (m/s) above that of the fastest training motions at which familiarity is less by a factor e.
 const FASTER: f64 = 1.0;
 /// The least there is, so that it is never 0.
 const LEAST: f64 = 1e-9;
@@ -38,7 +38,7 @@ pub(crate) struct TrainingMotions {
     precision: [[f64; FEATURES]; FEATURES],
     /// Distances of motions kept apart, rising: the first is the least, the last the largest.
     distances: Vec<f64>,
-    /// Mean speed (m/s) of the fastest of all.
+    /// Mean speed (m/s) that one in a thousand exceeds; not the largest, which may be that of two pedestrians taken for one.
     fastest: f64,
 }
 
@@ -48,9 +48,12 @@ impl TrainingMotions {
         let features = |track: &Vec<Position>| features(track.get(..OBSERVED)?, time_step);
         let all: Vec<SVector<f64, FEATURES>> =
             tracks.iter().map(features).collect::<Option<_>>()?;
+        if all.is_empty() {
+            return None;
+        }
         let (mut learned, mut apart) = (Vec::new(), Vec::new());
         for (block, motions) in all.chunks(BLOCK).enumerate() {
-            let to = if block % APART == 0 && all.len() > BLOCK {
+            let to = if block % APART == APART - 1 {
                 &mut apart
             } else {
                 &mut learned
@@ -65,11 +68,13 @@ impl TrainingMotions {
         // So that motions that are all alike in one respect still have a covariance.
         let covariance = covariance + SMatrix::identity() * 1e-6;
         let precision = covariance.try_inverse()?;
+        let mut speeds: Vec<f64> = all.iter().map(mean_speed).collect();
+        speeds.sort_by(f64::total_cmp);
         let mut motions = Self {
             mean: mean.into(),
             precision: std::array::from_fn(|i| std::array::from_fn(|j| precision[(i, j)])),
             distances: Vec::new(),
-            fastest: all.iter().map(mean_speed).fold(0.0, f64::max),
+            fastest: speeds[(speeds.len() - 1) * 999 / 1000],
         };
         let mut distances: Vec<f64> = apart.iter().map(|x| motions.distance(x)).collect();
         distances.sort_by(f64::total_cmp);

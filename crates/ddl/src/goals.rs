@@ -42,12 +42,13 @@ pub(crate) fn weighted(sets: &[Vec<GoalSet>]) -> Result<Vec<Vec<WeightedGoals>>,
         .collect()
 }
 
-/// The one goal that stands for each walker's, for who may have only one.
+/// The one goal that stands for each walker's, for who may have only one. Positions before somebody was first seen continue the
+/// first ones seen in a straight line: they say nothing of how even a motion is.
 pub(crate) fn only_central(windows: &[Window], sets: &[Vec<GoalSet>]) -> Vec<Vec<GoalSet>> {
     let of_window = |(window, sets): (&Window, &Vec<GoalSet>)| {
         let walkers = sets.iter().enumerate();
         walkers
-            .map(|(i, set)| set.only_central(window.observed(i)))
+            .map(|(i, set)| set.only_central(&window.observed(i)[window.made_up(i).padded..]))
             .collect()
     };
     windows.iter().zip(sets).map(of_window).collect()

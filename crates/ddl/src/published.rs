@@ -9,7 +9,7 @@ use crate::walk::Gait;
 use ddl_data::{Position, Window};
 use ddl_eval::{Forecast, ForecastError, Scores};
 use ddl_goal::GoalEstimator;
-use ddl_star::{Noise, StarNetwork};
+use ddl_star::{Frame, Noise, StarNetwork};
 
 /// Noise samples on the one goal.
 const SAMPLES: usize = 20;
@@ -74,7 +74,8 @@ impl Published {
         Ok(best)
     }
 
-    /// Twenty noise samples on the one goal of every pedestrian, plain Euler steps.
+    /// Twenty noise samples on the one goal of every pedestrian: plain Euler steps, or bounded ones of a network that has learned these, whose
+    /// output has no unit.
     pub(crate) fn forecast_towards(
         &self,
         windows: &[Window],
@@ -89,9 +90,13 @@ impl Published {
             count: SAMPLES,
             seed: self.seed,
         };
+        let gait = match config.frame {
+            Frame::World => Gait::PlainEuler,
+            Frame::Goal => Gait::Stable(None),
+        };
         let rollouts = self
             .network
-            .forecast_windows(windows, &single, noise, Gait::PlainEuler.rule(), None)
+            .forecast_windows(windows, &single, noise, gait.rule(), None)
             .map_err(|error| ForecastError::model(model::NAME, error))?;
         let rolled = rollouts.into_iter().zip(windows).zip(goals);
         rolled
@@ -103,7 +108,7 @@ impl Published {
                     shares: vec![1.0; window.len()],
                     familiarity: None,
                     config,
-                    gait: Gait::PlainEuler,
+                    gait,
                     window,
                     hypotheses: rollout.hypotheses,
                     rolled_out: rollout.positions,

@@ -1,6 +1,7 @@
 //! The windows a model is measured on: the test windows of its fold under the headline rule and the
 //! one printed beside it, or the validation part of its training recordings.
 
+use crate::error::more_for_validation;
 use crate::training::{digest, digest_of_recording, fold_of};
 use crate::{DdlError, EvaluationSplit, GoalModel, ValidationPart};
 use ddl_data::{Convention, Dataset, Fold, PedestrianId, Recording, Window, WindowRule};
@@ -28,7 +29,7 @@ impl TestSet {
     /// The windows that the run may be measured on.
     ///
     /// # Errors
-    /// When the data is not what the run was trained on, or it kept nothing for validation.
+    /// When the data is not what the run was trained on, or it kept no window for validation.
     pub(crate) fn of_run(
         goals: &GoalModel,
         dataset: &Dataset,
@@ -70,26 +71,44 @@ impl TestSet {
                 "kept a validation part of its own when it was trained, and is measured on that: leave --validation-recordings out".to_owned(),
             );
         }
-        let fold = fold_of(dataset, &data.fold)?.set_apart(&data.validation_recordings)?;
-        match on {
-            EvaluationSplit::Test => Ok(Self::new(&fold, data.convention, walkers)),
-            EvaluationSplit::Validation
-                if data.validation > 0.0 || !data.validation_recordings.is_empty() =>
-            {
-                let (rule, fraction) = (data.window_rule, data.validation);
-                if digest(&fold.training_split(rule, fraction).training) != data.sha256 {
-                    return wrong(
-                        "was trained on other recordings than these, whose last part it may have \
-                         seen; give the --data it was trained on"
-                            .to_owned(),
-                    );
-                }
-                Ok(Self::validation(&fold, data.convention, (rule, fraction), walkers))
-            }
-            EvaluationSplit::Validation => {
-                wrong("kept nothing for validation; train it with --validation 0.2 or --validation-recordings".to_owned())
-            }
+        if on == EvaluationSplit::Test {
+            let fold = fold_of(dataset, &data.fold)?;
+            return Ok(Self::new(&fold, data.convention, walkers));
         }
+        let set = Self::kept_by(goals, dataset, walkers)?;
+        if set.windows.is_empty() {
+            return wrong(format!(
+                "cannot be measured on what it kept for validation: nobody in it was seen at 20 steps in a row; train a model that keeps {}",
+                more_for_validation(data.recordings.len())
+            ));
+        }
+        Ok(set)
+    }
+
+    /// What the run kept for validation, which may hold no window.
+    ///
+    /// # Errors
+    /// When it kept nothing, or these are other recordings than it was trained on.
+    pub(crate) fn kept_by(
+        goals: &GoalModel,
+        dataset: &Dataset,
+        walkers: Option<usize>,
+    ) -> Result<Self, DdlError> {
+        let data = &goals.config().data;
+        if data.validation <= 0.0 && data.validation_recordings.is_empty() {
+            return Err(goals.source().wrong(
+                "kept nothing for validation; train it with --validation 0.2 or --validation-recordings",
+            ));
+        }
+        let fold = fold_of(dataset, &data.fold)?.set_apart(&data.validation_recordings)?;
+        let (rule, fraction) = (data.window_rule, data.validation);
+        if digest(&fold.training_split(rule, fraction).training) != data.sha256 {
+            return Err(goals.source().wrong(
+                "was trained on other recordings than these, whose last part it may have seen; give the --data it was trained on",
+            ));
+        }
+        let kept = (rule, fraction);
+        Ok(Self::validation(&fold, data.convention, kept, walkers))
     }
 
     /// The part of own recordings that a model trained on them would be validated on, for a model that knows none of them.

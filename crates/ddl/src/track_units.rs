@@ -20,3 +20,17 @@ pub struct TrackUnits {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub homography: Option<Homography>,
 }
+
+impl TrackUnits {
+    /// Seconds from one frame number to the next, where `fps` or `dt` says it.
+    #[must_use]
+    pub fn frame_time(&self) -> Option<f64> {
+        self.dt.or(self.fps.map(|fps| 1.0 / fps))
+    }
+
+    /// Whether it is said how fast frames follow each other.
+    #[must_use]
+    pub fn say_the_rate(&self) -> bool {
+        self.frame_time().is_some() || self.frame_step.is_some()
+    }
+}

@@ -35,8 +35,8 @@ pub struct TrainingRequest {
     pub validation_recordings: Vec<String>,
     /// What the goals come from.
     pub goals: GoalRecipe,
-    /// The model whose weights both networks begin with; `None`: random ones. With [`patience`](Self::patience) it is an epoch like the others, number 0: the
-    /// result forecasts the validation part no worse than it does.
+    /// The model whose weights both networks begin with; `None`: random ones. With [`patience`](Self::patience) it is an epoch like the others, number 0, so that
+    /// no epoch is taken that is worse on the validation part than the first weights. Goals and familiarity are the run's own from the start.
     pub from: Option<ModelSource>,
     /// End early when the validation error has not fallen for so many epochs, and take the best epoch for the model; `None`: all epochs, and the
     /// last is the model.
@@ -232,7 +232,9 @@ fn ensure_patience(
         });
     }
     if fold.training_split(rule, validation).validation.is_empty() {
-        return Err(DdlError::NothingToValidateOn);
+        return Err(DdlError::NothingToValidateOn {
+            recordings: fold.training_recordings().len() + fold.recordings_set_apart().len(),
+        });
     }
     Ok(())
 }

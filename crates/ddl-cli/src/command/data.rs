@@ -8,7 +8,8 @@ use crate::{output, recordings};
 use clap::Args;
 use ddl::BuiltinModel;
 use ddl::data::{Recording, Summary, WindowRule};
-use serde_json::Value;
+use serde::Serialize;
+use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -18,6 +19,7 @@ use std::path::{Path, PathBuf};
 /// once in every window.
 /// Files that cannot be read are named on standard error, and the others told of all the same (exit code 1).
 #[derive(Debug, Args)]
+#[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
 #[command(after_help = "Examples:\n  ddl data tracks.csv\n  ddl data recordings --fps 25 --json")]
 pub(crate) struct Data {
     /// Files of tracks, in any format that `ddl forecast` reads, or folders of such files
@@ -37,18 +39,17 @@ impl Data {
         let summaries = read
             .iter()
             .map(|(file, in_steps)| (file, in_steps.recording.summary(), in_steps.clock));
-        if self.telling.json {
-            let facts: Result<Vec<Value>, _> = summaries
-                .map(|(file, summary, clock)| facts(file, &summary, clock))
-                .collect();
-            output::print_json(&facts?)?;
-            return recordings::all_read(errors, files.len());
-        }
         let mut text = String::new();
+        let mut of_each = Vec::new();
         let mut total = Total::default();
         for (file, summary, clock) in summaries {
             write_summary(&mut text, &file.display().to_string(), &summary, clock)?;
+            of_each.push(facts(file, &summary, clock)?);
             total.add(&summary);
+        }
+        if self.telling.json {
+            output::print_json(&json!({"recordings": of_each, "total": total}))?;
+            return recordings::all_read(errors, files.len());
         }
         if total.recordings > 1 {
             writeln!(text, "{total}")?;
@@ -85,11 +86,13 @@ fn warn_of_unfamiliar<'r>(recordings: impl Iterator<Item = &'r Recording>) -> an
 const MANY_UNFAMILIAR: f64 = 5.0;
 
 /// What all recordings hold together.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Serialize)]
 struct Total {
     recordings: usize,
     pedestrians: usize,
+    to_forecast: usize,
     windows: usize,
+    to_learn_from: usize,
     seconds: f64,
 }
 
@@ -97,21 +100,26 @@ impl Total {
     fn add(&mut self, summary: &Summary) {
         self.recordings += 1;
         self.pedestrians += summary.pedestrians;
+        self.to_forecast += summary.to_forecast;
         self.windows += summary.windows;
+        self.to_learn_from += summary.to_learn_from;
         self.seconds += summary.seconds;
     }
 }
 
 impl std::fmt::Display for Total {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (pedestrians, windows) = (
-            many(self.pedestrians, "pedestrian", "pedestrians"),
-            many(self.windows, "window", "windows"),
-        );
         write!(
             f,
-            "in all: {} recordings, {pedestrians}, {windows} of 20 steps, {:.2} hours",
+            "in all: {} recordings, {}, {} in {} of 20 steps, {:.2} hours",
             self.recordings,
+            many(self.pedestrians, "pedestrian", "pedestrians"),
+            many(
+                self.to_learn_from,
+                "pedestrian-window",
+                "pedestrian-windows"
+            ),
+            many(self.windows, "window", "windows"),
             self.seconds / 3600.0
         )
     }

@@ -7,7 +7,7 @@ use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use anyhow::{Context as _, bail};
 use clap::Args;
-use ddl::data::Convention;
+use ddl::data::{Convention, Dataset};
 use ddl::eval::Report;
 use ddl::{
     BuiltinModel, Ddl, DdlError, EvaluationRequest, EvaluationSplit, ModelSource, Protocol,
@@ -74,20 +74,16 @@ impl Evaluate {
     /// The built-in model where none is named: that of the fold, or the one that forecasts, where there are own recordings to measure it on.
     fn builtin_model(&self) -> anyhow::Result<BuiltinModel> {
         let windows = &self.other.windows;
+        if windows.convention(&self.recordings, Convention::Star) == Convention::Own {
+            return Ok(BuiltinModel::default());
+        }
         if windows.fold.is_some() {
-            return self.other.builtin_model();
+            return self.other.builtin_model(&self.recordings);
         }
-        let default = BuiltinModel::default();
-        match self
-            .recordings
-            .convention(windows.convention, Convention::Star)
-        {
-            Convention::Own => Ok(default),
-            _ => bail!(
-                "say what to measure: a model (--model), a built-in one on the scene that it was trained without (--fold eth, hotel, univ, zara1 or \
-                 zara2) or on your own recordings (--data FOLDER), or another program's forecasts (--forecasts)"
-            ),
-        }
+        bail!(
+            "say what to measure: a model (--model), a built-in one on the scene that it was trained without (--fold eth, hotel, univ, zara1 or \
+             zara2) or on your own recordings (--data FOLDER), or another program's forecasts (--forecasts)"
+        )
     }
 
     fn measure(&self, source: &ModelSource) -> anyhow::Result<()> {
@@ -109,10 +105,10 @@ impl Evaluate {
         };
         let trained_on = model.config().data.convention;
         let windows = &self.other.windows;
-        let asked = windows
-            .convention
-            .or(windows.fold.as_ref().map(|_| trained_on));
-        let convention = self.recordings.convention(asked, trained_on);
+        let convention = windows.convention(&self.recordings, trained_on);
+        if convention == Convention::Own {
+            windows.ensure_no_rule_for_own()?;
+        }
         let title = match convention {
             Convention::Own => format!("own recordings, {}", model.config().star.variant),
             _ => format!(
@@ -131,7 +127,10 @@ impl Evaluate {
                 .reporting
                 .print(&Report::load(&run.report())?, &self.written(kept));
         }
-        let dataset = self.recordings.dataset_for(model.config(), convention)?;
+        let mut dataset = self.recordings.dataset_for(model.config(), convention)?;
+        if let (Convention::Own, Some(name)) = (convention, &windows.fold) {
+            dataset = Dataset::own(vec![dataset.recording(name)?.clone()])?;
+        }
         let progress = Progress::new("evaluate", self.reporting.telling.progress);
         let evaluation = ddl::evaluate(&model, &dataset, &request, |now| {
             let (done, total) = now.walkers;

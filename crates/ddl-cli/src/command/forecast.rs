@@ -10,6 +10,7 @@ use crate::clock::{Clock, FrameNumber};
 use crate::output::write_output;
 use crate::telling::tell;
 use crate::tracks::Tracks;
+use anyhow::bail;
 use clap::{Args, ValueEnum};
 use ddl::data::{HORIZON, OBSERVED, Window};
 use ddl::dynamics::LyapunovCertificate;
@@ -36,7 +37,7 @@ pub(crate) struct Forecast {
     /// csv: a row a position, to 0.1 mm; jsonl: a JSON object a pedestrian, with all digits
     #[arg(long, value_enum, default_value = "csv")]
     format: OutputFormat,
-    /// One forecast a pedestrian, for who may have only one: straight on to the goal that stands for all 20
+    /// One forecast a pedestrian, for who may have only one: to the goal that stands for all 20
     #[arg(long)]
     one: bool,
     /// Attach to every hypothesis the evidence that it comes nearer to its goal at every step
@@ -84,12 +85,17 @@ struct Moment<'a> {
 impl Forecast {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         self.machine.prepare_for_little()?;
+        let mut levels = self.region.iter().enumerate();
+        if let Some((_, twice)) = levels.find(|(i, level)| self.region[..*i].contains(level)) {
+            bail!("--region names {twice} twice; name each probability once");
+        }
         if self.tracks.are_live() {
             return live::run(&self);
         }
-        let observed = self.tracks.observed()?;
         let model = self.model()?;
-        let text = self.text(&model, &observed.windows, observed.clock, true)?;
+        let observed = self.tracks.observed(model.config())?;
+        let told = (true, &mut false);
+        let text = self.text(&model, &observed.windows, observed.clock, told)?;
         write_output(self.output.as_deref(), &text)?;
         self.warn_of_flood(&text);
         observed.tell_what_is_made_up();
@@ -120,41 +126,65 @@ impl Forecast {
         Ok(self.clear.of(model)?)
     }
 
-    /// What is forecast from the windows, as it is written; `headed` by the names of columns where there are any.
+    /// What is forecast from the windows, as it is written; `headed` by the names of columns where there are any. Unfamiliar motions are warned of once,
+    /// which `warned` keeps.
     fn text(
         &self,
         model: &Ddl,
         windows: &[Window],
         clock: Clock,
-        headed: bool,
+        (headed, warned): (bool, &mut bool),
     ) -> anyhow::Result<String> {
-        if self.certificate {
-            let certified = if self.one {
+        let (certified, forecasts);
+        let moments: Vec<Moment<'_>> = if self.certificate {
+            certified = if self.one {
                 model.forecast_one_certified(windows)?
             } else {
                 model.forecast_certified(windows)?
             };
             let pairs = windows.iter().zip(&certified);
-            let moments: Vec<Moment<'_>> =
-                pairs.map(|pair| Moment::certified(pair, clock)).collect();
-            warn_of_violation(&moments);
-            if headed {
-                warn_of_unfamiliar(&moments);
-            }
-            self.format.text(&moments, headed, &self.region)
+            pairs.map(|pair| Moment::certified(pair, clock)).collect()
         } else {
-            let forecasts = if self.one {
+            forecasts = if self.one {
                 model.forecast_one(windows)?
             } else {
                 model.forecast_all(windows)?
             };
             let pairs = windows.iter().zip(&forecasts);
-            let moments: Vec<Moment<'_>> = pairs.map(|pair| Moment::plain(pair, clock)).collect();
-            if headed {
-                warn_of_unfamiliar(&moments);
-            }
-            self.format.text(&moments, headed, &self.region)
-        }
+            pairs.map(|pair| Moment::plain(pair, clock)).collect()
+        };
+        warn_of_violation(&moments);
+        *warned = *warned || self.warn_of_unfamiliar(&moments);
+        self.format.text(&moments, headed, &self.region)
+    }
+
+    /// Warns of motions unlike those of the training, whose forecasts are less certain; whether there are any.
+    fn warn_of_unfamiliar(&self, moments: &[Moment<'_>]) -> bool {
+        let all = moments
+            .iter()
+            .flat_map(|moment| (0..moment.window.len()).map(move |i| (moment, i)));
+        let familiarity = |&(moment, i): &(&Moment<'_>, usize)| moment.forecast.familiarity(i);
+        let mut unfamiliar = all
+            .clone()
+            .filter(|of| familiarity(of).is_some_and(|f| f < ddl::UNFAMILIAR));
+        let Some((moment, i)) = unfamiliar.next() else {
+            return false;
+        };
+        let count = 1 + unfamiliar.count();
+        let later = if self.tracks.are_live() {
+            "; this warning is told once, and each forecast has its familiarity"
+        } else {
+            ""
+        };
+        tell(format_args!(
+            "warning: {count} of {} motions are unlike those that the model was trained on (familiarity below {}), the first that of pedestrian {} observed \
+             until frame {}: they are forecast nearly without the network, and less sharply weighted{later}",
+            all.count(),
+            ddl::UNFAMILIAR,
+            moment.window.name(i),
+            moment.observed_until(),
+        ));
+        true
     }
 }
 
@@ -211,29 +241,6 @@ impl<'a> Moment<'a> {
         let frames = (1..=HORIZON as i64).map(|t| self.clock.number(last + t * step));
         frames.collect()
     }
-}
-
-/// Warns of motions unlike those of the training: their forecasts are less certain.
-fn warn_of_unfamiliar(moments: &[Moment<'_>]) {
-    let all = moments
-        .iter()
-        .flat_map(|moment| (0..moment.window.len()).map(move |i| (moment, i)));
-    let familiarity = |&(moment, i): &(&Moment<'_>, usize)| moment.forecast.familiarity(i);
-    let mut unfamiliar = all
-        .clone()
-        .filter(|of| familiarity(of).is_some_and(|f| f < ddl::UNFAMILIAR));
-    let Some((moment, i)) = unfamiliar.next() else {
-        return;
-    };
-    let count = 1 + unfamiliar.count();
-    tell(format_args!(
-        "warning: {count} of {} motions are unlike those that the model was trained on (familiarity below {}), the first that of pedestrian {} observed \
-         until frame {}: they are forecast nearly without the network, and less sharply weighted",
-        all.count(),
-        ddl::UNFAMILIAR,
-        moment.window.name(i),
-        moment.observed_until(),
-    ));
 }
 
 /// Stable steps cannot break the guarantee, whatever the network emits. If one does, a user who acts on

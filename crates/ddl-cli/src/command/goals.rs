@@ -17,6 +17,7 @@ use std::path::PathBuf;
 ///
 /// As csv; or, with --measure, how good a model's goals are.
 #[derive(Debug, Args)]
+#[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
 #[command(
     after_help = "Examples:\n  ddl goals tracks.csv\n  ddl goals --model runs/eth --measure test --svg goals.svg"
 )]
@@ -82,8 +83,8 @@ impl Goals {
                     );
                 }
                 self.machine.prepare_for_little()?;
-                let observed = tracks.observed()?;
                 let model = self.model.load_goals(self.machine.device)?;
+                let observed = tracks.observed(model.config())?;
                 let goals = model.goals(&observed.windows)?;
                 let text = csv(&observed, &goals)?;
                 observed.tell_what_is_made_up();

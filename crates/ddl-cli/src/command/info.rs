@@ -11,6 +11,7 @@ use std::path::PathBuf;
 
 /// Describe a model, or this program
 #[derive(Debug, Args)]
+#[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
 pub(crate) struct Info {
     /// Directory of a run, a packed file, or the name of a built-in model [default: the program itself]
     #[arg(value_name = "MODEL")]

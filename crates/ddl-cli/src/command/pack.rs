@@ -13,6 +13,7 @@ use std::path::PathBuf;
 /// are then proposed by the network alone. Every command that takes a --model takes the file. How much the tracks would add, a row
 /// "DDL without an expert library" in the results of the run says.
 #[derive(Debug, Args)]
+#[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
 #[command(after_help = "Example:\n  ddl pack --model runs/zara1 --out zara1.safetensors")]
 pub(crate) struct Pack {
     /// Directory of a finished run

@@ -10,6 +10,7 @@ use std::path::PathBuf;
 ///
 /// Writes report.html to look at, report.md, report.tex, report.json, moments.json and figures.
 #[derive(Debug, Args)]
+#[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
 #[command(after_help = "Example:\n  ddl report runs/eth runs/hotel --out runs")]
 pub(crate) struct Report {
     /// Directories of evaluated runs

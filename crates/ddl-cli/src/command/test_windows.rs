@@ -8,7 +8,7 @@ use ddl::data::{Convention, Recording, Window, WindowRule};
 /// The test windows of a fold.
 #[derive(Debug, Args)]
 pub(crate) struct TestWindows {
-    /// Data convention: star, social-gan, simulated or own [default: star; own where --data names recordings that are not those of star, and no --fold is given]
+    /// Data convention: star, social-gan, simulated or own [default: star; own where --data names recordings that are not those of star, and --fold names no scene of star]
     #[arg(long)]
     pub(crate) convention: Option<Convention>,
     /// Scene to test on: eth, hotel, univ, zara1, zara2 (simulated: corridor, crossing, plaza, bottleneck,
@@ -22,10 +22,22 @@ pub(crate) struct TestWindows {
 }
 
 impl TestWindows {
-    /// The convention asked for, or that of what lies there.
-    pub(crate) fn convention(&self, recordings: &RecordingsAt) -> Convention {
-        let of_fold = self.fold.as_ref().map(|_| Convention::Star);
-        recordings.convention(self.convention.or(of_fold), Convention::Star)
+    /// The convention asked for, or that of the fold, or that of what lies there, which may be that of a model.
+    pub(crate) fn convention(&self, recordings: &RecordingsAt, of_model: Convention) -> Convention {
+        let scene = |fold: &&String| Convention::Star.fold_names().any(|known| known == *fold);
+        let of_fold = self.fold.as_ref().filter(scene);
+        let asked = self.convention.or(of_fold.map(|_| Convention::Star));
+        recordings.convention(asked, of_model)
+    }
+
+    /// Refuses a rule for recordings that have one.
+    pub(crate) fn ensure_no_rule_for_own(&self) -> anyhow::Result<()> {
+        if self.window_rule.is_some() {
+            bail!(
+                "own recordings are measured on every complete window of 20 steps: leave --window-rule out"
+            );
+        }
+        Ok(())
     }
 
     /// The rule asked for, or the headline's.
@@ -40,18 +52,15 @@ impl TestWindows {
             let known: Vec<&str> = convention.fold_names().collect();
             bail!("give the --fold to test on, one of {}", known.join(", "));
         }
+        if let (None, Convention::Star, Some(fold)) = (self.convention, convention, &self.fold) {
+            ensure_scene_of_star(fold)?;
+        }
         Ok(self.fold.as_deref())
     }
 
     /// Refuses windows that no built-in model is measured on.
     pub(crate) fn ensure_of_builtin_models(&self) -> anyhow::Result<()> {
         let convention = self.convention.unwrap_or(Convention::Star);
-        if convention == Convention::Own {
-            bail!(
-                "--fold of your own recordings is for a run that was trained without it (--model) or for --forecasts; to measure a built-in model on one file, \
-                 name that: --data FILE"
-            );
-        }
         if convention != Convention::Star {
             bail!(
                 "the built-in models were trained on `star` data and cannot be measured on `{convention}` data; train one on it (`ddl train \
@@ -71,7 +80,7 @@ impl TestWindows {
         &self,
         recordings: &RecordingsAt,
     ) -> anyhow::Result<(String, Vec<Window>)> {
-        let convention = self.convention(recordings);
+        let convention = self.convention(recordings, Convention::Star);
         let fold = self.fold(convention)?;
         let dataset = recordings.dataset(convention)?;
         let rule = self.rule(convention);
@@ -82,4 +91,16 @@ impl TestWindows {
         };
         Ok((fold.to_owned(), dataset.fold(fold)?.test_windows(rule)))
     }
+}
+
+/// Refuses what is no scene of `star`, where nobody asked for a convention.
+pub(crate) fn ensure_scene_of_star(fold: &str) -> anyhow::Result<()> {
+    let known: Vec<&str> = Convention::Star.fold_names().collect();
+    if !known.contains(&fold) {
+        bail!(
+            "no fold {fold:?} in the star convention; it has {}; where {fold:?} is one of your own recordings, add --convention own",
+            known.join(", ")
+        );
+    }
+    Ok(())
 }

@@ -4,6 +4,7 @@ mod bars;
 mod compared;
 mod finished;
 
+use super::test_windows::ensure_scene_of_star;
 use super::{Machine, RecordingsAt, Reporting};
 use crate::interrupt::Interrupt;
 use crate::telling::tell;
@@ -258,13 +259,7 @@ impl Train {
         match (self.convention, &self.fold) {
             (Some(convention), Some(fold)) => Ok((convention, fold.clone())),
             (None, Some(fold)) => {
-                let known: Vec<&str> = Convention::Star.fold_names().collect();
-                if !known.contains(&fold.as_str()) {
-                    bail!(
-                        "no fold {fold:?} in the star convention; it has {}; to leave out one of your own recordings, add --convention own",
-                        known.join(", ")
-                    );
-                }
+                ensure_scene_of_star(fold)?;
                 Ok((Convention::Star, fold.clone()))
             }
             (None, None) if !self.recordings.is_named() => bail!(

@@ -48,8 +48,8 @@ impl View {
             bail!("a page is made of a file of tracks; `ddl forecast -` forecasts live ones");
         }
         self.machine.prepare_for_little()?;
-        let observed = self.tracks.observed()?;
         let model = self.clear.of(self.model.load(self.machine.device)?)?;
+        let observed = self.tracks.observed(model.config())?;
         let chosen = spread(&observed.windows, self.moments);
         let page = page(&model, &chosen, &observed, self.tracks.file())?;
         let path = self.output.unwrap_or_else(|| {

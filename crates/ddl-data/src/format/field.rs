@@ -45,21 +45,27 @@ impl Who {
     }
 }
 
-/// A pedestrian: a number as [`integer`] reads it, or a word. What is a number but no whole one, or none at all, is refused.
+/// A pedestrian: a number as [`integer`] reads it, or a word. A fraction, NaN, an infinite number and an empty field are refused;
+/// whole numbers that are too large, and digits that only look like a number, such as `5e20` among hexadecimal names, are words.
 pub(super) fn pedestrian(text: &str, name: &'static str) -> Result<Who, FormatProblem> {
     let text = text.trim();
     match integer(text, name) {
         Ok(number) => Ok(Who::Number(number, (!is_plain(text)).then(|| text.into()))),
-        Err(problem) if text.is_empty() || is_number(text) => Err(problem),
+        Err(problem) if text.is_empty() || is_no_name(text) => Err(problem),
         Err(_) => Ok(Who::Word(text.into())),
     }
 }
 
-/// Whether a text is a number, be it NaN or infinite. `12e4567` is not: too large for one, it is a word.
-fn is_number(text: &str) -> bool {
+/// Whether a text is a fraction, NaN or infinite. `12e4567` is not: too large for a number, it is a word.
+fn is_no_name(text: &str) -> bool {
     let digit = text.starts_with(|c: char| c.is_ascii_digit());
-    text.parse::<f64>()
-        .is_ok_and(|number| number.is_finite() || !digit)
+    text.parse::<f64>().is_ok_and(|number| {
+        if number.is_finite() {
+            number.fract() != 0.0
+        } else {
+            !digit
+        }
+    })
 }
 
 /// A coordinate (m).
@@ -134,6 +140,8 @@ mod tests {
             ("007", Some(7), "007"),
             ("7f3e", None, "7f3e"),
             ("12e4567", None, "12e4567"),
+            ("5e20", None, "5e20"),
+            ("9007199254740992", None, "9007199254740992"),
             (" a b ", None, "a b"),
         ] {
             let who = pedestrian(text, "pedestrian").unwrap();
@@ -144,7 +152,7 @@ mod tests {
             };
             assert_eq!(found, number, "{text}");
         }
-        for text in ["", " ", "1.5", "NaN", "-inf", "9007199254740992"] {
+        for text in ["", " ", "1.5", "NaN", "-inf"] {
             assert!(pedestrian(text, "pedestrian").is_err(), "{text}");
         }
     }

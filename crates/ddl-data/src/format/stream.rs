@@ -1,6 +1,6 @@
 //! Tracks as they arrive: a frame as soon as it is whole.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead, Read as _};
 use std::sync::Arc;
 
@@ -60,6 +60,8 @@ pub struct FrameReader<R> {
     /// What scenes say of it.
     rate: trajnet::Rate,
     words: Numbering,
+    /// Pedestrians' numbers that are written in another way than by their digits.
+    numbers: BTreeSet<Box<str>>,
     /// The frame that is being read.
     current: Option<Growing>,
     /// The last frame that was given out.
@@ -95,6 +97,7 @@ impl<R: BufRead> FrameReader<R> {
             kind: None,
             rate: trajnet::Rate::default(),
             words: Numbering::remembering(MOST_WORDS),
+            numbers: BTreeSet::new(),
             current: None,
             last: None,
             ended: false,
@@ -244,9 +247,14 @@ impl<R: BufRead> FrameReader<R> {
             words: BTreeMap::new(),
         });
         let pedestrian = match seen.who {
-            // after a word, `1e3` is one as well
             Who::Number(number, None) => PedestrianId(number),
-            Who::Number(number, _) if self.words.is_empty() => PedestrianId(number),
+            // after a word, `1e3` is one as well, unless it was a number before
+            Who::Number(number, Some(text))
+                if self.words.is_empty() || self.numbers.contains(&text) =>
+            {
+                self.numbers.insert(text);
+                PedestrianId(number)
+            }
             who => {
                 let (id, word) = self.words.number(&who.written());
                 growing.words.insert(id, word);

@@ -23,7 +23,6 @@ pub struct Bounded<T> {
 
 impl<T: Real> Bounded<T> {
     fn holds(&self) -> bool {
-        // false for NaN
         self.largest <= self.bound
     }
 }
@@ -48,7 +47,7 @@ pub struct MotionEvidence<T> {
 }
 
 impl<T: Real> MotionEvidence<T> {
-    /// The evidence of `path` (metres; the start first), whose steps of `dt` seconds were shaped within `bounds`;
+    /// The evidence of `path` (metres, finite; the start first), whose steps of `dt` seconds were shaped within `bounds`;
     /// `alone` unless obstacles were minded.
     pub(super) fn new(
         path: &[SVector<T, 2>],
@@ -175,4 +174,58 @@ fn farthest_from_line<T: Real>(path: &[SVector<T, 2>], goal: &SVector<T, 2>) -> 
         axis.map_or(way.norm(), |axis| way.perp(&axis).abs())
     };
     path.iter().map(off).fold(T::zero(), T::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector2;
+
+    use super::*;
+
+    /// What is said of a path to (4.8, 0) in 12 steps of 0.4 s, at most at 2.15 m/s.
+    fn said(place: impl Fn(f64) -> [f64; 2]) -> String {
+        let path: Vec<Vector2<f64>> = (0..13).map(|t| place(f64::from(t)).into()).collect();
+        let attractor = Attractor::new(Vector2::new(4.8, 0.0)).unwrap();
+        let bounds = MotionBounds::default();
+        let evidence = MotionEvidence::new(&path, &attractor, &bounds, 0.4, true);
+        evidence
+            .check()
+            .map_or_else(|violation| violation.to_string(), |()| String::new())
+    }
+
+    #[test]
+    fn straight_on_in_time_is_within_all_bounds() {
+        assert_eq!(said(|t| [0.4 * t, 0.0]), "");
+    }
+
+    #[test]
+    fn each_figure_that_exceeds_its_bound_is_named() {
+        let leap = said(|t| {
+            [
+                if t < 1.0 {
+                    0.0
+                } else {
+                    0.9 + 0.354 * (t - 1.0)
+                },
+                0.0,
+            ]
+        });
+        assert!(leap.contains("speed (m/s)"), "{leap}");
+        // 0 and then 2.1 m/s
+        let start = said(|t| {
+            [
+                if t < 2.0 {
+                    0.0
+                } else {
+                    0.84 + 0.396 * (t - 2.0)
+                },
+                0.0,
+            ]
+        });
+        assert!(start.contains("change of speed"), "{start}");
+        let detour = said(|t| [0.0, 0.84 * t]);
+        assert!(detour.contains("straight line"), "{detour}");
+        let short = said(|t| [0.39 * t, 0.0]);
+        assert!(short.contains("from the goal at the end"), "{short}");
+    }
 }

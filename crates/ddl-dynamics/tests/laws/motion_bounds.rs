@@ -79,6 +79,7 @@ fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCa
     let off = 64.0 * T::EPSILON.as_f64() * far;
     let dt = dt.as_f64();
     let top = bounds.top_speed().as_f64();
+    let (mut before, mut sideways): (Option<(f64, [f64; 2])>, f64) = (None, 0.0);
     for (k, step) in path.windows(2).enumerate() {
         let [from, to] = [step[0], step[1]].map(|p| p.map(Real::as_f64));
         let goal = attractor.goal().map(Real::as_f64);
@@ -88,10 +89,33 @@ fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCa
             "step {k}: {speed} m/s over {top}"
         );
         let (d, after) = ((goal - from).norm(), (goal - to).norm());
-        prop_assert!(after <= d + off);
         // the angle of Kantorovich, and never past the goal
         let range = bounds.eigenvalues(T::rounded(d), METRICS - k, T::rounded(dt));
         let sine = range.largest_deviation_sine().as_f64();
+        let [slow, fast] = [range.smallest, range.largest].map(Real::as_f64);
+        let near = |x: f64| 1e-5 * x + off / dt;
+        prop_assert!(
+            after <= d - (slow - near(slow)) * dt + off,
+            "step {k}: {d} to {after}"
+        );
+        if let Some((was, [slowest, fastest])) = before {
+            let most = f64::max(fast - slowest, fastest - slow);
+            let change = f64::abs(speed - was);
+            prop_assert!(
+                change <= most + near(fast + fastest),
+                "step {k}: {change} over {most}"
+            );
+        }
+        before = Some((speed, [slow, fast]));
+        sideways += 0.5 * dt * (fast - slow + near(fast)) + off;
+        let start = path[0].map(Real::as_f64);
+        if let Some(ahead) = (goal - start).try_normalize(1e3 * off) {
+            let deviation = ahead.perp(&(to - start)).abs();
+            prop_assert!(
+                deviation <= sideways,
+                "step {k}: {deviation} over {sideways}"
+            );
+        }
         if d > 1e3 * off && speed * dt > 1e3 * off {
             let (ahead, moved) = ((goal - from).normalize(), (to - from).normalize());
             prop_assert!(ahead.perp(&moved).abs() <= sine + 1e-2 && ahead.dot(&moved) > 0.0);

@@ -72,18 +72,15 @@ mod tests {
     };
 
     /// Standing hypotheses at (0, 0) and (10, 0), weights 0.8 and 0.2; the truth stands 0.5 m from the second. With a spread of 0.5 m its score
-    /// is 0.5 - ln 0.2 = 2.11: inside where the quantile is 3, outside where it is 2.
+    /// is 0.5 - ln(0.2 / 0.8) = 1.89: inside where the quantile is 3, outside where it is 1.5.
     #[test]
     fn by_hand() {
         let still = [0.0, 0.0];
         let window = window(&[[10.5, 0.0]], &[still]);
         let walks = [walk(still, still), walk([10.0, 0.0], still)].concat();
         let bare = Forecast::new(1, 2, walks, vec![0.8, 0.2], None).unwrap();
-        let table = RegionTable::of(
-            &[[2.0; HORIZON], [2.0; HORIZON], [3.0; HORIZON]],
-            &[0.5, 0.9],
-        )
-        .unwrap();
+        let scores = [vec![[1.5; HORIZON]; 10], vec![[3.0; HORIZON]; 9]].concat();
+        let table = RegionTable::of(&scores, &[0.5, 0.9]).unwrap();
         let scene = Scene::new(&window, &bare).unwrap();
         assert_relative_eq!(
             weight_log_loss(&scene, 0).unwrap(),
@@ -95,7 +92,7 @@ mod tests {
         let scores = RegionScores::of(&Scene::new(&window, &forecast).unwrap(), 0).unwrap();
         assert_relative_eq!(scores.coverage[0], 0.0);
         assert_relative_eq!(scores.coverage[1], 1.0);
-        let area = 2.0 * 0.25 * ((3.0 + 0.8_f64.ln()) + (3.0 + 0.2_f64.ln()));
+        let area = 2.0 * 0.25 * (3.0 + (3.0 + 0.25_f64.ln()));
         assert_relative_eq!(scores.end_radius[1], area.sqrt(), epsilon = 0.1);
     }
 }

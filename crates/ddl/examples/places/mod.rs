@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 /// Which recordings of a folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(dead_code, reason = "each example takes one part")]
 pub(crate) enum Part {
-    /// Every other file, or of one file the first half of its windows: what constants are fitted on.
+    /// The first, the third and so on, or of one file the first half of its windows: what constants are fitted on.
     Calibration,
-    /// All of them.
-    #[allow(dead_code, reason = "each example takes one part")]
-    Whole,
+    /// The others, for the last look.
+    Rest,
 }
 
 /// A folder's windows.
@@ -37,9 +37,12 @@ impl Place {
             .map(|entry| Ok(entry?.path()))
             .collect::<std::io::Result<_>>()?;
         files.sort();
-        let fitted = part == Part::Calibration;
-        let (alone, every) = (files.len() == 1, if fitted { 2 } else { 1 });
-        let recordings = files.iter().step_by(every).map(|file| {
+        let (alone, rest) = (files.len() == 1, part == Part::Rest);
+        let of_part = files
+            .iter()
+            .enumerate()
+            .filter(|(at, _)| alone || (at % 2 == 1) == rest);
+        let recordings = of_part.map(|(_, file)| {
             let name = file.file_stem().unwrap_or_default().to_string_lossy();
             let recording = parse_recording(&std::fs::read(file)?, &name, Format::Table)?;
             Ok(recording.in_steps(frame_time)?.recording)
@@ -49,8 +52,9 @@ impl Place {
             .iter()
             .flat_map(|r| r.windows(WindowRule::Complete));
         let mut windows: Vec<Window> = windows.collect();
-        if alone && fitted {
-            windows.truncate(windows.len() / 2);
+        if alone {
+            let later = windows.split_off(windows.len() / 2);
+            windows = if rest { later } else { windows };
         }
         let all: usize = windows.iter().map(Window::len).sum();
         let every = all.div_ceil(pedestrians).max(1);

@@ -1,7 +1,7 @@
 //! `ddl evaluate --forecasts`: what another program forecast, scored beside the baselines.
 
 use super::super::RecordingsAt;
-use super::super::test_windows::TestWindows;
+use super::super::test_windows::{TestWindows, ensure_scene_of_star};
 use anyhow::Context as _;
 use clap::Args;
 use ddl::data::{Convention, WindowRule};
@@ -40,9 +40,12 @@ pub(crate) struct OtherProgram {
 
 impl OtherProgram {
     /// The built-in model to measure, where neither forecasts nor a model are given but a fold: its model.
-    pub(crate) fn builtin_model(&self) -> anyhow::Result<BuiltinModel> {
+    pub(crate) fn builtin_model(&self, recordings: &RecordingsAt) -> anyhow::Result<BuiltinModel> {
         self.windows.ensure_of_builtin_models()?;
         let fold = self.windows.fold.as_deref().unwrap_or_default();
+        if recordings.is_named() {
+            ensure_scene_of_star(fold)?;
+        }
         Ok(fold.parse()?)
     }
 
@@ -66,7 +69,7 @@ impl OtherProgram {
             return Err(foreign::ForeignError::Published.into());
         }
         let (fold, windows) = self.windows.windows(recordings)?;
-        let convention = self.windows.convention(recordings);
+        let convention = self.windows.convention(recordings, Convention::Star);
         let rule = self.windows.rule(convention);
         let coverage = if self.intersection {
             Coverage::Intersection

@@ -4,7 +4,7 @@ use super::Forecast;
 use crate::clock::Clock;
 use crate::recordings;
 use crate::telling::tell;
-use crate::units::live_step;
+use crate::units::{Units, live_step};
 use anyhow::{Context as _, bail};
 use ddl::data::{
     Completion, Doubt, Frame, FrameReader, Homography, LiveTracks, MadeUp, Observation, Recording,
@@ -19,15 +19,16 @@ const LONGEST_STEP: i64 = 1000;
 
 /// Forecasts from every frame as soon as it is whole, until standard input ends or nobody reads on.
 pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
-    let mut tracking = Tracking::new(
-        forecast.tracks.completion(),
-        forecast.tracks.live_frame_step()?,
-    )?;
-    let homography = forecast.tracks.homography()?;
     let model = forecast.model()?;
+    let units = forecast.tracks.live_units(model.config())?;
+    let homography = units.homography()?;
+    if let Some(note) = units.note_of_run(false) {
+        tell(format_args!("note: {note}"));
+    }
+    let mut tracking = Tracking::new(forecast.tracks.completion(), units)?;
     let mut output = Output::open(forecast.output.as_deref())?;
     let mut frames = FrameReader::new(stdin().lock(), "standard input");
-    let (mut headed, mut empty, mut looked_at) = (true, true, false);
+    let (mut headed, mut empty, mut looked_at, mut warned) = (true, true, false, false);
     let mut wrong = None;
     while wrong.is_none() {
         let frame = frames.next_frame().or_else(|error| {
@@ -46,7 +47,7 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
         if !looked_at {
             looked_at = warn_of_speeds(&window)?;
         }
-        let text = forecast.text(&model, &[window], Clock::WHOLE, headed)?;
+        let text = forecast.text(&model, &[window], Clock::WHOLE, (headed, &mut warned))?;
         headed = false;
         output
             .write(&text)
@@ -149,19 +150,21 @@ fn on_the_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::R
 /// Live tracks whose frame step may have to be learned from the first two frames.
 struct Tracking {
     completion: Completion,
+    units: Units,
     tracks: Option<LiveTracks>,
     /// The first frame, until there is a second to learn from.
     first: Option<Frame>,
 }
 
 impl Tracking {
-    fn new(completion: Completion, frame_step: Option<i64>) -> anyhow::Result<Self> {
-        let tracks = match frame_step {
+    fn new(completion: Completion, units: Units) -> anyhow::Result<Self> {
+        let tracks = match units.live_frame_step()? {
             None => None,
             Some(step) => Some(LiveTracks::with_frame_step(step)?.completing(completion)),
         };
         Ok(Self {
             completion,
+            units,
             tracks,
             first: None,
         })
@@ -176,28 +179,32 @@ impl Tracking {
             self.first = Some(frame);
             return Ok(None);
         };
-        let apart = frame.number - first.number;
-        if apart > LONGEST_STEP {
-            bail!(
-                "standard input: the first two frames are {apart} apart; say with --fps or --frame-step how many that are in 0.4 s"
-            );
-        }
-        let step = match rate {
-            None => apart,
-            Some(rate) => live_step(1.0 / (rate * apart as f64)).with_context(|| {
-                format!("standard input: the scenes say fps {rate}, and the first two frames are {apart} apart")
-            })?,
-        };
-        let reason = match rate {
-            None => "as the first two are".to_owned(),
-            Some(rate) => format!("by the fps of the scenes, {rate}"),
-        };
+        let (step, reason) = self.step(frame.number - first.number, rate)?;
         tell(format_args!(
-            "note: frames are taken to be {step} apart in 0.4 s, {reason}; --fps or --frame-step says otherwise"
+            "note: frames are taken to be {step} apart in 0.4 s, {reason}; give --fps or --frame-step to read them differently"
         ));
         let tracks = LiveTracks::with_frame_step(step)?.completing(self.completion);
         let tracks = self.tracks.insert(tracks);
         tracks.push(first.number, first.people)?;
         Ok(tracks.push(frame.number, frame.people)?)
+    }
+
+    /// Frame numbers in a step where no option gives them, and why so many; `apart`: those between the first two frames.
+    fn step(&self, apart: i64, rate: Option<f64>) -> anyhow::Result<(i64, String)> {
+        if let Some(rate) = rate {
+            let step = live_step(1.0 / (rate * apart as f64)).with_context(|| {
+                format!("standard input: the scenes give {rate} frames a second, and the first two frames are {apart} apart")
+            })?;
+            return Ok((step, format!("by the fps of the scenes, {rate}")));
+        }
+        if let Some(remembered) = self.units.remembered_live_frame_step()? {
+            return Ok(remembered);
+        }
+        if apart > LONGEST_STEP {
+            bail!(
+                "standard input: the first two frames are {apart} apart; say with --fps or --frame-step how many that are in 0.4 s"
+            );
+        }
+        Ok((apart, "as the first two are".to_owned()))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Moment;
 use crate::clock::FrameNumber;
-use crate::output::table_metres;
+use crate::output::{table_metres, table_share};
 use anyhow::Context as _;
 use ddl::data::PedestrianName;
 use serde::Serialize;
@@ -73,18 +73,18 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyh
                 for (t, (position, &frame)) in positions.iter().zip(&frames).enumerate() {
                     let [x, y] = position.map(table_metres);
                     let row = Row {
-                        observed_until: moment.observed_until(),
+                        observed_until: moment.observed_until().rounded(),
                         pedestrian: moment.window.name(i),
                         hypothesis,
                         weight: moment.forecast.weight(i, hypothesis),
                         goal_x: goal.map(|[x, _]| x),
                         goal_y: goal.map(|[_, y]| y),
-                        frame,
+                        frame: frame.rounded(),
                         x,
                         y,
                         padded: made_up.padded,
                         filled: made_up.filled,
-                        familiarity: moment.forecast.familiarity(i).map(table_metres),
+                        familiarity: moment.forecast.familiarity(i).map(table_share),
                     };
                     let radius = |&level: &f64| {
                         let radius = moment.forecast.region_radius(i, hypothesis, t, level);

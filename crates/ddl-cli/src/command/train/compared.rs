@@ -6,7 +6,11 @@ use crate::progress::Progress;
 use ddl::data::{Convention, Dataset};
 use ddl::{BuiltinModel, Comparison, Ddl, TrainingRequest};
 
-/// Measures both; `None` where nothing was kept, the network is not trained, or the recordings are among those the built-in model has learned from.
+/// Gain (m) that a sentence without an interval calls one.
+const LEAST: f64 = 0.001;
+
+/// Measures both; `None` where nothing was kept, or the network is not trained. The built-in model's error is that of a model that has learned
+/// from these recordings where they are of ETH/UCY.
 pub(super) fn with_builtin(
     request: &TrainingRequest,
     dataset: &Dataset,
@@ -53,7 +57,7 @@ fn verdict(compared: &Comparison) -> String {
     let gain = compared.other.min_ade - compared.run.min_ade;
     let builtin = BuiltinModel::default();
     let Some(paired) = compared.difference else {
-        let so_far = if gain > 0.0 {
+        let so_far = if gain >= LEAST {
             format!("training seems worth it: {gain:.3} m less minADE")
         } else {
             format!(
@@ -74,6 +78,6 @@ fn verdict(compared: &Comparison) -> String {
             -gain, -high, -low
         )
     } else {
-        format!("training made no difference that chance does not make as well: {interval}")
+        format!("training made no difference that is more than chance: {interval}")
     }
 }

@@ -42,7 +42,7 @@ pub(super) fn print(
         _ if only_goals => "the goals are trained".to_owned(),
         None => format!("trained, {epochs}"),
         Some((_, 0)) => format!(
-            "trained, {epochs}; none was better than the model it began with, which is kept"
+            "trained, {epochs}; none of the forecasting network was better than its first weights, which are kept, with goals from these recordings"
         ),
         Some((error, epoch)) => {
             let error = match compared {
@@ -53,15 +53,16 @@ pub(super) fn print(
             format!("trained, {epochs}; epoch {epoch} is the model{error}")
         }
     };
+    let measured = compared.is_some();
     let compared = compared.map_or_else(String::new, |compared| {
         format!("{}\n", compared::words(compared))
     });
-    let next = next(request, only_goals, &recordings.as_options());
+    let next = next(request, (only_goals, measured), &recordings.as_options());
     output::print(&format!("{run}: {done}\n{compared}next: {next}\n"))
 }
 
 /// The command to go on with: what can be measured is.
-fn next(request: &TrainingRequest, only_goals: bool, data: &str) -> String {
+fn next(request: &TrainingRequest, (only_goals, measured): (bool, bool), data: &str) -> String {
     let run = shell_word(request.out.path());
     let kept = request.validation > 0.0 || !request.validation_recordings.is_empty();
     let part = match (request.fold == Fold::WHOLE, kept) {
@@ -72,9 +73,11 @@ fn next(request: &TrainingRequest, only_goals: bool, data: &str) -> String {
     match (only_goals, part) {
         (true, Some(part)) => format!("ddl goals --model {run} --measure {part}{data}"),
         (true, None) => "the same command without --only-goals".to_owned(),
-        (false, Some("validation")) => format!("ddl evaluate --model {run}{data} --validation"),
-        (false, Some(_)) => format!("ddl evaluate --model {run}{data}"),
-        (false, None) => format!("ddl forecast TRACKS --model {run}"),
+        (false, Some("validation")) if measured => {
+            format!("ddl evaluate --model {run}{data} --validation")
+        }
+        (false, Some("test")) => format!("ddl evaluate --model {run}{data}"),
+        (false, _) => format!("ddl forecast TRACKS --model {run}"),
     }
 }
 
