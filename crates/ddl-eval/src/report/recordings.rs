@@ -61,7 +61,7 @@ fn table(group: &Group<'_>, fold: &str) -> Option<Table> {
     let start = ["all".to_owned(), first.scores.pedestrians.to_string()];
     table.row(start.into_iter().chain(errors));
     Some(table.captioned(format!(
-        "minADE/minFDE in metres, mean over the pedestrians of each recording, and of all. {}",
+        "minADE/minFDE in metres, mean over the pedestrians of each recording, and of all; of several seeds the first. {}",
         group.conditions_in_words()
     )))
 }
