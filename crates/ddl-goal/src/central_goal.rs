@@ -81,9 +81,12 @@ fn noise_share(changes: &[[f64; 2]]) -> f64 {
     if count == 0 || square < f64::MIN_POSITIVE {
         return 0.0;
     }
-    let correlation = pairs.sum::<f64>() / count as f64 / square;
-    // 0 of NaN, where squares overflow
-    (correlation / OF_ERRORS).max(0.0).min(1.0)
+    let share = pairs.sum::<f64>() / count as f64 / square / OF_ERRORS;
+    // where squares overflow
+    if share.is_nan() {
+        return 0.0;
+    }
+    share.clamp(0.0, 1.0)
 }
 
 #[cfg(test)]

@@ -30,8 +30,11 @@ pub fn motion_bounds(observed: &[Position], time_step: f64, share: f64) -> Motio
     let mean = recent.iter().sum::<Vector2<f64>>() / recent.len() as f64;
     let even = (-(tremble / JITTER).powi(2)).exp();
     let velocity = (mean + (last - mean) * even) / time_step;
-    // 0 of NaN
-    let share = share.max(0.0).min(1.0);
+    let share = if share.is_nan() {
+        0.0
+    } else {
+        share.clamp(0.0, 1.0)
+    };
     MotionBounds::new(MotionBounds::top_speed_after(fastest), velocity, share).unwrap_or_default()
 }
 
