@@ -280,11 +280,8 @@ fn the_rate_of_a_run_yields_to_files_and_options() {
     }
 }
 
-/// Cameras of 23.98 frames a second that count pixels: said once, remembered with the run.
-#[test]
-fn a_run_remembers_rate_and_homography() {
-    let place = tempfile::tempdir().unwrap();
-    let folder = place.path();
+/// Three recordings in pixels, 23.98 frames a second, and their homography.
+fn film(folder: &Path) {
     std::fs::create_dir(folder.join("film")).unwrap();
     let crowds = ddl_tests::crowd::dataset();
     for (name, scene) in [
@@ -312,6 +309,14 @@ fn a_run_remembers_rate_and_homography() {
     }
     // beside the recordings, and none of them
     std::fs::write(folder.join("film/H.txt"), "0.02 0 0\n0 0.02 0\n0 0 1\n").unwrap();
+}
+
+/// Cameras of 23.98 frames a second that count pixels: said once, remembered with the run.
+#[test]
+fn a_run_remembers_rate_and_homography() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path();
+    film(folder);
     let run = |line: &str| program::run(folder, line);
     let units = "--fps 23.98 --homography film/H.txt";
 
