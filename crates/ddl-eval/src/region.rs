@@ -169,7 +169,7 @@ impl Forecast {
     }
 
     /// The radius (m) of the disc about hypothesis `k` of pedestrian `i`, `t` + 1 steps ahead, in the region of a level; `None`
-    /// where the region has no such disc, for levels beyond the [range](RegionTable::range) of the table, and for forecasts
+    /// where the region has no such disc, for levels beyond the range of the table, and for forecasts
     /// without regions.
     ///
     /// # Panics
@@ -182,7 +182,7 @@ impl Forecast {
     }
 
     /// The region that holds pedestrian `i`, `t` + 1 steps ahead, with the probability `level`: at most one disc a
-    /// hypothesis, and one of the likeliest; `None` for levels beyond the [range](RegionTable::range) of the table, and for
+    /// hypothesis, and one of the likeliest; `None` for levels beyond the range of the table, and for
     /// forecasts without regions.
     ///
     /// # Panics
