@@ -135,7 +135,8 @@ fn json_lines_hold_the_same_numbers_as_csv() {
                 let goal = hypothesis.goal.unwrap();
                 assert!(own_tracks::alike_in_a_table([row.goal_x, row.goal_y], goal));
                 assert_eq!((row.padded, row.filled), (line.padded, line.filled));
-                assert!((row.familiarity - line.familiarity).abs() < 1e-4);
+                // to three digits
+                assert!((row.familiarity / line.familiarity - 1.0).abs() < 6e-3);
                 assert!(line.spread.is_sorted() && line.spread.len() == 12);
                 assert_eq!((row.padded, row.filled), (0, 0));
                 assert_eq!(row.weight.to_bits(), hypothesis.weight.to_bits());

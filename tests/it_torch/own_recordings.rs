@@ -320,7 +320,7 @@ fn recordings_in_pixels_or_of_a_camera_are_doubted_aloud() {
     let place = tempfile::tempdir().unwrap();
     for (factor, words) in [
         (60.0, "half of the steps are faster"),
-        (0.1, "nobody is ever faster"),
+        (0.1, "nine in ten steps"),
     ] {
         let mut rows = own_tracks::three_people(60);
         for (.., x, y) in &mut rows {

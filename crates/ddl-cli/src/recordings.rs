@@ -40,7 +40,7 @@ fn in_folder(folder: &Path, units: &Units) -> anyhow::Result<Vec<PathBuf>> {
     }
     if files.is_empty() {
         bail!(
-            "{} holds no recordings: files that end in .csv, .txt or .ndjson",
+            "{} holds no recordings: files that end in .csv, .txt or .ndjson; folders within it are not read",
             folder.display()
         );
     }

@@ -7,7 +7,7 @@ use crate::units::{InSteps, Units};
 use anyhow::bail;
 use clap::Args;
 use ddl::RunConfig;
-use ddl::data::{Completion, Doubt, MadeUp, OBSERVED, Recording, Window};
+use ddl::data::{Completion, Doubt, MadeUp, OBSERVED, Observation, Recording, Window};
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
@@ -157,6 +157,24 @@ impl Observed {
                 "note: of {} forecasts {late} are of people seen for less than {OBSERVED} steps, and {holes} over holes that were filled (columns \
                  padded and filled); --whole leaves them out",
                 all.len()
+            ));
+        }
+        self.tell_who_is_missing();
+    }
+
+    /// Says how many of those who are there at last are not forecast: who has just appeared is whom a robot does not expect.
+    fn tell_who_is_missing(&self) {
+        let Some(window) = self.windows.last() else {
+            return;
+        };
+        let last = window.frames()[OBSERVED - 1];
+        let there = |seen: &&Observation| seen.frame == last;
+        let present = self.recording.observations().iter().filter(there).count();
+        let missing = present.saturating_sub(window.len());
+        if missing > 0 {
+            let frame = self.clock.number(last);
+            tell(format_args!(
+                "note: {missing} of the {present} people at frame {frame} were seen at too few of the last {OBSERVED} steps and are not forecast"
             ));
         }
     }

@@ -13,13 +13,13 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Units {
     /// Frame numbers count so many a second, such as 25: steps of 0.4 s are found, and resampled where they are no whole number of frames [default: the
     /// rate that scenes of TrajNet++ files give, then that of the run's training]
-    #[arg(long, conflicts_with_all = ["dt", "frame_step"], value_parser = positive)]
+    #[arg(long, conflicts_with_all = ["dt", "frame_step"], value_parser = positive, allow_negative_numbers = true)]
     fps: Option<f64>,
     /// Seconds from one frame number to the next, such as 0.1
-    #[arg(long, conflicts_with = "frame_step", value_name = "SECONDS", value_parser = positive)]
+    #[arg(long, conflicts_with = "frame_step", value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     dt: Option<f64>,
     /// Frame numbers in 0.4 s [default: the most common difference between two rows]
-    #[arg(long, value_parser = clap::value_parser!(i64).range(1..=1 << 31))]
+    #[arg(long, value_parser = clap::value_parser!(i64).range(1..=1 << 31), allow_negative_numbers = true)]
     frame_step: Option<i64>,
     /// Positions are pixels: a file of three lines of three numbers, the homography from pixels to metres; `none` where they are metres [default: that of
     /// the run's training, if it had one]

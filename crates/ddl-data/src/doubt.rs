@@ -7,9 +7,9 @@ use crate::{Fastest, Observation, PedestrianId, Position, Recording, TIME_STEP};
 
 /// Faster than anybody walks, m/s: who seems to is measured in pixels, or in steps of another length.
 const IMPLAUSIBLE: f64 = 4.0;
-/// Where nobody is faster than this, m/s, though somebody has come far, frames follow each other faster than 0.4 s.
+/// Where nine in ten steps of those who come far are slower than this, m/s, frames follow each other faster than 0.4 s.
 const CREEPING: f64 = 0.6;
-/// How far somebody has come, m.
+/// How far somebody comes who walks, m.
 const FAR: f64 = 2.0;
 /// A step beyond this is a track that jumps from one person to another, m/s: the fastest sprinters reach 12.
 const JUMP: f64 = 12.0;
@@ -33,10 +33,10 @@ pub enum Doubt {
         /// The median speed, m/s.
         median: f64,
     },
-    /// Nobody is ever faster than this, m/s, though somebody has come metres far: another rate.
+    /// People who come metres far are hardly ever faster than this: another rate.
     Slow {
-        /// The largest speed, m/s.
-        fastest: f64,
+        /// What nine in ten of their steps are slower than, m/s.
+        brisk: f64,
     },
     /// Nobody ever leaves the place, over many steps: degrees, kilometres.
     Still {
@@ -65,9 +65,9 @@ impl fmt::Display for Doubt {
                 f,
                 "half of the steps are faster than {median:.1} m/s; are the positions in metres, and the rows of a pedestrian 0.4 s apart?"
             ),
-            Self::Slow { fastest } => write!(
+            Self::Slow { brisk } => write!(
                 f,
-                "nobody is ever faster than {fastest:.2} m/s; are the rows of a pedestrian 0.4 s apart, or those of a faster camera?"
+                "nine in ten steps of those who walk are slower than {brisk:.2} m/s; are the rows of a pedestrian 0.4 s apart, or those of a faster camera?"
             ),
             Self::Still { farthest } => write!(
                 f,
@@ -100,6 +100,8 @@ pub(crate) struct Speeds {
     pub(crate) steps: usize,
     pub(crate) median: Option<f64>,
     pub(crate) fastest: Option<Fastest>,
+    /// What nine in ten steps of those who come far are slower than, m/s.
+    pub(crate) brisk: Option<f64>,
     /// Largest distance between anybody's first and last position, m.
     pub(crate) farthest: f64,
 }
@@ -120,12 +122,9 @@ impl Speeds {
             Some(Doubt::Fast { median })
         } else if fastest.speed > JUMP {
             Some(Doubt::Jump(fastest.clone()))
-        } else if fastest.speed < CREEPING && self.farthest > FAR {
-            Some(Doubt::Slow {
-                fastest: fastest.speed,
-            })
         } else {
-            None
+            let brisk = self.brisk.filter(|&brisk| brisk < CREEPING);
+            brisk.map(|brisk| Doubt::Slow { brisk })
         }
     }
 }
@@ -140,15 +139,21 @@ impl Recording {
     pub(crate) fn speeds(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> Speeds {
         let step = self.frame_step();
         let mut speeds: Vec<(f64, &Observation)> = Vec::new();
+        let mut walking: Vec<f64> = Vec::new();
         for track in tracks.values() {
+            let first = speeds.len();
             speeds.extend(track.iter().filter_map(|seen| {
                 let before = track
                     .binary_search_by_key(&(seen.frame - step), |other| other.frame)
                     .ok()?;
                 Some((speed(track[before].position, seen.position), *seen))
             }));
+            if way(track) > FAR {
+                walking.extend(speeds[first..].iter().map(|(speed, _)| *speed));
+            }
         }
         speeds.sort_by(|a, b| a.0.total_cmp(&b.0));
+        walking.sort_by(f64::total_cmp);
         Speeds {
             frame_step: step,
             steps: speeds.len(),
@@ -158,6 +163,7 @@ impl Recording {
                 pedestrian: self.names().of(seen.pedestrian),
                 frame: seen.frame,
             }),
+            brisk: walking.get(walking.len() * 9 / 10).copied(),
             farthest: tracks.values().map(|track| way(track)).fold(0.0, f64::max),
         }
     }

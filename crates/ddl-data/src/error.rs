@@ -72,7 +72,7 @@ pub enum FormatProblem {
         detail: String,
     },
     /// A field that must be a whole number is none.
-    #[error("{name} must be a whole number below 2^53 in size, found {found:?}{}", advice_on_integer(.name, .found))]
+    #[error("{name} must be {}, found {found:?}{}", wanted(.name), advice_on_integer(.name, .found))]
     NotInteger {
         /// What the field holds: `frame` or `pedestrian`.
         name: &'static str,
@@ -201,6 +201,14 @@ pub enum FormatProblem {
         /// The reader's own words.
         detail: String,
     },
+}
+
+/// What a field of whole numbers may hold.
+fn wanted(name: &str) -> &'static str {
+    match name {
+        "pedestrian" => "a whole number or a word",
+        _ => "a whole number below 2^53 in size",
+    }
 }
 
 /// What to do about a number of a frame or of a person that is no whole one.

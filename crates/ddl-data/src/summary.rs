@@ -53,6 +53,8 @@ pub struct Summary {
     pub farthest: f64,
     /// Largest speed over a single step, and whose.
     pub fastest: Option<Fastest>,
+    /// What nine in ten steps of those who come 2 m far are slower than, m/s.
+    pub brisk_speed: Option<f64>,
     /// Share of the frames between somebody's first and last at which that person was not seen; frames that nobody is in do not count.
     pub unseen: f64,
     /// Times that somebody was not seen for some steps and then again.
@@ -102,6 +104,7 @@ impl Summary {
             steps: self.steps,
             median: self.median_speed,
             fastest: self.fastest.clone(),
+            brisk: self.brisk_speed,
             farthest: self.farthest,
         };
         let learning = self.to_learn_from == 0 && self.median_speed.is_some();
@@ -170,6 +173,7 @@ impl Recording {
             steps: speeds.steps,
             median_speed: speeds.median,
             fastest: speeds.fastest,
+            brisk_speed: speeds.brisk,
             farthest: speeds.farthest,
             unseen: self.unseen(&tracks),
             holes: holes.len(),

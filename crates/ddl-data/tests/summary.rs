@@ -20,7 +20,7 @@ fn speeds_that_nobody_walks_at_are_doubted() {
     // 1.3 m/s in steps of 0.4 s
     assert_eq!(doubts(walk(0.52)), []);
     // the same seen by a camera of 25 frames a second, and in pixels
-    assert!(matches!(doubts(walk(0.052))[..], [Doubt::Slow { fastest }] if fastest < 0.14));
+    assert!(matches!(doubts(walk(0.052))[..], [Doubt::Slow { brisk }] if brisk < 0.14));
     assert!(matches!(doubts(walk(30.0))[..], [Doubt::Fast { median }] if median > 70.0));
     // who stands is not doubted, however slowly the tracker trembles
     assert_eq!(doubts(walk(0.001)), []);

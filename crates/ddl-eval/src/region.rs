@@ -12,8 +12,8 @@
 //! of the radius `s sqrt(2 (q + ln(w_k / max w)))`, and none where that is no number. A likelier hypothesis has a larger disc, and the
 //! likeliest one always has one.
 //!
-//! What was calibrated on some places holds on average over places like these; in one new place the coverage of a fixed region may
-//! be off by 25 points.
+//! What was calibrated on some places holds on average over places like these; in one new place, and more so in one recording, a
+//! region may hold another share.
 //!
 //! # References
 //! Vovk et al., *Algorithmic Learning in a Random World*, 2005 (split-conformal prediction).

@@ -32,19 +32,20 @@ How the built-in models do where no model was trained: recordings of other place
 pedestrian-windows: `fair` is minADE/minFDE of 20 hypotheses, `single` ADE/FDE of one. CPU.
 
 Made by `cargo run --release -p ddl --example elsewhere -- FOLDER=FPS ... > docs/elsewhere.md`, folders and frames a second as below. The constants of
-[calibration](accuracy.md#anywhere-people-walk) were chosen and fitted on the first, the third and every other recording of these folders, and on the first half of a
-single one. The tables are of the rest: other recordings of the same places. The networks have learned from none of them.
+[calibration](accuracy.md#anywhere-people-walk) were chosen and fitted on recordings 1, 3, 5 and so on of each folder, of a single recording on its first half. The tables
+are of the rest: other recordings of the same places; those without a window of 20 steps have no row. The networks have learned from none of them.
 ";
 
 const NOTES: &str = "
 *Ratio*: minADE of the model to that of straight lines to the same goals; the interval is that of the paired difference over blocks of 20 s (95 %), divided by the
 minADE of the lines. *Noisy*: 20 samples of constant velocity with an angular noise of 25 degrees. *Log loss* of the weight of the goal nearest to
-the true end, nats; equal weights have 2.996. *AMD*: 1.25 is calibrated. *Regions*: share of true positions inside the regions of 50 % and 90 %; *radius*: of
-a disc as large as that of 90 % at 4.8 s, in metres. *Certified*: share of hypotheses whose certificate holds, bounds of speed, change of speed, deviation and
+the true end, nats; lower is better, equal weights have 2.996. *AMD* ([protocols](protocols.md#4-metrics)): 1.25 is calibrated. *Regions*: share of true positions inside the regions of 50 % and 90 %; *radius* of
+a disc of the same area as the region of 90 % at 4.8 s, metres. *Certified*: share of hypotheses whose certificate holds, bounds of speed, change of speed, deviation and
 arrival included. *Familiarity*: mean; 0.5 where motions are as ordinary as in training. *Faster than 3 m/s*: number of pedestrian-windows whose mean
 observed speed is above 3 m/s; minADE of the model and of straight lines on these.
 
-A region holds its share on average over places like those that it was calibrated on. In a single recording it holds more or less, as the tables by recording show.
+A region holds its share on average over places like those that it was calibrated on. In a single recording it holds more or less, as the tables by recording show. Familiarity
+tells of single motions; it does not rank recordings by their errors.
 
 *dut*: pedestrians beside a vehicle, filmed from above (Yang et al., *Top-view trajectories*, IV 2019). *edinburgh*: a forum filmed from above (Majecka, *Statistical models
 of pedestrian behaviour in the Forum*, 2009). *sdd*: the Stanford Drone Dataset, pedestrians alone (Robicquet et al., ECCV 2016).

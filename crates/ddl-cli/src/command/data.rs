@@ -75,7 +75,7 @@ fn warn_of_unfamiliar<'r>(recordings: impl Iterator<Item = &'r Recording>) -> an
     if share > MANY_UNFAMILIAR {
         tell(format_args!(
             "warning: {share:.0} % of the motions are unlike those that the built-in model {model} was trained on (familiarity below {}): their \
-             forecasts are less certain; `ddl train --data` trains a model on these recordings",
+             forecasts are less certain",
             ddl::UNFAMILIAR
         ));
     }

@@ -52,7 +52,7 @@ pub(crate) struct Forecast {
     /// Regions that hold the pedestrian with these probabilities at each step, such as 0.5,0.9: discs about the hypotheses
     ///
     /// csv: a column of radii (metres) for each, empty where a hypothesis has no disc; jsonl: the discs of each step. They hold on average over
-    /// places like those they were calibrated on; in one new place the share that they hold may be off by 25 points (docs/elsewhere.md).
+    /// places like those they were calibrated on; in a single new recording they hold more or less (docs/elsewhere.md).
     #[arg(long, value_name = "PROBABILITIES", value_delimiter = ',', value_parser = probability, conflicts_with = "one")]
     region: Vec<f64>,
     #[command(flatten)]
@@ -178,7 +178,7 @@ impl Forecast {
         };
         tell(format_args!(
             "warning: {count} of {} motions are unlike those that the model was trained on (familiarity below {}), the first that of pedestrian {} observed \
-             until frame {}: they are forecast nearly without the network, and less sharply weighted{later}",
+             until frame {}: for them the network hardly counts, and the weights are more alike{later}",
             all.count(),
             ddl::UNFAMILIAR,
             moment.window.name(i),

@@ -6,8 +6,8 @@ use crate::progress::Progress;
 use ddl::data::{Convention, Dataset};
 use ddl::{BuiltinModel, Comparison, Ddl, TrainingRequest};
 
-/// Gain (m) that a sentence without an interval calls one.
-const LEAST: f64 = 0.001;
+/// Gain or loss, as a share of the built-in model's error, that a sentence without an interval calls one.
+const LEAST: f64 = 0.02;
 
 /// Measures both; `None` where nothing was kept, or the network is not trained. The built-in model's error is that of a model that has learned
 /// from these recordings where they are of ETH/UCY.
@@ -57,12 +57,15 @@ fn verdict(compared: &Comparison) -> String {
     let gain = compared.other.min_ade - compared.run.min_ade;
     let builtin = BuiltinModel::default();
     let Some(paired) = compared.difference else {
-        let so_far = if gain >= LEAST {
+        let share = gain / compared.other.min_ade.max(f64::MIN_POSITIVE);
+        let so_far = if share >= LEAST {
             format!("training seems worth it: {gain:.3} m less minADE")
-        } else {
+        } else if share <= -LEAST {
             format!(
                 "training was not worth it: use the built-in model {builtin}, or train on more recordings"
             )
+        } else {
+            format!("training made no clear difference: {gain:.3} m less minADE")
         };
         return format!(
             "{so_far} (fewer than 10 stretches of 20 s to validate on: too little to say how sure that is)"

@@ -42,7 +42,7 @@ pub(super) fn print(
         _ if only_goals => "the goals are trained".to_owned(),
         None => format!("trained, {epochs}"),
         Some((_, 0)) => format!(
-            "trained, {epochs}; none of the forecasting network was better than its first weights, which are kept, with goals from these recordings"
+            "trained, {epochs}; no epoch was better than the weights that the forecasting network began with: these are kept, only the goals were learned"
         ),
         Some((error, epoch)) => {
             let error = match compared {
