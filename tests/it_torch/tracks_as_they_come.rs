@@ -56,6 +56,11 @@ fn late_comers_and_holes_are_forecast_and_flagged() {
     assert_eq!(whole.stderr, "");
     let found: Vec<_> = lines(&whole.succeeds()).iter().map(made_up).collect();
     assert_eq!(found, [(90, 1, 0, 0)]);
+    // who has just appeared is counted
+    rows.push((90, 4, 3.0, 1.0));
+    let missing = "1 of the 4 people at frame 90 were seen at too few of the last 8 steps";
+    let appeared = forecast(&rows, "--last");
+    assert!(appeared.stderr.contains(missing), "{appeared:?}");
 }
 
 /// The same walks filmed at 25 frames a second say the same at the frames that both have.

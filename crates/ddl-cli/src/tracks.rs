@@ -51,6 +51,8 @@ pub(crate) struct Observed {
     pub(crate) clock: Clock,
     /// What looks wrong with them: wrong units or a wrong rate give forecasts that look confident and mean nothing.
     pub(crate) doubt: Option<Doubt>,
+    /// Whether only people seen at all 8 steps were asked for.
+    whole: bool,
 }
 
 impl Tracks {
@@ -139,6 +141,7 @@ impl Tracks {
             windows,
             clock,
             doubt,
+            whole: self.whole,
         })
     }
 }
@@ -159,7 +162,9 @@ impl Observed {
                 all.len()
             ));
         }
-        self.tell_who_is_missing();
+        if !self.whole {
+            self.tell_who_is_missing();
+        }
     }
 
     /// Says how many of those who are there at last are not forecast: who has just appeared is whom a robot does not expect.
