@@ -95,7 +95,7 @@ fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCa
         let [slow, fast] = [range.smallest, range.largest].map(Real::as_f64);
         let near = |x: f64| 1e-5 * x + off / dt;
         prop_assert!(
-            after <= d - (slow - near(slow)) * dt + off,
+            after <= (d - (slow - near(slow)) * dt).max(0.0) + off,
             "step {k}: {d} to {after}"
         );
         if let Some((was, [slowest, fastest])) = before {
