@@ -167,7 +167,7 @@ impl Observed {
         }
     }
 
-    /// Says how many of those who are there at last are not forecast: who has just appeared is whom a robot does not expect.
+    /// Tells how many pedestrians of the last frame are not forecast because they have just appeared.
     fn tell_who_is_missing(&self) {
         let Some(window) = self.windows.last() else {
             return;

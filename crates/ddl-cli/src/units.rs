@@ -35,7 +35,7 @@ pub(crate) struct Units {
 pub(crate) struct InSteps {
     pub(crate) recording: Recording,
     pub(crate) clock: Clock,
-    /// Whether nobody said how fast frames follow each other.
+    /// Whether the frame rate was neither given nor in the file.
     pub(crate) guessed: bool,
     /// What was found out about its rate, for [`tell_notes`](crate::recordings::tell_notes).
     pub(crate) notes: Vec<String>,

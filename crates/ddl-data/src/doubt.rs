@@ -7,9 +7,9 @@ use crate::{Fastest, Observation, PedestrianId, Position, Recording, TIME_STEP};
 
 /// Faster than anybody walks, m/s: who seems to is measured in pixels, or in steps of another length.
 const IMPLAUSIBLE: f64 = 4.0;
-/// Where nine in ten steps of those who come far are slower than this, m/s, frames follow each other faster than 0.4 s.
+/// If the 90 % quantile of the walking speeds is below this (m/s), frames are closer together than 0.4 s.
 const CREEPING: f64 = 0.6;
-/// How far somebody comes who walks, m.
+/// Distance between first and last position (m) above which a track counts as walking.
 const FAR: f64 = 2.0;
 /// A step beyond this is a track that jumps from one person to another, m/s: the fastest sprinters reach 12.
 const JUMP: f64 = 12.0;
@@ -33,9 +33,9 @@ pub enum Doubt {
         /// The median speed, m/s.
         median: f64,
     },
-    /// People who come metres far are hardly ever faster than this: another rate.
+    /// Walking pedestrians are too slow: another frame rate.
     Slow {
-        /// What nine in ten of their steps are slower than, m/s.
+        /// The 90 % quantile of the speeds of steps of tracks that walk, m/s.
         brisk: f64,
     },
     /// Nobody ever leaves the place, over many steps: degrees, kilometres.
@@ -100,7 +100,7 @@ pub(crate) struct Speeds {
     pub(crate) steps: usize,
     pub(crate) median: Option<f64>,
     pub(crate) fastest: Option<Fastest>,
-    /// What nine in ten steps of those who come far are slower than, m/s.
+    /// The 90 % quantile of the speeds of steps of tracks that walk, m/s.
     pub(crate) brisk: Option<f64>,
     /// Largest distance between anybody's first and last position, m.
     pub(crate) farthest: f64,

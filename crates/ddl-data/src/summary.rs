@@ -53,7 +53,7 @@ pub struct Summary {
     pub farthest: f64,
     /// Largest speed over a single step, and whose.
     pub fastest: Option<Fastest>,
-    /// What nine in ten steps of those who come 2 m far are slower than, m/s.
+    /// The 90 % quantile of the speeds of steps of tracks that lead farther than 2 m, m/s.
     pub brisk_speed: Option<f64>,
     /// Share of the frames between somebody's first and last at which that person was not seen; frames that nobody is in do not count.
     pub unseen: f64,

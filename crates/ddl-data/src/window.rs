@@ -142,7 +142,7 @@ impl Window {
         self.names.of(self.pedestrians[i])
     }
 
-    /// Which pedestrian has this name; `None` where nobody has.
+    /// Index of the pedestrian with this name; `None` if the window has no such pedestrian.
     pub fn named(&self, name: &PedestrianName) -> Option<usize> {
         let mut ids = self.pedestrians.iter();
         ids.position(|&id| self.names.names(id, name))

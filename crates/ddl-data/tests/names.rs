@@ -51,7 +51,7 @@ fn pedestrians_may_be_words() {
                 "{told}"
             );
         }
-        // line by line a number stays one, and everybody comes back as well
+        // the stream reader gives the same names
         let mut frames = FrameReader::new(text.as_bytes(), "tracker");
         let mut read = 0;
         while let Some(frame) = frames.next_frame().unwrap() {

@@ -1,8 +1,8 @@
-//! The unit of length in which the networks see a pedestrian: metres for whoever walks, more for a runner.
+//! The unit of length of the networks' inputs: one metre for a walking pedestrian, more for a running one.
 //!
 //! With the mean speed `v` of the observed steps, the unit is `(1 + (v / 2 m/s)^4)^(1/4)` metres. Up to walking speed it
-//! is a metre; of a runner it is as many metres as its speed has 2 m/s, so that its motion looks like that of somebody
-//! who walks at almost 2 m/s. It is a smooth function of the speed: so are the forecasts.
+//! is a metre; far above it is v / (2 m/s) metres, so that the network sees a runner as a pedestrian of almost
+//! 2 m/s. It is a smooth function of the speed: so are the forecasts.
 
 use ddl_data::Position;
 use tch::{Kind, Tensor};

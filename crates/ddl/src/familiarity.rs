@@ -4,7 +4,7 @@
 //! faster than the rest, and how straight it is. Its distance from the training motions is that of Mahalanobis, by their mean and
 //! covariance. Familiarity is the share of training motions kept apart that lie at least as far out: 0.5 for an ordinary motion,
 //! 0.01 for one that one in a hundred exceeds. Beyond all of them it falls exponentially, and so it does with the speed beyond the
-//! fastest of them: pedestrians who stand make logarithms of speeds vary so much that a runner's alone would hardly be unusual.
+//! fastest of them: standing pedestrians widen the distribution of log speeds so much that a runner would hardly be unusual by the distance alone.
 
 use ddl_data::{OBSERVED, Position, Window};
 use nalgebra::{SMatrix, SVector};
@@ -85,7 +85,7 @@ impl TrainingMotions {
         motions.is_valid().then_some(motions)
     }
 
-    /// The familiarity of everybody in a window; 1 where nothing is known of the training motions.
+    /// The familiarity of each pedestrian of a window; 1 if the training motions are not known.
     pub(crate) fn of_window(motions: Option<&Self>, window: &Window, time_step: f64) -> Vec<f64> {
         let of = |i: usize| motions.map_or(1.0, |m| m.familiarity(window.observed(i), time_step));
         (0..window.len()).map(of).collect()

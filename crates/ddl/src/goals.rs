@@ -42,7 +42,7 @@ pub(crate) fn weighted(sets: &[Vec<GoalSet>]) -> Result<Vec<Vec<WeightedGoals>>,
         .collect()
 }
 
-/// The one goal that stands for each walker's, for who may have only one. Positions before somebody was first seen continue the
+/// The central goal of each pedestrian. Positions before a pedestrian was first seen continue the
 /// first ones seen in a straight line: they say nothing of how even a motion is.
 pub(crate) fn only_central(windows: &[Window], sets: &[Vec<GoalSet>]) -> Vec<Vec<GoalSet>> {
     let of_window = |(window, sets): (&Window, &Vec<GoalSet>)| {

@@ -37,7 +37,7 @@ pub(crate) struct Forecast {
     /// csv: a row a position, to 0.1 mm; jsonl: a JSON object a pedestrian, with all digits
     #[arg(long, value_enum, default_value = "csv")]
     format: OutputFormat,
-    /// One forecast a pedestrian, for who may have only one: to the goal that stands for all 20
+    /// One forecast a pedestrian instead of 20: to one central goal that sums up the 20
     #[arg(long)]
     one: bool,
     /// Attach to every hypothesis the evidence that it comes nearer to its goal at every step

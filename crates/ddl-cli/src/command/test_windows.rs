@@ -93,7 +93,7 @@ impl TestWindows {
     }
 }
 
-/// Refuses what is no scene of `star`, where nobody asked for a convention.
+/// Refuses a fold that is not a scene of `star`, unless a convention was given.
 pub(crate) fn ensure_scene_of_star(fold: &str) -> anyhow::Result<()> {
     let known: Vec<&str> = Convention::Star.fold_names().collect();
     if !known.contains(&fold) {

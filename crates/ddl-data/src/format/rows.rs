@@ -59,7 +59,7 @@ pub(super) fn into_recording(rows: Vec<Row>, origin: &str) -> Result<Recording, 
     Ok(recording.with_names(names))
 }
 
-/// The observations with everybody numbered: by the file, or, where it has a word anywhere, all in the order in which they come.
+/// The observations with pedestrian numbers: those of the file, or, if any pedestrian of the file is a word, the order of first appearance.
 fn numbered(rows: Vec<Row>) -> (Vec<Placed>, PedestrianNames) {
     let words = rows.iter().any(|row| matches!(row.who, Who::Word(_)));
     let mut numbering = Numbering::remembering(usize::MAX);

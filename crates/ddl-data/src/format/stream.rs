@@ -60,7 +60,7 @@ pub struct FrameReader<R> {
     /// What scenes say of it.
     rate: trajnet::Rate,
     words: Numbering,
-    /// Pedestrians' numbers that are written in another way than by their digits.
+    /// Pedestrians' numbers that are not written as plain digits, such as `17.0`: the first 200,000 of them.
     numbers: BTreeSet<Box<str>>,
     /// The frame that is being read.
     current: Option<Growing>,
@@ -252,7 +252,9 @@ impl<R: BufRead> FrameReader<R> {
             Who::Number(number, Some(text))
                 if self.words.is_empty() || self.numbers.contains(&text) =>
             {
-                self.numbers.insert(text);
+                if self.numbers.len() < MOST_WORDS {
+                    self.numbers.insert(text);
+                }
                 PedestrianId(number)
             }
             who => {

@@ -36,7 +36,7 @@ pub(super) struct OnRows {
     references: Buffer,
     /// The frame of everybody, `[H, P]`; `None` for that of the world.
     frames: Option<Vec<FrameNumbers>>,
-    /// Of everybody's steps, `[H, P]`; `None` for plain Euler steps.
+    /// Motion bounds of each hypothesis and pedestrian, `[H, P]`; `None` for plain Euler steps.
     bounds: Option<Vec<MotionBounds<f32>>>,
 }
 
@@ -69,7 +69,7 @@ impl OnRows {
                 let velocities = each(&bounds.velocity, 2);
                 let (velocities, _) = velocities.as_chunks::<2>();
                 let all = tops.iter().zip(velocities).zip(shares.iter());
-                // What is no speed is told by whoever walks the same way in f64.
+                // Invalid speeds are reported by the rollout in f64, which has the same bounds.
                 all.map(|((&top, &own), &share)| MotionBounds::new(top, own.into(), share))
                     .map(Option::unwrap_or_default)
                     .map(|each| {
