@@ -161,7 +161,7 @@ impl Ddl {
             .collect()
     }
 
-    /// One forecast a pedestrian, for who may have only one: the neutral motion to the goal that stands for all its goals
+    /// One forecast a pedestrian: the neutral motion to the central goal of its goal set
     /// ([`GoalSet::central`]). The forecasting network has no part in it: what it knows is how people go to a goal that is sure
     /// (`docs/accuracy.md`). So all variants with goals go the same way; that without makes its noise samples. The flow is as stable as those to the
     /// goals, and `Forecast::certified` holds the verdict of each walk.
