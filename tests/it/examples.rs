@@ -61,19 +61,19 @@ const EXAMPLES: [(&str, &str, &str, Promise); 10] = [
         Promise::Says(&["300 experts of 3000 walkers", "nearest goal: 0."]),
     ),
     (
-        "ddl-eval",
+        "ddl-report",
         "score_forecasts",
         "",
         Promise::Says(&["2284 walkers of the simulated plaza", "protocol `single`"]),
     ),
     (
-        "ddl-eval",
+        "ddl-report",
         "draw_scene",
         "simulated plaza 6 scene.svg",
         Promise::Draws("scene.svg"),
     ),
     (
-        "ddl-eval",
+        "ddl-report",
         "draw_goals",
         "simulated plaza goals.svg",
         Promise::Draws("goals.svg"),
@@ -83,7 +83,7 @@ const EXAMPLES: [(&str, &str, &str, Promise); 10] = [
 /// Those that are not run here, and why.
 const ELSEWHERE: [(&str, &str, &str); 2] = [
     (
-        "ddl-eval",
+        "ddl-report",
         "report_page",
         "`cargo xtask page` runs it and checks what it makes in a browser",
     ),
@@ -130,6 +130,7 @@ fn no_example_is_forgotten() {
         "ddl-dynamics",
         "ddl-goal",
         "ddl-eval",
+        "ddl-report",
     ] {
         let run = EXAMPLES.iter().map(|(of, name, ..)| (*of, *name));
         let elsewhere = ELSEWHERE.iter().map(|(of, name, _)| (*of, *name));
@@ -162,7 +163,7 @@ fn the_reaching_hand_comes_nearer_and_touches_nothing() {
 /// Of the three forecasts "as fast" is the heaviest: alone, it scores as the baseline that goes on at the mean velocity.
 #[test]
 fn the_other_programs_heaviest_forecast_scores_as_the_baseline_it_is() {
-    let output = example::run("ddl-eval", "score_forecasts", Path::new("."), "").succeeds();
+    let output = example::run("ddl-report", "score_forecasts", Path::new("."), "").succeeds();
     let (_, single) = output.split_once("protocol `single`").unwrap();
     let numbers = |name: &str| -> Vec<String> {
         let line = single

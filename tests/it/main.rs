@@ -4,6 +4,7 @@
 
 mod certified_flow;
 mod examples;
+mod golden_forecasts;
 mod guarantee_on_real_people;
 mod leak_baselines;
 mod leak_goals;

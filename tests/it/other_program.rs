@@ -1,7 +1,7 @@
 //! Forecasts of another program, without libtorch: the Python example on real recordings is the baseline it says.
 
 use ddl_data::{Convention, Dataset, WindowRule};
-use ddl_eval::foreign::{self, Coverage, ForeignFormat};
+use ddl_eval::external::{self, Coverage, ExternalFormat};
 use ddl_eval::{Conditions, Protocol, baseline};
 use ddl_tests::{other_program, recordings};
 
@@ -20,14 +20,17 @@ fn the_python_example_has_the_numbers_of_constant_velocity() {
         let windows = dataset.fold(fold).unwrap();
         let windows = windows.test_windows(WindowRule::Published);
         let file = std::fs::File::create(folder.path().join("windows.jsonl")).unwrap();
-        foreign::write_windows(&windows, file).unwrap();
+        external::write_windows(&windows, file).unwrap();
         if !other_program::forecasts_in(folder.path()) {
             return;
         }
         let path = folder.path().join("forecasts.jsonl");
-        let format = ForeignFormat::of_file(&path);
-        let matched = foreign::read(&path, format, &windows, Coverage::Whole).unwrap();
-        assert_eq!((matched.walkers(), matched.test_subset()), (walkers, None));
+        let format = ExternalFormat::of_file(&path);
+        let matched = external::read(&path, format, &windows, Coverage::Whole).unwrap();
+        assert_eq!(
+            (matched.pedestrians(), matched.test_subset()),
+            (walkers, None)
+        );
         let conditions = Conditions::new(
             Convention::Star,
             WindowRule::Published,
@@ -35,7 +38,7 @@ fn the_python_example_has_the_numbers_of_constant_velocity() {
             fold,
             "python",
         );
-        let rows = foreign::measure(&conditions, &matched, baseline::NOISE_SEED).unwrap();
+        let rows = external::measure(&conditions, &matched, baseline::NOISE_SEED).unwrap();
         let (mine, baseline) = (&rows[0], &rows[1]);
         assert_eq!(mine.conditions.forecaster, "python");
         assert_eq!(

@@ -1,7 +1,7 @@
 //! The models that come with the program.
 
 use ddl::data::Convention;
-use ddl::eval::Report;
+use ddl::report::Report;
 use ddl::{BuiltinModel, Protocol};
 use ddl_tests::program::{self, Finished};
 use ddl_tests::{own_tracks, recordings};

@@ -3,8 +3,9 @@
 
 use ddl::data::{OBSERVED, Position, Window};
 use ddl::dynamics::LyapunovCertificate;
-use ddl::star::{ComputeDevice, Noise, StarNetwork, StepRule, load_parameters};
-use ddl::{Calibration, CertificateError, DeviceChoice, Forecaster as _, Variant};
+use ddl::network::weights::load_weights;
+use ddl::network::{ForecastWindows as _, MotionNetwork, Noise, StepRule};
+use ddl::{Calibration, CertificateError, Forecaster as _, Variant};
 use ddl_tests::own_tracks::{self, Row};
 use ddl_tests::{bits, crowd, program, tiny_model};
 use serde::Deserialize;
@@ -221,18 +222,14 @@ fn a_variant_without_dynamics_has_nothing_to_certify() {
 #[test]
 fn the_walk_agrees_with_the_tensors() {
     let windows = crowd::windows(6, 24);
-    let device = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
     for variant in [Variant::Full, Variant::NoGoalShift] {
         let tiny = tiny_model::of(variant);
         let config = tiny.model.config().star.clone();
-        let network = StarNetwork::new(config, 0, device).unwrap();
+        let network = MotionNetwork::new(config, 0).unwrap();
         let origin = tiny.model.config().network_origin();
-        load_parameters(
-            network.parameters(),
-            &origin,
-            &tiny.model.run().unwrap().model(),
-        )
-        .unwrap();
+        let file = tiny.model.run().unwrap().model();
+        let weights = load_weights(network.weights().layout(), &origin, &file).unwrap();
+        let network = network.with_weights(weights).unwrap();
         let certified = tiny.model.forecast_certified(&windows).unwrap();
         let goals: Vec<Vec<Vec<Position>>> = windows
             .iter()

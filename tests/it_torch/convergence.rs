@@ -3,8 +3,9 @@
 
 use ddl::data::{HORIZON, OBSERVED, PedestrianId, Position, TIME_STEP, Window};
 use ddl::eval::metric::stability::RolloutStability;
-use ddl::star::{ComputeDevice, Noise, StarConfig, StarNetwork, StepRule, load_parameters};
-use ddl::{DeviceChoice, Forecaster as _, Variant};
+use ddl::network::weights::load_weights;
+use ddl::network::{ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule};
+use ddl::{Forecaster as _, Variant};
 use ddl_tests::{crowd, tiny_model};
 
 /// Rounding of `f32` at the coordinates of these scenes, metres, with room for a dozen operations: what
@@ -87,7 +88,7 @@ fn strange_observations_are_forecast_as_stably() {
 }
 
 /// A walker alone with a goal close ahead: what the two integrators make of it.
-fn stable_share(network: &StarNetwork, integrator: StepRule) -> f64 {
+fn stable_share(network: &MotionNetwork, integrator: StepRule) -> f64 {
     let walking = (0..OBSERVED).map(|t| [0.5 * t as f64, 0.0]).collect();
     let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![walking]).unwrap();
     let start = window.observed(0)[OBSERVED - 1];
@@ -115,11 +116,10 @@ fn stable_share(network: &StarNetwork, integrator: StepRule) -> f64 {
 #[test]
 fn plain_euler_steps_overshoot_where_stable_ones_do_not() {
     tiny_model::use_one_thread();
-    let device = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
     let mut overshooting = 0;
     for seed in 0..4 {
         let config = StarConfig::published(Variant::Full);
-        let network = StarNetwork::new(config, seed, device).unwrap();
+        let network = MotionNetwork::new(config, seed).unwrap();
         let stable = stable_share(&network, StepRule::Bounded);
         assert!((stable - 1.0).abs() < f64::EPSILON, "seed {seed}: {stable}");
         overshooting += usize::from(stable_share(&network, StepRule::Euler) < 1.0);
@@ -136,15 +136,11 @@ fn plain_euler_steps_overshoot_where_stable_ones_do_not() {
 fn run_on_every_walker_arrives() {
     let tiny = tiny_model::of(Variant::Full);
     let config = tiny.model.config();
-    let device = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
-    let network = StarNetwork::new(config.star.clone(), 0, device).unwrap();
+    let network = MotionNetwork::new(config.star.clone(), 0).unwrap();
     let origin = tiny.model.config().network_origin();
-    load_parameters(
-        network.parameters(),
-        &origin,
-        &tiny.model.run().unwrap().model(),
-    )
-    .unwrap();
+    let file = tiny.model.run().unwrap().model();
+    let weights = load_weights(network.weights().layout(), &origin, &file).unwrap();
+    let network = network.with_weights(weights).unwrap();
 
     let first = crowd::windows(1, 4).remove(0).without_future();
     let forecast = tiny.model.forecast(&first).unwrap();

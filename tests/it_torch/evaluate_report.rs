@@ -1,8 +1,9 @@
 //! `ddl train`, `ddl evaluate`, `ddl report`: the way of a number from the recordings to the page.
 
 use ddl::data::{Convention, WindowRule};
-use ddl::eval::{Moment, Report, ResultRow};
-use ddl::star::EpochReport;
+use ddl::eval::ResultRow;
+use ddl::network::EpochReport;
+use ddl::report::{Moment, Report};
 use ddl::{Protocol, RunDirectory};
 use ddl_tests::folder_contents::{self, Contents};
 use ddl_tests::program;
@@ -244,7 +245,7 @@ fn check_moments(run: &Path) {
             (moment.fold.as_str(), moment.forecaster.as_str()),
             ("plaza", "DDL")
         );
-        for hypothesis in moment.walkers.iter().flat_map(|walker| &walker.hypotheses) {
+        for hypothesis in moment.pedestrians.iter().flat_map(|one| &one.hypotheses) {
             assert_eq!(
                 (hypothesis.certified, hypothesis.decreasing),
                 (Some(true), Some(true))

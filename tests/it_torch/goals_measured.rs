@@ -28,7 +28,7 @@ fn goals_are_measured_and_drawn_before_the_network_is_trained() {
     let calibration = test.calibration.unwrap();
     assert!(calibration.log_loss.is_finite() && calibration.bins.len() == 10);
     let svg = std::fs::read_to_string(here.join("goals.svg")).unwrap();
-    assert!(svg.starts_with("<svg") && svg.contains("plaza, frame") && svg.contains("m off"));
+    assert!(svg.contains("<svg") && svg.contains("plaza, frame") && svg.contains("m off"));
 
     // all of the recording set apart, the ends of the others, nothing of the test scene
     let validation = measured("validation", "");

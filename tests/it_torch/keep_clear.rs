@@ -1,8 +1,8 @@
 //! `--keep-clear`: walkers mind each other, and every certificate still holds.
 
 use ddl::data::Window;
-use ddl::eval::Report;
 use ddl::eval::metric::collision::closest_approach;
+use ddl::report::Report;
 use ddl::{Clearance, DdlError, Forecast, Forecaster as _, Variant};
 use ddl_tests::own_tracks;
 use ddl_tests::{bits, crowd, program, tiny_model};

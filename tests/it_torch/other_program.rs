@@ -2,8 +2,9 @@
 
 use ddl::Variant;
 use ddl::data::{Format, WindowRule, parse_recording};
-use ddl::eval::foreign::{self, Coverage, ForeignFormat};
-use ddl::eval::{Report, ResultRow};
+use ddl::eval::ResultRow;
+use ddl::eval::external::{self, Coverage, ExternalFormat};
+use ddl::report::Report;
 use ddl_tests::program::{self, Finished};
 use ddl_tests::{other_program, own_tracks, recordings, tiny_model};
 use std::path::Path;
@@ -191,18 +192,18 @@ fn what_ddl_forecast_writes_is_read_back() {
     let recording = parse_recording(tracks.as_bytes(), "tracks", Format::Table).unwrap();
     let windows = recording.windows(WindowRule::Complete);
     assert_eq!(windows.len(), 1);
-    let read = |options: &str, format: ForeignFormat| {
+    let read = |options: &str, format: ExternalFormat| {
         let text = forecast(run.path(), &rows, options);
         let coverage = Coverage::Intersection; // other moments than the one with a future are forecast too
-        foreign::read_from(text.as_bytes(), "f", format, &windows, coverage).unwrap()
+        external::read_from(text.as_bytes(), "f", format, &windows, coverage).unwrap()
     };
-    let plain = read("--format jsonl", ForeignFormat::JsonLines);
+    let plain = read("--format jsonl", ExternalFormat::JsonLines);
     assert_eq!(plain.forecasts[0].hypotheses(), 20);
     assert!(plain.forecasts[0].has_goals() && plain.test_subset().is_none());
-    let certified = read("--format jsonl --certificate", ForeignFormat::JsonLines);
+    let certified = read("--format jsonl --certificate", ExternalFormat::JsonLines);
     assert_eq!(certified.forecasts, plain.forecasts);
     for options in ["--format csv", "--format csv --certificate"] {
-        let table = read(options, ForeignFormat::Table);
+        let table = read(options, ExternalFormat::Table);
         for (i, k) in (0..3).flat_map(|i| (0..20).map(move |k| (i, k))) {
             let (a, b) = (&table.forecasts[0], &plain.forecasts[0]);
             let mut pairs = a.hypothesis(i, k).iter().zip(b.hypothesis(i, k));

@@ -1,6 +1,7 @@
 //! `ddl pack`: a packed model forecasts as its run does without the expert library.
 
-use ddl::eval::{Report, ResultRow};
+use ddl::eval::ResultRow;
+use ddl::report::Report;
 use ddl::{Ddl, DdlError, DeviceChoice, Forecaster as _, ModelSource, Protocol, Variant};
 use ddl_tests::{bits, crowd, folder_contents, own_tracks, program, tiny_model};
 use proptest::prelude::*;

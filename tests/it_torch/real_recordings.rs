@@ -1,7 +1,8 @@
 //! The program on the real recordings: a tiny run of the fold `hotel`, and its counts.
 
 use ddl::data::{Convention, Dataset, WindowRule};
-use ddl::eval::{Report, ResultRow};
+use ddl::eval::ResultRow;
+use ddl::report::Report;
 use ddl::{Protocol, RunDirectory};
 use ddl_tests::program::{self, Finished};
 use ddl_tests::recordings;

@@ -1,6 +1,6 @@
 //! `ddl train --recipe`: which network is made and how it is trained, as `config.json` says it.
 
-use ddl::star::{Frame, Objective, StarConfig, TrainingConfig};
+use ddl::network::{Frame, Objective, StarConfig, TrainingConfig};
 use ddl::{RunConfig, RunDirectory, Variant};
 use ddl_tests::program;
 

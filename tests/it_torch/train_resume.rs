@@ -3,7 +3,7 @@
 #![cfg(unix)]
 
 use ddl::RunDirectory;
-use ddl::star::Objective;
+use ddl::network::Objective;
 use ddl_tests::folder_contents::{self, Contents};
 use ddl_tests::program::{self, Finished};
 use ddl_tests::training_result;

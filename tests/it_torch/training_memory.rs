@@ -4,7 +4,8 @@
 //! as they like.
 
 use ddl::data::WindowRule;
-use ddl::star::{ComputeDevice, StarConfig, StarNetwork, Trainer, TrainingConfig};
+use ddl::network::{StarConfig, TrainingConfig};
+use ddl::star::{ComputeDevice, TorchNetwork, Trainer};
 use ddl::{DeviceChoice, Variant};
 use ddl_tests::{crowd, processes, tiny_model};
 use std::path::Path;
@@ -36,7 +37,7 @@ fn growth([first, last, lost]: [u64; 3]) -> Option<u64> {
     let mut windows = fold.training_windows(WindowRule::Complete);
     windows.truncate(40); // all of them are visited within the first steps
     let device = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
-    let network = StarNetwork::new(config, 1, device).unwrap();
+    let network = TorchNetwork::new(config, 1, device).unwrap();
     let mut trainer = Trainer::new(network, windows, training).unwrap();
     let mut leak = Vec::new();
     let mut before = 0;

@@ -2,7 +2,7 @@
 
     check_page.py FOLDER --browser /path/to/chromium [--screenshots FOLDER]
 
-FOLDER is what the example `report_page` of ddl-eval wrote. The page is opened from the file system, in light and dark,
+FOLDER is what the example `report_page` of ddl-report wrote. The page is opened from the file system, in light and dark,
 wide and narrow, and nothing may be asked of a network.
 """
 

@@ -17,7 +17,7 @@ pub fn run(package: &str, example: &str, folder: &Path, command_line: &str) -> F
     Finished::new(format!("{example} {command_line}"), &output)
 }
 
-/// The names of a crate's examples: `examples/NAME.rs` and `examples/NAME/main.rs`.
+/// The names of a crate's examples: `examples/NAME.rs` and `examples/NAME/main.rs`; none without a folder of them.
 ///
 /// # Panics
 /// If its folder cannot be read.
@@ -25,7 +25,10 @@ pub fn run(package: &str, example: &str, folder: &Path, command_line: &str) -> F
 pub fn all_of(package: &str) -> BTreeSet<String> {
     let folder =
         Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../crates/{package}/examples"));
-    let entries = std::fs::read_dir(&folder).expect("every crate has examples");
+    if !folder.is_dir() {
+        return BTreeSet::new();
+    }
+    let entries = std::fs::read_dir(&folder).expect("a folder can be listed");
     let name = |path: &Path| -> Option<String> {
         let is_one = path.extension().is_some_and(|e| e == "rs") || path.join("main.rs").is_file();
         is_one.then(|| {

@@ -4,7 +4,7 @@ use crate::crowd;
 use crate::folder_contents::{self, Contents};
 use crate::own_tracks;
 use ddl::data::Dataset;
-use ddl::star::{ProposalConfig, StarConfig, TrainingConfig};
+use ddl::network::{ProposalConfig, StarConfig, TrainingConfig};
 use ddl::{
     Ddl, DdlError, DeviceChoice, GoalRecipe, RunDirectory, TrainingRequest, TrainingStage,
     TrainingStep, Variant,

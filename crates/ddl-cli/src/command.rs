@@ -23,7 +23,7 @@ use crate::{output, recordings, result_lines};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{Convention, Dataset, locate};
-use ddl::eval::Report;
+use ddl::report::Report;
 use ddl::{Clearance, Ddl, DdlError, DeviceChoice, Precision, RunConfig};
 use std::path::{Path, PathBuf};
 

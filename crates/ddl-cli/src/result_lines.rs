@@ -2,7 +2,8 @@
 
 use ddl::Protocol;
 use ddl::data::Convention;
-use ddl::eval::{RecordingErrors, Report, ResultRow};
+use ddl::eval::{RecordingErrors, ResultRow};
+use ddl::report::Report;
 use std::fmt::{Result, Write as _};
 
 /// What a model is to beat, recording by recording.

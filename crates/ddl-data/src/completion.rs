@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::{OBSERVED, Position};
+use crate::track::{OBSERVED, Position, between, is_finite};
 
 /// Longest hole that may be filled, in frames.
 const LONGEST_GAP: usize = 2;
@@ -114,15 +114,9 @@ impl Completion {
             *position = [0, 1].map(|axis| first[axis] - back * (last[axis] - first[axis]));
         }
         // What lies between positions out of this world may be no number.
-        let finite = positions.iter().flatten().all(|c| c.is_finite());
+        let finite = positions.iter().all(|&position| is_finite(position));
         finite.then_some((positions, MadeUp { padded, filled }))
     }
-}
-
-/// The point at `frame` of the straight line between two observations.
-fn between(before: (i64, Position), after: (i64, Position), frame: i64) -> Position {
-    let share = (frame - before.0) as f64 / (after.0 - before.0) as f64;
-    [0, 1].map(|axis| before.1[axis] + share * (after.1[axis] - before.1[axis]))
 }
 
 /// How many of the 8 observed positions of a walker were not seen but made up.

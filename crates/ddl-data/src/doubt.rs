@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::{Fastest, Observation, PedestrianId, Position, Recording, TIME_STEP};
+use serde::Serialize;
+
+use crate::{Observation, PedestrianId, PedestrianName, Position, Recording, TIME_STEP};
 
 /// Faster than anybody walks, m/s: who seems to is measured in pixels, or in steps of another length.
 const IMPLAUSIBLE: f64 = 4.0;
@@ -92,6 +94,18 @@ impl fmt::Display for Doubt {
             ),
         }
     }
+}
+
+/// The fastest step of a recording.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Fastest {
+    /// Its speed, m/s.
+    pub speed: f64,
+    /// Whose it is.
+    pub pedestrian: PedestrianName,
+    /// The raw frame at which it ends.
+    pub frame: i64,
 }
 
 /// How people move, step by step.

@@ -408,15 +408,3 @@ pub enum DataError {
         known: Vec<String>,
     },
 }
-
-/// A word that names no member of a fixed set, with the words that do.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("{found:?} is no {kind}; choose one of {expected}")]
-pub struct UnknownName {
-    /// What was to be named, such as `data convention`.
-    pub kind: &'static str,
-    /// The word found.
-    pub found: String,
-    /// The words allowed.
-    pub expected: &'static str,
-}

@@ -13,20 +13,23 @@ mod live;
 mod locate;
 mod names;
 mod neighbours;
+mod plan;
 mod rate;
 mod recording;
 mod rule;
 pub mod simulate;
 mod summary;
 mod track;
+mod unknown_name;
+mod whole_file;
 mod window;
 
 pub use augment::Rotation;
 pub use completion::{Completion, CompletionError, MadeUp};
 pub use convention::Convention;
 pub use dataset::Dataset;
-pub use doubt::Doubt;
-pub use error::{DataError, FormatError, FormatProblem, RecordingError, UnknownName, WindowError};
+pub use doubt::{Doubt, Fastest};
+pub use error::{DataError, FormatError, FormatProblem, RecordingError, WindowError};
 pub use fold::{Fold, SocialGanSplit, TrainingSplit};
 pub use format::{Format, Frame, FrameReader, parse_recording, read_recording};
 pub use homography::{Homography, HomographyError};
@@ -37,8 +40,10 @@ pub use neighbours::{NEIGHBOUR_HALF_WIDTH, NeighbourMask};
 pub use rate::{InSteps, RateError, whole_frame_step};
 pub use recording::Recording;
 pub use rule::WindowRule;
-pub use summary::{Fastest, Hole, Summary};
+pub use summary::{Hole, Summary};
 pub use track::{
     COORDINATE_LIMIT, HORIZON, OBSERVED, Observation, PedestrianId, Position, TIME_STEP, WINDOW,
 };
+pub use unknown_name::UnknownName;
+pub use whole_file::{WRITING, write_whole};
 pub use window::Window;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::recording::{FRAME_LIMIT, FRAME_STEP_LIMIT};
+use crate::track::{is_finite, is_frame, is_frame_step};
 use crate::{Completion, OBSERVED, PedestrianId, PedestrianNames, Position, Recording, Window};
 
 const NAME: &str = "live";
@@ -84,7 +84,7 @@ impl LiveTracks {
     /// # Errors
     /// [`LiveError::FrameStep`] if the step does not lie in 1..=2^31.
     pub fn with_frame_step(frame_step: i64) -> Result<Self, LiveError> {
-        if !(1..=FRAME_STEP_LIMIT).contains(&frame_step) {
+        if !is_frame_step(frame_step) {
             return Err(LiveError::FrameStep { found: frame_step });
         }
         Ok(Self {
@@ -103,7 +103,7 @@ impl LiveTracks {
         }
     }
 
-    /// The same, making up what the completion allows of observations that are not whole.
+    /// The same, with incomplete observations filled in as the completion allows.
     #[must_use]
     pub fn completing(self, completion: Completion) -> Self {
         Self { completion, ..self }
@@ -164,7 +164,7 @@ impl LiveTracks {
         frame: i64,
         people: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Self, LiveError> {
-        if frame.unsigned_abs() >= FRAME_LIMIT.unsigned_abs() {
+        if !is_frame(frame) {
             return Err(LiveError::FrameOutOfRange { frame });
         }
         if let Some(last) = self.last_frame.filter(|last| frame <= *last) {
@@ -173,7 +173,7 @@ impl LiveTracks {
         let mut people: Vec<(PedestrianId, Position)> = people.into_iter().collect();
         people.sort_unstable_by_key(|&(id, _)| id);
         for &(pedestrian, position) in &people {
-            if !position.iter().all(|c| c.is_finite()) {
+            if !is_finite(position) {
                 return Err(LiveError::NotFinite {
                     pedestrian,
                     frame,
@@ -251,6 +251,35 @@ impl LiveTracks {
         let window = Window::cut(Arc::clone(&self.name), step, frames, ids, positions);
         let names = self.names.clone();
         Some(window.with_names(names).with_made_up(made_up))
+    }
+}
+
+impl Recording {
+    /// The [`observed_windows`](Self::observed_windows) with incomplete observations filled in as the completion allows: a
+    /// pedestrian belongs to the window of a frame when it is seen there and often enough before. [`Window::made_up`] counts
+    /// the filled-in positions.
+    ///
+    /// ```
+    /// use ddl_data::{Completion, Observation, PedestrianId, Recording};
+    ///
+    /// let walk = [0, 10, 40].map(|frame| Observation::new(frame, PedestrianId(1), [0.05 * frame as f64, 0.0]));
+    /// let windows = Recording::new("yard", 10, walk.to_vec())?.completed_windows(Completion::USUAL);
+    /// let last = &windows[1];
+    /// assert_eq!((last.made_up(0).padded, last.made_up(0).filled), (3, 2));
+    /// assert_eq!(last.observed(0)[5..], [[1.0, 0.0], [1.5, 0.0], [2.0, 0.0]]);
+    /// # Ok::<(), ddl_data::RecordingError>(())
+    /// ```
+    #[must_use]
+    pub fn completed_windows(&self, completion: Completion) -> Vec<Window> {
+        let mut tracks = LiveTracks::of(self).completing(completion);
+        let mut windows = Vec::new();
+        for &frame in self.frames() {
+            let people = self.at(frame).iter();
+            let people = people.map(|seen| (seen.pedestrian, seen.position));
+            // A recording holds nothing that live tracks refuse.
+            windows.extend(tracks.push(frame, people).ok().flatten());
+        }
+        windows
     }
 }
 

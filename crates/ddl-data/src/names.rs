@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::PedestrianId;
-use crate::recording::FRAME_LIMIT;
+use crate::track::FRAME_LIMIT;
 
 /// A pedestrian as a file or stream has it.
 ///

@@ -1,11 +1,9 @@
 //! Recordings of other rates, in steps of 0.4 s.
 
-use std::collections::BTreeMap;
-
 use thiserror::Error;
 
-use crate::recording::{FRAME_LIMIT, FRAME_STEP_LIMIT};
-use crate::{Observation, PedestrianId, Position, Recording, RecordingError, TIME_STEP};
+use crate::track::{FRAME_LIMIT, FRAME_STEP_LIMIT, between};
+use crate::{Observation, Recording, RecordingError, TIME_STEP};
 
 /// A step may be this much longer or shorter than 0.4 s, as a share: less than anybody's speed varies.
 const TOLERANCE: f64 = 0.005;
@@ -54,7 +52,7 @@ pub fn whole_frame_step(frame_time: f64) -> Option<i64> {
 /// The whole multiple of `spacing` that a number of frames is.
 fn whole_multiple(frames: f64, spacing: i64) -> Option<i64> {
     let multiple = (frames / spacing as f64).round() * spacing as f64;
-    (multiple >= 1.0 && fits(multiple, frames, TOLERANCE)).then_some(multiple as i64)
+    fits(multiple, frames, TOLERANCE).then_some(multiple as i64)
 }
 
 impl Recording {
@@ -82,17 +80,14 @@ impl Recording {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn in_steps(&self, frame_time: f64) -> Result<InSteps, RateError> {
-        if !(frame_time.is_finite() && frame_time > 0.0) {
+        let frames = TIME_STEP / frame_time;
+        if !(frames > 0.0 && frames <= FRAME_STEP_LIMIT as f64) {
             return Err(RateError::FrameTime { found: frame_time });
         }
         let spacing = self.frame_step();
         let apart = spacing as f64 * frame_time;
         if apart > SLOWEST {
             return Err(RateError::TooSlow { apart });
-        }
-        let frames = TIME_STEP / frame_time;
-        if frames > FRAME_STEP_LIMIT as f64 {
-            return Err(RateError::FrameTime { found: frame_time });
         }
         if let Some(step) = whole_multiple(frames, spacing).filter(|_| self.is_even()) {
             let recording = self.clone().with_frame_step(step)?;
@@ -103,16 +98,12 @@ impl Recording {
             });
         }
         let whole = |parts: &i64| {
-            let step = (frames * *parts as f64).round();
-            step >= 1.0 && fits(step, frames * *parts as f64, FIT)
+            let step = frames * *parts as f64;
+            fits(step.round(), step, FIT)
         };
         // A thousandth of a frame is always near enough.
-        let parts = (1..=MOST_PARTS).find(whole).unwrap_or(MOST_PARTS);
-        let step = (frames * parts as f64).round().max(1.0) as i64;
-        if step > FRAME_STEP_LIMIT {
-            return Err(RateError::FrameTime { found: frame_time });
-        }
-        self.resampled(parts, step)
+        let parts = (1..MOST_PARTS).find(whole).unwrap_or(MOST_PARTS);
+        self.resampled(parts, (frames * parts as f64).round() as i64)
     }
 
     /// Seconds from one frame number to the next as the file tells them by its [`rate`](Self::rate): its frames are usually
@@ -139,36 +130,25 @@ impl Recording {
         }
         let end = last * parts;
         let longest = (JOINED * (self.frame_step() * parts) as f64) as i64;
-        let mut tracks: BTreeMap<PedestrianId, Vec<(i64, Position)>> = BTreeMap::new();
-        for seen in self.observations() {
-            let track = tracks.entry(seen.pedestrian).or_default();
-            track.push((seen.frame * parts, seen.position));
-        }
         let mut observations = Vec::new();
-        for (pedestrian, track) in tracks {
+        for (pedestrian, track) in self.tracks() {
             let mut add = |frame, position| {
                 observations.push(Observation::new(frame, pedestrian, position));
             };
-            for &(frame, position) in &track {
+            let placed = track.iter().map(|seen| (seen.frame * parts, seen.position));
+            let placed: Vec<_> = placed.collect();
+            for &(frame, position) in &placed {
                 if (end - frame) % step == 0 {
                     add(frame, position);
                 }
             }
-            for pair in track.windows(2) {
-                let [(from, a), (to, b)] = [pair[0], pair[1]];
-                if to - from > longest {
-                    continue;
-                }
-                // The first place of the grid after `from`.
-                let first = end - (end - from - 1).div_euclid(step) * step;
-                let mut frame = first;
-                while frame < to {
-                    let share = (frame - from) as f64 / (to - from) as f64;
-                    add(
-                        frame,
-                        [0, 1].map(|axis| a[axis] + share * (b[axis] - a[axis])),
-                    );
-                    frame += step;
+            for &[from, to] in placed.array_windows() {
+                if to.0 - from.0 <= longest {
+                    // The first place of the grid after `from`.
+                    let first = end - (end - from.0 - 1) / step * step;
+                    for frame in (first..to.0).step_by(step as usize) {
+                        add(frame, between(from, to, frame));
+                    }
                 }
             }
         }

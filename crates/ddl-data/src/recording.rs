@@ -1,19 +1,12 @@
 //! A recording: everybody's positions in one place, over time.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
 use crate::error::RecordingError;
-use crate::rule;
-use crate::{
-    Completion, HORIZON, LiveTracks, OBSERVED, Observation, PedestrianId, PedestrianNames,
-    Position, Window, WindowRule,
-};
-
-/// Frames are below this in size: exact in an `f64`, and far from overflow when counting on.
-pub(crate) const FRAME_LIMIT: i64 = 1 << 53;
-/// Largest frame step allowed.
-pub(crate) const FRAME_STEP_LIMIT: i64 = 1 << 31;
+use crate::track::{is_finite, is_frame, is_frame_step};
+use crate::{HORIZON, OBSERVED, Observation, PedestrianId, PedestrianNames, Position, Window};
 
 /// All observations of one scene, sorted by frame and then by pedestrian.
 ///
@@ -57,7 +50,7 @@ impl Recording {
         frame_step: i64,
         mut observations: Vec<Observation>,
     ) -> Result<Self, RecordingError> {
-        if !(1..=FRAME_STEP_LIMIT).contains(&frame_step) {
+        if !is_frame_step(frame_step) {
             return Err(RecordingError::FrameStep { found: frame_step });
         }
         if observations.is_empty() {
@@ -69,10 +62,10 @@ impl Recording {
             position,
         } in &observations
         {
-            if frame.unsigned_abs() >= FRAME_LIMIT.unsigned_abs() {
+            if !is_frame(frame) {
                 return Err(RecordingError::FrameOutOfRange { pedestrian, frame });
             }
-            if !position.iter().all(|c| c.is_finite()) {
+            if !is_finite(position) {
                 return Err(RecordingError::NotFinite {
                     pedestrian,
                     frame,
@@ -155,7 +148,7 @@ impl Recording {
     /// # Errors
     /// If the step does not lie in 1..=2^31.
     pub fn with_frame_step(mut self, frame_step: i64) -> Result<Self, RecordingError> {
-        if !(1..=FRAME_STEP_LIMIT).contains(&frame_step) {
+        if !is_frame_step(frame_step) {
             return Err(RecordingError::FrameStep { found: frame_step });
         }
         self.frame_step = frame_step;
@@ -192,6 +185,15 @@ impl Recording {
         &self.observations[self.range_at(frame)]
     }
 
+    /// Everybody's observations in order of time.
+    pub(crate) fn tracks(&self) -> BTreeMap<PedestrianId, Vec<&Observation>> {
+        let mut tracks: BTreeMap<PedestrianId, Vec<&Observation>> = BTreeMap::new();
+        for seen in &self.observations {
+            tracks.entry(seen.pedestrian).or_default().push(seen);
+        }
+        tracks
+    }
+
     /// Where in [`observations`](Self::observations) a raw frame lies.
     pub(crate) fn range_at(&self, frame: i64) -> Range<usize> {
         match self.frames.binary_search(&frame) {
@@ -207,10 +209,7 @@ impl Recording {
 
     /// Everybody in the recording, ascending, each once.
     pub fn pedestrians(&self) -> Vec<PedestrianId> {
-        let mut ids: Vec<_> = self.observations.iter().map(|o| o.pedestrian).collect();
-        ids.sort_unstable();
-        ids.dedup();
-        ids
+        self.tracks().into_keys().collect()
     }
 
     /// One pedestrian's observations in order of time; empty if nobody has this id.
@@ -220,15 +219,6 @@ impl Recording {
             .filter(|o| o.pedestrian == pedestrian)
             .copied()
             .collect()
-    }
-
-    /// All windows of the recording under a rule, in order of their start frame.
-    ///
-    /// [`WindowRule`] defines the rules. The window that the published test loader loses (that of the
-    /// first frame of a *fold*) is still here; [`Fold::test_windows`](crate::Fold::test_windows) drops it.
-    #[must_use]
-    pub fn windows(&self, rule: WindowRule) -> Vec<Window> {
-        rule::windows(self, rule)
     }
 
     /// The recording in two parts by time: the first floor((1 - f) n) of its n annotated frames, and the rest; a part
@@ -282,42 +272,6 @@ impl Recording {
             rate: self.rate,
             names: self.names.clone(),
         })
-    }
-
-    /// What can be forecast from: windows of [`OBSERVED`](crate::OBSERVED) frames without a future,
-    /// one for every frame up to which somebody was seen that many steps in a row.
-    ///
-    /// Unlike [`Recording::windows`] this asks nothing of the frames that follow, so that it also
-    /// works on live tracks.
-    #[must_use]
-    pub fn observed_windows(&self) -> Vec<Window> {
-        rule::observed_windows(self)
-    }
-
-    /// The same, making up what the completion allows of observations that are not whole: whoever is there at a frame and was seen
-    /// often enough belongs to its window, and [`Window::made_up`] says what was not seen.
-    ///
-    /// ```
-    /// use ddl_data::{Completion, Observation, PedestrianId, Recording};
-    ///
-    /// let walk = [0, 10, 40].map(|frame| Observation::new(frame, PedestrianId(1), [0.05 * frame as f64, 0.0]));
-    /// let windows = Recording::new("yard", 10, walk.to_vec())?.completed_windows(Completion::USUAL);
-    /// let last = &windows[1];
-    /// assert_eq!((last.made_up(0).padded, last.made_up(0).filled), (3, 2));
-    /// assert_eq!(last.observed(0)[5..], [[1.0, 0.0], [1.5, 0.0], [2.0, 0.0]]);
-    /// # Ok::<(), ddl_data::RecordingError>(())
-    /// ```
-    #[must_use]
-    pub fn completed_windows(&self, completion: Completion) -> Vec<Window> {
-        let mut tracks = LiveTracks::of(self).completing(completion);
-        let mut windows = Vec::new();
-        for &frame in &self.frames {
-            let people = self.at(frame).iter();
-            let people = people.map(|seen| (seen.pedestrian, seen.position));
-            // A recording holds nothing that live tracks refuse.
-            windows.extend(tracks.push(frame, people).ok().flatten());
-        }
-        windows
     }
 
     /// What then happened to each pedestrian of an observed window, as far as it was seen: up to [`HORIZON`](crate::HORIZON) positions from

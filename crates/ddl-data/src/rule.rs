@@ -6,13 +6,10 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::UnknownName;
 use crate::recording::Recording;
+use crate::unknown_name::UnknownName;
 use crate::{OBSERVED, PedestrianId, Position, WINDOW, Window};
 
-/// Raw frames by which the published loader stays away from the end of a recording. It mixes up
-/// raw frames and steps: 20 steps are 120 or 200 raw frames.
-const PUBLISHED_END_MARGIN: i64 = 20;
 /// Steps after which the published loader wants to see somebody again: one beyond the window.
 const STEPS_AHEAD: i64 = 20;
 
@@ -39,9 +36,8 @@ pub(crate) const SOCIAL_GAN_FEWEST: usize = 2;
 pub enum WindowRule {
     /// The windows of the published STAR and DDL code, quirks included.
     ///
-    /// With the frame step s, an annotated frame f starts a window if f is at least 20 *raw* frames
-    /// before the recording's last frame, frame f + 20 s (one step beyond the window) is annotated,
-    /// and somebody is in both f and f + 20 s. Whoever stands at exactly (0, 0) counts as absent at
+    /// With the frame step s, an annotated frame f starts a window if frame f + 20 s (one step beyond the window) is annotated, and somebody
+    /// is in both f and f + 20 s. (That f be at least 20 *raw* frames before the recording's last, which the code asks for too, follows.) Whoever stands at exactly (0, 0) counts as absent at
     /// that step. A fold's tests also lack the window of its very first frame
     /// ([`Fold::test_windows`](crate::Fold::test_windows)).
     Published,
@@ -98,14 +94,25 @@ impl FromStr for WindowRule {
     }
 }
 
-/// All windows of a recording, in order of their start frame.
-pub(crate) fn windows(recording: &Recording, rule: WindowRule) -> Vec<Window> {
-    cut(recording, rule, WINDOW)
-}
+impl Recording {
+    /// All windows of the recording under a rule, in order of their start frame.
+    ///
+    /// [`WindowRule`] defines the rules. The window that the published test loader loses (that of the
+    /// first frame of a *fold*) is still here; [`Fold::test_windows`](crate::Fold::test_windows) drops it.
+    #[must_use]
+    pub fn windows(&self, rule: WindowRule) -> Vec<Window> {
+        cut(self, rule, WINDOW)
+    }
 
-/// All windows of observed frames alone, in order of their start frame.
-pub(crate) fn observed_windows(recording: &Recording) -> Vec<Window> {
-    cut(recording, WindowRule::Complete, OBSERVED)
+    /// What can be forecast from: windows of [`OBSERVED`](crate::OBSERVED) frames without a future,
+    /// one for every frame up to which somebody was seen that many steps in a row.
+    ///
+    /// Unlike [`Recording::windows`] this asks nothing of the frames that follow, so that it also
+    /// works on live tracks.
+    #[must_use]
+    pub fn observed_windows(&self) -> Vec<Window> {
+        cut(self, WindowRule::Complete, OBSERVED)
+    }
 }
 
 fn cut(recording: &Recording, rule: WindowRule, steps: usize) -> Vec<Window> {
@@ -192,13 +199,11 @@ impl<'a> Links<'a> {
         }
         let frames = self.recording.frames();
         let beyond = frames[index] + STEPS_AHEAD * self.recording.frame_step();
-        frames[index] <= frames[frames.len() - 1] - PUBLISHED_END_MARGIN
-            && !self
-                .pairs(
-                    self.recording.range_of(index),
-                    self.recording.range_at(beyond),
-                )
-                .is_empty()
+        let (here, beyond) = (
+            self.recording.range_of(index),
+            self.recording.range_at(beyond),
+        );
+        !self.pairs(here, beyond).is_empty()
     }
 
     /// The window of `steps` frames that the `index`-th annotated frame starts, if it does.

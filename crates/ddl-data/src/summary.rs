@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::doubt::{self, Speeds};
+use crate::doubt::{self, Doubt, Fastest, Speeds};
 use crate::{
-    Completion, Doubt, Observation, PedestrianId, PedestrianName, Position, Recording, TIME_STEP,
+    Completion, Observation, PedestrianId, PedestrianName, Position, Recording, TIME_STEP,
     WindowRule,
 };
 
@@ -71,18 +71,6 @@ pub struct Summary {
     pub to_learn_from: usize,
 }
 
-/// The fastest step of a recording.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct Fastest {
-    /// Its speed, m/s.
-    pub speed: f64,
-    /// Whose it is.
-    pub pedestrian: PedestrianName,
-    /// The raw frame at which it ends.
-    pub frame: i64,
-}
-
 /// A time in which somebody was not seen, and after which they were again.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
@@ -118,17 +106,14 @@ impl Summary {
 }
 
 impl Recording {
-    pub(crate) fn tracks(&self) -> BTreeMap<PedestrianId, Vec<&Observation>> {
-        let mut tracks: BTreeMap<PedestrianId, Vec<&Observation>> = BTreeMap::new();
-        for seen in self.observations() {
-            tracks.entry(seen.pedestrian).or_default().push(seen);
-        }
-        tracks
-    }
-
     /// Share of the frames between somebody's first and last at which that person was not seen.
     fn unseen(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> f64 {
-        let index = |frame: i64| self.frames().partition_point(|&other| other < frame);
+        // Every frame of a track is one of the recording.
+        let index = |frame| {
+            self.frames()
+                .binary_search(&frame)
+                .unwrap_or_else(|place| place)
+        };
         let spans = tracks
             .values()
             .map(|track| index(track[track.len() - 1].frame) - index(track[0].frame) + 1);

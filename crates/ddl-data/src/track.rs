@@ -16,6 +16,11 @@ pub const HORIZON: usize = 12;
 /// Steps of a whole window: observed and to forecast.
 pub const WINDOW: usize = OBSERVED + HORIZON;
 
+/// Frames are below this in size: exact in an `f64`, and far from overflow when counting on.
+pub(crate) const FRAME_LIMIT: i64 = 1 << 53;
+/// Largest frame step allowed.
+pub(crate) const FRAME_STEP_LIMIT: i64 = 1 << 31;
+
 /// Coordinates that are read from files and streams are at most this in size (m): coordinates of UTM, which reach 10,000 km, lie within, those of a world map need not, and
 /// what is computed with such numbers keeps its precision.
 pub const COORDINATE_LIMIT: f64 = 1e7;
@@ -67,4 +72,25 @@ impl Observation {
             position,
         }
     }
+}
+
+/// Whether a raw frame number can be counted on from.
+pub(crate) fn is_frame(frame: i64) -> bool {
+    frame.unsigned_abs() < FRAME_LIMIT.unsigned_abs()
+}
+
+/// Whether so many raw frames may be a step.
+pub(crate) fn is_frame_step(step: i64) -> bool {
+    (1..=FRAME_STEP_LIMIT).contains(&step)
+}
+
+/// Whether a position is a place.
+pub(crate) fn is_finite(position: Position) -> bool {
+    position.iter().all(|coordinate| coordinate.is_finite())
+}
+
+/// The point at `frame` of the straight line between two observations.
+pub(crate) fn between(before: (i64, Position), after: (i64, Position), frame: i64) -> Position {
+    let share = (frame - before.0) as f64 / (after.0 - before.0) as f64;
+    [0, 1].map(|axis| before.1[axis] + share * (after.1[axis] - before.1[axis]))
 }

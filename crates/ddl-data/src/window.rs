@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::augment::Rotation;
 use crate::error::WindowError;
 use crate::neighbours::NeighbourMask;
-use crate::recording::{FRAME_LIMIT, FRAME_STEP_LIMIT};
+use crate::track::{is_finite, is_frame, is_frame_step};
 use crate::{MadeUp, OBSERVED, PedestrianId, PedestrianName, PedestrianNames, Position, WINDOW};
 
 /// The pedestrians of one scene over 8 observed steps and, where known, the 12 that follow.
@@ -60,9 +60,7 @@ impl Window {
                 tracks,
             });
         }
-        if !(1..=FRAME_STEP_LIMIT).contains(&frame_step)
-            || start_frame.unsigned_abs() >= FRAME_LIMIT.unsigned_abs()
-        {
+        if !(is_frame_step(frame_step) && is_frame(start_frame)) {
             return Err(WindowError::Frames {
                 start_frame,
                 frame_step,
@@ -81,7 +79,7 @@ impl Window {
             if found != steps || (steps != OBSERVED && steps != WINDOW) {
                 return Err(WindowError::Length { pedestrian, found });
             }
-            if let Some(index) = track.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
+            if let Some(index) = track.iter().position(|&place| !is_finite(place)) {
                 let position = track[index];
                 return Err(WindowError::NotFinite {
                     pedestrian,
@@ -95,15 +93,14 @@ impl Window {
             .take(steps)
             .collect();
         let positions = tracks.into_iter().flatten().collect();
-        Ok(Self {
-            recording: recording.into(),
+        let recording = recording.into();
+        Ok(Self::cut(
+            recording,
             frame_step,
             frames,
             pedestrians,
-            names: PedestrianNames::default(),
             positions,
-            made_up: Vec::new(),
-        })
+        ))
     }
 
     /// A whole window cut from a recording, whose invariants make every check of
@@ -150,7 +147,7 @@ impl Window {
 
     /// The same with what of each pedestrian's observation was made up.
     pub(crate) fn with_made_up(mut self, made_up: Vec<MadeUp>) -> Self {
-        debug_assert_eq!(made_up.len(), self.len());
+        debug_assert!(made_up.is_empty() || made_up.len() == self.len());
         let whole = made_up.iter().all(|made_up| made_up.is_nothing());
         self.made_up = if whole { Vec::new() } else { made_up };
         self
@@ -200,7 +197,7 @@ impl Window {
 
     /// Always false: a window holds at least one pedestrian.
     pub fn is_empty(&self) -> bool {
-        self.pedestrians.is_empty()
+        false
     }
 
     /// Number of positions of each track, T: 20, or 8 without a future.
@@ -266,19 +263,26 @@ impl Window {
     /// The observation alone, as it is known when a forecast is asked for.
     #[must_use]
     pub fn without_future(&self) -> Window {
-        let positions = (0..self.len())
-            .flat_map(|i| self.observed(i))
-            .copied()
-            .collect();
-        Window {
-            recording: Arc::clone(&self.recording),
-            frame_step: self.frame_step,
-            frames: self.frames[..OBSERVED].to_vec(),
-            pedestrians: self.pedestrians.clone(),
-            names: self.names.clone(),
-            positions,
-            made_up: self.made_up.clone(),
-        }
+        let observed = (0..self.len()).flat_map(|i| self.observed(i));
+        let frames = self.frames[..OBSERVED].to_vec();
+        let window = self.of_same(
+            frames,
+            self.pedestrians.clone(),
+            observed.copied().collect(),
+        );
+        window.with_made_up(self.made_up.clone())
+    }
+
+    /// A window of the same recording.
+    fn of_same(
+        &self,
+        frames: Vec<i64>,
+        pedestrians: Vec<PedestrianId>,
+        positions: Vec<Position>,
+    ) -> Self {
+        let recording = Arc::clone(&self.recording);
+        let window = Self::cut(recording, self.frame_step, frames, pedestrians, positions);
+        window.with_names(self.names.clone())
     }
 
     /// The window with some of its pedestrians alone; `None` if there would be nobody.
@@ -300,15 +304,9 @@ impl Window {
         if kept.is_empty() {
             return None;
         }
-        let window = Window {
-            recording: Arc::clone(&self.recording),
-            frame_step: self.frame_step,
-            frames: self.frames.clone(),
-            pedestrians: kept.iter().map(|&i| self.pedestrians[i]).collect(),
-            names: self.names.clone(),
-            positions: kept.iter().flat_map(|&i| self.track(i)).copied().collect(),
-            made_up: Vec::new(),
-        };
+        let pedestrians = kept.iter().map(|&i| self.pedestrians[i]).collect();
+        let positions = kept.iter().flat_map(|&i| self.track(i)).copied().collect();
+        let window = self.of_same(self.frames.clone(), pedestrians, positions);
         Some(window.with_made_up(kept.iter().map(|&i| self.made_up(i)).collect()))
     }
 

@@ -1,4 +1,4 @@
-//! Time to score a fold as large as univ: 24,254 walkers with 20 hypotheses each, every metric and category.
+//! Time to score a fold as large as univ: 24,254 pedestrians with 20 hypotheses each, every metric and category.
 #![allow(
     missing_docs,
     reason = "criterion's macro makes a function without them"
@@ -13,9 +13,9 @@ use ddl_eval::{
     baseline::{ConstantVelocity, SocialForce},
 };
 
-/// Walkers of univ under the published rule.
-const WALKERS: usize = 24_254;
-/// Walkers of a window.
+/// Pedestrians of univ under the published rule.
+const PEDESTRIANS: usize = 24_254;
+/// Pedestrians of a window.
 const CROWD: usize = 25;
 /// Side of the square they begin in, m: as dense as univ.
 const SIDE: f64 = 14.0;
@@ -31,7 +31,7 @@ fn numbers(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Walkers of up to 1.5 m/s who sway and turn; one in five stands.
+/// Pedestrians of up to 1.5 m/s who sway and turn; one in five stands.
 fn windows() -> Vec<Window> {
     let mut next = numbers(1);
     let mut track = || -> Vec<Position> {
@@ -56,7 +56,7 @@ fn windows() -> Vec<Window> {
             })
             .collect()
     };
-    let mut left = WALKERS;
+    let mut left = PEDESTRIANS;
     let mut windows = Vec::new();
     while left > 0 {
         let n = left.min(CROWD);

@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// How a result came about. Two results are comparable when their convention, window rule, protocol
-/// and test subset are the same; [`Report`](crate::Report) never puts others into one table.
+/// and test subset are the same; a report never puts others into one table.
 ///
 /// # Examples
 /// ```
@@ -37,19 +37,14 @@ pub struct Conditions {
     /// Name of the forecaster.
     pub forecaster: String,
     /// Ablation variant: `full`, `no-goal-shift`, `no-dynamics` or `star`; `None` when it has none.
-    #[serde(default)]
     pub variant: Option<String>,
     /// Seed of the training and of the samples; `None` when nothing is random.
-    #[serde(default)]
     pub seed: Option<u64>,
     /// Training epochs; `None` when nothing is trained.
-    #[serde(default)]
     pub epochs: Option<usize>,
     /// How the epoch scored was chosen, such as `last epoch`.
-    #[serde(default)]
     pub selection: Option<String>,
     /// How it was made, in words: batch size and step size of the training, where the goals are from; `None` when neither applies.
-    #[serde(default)]
     pub recipe: Option<String>,
     /// Device the forecasts were computed on, such as `cpu`; empty when unknown.
     #[serde(default)]
@@ -59,11 +54,9 @@ pub struct Conditions {
     pub commit: String,
     /// Rule by which a part of the training windows was used; `None` for all of them. The same text
     /// for every fold, or the folds will not share a row.
-    #[serde(default)]
     pub training_subset: Option<String>,
     /// Rule by which a part of the test windows was scored; `None` for all of them. The same text for
     /// every fold, or the folds will not share a table.
-    #[serde(default)]
     pub test_subset: Option<String>,
 }
 

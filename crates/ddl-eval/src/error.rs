@@ -1,8 +1,6 @@
 //! What can go wrong between a forecast and a printed table.
 
-use std::path::PathBuf;
-
-use ddl_data::HORIZON;
+use ddl_data::{HORIZON, Window};
 
 use crate::Protocol;
 
@@ -157,39 +155,13 @@ pub enum EvaluationError {
         /// Number of forecasts.
         forecasts: usize,
     },
-    /// A forecast is of other people than the window holds.
-    #[error(
-        "window of `{recording}` starting at frame {start_frame} holds {expected} pedestrians, its \
-         forecast {found}"
-    )]
-    Pedestrians {
-        /// Name of the recording.
-        recording: String,
-        /// First frame of the window.
-        start_frame: i64,
-        /// Pedestrians in the window.
-        expected: usize,
-        /// Pedestrians in the forecast.
-        found: usize,
-    },
-    /// More was seen of a walker's future than a forecast covers.
+    /// More was seen of a pedestrian's future than a forecast covers.
     #[error(
         "{longest} positions were given as seen after the observation; a forecast covers {HORIZON}"
     )]
     Seen {
-        /// Positions of the walker with the most.
+        /// Positions of the pedestrian with the most.
         longest: usize,
-    },
-    /// A reduced window is not a part of the whole one it is scored among.
-    #[error(
-        "window of `{recording}` starting at frame {start_frame}: the whole window given is of other frames or lacks \
-         some of its pedestrians"
-    )]
-    Everybody {
-        /// Name of the recording.
-        recording: String,
-        /// First frame of the window.
-        start_frame: i64,
     },
     /// Not one whole window for each reduced one.
     #[error("{windows} windows but {everybody} whole ones; there must be one each")]
@@ -199,54 +171,73 @@ pub enum EvaluationError {
         /// Number of whole windows.
         everybody: usize,
     },
-    /// The window has no future to compare with.
-    #[error(
-        "window of `{recording}` starting at frame {start_frame} has no true future: it can be \
-         forecast but not scored"
-    )]
-    NoFuture {
+    /// A window cannot be scored with its forecast.
+    #[error("window of `{recording}` starting at frame {start_frame}{problem}")]
+    Window {
         /// Name of the recording.
         recording: String,
         /// First frame of the window.
         start_frame: i64,
+        /// Why.
+        problem: WindowProblem,
     },
+}
+
+/// Why a window cannot be scored with its forecast; what follows the name of the window in messages.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum WindowProblem {
+    /// The forecast is of other people than the window holds.
+    #[error(" holds {expected} pedestrians, its forecast {found}")]
+    Pedestrians {
+        /// Pedestrians in the window.
+        expected: usize,
+        /// Pedestrians in the forecast.
+        found: usize,
+    },
+    /// A reduced window is not a part of the whole one it is scored among.
+    #[error(": the whole window given is of other frames or lacks some of its pedestrians")]
+    Everybody,
+    /// The window has no future to compare with.
+    #[error(" has no true future: it can be forecast but not scored")]
+    NoFuture,
     /// Windows were forecast with different numbers of hypotheses.
     #[error(
-        "window of `{recording}` starting at frame {start_frame} was forecast with {found} \
-         hypotheses, the windows before it with {expected}; the best of K needs one K"
+        " was forecast with {found} hypotheses, the windows before it with {expected}; the best of K needs one K"
     )]
     Hypotheses {
-        /// Name of the recording.
-        recording: String,
-        /// First frame of the window.
-        start_frame: i64,
         /// Hypotheses of the first window.
         expected: usize,
         /// Hypotheses of this window.
         found: usize,
     },
     /// Only some of the forecasts have certificates.
-    #[error(
-        "window of `{recording}` starting at frame {start_frame}: either every forecast of a test \
-         set carries certificates or none does"
-    )]
-    CertificatesOfSome {
-        /// Name of the recording.
-        recording: String,
-        /// First frame of the window.
-        start_frame: i64,
-    },
+    #[error(": either every forecast of a test set carries certificates or none does")]
+    CertificatesOfSome,
     /// Only some of the forecasts have goals.
-    #[error(
-        "window of `{recording}` starting at frame {start_frame}: either every forecast of a test \
-         set has goals or none has"
-    )]
-    GoalsOfSome {
-        /// Name of the recording.
-        recording: String,
-        /// First frame of the window.
-        start_frame: i64,
-    },
+    #[error(": either every forecast of a test set has goals or none has")]
+    GoalsOfSome,
+}
+
+impl EvaluationError {
+    /// What is wrong with a window.
+    #[must_use]
+    pub fn of(window: &Window, problem: WindowProblem) -> Self {
+        Self::Window {
+            recording: window.recording().to_owned(),
+            start_frame: window.start_frame(),
+            problem,
+        }
+    }
+
+    /// That there is one forecast a window.
+    pub(crate) fn unless_one_each(windows: &[Window], forecasts: usize) -> Result<(), Self> {
+        let windows = windows.len();
+        if windows == forecasts {
+            return Ok(());
+        }
+        Err(Self::Count { windows, forecasts })
+    }
 }
 
 /// A forecaster could not be measured.
@@ -259,44 +250,4 @@ pub enum MeasureError {
     /// Its forecasts could not be scored.
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
-}
-
-/// A report cannot be put together, read or written.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ReportError {
-    /// Two rows name the same conditions and hold different numbers.
-    #[error(
-        "two results of `{row}` on fold `{fold}` name the same conditions but differ \
-         (minADE {first} and {second}); remove one of the runs, or give them different seeds"
-    )]
-    Conflict {
-        /// Forecaster and variant.
-        row: String,
-        /// Name of the fold.
-        fold: String,
-        /// minADE of the row that came first, metres.
-        first: f64,
-        /// minADE of the other row, metres.
-        second: f64,
-    },
-    /// The file format is newer than this crate.
-    #[error("the report has format {found}; this version reads format {supported}")]
-    Format {
-        /// Format read.
-        found: u32,
-        /// Format known.
-        supported: u32,
-    },
-    /// The text is not a report.
-    #[error("not a report: {0}")]
-    Json(#[from] serde_json::Error),
-    /// A file cannot be read or written.
-    #[error("{path}: {source}", path = path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// The cause.
-        source: std::io::Error,
-    },
 }

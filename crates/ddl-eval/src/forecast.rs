@@ -6,9 +6,6 @@ use ddl_data::{HORIZON, Position};
 
 use crate::{error::ForecastShapeError, region::RegionTable};
 
-/// How far the weights of a pedestrian may sum from 1.
-pub(crate) const WEIGHT_TOLERANCE: f64 = 1e-6;
-
 /// K weighted hypotheses of 12 positions for each of N pedestrians, in the order of the window.
 ///
 /// Frames are 0.4 s apart; the first is the one after the last observed frame. Hypothesis `k` of
@@ -33,6 +30,9 @@ pub struct Forecast {
 }
 
 impl Forecast {
+    /// How far the weights of a pedestrian may sum from 1.
+    pub const WEIGHT_TOLERANCE: f64 = 1e-6;
+
     /// A forecast from flat arrays; the layout is pedestrian, hypothesis, frame.
     ///
     /// # Errors
@@ -193,18 +193,10 @@ impl Forecast {
 
     /// Standard deviation in every direction of where pedestrian `i` is `t` + 1 steps ahead, about the position of the
     /// right hypothesis (metres); `None` for forecasts without a spread.
-    ///
-    /// # Panics
-    /// When `i` or `t` is out of range.
     #[must_use]
     pub fn spread(&self, i: usize, t: usize) -> Option<f64> {
-        assert!(
-            i < self.pedestrians && t < HORIZON,
-            "step {t} of pedestrian {i} asked"
-        );
-        self.spread
-            .as_ref()
-            .map(|(spread, _)| spread[i * HORIZON + t])
+        let (spread, _) = self.spread.as_ref()?;
+        Some(spread[i * HORIZON..][..HORIZON][t])
     }
 
     /// The table of its regions; `None` for forecasts without a spread.
@@ -215,16 +207,8 @@ impl Forecast {
 
     /// How much the observed motion of pedestrian `i` is like those that the model was trained on, 0 to 1; `None` for
     /// forecasts of models that do not say.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn familiarity(&self, i: usize) -> Option<f64> {
-        assert!(
-            i < self.pedestrians,
-            "pedestrian {i} asked of {}",
-            self.pedestrians
-        );
         self.familiarity.as_ref().map(|familiarity| familiarity[i])
     }
 
@@ -241,9 +225,6 @@ impl Forecast {
     }
 
     /// The 12 positions of hypothesis `k` of pedestrian `i`, metres.
-    ///
-    /// # Panics
-    /// When `i` or `k` is out of range.
     #[must_use]
     pub fn hypothesis(&self, i: usize, k: usize) -> &[Position] {
         let start = self.pair(i, k) * HORIZON;
@@ -251,18 +232,12 @@ impl Forecast {
     }
 
     /// The weight of hypothesis `k` of pedestrian `i`, in [0, 1].
-    ///
-    /// # Panics
-    /// When `i` or `k` is out of range.
     #[must_use]
     pub fn weight(&self, i: usize, k: usize) -> f64 {
         self.weights[self.pair(i, k)]
     }
 
     /// The goal of hypothesis `k` of pedestrian `i`, metres; `None` for forecasts without goals.
-    ///
-    /// # Panics
-    /// When `i` or `k` is out of range.
     #[must_use]
     pub fn goal(&self, i: usize, k: usize) -> Option<Position> {
         let pair = self.pair(i, k);
@@ -277,9 +252,6 @@ impl Forecast {
 
     /// Whether the certificate of hypothesis `k` of pedestrian `i` holds; `None` for forecasts that
     /// carry no certificates.
-    ///
-    /// # Panics
-    /// When `i` or `k` is out of range.
     #[must_use]
     pub fn certified(&self, i: usize, k: usize) -> Option<bool> {
         let pair = self.pair(i, k);
@@ -295,9 +267,6 @@ impl Forecast {
     /// The hypothesis of greatest weight of pedestrian `i`; of equals, the first.
     ///
     /// To act on one hypothesis, take the [representative](Self::representative) one.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn most_likely(&self, i: usize) -> usize {
         (1..self.hypotheses).fold(0, |best, k| {
@@ -449,7 +418,7 @@ fn check_weights(weights: &[f64], hypotheses: usize) -> Result<(), ForecastShape
             }
         }
         let sum: f64 = row.iter().sum();
-        if (sum - 1.0).abs() > WEIGHT_TOLERANCE {
+        if (sum - 1.0).abs() > Forecast::WEIGHT_TOLERANCE {
             return Err(ForecastShapeError::NotNormalised { pedestrian, sum });
         }
     }

@@ -115,7 +115,7 @@ mod tests {
     use super::*;
     use crate::{
         baseline::ConstantVelocity,
-        metric::fixture::{forecast, walk, window},
+        fixture::{forecast, walk, window},
     };
 
     /// Reads one coordinate of one future frame of the last pedestrian, when it is there.

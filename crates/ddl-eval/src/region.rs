@@ -28,23 +28,23 @@ const CELLS: usize = 24;
 
 /// Quantiles of scores, for levels and steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Columns", into = "Columns")]
-pub struct RegionTable(Columns);
+#[serde(try_from = "LevelQuantiles", into = "LevelQuantiles")]
+pub struct RegionTable(LevelQuantiles);
 
 /// The table as it is written, before it is checked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Columns {
+struct LevelQuantiles {
     /// Rising, in (0, 1).
     levels: Vec<f64>,
     /// `[levels][12]`.
     quantiles: Vec<[f64; HORIZON]>,
 }
 
-impl TryFrom<Columns> for RegionTable {
+impl TryFrom<LevelQuantiles> for RegionTable {
     type Error = &'static str;
 
-    fn try_from(columns: Columns) -> Result<Self, Self::Error> {
+    fn try_from(columns: LevelQuantiles) -> Result<Self, Self::Error> {
         let inside = |level: &f64| *level > 0.0 && *level < 1.0;
         let is_valid = !columns.levels.is_empty()
             && columns.levels.len() == columns.quantiles.len()
@@ -65,7 +65,7 @@ impl TryFrom<Columns> for RegionTable {
     }
 }
 
-impl From<RegionTable> for Columns {
+impl From<RegionTable> for LevelQuantiles {
     fn from(table: RegionTable) -> Self {
         table.0
     }
@@ -107,7 +107,7 @@ impl RegionTable {
             let place = rank.checked_sub(1).filter(|&place| place < scores.len())?;
             Some(std::array::from_fn(|t| steps[t][place]))
         };
-        let columns = Columns {
+        let columns = LevelQuantiles {
             levels: levels.to_vec(),
             quantiles: levels.iter().map(of_level).collect::<Option<_>>()?,
         };
@@ -123,12 +123,9 @@ impl RegionTable {
 
     /// The quantile of a level, `t` + 1 steps ahead, linear between the levels of the table; `None` beyond its
     /// [range](Self::range).
-    ///
-    /// # Panics
-    /// When `t` is not below 12.
     #[must_use]
     pub fn quantile(&self, level: f64, t: usize) -> Option<f64> {
-        let Columns { levels, quantiles } = &self.0;
+        let LevelQuantiles { levels, quantiles } = &self.0;
         let [lowest, highest] = self.range();
         if !(lowest..=highest).contains(&level) {
             return None;
@@ -149,9 +146,6 @@ impl RegionTable {
 impl Forecast {
     /// The score of the position `at` (m) of pedestrian `i`, `t` + 1 steps ahead; `None` for forecasts without a
     /// [spread](Self::spread).
-    ///
-    /// # Panics
-    /// When `i` or `t` is out of range.
     #[must_use]
     pub fn region_score(&self, i: usize, t: usize, at: Position) -> Option<f64> {
         let spread = self.spread(i, t)?;
@@ -171,9 +165,6 @@ impl Forecast {
     /// The radius (m) of the disc about hypothesis `k` of pedestrian `i`, `t` + 1 steps ahead, in the region of a level; `None`
     /// where the region has no such disc, for levels beyond the range of the table, and for forecasts
     /// without regions.
-    ///
-    /// # Panics
-    /// When `i`, `k` or `t` is out of range.
     #[must_use]
     pub fn region_radius(&self, i: usize, k: usize, t: usize, level: f64) -> Option<f64> {
         let quantile = self.regions()?.quantile(level, t)?;
@@ -184,9 +175,6 @@ impl Forecast {
     /// The region that holds pedestrian `i`, `t` + 1 steps ahead, with the probability `level`: at most one disc a
     /// hypothesis, and one of the likeliest; `None` for levels beyond the range of the table, and for
     /// forecasts without regions.
-    ///
-    /// # Panics
-    /// When `i` or `t` is out of range.
     ///
     /// # Examples
     /// ```

@@ -32,9 +32,6 @@ impl Forecast {
     ///
     /// This is the forecast of the protocol `single`, and what is shown and checked for collisions as "the" forecast.
     ///
-    /// # Panics
-    /// When `i` is out of range.
-    ///
     /// # Examples
     /// ```
     /// use ddl_eval::Forecast;

@@ -2,7 +2,10 @@
 
 use ddl_data::{OBSERVED, PedestrianId, Position, Window};
 
-use crate::{Forecast, error::EvaluationError};
+use crate::{
+    Forecast,
+    error::{EvaluationError, WindowProblem},
+};
 
 /// A window with a true future and the forecast of the same pedestrians, among everybody who was there.
 #[derive(Debug, Clone, Copy)]
@@ -18,21 +21,13 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// The window has no future, or the forecast is of another number of pedestrians.
     pub fn new(window: &'a Window, forecast: &'a Forecast) -> Result<Self, EvaluationError> {
-        let recording = || window.recording().to_owned();
-        let start_frame = window.start_frame();
         if !window.has_future() {
-            return Err(EvaluationError::NoFuture {
-                recording: recording(),
-                start_frame,
-            });
+            return Err(EvaluationError::of(window, WindowProblem::NoFuture));
         }
-        if window.len() != forecast.pedestrians() {
-            return Err(EvaluationError::Pedestrians {
-                recording: recording(),
-                start_frame,
-                expected: window.len(),
-                found: forecast.pedestrians(),
-            });
+        let (expected, found) = (window.len(), forecast.pedestrians());
+        if expected != found {
+            let problem = WindowProblem::Pedestrians { expected, found };
+            return Err(EvaluationError::of(window, problem));
         }
         Ok(Self {
             window,
@@ -51,10 +46,7 @@ impl<'a> Scene<'a> {
         let same_frames =
             window.recording() == everybody.recording() && window.frames() == everybody.frames();
         if !same_frames || places(window, everybody).is_none() {
-            return Err(EvaluationError::Everybody {
-                recording: window.recording().to_owned(),
-                start_frame: window.start_frame(),
-            });
+            return Err(EvaluationError::of(window, WindowProblem::Everybody));
         }
         Ok(Self { everybody, ..self })
     }
@@ -73,9 +65,6 @@ impl<'a> Scene<'a> {
     }
 
     /// Which of [`everybody`](Self::everybody) pedestrian `i` is.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn place(&self, i: usize) -> usize {
         // `among` has seen that everybody includes them; in the window itself each is at its own place.
@@ -101,18 +90,12 @@ impl<'a> Scene<'a> {
     }
 
     /// The 12 true positions of pedestrian `i`, metres.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn truth(&self, i: usize) -> &'a [Position] {
         self.window.future(i)
     }
 
     /// The last observed position of pedestrian `i`, metres.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn last_observed(&self, i: usize) -> Position {
         self.window.observed(i)[OBSERVED - 1]
@@ -122,9 +105,6 @@ impl<'a> Scene<'a> {
     ///
     /// # Shapes
     /// `[K]`.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn weights(&self, i: usize) -> Vec<f64> {
         let weights = (0..self.hypotheses()).map(|k| self.forecast.weight(i, k));
@@ -136,9 +116,6 @@ impl<'a> Scene<'a> {
     ///
     /// # Shapes
     /// `[K]`.
-    ///
-    /// # Panics
-    /// When `i` or `t` is out of range.
     #[must_use]
     pub fn positions_at(&self, i: usize, t: usize) -> Vec<Position> {
         (0..self.hypotheses())

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     Forecast, Scene,
     category::CategoryScores,
-    error::EvaluationError,
+    error::{EvaluationError, WindowProblem},
     metric::{
         amd::amv,
         displacement::DisplacementErrors,
@@ -15,13 +15,13 @@ use crate::{
         joint::{joint_ade, joint_fde},
         stability::{self, RolloutStability, StabilityScores},
     },
-    walker_scores::WalkerScores,
+    pedestrian_scores::PedestrianScores,
 };
 
 /// The metrics of one forecaster on the test windows of one fold.
 ///
 /// Means are over pedestrians; a pedestrian in several windows counts once for each. The mean over
-/// the five folds is the plain mean of their `Scores` (see [`Report`](crate::Report)).
+/// the five folds is the plain mean of their `Scores`.
 ///
 /// Fields that earlier versions did not write are `None` when their files are read.
 ///
@@ -68,59 +68,42 @@ pub struct Scores {
     /// Behaviour of the rollouts towards their goals; `None` for forecasts without goals.
     pub stability: Option<StabilityScores>,
     /// ADE of the hypothesis of least FDE, metres.
-    #[serde(default)]
     pub ade_at_min_fde: Option<f64>,
     /// ADE of all hypotheses, weighted, metres.
-    #[serde(default)]
     pub expected_ade: Option<f64>,
     /// FDE of all hypotheses, weighted, metres.
-    #[serde(default)]
     pub expected_fde: Option<f64>,
     /// ADE of the most likely hypothesis, metres.
-    #[serde(default)]
     pub most_likely_ade: Option<f64>,
     /// FDE of the most likely hypothesis, metres.
-    #[serde(default)]
     pub most_likely_fde: Option<f64>,
     /// As [`miss_rate`](Self::miss_rate), by more than 1 m.
-    #[serde(default)]
     pub miss_rate_1m: Option<f64>,
     /// As [`miss_rate`](Self::miss_rate), by more than 2 m.
-    #[serde(default)]
     pub miss_rate_2m: Option<f64>,
     /// Share of pedestrians whose representative forecast runs into another's true future, in [0, 1].
-    #[serde(default)]
     pub true_neighbour_collision_rate: Option<f64>,
     /// Negative log-likelihood of the truth under a kernel density of the hypotheses, nats; `None` for one
     /// hypothesis.
-    #[serde(default)]
     pub kde_nll: Option<f64>,
     /// Average Mahalanobis distance of the truth, deviations; `None` for one hypothesis.
-    #[serde(default)]
     pub amd: Option<f64>,
     /// Average maximum eigenvalue: spread of the hypotheses, square metres; `None` for one hypothesis.
-    #[serde(default)]
     pub amv: Option<f64>,
     /// Mean distance between the paths of two hypotheses, metres; `None` for one hypothesis.
-    #[serde(default)]
     pub diversity: Option<f64>,
     /// Mean distance between the ends of two hypotheses, metres; `None` for one hypothesis.
-    #[serde(default)]
     pub end_diversity: Option<f64>,
     /// Mean of -ln of the weight of the hypothesis whose goal is nearest to the true end, nats; equal weights have ln K. `None` for one
     /// hypothesis.
-    #[serde(default)]
     pub weight_log_loss: Option<f64>,
     /// Share of true positions inside the regions of 50 % and of 90 %, in [0, 1]; `None` for forecasts without regions.
-    #[serde(default)]
     pub coverage: Option<[f64; 2]>,
     /// Mean radius of a disc as large as these regions at the last step, metres.
-    #[serde(default)]
     pub region_radius: Option<[f64; 2]>,
     /// Mean familiarity of the observed motions, 0 to 1; `None` for forecasters that do not say.
-    #[serde(default)]
     pub familiarity: Option<f64>,
-    /// The walkers by kind of motion, in the order of [`Category::all`](crate::category::Category::all);
+    /// The pedestrians by kind of motion, in the order of [`Category::all`](crate::category::Category::all);
     /// categories that nobody is in are left out.
     #[serde(default)]
     pub categories: Vec<CategoryScores>,
@@ -157,10 +140,7 @@ impl Scores {
             let (windows, everybody) = (windows.len(), everybody.len());
             return Err(EvaluationError::EverybodyCount { windows, everybody });
         }
-        if windows.len() != forecasts.len() {
-            let (windows, forecasts) = (windows.len(), forecasts.len());
-            return Err(EvaluationError::Count { windows, forecasts });
-        }
+        EvaluationError::unless_one_each(windows, forecasts.len())?;
         let first = forecasts.first().ok_or(EvaluationError::NoWindows)?;
         let scenes: Vec<SceneScores> = windows
             .par_iter()
@@ -176,21 +156,21 @@ impl Scores {
     }
 
     fn mean(scenes: &[SceneScores], first: &Forecast) -> Self {
-        let pedestrians: usize = scenes.iter().map(|s| s.walkers.len()).sum();
+        let pedestrians: usize = scenes.iter().map(|s| s.pedestrians.len()).sum();
         let total = pedestrians as f64;
         let over_scenes = |of: fn(&SceneScores) -> f64| scenes.iter().map(of).sum::<f64>() / total;
-        let mean = |of: fn(&WalkerScores) -> f64| {
-            let sums = scenes.iter().map(|s| s.walkers.iter().map(of).sum::<f64>());
-            sums.sum::<f64>() / total
+        let mean = |of: fn(&PedestrianScores) -> f64| {
+            let sum = |s: &SceneScores| s.pedestrians.iter().map(of).sum::<f64>();
+            scenes.iter().map(sum).sum::<f64>() / total
         };
-        let share = |of: fn(&WalkerScores) -> bool| {
-            let walkers = scenes.iter().flat_map(|s| &s.walkers);
-            walkers.filter(|walker| of(walker)).count() as f64 / total
+        let share = |of: fn(&PedestrianScores) -> bool| {
+            let all = scenes.iter().flat_map(|s| &s.pedestrians);
+            all.filter(|pedestrian| of(pedestrian)).count() as f64 / total
         };
-        // All walkers have as many hypotheses: either each has a distribution or none.
+        // All pedestrians have as many hypotheses: either each has a distribution or none.
         let several = first.hypotheses() > 1;
-        let of_several = |of: fn(&WalkerScores) -> Option<f64>| {
-            let sum = |s: &SceneScores| s.walkers.iter().filter_map(of).sum::<f64>();
+        let of_several = |of: fn(&PedestrianScores) -> Option<f64>| {
+            let sum = |s: &SceneScores| s.pedestrians.iter().filter_map(of).sum::<f64>();
             several.then(|| scenes.iter().map(sum).sum::<f64>() / total)
         };
         let rollouts: Vec<RolloutStability> = scenes
@@ -230,7 +210,7 @@ impl Scores {
             coverage: of_all(scenes, total, |w| Some(w.regions?.coverage)),
             region_radius: of_all(scenes, total, |w| Some(w.regions?.end_radius)),
             familiarity: of_all(scenes, total, |w| w.familiarity.map(|f| [f])).map(|[f]| f),
-            categories: CategoryScores::of(scenes.iter().flat_map(|s| &s.walkers)),
+            categories: CategoryScores::of(scenes.iter().flat_map(|s| &s.pedestrians)),
         }
     }
 }
@@ -238,20 +218,20 @@ impl Scores {
 /// The mean of what all pedestrians have; `None` where one has none.
 fn of_all<const N: usize>(
     scenes: &[SceneScores],
-    pedestrians: f64,
-    of: impl Fn(&WalkerScores) -> Option<[f64; N]>,
+    total: f64,
+    of: impl Fn(&PedestrianScores) -> Option<[f64; N]>,
 ) -> Option<[f64; N]> {
-    let mut walkers = scenes.iter().flat_map(|s| &s.walkers);
-    let sum = walkers.try_fold([0.0; N], |sum, walker| {
-        let more = of(walker)?;
+    let mut pedestrians = scenes.iter().flat_map(|s| &s.pedestrians);
+    let sum = pedestrians.try_fold([0.0; N], |sum, pedestrian| {
+        let more = of(pedestrian)?;
         Some(std::array::from_fn(|n| sum[n] + more[n]))
     })?;
-    Some(sum.map(|sum| sum / pedestrians))
+    Some(sum.map(|sum| sum / total))
 }
 
 fn mean_covariance(scenes: &[SceneScores], pedestrians: f64) -> Covariance {
     let of_scene = |s: &SceneScores| {
-        let covariances = s.walkers.iter().filter_map(|w| w.distribution);
+        let covariances = s.pedestrians.iter().filter_map(|w| w.distribution);
         covariances.fold(Covariance::default(), |sum, d| sum.plus(d.covariance))
     };
     let sum = scenes.iter().map(of_scene);
@@ -264,33 +244,22 @@ fn check_alike(
     forecast: &Forecast,
     first: &Forecast,
 ) -> Result<(), EvaluationError> {
-    let (recording, start_frame) = (window.recording().to_owned(), window.start_frame());
-    if forecast.hypotheses() != first.hypotheses() {
-        return Err(EvaluationError::Hypotheses {
-            recording,
-            start_frame,
-            expected: first.hypotheses(),
-            found: forecast.hypotheses(),
-        });
-    }
-    if forecast.has_goals() != first.has_goals() {
-        return Err(EvaluationError::GoalsOfSome {
-            recording,
-            start_frame,
-        });
-    }
-    if forecast.has_certificates() != first.has_certificates() {
-        return Err(EvaluationError::CertificatesOfSome {
-            recording,
-            start_frame,
-        });
-    }
-    Ok(())
+    let (expected, found) = (first.hypotheses(), forecast.hypotheses());
+    let problem = if found != expected {
+        WindowProblem::Hypotheses { expected, found }
+    } else if forecast.has_goals() != first.has_goals() {
+        WindowProblem::GoalsOfSome
+    } else if forecast.has_certificates() != first.has_certificates() {
+        WindowProblem::CertificatesOfSome
+    } else {
+        return Ok(());
+    };
+    Err(EvaluationError::of(window, problem))
 }
 
 /// What one window adds.
 struct SceneScores {
-    walkers: Vec<WalkerScores>,
+    pedestrians: Vec<PedestrianScores>,
     /// JADE times the pedestrians, metres.
     joint_ade: f64,
     joint_fde: f64,
@@ -302,7 +271,7 @@ impl SceneScores {
         let errors = DisplacementErrors::of(scene);
         let pedestrians = scene.pedestrians() as f64;
         Self {
-            walkers: WalkerScores::of(scene, &errors),
+            pedestrians: PedestrianScores::of(scene, &errors),
             joint_ade: joint_ade(&errors) * pedestrians,
             joint_fde: joint_fde(&errors) * pedestrians,
             rollouts: stability::rollouts(scene),

@@ -13,16 +13,11 @@ use std::time::Instant;
 
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
 
-const RECORDINGS: [&str; 8] = [
-    "eth",
-    "hotel",
-    "zara01",
-    "zara02",
-    "zara03",
-    "students001",
-    "students003",
-    "uni_examples",
-];
+use crate::star_files::{RECORDINGS, Tracks, Windows};
+
+#[path = "../tests/laws/star_files.rs"]
+mod star_files;
+
 const UNSEEN: [&str; 2] = ["uni_examples", "zara03"];
 const FOLDS: [(&str, &[&str]); 5] = [
     ("eth", &["eth"]),
@@ -40,46 +35,34 @@ type Track = Vec<[f64; 2]>;
 /// The windows of one recording: all 20 steps of one pedestrian from every start.
 struct Recording {
     name: &'static str,
-    first: f64,
-    last: f64,
-    /// First frame, last frame and positions (m).
-    windows: Vec<(f64, f64, Track)>,
+    step: i64,
+    /// First and last frame.
+    span: (i64, i64),
+    windows: Windows,
 }
 
 impl Recording {
-    /// Reads four lines: frame, pedestrian, y (m), x (m).
     fn read(folder: &Path, name: &'static str) -> Result<Self, Box<dyn Error>> {
-        let text = std::fs::read_to_string(folder.join(format!("{name}.csv")))?;
-        let mut lines = Vec::new();
-        for line in text.lines() {
-            let numbers: Result<Vec<f64>, _> = line.split(',').map(|f| f.trim().parse()).collect();
-            lines.push(numbers?);
-        }
-        let [frames, pedestrians, ys, xs] = lines.as_slice() else {
-            return Err(format!("{name}.csv: {} lines, 4 expected", lines.len()).into());
-        };
-        let mut tracks: BTreeMap<i64, BTreeMap<i64, [f64; 2]>> = BTreeMap::new();
-        for ((frame, pedestrian), (y, x)) in frames.iter().zip(pedestrians).zip(ys.iter().zip(xs)) {
-            let track = tracks.entry(*pedestrian as i64).or_default();
-            track.insert(*frame as i64, [*x, *y]);
-        }
-        let step = if name == "eth" { 6 } else { 10 };
-        let mut windows = Vec::new();
-        for track in tracks.values() {
-            for &start in track.keys() {
-                let positions: Option<Track> = (0..20)
-                    .map(|i| track.get(&(start + i * step)).copied())
-                    .collect();
-                let end = (start + 19 * step) as f64;
-                windows.extend(positions.map(|positions| (start as f64, end, positions)));
-            }
-        }
+        let tracks = Tracks::read(folder, name)?;
+        let frames = || tracks.by_pedestrian.values().flat_map(BTreeMap::keys);
+        let span = frames().min().zip(frames().max());
+        let (first, last) = span.ok_or_else(|| format!("{name}.csv is empty"))?;
         Ok(Self {
             name,
-            first: frames.iter().copied().fold(f64::INFINITY, f64::min),
-            last: frames.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-            windows,
+            step: tracks.step,
+            span: (*first, *last),
+            windows: tracks.complete_windows(),
         })
+    }
+
+    /// The windows that start in a part of the recording's time, by start and end.
+    fn within(&self, part: impl Fn(f64, f64) -> bool) -> impl Iterator<Item = &Track> {
+        let (first, last) = self.span;
+        let share = move |frame: i64| (frame - first) as f64 / (last - first) as f64;
+        let windows = self.windows.iter();
+        let within = windows
+            .filter(move |((start, _), _)| part(share(*start), share(*start + 19 * self.step)));
+        within.map(|(_, track)| track)
     }
 }
 
@@ -93,15 +76,12 @@ struct Split<'a> {
 fn split<'a>(recordings: &'a [Recording], test: &[&str], stride: usize) -> Split<'a> {
     let (mut library, mut unseen, mut tails) = (Vec::new(), Vec::new(), Vec::new());
     for recording in recordings {
-        let windows = &recording.windows;
         if UNSEEN.contains(&recording.name) {
-            unseen.push(windows.iter().map(|w| &w.2).step_by(stride).collect());
+            unseen.push(recording.windows.values().step_by(stride).collect());
         } else if !test.contains(&recording.name) {
-            let cut = recording.first + LIBRARY_SHARE * (recording.last - recording.first);
-            let early = windows.iter().filter(|w| w.1 <= cut);
-            library.extend(early.map(|w| w.2.clone()));
-            let late = windows.iter().filter(|w| w.0 > cut);
-            tails.push(late.map(|w| &w.2).step_by(stride).collect());
+            library.extend(recording.within(|_, end| end <= LIBRARY_SHARE).cloned());
+            let late = recording.within(|start, _| start > LIBRARY_SHARE);
+            tails.push(late.step_by(stride).collect());
         }
     }
     Split {
@@ -154,7 +134,7 @@ impl Calibration {
 }
 
 /// Mean over recordings of the mean distance from the nearest goal to the true end (m).
-fn goal_error(
+fn mean_error(
     estimator: &GoalEstimator,
     recordings: &[Vec<&Track>],
     calibration: &mut Calibration,
@@ -164,11 +144,8 @@ fn goal_error(
         let observed: Vec<&[[f64; 2]]> = walkers.iter().map(|track| &track[..8]).collect();
         let sets = estimator.estimate_batch(&observed)?;
         for (goals, track) in sets.iter().zip(walkers) {
-            let nearest = goals.nearest(track[19]);
-            calibration.add(goals, nearest);
-            let [x, y] = goals.goals()[nearest];
-            sum += (x - track[19][0]).hypot(y - track[19][1])
-                / (walkers.len() * recordings.len()) as f64;
+            calibration.add(goals, goals.nearest(track[19]));
+            sum += star_files::goal_error(goals, track) / (walkers.len() * recordings.len()) as f64;
         }
     }
     Ok(sum)
@@ -195,8 +172,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             let library = ExpertLibrary::new(split.library, 0.4)?;
             let estimator = GoalEstimator::new(params.clone().check()?, library)?;
             let start = Instant::now();
-            let unseen = goal_error(&estimator, &split.unseen, &mut calibration)?;
-            let tails = goal_error(&estimator, &split.tails, &mut calibration)?;
+            let unseen = mean_error(&estimator, &split.unseen, &mut calibration)?;
+            let tails = mean_error(&estimator, &split.tails, &mut calibration)?;
             seconds += start.elapsed().as_secs_f64();
             walkers += split
                 .unseen

@@ -7,7 +7,8 @@ use crate::goal_set::GoalSet;
 use crate::library::{ExpertLibrary, TRACK_LENGTH};
 use crate::motion::Motion;
 use crate::motion_index::{Alike, MotionIndex};
-use crate::points::Points;
+use crate::points::{Points, is_in_range};
+use crate::span::QuerySpan;
 
 /// Temperature of the weights, in distances of the farthest analogue.
 const TEMPERATURE: f64 = 0.4;
@@ -17,8 +18,6 @@ const ROUNDING: f64 = 1e-9;
 const STEPS: usize = 3;
 /// Analogues that a goal set keeps.
 const KEPT: usize = 100;
-/// Largest deviation (m) whose square, summed over many walkers, is still finite.
-const LARGEST: f64 = 1e150;
 
 /// A library prepared for [`crate::RetrievalFrame::Heading`].
 #[derive(Clone, Debug)]
@@ -32,23 +31,15 @@ pub(crate) struct Analogues {
 impl Analogues {
     pub(crate) fn new(library: &ExpertLibrary) -> Result<Self, LibraryError> {
         let time_step = library.time_step();
-        let prepared = |track: &Vec<[f64; 2]>| {
+        let prepared = library.of_each(|track| {
             let motion = Motion::new(track, time_step)?;
-            let deviation = motion.deviation(track[TRACK_LENGTH - 1]);
-            let usable = deviation.iter().all(|d| d.abs() < LARGEST); // false for NaN
+            let deviation = motion.deviation(track[TRACK_LENGTH - 1], 1.0);
             let index = TRACK_LENGTH - 2;
-            usable
+            is_in_range(deviation)
                 .then_some((motion.components, deviation))
                 .ok_or(TrackError::VelocityOverflow { index })
-        };
-        let tracks = library.tracks().iter().enumerate();
-        let (components, deviations): (Vec<_>, Vec<_>) = tracks
-            .map(|(index, track)| {
-                prepared(track).map_err(|source| LibraryError::Track { index, source })
-            })
-            .collect::<Result<Vec<_>, _>>()?
-            .into_iter()
-            .unzip();
+        })?;
+        let (components, deviations): (Vec<_>, Vec<_>) = prepared.into_iter().unzip();
         Ok(Self {
             index: MotionIndex::new(&components),
             deviations,
@@ -67,9 +58,9 @@ impl Analogues {
         let found = self.index.nearest(&motion.components, experts);
         let points = self.weighted_deviations(&found);
         let choice = choose(&points, clusters, STEPS);
-        let goals: Vec<_> = choice.goals.iter().map(|&d| motion.end(d)).collect();
+        let goals: Vec<_> = choice.goals.iter().map(|&d| motion.place(d, 1.0)).collect();
         if !goals.as_flattened().iter().all(|value| value.is_finite()) {
-            let index = track.len().min(8) - 2;
+            let index = QuerySpan::Observed.velocities() - 1;
             return Err(TrackError::VelocityOverflow { index }.into());
         }
         let experts = found.iter().take(KEPT).map(Expert::from).collect();

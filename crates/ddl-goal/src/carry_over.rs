@@ -43,15 +43,8 @@ impl GoalEstimator {
         let horizon = (TRACK_LENGTH - observed) as f64;
         let carried = |(step, &position): (usize, &[f64; 2])| {
             let share = (step as f64 - (observed - 1) as f64) / horizon;
-            let [ahead, left] = expert_motion.frame.to_frame(position);
-            let [on_ahead, on_left] = expert_motion.straight_on;
-            let deviation = [ahead - share * on_ahead, mirror * (left - share * on_left)];
-            let [own_ahead, own_left] = walker.straight_on;
-            let in_frame = [
-                share * own_ahead + deviation[0],
-                share * own_left + deviation[1],
-            ];
-            walker.frame.to_world(in_frame)
+            let [ahead, left] = expert_motion.deviation(position, share);
+            walker.place([ahead, mirror * left], share)
         };
         Ok(other.iter().enumerate().map(carried).collect())
     }

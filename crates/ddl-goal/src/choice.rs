@@ -14,11 +14,8 @@ pub(crate) struct Choice {
 /// two, the costliest first, then `steps` of Lloyd's iteration. Nothing is random. Where there are fewer distinct points,
 /// goals are repeated with weight 0.
 pub(crate) fn choose(points: &Points, clusters: usize, steps: usize) -> Choice {
-    let mut centres = first_centres(points, clusters);
-    for again in 0..clusters - centres.len() {
-        centres.push(centres[again]);
-    }
-    let mut run = Run::from_centres(points, centres);
+    let centres = first_centres(points, clusters).into_iter().cycle();
+    let mut run = Run::from_centres(points, centres.take(clusters).collect());
     run.iterate(points, steps, 0.0);
     let mut weights = vec![0.0; clusters];
     for (&label, weight) in run.labels.iter().zip(&points.weight) {

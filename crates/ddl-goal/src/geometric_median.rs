@@ -136,6 +136,27 @@ mod tests {
         assert!(apart(median, [1.0, 1.0 / 3.0_f64.sqrt()]) < 1e-3);
     }
 
+    /// Found by scipy's Nelder-Mead search to 1e-10 m, outside this project.
+    #[test]
+    fn the_median_is_where_a_search_finds_it() {
+        let five = [[0.0, 0.0], [4.0, 1.0], [1.0, 5.0], [-2.0, 3.0], [2.5, 2.0]];
+        let median = geometric_median(&five, &[1.0, 2.0, 0.5, 1.5, 0.7]);
+        assert!(apart(median, [2.181_201_52, 1.726_761_91]) < 1e-3);
+        let six = [
+            [0.0, 0.0],
+            [10.0, 0.0],
+            [10.0, 8.0],
+            [1.0, 9.0],
+            [4.0, 3.0],
+            [6.0, 5.0],
+        ];
+        let weights = [0.1, 0.2, 0.15, 0.25, 0.2, 0.1];
+        let median = geometric_median(&six, &weights);
+        assert!(apart(median, [4.870_987_64, 4.120_806_82]) < 1e-3);
+        let total = total_distance(median, &six, &weights);
+        assert!((total - 4.902_558_409_6).abs() < 1e-7, "{total}");
+    }
+
     /// Where a triangle's angle is 120 degrees, its corner is the median: steps creep there.
     #[test]
     fn a_corner_at_the_edge_of_being_the_median_is_it() {
@@ -143,6 +164,8 @@ mod tests {
         for weight in [0.999, 1.0, 1.001] {
             let median = geometric_median(&wide, &[weight, 1.0, 1.0]);
             assert!(apart(median, [0.0; 2]) < 1e-2, "{weight}: {median:?}");
+            // no way between ends closer than the corner itself
+            assert!(weight < 1.0 || apart(median, [0.0; 2]) <= 0.0);
         }
     }
 
@@ -151,6 +174,10 @@ mod tests {
     fn two_equal_points_meet_half_way() {
         let median = geometric_median(&[[0.1, 0.2], [3.1, 4.2]], &[0.5; 2]);
         assert!(apart(median, [1.6, 2.2]) < 1e-9, "{median:?}");
+        // nor does a point that counts nothing
+        let three = [[-1.0, 0.0], [1.0, 0.0], [0.5, 0.0]];
+        let median = geometric_median(&three, &[0.5, 0.5, 0.0]);
+        assert!(apart(median, [0.0, 0.0]) < 1e-9, "{median:?}");
     }
 
     /// The mean of the five is the light point in the middle, which is no median: the way leads on from there.

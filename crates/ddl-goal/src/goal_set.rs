@@ -158,6 +158,48 @@ impl GoalSet {
 mod tests {
     use super::*;
 
+    /// Worked by hand: (6, 8) and (-3, 0) from (1, 1) lead 10 m and 3 m far; of what is at the radius no bit changes.
+    #[test]
+    fn goals_beyond_the_radius_are_drawn_to_it() {
+        let goals = vec![[7.0, 9.0], [-2.0, 1.0], [1.1, 1.7]];
+        let set = GoalSet::new(goals, vec![0.5, 0.3, 0.2], Vec::new());
+        let drawn = set.clone().within([1.0, 1.0], 5.0);
+        assert!(squared_distance(drawn.goals()[0], [4.0, 5.0]) < 1e-24);
+        assert_eq!(drawn.goals()[1..], set.goals()[1..]);
+        let [x, y] = [0.1_f64, 0.7];
+        for scale in 1..50 {
+            let goal = [x * f64::from(scale), y * f64::from(scale)];
+            let set = GoalSet::new(vec![goal], vec![1.0], Vec::new());
+            let radius = goal[0].hypot(goal[1]);
+            assert_eq!(set.within([0.0; 2], radius).goals(), [goal]);
+        }
+    }
+
+    /// Worked by hand: roots of 0.64, 0.16 and 0.04 are as 4, 2 and 1; a tenth is divided equally.
+    #[test]
+    fn tempered_weights_are_powers_and_a_share_for_all() {
+        let goals = vec![[3.0, 1.0], [4.0, 1.0], [9.0, 1.0]];
+        let set = GoalSet::new(goals, vec![0.64, 0.16, 0.04], Vec::new());
+        let flat = set.clone().tempered(0.5, 0.1);
+        for (weight, share) in flat.weights().iter().zip([4.0, 2.0, 1.0]) {
+            let expected = 0.9 * share / 7.0 + 0.1 / 3.0;
+            assert!((weight - expected).abs() < 1e-12, "{flat:?}");
+        }
+        let median = set.median().map(f64::to_bits);
+        assert_eq!(flat.tempered(3.0, 0.0).median().map(f64::to_bits), median);
+    }
+
+    #[test]
+    fn equal_weights_are_ordered_by_place_and_the_first_of_equally_near_goals_is_the_nearest() {
+        let goals = vec![[2.0, 5.0], [2.0, -5.0], [-1.0, 0.0], [9.0, 9.0]];
+        let set = GoalSet::new(goals, vec![0.2, 0.2, 0.2, 0.4], Vec::new());
+        let ordered = [[9.0, 9.0], [-1.0, 0.0], [2.0, -5.0], [2.0, 5.0]];
+        assert_eq!(set.goals(), ordered);
+        let nearest = [[8.0, 8.0], [-1.0, 1.0], [6.0, 0.0], [2.0, 4.0]].map(|p| set.nearest(p));
+        assert_eq!(nearest, [0, 1, 2, 3]);
+        assert_eq!(set.most_likely(), 0);
+    }
+
     /// Worked by hand: 0.45 is less than the rest, 0.45^1.5 = 0.302 more than 0.2^1.5 + 0.35^1.5 = 0.297.
     #[test]
     fn the_median_weighs_the_goals_by_sharpened_weights() {

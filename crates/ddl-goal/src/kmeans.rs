@@ -5,11 +5,8 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::error::KMeansError;
 use crate::lloyd::Run;
-use crate::points::Points;
+use crate::points::{Points, is_in_range};
 use crate::seeding::first_centres;
-
-/// Largest coordinate whose square, summed over many points, is still finite.
-const LARGEST: f64 = 1e150;
 
 /// k-means with greedy k-means++ seeding, Lloyd's iteration and restarts, of which the one of least inertia counts.
 ///
@@ -116,17 +113,13 @@ impl KMeans {
         self.check(points)?;
         let (distinct, place) = Points::distinct(points);
         let run = if distinct.len() <= self.clusters {
-            Run::repeated(&distinct, self.clusters)
+            let places = (0..distinct.len()).map(|index| distinct.get(index));
+            Run::from_centres(&distinct, places.cycle().take(self.clusters).collect())
         } else {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
-            let mut best = self.run(&distinct, &mut rng);
-            for _ in 1..self.restarts {
-                let run = self.run(&distinct, &mut rng);
-                if run.inertia < best.inertia {
-                    best = run;
-                }
-            }
-            best
+            let runs = (0..self.restarts).map(|_| self.run(&distinct, &mut rng));
+            runs.min_by(|a, b| a.inertia.total_cmp(&b.inertia))
+                .ok_or(KMeansError::NoRestarts)?
         };
         let labels = place
             .iter()
@@ -154,11 +147,7 @@ impl KMeans {
         if points.is_empty() {
             return Err(KMeansError::NoPoints);
         }
-        let allowed = |value: f64| value.abs() < LARGEST; // false for NaN
-        match points
-            .iter()
-            .position(|p| !(allowed(p[0]) && allowed(p[1])))
-        {
+        match points.iter().position(|&point| !is_in_range(point)) {
             Some(index) => {
                 let [x, y] = points[index];
                 Err(KMeansError::OutOfRange { index, x, y })

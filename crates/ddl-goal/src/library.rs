@@ -57,17 +57,28 @@ impl ExpertLibrary {
         if tracks.is_empty() {
             return Err(LibraryError::Empty);
         }
-        for (index, track) in tracks.iter().enumerate() {
-            if track.len() != TRACK_LENGTH {
-                let source = TrackError::WrongLength {
-                    found: track.len(),
-                    needed: TRACK_LENGTH,
-                };
-                return Err(LibraryError::Track { index, source });
+        let library = Self { time_step, tracks };
+        library.of_each(|track| {
+            let (found, needed) = (track.len(), TRACK_LENGTH);
+            if found != needed {
+                return Err(TrackError::WrongLength { found, needed });
             }
-            check_finite(track).map_err(|source| LibraryError::Track { index, source })?;
-        }
-        Ok(Self { time_step, tracks })
+            check_finite(track)
+        })?;
+        Ok(library)
+    }
+
+    /// What is made of each track; the first that cannot be used is named.
+    pub(crate) fn of_each<T>(
+        &self,
+        make: impl Fn(&[[f64; 2]]) -> Result<T, TrackError>,
+    ) -> Result<Vec<T>, LibraryError> {
+        let tracks = self.tracks.iter().enumerate();
+        tracks
+            .map(|(index, track)| {
+                make(track).map_err(|source| LibraryError::Track { index, source })
+            })
+            .collect()
     }
 
     /// Number of tracks.
@@ -77,7 +88,7 @@ impl ExpertLibrary {
 
     /// Never true: a library without tracks cannot be made.
     pub fn is_empty(&self) -> bool {
-        self.tracks.is_empty()
+        false
     }
 
     /// The tracks, positions in metres.
@@ -134,6 +145,7 @@ mod tests {
     fn a_library_survives_json_and_a_broken_one_is_refused() {
         let track: Vec<[f64; 2]> = (0..20).map(|i| [0.1 * f64::from(i), 1.0 / 3.0]).collect();
         let library = ExpertLibrary::new(vec![track], 0.4).unwrap();
+        assert!(!library.is_empty());
         let json = serde_json::to_string(&library).unwrap();
         assert_eq!(
             serde_json::from_str::<ExpertLibrary>(&json).unwrap(),

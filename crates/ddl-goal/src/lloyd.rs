@@ -26,35 +26,27 @@ impl Run {
         run
     }
 
-    /// The points themselves as centres, the first of them again until there are `clusters`.
-    pub(crate) fn repeated(points: &Points, clusters: usize) -> Self {
-        let centres = (0..clusters)
-            .map(|k| points.get(k % points.len()))
-            .collect();
-        Self::from_centres(points, centres)
-    }
-
-    /// Moves the centres until no point changes its cluster, the centres move by `enough` or less (sum of squared
-    /// distances), or `max_iterations` have passed.
+    /// Moves the centres until they move by `enough` or less (sum of squared distances): by nothing, once no point changes its
+    /// cluster; or until `max_iterations` have passed.
     pub(crate) fn iterate(&mut self, points: &Points, max_iterations: usize, enough: f64) {
         for _ in 0..max_iterations {
             let moved = self.move_centres(points);
-            let changed = self.assign(points);
-            if !changed || moved <= enough {
+            self.assign(points);
+            if moved <= enough {
                 break;
             }
         }
     }
 
-    /// Gives each point to its nearest centre, the first of equally near ones; whether any point changed its cluster.
-    fn assign(&mut self, points: &Points) -> bool {
+    /// Gives each point to its nearest centre, the first of equally near ones.
+    fn assign(&mut self, points: &Points) {
         // The loop over the points is the inner one: it has no branches and becomes vector instructions.
-        let mut labels = vec![0_u64; points.len()];
+        self.labels.fill(0);
         self.nearest.fill(f64::INFINITY);
         for (k, &centre) in self.centres.iter().enumerate() {
             let k = k as u64;
             let positions = points.x.iter().zip(&points.y);
-            let cells = self.nearest.iter_mut().zip(labels.iter_mut());
+            let cells = self.nearest.iter_mut().zip(&mut self.labels);
             for ((nearest, label), (&x, &y)) in cells.zip(positions) {
                 let distance = squared_distance([x, y], centre);
                 let nearer = distance < *nearest;
@@ -68,9 +60,6 @@ impl Run {
             .zip(&points.weight)
             .map(|(d, w)| d * w)
             .sum();
-        let changed = labels != self.labels;
-        self.labels = labels;
-        changed
     }
 
     /// Moves each centre to the mean of its points; the sum of the squared distances moved.
@@ -102,13 +91,34 @@ impl Run {
             sizes[label as usize] += 1;
         }
         for empty in (0..sizes.len()).filter(|&k| sizes[k] == 0) {
-            let farthest = (0..points.len())
-                .filter(|&i| self.nearest[i] > 0.0)
-                .max_by(|&a, &b| self.nearest[a].total_cmp(&self.nearest[b]));
+            let farthest =
+                (0..points.len()).max_by(|&a, &b| self.nearest[a].total_cmp(&self.nearest[b]));
             if let Some(index) = farthest {
                 self.labels[index] = empty as u64;
                 self.nearest[index] = 0.0;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Run;
+    use crate::points::Points;
+
+    /// By hand: nobody is near the second centre, so it takes the point at 10, the farthest from its own centre; the first is left with 0
+    /// and 1, of weights 1 and 3.
+    #[test]
+    fn a_cluster_without_points_takes_the_farthest_point() {
+        let mut points = Points::default();
+        for (x, weight) in [(0.0, 1.0), (1.0, 3.0), (10.0, 1.0)] {
+            points.push([x, 0.0], weight);
+        }
+        let mut run = Run::from_centres(&points, vec![[0.5, 0.0], [100.0, 0.0]]);
+        assert_eq!(run.labels, [0, 0, 0]);
+        run.iterate(&points, 1, 0.0);
+        assert_eq!(run.centres, [[0.75, 0.0], [10.0, 0.0]]);
+        assert_eq!(run.labels, [0, 0, 1]);
+        assert!((run.inertia - (0.75 * 0.75 + 3.0 * 0.25 * 0.25)).abs() < 1e-12);
     }
 }

@@ -68,15 +68,15 @@ impl Motion {
         })
     }
 
-    /// How far `end` (m) is from the end straight on, ahead and to the left (m).
-    pub(crate) fn deviation(&self, end: [f64; 2]) -> [f64; 2] {
-        let end = self.frame.to_frame(end);
-        [0, 1].map(|d| end[d] - self.straight_on[d])
+    /// How far a place (m) is from where repeating the last step leads in a share of the time to the end, ahead and to the left (m).
+    pub(crate) fn deviation(&self, place: [f64; 2], share: f64) -> [f64; 2] {
+        let place = self.frame.to_frame(place);
+        [0, 1].map(|d| place[d] - share * self.straight_on[d])
     }
 
-    /// The end (m) with this deviation (m): the inverse of [`Motion::deviation`].
-    pub(crate) fn end(&self, deviation: [f64; 2]) -> [f64; 2] {
-        let in_frame = [0, 1].map(|d| self.straight_on[d] + deviation[d]);
+    /// The place (m) with this deviation (m): the inverse of [`Motion::deviation`].
+    pub(crate) fn place(&self, deviation: [f64; 2], share: f64) -> [f64; 2] {
+        let in_frame = [0, 1].map(|d| share * self.straight_on[d] + deviation[d]);
         self.frame.to_world(in_frame)
     }
 }

@@ -49,7 +49,7 @@ impl MotionIndex {
         if wanted == 0 {
             return Vec::new();
         }
-        let mut kept: Vec<u64> = Vec::with_capacity(2 * wanted + 2 * LANES);
+        let mut kept: Vec<u64> = Vec::new();
         let mut bound = f32::INFINITY;
         for (first, block) in (0..).step_by(LANES).zip(&self.blocks) {
             let both = distances(query, block);
@@ -101,7 +101,7 @@ fn distances(query: &[f32; COMPONENTS], block: &Block) -> [[f32; LANES]; 2] {
 /// Distance and number in one integer that sorts by distance, then number: bits of floats that are not negative are
 /// ordered like the floats. 2³¹ tracks would fill 700 GB.
 fn key(distance: f32, number: usize) -> u64 {
-    (u64::from(distance.to_bits()) << 32) | number as u64
+    (u64::from(distance.to_bits()) << 32) + number as u64
 }
 
 fn distance_of(key: u64) -> f32 {
@@ -109,7 +109,7 @@ fn distance_of(key: u64) -> f32 {
 }
 
 fn alike(key: u64) -> Alike {
-    let number = (key & 0xffff_ffff) as usize;
+    let number = key as u32 as usize;
     Alike {
         index: number / 2,
         mirrored: number % 2 == 1,

@@ -220,6 +220,17 @@ mod tests {
     }
 
     #[test]
+    fn what_is_set_is_what_is_told() {
+        let params = GoalEstimatorParams::published().experts(3).clusters(4);
+        let valid = params.gamma(0.5).restarts(6).seed(7).check().unwrap();
+        let counts = (valid.experts(), valid.clusters(), valid.restarts());
+        assert_eq!((counts, valid.seed()), ((3, 4, 6), 7));
+        assert_eq!(valid.gamma().to_bits(), 0.5_f64.to_bits());
+        assert_eq!(valid.frame(), RetrievalFrame::World);
+        assert_eq!(valid.query(), QuerySpan::PublishedFuture);
+    }
+
+    #[test]
     fn only_the_published_ones_read_the_future() {
         assert!(
             !GoalEstimatorParams::default()

@@ -1,5 +1,13 @@
 //! Points in the plane, equal ones counted together.
 
+/// Coordinates (m) are smaller than this: their squares, summed over many points, are finite.
+const LARGEST: f64 = 1e150;
+
+/// Whether squared distances of such a point stay finite; false for NaN.
+pub(crate) fn is_in_range(point: [f64; 2]) -> bool {
+    point.iter().all(|value| value.abs() < LARGEST)
+}
+
 /// Points with weights: multiplicities where [`Points::distinct`] made them.
 #[derive(Debug, Default)]
 pub(crate) struct Points {

@@ -4,12 +4,10 @@ use crate::choice::choose;
 use crate::error::GoalError;
 use crate::goal_set::GoalSet;
 use crate::heading::HeadingFrame;
-use crate::points::Points;
+use crate::points::{Points, is_in_range};
 
 /// Steps of Lloyd's iteration.
 const STEPS: usize = 10;
-/// Largest coordinate (m) whose square, summed over many ends, is still finite.
-const LARGEST: f64 = 1e150;
 
 impl GoalSet {
     /// `clusters` goals such that the weighted mean distance of an end to the nearest goal is small.
@@ -57,8 +55,7 @@ impl GoalSet {
         }
         let mut points = Points::default();
         for (index, (&end, weight)) in ends.iter().zip(weights).enumerate() {
-            // false for NaN
-            if !end.iter().all(|value| value.abs() < LARGEST) {
+            if !is_in_range(end) {
                 return wrong(format!("end {index} is ({}, {})", end[0], end[1]));
             }
             // the share may be 0 where the weight is not
@@ -73,9 +70,6 @@ impl GoalSet {
             .iter()
             .map(|&end| frame.to_world(end))
             .collect();
-        if !goals.as_flattened().iter().all(|value| value.is_finite()) {
-            return wrong("a goal is too far out to be carried into the world".to_owned());
-        }
         Ok(Self::new(goals, choice.weights, Vec::new()))
     }
 }

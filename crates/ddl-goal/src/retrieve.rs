@@ -2,7 +2,7 @@
 
 use ddl_softdtw::{Cost, Neighbour, SearchIndex, SoftDtw};
 
-use crate::error::{GoalError, LibraryError};
+use crate::error::GoalError;
 use crate::library::ExpertLibrary;
 use crate::span::{QuerySpan, velocities};
 
@@ -38,15 +38,7 @@ impl Retriever {
     pub fn new(library: &ExpertLibrary, gamma: f64, span: QuerySpan) -> Result<Self, GoalError> {
         let dtw = SoftDtw::new(gamma, Cost::SquaredEuclidean)?;
         let time_step = library.time_step();
-        let sequences = library
-            .tracks()
-            .iter()
-            .enumerate()
-            .map(|(index, track)| {
-                velocities(track, time_step, span)
-                    .map_err(|source| LibraryError::Track { index, source })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
+        let sequences = library.of_each(|track| velocities(track, time_step, span))?;
         Ok(Self {
             index: SearchIndex::build(&dtw, &sequences)?,
             time_step,

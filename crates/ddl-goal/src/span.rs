@@ -118,6 +118,11 @@ mod tests {
                 needed: 9
             })
         );
+        track[3] = [0.0, f64::INFINITY];
+        assert!(matches!(
+            velocities(&track, 0.4, QuerySpan::Observed),
+            Err(TrackError::NonFinite { index: 3, .. })
+        ));
         let far = [[-1e308, 0.0], [1e308, 0.0]].repeat(4);
         assert_eq!(
             velocities(&far, 0.4, QuerySpan::Observed),

@@ -113,6 +113,16 @@ mod tests {
         }
     }
 
+    /// By hand: a point on the cut is ahead of it; two numbers that are next to each other have no mean between them and stay one cell.
+    #[test]
+    fn a_point_on_the_cut_is_ahead_and_what_cannot_be_cut_stays() {
+        let points = weighted(&[([-1.0, 0.0], 1.0), ([0.0, 0.0], 1.0), ([1.0, 0.0], 1.0)]);
+        assert_eq!(first_centres(&points, 2), [[-1.0, 0.0], [0.5, 0.0]]);
+        let next = 1.0 + f64::EPSILON;
+        let points = weighted(&[([1.0, 0.0], 1.0), ([next, 0.0], 1.0)]);
+        assert_eq!(first_centres(&points, 2), [[1.0, 0.0]]);
+    }
+
     #[test]
     fn no_more_centres_than_places() {
         let points = weighted(&[([1.0, 2.0], 0.3), ([3.0, 4.0], 0.5), ([1.0, 2.0], 0.2)]);

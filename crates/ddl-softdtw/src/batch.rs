@@ -2,20 +2,17 @@
 
 use crate::blocks::{Blocks, FREE, Run};
 use crate::error::{SearchError, SequenceRole, SoftDtwError};
-use crate::lanes::{Dispatch, InstructionSet, LANES, WIDE_LANES};
-use crate::range::Range;
+use crate::range::{Range, floor};
 use crate::value::{SoftDtw, check};
+use ddl_simd::{Dispatch, InstructionSet, LANES, WIDE_LANES};
 use forward_backward::{ForwardBackward, Working};
-use wide::WidePairs;
+use wide::{Visit, WidePairs};
 
 mod forward_backward;
 mod wide;
 
 /// Largest proven error of log2 of a score that `f32` may have: beyond it a pair is evaluated in `f64`.
 const WIDEST_ERROR: f64 = 2e-4;
-/// Takes the place of a sequence, the value and the gradient of the pair.
-trait Visit<const D: usize>: FnMut(usize, f64, &[[f64; D]]) {}
-impl<const D: usize, F: FnMut(usize, f64, &[[f64; D]])> Visit<D> for F {}
 
 /// Sequences y prepared for `D_γ(x, y)` and its gradient with respect to x, for one x after the other: barycentres, losses
 /// over many sequences.
@@ -232,14 +229,13 @@ impl<const D: usize> SoftDtwBatch<D> {
         let mut working = Working::new();
         let mut gradient = vec![[0.0; D]; x.len()];
         for run in &blocks.runs {
-            let Some(accurate) = Accurate::new(self.dispatch.floor(), x.len(), run, largest, D)
-            else {
+            let Some(accurate) = Accurate::new(self.dispatch, x.len(), run, largest, D) else {
                 let members = blocks.members[run.blocks.clone()].as_flattened();
                 left.extend(members.iter().filter(|&&member| member != FREE));
                 continue;
             };
             for block in run.blocks.clone() {
-                self.dispatch.run(ForwardBackward {
+                self.dispatch.run_on_registers(ForwardBackward {
                     x: &narrow,
                     block: blocks.samples(run, &(block..block + 1)),
                     start: accurate.start,
@@ -259,7 +255,7 @@ impl<const D: usize> SoftDtwBatch<D> {
                     let value = -self.dtw.gamma() * f64::from(score / accurate.start).ln();
                     for (into, lanes) in gradient.iter_mut().zip(&working.gradient) {
                         for (into, lanes) in into.iter_mut().zip(lanes) {
-                            *into = f64::from(lanes[lane]) * slope;
+                            *into = f64::from(lanes.0[lane]) * slope;
                         }
                     }
                     visit(member, value, &gradient);
@@ -281,8 +277,14 @@ struct Accurate {
 
 impl Accurate {
     /// `None` when no score would do.
-    fn new(floor: f32, n: usize, run: &Run, largest: f64, dimension: usize) -> Option<Self> {
-        let range = Range::narrow_with(floor, n, run.steps)?;
+    fn new(
+        dispatch: Dispatch,
+        n: usize,
+        run: &Run,
+        largest: f64,
+        dimension: usize,
+    ) -> Option<Self> {
+        let range = Range::narrow(floor(dispatch), n, run.steps)?;
         let smallest = range.smallest_aligned_log2(n * run.steps);
         let error = range.error_log2(smallest, largest, dimension);
         (error <= WIDEST_ERROR).then(|| Self {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::lanes::{LANES, Lanes};
+use ddl_simd::{LANES, Lanes};
 
 /// What a free lane holds instead of the place of a sequence.
 pub(crate) const FREE: usize = usize::MAX;
@@ -50,15 +50,8 @@ impl<const D: usize> Narrowing<D> {
     }
 }
 
-/// Sixteen numbers that a register of any size is loaded from in one access to the cache.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-pub(crate) struct Line(pub(crate) Lanes);
-
-/// One step of sixteen sequences, aligned likewise.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-pub(crate) struct Step<const D: usize>(pub(crate) [Lanes; D]);
+/// One step of sixteen sequences.
+pub(crate) type Step<const D: usize> = [Lanes; D];
 
 /// Sequences by length, sixteen to a block.
 #[derive(Clone, Debug)]
@@ -117,13 +110,13 @@ impl<const D: usize> Blocks<D> {
     fn push(&mut self, sequences: &[&[[f64; D]]], members: &[usize]) {
         let first = self.samples.len();
         let steps = sequences[members[0]].len();
-        self.samples.resize(first + steps, Step([[0.0; LANES]; D]));
+        self.samples.resize(first + steps, [Lanes::ZERO; D]);
         let mut lanes = [FREE; LANES];
         for (lane, &member) in members.iter().enumerate() {
             lanes[lane] = member;
             for (step, sample) in sequences[member].iter().zip(&mut self.samples[first..]) {
-                for (lanes, value) in sample.0.iter_mut().zip(self.narrowing.step(step)) {
-                    lanes[lane] = value;
+                for (lanes, value) in sample.iter_mut().zip(self.narrowing.step(step)) {
+                    lanes.0[lane] = value;
                 }
             }
         }
@@ -154,7 +147,7 @@ mod tests {
             (2, 2, 4)
         );
         let mut seen = [false; 45];
-        let first = blocks.samples(&blocks.runs[0], &(0..1))[0].0[0][0];
+        let first = blocks.samples(&blocks.runs[0], &(0..1))[0][0].0[0];
         for run in &blocks.runs {
             for block in run.blocks.clone() {
                 let samples = blocks.samples(run, &(block..block + 1));
@@ -166,7 +159,7 @@ mod tests {
                     assert!(!std::mem::replace(&mut seen[member], true));
                     assert_eq!(sequences[member].len(), run.steps);
                     // Sequence 0 is in the first lane, and differences survive the shift.
-                    assert!((samples[0].0[0][lane] - first - member as f32).abs() < 1e-5);
+                    assert!((samples[0][0].0[lane] - first - member as f32).abs() < 1e-5);
                 }
             }
         }

@@ -4,8 +4,7 @@
     reason = "the lanes stay in registers only when what works on them is inlined"
 )]
 
-use crate::grid::widened;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, widened};
 
 /// Distance between two steps, the entries of the cost matrix Δ(x, y).
 ///

@@ -4,7 +4,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-use crate::lanes::InstructionSet;
+use ddl_simd::InstructionSet;
 
 /// Which of the two sequences of a comparison an error speaks of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,7 +9,7 @@ use std::ops::RangeInclusive;
 use crate::band::Band;
 use crate::cost::Cost;
 use crate::exp2::{Lanes, STRIP};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, widened};
 
 /// Two checked sequences and what is asked of them: row i is step i of one, column j step j of the other.
 pub(crate) struct Grid<'a, T, const D: usize> {
@@ -95,14 +95,4 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         }
         window
     }
-}
-
-/// The components of a step as `f64`.
-#[inline(always)]
-pub(crate) fn widened<T: Scalar, const D: usize>(step: &[T; D]) -> [f64; D] {
-    let mut wide = [0.0; D];
-    for (wide, component) in wide.iter_mut().zip(step) {
-        *wide = component.widened();
-    }
-    wide
 }

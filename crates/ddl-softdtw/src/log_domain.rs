@@ -2,8 +2,8 @@
 //! that the fast recursion is held to.
 
 use crate::cost::{Cost, Length, Metric, Squared};
-use crate::grid::{Grid, widened};
-use crate::scalar::Scalar;
+use crate::grid::Grid;
+use crate::scalar::{Scalar, widened};
 use crate::softmin::{softmin, softmin_weights};
 
 /// Weights of the three ways into a cell: from (i−1, j−1), (i−1, j) and (i, j−1).

@@ -2,8 +2,14 @@
 //!
 //! Everything here is in log2 units: a score Z stands for the soft-DTW value −γ ln 2 · log2(Z / start).
 
-use crate::lanes::{COST_LIMIT, COST_LIMIT_64, EXP2_ERROR, FLOOR};
-use crate::refine::{WIDE_FLOOR, wide_error_log2};
+use ddl_simd::{COST_LIMIT, COST_LIMIT_64, Dispatch, EXP2_ERROR, EXP2_ERROR_64};
+
+/// Added to a sum of predecessors in `f32`, on any machine: times 2^−[`COST_LIMIT`] it is a normal number.
+pub(crate) const FLOOR: f32 = 0.25;
+/// The same where products are fused, 2^−100: one that is added to it is not rounded to a denormal number on the way.
+pub(crate) const FUSED_FLOOR: f32 = f32::from_bits((127 - 100) << 23);
+/// Added to every sum of predecessors, 2^−120: times 2^−900 it is still a normal number.
+pub(crate) const WIDE_FLOOR: f64 = f64::from_bits((1023 - 120) << 52);
 
 /// Unit roundoff of `f32`.
 const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
@@ -60,13 +66,9 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// The range in `f32` for lengths `n` and `m` on any machine, or `None` when the sequences are too long for it.
-    pub(crate) fn narrow(n: usize, m: usize) -> Option<Self> {
-        Self::of(NARROW, n, m)
-    }
-
-    /// The same for the instruction set that adds `floor` ([`crate::lanes::Simd::FLOOR`]).
-    pub(crate) fn narrow_with(floor: f32, n: usize, m: usize) -> Option<Self> {
+    /// The range in `f32` for lengths `n` and `m` with a [`floor`] of at most `floor`, or `None` when the sequences are too
+    /// long for it.
+    pub(crate) fn narrow(floor: f32, n: usize, m: usize) -> Option<Self> {
         let floor = f64::from(floor);
         Self::of(Format { floor, ..NARROW }, n, m)
     }
@@ -160,6 +162,26 @@ impl Range {
     }
 }
 
+/// Bound on the error of a value in log2 units, for warping paths of up to `path` cells and a `cost` that holds all but
+/// 2^−30 of the sum.
+///
+/// Each squared difference is rounded twice, their sum, its root and its scaling D + 1 times, and the scale was rounded
+/// twice; each cell adds the error of exp2 and four roundings, and the logarithm one.
+pub(crate) fn wide_error_log2(path: f64, cost: f64, dimension: usize) -> f64 {
+    const UNIT: f64 = f64::EPSILON / 2.0;
+    let costs = (dimension as f64 + 6.0) * UNIT * cost;
+    costs + (path * (EXP2_ERROR_64 + 4.0 * UNIT) + 2.0 * UNIT) * std::f64::consts::LOG2_E
+}
+
+/// What an instruction set adds to a sum of predecessors in `f32`.
+pub(crate) fn floor(dispatch: Dispatch) -> f32 {
+    if dispatch.is_fused() {
+        FUSED_FLOOR
+    } else {
+        FLOOR
+    }
+}
+
 /// Number of warping paths through an n × m grid, and the sum of that number over all sub-grids that share its end.
 fn delannoy(n: usize, m: usize) -> (f64, f64) {
     let mut row = vec![1.0_f64; m];
@@ -180,7 +202,7 @@ fn delannoy(n: usize, m: usize) -> (f64, f64) {
 mod tests {
     #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
-    use super::{NARROW, Range, WIDE, delannoy};
+    use super::{FLOOR, FUSED_FLOOR, NARROW, Range, WIDE, delannoy};
 
     #[test]
     fn paths_are_the_central_delannoy_numbers() {
@@ -193,11 +215,11 @@ mod tests {
 
     #[test]
     fn walkers_have_room_for_values_of_47_gamma_and_57_if_fused() {
-        let range = Range::narrow(8, 8).expect("short");
+        let range = Range::narrow(FLOOR, 8, 8).expect("short");
         let reach = f64::from(range.start_log2()) - range.smallest_accurate_log2();
         assert!(reach * std::f64::consts::LN_2 > 47.0, "{reach}");
-        assert!(Range::narrow(NARROW.longest + 1, 8).is_none());
-        let fused = Range::narrow_with(2.0_f32.powi(-100), 8, 8).expect("short");
+        assert!(Range::narrow(FLOOR, NARROW.longest + 1, 8).is_none());
+        let fused = Range::narrow(FUSED_FLOOR, 8, 8).expect("short");
         let reach = f64::from(fused.start_log2()) - fused.smallest_accurate_log2();
         assert!(reach * std::f64::consts::LN_2 > 57.0, "{reach}");
     }

@@ -4,7 +4,7 @@
 //! warping paths: no exponential and no logarithm in the recursion.
 //!
 //! # Range
-//! Costs are clamped and a floor is added to every sum of three predecessors ([`Simd::exp2`], [`Simd::cell`]), so that
+//! Costs are clamped and a floor is added to every sum of three predecessors ([`Register::exp2`], [`cell`]), so that
 //! every product is a normal number. What both do to small scores is bounded in [`crate::range`].
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
@@ -13,8 +13,10 @@
     reason = "arrays of registers that advance together"
 )]
 
-use crate::blocks::{Line, Step};
-use crate::lanes::Simd;
+use ddl_simd::{Lanes, Register};
+
+use crate::blocks::Step;
+use crate::range::{FLOOR, FUSED_FLOOR};
 
 /// Cells whose similarities are computed together where the length of a sequence is not known to the compiler: enough
 /// independent operations to fill the time each one takes.
@@ -26,14 +28,14 @@ pub(crate) const GROUP: usize = 4;
 /// `query`: n steps; `block`: m steps; `row`: m registers of working memory, of any content. Where the compiler knows m
 /// the row stays in registers. Similarities are computed G at a time: m, or [`GROUP`].
 #[inline(always)]
-pub(crate) fn recursion<S: Simd, const D: usize, const G: usize>(
+pub(crate) fn recursion<S: Register, const D: usize, const G: usize>(
     simd: S,
     query: &[[f32; D]],
     block: &[Step<D>],
     part: usize,
-    start: S::Narrow,
-    row: &mut [S::Narrow],
-) -> S::Narrow {
+    start: S::Floats,
+    row: &mut [S::Floats],
+) -> S::Floats {
     let zero = simd.splat(0.0);
     let steps = block.len();
     row.fill(zero);
@@ -48,7 +50,7 @@ pub(crate) fn recursion<S: Simd, const D: usize, const G: usize>(
             for g in 0..G {
                 if first + g < steps {
                     let up = row[first + g];
-                    left = simd.cell(ks[g], diagonal, up, left);
+                    left = cell(simd, ks[g], diagonal, up, left);
                     row[first + g] = left;
                     diagonal = up;
                 }
@@ -62,12 +64,12 @@ pub(crate) fn recursion<S: Simd, const D: usize, const G: usize>(
 
 /// 2^−|x − y|² of a step x and all steps y of one part of a block.
 #[inline(always)]
-pub(crate) fn similarities_of_row<S: Simd, const D: usize, const G: usize>(
+pub(crate) fn similarities_of_row<S: Register, const D: usize, const G: usize>(
     simd: S,
     x: &[f32; D],
     block: &[Step<D>],
     part: usize,
-    into: &mut [Line],
+    into: &mut [Lanes],
 ) {
     for first in (0..block.len()).step_by(G) {
         let ks = similarities::<S, D, G>(simd, x, block, first, part);
@@ -81,22 +83,108 @@ pub(crate) fn similarities_of_row<S: Simd, const D: usize, const G: usize>(
 
 /// 2^−|x − y|² of a query step x and G steps y from `first` on, as far as there are any.
 #[inline(always)]
-fn similarities<S: Simd, const D: usize, const G: usize>(
+fn similarities<S: Register, const D: usize, const G: usize>(
     simd: S,
     step: &[f32; D],
     block: &[Step<D>],
     first: usize,
     part: usize,
-) -> [S::Narrow; G] {
+) -> [S::Floats; G] {
     let mut exponents = [simd.splat(0.0); G];
     for g in 0..G {
         if first + g < block.len() {
             for d in 0..D {
-                let y = simd.load(&block[first + g].0[d], part);
+                let y = simd.load(&block[first + g][d].0, part);
                 let difference = simd.sub(simd.splat(step[d]), y);
                 exponents[g] = simd.neg_mul_add(difference, difference, exponents[g]);
             }
         }
     }
     simd.exp2_each(exponents)
+}
+
+/// K (diagonal + up + left), one cell of the recursion, for K of at least 2^−[`COST_LIMIT`](ddl_simd::COST_LIMIT). The
+/// floor is added to the sum, so that no product is denormal: denormal numbers would make the recursion ten times slower.
+#[inline(always)]
+pub(crate) fn cell<S: Register>(
+    simd: S,
+    k: S::Floats,
+    diagonal: S::Floats,
+    up: S::Floats,
+    left: S::Floats,
+) -> S::Floats {
+    // `left` is the one that is waited for: it comes last.
+    let others = simd.add(diagonal, up);
+    if S::FUSED {
+        let others = simd.mul_add(k, others, simd.splat(FUSED_FLOOR));
+        simd.mul_add(k, left, others)
+    } else {
+        simd.mul(k, simd.add(simd.add(others, simd.splat(FLOOR)), left))
+    }
+}
+
+/// K b, with the floor added as in [`cell`].
+#[inline(always)]
+pub(crate) fn weigh<S: Register>(simd: S, k: S::Floats, b: S::Floats) -> S::Floats {
+    if S::FUSED {
+        simd.mul_add(k, b, simd.splat(FUSED_FLOOR))
+    } else {
+        simd.mul(k, simd.add(b, simd.splat(FLOOR)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use ddl_simd::{COST_LIMIT, Dispatch, InstructionSet, LANES, Register, RegisterKernel};
+
+    use super::{cell, weigh};
+    use crate::range::floor;
+
+    type Lanes = [f32; LANES];
+
+    /// A cell and a product of numbers that are the same in all lanes.
+    struct Cells([f32; 4]);
+
+    impl RegisterKernel for Cells {
+        type Output = [Lanes; 2];
+
+        #[inline(always)]
+        fn run<S: Register>(self, simd: S) -> [Lanes; 2] {
+            let [k, diagonal, up, left] = self.0;
+            let [k, diagonal] = [simd.splat(k), simd.splat(diagonal)];
+            let [up, left] = [simd.splat(up), simd.splat(left)];
+            let mut results = [[0.0; LANES]; 2];
+            for part in 0..S::PARTS {
+                let [of_cell, of_weigh] = &mut results;
+                simd.store(cell(simd, k, diagonal, up, left), of_cell, part);
+                simd.store(weigh(simd, k, diagonal), of_weigh, part);
+            }
+            results
+        }
+    }
+
+    #[test]
+    fn cells_are_sums_with_no_more_than_the_floor_added_and_never_denormal() {
+        for set in InstructionSet::available() {
+            let dispatch = Dispatch::new(set).expect("available");
+            let floor = floor(dispatch);
+            for l in 0..16 {
+                let (k, a, b) = (l as f32, 11.0 - l as f32, (l * l) as f32);
+                let [cells, products] = dispatch.run_on_registers(Cells([k, a, b, 0.5]));
+                for (found, exact) in [(cells, k * (a + b + 0.5)), (products, k * a)] {
+                    let most = exact + k.max(1.0) * floor + exact.abs() * 1e-6;
+                    assert!(
+                        found.iter().all(|&found| (exact..=most).contains(&found)),
+                        "{set}"
+                    );
+                }
+            }
+            let tiny = (-COST_LIMIT).exp2();
+            let results = dispatch.run_on_registers(Cells([tiny, 0.0, 0.0, 0.0]));
+            assert!(
+                results.as_flattened().iter().all(|cell| cell.is_normal()),
+                "{set}"
+            );
+        }
+    }
 }

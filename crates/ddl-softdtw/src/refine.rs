@@ -6,29 +6,20 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
+use ddl_simd::{Dispatch, Register, RegisterKernel, WIDE_LANES, wide_exp2_each};
+
 use crate::cost::Cost;
-use crate::lanes::{Dispatch, EXP2_ERROR_64, Kernel, Simd, WIDE_LANES, WideLanes};
-use crate::range::Range;
+use crate::range::{Range, WIDE_FLOOR};
 use crate::value::SoftDtw;
 
-/// Added to every sum of predecessors, 2^−120: times 2^−900 it is still a normal number.
-pub(crate) const WIDE_FLOOR: f64 = f64::from_bits((1023 - 120) << 52);
 /// Outside of these the squares of the differences may leave the range of `f64` where their cost does not.
 pub(crate) const GAMMAS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
 
-/// Bound on the error of a value in log2 units, for warping paths of up to `path` cells and a `cost` that holds all but
-/// 2^−30 of the sum.
-///
-/// Each squared difference is rounded twice, their sum, its root and its scaling D + 1 times, and the scale was rounded
-/// twice; each cell adds the error of exp2 and four roundings, and the logarithm one.
-pub(crate) fn wide_error_log2(path: f64, cost: f64, dimension: usize) -> f64 {
-    const UNIT: f64 = f64::EPSILON / 2.0;
-    let costs = (dimension as f64 + 6.0) * UNIT * cost;
-    costs + (path * (EXP2_ERROR_64 + 4.0 * UNIT) + 2.0 * UNIT) * std::f64::consts::LOG2_E
-}
-
 /// Cells whose similarities are computed together, so that the processor is kept busy.
 pub(crate) const WIDE_GROUP: usize = 4;
+
+/// One number for each of eight pairs.
+pub(crate) type WideLanes = [f64; WIDE_LANES];
 
 /// What the exponential domain says of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +33,7 @@ pub(crate) enum PairValue {
 /// Evaluates pairs of sequences in blocks of eight.
 ///
 /// # Numerics
-/// The error of a known value is at most γ ln 2 times [`wide_error_log2`]: 4e-14 γ for eight steps and values near 0.
+/// The error of a known value is at most γ ln 2 times [`wide_error_log2`](crate::range::wide_error_log2): 4e-14 γ for eight steps and values near 0.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairValues {
     dtw: SoftDtw,
@@ -121,7 +112,7 @@ impl PairValues {
             spread(x, lane, &mut working.x);
             spread(y, lane, &mut working.y);
         }
-        self.dispatch.run(WideRecursion {
+        self.dispatch.run_on_registers(WideRecursion {
             x: &working.x,
             y: &working.y,
             row: &mut working.row,
@@ -183,11 +174,11 @@ struct WideRecursion<'a, const D: usize> {
     cost: Cost,
 }
 
-impl<const D: usize> Kernel for WideRecursion<'_, D> {
+impl<const D: usize> RegisterKernel for WideRecursion<'_, D> {
     type Output = WideLanes;
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> WideLanes {
+    fn run<S: Register>(self, simd: S) -> WideLanes {
         let (zero, scale) = (simd.wide_splat(0.0), simd.wide_splat(self.scale));
         let floor = simd.wide_splat(WIDE_FLOOR);
         let mut sums = [0.0; WIDE_LANES];
@@ -216,7 +207,7 @@ impl<const D: usize> Kernel for WideRecursion<'_, D> {
                         }
                         *exponent = simd.wide_mul(cost, scale);
                     }
-                    let ks = simd.wide_exp2_each(exponents);
+                    let ks = wide_exp2_each(simd, exponents);
                     for (cell, k) in row.iter_mut().zip(ks) {
                         let up = simd.wide_load(cell, part);
                         let others = simd.wide_add(simd.wide_add(diagonal, up), floor);

@@ -39,3 +39,17 @@ impl Scalar for f64 {
         value
     }
 }
+
+/// The components of a step as `f64`.
+#[expect(
+    clippy::inline_always,
+    reason = "the lanes of a strip must stay in registers"
+)]
+#[inline(always)]
+pub(crate) fn widened<T: Scalar, const D: usize>(step: &[T; D]) -> [f64; D] {
+    let mut wide = [0.0; D];
+    for (wide, component) in wide.iter_mut().zip(step) {
+        *wide = component.widened();
+    }
+    wide
+}

@@ -4,11 +4,11 @@ use rayon::prelude::*;
 
 use crate::decision::{Candidates, self_values};
 use crate::error::{SearchError, SequenceRole, SoftDtwError};
-use crate::lanes::{Dispatch, InstructionSet};
 use crate::neighbour::Neighbour;
 use crate::refine::PairValues;
 use crate::sieve::Sieve;
 use crate::value::{SoftDtw, check, finite};
+use ddl_simd::{Dispatch, InstructionSet};
 
 /// Queries that go through the candidates together.
 const TOGETHER: usize = 8;

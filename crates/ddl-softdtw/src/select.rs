@@ -68,6 +68,21 @@ impl Selection {
         self.kept
     }
 
+    /// The candidates that may be among the best, or `None` when too few were offered, the last of them scores less than
+    /// `smallest_log2`, or no margin can be told for its score (log2).
+    pub(crate) fn survivors(
+        mut self,
+        smallest_log2: f64,
+        margin_log2: impl FnOnce(f64) -> Option<f64>,
+    ) -> Option<Vec<usize>> {
+        let nth_log2 = f64::from(self.nth()?).log2();
+        if nth_log2 < smallest_log2 {
+            return None;
+        }
+        let kept = self.finish(margin_log2(nth_log2)?);
+        Some(kept.iter().map(|scored| scored.candidate).collect())
+    }
+
     fn compact(&mut self, slack: f64) {
         if let Some(nth) = self.nth() {
             let threshold = (f64::from(nth) * slack) as f32;

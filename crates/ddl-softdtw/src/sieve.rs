@@ -4,9 +4,10 @@
 
 use std::ops;
 
+use ddl_simd::{Dispatch, LANES, Lanes, Register, RegisterKernel};
+
 use crate::blocks::{Blocks, FREE, Run, Step};
-use crate::lanes::{Dispatch, Kernel, LANES, Lanes, Simd};
-use crate::range::Range;
+use crate::range::{FLOOR, Range, floor};
 use crate::recursion::{GROUP, recursion};
 use crate::select::Selection;
 
@@ -39,7 +40,7 @@ impl<const D: usize> Sieve<D> {
         self_values: &[f64],
     ) -> Option<Self> {
         let blocks = Blocks::new(gamma, candidates);
-        let range = Range::narrow(1, blocks.longest)?;
+        let range = Range::narrow(FLOOR, 1, blocks.longest)?;
         range.margin_log2(f64::from(range.start_log2()), blocks.largest, D)?;
         let half_to_log2 = blocks.narrowing.scale * blocks.narrowing.scale / 2.0;
         let weight = |&member: &usize| match self_values.get(member) {
@@ -47,8 +48,9 @@ impl<const D: usize> Sieve<D> {
             None => 0.0,
         };
         let weights = blocks.members.iter().map(|members| {
-            let mut lanes = [0.0; LANES];
+            let mut lanes = Lanes::ZERO;
             lanes
+                .0
                 .iter_mut()
                 .zip(members)
                 .for_each(|(lane, member)| *lane = weight(member));
@@ -83,13 +85,19 @@ impl<const D: usize> Sieve<D> {
         }
         searches
             .into_iter()
-            .map(|search| search?.survivors())
+            .map(|search| {
+                let search = search?;
+                let range = search.range;
+                let margin = |nth_log2| range.margin_log2(nth_log2, search.largest, D);
+                let smallest = range.smallest_accurate_log2();
+                search.selection.survivors(smallest, margin)
+            })
             .collect()
     }
 
     /// A query before its first block, or `None` when no score of it could be trusted.
     fn search(&self, dispatch: Dispatch, query: &[[f64; D]], wanted: usize) -> Option<Search<D>> {
-        let range = Range::narrow_with(dispatch.floor(), query.len(), self.blocks.longest)?;
+        let range = Range::narrow(floor(dispatch), query.len(), self.blocks.longest)?;
         let narrowing = &self.blocks.narrowing;
         let largest = self.blocks.largest.max(narrowing.largest(query.iter()));
         let widest = range.margin_log2(range.smallest_accurate_log2(), largest, D)?;
@@ -109,7 +117,7 @@ impl<const D: usize> Sieve<D> {
         blocks: ops::Range<usize>,
         search: &mut Search<D>,
     ) {
-        dispatch.run(Sweep {
+        dispatch.run_on_registers(Sweep {
             query: &search.steps,
             steps: run.steps,
             samples: self.blocks.samples(run, &blocks),
@@ -118,18 +126,6 @@ impl<const D: usize> Sieve<D> {
             start: search.start,
             selection: &mut search.selection,
         });
-    }
-}
-
-impl<const D: usize> Search<D> {
-    fn survivors(mut self) -> Option<Vec<usize>> {
-        let nth_log2 = f64::from(self.selection.nth()?).log2();
-        if nth_log2 < self.range.smallest_accurate_log2() {
-            return None;
-        }
-        let margin = self.range.margin_log2(nth_log2, self.largest, D)?;
-        let survivors = self.selection.finish(margin);
-        Some(survivors.iter().map(|scored| scored.candidate).collect())
     }
 }
 
@@ -145,16 +141,17 @@ struct Sweep<'a, const D: usize> {
     selection: &'a mut Selection,
 }
 
-impl<const D: usize> Kernel for Sweep<'_, D> {
+impl<const D: usize> RegisterKernel for Sweep<'_, D> {
     type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd>(mut self, simd: S) {
+    fn run<S: Register>(mut self, simd: S) {
         // The row stays in registers where its length is known to the compiler: the lengths that pedestrians have.
         match self.steps {
-            7 => self.fixed::<S, 7, 7>(simd),
-            // Eight similarities, a row and the coefficients do not fit into the few registers of the smallest sets.
+            // As many similarities, a row and the coefficients do not fit into the few registers of the smallest sets.
+            7 if S::WIDTH < 8 => self.fixed::<S, 7, GROUP>(simd),
             8 if S::WIDTH < 8 => self.fixed::<S, 8, GROUP>(simd),
+            7 => self.fixed::<S, 7, 7>(simd),
             8 => self.fixed::<S, 8, 8>(simd),
             steps => {
                 let mut row = vec![simd.splat(0.0); steps];
@@ -168,7 +165,7 @@ impl<const D: usize> Kernel for Sweep<'_, D> {
 
 impl<const D: usize> Sweep<'_, D> {
     #[inline(always)]
-    fn fixed<S: Simd, const M: usize, const G: usize>(&mut self, simd: S) {
+    fn fixed<S: Register, const M: usize, const G: usize>(&mut self, simd: S) {
         let (blocks, _) = self.samples.as_chunks::<M>();
         for (b, block) in blocks.iter().enumerate() {
             self.block::<S, G>(simd, b, block, &mut [simd.splat(0.0); M]);
@@ -177,18 +174,18 @@ impl<const D: usize> Sweep<'_, D> {
 
     /// The scores of block `b`, offered where they reach the threshold.
     #[inline(always)]
-    fn block<S: Simd, const G: usize>(
+    fn block<S: Register, const G: usize>(
         &mut self,
         simd: S,
         b: usize,
         block: &[Step<D>],
-        row: &mut [S::Narrow],
+        row: &mut [S::Floats],
     ) {
         let mut scores = [0.0; LANES];
         let threshold = simd.splat(self.selection.threshold());
         let mut mask = 0;
         for part in 0..S::PARTS {
-            let start = simd.mul(simd.load(&self.weights[b], part), simd.splat(self.start));
+            let start = simd.mul(simd.load(&self.weights[b].0, part), simd.splat(self.start));
             let score = recursion::<S, D, G>(simd, self.query, block, part, start, row);
             mask |= simd.at_least(score, threshold) << (part * S::WIDTH);
             simd.store(score, &mut scores, part);
@@ -202,7 +199,12 @@ impl<const D: usize> Sweep<'_, D> {
 /// Offers the scores of the lanes in `mask`.
 #[cold]
 #[inline(never)]
-fn offer(selection: &mut Selection, scores: &Lanes, members: &[usize; LANES], mut mask: u32) {
+fn offer(
+    selection: &mut Selection,
+    scores: &[f32; LANES],
+    members: &[usize; LANES],
+    mut mask: u32,
+) {
     while mask != 0 {
         let lane = mask.trailing_zeros() as usize;
         mask &= mask - 1;

@@ -13,10 +13,10 @@ use rayon::prelude::*;
 
 use crate::decision::{Candidates, self_values};
 use crate::error::{SequenceRole, SoftDtwError};
-use crate::lanes::{Dispatch, InstructionSet};
 use crate::neighbour::Neighbour;
 use crate::refine::PairValues;
 use crate::value::{SoftDtw, check, finite};
+use ddl_simd::{Dispatch, InstructionSet};
 
 pub use error::SlidingError;
 use layout::Layout;

@@ -1,7 +1,7 @@
 //! What soft-DTW must satisfy whatever the sequences.
 #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
-use ddl_softdtw::{Cost, SoftDtw};
+use ddl_softdtw::{Band, Cost, SoftDtw};
 use proptest::prelude::*;
 
 type Sequence = Vec<[f64; 2]>;
@@ -14,37 +14,51 @@ fn cost() -> impl Strategy<Value = Cost> {
     prop_oneof![Just(Cost::SquaredEuclidean), Just(Cost::Euclidean)]
 }
 
+/// A band's radius below `end`, or no band.
+fn radius(end: usize) -> impl Strategy<Value = Option<usize>> {
+    prop_oneof![Just(None), (0..end).prop_map(Some)]
+}
+
 fn dtw(gamma: f64, cost: Cost) -> SoftDtw {
     SoftDtw::new(gamma, cost).expect("valid gamma")
 }
 
-/// What is left of both sequences after each of the steps a warping path may take.
-fn ways<'a>(
-    x: &'a [[f64; 2]],
-    y: &'a [[f64; 2]],
-) -> impl Iterator<Item = (&'a [[f64; 2]], &'a [[f64; 2]])> {
-    let ways = [(1, 1), (1, 0), (0, 1)].map(|(dx, dy)| (&x[dx..], &y[dy..]));
-    ways.into_iter()
-        .filter(|(x, y)| !x.is_empty() && !y.is_empty())
+fn banded(gamma: f64, cost: Cost, radius: Option<usize>) -> SoftDtw {
+    let free = dtw(gamma, cost);
+    radius.map_or(free, |radius| free.with_band(Band::new(radius)))
 }
 
-/// Hard DTW by its definition: the least cost over all warping paths, each walked to its end.
-fn cheapest_path(cost: Cost, x: &[[f64; 2]], y: &[[f64; 2]]) -> f64 {
-    let here = cost.between(&x[0], &y[0]);
-    let onward = ways(x, y).map(|(x, y)| cheapest_path(cost, x, y));
-    here + onward.reduce(f64::min).unwrap_or(0.0)
-}
-
-/// Soft-DTW by its definition: Σ exp(−cost/γ) over all warping paths.
-fn sum_over_paths(gamma: f64, cost: Cost, x: &[[f64; 2]], y: &[[f64; 2]]) -> f64 {
-    let here = (-cost.between(&x[0], &y[0]) / gamma).exp();
-    let onward = ways(x, y).map(|(x, y)| sum_over_paths(gamma, cost, x, y));
-    here * onward.reduce(|a, b| a + b).unwrap_or(1.0)
+/// The costs of all warping paths from cell (i, j) to the last one that stay in the band, if there is one, each walked to its end.
+fn costs_of_paths(
+    (cost, radius): (Cost, Option<usize>),
+    (x, y): (&[[f64; 2]], &[[f64; 2]]),
+    (i, j): (usize, usize),
+    so_far: f64,
+    found: &mut Vec<f64>,
+) {
+    let (n, m) = (x.len(), y.len());
+    if i == n || j == m {
+        return;
+    }
+    let off = (i * (m - 1)).abs_diff(j * (n - 1)) as f64;
+    if radius.is_some_and(|radius| off > (radius as f64).max(0.5) * (n.max(m) - 1) as f64) {
+        return;
+    }
+    let so_far = so_far + cost.between(&x[i], &y[j]);
+    if (i, j) == (n - 1, m - 1) {
+        found.push(so_far);
+    }
+    for next in [(i + 1, j + 1), (i + 1, j), (i, j + 1)] {
+        costs_of_paths((cost, radius), (x, y), next, so_far, found);
+    }
 }
 
 fn log_paths(n: usize, m: usize) -> f64 {
     let zeros = |steps| vec![[0.0, 0.0]; steps];
-    sum_over_paths(1.0, Cost::SquaredEuclidean, &zeros(n), &zeros(m)).ln()
+    let mut costs = Vec::new();
+    let metric = (Cost::SquaredEuclidean, None);
+    costs_of_paths(metric, (&zeros(n), &zeros(m)), (0, 0), 0.0, &mut costs);
+    (costs.len() as f64).ln()
 }
 
 proptest! {
@@ -52,33 +66,31 @@ proptest! {
 
     #[test]
     fn it_is_symmetric_to_the_last_bit(
-        x in sequence(), y in sequence(), gamma in 0.0..3.0_f64, cost in cost(),
+        x in prop::collection::vec(prop::array::uniform2(-3.0..3.0_f64), 1..20),
+        y in prop::collection::vec(prop::array::uniform2(-3.0..3.0_f64), 1..20),
+        radius in radius(20), gamma in 0.0..3.0_f64, cost in cost(),
     ) {
-        let dtw = dtw(gamma, cost);
+        let dtw = banded(gamma, cost, radius);
         prop_assert_eq!(dtw.value(&x, &y)?.to_bits(), dtw.value(&y, &x)?.to_bits());
         prop_assert_eq!(dtw.normalised(&x, &y)?.to_bits(), dtw.normalised(&y, &x)?.to_bits());
-        prop_assert_eq!(dtw.normalised(&x, &x)?, 0.0);
+        prop_assert_eq!(dtw.normalised(&x, &x)?.to_bits(), 0.0_f64.to_bits());
     }
 
     #[test]
-    fn hard_dtw_is_the_cheapest_path(
-        x in prop::collection::vec(prop::array::uniform2(-3.0..3.0_f64), 1..6),
-        y in prop::collection::vec(prop::array::uniform2(-3.0..3.0_f64), 1..6),
-        cost in cost(),
+    fn it_is_the_sum_over_all_paths_in_the_band_and_hard_dtw_the_cheapest(
+        x in prop::collection::vec(prop::array::uniform2(-2.0..2.0_f64), 1..=6),
+        y in prop::collection::vec(prop::array::uniform2(-2.0..2.0_f64), 1..=6),
+        radius in radius(6), gamma in 0.2..3.0_f64, cost in cost(),
     ) {
-        let value = dtw(0.0, cost).value(&x, &y)?;
-        prop_assert!((value - cheapest_path(cost, &x, &y)).abs() < 1e-12);
-    }
-
-    #[test]
-    fn soft_dtw_sums_over_all_paths(
-        x in prop::collection::vec(prop::array::uniform2(-2.0..2.0_f64), 1..6),
-        y in prop::collection::vec(prop::array::uniform2(-2.0..2.0_f64), 1..6),
-        gamma in 0.3..3.0_f64, cost in cost(),
-    ) {
-        let value = dtw(gamma, cost).value(&x, &y)?;
-        let expected = -gamma * sum_over_paths(gamma, cost, &x, &y).ln();
-        prop_assert!((value - expected).abs() < 1e-10, "{} {}", value, expected);
+        let mut costs = Vec::new();
+        costs_of_paths((cost, radius), (&x, &y), (0, 0), 0.0, &mut costs);
+        prop_assert!(!costs.is_empty(), "no band is too narrow for a path");
+        let sum: f64 = costs.iter().map(|c| (-c / gamma).exp()).sum();
+        let value = banded(gamma, cost, radius).value(&x, &y)?;
+        prop_assert!((value + gamma * sum.ln()).abs() < 1e-12, "{} {}", value, -gamma * sum.ln());
+        let cheapest = costs.into_iter().fold(f64::INFINITY, f64::min);
+        let hard = banded(0.0, cost, radius).value(&x, &y)?;
+        prop_assert!((hard - cheapest).abs() < 1e-13 * (1.0 + cheapest));
     }
 
     #[test]
@@ -154,22 +166,26 @@ proptest! {
     }
 
     #[test]
-    fn the_gradient_is_the_slope(x in sequence(), y in sequence(), gamma in 0.05..3.0_f64, cost in cost()) {
-        let dtw = dtw(gamma, cost);
+    fn the_gradients_are_the_slopes(
+        x in sequence(), y in sequence(), radius in radius(6), gamma in 0.05..3.0_f64, cost in cost(),
+    ) {
+        let dtw = banded(gamma, cost, radius);
         // Where two steps nearly coincide the Euclidean cost has a kink that finite differences step over.
         let kink = x.iter().any(|a| y.iter().any(|b| Cost::Euclidean.between(a, b) < 1e-2));
         prop_assume!(cost == Cost::SquaredEuclidean || !kink);
-        let (_, gradient) = dtw.value_and_gradient(&x, &y)?;
+        let (_, of_x, of_y) = dtw.value_and_gradients(&x, &y)?;
         let h = 1e-5;
-        for i in 0..x.len() {
-            for d in 0..2 {
-                let at = |by: f64| {
-                    let mut moved = x.clone();
-                    moved[i][d] += by;
-                    dtw.value(&moved, &y)
-                };
-                let slope = (at(h)? - at(-h)?) / (2.0 * h);
-                prop_assert!((gradient[i][d] - slope).abs() < 1e-5, "{} {}", gradient[i][d], slope);
+        for (moves_x, gradient) in [(true, of_x), (false, of_y)] {
+            for (i, step) in gradient.iter().enumerate() {
+                for (d, component) in step.iter().enumerate() {
+                    let at = |by: f64| {
+                        let (mut x, mut y) = (x.clone(), y.clone());
+                        if moves_x { x[i][d] += by } else { y[i][d] += by }
+                        dtw.value(&x, &y)
+                    };
+                    let slope = (at(h)? - at(-h)?) / (2.0 * h);
+                    prop_assert!((component - slope).abs() < 1e-5, "{} {}", component, slope);
+                }
             }
         }
     }

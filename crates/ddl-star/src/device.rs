@@ -1,40 +1,11 @@
 //! Where the network computes, and opening CUDA on a machine that has it.
 
 use crate::StarError;
-use serde::{Deserialize, Serialize};
+use ddl_network::DeviceChoice;
 use std::sync::OnceLock;
 
 /// The libtorch that this crate is built for.
 pub const LIBTORCH_VERSION: &str = "2.11.0";
-
-/// The device asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DeviceChoice {
-    /// CUDA when it can be had, else the CPU.
-    Auto,
-    /// The CPU.
-    Cpu,
-    /// The first CUDA device; its absence is an error.
-    Cuda,
-}
-
-impl std::str::FromStr for DeviceChoice {
-    type Err = StarError;
-
-    fn from_str(text: &str) -> Result<Self, StarError> {
-        match text {
-            "auto" => Ok(Self::Auto),
-            "cpu" => Ok(Self::Cpu),
-            "cuda" => Ok(Self::Cuda),
-            _ => Err(StarError::Config {
-                field: "device",
-                value: text.to_owned(),
-                rule: "one of auto, cpu, cuda",
-            }),
-        }
-    }
-}
 
 /// A device that was opened and is there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

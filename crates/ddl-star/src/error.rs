@@ -1,53 +1,20 @@
 //! What can go wrong in this crate.
 
-use std::path::PathBuf;
+use ddl_network::NetworkError;
 
 /// Errors of `ddl-star`. Messages say what is wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StarError {
-    /// A configuration value is outside its range.
-    #[error("configuration: {field} = {value} is not allowed: {rule}")]
-    Config {
-        /// Name of the field.
-        field: &'static str,
-        /// The value given.
-        value: String,
-        /// What is allowed.
-        rule: &'static str,
-    },
-    /// Tensors or windows of unexpected size.
-    #[error("{operation}: expected {expected}, got {got}")]
-    Shape {
-        /// The operation that found it.
-        operation: &'static str,
-        /// What the operation needs.
-        expected: String,
-        /// What it was given.
-        got: String,
-    },
+    /// A configuration, shape, weight or file that no implementation of the networks takes.
+    #[error(transparent)]
+    Network(#[from] NetworkError),
     /// The device asked for cannot be had.
     #[error("device {device}: {problem}")]
     Device {
         /// The device asked for.
         device: String,
         /// Why it cannot be used, and what to do.
-        problem: String,
-    },
-    /// A checkpoint that must not be trusted.
-    #[error("checkpoint {}: {problem}", path.display())]
-    Checkpoint {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it, and what to do.
-        problem: String,
-    },
-    /// A learned tensor that cannot be rounded, or does not belong to the network it is given to.
-    #[error("weights: {tensor} {problem}")]
-    Weights {
-        /// Name of the tensor.
-        tensor: String,
-        /// What is wrong with it, and what to do.
         problem: String,
     },
     /// The loss or its gradient is no longer a number.
@@ -91,15 +58,16 @@ pub enum StarError {
         "no training windows: every epoch needs at least one window with its future, somebody seen at 20 steps of 0.4 s in a row"
     )]
     NoTrainingWindows,
-    /// Reading or writing a file failed.
-    #[error("{}: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
     /// libtorch reported an error.
     #[error("libtorch: {0}")]
     Torch(#[from] tch::TchError),
+}
+
+impl From<StarError> for NetworkError {
+    fn from(error: StarError) -> Self {
+        match error {
+            StarError::Network(error) => error,
+            other => Self::Backend(Box::new(other)),
+        }
+    }
 }

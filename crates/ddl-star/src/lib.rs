@@ -1,78 +1,18 @@
 #![doc = include_str!("../README.md")]
 
-mod arithmetic;
-mod attention;
-mod batch;
-mod checkpoint;
-mod config;
 mod device;
-mod draws;
-mod dropout;
-mod emission;
-mod encoder_layer;
 mod error;
-mod flow;
-mod forecast;
-mod gate;
-mod goal_frame;
-mod half_precision;
-mod kernel;
-mod layers;
-mod loss;
-mod neighbours;
-mod numbers;
-mod numbers_digest;
-mod optimizer;
-mod origin;
-mod own_motion;
-mod packed;
-mod packing;
-mod parameters;
-mod pass;
-mod precision;
-mod prepared;
+mod model;
 mod proposal;
-mod remembered;
-mod rollout;
-mod scene_means;
-mod schedule;
-mod seed;
-mod shared_weights;
-mod spatial;
-mod star;
-mod tape;
-mod temporal;
-mod tokens;
-mod train;
-mod training_config;
-mod training_report;
-mod unit;
+mod training;
 mod yardstick;
 
-pub use batch::SceneBatch;
-pub use checkpoint::{load_parameters, save_parameters};
-pub use config::{Frame, StarConfig, Variant};
-pub use device::{ComputeDevice, DeviceChoice, LIBTORCH_VERSION, set_threads};
-pub use emission::NoiseInput;
+pub use device::{ComputeDevice, LIBTORCH_VERSION, set_threads};
 pub use error::StarError;
-pub use flow::{FlowConstants, StepBounds, StepRule, bounded_step, natural_gradient_step};
-pub use forecast::{Noise, WindowRollout};
-pub use half_precision::{HalfTensor, from_half, to_half};
-pub use layers::Mode;
-pub use loss::{mean_distance, mean_squared_distance};
-pub use numbers_digest::{DamagedNumbers, check_numbers, numbers_digest};
-pub use origin::Origin;
-pub use own_motion::motion_bounds;
-pub use parameters::Parameters;
-pub use precision::Precision;
-pub use proposal::{
-    ProposalConfig, ProposalExample, ProposalNetwork, ProposalStep, ProposalTrainer,
-    ProposalTraining, ProposedEnds, WalkerView,
+pub use model::{
+    FlowConstants, NoiseInput, Parameters, Rollout, SceneBatch, StepBounds, TorchBackend,
+    TorchNetwork, bounded_step, natural_gradient_step,
 };
-pub use rollout::Rollout;
-pub use star::StarNetwork;
-pub use train::Trainer;
-pub use training_config::{LearningRateSchedule, Objective, TrainingConfig};
-pub use training_report::{EpochReport, StepReport};
-pub use unit::motion_unit;
+pub use proposal::{ProposalTrainer, TorchProposals};
+pub use training::{Trainer, mean_distance, mean_squared_distance};
 pub use yardstick::MatrixProduct;

@@ -6,16 +6,21 @@ use ddl_data::{Dataset, HORIZON, OBSERVED, Position, Window, WindowRule};
 use ddl_dynamics::{
     Attractor, CholeskyMetric, Euler, NaturalGradientFlow, StableEuler, StepTime, rollout,
 };
-use ddl_star::{
-    ComputeDevice, DeviceChoice, Noise, StarConfig, StarError, StarNetwork, StepRule, Variant,
-    motion_bounds,
+use ddl_network::{
+    DeviceChoice, ForecastWindows, MotionNetwork, NetworkError, Noise, StarConfig, StepRule,
+    Variant, motion_bounds,
 };
+use ddl_star::{ComputeDevice, TorchNetwork};
 use nalgebra::Vector2;
 
-fn network(variant: Variant) -> StarNetwork {
+/// The plain network and that of libtorch.
+fn networks(variant: Variant) -> [Box<dyn ForecastWindows>; 2] {
     ddl_star::set_threads(1);
     let device = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
-    StarNetwork::new(StarConfig::published(variant), 5, device).unwrap()
+    let config = StarConfig::published(variant);
+    let torch = TorchNetwork::new(config.clone(), 5, device).unwrap();
+    let plain = MotionNetwork::new(config, 5).unwrap();
+    [Box::new(plain), torch.into_forecaster()]
 }
 
 /// Observed windows of a simulated scene, and three goals for everybody.
@@ -59,8 +64,8 @@ fn forecasts_move_with_the_scene_even_to_map_coordinates() {
                 .collect()
         })
         .collect();
-    for variant in Variant::ALL {
-        let network = network(variant);
+    for network in Variant::ALL.into_iter().flat_map(networks) {
+        let variant = network.config().variant;
         let forecast = |windows: &[Window], goals: &[Vec<Vec<Position>>]| {
             network
                 .forecast_windows(windows, goals, Noise::Expected, StepRule::Bounded, None)
@@ -125,10 +130,12 @@ fn step(
 #[test]
 fn the_factors_are_those_of_the_steps() {
     let (windows, goals) = scene();
-    for variant in [Variant::Full, Variant::NoGoalShift] {
+    let shaped = [Variant::Full, Variant::NoGoalShift];
+    for network in shaped.into_iter().flat_map(networks) {
+        let variant = network.config().variant;
         for rule in [StepRule::Euler, StepRule::Bounded] {
             let mut compared = 0;
-            let rollouts = network(variant)
+            let rollouts = network
                 .forecast_windows(&windows, &goals, Noise::Expected, rule, None)
                 .unwrap();
             for ((window, goals), rollout) in windows.iter().zip(&goals).zip(&rollouts) {
@@ -160,8 +167,9 @@ fn the_factors_are_those_of_the_steps() {
             );
         }
     }
-    for variant in [Variant::NoDynamics, Variant::Star] {
-        let rollouts = network(variant)
+    let positions = [Variant::NoDynamics, Variant::Star];
+    for network in positions.into_iter().flat_map(networks) {
+        let rollouts = network
             .forecast_windows(&windows, &goals, Noise::Expected, StepRule::Bounded, None)
             .unwrap();
         assert!(rollouts.iter().all(|rollout| rollout.factors.is_none()));
@@ -171,12 +179,12 @@ fn the_factors_are_those_of_the_steps() {
 #[test]
 fn goals_that_do_not_fit_the_windows_are_refused() {
     let (windows, goals) = scene();
-    let network = network(Variant::Full);
+    let [network, _] = networks(Variant::Full);
     let refuse = |goals: &[Vec<Vec<Position>>], noise: Noise| {
         let error = network
             .forecast_windows(&windows, goals, noise, StepRule::Euler, None)
             .unwrap_err();
-        assert!(matches!(error, StarError::Shape { .. }), "{error}");
+        assert!(matches!(error, NetworkError::Shape { .. }), "{error}");
     };
     let shares = vec![vec![1.0]; windows.len() + 1];
     let error = network
@@ -188,7 +196,7 @@ fn goals_that_do_not_fit_the_windows_are_refused() {
             Some(&shares),
         )
         .unwrap_err();
-    assert!(matches!(error, StarError::Shape { .. }), "{error}");
+    assert!(matches!(error, NetworkError::Shape { .. }), "{error}");
     refuse(&goals[1..], Noise::Expected);
     refuse(&goals, Noise::Draws { count: 2, seed: 1 });
     refuse(&goals, Noise::Draws { count: 0, seed: 1 });

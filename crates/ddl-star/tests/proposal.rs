@@ -2,12 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use ddl_star::{
-    ComputeDevice, DeviceChoice, Origin, ProposalConfig, ProposalExample, ProposalNetwork,
-    ProposalTrainer, ProposalTraining, ProposedEnds, StarError, WalkerView, load_parameters,
-    save_parameters,
+use ddl_network::weights::{Origin, load_weights, save_weights};
+use ddl_network::{
+    DeviceChoice, NetworkError, PedestrianView, ProposalConfig, ProposalExample, ProposalNetwork,
+    ProposalTraining, ProposeEnds as _, ProposedEnds,
 };
+use ddl_star::{ComputeDevice, ProposalTrainer, StarError, TorchProposals};
 use std::f64::consts::TAU;
+use std::path::Path;
 
 fn device() -> ComputeDevice {
     ComputeDevice::open(DeviceChoice::Cpu).unwrap()
@@ -23,16 +25,16 @@ fn small() -> ProposalConfig {
     }
 }
 
-fn network() -> ProposalNetwork {
-    ProposalNetwork::new(small(), 3, device()).unwrap()
+fn network() -> TorchProposals {
+    TorchProposals::new(small(), 3, device()).unwrap()
 }
 
 /// A view of somebody who walks at `speed` (m/s) with `neighbours` ahead.
-fn view(speed: f64, neighbours: usize) -> WalkerView {
+fn view(speed: f64, neighbours: usize) -> PedestrianView {
     let walk = |speed: f64, x: f64, y: f64| {
         std::array::from_fn(|t| [x + speed * 0.4 * (t as f64 - 7.0), y])
     };
-    WalkerView {
+    PedestrianView {
         own: walk(speed, 0.0, 0.0),
         neighbours: (0..neighbours)
             .map(|j| walk(-0.8, 2.0 + j as f64, 0.3 * j as f64))
@@ -66,7 +68,7 @@ fn training(steps: u64) -> ProposalTraining {
 }
 
 /// Mean distance of the nearest end to the true one (m).
-fn oracle(network: &ProposalNetwork, examples: &[ProposalExample]) -> f64 {
+fn oracle(network: &TorchProposals, examples: &[ProposalExample]) -> f64 {
     let views: Vec<_> = examples
         .iter()
         .map(|example| example.view.clone())
@@ -83,7 +85,7 @@ fn oracle(network: &ProposalNetwork, examples: &[ProposalExample]) -> f64 {
     proposed.iter().zip(examples).map(nearest).sum::<f64>() / examples.len() as f64
 }
 
-fn trained(steps: u64) -> ProposalNetwork {
+fn trained(steps: u64) -> TorchProposals {
     let mut trainer = ProposalTrainer::new(network(), &examples(), &[], training(steps)).unwrap();
     while !trainer.is_finished() {
         trainer.step().unwrap();
@@ -128,8 +130,8 @@ fn weights_are_a_distribution_over_the_ends_of_all_members() {
 }
 
 /// Largest difference of the ends proposed for the first views of two calls.
-fn apart(network: &ProposalNetwork, a: &[WalkerView], b: &[WalkerView]) -> f64 {
-    let ends = |views: &[WalkerView]| network.propose(views).unwrap().remove(0).ends;
+fn apart(network: &TorchProposals, a: &[PedestrianView], b: &[PedestrianView]) -> f64 {
+    let ends = |views: &[PedestrianView]| network.propose(views).unwrap().remove(0).ends;
     let pairs = ends(a).into_iter().zip(ends(b));
     pairs
         .map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]))
@@ -157,6 +159,43 @@ fn only_near_neighbours_count_in_any_order_and_other_views_never() {
     assert!(apart(&network, &[crowd], &[seen]) < 1e-9);
 }
 
+/// The same ends and weights (metres), for people alone, in a crowd, standing, and with others out of reach; by networks with
+/// initial and with learned numbers.
+#[test]
+fn plain_numbers_propose_what_libtorch_proposes() {
+    let mut views: Vec<PedestrianView> = (0..70_u8)
+        .map(|i| view(0.03 * f64::from(i), usize::from(i % 11)))
+        .collect();
+    views[5].neighbours.push([[40.0, 3.0]; 8]);
+    views[6].neighbours = vec![[[40.0, 3.0]; 8]];
+    views[7].neighbours = vec![views[7].own];
+    for torch in [network(), trained(20)] {
+        let weights = torch.parameters().to_weights().unwrap();
+        let plain = ProposalNetwork::new(small(), 1).unwrap();
+        let plain = plain.with_weights(weights).unwrap();
+        let (ours, known) = (
+            plain.propose(&views).unwrap(),
+            torch.propose(&views).unwrap(),
+        );
+        assert_eq!((ours.len(), known.len()), (views.len(), views.len()));
+        for (i, (ours, known)) in ours.iter().zip(&known).enumerate() {
+            let numbers = |proposed: &ProposedEnds| {
+                [proposed.ends.as_flattened(), &proposed.weights].concat()
+            };
+            let (ours, known) = (numbers(ours), numbers(known));
+            assert_eq!((ours.len(), known.len()), (36, 36));
+            for (ours, known) in ours.into_iter().zip(known) {
+                assert!((ours - known).abs() < 1e-5, "view {i}: {ours} {known}");
+            }
+        }
+    }
+}
+
+fn save(network: &TorchProposals, path: &Path) {
+    let weights = network.parameters().to_weights().unwrap();
+    save_weights(&weights, &Origin::default(), path).unwrap();
+}
+
 #[test]
 fn a_resumed_training_ends_with_the_same_weights() {
     let folder = tempfile::tempdir().unwrap();
@@ -165,7 +204,7 @@ fn a_resumed_training_ends_with_the_same_weights() {
         folder.path().join("whole.safetensors"),
         folder.path().join("resumed.safetensors"),
     );
-    save_parameters(trained(12).parameters(), &Origin::default(), &whole).unwrap();
+    save(&trained(12), &whole);
     let mut first = ProposalTrainer::new(network(), &examples(), &[], training(12)).unwrap();
     for _ in 0..5 {
         first.step().unwrap();
@@ -178,23 +217,23 @@ fn a_resumed_training_ends_with_the_same_weights() {
     while !second.is_finished() {
         second.step().unwrap();
     }
-    save_parameters(
-        second.into_network().unwrap().parameters(),
-        &Origin::default(),
-        &resumed,
-    )
-    .unwrap();
+    save(&second.into_network().unwrap(), &resumed);
     assert!(std::fs::read(&whole).unwrap() == std::fs::read(&resumed).unwrap());
 
     let loaded = network();
-    load_parameters(loaded.parameters(), &Origin::default(), &whole).unwrap();
+    let layout = loaded.parameters().layout();
+    let weights = load_weights(layout, &Origin::default(), &whole).unwrap();
+    loaded.parameters().set(&weights).unwrap();
     let [ours, theirs] = [&loaded, &trained(12)].map(|network| oracle(network, &examples()));
     assert_eq!(ours.to_bits(), theirs.to_bits());
     let bytes = std::fs::read(&state).unwrap();
     std::fs::write(&state, &bytes[..bytes.len() / 2]).unwrap();
     let mut third = ProposalTrainer::new(network(), &examples(), &[], training(12)).unwrap();
     let error = third.resume(&Origin::default(), &state).unwrap_err();
-    assert!(matches!(error, StarError::Checkpoint { .. }), "{error}");
+    assert!(
+        matches!(error, StarError::Network(NetworkError::Checkpoint { .. })),
+        "{error}"
+    );
 }
 
 #[test]

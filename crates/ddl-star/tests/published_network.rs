@@ -4,10 +4,9 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use ddl_data::{PedestrianId, Window};
-use ddl_star::{
-    ComputeDevice, DeviceChoice, Mode, NoiseInput, SceneBatch, StarConfig, StarNetwork, StepRule,
-    Variant, mean_squared_distance,
-};
+use ddl_network::backend::Mode;
+use ddl_network::{DeviceChoice, StarConfig, StepRule, Variant};
+use ddl_star::{ComputeDevice, NoiseInput, SceneBatch, TorchNetwork, mean_squared_distance};
 use serde_json::Value;
 use tch::{Device, Kind, Tensor};
 
@@ -60,10 +59,10 @@ impl Reference {
             .collect()
     }
 
-    fn network(&self, kind: Kind) -> StarNetwork {
+    fn network(&self, kind: Kind) -> TorchNetwork {
         let cpu = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
         let config = StarConfig::published(Variant::Full);
-        let network = StarNetwork::with_precision(config, 1, cpu, kind).unwrap();
+        let network = TorchNetwork::with_precision(config, 1, cpu, kind).unwrap();
         let mut set = 0;
         for entry in self.0["weights"]["tensors"].as_array().unwrap() {
             let name = entry["name"].as_str().unwrap();
@@ -104,7 +103,7 @@ impl Reference {
                 .copy_(&Tensor::from_slice(&values).reshape(&shape));
             set += 1;
         }
-        assert_eq!(set, network.parameters().len());
+        assert_eq!(set, network.parameters().iter().count());
         assert_eq!(network.parameters().count(), 827_443);
         network
     }

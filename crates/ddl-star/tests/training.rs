@@ -3,12 +3,14 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use ddl_data::{Dataset, Window, WindowRule};
-use ddl_star::{
-    ComputeDevice, DeviceChoice, Origin, StarConfig, StarError, StarNetwork, Trainer,
-    TrainingConfig, Variant, load_parameters, numbers_digest, save_parameters,
+use ddl_network::weights::{Origin, load_weights, numbers_digest, save_weights};
+use ddl_network::{
+    DeviceChoice, Frame, LearningRateSchedule, NetworkError, StarConfig, TrainingConfig, Variant,
 };
+use ddl_star::{ComputeDevice, StarError, TorchNetwork, Trainer};
 use safetensors::SafeTensors;
 use safetensors::tensor::TensorView;
+use std::path::Path;
 use tch::Tensor;
 
 fn cpu() -> ComputeDevice {
@@ -34,24 +36,24 @@ fn origin() -> Origin {
 }
 
 fn trainer(variant: Variant, epochs: usize) -> Trainer {
-    let network = StarNetwork::new(config(variant), 7, cpu()).unwrap();
+    let network = TorchNetwork::new(config(variant), 7, cpu()).unwrap();
     let training = TrainingConfig {
         epochs,
         batch_walkers: 40,
-        learning_rate_schedule: ddl_star::LearningRateSchedule::Cosine,
+        learning_rate_schedule: LearningRateSchedule::Cosine,
         seed: 7,
         ..TrainingConfig::published()
     };
     Trainer::new(network, windows(), training).unwrap()
 }
 
-fn weights(network: &StarNetwork) -> Vec<f32> {
-    let rows: Vec<Tensor> = network
+fn weights(network: &TorchNetwork) -> Vec<f32> {
+    network
         .parameters()
-        .iter()
-        .map(|(_, tensor)| tensor.detach().reshape([-1]))
-        .collect();
-    Vec::try_from(Tensor::cat(&rows, 0)).unwrap()
+        .to_weights()
+        .unwrap()
+        .numbers()
+        .to_vec()
 }
 
 /// The mean loss of each epoch of a whole training.
@@ -100,7 +102,7 @@ fn walker(epochs: usize, jitter: f64) -> Trainer {
                 .collect()
         })
         .collect();
-    let network = StarNetwork::new(config, 7, cpu()).unwrap();
+    let network = TorchNetwork::new(config, 7, cpu()).unwrap();
     Trainer::towards(network, windows, goals, training).unwrap()
 }
 
@@ -116,21 +118,24 @@ fn walks_to_goals_are_learned() {
 
 #[test]
 fn a_goal_is_needed_for_everybody() {
-    let network = StarNetwork::new(config(Variant::Full), 7, cpu()).unwrap();
+    let network = TorchNetwork::new(config(Variant::Full), 7, cpu()).unwrap();
     let training = TrainingConfig::recommended(Variant::Full);
     let mut goals: Vec<Vec<_>> = windows().iter().map(|w| vec![[0.0; 2]; w.len()]).collect();
     goals[3].pop();
     let error = Trainer::towards(network, windows(), goals, training).unwrap_err();
-    assert!(matches!(error, StarError::Shape { .. }), "{error}");
+    assert!(
+        matches!(error, StarError::Network(NetworkError::Shape { .. })),
+        "{error}"
+    );
 }
 
 #[test]
 fn a_network_without_goals_has_no_frame_of_its_own() {
     let own = StarConfig {
-        frame: ddl_star::Frame::Goal,
+        frame: Frame::Goal,
         ..StarConfig::published(Variant::NoGoalShift)
     };
-    let error = StarNetwork::new(own, 1, cpu()).unwrap_err();
+    let error = TorchNetwork::new(own, 1, cpu()).unwrap_err();
     assert!(error.to_string().contains("frame"), "{error}");
 }
 
@@ -209,22 +214,31 @@ fn forged(whole: &[u8], change: impl Fn(&mut String, &mut Vec<u8>)) -> Vec<u8> {
     safetensors::serialize(views(), Some(header)).unwrap()
 }
 
+fn save(network: &TorchNetwork, origin: &Origin, path: &Path) {
+    let weights = network.parameters().to_weights().unwrap();
+    save_weights(&weights, origin, path).unwrap();
+}
+
 #[test]
 fn weights_survive_the_file_and_broken_files_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("model.safetensors");
-    let network = StarNetwork::new(config(Variant::Full), 1, cpu()).unwrap();
-    save_parameters(network.parameters(), &origin(), &path).unwrap();
-    let other = StarNetwork::new(config(Variant::Full), 2, cpu()).unwrap();
+    let network = TorchNetwork::new(config(Variant::Full), 1, cpu()).unwrap();
+    save(&network, &origin(), &path);
+    let other = TorchNetwork::new(config(Variant::Full), 2, cpu()).unwrap();
     let before = weights(&other);
     assert_ne!(before, weights(&network));
 
+    let load = |path: &Path| -> Result<(), StarError> {
+        let parameters = other.parameters();
+        parameters.set(&load_weights(parameters.layout(), &origin(), path)?)
+    };
     let whole = std::fs::read(&path).unwrap();
     let broken = folder.path().join("broken.safetensors");
     let refuse = |what: &str, needle: &str| {
-        let error = load_parameters(other.parameters(), &origin(), &broken).unwrap_err();
+        let error = load(&broken).unwrap_err();
         assert!(
-            matches!(error, StarError::Checkpoint { .. }),
+            matches!(error, StarError::Network(NetworkError::Checkpoint { .. })),
             "{what}: {error}"
         );
         assert!(error.to_string().contains(needle), "{what}: {error}");
@@ -236,11 +250,11 @@ fn weights_survive_the_file_and_broken_files_are_refused() {
     }
     std::fs::write(&broken, vec![0; whole.len() * 3 + (2 << 20)]).unwrap();
     refuse("oversized", "bytes long");
-    let star = StarNetwork::new(config(Variant::Star), 2, cpu()).unwrap();
-    save_parameters(star.parameters(), &origin(), &broken).unwrap();
+    let star = TorchNetwork::new(config(Variant::Star), 2, cpu()).unwrap();
+    save(&star, &origin(), &broken);
     refuse("another shape", "output_layer.weight has shape");
     let elsewhere = Origin::from_iter([("fold", "plaza"), ("seed", "7")]);
-    save_parameters(network.parameters(), &elsewhere, &broken).unwrap();
+    save(&network, &elsewhere, &broken);
     refuse("another fold", "its fold is plaza, not corridor");
     let tensors: Vec<(String, Tensor)> = network
         .parameters()
@@ -271,7 +285,7 @@ fn weights_survive_the_file_and_broken_files_are_refused() {
     std::fs::write(&broken, &poisoned).unwrap();
     refuse("not a number", "NaN or infinite");
 
-    load_parameters(other.parameters(), &origin(), &path).unwrap();
+    load(&path).unwrap();
     assert_eq!(weights(&other), weights(&network));
 }
 

@@ -3,7 +3,7 @@
 //! exactly so many pedestrians. The picture of the README is of a simulated crowd.
 
 use ddl::data::{Convention, Dataset, Window, WindowRule, locate};
-use ddl::eval::figure::SceneFigure;
+use ddl::report::figure::SceneFigure;
 use ddl::{Ddl, DeviceChoice, Forecaster as _};
 use std::error::Error;
 use std::path::Path;

@@ -75,15 +75,18 @@ impl BuiltinModel {
 
     /// The packed model.
     pub(crate) fn bytes(self) -> &'static [u8] {
-        match self {
-            Self::Eth => include_bytes!("../models/eth.safetensors"),
-            Self::Hotel => include_bytes!("../models/hotel.safetensors"),
-            Self::Univ => include_bytes!("../models/univ.safetensors"),
-            Self::Zara1 => include_bytes!("../models/zara1.safetensors"),
-            Self::Zara2 => include_bytes!("../models/zara2.safetensors"),
-        }
+        BYTES[self as usize]
     }
 }
+
+/// The packed models, in the order of the variants. A static, so that the program holds each once.
+static BYTES: [&[u8]; 5] = [
+    include_bytes!("../models/eth.safetensors"),
+    include_bytes!("../models/hotel.safetensors"),
+    include_bytes!("../models/univ.safetensors"),
+    include_bytes!("../models/zara1.safetensors"),
+    include_bytes!("../models/zara2.safetensors"),
+];
 
 impl fmt::Display for BuiltinModel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -6,7 +6,7 @@ use crate::walk::{Course, Gait, Walk};
 use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
 use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds, Violation};
 use ddl_eval::{Forecast, ForecastError};
-use ddl_star::{Frame, StarConfig, Variant, motion_bounds};
+use ddl_network::{Frame, StarConfig, Variant, motion_bounds};
 
 /// A forecast whose every hypothesis carries a Lyapunov certificate.
 ///

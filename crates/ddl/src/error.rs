@@ -21,9 +21,22 @@ pub enum DdlError {
     /// The expert library could not be built.
     #[error(transparent)]
     Library(#[from] ddl_goal::LibraryError),
-    /// The network failed.
+    /// The network failed, or what it is to be made of cannot be used.
     #[error(transparent)]
-    Star(#[from] ddl_star::StarError),
+    Network(#[from] ddl_network::NetworkError),
+    /// Training, or libtorch, failed.
+    #[cfg(feature = "torch")]
+    #[error(transparent)]
+    Torch(#[from] ddl_star::StarError),
+    /// Something was asked that needs libtorch.
+    #[error(
+        "{what} needs libtorch, which this program is built without: in a checkout of the project, \
+         `cargo xtask setup` brings it in and `cargo build --release -p ddl-cli --features torch` builds with it (docs/libtorch.md)"
+    )]
+    WithoutLibtorch {
+        /// What was asked for.
+        what: &'static str,
+    },
     /// A forecast could not be made or does not fit its window.
     #[error(transparent)]
     Forecast(#[from] ddl_eval::ForecastError),
@@ -35,7 +48,7 @@ pub enum DdlError {
     Measure(#[from] ddl_eval::MeasureError),
     /// A report could not be put together or written.
     #[error(transparent)]
-    Report(#[from] ddl_eval::ReportError),
+    Report(#[from] ddl_report::ReportError),
     /// The share of the training recordings kept for validation is no share.
     #[error(
         "validation = {0} is not allowed: a share of the recordings' time, at least 0, below 1"
@@ -74,7 +87,7 @@ pub enum DdlError {
     )]
     NoFlow {
         /// The variant of the model.
-        variant: ddl_star::Variant,
+        variant: ddl_network::Variant,
     },
     /// The training set holds fewer tracks than the published goal estimator retrieves.
     #[error(
@@ -89,10 +102,10 @@ pub enum DdlError {
     },
     /// A picture could not be drawn.
     #[error(transparent)]
-    Figure(#[from] ddl_eval::FigureError),
+    Figure(#[from] ddl_report::FigureError),
     /// The page of a report could not be made.
     #[error(transparent)]
-    Page(#[from] ddl_eval::page::PageError),
+    Page(#[from] ddl_report::page::PageError),
     /// A run directory that cannot be used.
     #[error("run {}: {problem}", path.display())]
     Run {

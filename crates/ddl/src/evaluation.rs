@@ -11,8 +11,9 @@ use crate::test_set::TestSet;
 use crate::training_words;
 use ddl_data::{Dataset, Window};
 use ddl_eval::baseline::WeightedGoals;
-use ddl_eval::{Forecast, ForecastError, Forecaster as _, Moment, Protocol, ResultRow, gallery};
+use ddl_eval::{Forecast, ForecastError, Forecaster as _, Protocol, ResultRow};
 use ddl_goal::QuerySpan;
+use ddl_report::{Moment, gallery};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 

@@ -4,7 +4,7 @@ use crate::run_directory::{read_json, write_json};
 use crate::run_lock::RunLock;
 use crate::{Calibration, Clearance, Ddl, DdlError, EvaluationRequest, RunDirectory};
 use ddl_data::Convention;
-use ddl_eval::{Moment, Report};
+use ddl_report::{Moment, Report};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 

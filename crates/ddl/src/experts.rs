@@ -4,7 +4,7 @@ use crate::DdlError;
 use crate::run_directory::write_atomically;
 use ddl_data::{Position, TIME_STEP, WINDOW, Window};
 use ddl_goal::ExpertLibrary;
-use ddl_star::{Origin, check_numbers, numbers_digest};
+use ddl_network::weights::{Origin, check_numbers, numbers_digest};
 use safetensors::SafeTensors;
 use safetensors::tensor::{Dtype, TensorView};
 use std::io::Read as _;

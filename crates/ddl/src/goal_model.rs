@@ -6,11 +6,12 @@ use crate::model_source::ModelSource;
 use crate::packed_model::{self, Unpacked};
 use crate::run_config::RunConfig;
 use crate::run_directory::RunDirectory;
-use crate::{DdlError, GoalRecipe, enough_weights, experts, goals, reach, views};
+use crate::{DdlError, Device, GoalRecipe, enough_weights, experts, goals, reach, views};
 use ddl_data::{Position, WINDOW, Window};
 use ddl_eval::ForecastError;
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
-use ddl_star::{ComputeDevice, DeviceChoice, ProposalNetwork, ProposedEnds, load_parameters};
+use ddl_network::weights::load_weights;
+use ddl_network::{DeviceChoice, ForecastWindows, ProposeEnds, ProposedEnds};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -47,9 +48,9 @@ enum GoalOrigin {
     /// Similar walkers.
     Retrieved(GoalEstimator),
     /// The network's ends.
-    Proposed(ProposalNetwork),
+    Proposed(Box<dyn ProposeEnds>),
     /// Both, the retrieved goals with this share of the probability.
-    Both(ProposalNetwork, GoalEstimator, f64),
+    Both(Box<dyn ProposeEnds>, GoalEstimator, f64),
 }
 
 impl GoalModel {
@@ -69,7 +70,7 @@ impl GoalModel {
     pub fn open(source: &ModelSource, device: DeviceChoice) -> Result<Self, DdlError> {
         let Some(run) = source.run() else {
             let bytes = packed_model::bytes(source)?;
-            let device = ComputeDevice::open(device)?;
+            let device = Device::open(device)?;
             let unpacked = packed_model::unpack(&bytes, source, device)?;
             return Ok(Self::of_packed(source, unpacked)?.0);
         };
@@ -79,26 +80,22 @@ impl GoalModel {
             return Err(source.wrong(problem));
         }
         config.check(source)?;
-        Self::of_run(run.clone(), config, ComputeDevice::open(device)?)
+        Self::of_run(run.clone(), config, Device::open(device)?)
     }
 
     pub(crate) fn of_run(
         run: RunDirectory,
         config: RunConfig,
-        device: ComputeDevice,
+        device: Device,
     ) -> Result<Self, DdlError> {
         let network = match &config.goals.proposal {
             None => None,
             Some(recipe) => {
                 recipe.network.check()?;
                 enough_weights::require(&run.proposal(), recipe.network.least_numbers())?;
-                let network =
-                    ProposalNetwork::new(recipe.network.clone(), recipe.training.seed, device)?;
-                load_parameters(
-                    network.parameters(),
-                    &config.goals_origin(),
-                    &run.proposal(),
-                )?;
+                let origin = config.goals_origin();
+                let read = |layout: &_| load_weights(layout, &origin, &run.proposal());
+                let network = device.proposing(&recipe.network, read)?;
                 Some(network)
             }
         };
@@ -109,7 +106,7 @@ impl GoalModel {
     pub(crate) fn with_network(
         run: RunDirectory,
         config: RunConfig,
-        network: Option<ProposalNetwork>,
+        network: Option<Box<dyn ProposeEnds>>,
     ) -> Result<Self, DdlError> {
         let library = experts::load(&config.goals_origin(), config.data.walkers, &run.experts())?;
         let clusters = config.goals.retrieval.clone().check()?.clusters();
@@ -136,7 +133,7 @@ impl GoalModel {
     pub(crate) fn of_packed(
         source: &ModelSource,
         unpacked: Unpacked,
-    ) -> Result<(Self, ddl_star::StarNetwork), DdlError> {
+    ) -> Result<(Self, Box<dyn ForecastWindows>), DdlError> {
         let Unpacked {
             config,
             network,
@@ -191,18 +188,10 @@ impl GoalModel {
     }
 
     /// The network that proposes ends, where there is one.
-    pub(crate) fn proposal_network(&self) -> Option<&ProposalNetwork> {
+    pub(crate) fn proposal_network(&self) -> Option<&dyn ProposeEnds> {
         match &self.origin {
             GoalOrigin::Retrieved(_) => None,
-            GoalOrigin::Proposed(network) | GoalOrigin::Both(network, ..) => Some(network),
-        }
-    }
-
-    /// That network itself.
-    pub(crate) fn into_proposal_network(self) -> Option<ProposalNetwork> {
-        match self.origin {
-            GoalOrigin::Retrieved(_) => None,
-            GoalOrigin::Proposed(network) | GoalOrigin::Both(network, ..) => Some(network),
+            GoalOrigin::Proposed(network) | GoalOrigin::Both(network, ..) => Some(&**network),
         }
     }
 
@@ -213,23 +202,24 @@ impl GoalModel {
 
     /// Numbers learned by the proposal network; 0 without one.
     pub fn parameter_count(&self) -> usize {
-        self.proposal_network()
-            .map_or(0, |network| network.parameters().count())
+        self.recipe()
+            .proposal
+            .as_ref()
+            .map_or(0, |recipe| recipe.network.parameter_count())
     }
 
     /// The goals of every pedestrian of every window, from the observed frames alone.
     ///
-    /// The network computes in single precision, many walkers at a time: a walker's goals may differ from those it has in
-    /// other company by rounding, and near a tie between two choices of goals by more.
+    /// On the CPU a pedestrian's goals have the same bits alone and among others.
     ///
     /// # Errors
     /// When positions are so far apart that distances leave the range of `f64`, or libtorch fails.
     pub fn goals(&self, windows: &[Window]) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
         let sets = match &self.origin {
             GoalOrigin::Retrieved(estimator) => goals::retrieved(estimator, windows)?,
-            GoalOrigin::Proposed(network) => self.standing_for_ends(network, None, windows)?,
+            GoalOrigin::Proposed(network) => self.standing_for_ends(&**network, None, windows)?,
             GoalOrigin::Both(network, estimator, share) => {
-                self.standing_for_ends(network, Some((estimator, *share)), windows)?
+                self.standing_for_ends(&**network, Some((estimator, *share)), windows)?
             }
         };
         Ok(self.plausible(windows, sets))
@@ -279,7 +269,7 @@ impl GoalModel {
     /// Goals that stand for the network's ends, and for retrieved goals where they have a share.
     fn standing_for_ends(
         &self,
-        network: &ProposalNetwork,
+        network: &dyn ProposeEnds,
         retrieval: Option<(&GoalEstimator, f64)>,
         windows: &[Window],
     ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {

@@ -4,9 +4,9 @@ use crate::goal_evaluation::MeasuredGoals;
 use crate::{DdlError, GoalModel};
 use ddl_data::Window;
 use ddl_eval::baseline::WeightedGoals;
-use ddl_eval::figure::{self, GoalCase};
 use ddl_eval::{ForecastError, MotionKind};
 use ddl_goal::GoalSet;
+use ddl_report::figure::{self, GoalCase};
 
 /// Retrieved walkers that are drawn, the most similar ones.
 const EXPERTS: usize = 60;
@@ -35,7 +35,7 @@ pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<Strin
             .collect();
         let errors: Vec<_> = candidates.iter().map(|w| (kind, w.error)).collect();
         shown.extend(
-            figure::typical_walkers(&errors)
+            figure::typical_pedestrians(&errors)
                 .into_iter()
                 .map(|i| candidates[i]),
         );

@@ -2,7 +2,7 @@
 
 use crate::DdlError;
 use ddl_goal::GoalEstimatorParams;
-use ddl_star::{ProposalConfig, ProposalTraining};
+use ddl_network::{ProposalConfig, ProposalTraining};
 use serde::{Deserialize, Serialize};
 
 /// How goals are made: retrieved from the expert library, or proposed by a network and pooled with retrieved ones.

@@ -1,4 +1,8 @@
 #![doc = include_str!("../README.md")]
+#![cfg_attr(
+    not(feature = "torch"),
+    allow(dead_code, reason = "training alone needs it")
+)]
 
 mod baselines;
 mod builtin_model;
@@ -6,6 +10,7 @@ mod calibration;
 mod certified_forecast;
 mod clearance;
 mod comparison;
+mod device;
 mod early_stopping;
 mod enough_weights;
 mod error;
@@ -17,7 +22,6 @@ mod goal_evaluation;
 mod goal_model;
 mod goal_picture;
 mod goal_recipe;
-mod goal_training;
 mod goals;
 mod live;
 mod machine;
@@ -48,7 +52,10 @@ pub use ddl_data as data;
 pub use ddl_dynamics as dynamics;
 pub use ddl_eval as eval;
 pub use ddl_goal as goal;
+pub use ddl_network as network;
+pub use ddl_report as report;
 pub use ddl_softdtw as softdtw;
+#[cfg(feature = "torch")]
 pub use ddl_star as star;
 
 pub use baselines::measure_baselines;
@@ -58,7 +65,8 @@ pub use certified_forecast::{CertificateError, CertifiedForecast};
 pub use clearance::Clearance;
 pub use comparison::{BestOfTwenty, Comparison, compare_on_validation};
 pub use ddl_eval::{Forecast, Forecaster, Protocol};
-pub use ddl_star::{DeviceChoice, Precision, Variant};
+pub use ddl_network::{DeviceChoice, Precision, Variant};
+pub use device::Device;
 pub use early_stopping::best_epoch;
 pub use error::DdlError;
 pub use evaluation::{

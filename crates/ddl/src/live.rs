@@ -110,7 +110,8 @@ impl<M> LiveForecaster<M> {
         Ok(Self { model, tracks })
     }
 
-    /// The same, making up what the completion allows of observations that are not whole; [`Window::made_up`] says of whom.
+    /// The same, with incomplete observations filled in as the completion allows; [`Window::made_up`] counts the filled-in
+    /// positions.
     #[must_use]
     pub fn completing(self, completion: Completion) -> Self {
         let tracks = self.tracks.completing(completion);

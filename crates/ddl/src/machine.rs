@@ -1,7 +1,7 @@
 //! The machine a process computes on: device and threads.
 
-use crate::DdlError;
-use ddl_star::{ComputeDevice, DeviceChoice};
+use crate::{DdlError, Device};
+use ddl_network::DeviceChoice;
 
 /// Opens the device and sets the number of threads (all cores when `None`) of the kernels and of goal
 /// search. libtorch itself uses one: what is left to it on the CPU are small tensors, over which several
@@ -11,9 +11,10 @@ use ddl_star::{ComputeDevice, DeviceChoice};
 /// # Errors
 /// When the device cannot be had.
 pub fn prepare(device: DeviceChoice, threads: Option<usize>) -> Result<(), DdlError> {
-    ComputeDevice::open(device)?;
+    Device::open(device)?;
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let threads = threads.unwrap_or(cores).max(1);
+    #[cfg(feature = "torch")]
     ddl_star::set_threads(1);
     // A pool that was built earlier stays as it is: results do not depend on it.
     let _ = rayon::ThreadPoolBuilder::new()
@@ -25,7 +26,7 @@ pub fn prepare(device: DeviceChoice, threads: Option<usize>) -> Result<(), DdlEr
 /// "yes", or "no" and why.
 #[must_use]
 pub fn cuda_status() -> String {
-    match ComputeDevice::open(DeviceChoice::Cuda) {
+    match Device::open(DeviceChoice::Cuda) {
         Ok(_) => "yes".into(),
         Err(error) => format!("no ({error})"),
     }

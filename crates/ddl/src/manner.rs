@@ -4,7 +4,7 @@ use crate::clearance::Clearance;
 use crate::model::{Ddl, WITHOUT_LIBRARY};
 use crate::walk::Gait;
 use ddl_eval::Protocol;
-use ddl_star::Objective;
+use ddl_network::Objective;
 
 /// A manner in which the model forecasts, each a row of its own.
 #[derive(Debug)]

@@ -10,11 +10,12 @@ use crate::network_forecast;
 use crate::run_config::RunConfig;
 use crate::run_directory::RunDirectory;
 use crate::walk::Gait;
-use crate::{DdlError, GoalModel};
+use crate::{DdlError, Device, GoalModel};
 use ddl_data::{HORIZON, Position, Window};
 use ddl_eval::{Forecast, ForecastError, Forecaster};
 use ddl_goal::GoalSet;
-use ddl_star::{ComputeDevice, Precision, ProposalNetwork, StarNetwork};
+use ddl_network::weights::Weights;
+use ddl_network::{ForecastWindows, MotionNetwork, NetworkError, Precision};
 
 /// The name of the model in tables.
 pub(crate) const NAME: &str = "DDL";
@@ -50,8 +51,10 @@ pub(crate) const WITHOUT_LIBRARY: &str = "without an expert library";
 #[derive(Debug)]
 pub struct Ddl {
     goals: GoalModel,
-    device: ComputeDevice,
-    network: StarNetwork,
+    device: Device,
+    network: Box<dyn ForecastWindows>,
+    /// Numbers learned by the network.
+    parameters: usize,
     clearance: Option<Clearance>,
 }
 
@@ -77,8 +80,22 @@ impl Ddl {
     /// # Errors
     /// For `bf16` elsewhere than on the CPU.
     pub fn in_precision(self, precision: Precision) -> Result<Self, DdlError> {
-        let network = self.network.in_precision(precision)?;
-        Ok(Self { network, ..self })
+        if precision != Precision::F32 && self.device != Device::CPU {
+            return Err(DdlError::Network(NetworkError::Config {
+                field: "precision",
+                value: precision.name().to_owned(),
+                rule: "f32, unless the network computes on the CPU",
+            }));
+        }
+        if precision == self.network.precision() {
+            return Ok(self);
+        }
+        let config = self.network.config().clone();
+        let network = MotionNetwork::reading(config, |_| self.network.copy_weights())?;
+        Ok(Self {
+            network: Box::new(network.in_precision(precision)),
+            ..self
+        })
     }
 
     /// What decided the model.
@@ -97,7 +114,7 @@ impl Ddl {
     }
 
     /// Where it computes.
-    pub fn device(&self) -> ComputeDevice {
+    pub fn device(&self) -> Device {
         self.device
     }
 
@@ -117,7 +134,7 @@ impl Ddl {
 
     /// Numbers learned by the forecasting network.
     pub fn parameter_count(&self) -> usize {
-        self.network.parameters().count()
+        self.parameters
     }
 
     /// Where its goals come from.
@@ -125,9 +142,15 @@ impl Ddl {
         &self.goals
     }
 
-    /// The network that forecasts and the one that proposes goals, where there is one, to be trained further.
-    pub(crate) fn into_networks(self) -> (StarNetwork, Option<ProposalNetwork>) {
-        (self.network, self.goals.into_proposal_network())
+    /// The weights of the network that forecasts and of the one that proposes goals, where there is one.
+    ///
+    /// # Errors
+    /// When they cannot be fetched from their device.
+    pub(crate) fn weights(&self) -> Result<(Weights, Option<Weights>), DdlError> {
+        let proposal = self.goals.proposal_network();
+        let proposal = proposal.map(ddl_network::ProposeEnds::copy_weights);
+        let proposal = proposal.transpose()?;
+        Ok((self.network.copy_weights()?, proposal))
     }
 
     /// Forecasts the windows, with the evidence for every hypothesis that it goes to its goal.
@@ -156,7 +179,7 @@ impl Ddl {
         certified_forecast::ensure_flow(self.config().star.variant)?;
         let goals = self.goals.goals(windows)?;
         let led = (goals, self.familiarities(windows));
-        network_forecast::walked(&self.network, windows, led, Gait::Stable(self.clearance))?
+        network_forecast::walked(&*self.network, windows, led, Gait::Stable(self.clearance))?
             .map(Walked::certified)
             .collect()
     }
@@ -204,7 +227,7 @@ impl Ddl {
     ) -> Result<Vec<Forecast>, ForecastError> {
         if !self.config().star.variant.uses_goal() {
             let seed = self.config().training.seed;
-            return network_forecast::without_goals(&self.network, seed, windows);
+            return network_forecast::without_goals(&*self.network, seed, windows);
         }
         self.neutral(windows, sets, clearance)
             .map(Walked::forecast)
@@ -246,7 +269,7 @@ impl Ddl {
     ) -> Result<Vec<Forecast>, ForecastError> {
         let seed = self.config().training.seed;
         let led = (sets, self.familiarities(windows));
-        network_forecast::towards(&self.network, seed, windows, led, gait)
+        network_forecast::towards(&*self.network, seed, windows, led, gait)
     }
 
     fn familiarities(&self, windows: &[Window]) -> Vec<Vec<f64>> {

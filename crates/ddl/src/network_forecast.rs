@@ -7,7 +7,7 @@ use crate::walk::Gait;
 use ddl_data::{Position, Window};
 use ddl_eval::{Forecast, ForecastError};
 use ddl_goal::GoalSet;
-use ddl_star::{Noise, StarNetwork, StepRule, WindowRollout};
+use ddl_network::{ForecastWindows, Noise, StepRule, WindowRollout};
 
 /// Hypotheses of the variant without goals: as many noise vectors.
 const NOISE_HYPOTHESES: usize = 20;
@@ -15,7 +15,7 @@ const NOISE_HYPOTHESES: usize = 20;
 /// One hypothesis a goal for every pedestrian, with the goal's weight, shaped by the network as far as the pedestrian's motion is
 /// familiar; for the variant without goals, one a noise vector of that seed, all equally likely.
 pub(crate) fn towards(
-    network: &StarNetwork,
+    network: &dyn ForecastWindows,
     seed: u64,
     windows: &[Window],
     (sets, familiarity): (Vec<Vec<GoalSet>>, Vec<Vec<f64>>),
@@ -32,7 +32,7 @@ pub(crate) fn towards(
 /// The network's rollouts to all goals; each becomes a forecast when it is its turn, so that the
 /// certificates of many windows need not be kept.
 pub(crate) fn walked<'a>(
-    network: &'a StarNetwork,
+    network: &'a dyn ForecastWindows,
     windows: &'a [Window],
     (sets, familiarity): (Vec<Vec<GoalSet>>, Vec<Vec<f64>>),
     gait: Gait,
@@ -69,7 +69,7 @@ pub(crate) fn walked<'a>(
 
 /// Plain STAR: noise samples, all equally likely.
 pub(crate) fn without_goals(
-    network: &StarNetwork,
+    network: &dyn ForecastWindows,
     seed: u64,
     windows: &[Window],
 ) -> Result<Vec<Forecast>, ForecastError> {

@@ -7,8 +7,9 @@
 use crate::familiarity::TrainingMotions;
 use crate::model_source::ModelSource;
 use crate::run_config::{FORMAT, RunConfig};
-use crate::{DdlError, GoalModel, sha256};
-use ddl_star::{ComputeDevice, HalfTensor, ProposalNetwork, StarNetwork, from_half, to_half};
+use crate::{DdlError, Device, GoalModel, sha256};
+use ddl_network::weights::{HalfTensor, Weights};
+use ddl_network::{ForecastWindows, NetworkError, ProposeEnds};
 use safetensors::SafeTensors;
 use safetensors::tensor::{Dtype, TensorView};
 use serde::{Deserialize, Serialize};
@@ -51,8 +52,8 @@ struct Layout {
 /// What a packed model holds.
 pub(crate) struct Unpacked {
     pub(crate) config: RunConfig,
-    pub(crate) network: StarNetwork,
-    pub(crate) proposal: ProposalNetwork,
+    pub(crate) network: Box<dyn ForecastWindows>,
+    pub(crate) proposal: Box<dyn ProposeEnds>,
     pub(crate) motions: Option<TrainingMotions>,
 }
 
@@ -60,7 +61,7 @@ pub(crate) struct Unpacked {
 ///
 /// # Errors
 /// When the goals come from the expert library alone, or a weight is out of the range of half precision.
-pub(crate) fn pack(network: &StarNetwork, goals: &GoalModel) -> Result<Vec<u8>, DdlError> {
+pub(crate) fn pack(network: &dyn ForecastWindows, goals: &GoalModel) -> Result<Vec<u8>, DdlError> {
     let source = goals.source();
     let Some(proposal) = goals.proposal_network() else {
         return Err(source.wrong(
@@ -69,11 +70,11 @@ pub(crate) fn pack(network: &StarNetwork, goals: &GoalModel) -> Result<Vec<u8>, 
         ));
     };
     let mut tensors = Vec::new();
-    for (prefix, parameters) in [
-        (NETWORK, network.parameters()),
-        (PROPOSAL, proposal.parameters()),
+    for (prefix, weights) in [
+        (NETWORK, network.copy_weights()?),
+        (PROPOSAL, proposal.copy_weights()?),
     ] {
-        for tensor in to_half(parameters)? {
+        for tensor in weights.to_half()? {
             let name = format!("{prefix}{}", tensor.name);
             tensors.push(HalfTensor { name, ..tensor });
         }
@@ -220,7 +221,7 @@ pub(crate) fn motions(
 pub(crate) fn unpack(
     bytes: &[u8],
     source: &ModelSource,
-    device: ComputeDevice,
+    device: Device,
 ) -> Result<Unpacked, DdlError> {
     let (config, motions, tensors) = contents(bytes, source)?;
     config.check(source)?;
@@ -242,10 +243,11 @@ pub(crate) fn unpack(
         };
         list.push(HalfTensor { name, ..tensor });
     }
-    let unfit = |error: ddl_star::StarError| {
-        source.wrong(format!(
+    let unfit = |error: DdlError| match error {
+        DdlError::Network(error @ NetworkError::Weights { .. }) => source.wrong(format!(
             "does not fit the networks it describes ({error}); pack its run anew"
-        ))
+        )),
+        other => other,
     };
     // Networks are made only of sizes that the file itself has weights for.
     for (tensors, least) in [
@@ -260,10 +262,16 @@ pub(crate) fn unpack(
             )));
         }
     }
-    let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
-    from_half(network.parameters(), &of_network).map_err(unfit)?;
-    let proposal = ProposalNetwork::new(recipe.network.clone(), recipe.training.seed, device)?;
-    from_half(proposal.parameters(), &of_proposal).map_err(unfit)?;
+    let network = device
+        .forecasting(&config.star, |layout| {
+            Weights::from_half(layout, &of_network)
+        })
+        .map_err(unfit)?;
+    let proposal = device
+        .proposing(&recipe.network, |layout| {
+            Weights::from_half(layout, &of_proposal)
+        })
+        .map_err(unfit)?;
     Ok(Unpacked {
         config,
         network,

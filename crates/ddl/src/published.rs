@@ -9,7 +9,7 @@ use crate::walk::Gait;
 use ddl_data::{Position, Window};
 use ddl_eval::{Forecast, ForecastError, Scores};
 use ddl_goal::GoalEstimator;
-use ddl_star::{Frame, Noise, StarNetwork};
+use ddl_network::{ForecastWindows, Frame, Noise};
 
 /// Noise samples on the one goal.
 const SAMPLES: usize = 20;
@@ -18,7 +18,7 @@ const SAMPLES: usize = 20;
 /// noise samples on that goal, plain Euler steps.
 #[derive(Debug)]
 pub(crate) struct Published {
-    network: StarNetwork,
+    network: Box<dyn ForecastWindows>,
     seed: u64,
 }
 

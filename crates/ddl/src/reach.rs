@@ -2,7 +2,7 @@
 
 use ddl_data::{HORIZON, OBSERVED, Window};
 use ddl_goal::GoalSet;
-use ddl_star::motion_bounds;
+use ddl_network::motion_bounds;
 
 /// The goal sets of a window with goals beyond reach drawn in: to the distance that the pedestrian covers at
 /// its top speed until the horizon.

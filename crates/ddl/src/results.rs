@@ -1,8 +1,8 @@
 //! Results of several evaluations put together: tables, figures and the page to look at them.
 
 use crate::{DdlError, RunDirectory, write_atomically};
-use ddl_eval::page::Page;
-use ddl_eval::{EpochPoint, Moment, Report, TrainingCurve};
+use ddl_report::page::Page;
+use ddl_report::{EpochPoint, Moment, Report, TrainingCurve};
 use std::path::Path;
 
 /// What the curve of a training shows.
@@ -75,7 +75,7 @@ impl Results {
                 loss: LOSS.to_owned(),
                 epochs: epochs.collect(),
             });
-            if config.star.variant == ddl_star::Variant::Full {
+            if config.star.variant == ddl_network::Variant::Full {
                 headline.push((config.training.seed, run.read_moments()?));
             }
         }
@@ -95,13 +95,15 @@ impl Results {
     /// # Errors
     /// When the folder or a file cannot be written, or a figure cannot be drawn.
     pub fn save(&self, folder: &Path) -> Result<(), DdlError> {
-        self.report.save(folder)?;
+        let figures = folder.join("figures");
+        std::fs::create_dir_all(&figures).map_err(|error| DdlError::io(&figures, error))?;
+        for (name, text) in self.report.files()? {
+            write_atomically(&folder.join(name), text.as_bytes())?;
+        }
         RunDirectory::new(folder).write_moments(&self.moments)?;
         let page = Page::new(&self.report)
             .moments(self.moments.clone())
             .curves(self.curves.clone());
-        let figures = folder.join("figures");
-        std::fs::create_dir_all(&figures).map_err(|error| DdlError::io(&figures, error))?;
         let drawn = page.figures()?;
         for (name, svg) in &drawn {
             write_atomically(&figures.join(name), svg.as_bytes())?;

@@ -2,7 +2,8 @@
 
 use crate::{DdlError, GoalRecipe, ModelSource, StartingModel, TrackUnits};
 use ddl_data::{Convention, WindowRule};
-use ddl_star::{Objective, Origin, StarConfig, TrainingConfig};
+use ddl_network::weights::Origin;
+use ddl_network::{Objective, StarConfig, TrainingConfig};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -159,7 +160,7 @@ pub struct TrainingData {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ddl_star::Variant;
+    use ddl_network::Variant;
 
     fn config(seed: u64, commit: &str) -> RunConfig {
         RunConfig {

@@ -20,15 +20,13 @@
 use crate::run_config::{FORMAT, RunConfig};
 use crate::run_lock::RunLock;
 use crate::{BuiltinModel, DdlError, GoalRecipe};
-use ddl_eval::Moment;
-use ddl_star::EpochReport;
+use ddl_data::{WRITING, write_whole};
+use ddl_network::EpochReport;
+use ddl_report::Moment;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
-use std::io::{ErrorKind, Read as _, Write as _};
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-
-/// Heads the name of a file that is being written.
-const WRITING: &str = ".writing-";
 
 /// No JSON file of a run is as long: a moment takes some kilobytes, a configuration two.
 const MOST_JSON_BYTES: u64 = 1 << 28;
@@ -347,23 +345,5 @@ fn serialise(path: &Path, value: &impl Serialize, pretty: bool) -> Result<String
 /// # Errors
 /// When the file cannot be written; an earlier one is then left as it was.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), DdlError> {
-    let io = |error| DdlError::io(path, error);
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    if !folder.is_dir() {
-        let problem = format!("there is no folder {}", folder.display());
-        return Err(io(std::io::Error::new(ErrorKind::NotFound, problem)));
-    }
-    let mut builder = tempfile::Builder::new();
-    let builder = builder.prefix(WRITING);
-    // Temporary files are private by default; results are as readable as the user's other files.
-    #[cfg(unix)]
-    let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.tempfile_in(folder).map_err(io)?;
-    file.write_all(bytes).map_err(io)?;
-    file.as_file().sync_all().map_err(io)?;
-    file.persist(path).map_err(|error| io(error.error))?;
-    Ok(())
+    write_whole(path, bytes).map_err(|error| DdlError::io(path, error))
 }

@@ -1,6 +1,6 @@
 //! A training in words, as results name it.
 
-use ddl_star::TrainingConfig;
+use ddl_network::TrainingConfig;
 
 /// How it was trained, in words; `goals` are those of where its goals come from.
 pub(crate) fn recipe(training: &TrainingConfig, goals: &str) -> String {

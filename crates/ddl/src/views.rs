@@ -2,7 +2,7 @@
 
 use ddl_data::{OBSERVED, Position, Window};
 use ddl_goal::{HeadingFrame, TrackError};
-use ddl_star::{ProposalExample, WalkerView, motion_unit};
+use ddl_network::{PedestrianView, ProposalExample, motion_unit};
 
 /// A walker's own frame and unit of length, and what is seen from it.
 #[derive(Debug)]
@@ -10,7 +10,7 @@ pub(crate) struct Seen {
     pub(crate) frame: HeadingFrame,
     /// Metres a unit of the view.
     pub(crate) unit: f64,
-    pub(crate) view: WalkerView,
+    pub(crate) view: PedestrianView,
 }
 
 /// Every pedestrian of a window with its `neighbours` nearest others, from the observed frames, `time_step` seconds apart.
@@ -26,7 +26,7 @@ pub(crate) fn of_window(
         .map(|i| {
             let frame = HeadingFrame::new(window.observed(i))?;
             let unit = motion_unit(window.observed(i), time_step);
-            let view = WalkerView {
+            let view = PedestrianView {
                 own: in_frame((&frame, unit), window.observed(i)),
                 neighbours: nearest(window, i, neighbours)
                     .map(|j| in_frame((&frame, unit), window.observed(j)))

@@ -10,7 +10,7 @@ use ddl_dynamics::{
     LyapunovCertificate, MotionBounds, NaturalGradientFlow, ObstacleSchedule, StableEuler,
     rollout_into,
 };
-use ddl_star::StepRule;
+use ddl_network::StepRule;
 use nalgebra::Vector2;
 
 /// How walkers walk.

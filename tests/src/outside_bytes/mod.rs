@@ -6,11 +6,10 @@
 
 pub mod corpus;
 mod edits;
-pub mod foreign;
+pub mod external;
 pub mod goal_library;
 pub mod homography;
 pub mod live_tracks;
-#[cfg(feature = "torch")]
 pub mod model_files;
 pub mod obsmat;
 pub mod own_tracks;
@@ -26,7 +25,7 @@ pub mod trajnet;
 pub type Reader = (&'static str, fn(&[u8]));
 
 /// The readers that need no libtorch.
-pub const READERS: [Reader; 15] = [
+pub const READERS: [Reader; 20] = [
     ("table", table::read),
     ("star_csv", star_csv::read),
     ("social_gan", social_gan::read),
@@ -36,21 +35,19 @@ pub const READERS: [Reader; 15] = [
     ("stream", stream::read),
     ("live_tracks", live_tracks::read),
     ("homography", homography::read),
-    ("foreign_json_lines", foreign::read_json_lines),
-    ("foreign_table", foreign::read_table),
-    ("foreign_trajnet", foreign::read_trajnet),
+    ("foreign_json_lines", external::read_json_lines),
+    ("foreign_table", external::read_table),
+    ("foreign_trajnet", external::read_trajnet),
     ("report", report::read),
     ("moments", report::read_moments),
     ("goal_library", goal_library::read),
-];
-
-/// The readers of models, which need libtorch.
-#[cfg(feature = "torch")]
-pub const MODEL_READERS: [Reader; 6] = [
     ("packed_model", model_files::packed_model::read),
     ("run_config", model_files::run_config::read),
     ("metrics", model_files::metrics::read),
     ("weights", model_files::weights::read),
     ("experts", model_files::experts::read),
-    ("training_state", model_files::training_state::read),
 ];
+
+/// The readers that need libtorch.
+#[cfg(feature = "torch")]
+pub const TORCH_READERS: [Reader; 1] = [("training_state", model_files::training_state::read)];

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use ddl_eval::{Moment, Report, page::Page};
+use ddl_report::{Moment, Report, page::Page};
 
 /// Reads bytes as `report.json`, and makes a page of it. Written again, it reads the same.
 ///

@@ -57,6 +57,8 @@ fn lints(workspace: &Workspace) -> Result<()> {
         "clippy",
         "--workspace",
         "--all-targets",
+        "--features",
+        "ddl-cli/torch",
         "--quiet",
         "--",
         "-D",
@@ -72,7 +74,13 @@ fn lints(workspace: &Workspace) -> Result<()> {
 fn documentation(workspace: &Workspace) -> Result<()> {
     site::make_room(workspace)?;
     let output = workspace
-        .cargo(["doc", "--workspace", "--no-deps"])
+        .cargo([
+            "doc",
+            "--workspace",
+            "--features",
+            "ddl-cli/torch",
+            "--no-deps",
+        ])
         .ignore_status()
         .output()
         .context("cargo cannot be started")?;

@@ -38,7 +38,7 @@ fn make_and_check(workspace: &Workspace, out: &Path, screenshots: Option<&Path>)
         "run",
         "--quiet",
         "-p",
-        "ddl-eval",
+        "ddl-report",
         "--example",
         "report_page",
         "--",

@@ -12,13 +12,18 @@ use crate::data::{Convention, FETCHED};
 use crate::workspace::{Workspace, absolute, step};
 
 /// Packages that must build and pass with no libtorch on the machine.
-const WITHOUT_TORCH: [&str; 6] = [
+const WITHOUT_TORCH: [&str; 11] = [
     "xtask",
     "ddl-data",
+    "ddl-simd",
     "ddl-softdtw",
     "ddl-dynamics",
     "ddl-goal",
     "ddl-eval",
+    "ddl-report",
+    "ddl-network",
+    "ddl",
+    "ddl-cli",
 ];
 
 #[derive(Debug, Args)]

@@ -45,11 +45,18 @@ pub(super) fn libraries(workspace: &Workspace) -> Result<Vec<Library>> {
         .collect())
 }
 
-/// Runs rustdoc, exactly as `cargo doc --workspace --no-deps`, and copies the pages to `out`.
+/// Runs rustdoc, exactly as the check of the documentation in `ci`, and copies the pages to `out`.
 pub(super) fn build(workspace: &Workspace, out: &Path) -> Result<()> {
     let document = || {
         make_room(workspace)?;
-        let arguments = ["doc", "--workspace", "--no-deps", "--quiet"];
+        let arguments = [
+            "doc",
+            "--workspace",
+            "--features",
+            "ddl-cli/torch",
+            "--no-deps",
+            "--quiet",
+        ];
         step("`cargo doc`", &workspace.cargo(arguments))
     };
     document()?;

@@ -102,6 +102,13 @@ fn fault(file: &Path, reference: &Reference, anchors: &BTreeMap<&Path, BTreeSet<
     } else {
         path
     };
+    // Every page of a trait names the file of its implementors, which rustdoc writes only where there are some.
+    let of_implementors = path
+        .components()
+        .any(|part| part.as_os_str() == "trait.impl");
+    if of_implementors && !path.is_file() {
+        return Verdict::Elsewhere;
+    }
     if !path.is_file() {
         return Verdict::Fault(format!("{target} does not exist"));
     }
@@ -210,7 +217,7 @@ mod tests {
     fn links_that_lead_somewhere_pass() {
         let body = "<a href=\"old.html#a b\"></a><a href=\"guide/index.html#a%20b\"></a><a href=\"guide/#B%3CT%3E\"></a><a href=\"#top\" id=\"top\"></a>\
             <a href=\"api/src/x.rs.html#3-7\"></a><a href=\"https://a.example/\"></a><a href=\"guide/index.html?q=1\"></a>\
-            <img src=\"data:image/png;base64,AA\">";
+            <img src=\"data:image/png;base64,AA\"><script src=\"api/trait.impl/x/trait.X.js\"></script>";
         assert_eq!(
             faults(body, "a { background: url(\"x.svg\"); }"),
             [] as [&str; 0]

@@ -5,13 +5,16 @@ use serde_json::Value;
 use super::Findings;
 
 /// Crate, and the workspace crates it may depend on in any way (also for its tests).
-const ARROWS: [(&str, &[&str]); 10] = [
+const ARROWS: [(&str, &[&str]); 13] = [
     ("ddl-data", &[]),
-    ("ddl-softdtw", &[]),
+    ("ddl-simd", &[]),
+    ("ddl-softdtw", &["ddl-simd"]),
     ("ddl-dynamics", &[]),
     ("ddl-goal", &["ddl-softdtw"]),
-    ("ddl-star", &["ddl-data", "ddl-dynamics"]),
+    ("ddl-network", &["ddl-data", "ddl-dynamics", "ddl-simd"]),
+    ("ddl-star", &["ddl-data", "ddl-dynamics", "ddl-network"]),
     ("ddl-eval", &["ddl-data"]),
+    ("ddl-report", &["ddl-data", "ddl-eval"]),
     (
         "ddl",
         &[
@@ -19,8 +22,10 @@ const ARROWS: [(&str, &[&str]); 10] = [
             "ddl-softdtw",
             "ddl-dynamics",
             "ddl-goal",
+            "ddl-network",
             "ddl-star",
             "ddl-eval",
+            "ddl-report",
         ],
     ),
     ("ddl-cli", &["ddl"]),
@@ -32,8 +37,10 @@ const ARROWS: [(&str, &[&str]); 10] = [
             "ddl-softdtw",
             "ddl-dynamics",
             "ddl-goal",
+            "ddl-network",
             "ddl-star",
             "ddl-eval",
+            "ddl-report",
             "ddl",
             "ddl-cli",
         ],

@@ -4,7 +4,7 @@ use super::{RecordingsAt, Reporting, at_least_one};
 use clap::Args;
 use ddl::Protocol;
 use ddl::data::Convention;
-use ddl::eval::Report;
+use ddl::report::Report;
 use std::path::PathBuf;
 
 /// Measure constant velocity and other baselines on test scenes

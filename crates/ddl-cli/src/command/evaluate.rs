@@ -8,7 +8,7 @@ use crate::progress::Progress;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{Convention, Dataset};
-use ddl::eval::Report;
+use ddl::report::Report;
 use ddl::{
     BuiltinModel, Ddl, DdlError, EvaluationRequest, EvaluationSplit, ModelSource, Protocol,
     Results, RunDirectory,

@@ -12,7 +12,9 @@ use anyhow::{Context as _, bail};
 use bars::TrainingBars;
 use clap::{Args, ValueEnum};
 use ddl::data::{Convention, Dataset, Fold, Window};
-use ddl::star::{LearningRateSchedule, ProposalTraining, StarConfig, TrainingConfig};
+use ddl::network::{
+    BackboneKind, LearningRateSchedule, ProposalTraining, StarConfig, TrainingConfig,
+};
 use ddl::{
     BuiltinModel, DdlError, GoalRecipe, ModelSource, RunDirectory, TrainingRequest, TrainingStage,
     ValidationPart, Variant,
@@ -50,6 +52,10 @@ pub(crate) struct Train {
     /// paper's: single steps, 200 epochs, hours); the next options change parts of it
     #[arg(long, value_enum, default_value_t = Recipe::Recommended)]
     recipe: Recipe,
+    /// Network behind the dynamics: star (the paper's Transformer) or perceptron (the goal and the observed motion alone)
+    /// [default: star]
+    #[arg(long)]
+    backbone: Option<BackboneKind>,
     /// Width of the hidden layer of each feed-forward block; narrower ones forecast faster
     /// (docs/performance.md) [default: 128, published 2048]
     #[arg(long)]
@@ -232,6 +238,7 @@ impl Train {
         let usual = self.variant == Variant::Full
             && self.recipe == Recipe::Recommended
             && self.feed_forward_width.is_none()
+            && self.backbone.is_none()
             && self.goals == GoalsFrom::Proposed
             && self.goal_recipe.is_none();
         if dataset.convention() != Convention::Own || !usual {
@@ -290,6 +297,7 @@ impl Train {
                 TrainingConfig::published(),
             ),
         };
+        set(&mut star.backbone, self.backbone);
         set(&mut star.feed_forward_width, self.feed_forward_width);
         set(&mut training.epochs, self.epochs);
         set(&mut training.batch_walkers, self.batch_walkers);

@@ -4,7 +4,7 @@ use super::RecordingsAt;
 use super::test_windows::TestWindows;
 use crate::output::write_output;
 use clap::Args;
-use ddl::eval::foreign;
+use ddl::eval::external;
 use std::path::PathBuf;
 
 /// Write test windows for another program to forecast
@@ -30,7 +30,7 @@ impl Windows {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         let (_, windows) = self.of.windows(&self.recordings)?;
         let mut text = Vec::new();
-        foreign::write_windows(&windows, &mut text)?;
+        external::write_windows(&windows, &mut text)?;
         write_output(self.output.as_deref(), std::str::from_utf8(&text)?)
     }
 }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use crate::COORDINATE_LIMIT;
 use crate::error::FormatProblem;
 use crate::names::is_plain;
-use crate::recording::FRAME_LIMIT;
+use crate::track::{FRAME_LIMIT, is_frame};
 
 /// Longest piece of a file that an error message quotes, in characters.
 const QUOTED: usize = 40;
@@ -19,7 +19,7 @@ pub(super) fn integer(text: &str, name: &'static str) -> Result<i64, FormatProbl
         (number.fract() == 0.0 && number.abs() < FRAME_LIMIT as f64).then_some(number as i64)
     });
     number
-        .filter(|n| n.unsigned_abs() < FRAME_LIMIT.unsigned_abs())
+        .filter(|number| is_frame(*number))
         .ok_or_else(|| FormatProblem::NotInteger {
             name,
             found: quoted(text),

@@ -5,9 +5,10 @@
 //! fields of other kinds may stand between, and that overlapping scenes may repeat a track.
 
 mod field;
-mod guess;
 mod json_section;
+mod kind;
 mod obsmat;
+mod place;
 mod rows;
 mod social_gan;
 mod star_csv;
@@ -15,83 +16,14 @@ mod stream;
 mod table;
 mod trajnet;
 
-use std::fmt;
 use std::path::Path;
-use std::str::FromStr;
 
-use serde::{Deserialize, Serialize};
-
-use crate::error::{DataError, FormatError, FormatProblem, UnknownName};
-use crate::recording::Recording;
-
+pub use kind::Format;
 pub use stream::{Frame, FrameReader};
 
-/// How a file of tracks is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum Format {
-    /// Four lines of comma-separated numbers, one field an observation: frame, pedestrian, **y**, **x**
-    /// (m). The files of the `star` convention.
-    StarCsv,
-    /// One observation a line, four fields separated by tabs or blanks: frame, pedestrian, x, y (m).
-    /// The files of the `social-gan` convention.
-    SocialGan,
-    /// A comma-separated table with a header that names the columns `frame`, `pedestrian`, `x` and `y`
-    /// (m) in any order: the format for one's own tracks.
-    Table,
-    /// The newline-delimited JSON of TrajNet++: `{"track": {"f", "p", "x", "y"}}` a line (frame, pedestrian,
-    /// metres). Lines of forecasts (with `prediction_number`), of scenes and of anything else are no
-    /// observations.
-    #[serde(rename = "trajnet")]
-    TrajNet,
-    /// The `obsmat.txt` of the ETH recordings: eight columns separated by blanks, frame, pedestrian, x, z, **y**
-    /// (m) and three velocities, of which the ground plane is x and y.
-    Obsmat,
-}
-
-impl Format {
-    /// Every format.
-    pub const ALL: [Self; 5] = [
-        Self::StarCsv,
-        Self::SocialGan,
-        Self::Table,
-        Self::TrajNet,
-        Self::Obsmat,
-    ];
-
-    /// The format's name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::StarCsv => "star-csv",
-            Self::SocialGan => "social-gan",
-            Self::Table => "table",
-            Self::TrajNet => "trajnet",
-            Self::Obsmat => "obsmat",
-        }
-    }
-}
-
-impl fmt::Display for Format {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl FromStr for Format {
-    type Err = UnknownName;
-
-    fn from_str(word: &str) -> Result<Self, UnknownName> {
-        Self::ALL
-            .into_iter()
-            .find(|f| f.name() == word)
-            .ok_or_else(|| UnknownName {
-                kind: "format",
-                found: word.to_owned(),
-                expected: "star-csv, social-gan, table, trajnet, obsmat",
-            })
-    }
-}
+use crate::error::{DataError, FormatProblem};
+use crate::recording::Recording;
+use place::Place;
 
 /// Reads one file of tracks; the recording is named after the file, without its extension.
 ///
@@ -130,17 +62,14 @@ pub fn read_recording(path: &Path, format: Format) -> Result<Recording, DataErro
 /// ```
 pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Recording, DataError> {
     if COMPRESSED.iter().any(|magic| bytes.starts_with(magic)) {
-        let place = Place {
-            line: 1,
-            field: None,
-        };
+        let place = Place::line(1);
         return Err(place.wrong(origin, FormatProblem::Compressed).into());
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = bytes[..error.valid_up_to()]
             .split(|&byte| byte == b'\n')
             .count();
-        Place { line, field: None }.wrong(origin, FormatProblem::NotUtf8)
+        Place::line(line).wrong(origin, FormatProblem::NotUtf8)
     })?;
     // Spreadsheets mark UTF-8 text with a byte-order mark, which is no content.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -166,23 +95,3 @@ const COMPRESSED: [&[u8]; 5] = [
     b"\xfd7zXZ",
     b"\x28\xb5\x2f\xfd",
 ];
-
-/// A place within a file, both counted from 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Place {
-    line: usize,
-    field: Option<usize>,
-}
-
-impl Place {
-    /// The error that something is wrong at this place.
-    fn wrong(self, origin: &str, problem: FormatProblem) -> FormatError {
-        let Self { line, field } = self;
-        FormatError {
-            origin: origin.to_owned(),
-            line,
-            field,
-            problem,
-        }
-    }
-}

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::Place;
 use super::field::Who;
+use super::place::Place;
 use crate::error::{DataError, FormatError, FormatProblem};
 use crate::names::Numbering;
-use crate::recording::{FRAME_STEP_LIMIT, Recording};
+use crate::recording::Recording;
+use crate::track::is_frame_step;
 use crate::{Observation, PedestrianId, PedestrianNames, Position};
 
 /// What the four fields of a row hold, for messages.
@@ -38,14 +39,30 @@ pub(super) fn of_lines(
         .collect()
 }
 
+/// The fields of a line, separated by tabs or blanks: as many as `names` names.
+pub(super) fn fields<'a, const COUNT: usize>(
+    text: &'a str,
+    place: Place,
+    origin: &str,
+    names: &'static str,
+) -> Result<[&'a str; COUNT], FormatError> {
+    let fields: Vec<&str> = text.split_ascii_whitespace().collect();
+    let found = fields.len();
+    fields.try_into().map_err(|_| {
+        let expected = COUNT;
+        let problem = FormatProblem::FieldCount {
+            expected,
+            found,
+            names,
+        };
+        place.wrong(origin, problem)
+    })
+}
+
 /// The recording of all rows; its frame step is inferred.
 pub(super) fn into_recording(rows: Vec<Row>, origin: &str) -> Result<Recording, DataError> {
     if rows.is_empty() {
-        let nowhere = Place {
-            line: 1,
-            field: None,
-        };
-        return Err(nowhere.wrong(origin, FormatProblem::Empty).into());
+        return Err(Place::line(1).wrong(origin, FormatProblem::Empty).into());
     }
     let (mut placed, names) = numbered(rows);
     refuse_duplicates(&mut placed, &names, origin)?;
@@ -110,7 +127,7 @@ fn infer_frame_step(sorted: &[Placed]) -> i64 {
     let mut counts = BTreeMap::<i64, usize>::new();
     for pair in sorted.windows(2) {
         let difference = pair[1].0.frame - pair[0].0.frame;
-        if (1..=FRAME_STEP_LIMIT).contains(&difference) {
+        if is_frame_step(difference) {
             *counts.entry(difference).or_default() += 1;
         }
     }
@@ -127,10 +144,7 @@ mod tests {
     use super::*;
 
     fn step_of(frames: &[i64]) -> i64 {
-        let place = Place {
-            line: 1,
-            field: None,
-        };
+        let place = Place::line(1);
         let rows = frames
             .iter()
             .map(|&frame| Row {

@@ -5,9 +5,11 @@ use std::io::{BufRead, Read as _};
 use std::sync::Arc;
 
 use super::field::Who;
+use super::kind::Format;
+use super::place::Place;
 use super::rows::Row;
 use super::table::Columns;
-use super::{Format, Place, obsmat, social_gan, trajnet};
+use super::{obsmat, social_gan, trajnet};
 use crate::error::{DataError, FormatError, FormatProblem};
 use crate::names::Numbering;
 use crate::{PedestrianId, PedestrianNames, Position};
@@ -208,17 +210,7 @@ impl<R: BufRead> FrameReader<R> {
             Kind::Table(columns) => columns.row_of_line(text, line, origin).map(Some),
             Kind::SocialGan => social_gan::row(text, line, origin).map(Some),
             Kind::Obsmat => obsmat::row(text, line, origin).map(Some),
-            Kind::TrajNet => {
-                let place = Place { line, field: None };
-                let found = trajnet::observation(text, line, &mut self.rate);
-                let found = found.map_err(|problem| place.wrong(origin, problem))?;
-                Ok(found.map(|seen| Row {
-                    frame: seen.frame,
-                    who: seen.who,
-                    position: seen.position,
-                    place,
-                }))
-            }
+            Kind::TrajNet => trajnet::observation(text, line, origin, &mut self.rate),
         }
     }
 
@@ -293,10 +285,6 @@ impl<R: BufRead> FrameReader<R> {
 
     /// The error that something is wrong with the last line.
     fn wrong(&self, problem: FormatProblem) -> FormatError {
-        let place = Place {
-            line: self.lines,
-            field: None,
-        };
-        place.wrong(&self.origin, problem)
+        Place::line(self.lines).wrong(&self.origin, problem)
     }
 }

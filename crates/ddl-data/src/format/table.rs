@@ -2,8 +2,9 @@
 
 use csv::{ErrorKind, StringRecord};
 
+use super::field;
+use super::place::Place;
 use super::rows::{FIELDS, Row};
-use super::{Place, field};
 use crate::error::{FormatError, FormatProblem};
 
 const COLUMNS: [&str; 4] = ["frame", "pedestrian", "x", "y"];
@@ -23,11 +24,7 @@ fn names(expected: usize, found: usize) -> &'static str {
 
 pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
     if text.trim().is_empty() {
-        return Err(Place {
-            line: 1,
-            field: None,
-        }
-        .wrong(origin, FormatProblem::Empty));
+        return Err(Place::line(1).wrong(origin, FormatProblem::Empty));
     }
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
@@ -70,7 +67,7 @@ impl Columns {
                 found: record.len(),
                 names: names(self.count, record.len()),
             };
-            return Err(Place { line, field: None }.wrong(origin, problem));
+            return Err(Place::line(line).wrong(origin, problem));
         }
         self.row(&record, line, origin)
     }
@@ -114,24 +111,15 @@ impl Columns {
     fn row(&self, record: &StringRecord, line: usize, origin: &str) -> Result<Row, FormatError> {
         let [frame, pedestrian, x, y] = self.places;
         let text = |column: usize| record.get(column).unwrap_or_default();
-        let at = |column: usize| {
-            move |p| {
-                Place {
-                    line,
-                    field: Some(column + 1),
-                }
-                .wrong(origin, p)
-            }
-        };
-        let place = Place { line, field: None };
+        let at = |column: usize| Place::field(line, column + 1);
         Ok(Row {
-            frame: field::integer(text(frame), "frame").map_err(at(frame))?,
-            who: field::pedestrian(text(pedestrian), "pedestrian").map_err(at(pedestrian))?,
+            frame: at(frame).read(origin, field::integer(text(frame), "frame"))?,
+            who: at(pedestrian).read(origin, field::pedestrian(text(pedestrian), "pedestrian"))?,
             position: [
-                field::coordinate(text(x), "x").map_err(at(x))?,
-                field::coordinate(text(y), "y").map_err(at(y))?,
+                at(x).read(origin, field::coordinate(text(x), "x"))?,
+                at(y).read(origin, field::coordinate(text(y), "y"))?,
             ],
-            place,
+            place: Place::line(line),
         })
     }
 }
@@ -191,7 +179,7 @@ fn quoted_record(text: &str, line: usize, origin: &str) -> Result<StringRecord, 
     let read = reader.read_record(&mut record);
     read.map(|_| record).map_err(|error| {
         let detail = error.to_string();
-        Place { line, field: None }.wrong(origin, FormatProblem::Table { detail })
+        Place::line(line).wrong(origin, FormatProblem::Table { detail })
     })
 }
 
@@ -209,7 +197,7 @@ fn table_error(error: &csv::Error, origin: &str) -> FormatError {
             detail: error.to_string(),
         },
     };
-    Place { line, field: None }.wrong(origin, problem)
+    Place::line(line).wrong(origin, problem)
 }
 
 #[cfg(test)]

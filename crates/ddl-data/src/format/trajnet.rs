@@ -6,10 +6,10 @@ use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
-use super::field::Who;
+use super::field::{self, Who};
 use super::json_section::Section;
+use super::place::Place;
 use super::rows::Row;
-use super::{Place, field};
 use crate::error::{FormatError, FormatProblem};
 use crate::{PedestrianName, Position};
 
@@ -26,33 +26,18 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<Row>, Rate), Format
     let mut rows = Vec::new();
     let mut rate = Rate::default();
     for (index, text) in text.lines().enumerate() {
-        let place = Place {
-            line: index + 1,
-            field: None,
-        };
-        let found = observation(text, place.line, &mut rate);
-        let found = found.map_err(|problem| place.wrong(origin, problem))?;
-        let Some(Seen {
-            frame,
-            who,
-            position,
-        }) = found
-        else {
+        let Some(row) = observation(text, index + 1, origin, &mut rate)? else {
             continue;
         };
-        let key = match &who {
+        let key = match &row.who {
             Who::Number(number, _) => Who::Number(*number, None),
             word @ Who::Word(_) => word.clone(),
         };
+        let (frame, place, position) = (row.frame, row.place, row.position);
         match seen.get(&(frame, key.clone())) {
             None => {
                 seen.insert((frame, key), (position, place.line));
-                rows.push(Row {
-                    frame,
-                    who,
-                    position,
-                    place,
-                });
+                rows.push(row);
             }
             Some((known, _)) if *known == position => {}
             Some(&(known, first_line)) => {
@@ -143,20 +128,18 @@ fn as_written<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value
     Value::deserialize(deserializer).map(Some)
 }
 
-/// What a line of observations says.
-#[derive(Debug)]
-pub(super) struct Seen {
-    pub(super) frame: i64,
-    pub(super) who: Who,
-    pub(super) position: Position,
-}
-
 /// The observation of a line, if it holds one; the rate of a scene is taken.
 pub(super) fn observation(
     text: &str,
-    number: usize,
+    line: usize,
+    origin: &str,
     rate: &mut Rate,
-) -> Result<Option<Seen>, FormatProblem> {
+) -> Result<Option<Row>, FormatError> {
+    let place = Place::line(line);
+    place.read(origin, row(text, place, rate))
+}
+
+fn row(text: &str, place: Place, rate: &mut Rate) -> Result<Option<Row>, FormatProblem> {
     if text.trim().is_empty() {
         return Ok(None);
     }
@@ -169,7 +152,7 @@ pub(super) fn observation(
     };
     // One that is no object shows that the file is not what it seems.
     if let Some(scene) = fields(line.scene, "scene")? {
-        rate.take(&scene, number)?;
+        rate.take(&scene, place.line)?;
     }
     let Some(track) = fields(line.track, "track")? else {
         return Ok(None);
@@ -194,11 +177,11 @@ pub(super) fn observation(
     };
     let x = field::coordinate(&text(track.x, "track.x")?, "track.x")?;
     let y = field::coordinate(&text(track.y, "track.y")?, "track.y")?;
-    let position = [x, y];
-    Ok(Some(Seen {
+    Ok(Some(Row {
         frame,
         who,
-        position,
+        position: [x, y],
+        place,
     }))
 }
 

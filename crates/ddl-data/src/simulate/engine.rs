@@ -3,12 +3,12 @@
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
+use super::clock::{DT, FRAME_STEP, SUBSTEPS};
 use super::force::{self, BODY, Motion};
 use super::layout::{Layout, Leg};
 use super::population::{self, Party};
 use super::vector::{add, norm, scale, sub, unit};
 use super::walker::{ARRIVED, Walker};
-use super::{DT, FRAME_STEP, SUBSTEPS};
 use crate::{Observation, PedestrianId, Position, TIME_STEP};
 
 /// Time before recording starts, so that the scene is peopled (s).

@@ -1,7 +1,7 @@
 //! The five scenes: walls, pillars, where people come from and where they go.
 
-use super::Scene;
 use super::obstacle::{Pillar, Wall};
+use super::scene::Scene;
 use super::vector::{dot, left, lerp, norm, scale, sub, unit};
 use crate::Position;
 

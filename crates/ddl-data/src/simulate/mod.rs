@@ -18,69 +18,30 @@
 //! assert!(!crowd.groups().is_empty());
 //! ```
 
+mod clock;
 mod engine;
 mod force;
 mod layout;
 mod obstacle;
 mod population;
+mod scene;
 mod vector;
 mod walker;
-
-use std::fmt;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 pub use obstacle::{Pillar, Wall};
+pub use scene::Scene;
 
-use crate::{PedestrianId, Recording, TIME_STEP};
+use crate::{PedestrianId, Recording};
+use clock::FRAME_STEP;
 use layout::Layout;
 
-/// Raw frames in one step, as in most real recordings.
-const FRAME_STEP: i64 = 10;
-/// Integration steps in one step of 0.4 s.
-const SUBSTEPS: i64 = 8;
-/// One integration step (s).
-const DT: f64 = TIME_STEP / SUBSTEPS as f64;
 /// Recorded steps of a scene: three minutes.
 const STEPS: i64 = 450;
 
-/// A place where a crowd can be simulated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Scene {
-    /// A walled way with two pillars, walked in both directions.
-    Corridor,
-    /// Two ways that cross at right angles.
-    Crossing,
-    /// An open square with a fountain, crossed in all directions; people stop and talk.
-    Plaza,
-    /// A room that narrows to a passage.
-    Bottleneck,
-    /// Two halls joined by two doors.
-    Doorway,
-}
-
 impl Scene {
-    /// Every scene.
-    pub const ALL: [Self; 5] = [
-        Self::Corridor,
-        Self::Crossing,
-        Self::Plaza,
-        Self::Bottleneck,
-        Self::Doorway,
-    ];
-
-    /// The scene's name, which is that of its recording and of its fold.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Corridor => "corridor",
-            Self::Crossing => "crossing",
-            Self::Plaza => "plaza",
-            Self::Bottleneck => "bottleneck",
-            Self::Doorway => "doorway",
-        }
-    }
-
     /// Simulates three minutes of the scene; the same seed gives the same bytes.
     #[must_use]
     #[expect(
@@ -104,12 +65,6 @@ impl Scene {
             pillars,
             groups: trace.groups,
         }
-    }
-}
-
-impl fmt::Display for Scene {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
     }
 }
 

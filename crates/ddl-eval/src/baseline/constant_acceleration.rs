@@ -2,7 +2,7 @@
 
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 
-use crate::{Forecast, Forecaster, error::ForecastError};
+use crate::{Forecast, Forecaster, error::ForecastError, vector::minus};
 
 /// Constant acceleration: `p(8 + t) = p(8) + t v + t (t + 1)/2 a`, with `v = p(8) - p(7)` in metres a frame
 /// and `a = v - (p(7) - p(6))` in metres a frame squared.
@@ -10,8 +10,8 @@ use crate::{Forecast, Forecaster, error::ForecastError};
 /// The definition of the literature, of the last three positions. Noise of an annotated position counts
 /// 90-fold by the twelfth frame, which is why constant velocity is far better:
 /// [`unbounded`](Self::unbounded) is there to say so. [`bounded`](Self::bounded) lets the same
-/// acceleration act only as long as a walker would: nobody gets faster than the fastest of its 7 observed
-/// steps, and who would turn back stands still from then on.
+/// acceleration is limited: the speed does not exceed that of the fastest of the 7 observed steps, and a pedestrian
+/// that would reverse its direction stops.
 ///
 /// # References
 /// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion prediction",
@@ -85,10 +85,6 @@ impl Forecaster for ConstantAcceleration {
     }
 }
 
-fn minus(a: Position, b: Position) -> Position {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
 fn length(v: Position) -> f64 {
     v[0].hypot(v[1])
 }
@@ -126,7 +122,7 @@ mod tests {
         assert_relative_eq!(found[1], -0.1 + 7.8, epsilon = 1e-9);
     }
 
-    /// Steps of 1 m, the last of 0.75 m: 0.5, 0.25 and 0 m follow. Unbounded, the walker turns back:
+    /// Steps of 1 m, the last of 0.75 m: 0.5, 0.25 and 0 m follow. Unbounded, the pedestrian turns back:
     /// 12 * 0.75 - 0.25 * 78 = -10.5 m.
     #[test]
     fn who_brakes_comes_to_a_stand() {

@@ -31,10 +31,10 @@ const NOISE_DEG: f64 = 25.0;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ConstantVelocity(Variant);
+pub struct ConstantVelocity(VelocityRule);
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Variant {
+enum VelocityRule {
     LastStep,
     MeanObserved,
     AngularNoise { seed: u64 },
@@ -44,13 +44,13 @@ impl ConstantVelocity {
     /// v is the last observed step, `p(8) - p(7)`.
     #[must_use]
     pub fn last_step() -> Self {
-        Self(Variant::LastStep)
+        Self(VelocityRule::LastStep)
     }
 
     /// v is the mean of the 7 observed steps, `(p(8) - p(1)) / 7`.
     #[must_use]
     pub fn mean_observed() -> Self {
-        Self(Variant::MeanObserved)
+        Self(VelocityRule::MeanObserved)
     }
 
     /// Twenty hypotheses of equal weight: the last observed step turned by angles drawn from
@@ -60,11 +60,11 @@ impl ConstantVelocity {
     /// order in which windows are forecast.
     #[must_use]
     pub fn angular_noise(seed: u64) -> Self {
-        Self(Variant::AngularNoise { seed })
+        Self(VelocityRule::AngularNoise { seed })
     }
 
     fn velocity(self, observed: &[Position]) -> Position {
-        let back = if self.0 == Variant::MeanObserved {
+        let back = if self.0 == VelocityRule::MeanObserved {
             OBSERVED - 1
         } else {
             1
@@ -80,9 +80,9 @@ impl ConstantVelocity {
 impl Forecaster for ConstantVelocity {
     fn name(&self) -> String {
         match self.0 {
-            Variant::LastStep => "constant velocity (last step)".to_owned(),
-            Variant::MeanObserved => "constant velocity (mean observed)".to_owned(),
-            Variant::AngularNoise { .. } => {
+            VelocityRule::LastStep => "constant velocity (last step)".to_owned(),
+            VelocityRule::MeanObserved => "constant velocity (mean observed)".to_owned(),
+            VelocityRule::AngularNoise { .. } => {
                 format!("constant velocity ({NOISE_DEG} degree angular noise)")
             }
         }
@@ -90,7 +90,7 @@ impl Forecaster for ConstantVelocity {
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
         let mut angles: Box<dyn FnMut() -> f64> = match self.0 {
-            Variant::AngularNoise { seed } => {
+            VelocityRule::AngularNoise { seed } => {
                 let mut random = stream(seed, window);
                 Box::new(move || {
                     let normal: f64 = StandardNormal.sample(&mut random);
@@ -99,7 +99,7 @@ impl Forecaster for ConstantVelocity {
             }
             _ => Box::new(|| 0.0),
         };
-        let samples = if matches!(self.0, Variant::AngularNoise { .. }) {
+        let samples = if matches!(self.0, VelocityRule::AngularNoise { .. }) {
             SAMPLES
         } else {
             1

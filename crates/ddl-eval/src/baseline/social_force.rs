@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::{Forecast, Forecaster, error::ForecastError};
 
-/// Time in which a walker returns to the velocity it desires: tau, s.
+/// Time in which a pedestrian returns to the velocity it desires: tau, s.
 const RELAXATION: f64 = 0.5;
 /// Strength of the repulsive potential: V0, m^2/s^2.
 const STRENGTH: f64 = 2.1;
@@ -24,7 +24,7 @@ const SUBSTEPS: usize = 8;
 /// Beyond this semi-minor axis a push is below 3e-6 m/s^2, m.
 const NEGLIGIBLE: f64 = 15.0 * REACH;
 
-/// The social force model of Helbing and Molnar, for all walkers of a window together.
+/// The social force model of Helbing and Molnar, for all pedestrians of a window together.
 ///
 /// Each desires the velocity of its last observed step, `v0 = (p(8) - p(7)) / 0.4 s` along `e`, and is
 /// pushed away by every other one, b, whose next step of `s = 2 s * |v_b|` along `e_b` it sees coming:
@@ -38,7 +38,7 @@ const NEGLIGIBLE: f64 = 15.0 * REACH;
 ///
 /// Integrated by Euler in steps of 0.05 s, first the velocity, then the position. All parameters are
 /// those of the paper and none is tuned. Left out are its walls, which the recordings do not have, its
-/// fluctuations, so that the forecast is one and the same, and its attractions. A walker alone goes on at
+/// fluctuations, so that the forecast is one and the same, and its attractions. A pedestrian alone goes on at
 /// constant velocity; who stands keeps standing. One hypothesis.
 ///
 /// # References
@@ -66,20 +66,22 @@ impl Forecaster for SocialForce {
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
         let n = window.len();
-        let mut walkers: Vec<Walker> = (0..n).map(|i| Walker::of(window.observed(i))).collect();
+        let mut pedestrians: Vec<ForcedPedestrian> = (0..n)
+            .map(|i| ForcedPedestrian::of(window.observed(i)))
+            .collect();
         let mut positions = vec![[0.0, 0.0]; n * HORIZON];
         let mut forces = vec![[0.0, 0.0]; n];
         for t in 0..HORIZON {
             for _ in 0..SUBSTEPS {
                 for (i, force) in forces.iter_mut().enumerate() {
-                    *force = walkers[i].force(i, &walkers);
+                    *force = pedestrians[i].force(i, &pedestrians);
                 }
-                for (walker, force) in walkers.iter_mut().zip(&forces) {
-                    walker.advance(*force);
+                for (pedestrian, force) in pedestrians.iter_mut().zip(&forces) {
+                    pedestrian.advance(*force);
                 }
             }
-            for (i, walker) in walkers.iter().enumerate() {
-                positions[i * HORIZON + t] = walker.position;
+            for (i, pedestrian) in pedestrians.iter().enumerate() {
+                positions[i * HORIZON + t] = pedestrian.position;
             }
         }
         Ok(Forecast::equally_likely(n, 1, positions)?)
@@ -93,7 +95,7 @@ impl Forecaster for SocialForce {
     }
 }
 
-struct Walker {
+struct ForcedPedestrian {
     position: Position,
     velocity: Position,
     desired: Position,
@@ -104,7 +106,7 @@ struct Walker {
     stride: f64,
 }
 
-impl Walker {
+impl ForcedPedestrian {
     fn of(observed: &[Position]) -> Self {
         let (before, position) = (observed[OBSERVED - 2], observed[OBSERVED - 1]);
         let desired = [0, 1].map(|c| (position[c] - before[c]) / TIME_STEP);
@@ -124,14 +126,14 @@ impl Walker {
         }
     }
 
-    /// Acceleration of walker `i`, which this is, among all, m/s^2.
-    fn force(&self, i: usize, walkers: &[Walker]) -> Position {
+    /// Acceleration of pedestrian `i`, which this is, among all, m/s^2.
+    fn force(&self, i: usize, pedestrians: &[ForcedPedestrian]) -> Position {
         let mut sum = [0, 1].map(|c| (self.desired[c] - self.velocity[c]) / RELAXATION);
         if self.top_speed == 0.0 {
             return sum;
         }
         let sight = HALF_SIGHT.to_radians().cos();
-        for (j, other) in walkers.iter().enumerate() {
+        for (j, other) in pedestrians.iter().enumerate() {
             if j == i {
                 continue;
             }
@@ -149,7 +151,7 @@ impl Walker {
     }
 
     /// `-grad V`, m/s^2.
-    fn push_of(&self, other: &Walker) -> Position {
+    fn push_of(&self, other: &ForcedPedestrian) -> Position {
         let stride = other.stride;
         let from = [0, 1].map(|c| self.position[c] - other.position[c]);
         let near = length(from);
@@ -190,30 +192,19 @@ fn length(v: Position) -> f64 {
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
-    use ddl_data::PedestrianId;
 
     use super::*;
-    use crate::{baseline::ConstantVelocity, metric::displacement::distance};
+    use crate::{baseline::ConstantVelocity, fixture::walking, metric::displacement::distance};
 
-    fn walkers(all: &[(Position, Position)]) -> Window {
-        let track = |&(start, step): &(Position, Position)| {
-            let at = |t| {
-                [
-                    start[0] + f64::from(t) * step[0],
-                    start[1] + f64::from(t) * step[1],
-                ]
-            };
-            (0..8).map(at).collect()
-        };
-        let ids = (0..).take(all.len()).map(PedestrianId).collect();
-        Window::new("made up", 0, 10, ids, all.iter().map(track).collect()).unwrap()
+    fn pedestrians(all: &[(Position, Position)]) -> Window {
+        walking(all, 8)
     }
 
     /// One stands at the origin; the other stands 0.3 m from it, so that s = 0 and B = |r| = 0.3 m: the
     /// push is V0 / sigma exp(-1) = 7 / e m/s^2, straight away.
     #[test]
     fn the_push_of_who_stands_by_hand() {
-        let at = |position| Walker {
+        let at = |position| ForcedPedestrian {
             position,
             velocity: [0.0, 0.0],
             desired: [0.0, 0.0],
@@ -230,7 +221,7 @@ mod tests {
     /// The push is the slope of the potential, here by differences of 1e-6 m.
     #[test]
     fn the_push_of_who_walks_is_the_slope_of_the_potential() {
-        let other = Walker::of(
+        let other = ForcedPedestrian::of(
             &[[0.0, 0.0]; 7]
                 .into_iter()
                 .chain([[0.3, 0.4]])
@@ -242,7 +233,7 @@ mod tests {
             let around = distance(p, other.position) + distance(p, next);
             STRENGTH * (-0.5 * (around * around - s * s).sqrt() / REACH).exp()
         };
-        let mut me = Walker::of(&[[0.0, 0.0]; 8]);
+        let mut me = ForcedPedestrian::of(&[[0.0, 0.0]; 8]);
         for p in [[1.0, 0.2], [0.5, 1.9], [-0.4, 0.4], [3.0, 3.0]] {
             me.position = p;
             let push = me.push_of(&other);
@@ -261,7 +252,7 @@ mod tests {
             ([100.0, 0.0], [0.0, -0.4]),
             ([0.0, 90.0], [0.0, 0.0]),
         ];
-        let window = walkers(&far);
+        let window = pedestrians(&far);
         let forced = SocialForce.forecast(&window).unwrap();
         let free = ConstantVelocity::last_step().forecast(&window).unwrap();
         for i in 0..3 {
@@ -284,7 +275,7 @@ mod tests {
                 )
             })
             .collect();
-        let window = walkers(&crowd);
+        let window = pedestrians(&crowd);
         let forecast = SocialForce.forecast(&window).unwrap();
         for (i, (_, step)) in crowd.iter().enumerate() {
             let mut here = window.observed(i)[7];
@@ -296,11 +287,15 @@ mod tests {
     }
 
     #[test]
-    fn who_overtakes_gives_way_and_the_order_of_walkers_does_not_matter() {
+    fn who_overtakes_gives_way_and_the_order_of_pedestrians_does_not_matter() {
         let ahead = ([1.5, 0.0], [0.2, 0.0]);
         let behind = ([0.0, 0.001], [0.5, 0.0]);
-        let one = SocialForce.forecast(&walkers(&[ahead, behind])).unwrap();
-        let other = SocialForce.forecast(&walkers(&[behind, ahead])).unwrap();
+        let one = SocialForce
+            .forecast(&pedestrians(&[ahead, behind]))
+            .unwrap();
+        let other = SocialForce
+            .forecast(&pedestrians(&[behind, ahead]))
+            .unwrap();
         assert_eq!(one.hypothesis(0, 0), other.hypothesis(1, 0));
         assert_eq!(one.hypothesis(1, 0), other.hypothesis(0, 0));
         let pushed = one.hypothesis(1, 0)[11];

@@ -188,7 +188,7 @@ fn between(start: Position, goal: Position, t: usize) -> Position {
 )]
 mod tests {
     use super::*;
-    use crate::{Protocol, Scores, metric::fixture::window};
+    use crate::{Protocol, Scores, fixture::window};
 
     struct Corners;
     impl GoalSource for Corners {
@@ -224,7 +224,7 @@ mod tests {
         let stability = scores.stability.unwrap();
         assert!(stability.decreasing >= 1.0 && stability.end_distance <= 0.0);
         assert!(stability.largest_turn < 1e-6);
-        // The walker ends at (12, 0), where the first corner is.
+        // The pedestrian ends at (12, 0), where the first corner is.
         assert_eq!(scores.goal_fde, Some(0.0));
     }
 

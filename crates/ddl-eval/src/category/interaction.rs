@@ -1,11 +1,14 @@
-//! How a walker deals with others: leader-follower, collision avoidance, group, or something else.
+//! How a pedestrian deals with others: leader-follower, collision avoidance, group, or something else.
 
 use std::fmt;
 
 use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
 use serde::{Deserialize, Serialize};
 
-use crate::metric::displacement::distance;
+use crate::{
+    metric::displacement::distance,
+    vector::{minus, turn},
+};
 
 /// Velocities are taken over this many frames.
 const STRIDE: usize = 3;
@@ -17,14 +20,14 @@ const NARROW: f64 = 15.0;
 const SIDE: f64 = 45.0;
 /// Frames for which a leader must be followed.
 const FOLLOWED: usize = 5;
-/// Mean distance below which walkers may be a group, metres.
+/// Mean distance below which pedestrians may be a group, metres.
 const GROUP_DISTANCE: f64 = 0.8;
-/// Deviation of the distance below which walkers may be a group, metres.
+/// Deviation of the distance below which pedestrians may be a group, metres.
 const GROUP_DEVIATION: f64 = 0.2;
 
-/// A kind of interaction of `TrajNet++`'s type III. A walker may have several.
+/// A kind of interaction of `TrajNet++`'s type III. A pedestrian may have several.
 ///
-/// For the walker i and another j, at the forecast frames t = 9..20, with v(t) = p(t) - p(t - 3),
+/// For the pedestrian i and another j, at the forecast frames t = 9..20, with v(t) = p(t) - p(t - 3),
 /// d(t) = |`p_j(t)` - `p_i(t)`|, the bearing of `p_j(t)` - `p_i(t)` from `v_i(t)`, and the course of `v_j(t)` from
 /// `v_i(t)`:
 ///
@@ -70,11 +73,8 @@ impl Interaction {
         Self::Other,
     ];
 
-    /// The kinds of walker `i`, in the order of [`Interaction::ALL`]; empty when it interacts with nobody,
+    /// The kinds of pedestrian `i`, in the order of [`Interaction::ALL`]; empty when there is no interaction,
     /// and without a future.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn of(window: &Window, i: usize) -> Vec<Self> {
         if !window.has_future() {
@@ -96,11 +96,8 @@ impl Interaction {
             .collect()
     }
 
-    /// What walker `i` has to do with walker `j` in particular: the kinds but for [`Interaction::Other`]. Empty without a
-    /// future, and of a walker with itself.
-    ///
-    /// # Panics
-    /// When `i` or `j` is out of range.
+    /// What pedestrian `i` has to do with pedestrian `j` in particular: the kinds but for [`Interaction::Other`]. Empty without a
+    /// future, and of a pedestrian with itself.
     #[must_use]
     pub fn between(window: &Window, i: usize, j: usize) -> Vec<Self> {
         if i == j || !window.has_future() {
@@ -122,7 +119,7 @@ impl fmt::Display for Interaction {
     }
 }
 
-/// Frames at which another walker is where it matters.
+/// Frames at which another pedestrian is where it matters.
 #[derive(Default)]
 struct Encounter {
     ahead: usize,
@@ -141,7 +138,7 @@ impl Encounter {
             if to[0].hypot(to[1]) >= REACH || heading == [0.0, 0.0] || to == [0.0, 0.0] {
                 continue;
             }
-            let bearing = angle(heading, to);
+            let bearing = turn(heading, to).abs();
             if (90.0 - SIDE..=90.0 + SIDE).contains(&bearing) {
                 seen.beside += 1;
             }
@@ -151,7 +148,7 @@ impl Encounter {
             seen.ahead += 1;
             let velocity = minus(other[t], other[t - STRIDE]);
             if velocity != [0.0, 0.0] {
-                let course = angle(heading, velocity);
+                let course = turn(heading, velocity).abs();
                 seen.followed += usize::from(course <= NARROW);
                 seen.oncoming += usize::from(course >= 180.0 - NARROW);
             }
@@ -175,12 +172,6 @@ impl Encounter {
     }
 }
 
-/// Angle between two directions, degrees, 0 to 180.
-fn angle(a: Position, b: Position) -> f64 {
-    let (cross, dot) = (a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
-    cross.abs().atan2(dot).to_degrees()
-}
-
 /// Whether two stay near each other over all frames, at much the same distance.
 fn keeps_close(me: &[Position], other: &[Position]) -> bool {
     let apart = || me.iter().zip(other).map(|(p, q)| distance(*p, *q));
@@ -189,30 +180,14 @@ fn keeps_close(me: &[Position], other: &[Position]) -> bool {
     mean < GROUP_DISTANCE && variance.sqrt() < GROUP_DEVIATION
 }
 
-fn minus(a: Position, b: Position) -> Position {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
 #[cfg(test)]
 mod tests {
-    use Interaction::{CollisionAvoidance, Group, LeaderFollower, Other};
-    use ddl_data::PedestrianId;
-
     use super::*;
+    use crate::fixture::{of_tracks, walking};
+    use Interaction::{CollisionAvoidance, Group, LeaderFollower, Other};
 
-    /// Walkers of constant velocity: where they are at frame 0, and metres a frame.
-    fn walkers(all: &[(Position, Position)]) -> Window {
-        let track = |&(start, step): &(Position, Position)| {
-            let at = |t| {
-                [
-                    start[0] + f64::from(t) * step[0],
-                    start[1] + f64::from(t) * step[1],
-                ]
-            };
-            (0..20).map(at).collect()
-        };
-        let ids = (0..).take(all.len()).map(PedestrianId).collect();
-        Window::new("made up", 0, 10, ids, all.iter().map(track).collect()).unwrap()
+    fn pedestrians(all: &[(Position, Position)]) -> Window {
+        walking(all, 20)
     }
 
     const EAST: Position = [0.5, 0.0];
@@ -220,7 +195,7 @@ mod tests {
 
     #[test]
     fn who_walks_two_metres_ahead_leads_and_does_not_follow() {
-        let window = walkers(&[ME, ([2.0, 0.0], EAST)]);
+        let window = pedestrians(&[ME, ([2.0, 0.0], EAST)]);
         assert_eq!(Interaction::of(&window, 0), [LeaderFollower]);
         assert_eq!(Interaction::of(&window, 1), []);
         assert_eq!(Interaction::of(&window.without_future(), 0), []);
@@ -231,7 +206,7 @@ mod tests {
     fn the_sector_ahead_is_narrow_and_short() {
         let aside = |degrees: f64, metres: f64| {
             let (sin, cos) = degrees.to_radians().sin_cos();
-            Interaction::of(&walkers(&[ME, ([metres * cos, metres * sin], EAST)]), 0)
+            Interaction::of(&pedestrians(&[ME, ([metres * cos, metres * sin], EAST)]), 0)
         };
         assert_eq!(aside(14.0, 4.9), [LeaderFollower]);
         assert_eq!(aside(-14.0, 4.9), [LeaderFollower]);
@@ -242,26 +217,26 @@ mod tests {
     /// 16 m apart at frame 0 and nearing by 1 m a frame: 5 m at frame 11 (too far), 4 m at frame 12.
     #[test]
     fn who_comes_towards_it_is_avoided() {
-        let window = walkers(&[ME, ([16.0, 0.0], [-0.5, 0.0])]);
+        let window = pedestrians(&[ME, ([16.0, 0.0], [-0.5, 0.0])]);
         assert_eq!(Interaction::of(&window, 0), [CollisionAvoidance]);
         assert_eq!(Interaction::of(&window, 1), [CollisionAvoidance]);
     }
 
     #[test]
     fn side_by_side_is_a_group_up_to_80_centimetres() {
-        let pair = |gap| Interaction::of(&walkers(&[ME, ([0.0, gap], EAST)]), 0);
+        let pair = |gap| Interaction::of(&pedestrians(&[ME, ([0.0, gap], EAST)]), 0);
         assert_eq!(pair(0.7), [Group]);
         assert_eq!(pair(-0.7), [Group]);
         assert_eq!(pair(0.9), []);
         // From 0.1 m to 1.05 m apart: 0.575 m on average, with a deviation of 0.29 m.
-        let parting = walkers(&[ME, ([0.0, 0.1], [0.5, 0.05])]);
+        let parting = pedestrians(&[ME, ([0.0, 0.1], [0.5, 0.05])]);
         assert_eq!(Interaction::of(&parting, 0), []);
     }
 
     /// Somebody stands 9 m ahead, of no course: ahead at frames 9 to 17, and no more than that.
     #[test]
     fn who_stands_in_the_way_is_another_interaction() {
-        let window = walkers(&[ME, ([9.0, 0.0], [0.0, 0.0])]);
+        let window = pedestrians(&[ME, ([9.0, 0.0], [0.0, 0.0])]);
         assert_eq!(Interaction::of(&window, 0), [Other]);
         // Who stands has no heading, so that nobody is ahead of it.
         assert_eq!(Interaction::of(&window, 1), []);
@@ -280,11 +255,7 @@ mod tests {
             (0..20).map(at).collect::<Vec<Position>>()
         };
         let me: Vec<Position> = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect();
-        let kinds = |turns| {
-            let ids = vec![PedestrianId(0), PedestrianId(1)];
-            let tracks = vec![me.clone(), leader(turns)];
-            Interaction::of(&Window::new("made up", 0, 10, ids, tracks).unwrap(), 0)
-        };
+        let kinds = |turns| Interaction::of(&of_tracks(vec![me.clone(), leader(turns)]), 0);
         // Course 0 at frames 8 to `turns`, counted from 0; one frame later 0.5 m aside for 1 m ahead.
         assert_eq!(kinds(11), [Other]);
         assert_eq!(kinds(12), [LeaderFollower]);
@@ -292,8 +263,8 @@ mod tests {
 
     /// Behind a pair of which one walks beside it: follower and group at once.
     #[test]
-    fn a_walker_may_be_of_several_kinds() {
-        let window = walkers(&[ME, ([0.0, 0.6], EAST), ([1.5, 0.0], EAST)]);
+    fn a_pedestrian_may_be_of_several_kinds() {
+        let window = pedestrians(&[ME, ([0.0, 0.6], EAST), ([1.5, 0.0], EAST)]);
         assert_eq!(Interaction::of(&window, 0), [LeaderFollower, Group]);
     }
 }

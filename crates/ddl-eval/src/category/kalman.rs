@@ -1,4 +1,4 @@
-//! A constant-velocity Kalman filter: where a walker would be if it went on in a straight line.
+//! A constant-velocity Kalman filter: where a pedestrian would be if it went on in a straight line.
 //!
 //! Each axis for itself, in steps of one frame, with the state s = (position, velocity a frame):
 //!
@@ -18,7 +18,7 @@ const TRANSITION: f64 = 1e-5;
 /// Variance of an observed position, square metres.
 const OBSERVATION: f64 = 0.05 * 0.05;
 
-/// Where the filter expects a walker 12 frames after the last of its observed positions, metres.
+/// Where the filter expects a pedestrian 12 frames after the last of its observed positions, metres.
 ///
 /// # Panics
 /// When `observed` is empty.

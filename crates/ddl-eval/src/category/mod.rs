@@ -1,8 +1,8 @@
-//! What kind of walk a result is about: the walker's own motion, and what the others had to do with it.
+//! What kind of walk a result is about: the pedestrian's own motion, and what the others had to do with it.
 //!
-//! Two divisions, side by side. [`MotionKind`] looks at the walker alone: standing, straight on, turning,
+//! Two divisions, side by side. [`MotionKind`] looks at the pedestrian alone: standing, straight on, turning,
 //! slowing down, speeding up. [`TrajectoryType`] is `TrajNet++`'s: static, linear, interacting and
-//! non-interacting, with [`Interaction`] for the sub-kinds of the third. Each walker has one motion kind
+//! non-interacting, with [`Interaction`] for the sub-kinds of the third. Each pedestrian has one motion kind
 //! and one type; it may have several sub-kinds, so that only the sub-kinds add up to more than all.
 //!
 //! All of them read the future. They group results after the forecasts are made; no forecast may depend
@@ -24,7 +24,7 @@ pub use motion_kind::MotionKind;
 pub use scores::CategoryScores;
 pub use trajectory_type::TrajectoryType;
 
-/// A group of walkers.
+/// A group of pedestrians.
 ///
 /// # Examples
 /// ```
@@ -41,7 +41,7 @@ pub use trajectory_type::TrajectoryType;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Category {
-    /// How the walker itself moves.
+    /// How the pedestrian itself moves.
     Motion(MotionKind),
     /// Its type in `TrajNet++`'s taxonomy.
     Type(TrajectoryType),
@@ -58,10 +58,7 @@ impl Category {
         motions.chain(types).chain(interactions)
     }
 
-    /// The categories of walker `i`, in that order; none for windows without a future.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
+    /// The categories of pedestrian `i`, in that order; none for windows without a future.
     #[must_use]
     pub fn of(window: &Window, i: usize) -> Vec<Self> {
         let Some((kind, interactions)) = TrajectoryType::with_interactions(window, i) else {

@@ -1,11 +1,14 @@
-//! How a walker moved: standing, straight on, turning, slowing down, speeding up.
+//! How a pedestrian moved: standing, straight on, turning, slowing down, speeding up.
 
 use std::fmt;
 
 use ddl_data::{HORIZON, OBSERVED, Position, TIME_STEP, WINDOW};
 use serde::{Deserialize, Serialize};
 
-use crate::metric::displacement::distance;
+use crate::{
+    metric::displacement::distance,
+    vector::{minus, turn},
+};
 
 /// Who stays this near to the first position stands (m).
 const STANDING: f64 = 1.0;
@@ -16,7 +19,7 @@ const TURN: f64 = 20.0;
 /// Who changes the speed by less keeps it (share of the observed speed).
 const CHANGE: f64 = 0.3;
 
-/// How a walker of 20 positions moved, seen with its true future.
+/// How a pedestrian of 20 positions moved, seen with its true future.
 ///
 /// For choosing and grouping examples once forecasts are made: it reads the future, so no forecast may
 /// depend on it.
@@ -87,7 +90,7 @@ impl MotionKind {
         if future < NO_DIRECTION {
             return Some(Self::SlowingDown);
         }
-        let turn = turn([first, last, end]);
+        let turn = turn(minus(last, first), minus(end, last));
         if turn.abs() >= TURN {
             let left = turn > 0.0;
             return Some(if left {
@@ -106,16 +109,6 @@ impl MotionKind {
             Self::Straight
         })
     }
-}
-
-/// Angle between the two ways that three places make, degrees; positive to the left.
-fn turn([first, last, end]: [Position; 3]) -> f64 {
-    let (a, b) = (
-        [last[0] - first[0], last[1] - first[1]],
-        [end[0] - last[0], end[1] - last[1]],
-    );
-    let (cross, dot) = (a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
-    cross.atan2(dot).to_degrees()
 }
 
 impl fmt::Display for MotionKind {

@@ -1,11 +1,11 @@
-//! The metrics of the walkers of one category.
+//! The metrics of the pedestrians of one category.
 
 use serde::{Deserialize, Serialize};
 
 use super::Category;
-use crate::walker_scores::WalkerScores;
+use crate::pedestrian_scores::PedestrianScores;
 
-/// The metrics of one category on the test windows of one fold: means over its walkers, as the totals
+/// The metrics of one category on the test windows of one fold: means over its pedestrians, as the totals
 /// are over all.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CategoryScores {
@@ -31,14 +31,14 @@ pub struct CategoryScores {
 
 impl CategoryScores {
     /// One a category that somebody is in.
-    pub(crate) fn of<'a>(walkers: impl Iterator<Item = &'a WalkerScores>) -> Vec<Self> {
-        let mut groups: Vec<(Category, Vec<&WalkerScores>)> = Category::all()
+    pub(crate) fn of<'a>(pedestrians: impl Iterator<Item = &'a PedestrianScores>) -> Vec<Self> {
+        let mut groups: Vec<(Category, Vec<&PedestrianScores>)> = Category::all()
             .map(|category| (category, Vec::new()))
             .collect();
-        for walker in walkers {
+        for pedestrian in pedestrians {
             for (category, members) in &mut groups {
-                if walker.categories.contains(category) {
-                    members.push(walker);
+                if pedestrian.categories.contains(category) {
+                    members.push(pedestrian);
                 }
             }
         }
@@ -49,11 +49,12 @@ impl CategoryScores {
         scores.collect()
     }
 
-    fn mean(category: Category, members: &[&WalkerScores]) -> Self {
+    fn mean(category: Category, members: &[&PedestrianScores]) -> Self {
         let n = members.len() as f64;
-        let mean = |of: fn(&WalkerScores) -> f64| members.iter().map(|w| of(w)).sum::<f64>() / n;
+        let mean =
+            |of: fn(&PedestrianScores) -> f64| members.iter().map(|w| of(w)).sum::<f64>() / n;
         let share =
-            |of: fn(&WalkerScores) -> bool| members.iter().filter(|w| of(w)).count() as f64 / n;
+            |of: fn(&PedestrianScores) -> bool| members.iter().filter(|w| of(w)).count() as f64 / n;
         Self {
             category,
             pedestrians: members.len(),

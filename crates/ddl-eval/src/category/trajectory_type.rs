@@ -13,7 +13,7 @@ const STATIC: f64 = 1.0;
 /// Who ends nearer to where a Kalman filter expects it is linear, metres.
 const LINEAR: f64 = 0.5;
 
-/// The type of a trajectory in `TrajNet++`'s taxonomy; every walker has one.
+/// The type of a trajectory in `TrajNet++`'s taxonomy; every pedestrian has one.
 ///
 /// The first that holds:
 ///
@@ -28,7 +28,7 @@ const LINEAR: f64 = 0.5;
 /// forecasts are made, so no forecast may depend on it.
 ///
 /// # Where this differs
-/// `TrajNet++` has 9 observed frames, 21 in all, and one primary walker a scene; here each walker of a
+/// `TrajNet++` has 9 observed frames, 21 in all, and one primary pedestrian a scene; here each pedestrian of a
 /// window is judged in turn, over 20. The bound of II is that of the paper; the published tool was found
 /// with 1 m, and its filter first fits its noises by EM and then averages five random continuations, so
 /// that a track near the bound may fall on either side (see `src/category/kalman.rs` for the filter here).
@@ -70,19 +70,13 @@ impl TrajectoryType {
         Self::NonInteracting,
     ];
 
-    /// The type of walker `i`; `None` for windows without a future.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
+    /// The type of pedestrian `i`; `None` for windows without a future.
     #[must_use]
     pub fn of(window: &Window, i: usize) -> Option<Self> {
         Some(Self::with_interactions(window, i)?.0)
     }
 
-    /// The type of walker `i` with the kinds of its interaction, which only type III has.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
+    /// The type of pedestrian `i` with the kinds of its interaction, which only type III has.
     #[must_use]
     pub fn with_interactions(window: &Window, i: usize) -> Option<(Self, Vec<Interaction>)> {
         let end = window.end(i)?;
@@ -118,14 +112,10 @@ impl fmt::Display for TrajectoryType {
 #[cfg(test)]
 mod tests {
     use TrajectoryType::{Interacting, Linear, NonInteracting, Static};
-    use ddl_data::{PedestrianId, Position};
+    use ddl_data::Position;
 
     use super::*;
-
-    fn window(tracks: Vec<Vec<Position>>) -> Window {
-        let ids = (0..).take(tracks.len()).map(PedestrianId).collect();
-        Window::new("made up", 0, 10, ids, tracks).unwrap()
-    }
+    use crate::fixture::of_tracks;
 
     /// 0.5 m a frame along x, and `aside` a frame along y after the eighth.
     fn turning(start: Position, aside: f64) -> Vec<Position> {
@@ -140,7 +130,7 @@ mod tests {
 
     #[test]
     fn each_type_by_hand() {
-        let of = |tracks| TrajectoryType::of(&window(tracks), 0).unwrap();
+        let of = |tracks| TrajectoryType::of(&of_tracks(tracks), 0).unwrap();
         // 19 steps of 5 cm are 0.95 m, of 6 cm 1.14 m.
         let slow = |step: f64| (0..20).map(|t| [step * f64::from(t), 0.0]).collect();
         assert_eq!(of(vec![slow(0.05)]), Static);
@@ -159,7 +149,7 @@ mod tests {
     fn who_turns_with_somebody_ahead_or_beside_it_interacts() {
         let with = |other: Position| {
             let tracks = vec![turning([0.0, 0.0], 0.1), turning(other, 0.1)];
-            TrajectoryType::with_interactions(&window(tracks), 0).unwrap()
+            TrajectoryType::with_interactions(&of_tracks(tracks), 0).unwrap()
         };
         assert_eq!(
             with([2.0, 0.2]),
@@ -170,9 +160,9 @@ mod tests {
     }
 
     #[test]
-    fn a_linear_walker_has_no_interaction_whoever_is_ahead() {
+    fn a_linear_pedestrian_has_no_interaction_whoever_is_ahead() {
         let tracks = vec![turning([0.0, 0.0], 0.0), turning([2.0, 0.0], 0.0)];
-        let found = TrajectoryType::with_interactions(&window(tracks), 0);
+        let found = TrajectoryType::with_interactions(&of_tracks(tracks), 0);
         assert_eq!(found, Some((Linear, vec![])));
     }
 }

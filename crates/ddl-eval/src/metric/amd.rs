@@ -50,9 +50,6 @@ pub struct DistributionErrors {
 
 impl DistributionErrors {
     /// Of pedestrian `i`; `None` for forecasts of one hypothesis.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
         if scene.hypotheses() < 2 {
@@ -105,7 +102,7 @@ mod tests {
     use proptest::{collection::vec, prelude::*};
 
     use super::*;
-    use crate::metric::fixture::{forecast, walk, window};
+    use crate::fixture::{forecast, walk, window};
 
     /// Standing hypotheses at (0, 0) and (6, 8): mean (3, 4), variance 25 along (0.6, 0.8). The truth
     /// stands at (6, 8): one deviation of 5 m, none across.

@@ -26,7 +26,7 @@ use crate::Scene;
 /// Radius of a pedestrian, metres. Two collide when their centres are closer than twice this.
 pub const DISC_RADIUS: f64 = 0.2;
 
-/// The least distance of two walkers who move straight from frame to frame, metres.
+/// The least distance of two pedestrians who move straight from frame to frame, metres.
 ///
 /// Infinite when either track is empty. Frames beyond the shorter track are ignored.
 ///
@@ -92,13 +92,6 @@ pub fn collides(tracks: &[&[Position]], radius: f64) -> Vec<bool> {
     hit
 }
 
-/// Number of tracks whose disc of radius `radius` metres overlaps that of any other track.
-#[must_use]
-pub fn colliding(tracks: &[&[Position]], radius: f64) -> usize {
-    let hit = collides(tracks, radius);
-    hit.into_iter().filter(|&h| h).count()
-}
-
 /// The [representative](crate::Forecast::representative) forecast of each pedestrian, metres.
 #[must_use]
 pub fn representative_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
@@ -122,19 +115,6 @@ pub fn collides_truly(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
         .collect()
 }
 
-/// Number of pedestrians whose representative forecast collides with another's.
-#[must_use]
-pub fn forecast_collisions(scene: &Scene<'_>, radius: f64) -> usize {
-    colliding(&representative_tracks(scene), radius)
-}
-
-/// Number of pedestrians whose true future collides with another's: what real people do.
-#[must_use]
-pub fn true_collisions(scene: &Scene<'_>, radius: f64) -> usize {
-    let hit = collides_truly(scene, radius);
-    hit.into_iter().filter(|&h| h).count()
-}
-
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
@@ -148,8 +128,8 @@ mod tests {
         let stands = [[0.0, 0.0]; 2];
         let passes = [[-1.0, 0.3], [1.0, 0.3]];
         assert_relative_eq!(closest_approach(&stands, &passes), 0.3);
-        assert_eq!(colliding(&[&stands, &passes], DISC_RADIUS), 2);
-        assert_eq!(colliding(&[&stands, &passes], 0.1), 0);
+        assert_eq!(collides(&[&stands, &passes], DISC_RADIUS), [true; 2]);
+        assert_eq!(collides(&[&stands, &passes], 0.1), [false; 2]);
     }
 
     #[test]
@@ -160,12 +140,13 @@ mod tests {
     }
 
     #[test]
-    fn people_are_counted_once_and_touching_is_no_collision() {
+    fn each_is_told_alone_and_touching_is_no_collision() {
         let at = |x: f64| [[x, 0.0]; 2];
         let (a, b, c, d) = (at(0.0), at(0.3), at(0.6), at(1.1));
-        assert_eq!(colliding(&[&a, &b, &c, &d], DISC_RADIUS), 3);
+        let hit = collides(&[&a, &b, &c, &d], DISC_RADIUS);
+        assert_eq!(hit, [true, true, true, false]);
         let (left, right) = (at(0.0), at(0.4));
-        assert_eq!(colliding(&[&left, &right], DISC_RADIUS), 0);
-        assert_eq!(colliding(&[&left], DISC_RADIUS), 0);
+        assert_eq!(collides(&[&left, &right], DISC_RADIUS), [false; 2]);
+        assert_eq!(collides(&[&left], DISC_RADIUS), [false]);
     }
 }

@@ -109,54 +109,36 @@ impl DisplacementErrors {
     }
 
     /// ADE of each hypothesis of pedestrian `i`, metres.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn ade(&self, i: usize) -> &[f64] {
         &self.ade[i * self.hypotheses..(i + 1) * self.hypotheses]
     }
 
     /// FDE of each hypothesis of pedestrian `i`, metres.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn fde(&self, i: usize) -> &[f64] {
         &self.fde[i * self.hypotheses..(i + 1) * self.hypotheses]
     }
 
     /// minADE of pedestrian `i`, metres.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn min_ade(&self, i: usize) -> f64 {
         self.ade(i).iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     /// minFDE of pedestrian `i`, metres: independent of [`min_ade`](Self::min_ade).
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn min_fde(&self, i: usize) -> f64 {
         self.fde(i).iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     /// FDE of the hypothesis of least ADE of pedestrian `i` (of equals, the first), metres.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn fde_at_min_ade(&self, i: usize) -> f64 {
         self.fde(i)[least(self.ade(i))]
     }
 
     /// ADE of the hypothesis of least FDE of pedestrian `i` (of equals, the first), metres.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn ade_at_min_fde(&self, i: usize) -> f64 {
         self.ade(i)[least(self.fde(i))]
@@ -173,7 +155,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::metric::fixture::{forecast, walk, window};
+    use crate::fixture::{forecast, walk, window};
 
     /// The truth walks 0.5 m a frame along x. Hypothesis 0 is 0.3 m aside all along (ADE 0.3, FDE
     /// 0.3). Hypothesis 1 drifts by 0.1 m a frame (ADE 0.1 * 6.5 = 0.65, FDE 1.2). Hypothesis 2 is 1 m

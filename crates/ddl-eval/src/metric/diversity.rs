@@ -1,4 +1,4 @@
-//! How different the hypotheses of a walker are from one another.
+//! How different the hypotheses of a pedestrian are from one another.
 //!
 //! ```text
 //! APD_i = mean over pairs k < l of 1/T sum_t |x_k(t) - x_l(t)|        metres
@@ -15,7 +15,7 @@
 
 use crate::Scene;
 
-/// Mean distances between the hypotheses of one walker.
+/// Mean distances between the hypotheses of one pedestrian.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Diversity {
     /// Over the whole path, metres.
@@ -26,9 +26,6 @@ pub struct Diversity {
 
 impl Diversity {
     /// Of pedestrian `i`; `None` for forecasts of one hypothesis.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
         let (forecast, k) = (scene.forecast(), scene.hypotheses());
@@ -46,7 +43,7 @@ impl Diversity {
                 let (mut sum, mut last) = (0.0, 0.0);
                 for (p, q) in pairs {
                     let (dx, dy) = (p[0] - q[0], p[1] - q[1]);
-                    // Positions of walkers are far from where squares overflow.
+                    // Positions of pedestrians are far from where squares overflow.
                     last = (dx * dx + dy * dy).sqrt();
                     sum += last;
                     steps += 1;
@@ -68,7 +65,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::metric::fixture::{forecast, walk, window};
+    use crate::fixture::{forecast, walk, window};
 
     /// Three hypotheses from one place: standing, 0.3 m a frame along x, 0.4 m a frame along y. They
     /// part by 0.3, 0.4 and 0.5 m a frame: 0.4 m on average, times a mean of 6.5 frames, 12 at the end.

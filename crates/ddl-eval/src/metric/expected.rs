@@ -36,18 +36,12 @@ pub fn expected(forecast: &Forecast, i: usize, errors: &[f64]) -> f64 {
 }
 
 /// ADE of the most likely hypothesis of pedestrian `i`, metres.
-///
-/// # Panics
-/// When `i` is out of range.
 #[must_use]
 pub fn most_likely_ade(forecast: &Forecast, errors: &DisplacementErrors, i: usize) -> f64 {
     errors.ade(i)[forecast.most_likely(i)]
 }
 
 /// FDE of the most likely hypothesis of pedestrian `i`, metres.
-///
-/// # Panics
-/// When `i` is out of range.
 #[must_use]
 pub fn most_likely_fde(forecast: &Forecast, errors: &DisplacementErrors, i: usize) -> f64 {
     errors.fde(i)[forecast.most_likely(i)]
@@ -60,7 +54,7 @@ mod tests {
     use super::*;
     use crate::{
         Scene,
-        metric::fixture::{walk, window},
+        fixture::{walk, window},
     };
 
     /// Standing hypotheses 1 m (weight 0.75) and 5 m (0.25) from the truth: 0.75 + 1.25 = 2 m.

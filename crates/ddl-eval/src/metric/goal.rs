@@ -1,20 +1,17 @@
-//! How near the goals come to where the walkers end.
+//! How near the goals come to where the pedestrians end.
 //!
 //! ```text
 //! goal FDE_i = min_k |g_{i,k} - p_i(T)|        metres
 //! ```
 //!
 //! It bounds what any model that converges to its goals can reach by then, and is the error of the
-//! goal estimator alone. The goal of a walker still under way lies beyond the 12th frame; here a goal
+//! goal estimator alone. The goal of a pedestrian still under way lies beyond the 12th frame; here a goal
 //! is compared with the last true position all the same, because that is what estimators are fit to.
 
 use super::displacement::distance;
 use crate::Scene;
 
 /// Distance of the nearest goal of pedestrian `i` from the true end, metres; `None` without goals.
-///
-/// # Panics
-/// When `i` is out of range.
 ///
 /// # Examples
 /// ```
@@ -45,7 +42,7 @@ mod tests {
     use super::*;
     use crate::{
         Forecast,
-        metric::fixture::{walk, window},
+        fixture::{walk, window},
     };
 
     #[test]

@@ -26,7 +26,7 @@ use super::displacement::DisplacementErrors;
 /// let still = vec![[0.0, 0.0]; 20];
 /// let ids = vec![PedestrianId(1), PedestrianId(2)];
 /// let window = Window::new("yard", 0, 10, ids, vec![still.clone(), still])?;
-/// // The first walker's hypotheses are off by 0 m and 1 m, the second's by 1 m and 0.5 m.
+/// // The first pedestrian's hypotheses are off by 0 m and 1 m, the second's by 1 m and 0.5 m.
 /// let off = [0.0, 1.0, 1.0, 0.5].into_iter().flat_map(|off| [[off, 0.0]; 12]).collect();
 /// let forecast = Forecast::equally_likely(2, 2, off)?;
 /// let errors = DisplacementErrors::of(&Scene::new(&window, &forecast)?);
@@ -62,11 +62,11 @@ mod tests {
     use super::*;
     use crate::{
         Scene,
-        metric::fixture::{forecast, walk, window},
+        fixture::{forecast, walk, window},
     };
 
-    /// Hypothesis 0 is right about the first walker and 2 m off about the second, hypothesis 1 is 1 m
-    /// off about the first and right about the second: each walker's own minimum is 0, the scene's
+    /// Hypothesis 0 is right about the first pedestrian and 2 m off about the second, hypothesis 1 is 1 m
+    /// off about the first and right about the second: each pedestrian's own minimum is 0, the scene's
     /// best is hypothesis 1 with (1 + 0) / 2.
     #[test]
     fn one_index_serves_the_whole_scene() {

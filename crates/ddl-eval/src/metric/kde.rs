@@ -100,9 +100,6 @@ fn mixture_log_density(
 
 /// Mean over the frames of -ln of the clipped density at the truth of pedestrian `i`, nats; `None`
 /// for forecasts of one hypothesis.
-///
-/// # Panics
-/// When `i` is out of range.
 #[must_use]
 pub fn kde_nll(scene: &Scene<'_>, i: usize) -> Option<f64> {
     if scene.hypotheses() < 2 {
@@ -137,7 +134,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::metric::fixture::{forecast, walk, window};
+    use crate::fixture::{forecast, walk, window};
 
     /// Points at (+-1, +-1) with weights 1/4: covariance 4/3 of the identity, `n_eff` = 4, so that
     /// H = 4^(-1/3) 4/3 of the identity; the centre is sqrt(2) from each.

@@ -16,9 +16,6 @@ pub const MISS_DISTANCES: [f64; 3] = [MISS_DISTANCE, 1.0, 2.0];
 
 /// Whether every hypothesis of pedestrian `i` ends farther than `threshold` metres from the truth.
 ///
-/// # Panics
-/// When `i` is out of range.
-///
 /// # Examples
 /// ```
 /// use ddl_data::{PedestrianId, Window};
@@ -43,7 +40,7 @@ mod tests {
     use super::*;
     use crate::{
         Scene,
-        metric::fixture::{forecast, walk, window},
+        fixture::{forecast, walk, window},
     };
 
     #[test]

@@ -16,6 +16,3 @@ pub mod miss;
 pub mod region;
 pub mod stability;
 pub mod true_neighbour_collision;
-
-#[cfg(test)]
-pub(crate) mod fixture;

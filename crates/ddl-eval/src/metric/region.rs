@@ -24,9 +24,6 @@ pub struct RegionScores {
 
 impl RegionScores {
     /// Of pedestrian `i`; `None` for forecasts without regions.
-    ///
-    /// # Panics
-    /// When `i` is out of range.
     #[must_use]
     pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
         let forecast = scene.forecast();
@@ -45,9 +42,6 @@ impl RegionScores {
 
 /// -ln of the weight of the hypothesis that leads nearest to the true end: by its goal, or by its last position where it has
 /// none; nats. `None` for forecasts of one hypothesis. Equal weights have ln K.
-///
-/// # Panics
-/// When `i` is out of range.
 #[must_use]
 pub fn weight_log_loss(scene: &Scene<'_>, i: usize) -> Option<f64> {
     let forecast = scene.forecast();
@@ -68,7 +62,7 @@ mod tests {
     use super::*;
     use crate::{
         Forecast, RegionTable,
-        metric::fixture::{walk, window},
+        fixture::{walk, window},
     };
 
     /// Standing hypotheses at (0, 0) and (10, 0), weights 0.8 and 0.2; the truth stands 0.5 m from the second. With a spread of 0.5 m its score

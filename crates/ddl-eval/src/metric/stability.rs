@@ -25,9 +25,12 @@ use ddl_data::Position;
 use serde::{Deserialize, Serialize};
 
 use super::displacement::distance;
-use crate::Scene;
+use crate::{
+    Scene,
+    vector::{minus, turn},
+};
 
-/// Within this distance a walker is at the goal, and a shorter step has no direction; metres.
+/// Within this distance a pedestrian is at the goal, and a shorter step has no direction; metres.
 pub const AT_GOAL: f64 = 1e-3;
 
 /// What one rollout does about its goal.
@@ -71,22 +74,14 @@ impl RolloutStability {
             let (before, after) = (distance(here, goal), distance(next, goal));
             result.decreasing &= after < before || before.max(after) <= AT_GOAL;
             if before > AT_GOAL && distance(here, next) > AT_GOAL {
-                result.largest_turn = result.largest_turn.max(angle(here, next, goal));
+                let turn = turn(minus(next, here), minus(goal, here)).abs();
+                result.largest_turn = result.largest_turn.max(turn);
             }
             result.end_distance = after;
             here = next;
         }
         result
     }
-}
-
-/// Angle between `next - here` and `goal - here`, degrees.
-fn angle(here: Position, next: Position, goal: Position) -> f64 {
-    let step = [next[0] - here[0], next[1] - here[1]];
-    let aim = [goal[0] - here[0], goal[1] - here[1]];
-    let cross = step[0] * aim[1] - step[1] * aim[0];
-    let dot = step[0] * aim[0] + step[1] * aim[1];
-    cross.abs().atan2(dot).to_degrees()
 }
 
 /// The rollouts of a test set, together.
@@ -103,7 +98,6 @@ pub struct StabilityScores {
     /// Share of rollouts with a turn of more than 90 degrees, a step away from the goal, in [0, 1].
     pub reversing: f64,
     /// Share of rollouts whose certificate holds, in [0, 1]; `None` unless all have one.
-    #[serde(default)]
     pub certified: Option<f64>,
 }
 

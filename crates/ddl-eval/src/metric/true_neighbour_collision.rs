@@ -40,9 +40,9 @@ pub fn collides_with_truth(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metric::{
-        collision::{DISC_RADIUS, forecast_collisions},
+    use crate::{
         fixture::{forecast, walk, window},
+        metric::collision::{DISC_RADIUS, collides, representative_tracks},
     };
 
     /// The first is forecast to step to (1, 0), where the second really stands; the second is forecast
@@ -55,7 +55,8 @@ mod tests {
         let scene = Scene::new(&window, &forecast).unwrap();
         assert_eq!(collides_with_truth(&scene, DISC_RADIUS), [true, false]);
         assert_eq!(collides_with_truth(&scene, 0.1), [false, false]);
-        assert_eq!(forecast_collisions(&scene, DISC_RADIUS), 0);
+        let forecasts = representative_tracks(&scene);
+        assert_eq!(collides(&forecasts, DISC_RADIUS), [false; 2]);
     }
 
     /// Between the frames (-1, 0.3) and (1, 0.3) the way leads 0.3 m past the origin.

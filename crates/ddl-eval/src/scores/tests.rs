@@ -1,7 +1,7 @@
 use approx::assert_relative_eq;
 
 use super::*;
-use crate::metric::fixture::{forecast, walk, window};
+use crate::fixture::{forecast, walk, window};
 
 /// One window of one pedestrian (errors 1 m) and one of three (errors 0): the mean is over the
 /// four pedestrians, not over the two windows.
@@ -46,26 +46,28 @@ fn what_does_not_belong_together_is_refused() {
             forecasts: 0
         }
     ));
-    assert!(matches!(
-        error(&windows, &[one.clone(), two]),
-        EvaluationError::Hypotheses {
-            expected: 1,
-            found: 2,
-            ..
-        }
-    ));
-    assert!(matches!(
-        error(&windows[..1], &[pair]),
-        EvaluationError::Pedestrians {
-            expected: 1,
-            found: 2,
-            ..
-        }
-    ));
-    assert!(matches!(
-        error(&[windows[0].without_future()], &[one]),
-        EvaluationError::NoFuture { .. }
-    ));
+    let of_window = |w: &[Window], f: &[Forecast]| match error(w, f) {
+        EvaluationError::Window { problem, .. } => problem,
+        other => panic!("{other}"),
+    };
+    let (expected, found) = (1, 2);
+    assert_eq!(
+        of_window(&windows, &[one.clone(), two]),
+        WindowProblem::Hypotheses { expected, found }
+    );
+    assert_eq!(
+        of_window(&windows[..1], &[pair]),
+        WindowProblem::Pedestrians { expected, found }
+    );
+    let ahead = [windows[0].without_future()];
+    assert_eq!(
+        of_window(&ahead, std::slice::from_ref(&one)),
+        WindowProblem::NoFuture
+    );
+    assert_eq!(
+        error(&ahead, &[one]).to_string(),
+        "window of `made up` starting at frame 0 has no true future: it can be forecast but not scored"
+    );
 }
 
 /// Sums are taken in the order of the windows, whoever measured them.

@@ -55,10 +55,7 @@ pub fn block_errors(
     windows: &[Window],
     forecasts: &[Forecast],
 ) -> Result<Vec<BlockErrors>, EvaluationError> {
-    if windows.len() != forecasts.len() {
-        let (windows, forecasts) = (windows.len(), forecasts.len());
-        return Err(EvaluationError::Count { windows, forecasts });
-    }
+    EvaluationError::unless_one_each(windows, forecasts.len())?;
     let sums: Vec<[f64; 2]> = windows
         .par_iter()
         .zip(forecasts)

@@ -31,21 +31,26 @@ pub struct Interval {
 /// replacement; its mean is that of the pedestrians in them. `None` when there is no fold, or one of fewer than [`FEWEST_BLOCKS`].
 #[must_use]
 pub fn mean_interval(folds: &[&[BlockErrors]], metric: BlockMetric) -> Option<Interval> {
-    let folds: Vec<Vec<Part>> = folds
+    let folds: Vec<Vec<PartialSum>> = folds
         .iter()
-        .map(|blocks| blocks.iter().map(|b| Part::of(b.sum(metric), b)).collect())
+        .map(|blocks| {
+            blocks
+                .iter()
+                .map(|b| PartialSum::of(b.sum(metric), b))
+                .collect()
+        })
         .collect();
     interval(&folds)
 }
 
 /// A sum over some pedestrians.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Part {
+pub(super) struct PartialSum {
     pub(super) sum: f64,
     pub(super) pedestrians: usize,
 }
 
-impl Part {
+impl PartialSum {
     pub(super) fn of(sum: f64, block: &BlockErrors) -> Self {
         Self {
             sum,
@@ -54,11 +59,11 @@ impl Part {
     }
 }
 
-pub(super) fn interval(folds: &[Vec<Part>]) -> Option<Interval> {
+pub(super) fn interval(folds: &[Vec<PartialSum>]) -> Option<Interval> {
     if folds.iter().any(|fold| fold.len() < FEWEST_BLOCKS) {
         return None;
     }
-    let whole = |fold: &Vec<Part>| mean(fold.iter().copied());
+    let whole = |fold: &Vec<PartialSum>| mean(fold.iter().copied());
     let means: Option<Vec<f64>> = folds.iter().map(whole).collect();
     let mean_of = |means: &[f64]| means.iter().sum::<f64>() / means.len() as f64;
     let means = means.filter(|means| !means.is_empty())?;
@@ -89,7 +94,7 @@ pub(super) fn generator() -> ChaCha8Rng {
 }
 
 /// Mean error of the pedestrians of some blocks; `None` without any.
-pub(super) fn mean(parts: impl Iterator<Item = Part>) -> Option<f64> {
+pub(super) fn mean(parts: impl Iterator<Item = PartialSum>) -> Option<f64> {
     let (sum, pedestrians) = parts.fold((0.0, 0), |(sum, count), part| {
         (sum + part.sum, count + part.pedestrians)
     });

@@ -4,7 +4,7 @@ use rand::RngExt as _;
 
 use super::{
     BlockErrors, BlockMetric, Interval,
-    bootstrap::{Part, RESAMPLES, generator, interval, mean},
+    bootstrap::{PartialSum, RESAMPLES, generator, interval, mean},
 };
 
 /// How much greater the errors of one forecaster are than those of another, window by window.
@@ -48,7 +48,7 @@ pub fn paired_difference(
         let (a, b) = (first.len(), second.len());
         return unpaired(a.min(b), format!("{a} folds against {b}"));
     }
-    let mut folds: Vec<Vec<Part>> = Vec::with_capacity(first.len());
+    let mut folds: Vec<Vec<PartialSum>> = Vec::with_capacity(first.len());
     for (fold, (a, b)) in first.iter().zip(second).enumerate() {
         if a.len() != b.len() {
             return unpaired(fold, format!("{} blocks against {}", a.len(), b.len()));
@@ -64,7 +64,7 @@ pub fn paired_difference(
             if !a.same_windows(b) {
                 return unpaired(fold, format!("{} against {}", place(a), place(b)));
             }
-            parts.push(Part::of(a.sum(metric) - b.sum(metric), a));
+            parts.push(PartialSum::of(a.sum(metric) - b.sum(metric), a));
         }
         folds.push(parts);
     }
@@ -74,14 +74,14 @@ pub fn paired_difference(
     }))
 }
 
-fn p_value(folds: &[Vec<Part>], observed: f64) -> f64 {
+fn p_value(folds: &[Vec<PartialSum>], observed: f64) -> f64 {
     // Sums in another order differ in their last bits; they are no less.
     let as_large = observed.abs() * (1.0 - 1e-12);
     let mut random = generator();
     let mut at_least = 1;
     for _ in 0..RESAMPLES {
         let means = folds.iter().map(|fold| {
-            let flipped = fold.iter().map(|part| Part {
+            let flipped = fold.iter().map(|part| PartialSum {
                 sum: if random.random::<bool>() {
                     part.sum
                 } else {

@@ -6,9 +6,10 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use crate::blocks::{Line, Step};
-use crate::lanes::{Kernel, LANES, Lanes, Simd};
-use crate::recursion::{GROUP, similarities_of_row};
+use ddl_simd::{LANES, Lanes, Register, RegisterKernel};
+
+use crate::blocks::Step;
+use crate::recursion::{GROUP, cell, similarities_of_row, weigh};
 
 /// Added to α / R(n, m), 2^−120: what β makes of it is nothing against the seed of β.
 const NEGLIGIBLE: f32 = f32::from_bits((127 - 120) << 23);
@@ -17,11 +18,11 @@ const NEGLIGIBLE: f32 = f32::from_bits((127 - 120) << 23);
 #[derive(Debug)]
 pub(super) struct Working<const D: usize> {
     /// R(n, m), start value included.
-    pub(super) scores: Lanes,
+    pub(super) scores: [f32; LANES],
     /// `Σ_j E(i, j) (x_i − y_j)` for every step and component, in scaled units.
     pub(super) gradient: Vec<[Lanes; D]>,
-    k: Vec<Line>,
-    alpha: Vec<Line>,
+    k: Vec<Lanes>,
+    alpha: Vec<Lanes>,
 }
 
 impl<const D: usize> Working<D> {
@@ -36,10 +37,9 @@ impl<const D: usize> Working<D> {
 
     /// Makes room for sequences of `n` steps against `m`.
     fn resize(&mut self, n: usize, m: usize) {
-        let zero = Line([0.0; LANES]);
-        self.gradient.resize(n, [[0.0; LANES]; D]);
-        self.k.resize(n * m, zero);
-        self.alpha.resize(n * m, zero);
+        self.gradient.resize(n, [Lanes::ZERO; D]);
+        self.k.resize(n * m, Lanes::ZERO);
+        self.alpha.resize(n * m, Lanes::ZERO);
     }
 }
 
@@ -54,11 +54,11 @@ pub(super) struct ForwardBackward<'a, const D: usize> {
     pub(super) working: &'a mut Working<D>,
 }
 
-impl<const D: usize> Kernel for ForwardBackward<'_, D> {
+impl<const D: usize> RegisterKernel for ForwardBackward<'_, D> {
     type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd>(mut self, simd: S) {
+    fn run<S: Register>(mut self, simd: S) {
         self.working.resize(self.x.len(), self.block.len());
         let zero = simd.splat(0.0);
         // Rows stay in registers where their length is known to the compiler.
@@ -74,11 +74,11 @@ impl<const D: usize> Kernel for ForwardBackward<'_, D> {
 
 impl<const D: usize> ForwardBackward<'_, D> {
     #[inline(always)]
-    fn parts<S: Simd, const G: usize>(
+    fn parts<S: Register, const G: usize>(
         &mut self,
         simd: S,
         block: &[Step<D>],
-        row: &mut [S::Narrow],
+        row: &mut [S::Floats],
     ) {
         for part in 0..S::PARTS {
             let score = self.forward::<S, G>(simd, block, part, row);
@@ -89,13 +89,13 @@ impl<const D: usize> ForwardBackward<'_, D> {
 
     /// The recursion, which leaves K and α of every cell behind.
     #[inline(always)]
-    fn forward<S: Simd, const G: usize>(
+    fn forward<S: Register, const G: usize>(
         &mut self,
         simd: S,
         block: &[Step<D>],
         part: usize,
-        row: &mut [S::Narrow],
-    ) -> S::Narrow {
+        row: &mut [S::Floats],
+    ) -> S::Floats {
         let zero = simd.splat(0.0);
         let Working { k, alpha, .. } = &mut *self.working;
         let m = block.len();
@@ -109,7 +109,7 @@ impl<const D: usize> ForwardBackward<'_, D> {
             left = zero;
             for j in 0..m {
                 let up = row[j];
-                left = simd.cell(simd.load(&k[j].0, part), diagonal, up, left);
+                left = cell(simd, simd.load(&k[j].0, part), diagonal, up, left);
                 row[j] = left;
                 simd.store(left, &mut alpha[j].0, part);
                 diagonal = up;
@@ -124,13 +124,13 @@ impl<const D: usize> ForwardBackward<'_, D> {
     /// α / R(n, m) times β is E times the seed: far above the numbers that are added to both products, which keep them from
     /// becoming denormal.
     #[inline(always)]
-    fn backward<S: Simd>(
+    fn backward<S: Register>(
         &mut self,
         simd: S,
         block: &[Step<D>],
         part: usize,
-        score: S::Narrow,
-        row: &mut [S::Narrow],
+        score: S::Floats,
+        row: &mut [S::Floats],
     ) {
         let zero = simd.splat(0.0);
         let (one, negligible) = (simd.splat(1.0), simd.splat(NEGLIGIBLE));
@@ -157,16 +157,16 @@ impl<const D: usize> ForwardBackward<'_, D> {
                 let share = simd.mul_add(simd.load(&alpha[j].0, part), inverse, negligible);
                 let expected = simd.mul_add(share, beta, one);
                 for d in 0..D {
-                    let y = simd.load(&block[j].0[d], part);
+                    let y = simd.load(&block[j][d].0, part);
                     let difference = simd.sub(simd.splat(x[d]), y);
                     sums[d] = simd.mul_add(expected, difference, sums[d]);
                 }
-                right = simd.weigh(simd.load(&k[j].0, part), beta);
+                right = weigh(simd, simd.load(&k[j].0, part), beta);
                 row[j] = right;
                 diagonal = down;
             }
             for d in 0..D {
-                simd.store(simd.mul(sums[d], unit), &mut gradient[d], part);
+                simd.store(simd.mul(sums[d], unit), &mut gradient[d].0, part);
             }
         }
     }

@@ -2,15 +2,19 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use super::Visit;
-use crate::lanes::{Dispatch, Kernel, Simd, WIDE_LANES, WideLanes};
-use crate::range::Range;
-use crate::refine::{GAMMAS, WIDE_FLOOR, WIDE_GROUP, spread};
+use ddl_simd::{Dispatch, Register, RegisterKernel, WIDE_LANES, wide_exp2_each};
+
+use crate::range::{Range, WIDE_FLOOR};
+use crate::refine::{GAMMAS, WIDE_GROUP, WideLanes, spread};
 use crate::value::SoftDtw;
 
 /// Largest difference of two components, in √γ, 2^20. The clamp on costs leaves up to 2^−57 of the alignment in a cell that
 /// no path should pass: the gradient counts that times the difference.
 const FARTHEST: f64 = 1_048_576.0;
+
+/// Takes the place of a sequence, the value and the gradient of the pair.
+pub(super) trait Visit<const D: usize>: FnMut(usize, f64, &[[f64; D]]) {}
+impl<const D: usize, F: FnMut(usize, f64, &[[f64; D]])> Visit<D> for F {}
 
 /// Evaluates one x against eight sequences at a time; the memory for it is kept.
 pub(super) struct WidePairs<const D: usize> {
@@ -66,7 +70,7 @@ impl<const D: usize> WidePairs<D> {
         self.row.resize(m, [0.0; WIDE_LANES]);
         self.single.resize(n, [0.0; D]);
         let start = f64::from(range.start_log2()).exp2();
-        let scores = self.dispatch.run(WideForwardBackward {
+        let scores = self.dispatch.run_on_registers(WideForwardBackward {
             x,
             start,
             seed: f64::from(range.seed_log2()).exp2(),
@@ -112,12 +116,12 @@ struct WideForwardBackward<'a, const D: usize> {
     working: &'a mut WidePairs<D>,
 }
 
-impl<const D: usize> Kernel for WideForwardBackward<'_, D> {
+impl<const D: usize> RegisterKernel for WideForwardBackward<'_, D> {
     /// R(n, m), start value included.
     type Output = WideLanes;
 
     #[inline(always)]
-    fn run<S: Simd>(mut self, simd: S) -> WideLanes {
+    fn run<S: Register>(mut self, simd: S) -> WideLanes {
         let mut scores = [0.0; WIDE_LANES];
         for part in 0..S::PARTS {
             self.forward(simd, part, &mut scores);
@@ -132,7 +136,7 @@ impl<const D: usize> Kernel for WideForwardBackward<'_, D> {
 
 impl<const D: usize> WideForwardBackward<'_, D> {
     #[inline(always)]
-    fn forward<S: Simd>(&mut self, simd: S, part: usize, scores: &mut WideLanes) {
+    fn forward<S: Register>(&mut self, simd: S, part: usize, scores: &mut WideLanes) {
         let (zero, scale) = (simd.wide_splat(0.0), simd.wide_splat(self.scale));
         let floor = simd.wide_splat(WIDE_FLOOR);
         let WidePairs {
@@ -155,7 +159,7 @@ impl<const D: usize> WideForwardBackward<'_, D> {
                     }
                     *exponent = simd.wide_mul(cost, scale);
                 }
-                for (k, power) in k.iter_mut().zip(simd.wide_exp2_each(exponents)) {
+                for (k, power) in k.iter_mut().zip(wide_exp2_each(simd, exponents)) {
                     simd.wide_store(power, k, part);
                 }
             }
@@ -175,7 +179,7 @@ impl<const D: usize> WideForwardBackward<'_, D> {
     }
 
     #[inline(always)]
-    fn backward<S: Simd>(&mut self, simd: S, part: usize, inverse: &WideLanes) {
+    fn backward<S: Register>(&mut self, simd: S, part: usize, inverse: &WideLanes) {
         let zero = simd.wide_splat(0.0);
         let floor = simd.wide_splat(WIDE_FLOOR);
         let inverse = simd.wide_load(inverse, part);

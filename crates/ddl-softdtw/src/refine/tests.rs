@@ -1,5 +1,7 @@
-use super::{Both, PairValue, PairValues, wide_error_log2};
-use crate::lanes::{Dispatch, InstructionSet};
+use ddl_simd::{Dispatch, InstructionSet};
+
+use super::{Both, PairValue, PairValues};
+use crate::range::wide_error_log2;
 use crate::{Cost, SoftDtw};
 
 type Pair<const D: usize> = (Vec<[f64; D]>, Vec<[f64; D]>);

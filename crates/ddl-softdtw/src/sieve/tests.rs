@@ -1,6 +1,6 @@
 use super::{Search, Sieve};
-use crate::lanes::{Dispatch, InstructionSet};
 use crate::{Cost, SoftDtw};
+use ddl_simd::{Dispatch, InstructionSet};
 
 /// Velocities around a few walking directions, some of them nearly standing.
 fn walks(count: usize, steps: usize, offset: f64) -> Vec<Vec<[f64; 2]>> {

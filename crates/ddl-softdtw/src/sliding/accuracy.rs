@@ -1,6 +1,6 @@
 //! How far the `f32` sums of [`crate::sliding::kernel`] can be trusted.
 
-use crate::range::Range;
+use crate::range::{self, Range};
 
 /// Largest cost of a cell, log2 units: a larger one counts as this.
 pub(super) const COST_CEILING: f32 = 86.0;
@@ -29,7 +29,7 @@ impl Accuracy {
     /// those from there to its last cell, a score is the sum of F(m) B(m) over m. Each factor is raised by at most `FLOOR` times the
     /// paths between any cell and its far end; the ceiling raises each path by at most 2^−`COST_CEILING`.
     pub(super) fn of(length: usize) -> Option<Self> {
-        let range = Range::narrow(length, length)?;
+        let range = Range::narrow(range::FLOOR, length, length)?;
         let table = PathTable::new(length);
         let (start, floor) = (f64::from(range.start_log2()), f64::from(FLOOR));
         let (front, back) = halves(range.start_log2());

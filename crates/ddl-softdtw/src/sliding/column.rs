@@ -2,27 +2,27 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use crate::lanes::{Lanes, Simd};
 use crate::sliding::accuracy::COST_CEILING;
+use ddl_simd::{Lanes, Register};
 
 /// One number for every row of a block.
-pub(super) type Column<S, const M: usize> = [<S as Simd>::Narrow; M];
+pub(super) type Column<S, const M: usize> = [<S as Register>::Floats; M];
 
 /// What does not change during a sweep.
 #[derive(Clone, Copy)]
-pub(super) struct Setting<S: Simd> {
+pub(super) struct Setting<S: Register> {
     pub(super) simd: S,
     pub(super) rows: usize,
     pub(super) part: usize,
-    pub(super) zero: S::Narrow,
-    pub(super) floor: S::Narrow,
-    pub(super) front: S::Narrow,
-    pub(super) back: S::Narrow,
+    pub(super) zero: S::Floats,
+    pub(super) floor: S::Floats,
+    pub(super) front: S::Floats,
+    pub(super) back: S::Floats,
 }
 
 /// K of the steps of `block` and all `samples`, a column for each of the samples.
 #[inline(always)]
-pub(super) fn similarities<S: Simd, const D: usize, const M: usize>(
+pub(super) fn similarities<S: Register, const D: usize, const M: usize>(
     setting: Setting<S>,
     samples: &[[Lanes; D]],
     block: &[[f32; D]],
@@ -34,7 +34,7 @@ pub(super) fn similarities<S: Simd, const D: usize, const M: usize>(
         for (step, k) in block.iter().zip(column) {
             let mut exponent = setting.zero;
             for d in 0..D {
-                let other = simd.load(&sample[d], setting.part);
+                let other = simd.load(&sample[d].0, setting.part);
                 let difference = simd.sub(simd.splat(step[d]), other);
                 exponent = simd.neg_mul_add(difference, difference, exponent);
             }
@@ -47,12 +47,12 @@ pub(super) fn similarities<S: Simd, const D: usize, const M: usize>(
 ///
 /// Row r of the recursion is row r of `k`, or with `UPWARDS` the r-th of its last `rows` from the end.
 #[inline(always)]
-fn advance<S: Simd, const M: usize, const UPWARDS: bool>(
+fn advance<S: Register, const M: usize, const UPWARDS: bool>(
     setting: Setting<S>,
     rows: usize,
     k: &Column<S, M>,
     state: &mut Column<S, M>,
-    edge: S::Narrow,
+    edge: S::Floats,
 ) {
     let (simd, floor) = (setting.simd, setting.floor);
     if rows == 0 {
@@ -74,7 +74,7 @@ fn advance<S: Simd, const M: usize, const UPWARDS: bool>(
 
 /// The next column of F(j): first cells in column j − l.
 #[inline(always)]
-pub(super) fn advance_front<S: Simd, const M: usize>(
+pub(super) fn advance_front<S: Register, const M: usize>(
     setting: Setting<S>,
     k: &Column<S, M>,
     l: usize,
@@ -86,7 +86,7 @@ pub(super) fn advance_front<S: Simd, const M: usize>(
 
 /// The next column of B(j): last cells in column j + q.
 #[inline(always)]
-pub(super) fn advance_back<S: Simd, const M: usize>(
+pub(super) fn advance_back<S: Register, const M: usize>(
     setting: Setting<S>,
     k: &Column<S, M>,
     q: usize,

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::error::SoftDtwError;
-use crate::lanes::InstructionSet;
+use ddl_simd::InstructionSet;
 
 /// Why a sliding search could not be prepared or answered.
 #[derive(Clone, Debug, Error, PartialEq)]

@@ -1,7 +1,7 @@
 //! From the scores of the kernel to the selections of the windows of a query.
 
-use crate::lanes::{LANES, Lanes};
 use crate::select::Selection;
+use ddl_simd::{LANES, Lanes};
 
 /// The selections of a query and what a score must reach to be of interest to those of the current block.
 pub(super) struct Hits<'a> {
@@ -44,7 +44,7 @@ impl<'a> Hits<'a> {
     pub(super) fn offer(
         &mut self,
         reached: &[u32],
-        scores: &[Lanes],
+        scores: &[[f32; LANES]],
         first_lane: usize,
         window: usize,
     ) {

@@ -17,12 +17,12 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use crate::lanes::{Kernel, LANES, Simd};
 use crate::select::Selection;
 use crate::sliding::accuracy::FLOOR;
 use crate::sliding::column::{Column, Setting, advance_back, advance_front, similarities};
 use crate::sliding::hits::Hits;
 use crate::sliding::layout::Layout;
+use ddl_simd::{LANES, Register, RegisterKernel};
 
 /// All windows of a query against all windows of the layout.
 ///
@@ -38,7 +38,7 @@ pub(super) struct Sweep<'a, const D: usize, const M: usize, const EXACT: bool> {
 }
 
 /// Working memory of a sweep.
-struct Memory<S: Simd, const M: usize> {
+struct Memory<S: Register, const M: usize> {
     /// K of a block of query rows at every step of the pieces, and of the block below it.
     above: Vec<Column<S, M>>,
     below: Vec<Column<S, M>>,
@@ -48,11 +48,11 @@ struct Memory<S: Simd, const M: usize> {
     sums: Vec<Column<S, M>>,
 }
 
-impl<const D: usize, const M: usize, const EXACT: bool> Kernel for Sweep<'_, D, M, EXACT> {
+impl<const D: usize, const M: usize, const EXACT: bool> RegisterKernel for Sweep<'_, D, M, EXACT> {
     type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
+    fn run<S: Register>(self, simd: S) {
         let rows = if EXACT { M } else { self.layout.length() };
         let (zero, one) = (simd.splat(0.0), simd.splat(1.0));
         let mut setting = Setting {
@@ -109,7 +109,7 @@ impl<const D: usize, const M: usize, const EXACT: bool> Kernel for Sweep<'_, D, 
 ///
 /// F(j) is computed side by side with B(j + 1): each is a chain of dependent operations, two keep the processor busy.
 #[inline(always)]
-fn pairs<S: Simd, const M: usize>(
+fn pairs<S: Register, const M: usize>(
     setting: Setting<S>,
     steps: usize,
     memory: &mut Memory<S, M>,
@@ -147,7 +147,7 @@ fn pairs<S: Simd, const M: usize>(
 
 /// Adds F(j) B(j) for the pairs whose window of the pieces begins in column j − l to their sums, and compares what is complete.
 #[inline(always)]
-fn add_products<S: Simd, const M: usize>(
+fn add_products<S: Register, const M: usize>(
     setting: Setting<S>,
     window: usize,
     l: usize,
@@ -181,7 +181,7 @@ fn add_products<S: Simd, const M: usize>(
 
 /// Offers the scores of one window of each piece that reach their threshold.
 #[inline(always)]
-fn compare<S: Simd, const M: usize>(
+fn compare<S: Register, const M: usize>(
     setting: Setting<S>,
     window: usize,
     sum: &Column<S, M>,
@@ -190,7 +190,7 @@ fn compare<S: Simd, const M: usize>(
     let Setting {
         simd, rows, part, ..
     } = setting;
-    let weight = simd.load(&hits.weights[window], part);
+    let weight = simd.load(&hits.weights[window].0, part);
     let thresholds = &hits.thresholds[..rows];
     let mut reached = [0; M];
     let mut any = 0;
@@ -211,7 +211,7 @@ fn compare<S: Simd, const M: usize>(
 
 /// Scores of the window that consists of the rows of `memory.above`, by the plain recursion.
 #[inline(always)]
-fn last_window<S: Simd, const M: usize>(
+fn last_window<S: Register, const M: usize>(
     setting: Setting<S>,
     memory: &Memory<S, M>,
     hits: &mut Hits<'_>,

@@ -1,7 +1,8 @@
 //! Where the windows of all tracks lie: pieces of tracks, one to a lane, sixteen to a group.
 
-use crate::blocks::Narrowing;
-use crate::lanes::{LANES, Lanes};
+use ddl_simd::{LANES, Lanes};
+
+use crate::blocks::{Narrowing, Step};
 
 /// Most windows of a piece: longer tracks are cut, so that the similarities of a group stay in the cache.
 const LONGEST_PIECE: usize = 64;
@@ -15,7 +16,7 @@ pub(super) struct Layout<const D: usize> {
     /// Steps of a window.
     length: usize,
     groups: Vec<Group>,
-    samples: Vec<[Lanes; D]>,
+    samples: Vec<Step<D>>,
     weights: Vec<Lanes>,
 }
 
@@ -36,7 +37,7 @@ struct Group {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GroupView<'a, const D: usize> {
     /// Steps of the pieces; what lies behind the end of a shorter piece is 0.
-    pub(super) samples: &'a [[Lanes; D]],
+    pub(super) samples: &'a [Step<D>],
     /// 2^(D(y, y) / 2) of each window, with D in log2 units; 0 where there is no window.
     pub(super) weights: &'a [Lanes],
     /// Identity of the first window of each lane; those of a lane are consecutive.
@@ -88,8 +89,8 @@ impl<const D: usize> Layout<D> {
         let (first_sample, first_weight) = (self.samples.len(), self.weights.len());
         let windows = members.iter().map(|piece| piece.windows).max().unwrap_or(0);
         let steps = windows + self.length - 1;
-        self.samples.resize(first_sample + steps, [[0.0; LANES]; D]);
-        self.weights.resize(first_weight + windows, [0.0; LANES]);
+        self.samples.resize(first_sample + steps, [Lanes::ZERO; D]);
+        self.weights.resize(first_weight + windows, Lanes::ZERO);
         let scale = self.narrowing.scale;
         let mut first_windows = [0; LANES];
         for (lane, piece) in members.iter().enumerate() {
@@ -98,13 +99,13 @@ impl<const D: usize> Layout<D> {
             let narrow = self.narrowing.narrow(steps);
             for (sample, step) in self.samples[first_sample..].iter_mut().zip(narrow) {
                 for (lanes, value) in sample.iter_mut().zip(step) {
-                    lanes[lane] = value;
+                    lanes.0[lane] = value;
                 }
             }
             let own = &self_values[piece.first_window..][..piece.windows];
             for (weight, own) in self.weights[first_weight..].iter_mut().zip(own) {
                 let half_log2 = own * scale * scale / 2.0;
-                weight[lane] = half_log2.exp2() as f32;
+                weight.0[lane] = half_log2.exp2() as f32;
             }
         }
         self.groups.push(Group {
@@ -190,7 +191,7 @@ mod tests {
         let mut seen = 0;
         for group in layout.groups() {
             for (w, weights) in group.weights.iter().enumerate() {
-                for (lane, &weight) in weights.iter().enumerate().filter(|(_, w)| **w > 0.0) {
+                for (lane, &weight) in weights.0.iter().enumerate().filter(|(_, w)| **w > 0.0) {
                     let window = group.first_windows[lane] + w;
                     let half_log2 = own[window] * std::f64::consts::LOG2_E / 2.0;
                     assert!((f64::from(weight).log2() - half_log2).abs() < 1e-6);
@@ -202,7 +203,7 @@ mod tests {
                     for step in 0..3 {
                         let narrow = layout.narrowing.step(&tracks[track][offset + step]);
                         assert_eq!(
-                            group.samples[w + step][0][lane].to_bits(),
+                            group.samples[w + step][0].0[lane].to_bits(),
                             narrow[0].to_bits()
                         );
                     }

@@ -1,10 +1,10 @@
 //! The sieve of a sliding search: `f32` scores that rule out nearly every window, and rule out none wrongly.
 
-use crate::lanes::Dispatch;
 use crate::select::Selection;
 use crate::sliding::accuracy::Accuracy;
 use crate::sliding::kernel::Sweep;
 use crate::sliding::layout::Layout;
+use ddl_simd::Dispatch;
 
 /// Longest window of the general kernel.
 const LONGEST: usize = 32;
@@ -47,15 +47,8 @@ impl<const D: usize> Sieve<D> {
             .map(|_| Selection::new(wanted, widest))
             .collect();
         self.sweep(dispatch, query, &mut selections);
-        let finish = |mut selection: Selection| {
-            let nth_log2 = f64::from(selection.nth()?).log2();
-            if nth_log2 < smallest {
-                return None;
-            }
-            let margin = self.accuracy.margin_log2(nth_log2, largest, D)?;
-            let kept = selection.finish(margin);
-            Some(kept.iter().map(|scored| scored.candidate).collect())
-        };
+        let margin = |nth_log2| self.accuracy.margin_log2(nth_log2, largest, D);
+        let finish = |selection: Selection| selection.survivors(smallest, margin);
         selections.into_iter().map(finish).collect()
     }
 
@@ -74,7 +67,7 @@ impl<const D: usize> Sieve<D> {
         query: &[[f32; D]],
         selections: &mut [Selection],
     ) {
-        dispatch.run(Sweep::<D, M, EXACT> {
+        dispatch.run_on_registers(Sweep::<D, M, EXACT> {
             layout: &self.layout,
             query,
             starts: self.accuracy.starts(),
@@ -86,10 +79,10 @@ impl<const D: usize> Sieve<D> {
 #[cfg(test)]
 mod tests {
     use super::Sieve;
-    use crate::lanes::{Dispatch, InstructionSet};
     use crate::select::Selection;
     use crate::sliding::layout::Layout;
     use crate::{Cost, SoftDtw};
+    use ddl_simd::{Dispatch, InstructionSet};
 
     type Track = Vec<[f64; 2]>;
 

@@ -11,9 +11,8 @@
 )]
 
 use ddl_data::{Dataset, WindowRule};
-use ddl_star::{
-    ComputeDevice, DeviceChoice, StarConfig, StarNetwork, Trainer, TrainingConfig, Variant,
-};
+use ddl_network::{DeviceChoice, StarConfig, TrainingConfig, Variant};
+use ddl_star::{ComputeDevice, TorchNetwork, Trainer};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -25,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ..StarConfig::published(Variant::Full)
     };
     let cpu = ComputeDevice::open(DeviceChoice::Cpu)?;
-    let network = StarNetwork::with_precision(config, 1, cpu, tch::Kind::Double)?;
+    let network = TorchNetwork::with_precision(config, 1, cpu, tch::Kind::Double)?;
     // How many walkers there are makes no difference to the number of operations.
     let training = TrainingConfig {
         batch_walkers: 16,

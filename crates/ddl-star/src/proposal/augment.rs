@@ -3,8 +3,8 @@
 //! A fold's windows overlap: 15,000 to 38,000 of them show 900 to 1500 different walkers. What identifies
 //! a walker must therefore change from visit to visit, or it is learned by heart.
 
-use super::config::ProposalTraining;
 use super::data::Views;
+use ddl_network::ProposalTraining;
 use tch::{Kind, Tensor};
 
 /// Standard deviation of what is added to each of a neighbour's positions (metres).

@@ -1,29 +1,9 @@
-//! What the network sees of a walker, and the same for many walkers as tensors.
+//! What the network sees of many pedestrians, as tensors.
 
-use super::config::ProposalConfig;
 use crate::StarError;
-use ddl_data::{HORIZON, OBSERVED, Position};
+use ddl_data::OBSERVED;
+use ddl_network::{PedestrianView, ProposalConfig};
 use tch::{Device, Kind, Tensor};
-
-/// A walker and the walkers nearby over the observed steps, in the walker's own frame (metres): the
-/// last own position is the origin and the heading is +x.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WalkerView {
-    /// The walker.
-    pub own: [Position; OBSERVED],
-    /// Others in the scene, nearest first at the last observed step; may be empty, and longer than
-    /// what the network looks at.
-    pub neighbours: Vec<[Position; OBSERVED]>,
-}
-
-/// A walker with its future, in the frame of the view (metres).
-#[derive(Debug, Clone, PartialEq)]
-pub struct ProposalExample {
-    /// What was observed.
-    pub view: WalkerView,
-    /// What followed.
-    pub future: [Position; HORIZON],
-}
 
 /// Views as tensors.
 ///
@@ -38,7 +18,7 @@ pub(crate) struct Views {
 
 impl Views {
     pub(crate) fn new<'a>(
-        views: impl ExactSizeIterator<Item = &'a WalkerView>,
+        views: impl ExactSizeIterator<Item = &'a PedestrianView>,
         config: &ProposalConfig,
         device: Device,
         kind: Kind,

@@ -1,7 +1,8 @@
 //! The loss: the nearest ends share it at first, the winner takes all at last.
 
-use super::network::{Proposals, WAYPOINTS};
+use super::network::Proposals;
 use ddl_data::HORIZON;
+use ddl_network::proposal::WAYPOINTS;
 use tch::{Kind, Tensor};
 
 /// Weights of the three parts of the loss.

@@ -1,34 +1,21 @@
 //! The network: an ensemble of small perceptrons with attention over the neighbours.
 
-use super::affine::Affine;
-use super::config::ProposalConfig;
-use super::data::{Views, WalkerView};
+use super::data::Views;
 use crate::StarError;
 use crate::device::ComputeDevice;
-use crate::parameters::{Initializer, Parameters};
-use crate::seed::{Stage, stream};
-use ddl_data::{HORIZON, OBSERVED, Position};
+use crate::model::Parameters;
+use ddl_data::{HORIZON, OBSERVED};
+use ddl_network::proposal::{
+    END_UNIT, MemberAffine, NEIGHBOUR_FEATURES, ProposalLayers, RECENT, WAYPOINTS,
+};
+use ddl_network::seed::{Stage, stream};
+use ddl_network::weights::{Layout, Weights};
+use ddl_network::{NetworkError, PedestrianView, ProposalConfig, ProposeEnds, ProposedEnds};
+use std::sync::{Mutex, PoisonError};
 use tch::{Kind, Tensor};
 
-/// Steps over which the present velocity is taken.
-const RECENT: i64 = 3;
-/// Positions between now and the end that are learned beside the end, as shares of the horizon.
-pub(crate) const WAYPOINTS: [f64; 3] = [0.25, 0.5, 0.75];
-/// Inputs of a neighbour: direction, nearness twice, relative and own velocity, closing speed.
-const NEIGHBOUR_FEATURES: i64 = 9;
-/// Walkers that are pushed through the network together.
+/// Pedestrians that are pushed through the network together.
 const CHUNK: usize = 2048;
-/// Ends lie within a few metres of where the present velocity leads: the unit of the last layer (m).
-const END_UNIT: f64 = 3.0;
-
-/// Ends proposed for one walker, those of all members one after the other.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ProposedEnds {
-    /// Ends in the walker's frame (metres), members x K of them.
-    pub ends: Vec<Position>,
-    /// Probability of each to be the nearest to the true end; sums to 1.
-    pub weights: Vec<f64>,
-}
 
 /// What the network says of a batch.
 ///
@@ -47,27 +34,19 @@ pub(crate) struct Proposals {
 /// neighbours (attention, with the choice to look at none), and further layers with short cuts give
 /// K ends relative to where the present velocity leads, and a probability for each.
 #[derive(Debug)]
-pub struct ProposalNetwork {
+pub struct TorchProposals {
     config: ProposalConfig,
     device: ComputeDevice,
     kind: Kind,
     parameters: Parameters,
-    own: Affine,
-    neighbour: [Affine; 2],
-    query: Affine,
-    key: Affine,
-    value: Affine,
-    hidden: Vec<Affine>,
-    ends: Affine,
-    waypoints: Affine,
-    logits: Affine,
+    layers: ProposalLayers,
 }
 
-impl ProposalNetwork {
+impl TorchProposals {
     /// A network with initial weights drawn from `seed`, in single precision.
     ///
     /// # Errors
-    /// [`StarError::Config`] for a bad configuration.
+    /// [`StarError::Network`] for a bad configuration.
     pub fn new(
         config: ProposalConfig,
         seed: u64,
@@ -75,52 +54,35 @@ impl ProposalNetwork {
     ) -> Result<Self, StarError> {
         config.check()?;
         let kind = Kind::Float;
-        let mut init = Initializer::new(
-            stream(seed, Stage::ProposalWeights, 0),
-            device.torch(),
-            kind,
-        );
-        let (m, width, near) = (config.members, config.width, config.neighbour_width);
-        let ends = config.ends;
-        let own_features = (OBSERVED * 2 + (OBSERVED - 1) * 2) as i64;
-        let own = Affine::new(&mut init, "own", (m, own_features, width), 1.0);
-        let neighbour = [
-            Affine::new(&mut init, "neighbour.0", (m, NEIGHBOUR_FEATURES, near), 1.0),
-            Affine::new(&mut init, "neighbour.1", (m, near, near), 1.0),
-        ];
-        let query = Affine::new(&mut init, "query", (m, width, near), 0.5);
-        let key = Affine::new(&mut init, "key", (m, near, near), 0.5);
-        let value = Affine::new(&mut init, "value", (m, near, near), 1.0);
-        let hidden = (0..config.layers)
-            .map(|layer| {
-                let inputs = if layer == 0 { width + near + 1 } else { width };
-                Affine::new(
-                    &mut init,
-                    &format!("hidden.{layer}"),
-                    (m, inputs, width),
-                    1.0,
-                )
-            })
-            .collect();
-        let end_layer = Affine::new(&mut init, "ends", (m, width, ends * 2), 0.3);
-        let waypoint_outputs = ends * WAYPOINTS.len() as i64 * 2;
-        let waypoints = Affine::new(&mut init, "waypoints", (m, width, waypoint_outputs), 0.3);
-        let logits = Affine::new(&mut init, "logits", (m, width, ends), 0.1);
+        let mut layout = Layout::default();
+        let layers = ProposalLayers::new(&mut layout, &config);
+        let initial = layout.initial(stream(seed, Stage::ProposalWeights, 0));
+        let parameters = Parameters::new(layout, &initial, device.torch(), kind);
         Ok(Self {
             config,
             device,
             kind,
-            parameters: init.finish(),
-            own,
-            neighbour,
-            query,
-            key,
-            value,
-            hidden,
-            ends: end_layer,
-            waypoints,
-            logits,
+            parameters,
+            layers,
         })
+    }
+
+    /// This network behind the trait that proposals are asked of, computed by libtorch.
+    #[must_use]
+    pub fn into_proposer(self) -> Box<dyn ProposeEnds> {
+        Box::new(TorchProposer {
+            config: self.config.clone(),
+            network: Mutex::new(self),
+        })
+    }
+
+    /// y = x W + b of every member.
+    ///
+    /// # Shapes
+    /// `x` `[M, B, inputs]` -> `[M, B, outputs]`.
+    fn affine(&self, layer: MemberAffine, x: &Tensor) -> Tensor {
+        let tensors = &self.parameters.tensors()[layer.tensor()..];
+        tensors[1].baddbmm(x, &tensors[0], 1.0, 1.0)
     }
 
     /// Its shape.
@@ -150,7 +112,7 @@ impl ProposalNetwork {
     ///
     /// # Errors
     /// [`StarError::Torch`] when libtorch fails, for want of memory for instance.
-    pub fn propose(&self, views: &[WalkerView]) -> Result<Vec<ProposedEnds>, StarError> {
+    pub fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEnds>, StarError> {
         let _guard = tch::no_grad_guard();
         let mut proposed = Vec::with_capacity(views.len());
         for chunk in views.chunks(CHUNK) {
@@ -188,28 +150,31 @@ impl ProposalNetwork {
             ],
             -1,
         );
-        let code = self.own.forward(&features).gelu("none");
+        let code = self.affine(self.layers.own, &features).gelu("none");
         let (context, seen) = self.look_around(&code, views);
         let mut hidden = Tensor::cat(&[code.shallow_clone(), context, seen * 0.1], -1);
         let mut short_cut = code;
-        for layer in &self.hidden {
-            hidden = layer.forward(&hidden).gelu("none") + &short_cut;
+        for &layer in &self.layers.hidden {
+            hidden = self.affine(layer, &hidden).gelu("none") + &short_cut;
             short_cut = hidden.shallow_clone();
         }
         let (ends, points) = (self.config.ends, WAYPOINTS.len() as i64);
         let onward = self.recent_velocity(&views.own) * (HORIZON as f64 * self.config.time_step);
-        let offsets = self.ends.forward(&hidden).reshape([m, b, ends, 2]) * END_UNIT;
+        let offsets = self
+            .affine(self.layers.ends, &hidden)
+            .reshape([m, b, ends, 2])
+            * END_UNIT;
         let ends_at = offsets + onward.unsqueeze(2);
         let shares = Tensor::from_slice(&WAYPOINTS)
             .to_kind(self.kind)
             .to_device(self.device.torch())
             .reshape([points, 1]);
         let on_the_way = ends_at.unsqueeze(3) * shares;
-        let waypoints = self.waypoints.forward(&hidden);
+        let waypoints = self.affine(self.layers.waypoints, &hidden);
         Proposals {
             waypoints: waypoints.reshape([m, b, ends, points, 2]) + on_the_way,
             ends: ends_at,
-            logits: self.logits.forward(&hidden),
+            logits: self.affine(self.layers.logits, &hidden),
         }
     }
 
@@ -223,13 +188,13 @@ impl ProposalNetwork {
         let (heads, near) = (self.config.heads, self.config.neighbour_width);
         let (features, distance) = self.neighbour_features(views);
         let seen = &views.present * distance.lt(self.config.neighbour_range);
-        let flat = features.reshape([m, b * slots, NEIGHBOUR_FEATURES]);
-        let codes = self.neighbour[0].forward(&flat).gelu("none");
-        let codes = self.neighbour[1].forward(&codes).gelu("none");
+        let flat = features.reshape([m, b * slots, NEIGHBOUR_FEATURES as i64]);
+        let codes = self.affine(self.layers.neighbour[0], &flat).gelu("none");
+        let codes = self.affine(self.layers.neighbour[1], &codes).gelu("none");
         let per_head = |x: Tensor| x.reshape([m, b, -1, heads, near / heads]);
-        let query = per_head(self.query.forward(code));
-        let key = per_head(self.key.forward(&codes));
-        let value = per_head(self.value.forward(&codes));
+        let query = per_head(self.affine(self.layers.query, code));
+        let key = per_head(self.affine(self.layers.key, &codes));
+        let value = per_head(self.affine(self.layers.value, &codes));
         let scores = (query * key).sum_dim_intlist([-1i64].as_slice(), false, None::<Kind>)
             / ((near / heads) as f64).sqrt();
         let hidden = seen.eq(0.0).unsqueeze(-1);
@@ -281,11 +246,34 @@ impl ProposalNetwork {
     fn recent_velocity(&self, track: &Tensor) -> Tensor {
         let last = OBSERVED as i64 - 1;
         let seconds = RECENT as f64 * self.config.time_step;
-        (track.select(-2, last) - track.select(-2, last - RECENT)) / seconds
+        (track.select(-2, last) - track.select(-2, last - RECENT as i64)) / seconds
     }
 }
 
 fn numbers(tensor: &Tensor) -> Result<Vec<f64>, StarError> {
     let flat = tensor.to_device(tch::Device::Cpu).to_kind(Kind::Double);
     Ok(Vec::try_from(flat.contiguous().reshape([-1]))?)
+}
+
+/// Proposals by libtorch. Tensors may move between threads, but not be shared: one call at a time.
+#[derive(Debug)]
+struct TorchProposer {
+    config: ProposalConfig,
+    network: Mutex<TorchProposals>,
+}
+
+impl ProposeEnds for TorchProposer {
+    fn config(&self) -> &ProposalConfig {
+        &self.config
+    }
+
+    fn copy_weights(&self) -> Result<Weights, NetworkError> {
+        let network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(network.parameters.to_weights()?)
+    }
+
+    fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEnds>, NetworkError> {
+        let network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(network.propose(views)?)
+    }
 }

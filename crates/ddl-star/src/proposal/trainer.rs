@@ -1,44 +1,42 @@
 //! Training of the proposal network, one step at a time.
 
 use super::augment::augment;
-use super::checkpoint::{self, Progress};
-use super::config::ProposalTraining;
-use super::data::{ProposalExample, Views, rows_of};
+use super::data::{Views, rows_of};
 use super::loss::{LossWeights, winner_takes_all};
-use super::network::ProposalNetwork;
+use super::network::TorchProposals;
 use crate::StarError;
 use crate::device::OneThread;
-use crate::gate::Gate;
-use crate::layers::Mode;
-use crate::optimizer::Adam;
-use crate::origin::Origin;
-use crate::pass::Pass;
-use crate::seed::{GENERATOR, Stage, stream};
-use crate::training_config::LearningRateSchedule;
+use crate::training::GENERATOR;
+use crate::training::checkpoint::{self, Extra};
+use crate::training::gate::Gate;
+use crate::training::optimizer::Adam;
+use ddl_network::seed::{Stage, stream};
+use ddl_network::weights::Origin;
+use ddl_network::{LearningRateSchedule, ProposalExample, ProposalStep, ProposalTraining};
 use rand::{Rng as _, RngExt as _};
 use std::path::Path;
 use std::sync::PoisonError;
 use tch::Tensor;
 
+/// Name of the running mean of the weights in a saved state.
+const AVERAGED: &str = "average";
 /// Share of the past that the running mean of the weights keeps at each step.
 const AVERAGE: f64 = 0.999;
 /// Share of the past that the reported distance keeps at each step.
 const REPORTED: f64 = 0.98;
 
-/// What one step did.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ProposalStep {
-    /// Steps done, this one included.
-    pub done: u64,
-    /// Running mean of the training distance (metres): relaxed at first, of the nearest end at last.
-    pub distance: f64,
+/// How far a training has come.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Progress {
+    steps: u64,
+    distance: f64,
 }
 
 /// A proposal network in training. Every step draws from its own random stream, so that a run that
 /// was stopped, saved and resumed gives the same weights as one that was not.
 #[derive(Debug)]
 pub struct ProposalTrainer {
-    network: ProposalNetwork,
+    network: TorchProposals,
     adam: Adam,
     /// Always open: every step is looked at before it is taken.
     gate: Gate,
@@ -58,10 +56,10 @@ impl ProposalTrainer {
     /// at other places than those who were seen; there may be none.
     ///
     /// # Errors
-    /// [`StarError::Config`] for a bad configuration, [`StarError::NoTrainingWindows`] without
+    /// [`StarError::Network`] for a bad configuration, [`StarError::NoTrainingWindows`] without
     /// examples.
     pub fn new(
-        network: ProposalNetwork,
+        network: TorchProposals,
         examples: &[ProposalExample],
         reversed: &[ProposalExample],
         training: ProposalTraining,
@@ -114,7 +112,7 @@ impl ProposalTrainer {
     ///
     /// # Errors
     /// [`StarError::Torch`] when libtorch fails.
-    pub fn into_network(self) -> Result<ProposalNetwork, StarError> {
+    pub fn into_network(self) -> Result<TorchProposals, StarError> {
         let _guard = tch::no_grad_guard();
         let mut flat = self.network.parameters().flat().shallow_clone();
         flat.f_copy_(&self.average)?;
@@ -126,31 +124,28 @@ impl ProposalTrainer {
     /// # Errors
     /// When the file cannot be written; an earlier one is then left as it was.
     pub fn save(&self, origin: &Origin, path: &Path) -> Result<(), StarError> {
-        let parameters = self.network.parameters();
-        checkpoint::save(
-            parameters,
-            &self.average,
-            &self.adam,
-            self.progress,
-            origin,
-            path,
-        )
+        let extra = Extra {
+            progress: vec![self.progress.steps as f64, self.progress.distance],
+            vectors: vec![(AVERAGED, &self.average)],
+        };
+        checkpoint::save(self.network.parameters(), &self.adam, &extra, origin, path)
     }
 
     /// Goes on from a saved state of the same run.
     ///
     /// # Errors
-    /// [`StarError::Checkpoint`] when the file is of another origin, or not a whole state of this network.
+    /// [`StarError::Network`] when the file is of another origin, or not a whole state of this network.
     pub fn resume(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
-        let parameters = self.network.parameters();
-        self.progress = checkpoint::load(
-            parameters,
-            &mut self.average,
-            &mut self.adam,
-            self.training.steps,
-            origin,
-            path,
-        )?;
+        let mut extra = Extra {
+            progress: vec![0.0; 2],
+            vectors: vec![(AVERAGED, &self.average)],
+        };
+        let (parameters, most) = (self.network.parameters(), self.training.steps);
+        let steps = checkpoint::load(parameters, &mut self.adam, &mut extra, most, origin, path)?;
+        self.progress = Progress {
+            steps,
+            distance: extra.progress[1],
+        };
         Ok(())
     }
 
@@ -172,7 +167,7 @@ impl ProposalTrainer {
         let proposals = self.network.forward(&views);
         let (loss, distance) = winner_takes_all(&proposals, &future, weights);
         let parameters = self.network.parameters();
-        let gradient = Pass::plain(Mode::Train).gradient(&loss, parameters)?;
+        let gradient = parameters.gradient_of(&loss)?;
         let norm = gradient.norm();
         let (distance, norm_value) = (distance.double_value(&[]), norm.double_value(&[]));
         for (quantity, value) in [("loss", distance), ("gradient norm", norm_value)] {

@@ -1,4 +1,4 @@
-//! What a forecast and a training step cost, beside what the machine can do: `cargo bench -p ddl --bench latency`.
+//! What a forecast and a training step cost, beside what the machine can do: `cargo bench -p ddl --features torch --bench latency`.
 //!
 //! One scene of 25 simulated pedestrians with 20 hypotheses each, on one thread: the whole forecast, and its parts: goals, network,
 //! and walk with certificate in `f64`. The same for narrower feed-forward blocks. Then a training step of about 266 walkers, on one
@@ -17,7 +17,8 @@ mod walk;
 
 use clock::{Clock, Measured, side_by_side};
 use ddl::data::{Dataset, Position, Window};
-use ddl::star::{ComputeDevice, Noise, StarNetwork, StepRule, load_parameters};
+use ddl::network::weights::load_weights;
+use ddl::network::{ForecastWindows as _, MotionNetwork, Noise, StepRule};
 use ddl::{Ddl, DeviceChoice, Forecaster as _, RunDirectory};
 use std::error::Error;
 use std::io::Write as _;
@@ -110,13 +111,14 @@ impl Row {
 fn forecast(run: &Path, window: &Window, turns: usize) -> Result<Row> {
     let model = Ddl::load(run, DeviceChoice::Cpu)?;
     let star = &model.config().star;
-    let device = ComputeDevice::open(DeviceChoice::Cpu)?;
-    let network = StarNetwork::new(star.clone(), 0, device)?;
-    load_parameters(
-        network.parameters(),
-        &model.config().network_origin(),
+    let network = MotionNetwork::new(star.clone(), 0)?;
+    let origin = model.config().network_origin();
+    let weights = load_weights(
+        network.weights().layout(),
+        &origin,
         &RunDirectory::new(run).model(),
     )?;
+    let network = network.with_weights(weights)?;
     let windows = std::slice::from_ref(window);
     let sets = model.goal_model().goals(windows)?.remove(0);
     let goals: Vec<Vec<Position>> = sets.iter().map(|set| set.goals().to_vec()).collect();

@@ -3,7 +3,8 @@
 use crate::Result;
 use crate::clock::{Clock, side_by_side};
 use ddl::data::{Dataset, Window, WindowRule};
-use ddl::star::{ComputeDevice, StarConfig, StarNetwork, Trainer, TrainingConfig};
+use ddl::network::{StarConfig, TrainingConfig};
+use ddl::star::{ComputeDevice, TorchNetwork, Trainer};
 use ddl::{DeviceChoice, Variant};
 
 /// A line about the step of one batch of the published size, on so many threads.
@@ -26,7 +27,7 @@ pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Resul
     };
     let [step] = pool.install(|| {
         let device = ComputeDevice::open(DeviceChoice::Cpu)?;
-        let mut trainer = Trainer::new(StarNetwork::new(star, 1, device)?, windows, training)?;
+        let mut trainer = Trainer::new(TorchNetwork::new(star, 1, device)?, windows, training)?;
         side_by_side(
             clock,
             threads,

@@ -2,7 +2,8 @@
 
 use crate::Result;
 use ddl::data::Dataset;
-use ddl::star::{ComputeDevice, StarConfig, StarNetwork, TrainingConfig, save_parameters};
+use ddl::network::weights::save_weights;
+use ddl::network::{MotionNetwork, StarConfig, TrainingConfig};
 use ddl::{
     DeviceChoice, GoalRecipe, RunConfig, RunDirectory, TrainingRequest, TrainingStage, Variant,
 };
@@ -45,9 +46,8 @@ pub(crate) fn run(dataset: &Dataset, folder: &Path) -> Result<RunDirectory> {
 pub(crate) fn widen(run: &RunDirectory, feed_forward_width: i64) -> Result<()> {
     let mut config: RunConfig = run.config()?;
     config.star.feed_forward_width = feed_forward_width;
-    let device = ComputeDevice::open(DeviceChoice::Cpu)?;
-    let network = StarNetwork::new(config.star.clone(), 1, device)?;
-    save_parameters(network.parameters(), &config.network_origin(), &run.model())?;
+    let network = MotionNetwork::new(config.star.clone(), 1)?;
+    save_weights(network.weights(), &config.network_origin(), &run.model())?;
     let text = serde_json::to_string_pretty(&config)?;
     Ok(ddl::write_atomically(
         &run.path().join("config.json"),

@@ -6,7 +6,7 @@ use ddl::dynamics::{
     Attractor, CholeskyMetric, LyapunovCertificate, MetricSchedule, NaturalGradientFlow,
     StableEuler, rollout,
 };
-use ddl::star::{StarConfig, WindowRollout};
+use ddl::network::{StarConfig, WindowRollout};
 use nalgebra::Vector2;
 
 /// Walks every hypothesis to its goal, shaped by the factors that the network emitted.

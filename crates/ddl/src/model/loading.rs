@@ -6,8 +6,9 @@ use crate::model_source::ModelSource;
 use crate::packed_model;
 use crate::run_config::RunConfig;
 use crate::run_directory::{RunDirectory, write_atomically};
-use crate::{BuiltinModel, DdlError, GoalModel};
-use ddl_star::{ComputeDevice, DeviceChoice, StarNetwork, load_parameters};
+use crate::{BuiltinModel, DdlError, Device, GoalModel};
+use ddl_network::weights::load_weights;
+use ddl_network::{DeviceChoice, ForecastWindows};
 use std::path::Path;
 
 impl Ddl {
@@ -57,12 +58,21 @@ impl Ddl {
 
     fn of_packed(source: &ModelSource, device: DeviceChoice) -> Result<Self, DdlError> {
         let bytes = packed_model::bytes(source)?;
-        let device = ComputeDevice::open(device)?;
+        let device = Device::open(device)?;
         let unpacked = packed_model::unpack(&bytes, source, device)?;
         let (goals, network) = GoalModel::of_packed(source, unpacked)?;
+        Self::with(goals, device, network)
+    }
+
+    fn with(
+        goals: GoalModel,
+        device: Device,
+        network: Box<dyn ForecastWindows>,
+    ) -> Result<Self, DdlError> {
         Ok(Self {
             goals,
             device,
+            parameters: network.copy_weights()?.count(),
             network,
             clearance: None,
         })
@@ -81,14 +91,9 @@ impl Ddl {
             return Err(DdlError::run(run.path(), problem));
         }
         config.check(&ModelSource::Run(run.clone()))?;
-        let device = ComputeDevice::open(device)?;
+        let device = Device::open(device)?;
         let network = load_network(&config, device, &run.model())?;
-        Ok(Self {
-            goals: GoalModel::of_run(run, config, device)?,
-            device,
-            network,
-            clearance: None,
-        })
+        Self::with(GoalModel::of_run(run, config, device)?, device, network)
     }
 
     /// The network, with the weights that the run kept after `epoch`.
@@ -96,9 +101,8 @@ impl Ddl {
         &self,
         run: &RunDirectory,
         epoch: usize,
-    ) -> Result<StarNetwork, DdlError> {
-        let network = load_network(self.config(), self.device, &run.epoch(epoch))?;
-        Ok(network.in_precision(self.network.precision())?)
+    ) -> Result<Box<dyn ForecastWindows>, DdlError> {
+        load_network(self.config(), self.device, &run.epoch(epoch))
     }
 
     /// Writes what it takes to forecast into one small file, which [`Ddl::load`] reads: both networks' weights in half precision and
@@ -107,17 +111,17 @@ impl Ddl {
     /// # Errors
     /// When all goals come from the expert library, a weight is out of the range of half precision, or the file cannot be written.
     pub fn pack(&self, file: &Path) -> Result<(), DdlError> {
-        write_atomically(file, &packed_model::pack(&self.network, &self.goals)?)
+        write_atomically(file, &packed_model::pack(&*self.network, &self.goals)?)
     }
 }
 
 fn load_network(
     config: &RunConfig,
-    device: ComputeDevice,
+    device: Device,
     weights: &Path,
-) -> Result<StarNetwork, DdlError> {
+) -> Result<Box<dyn ForecastWindows>, DdlError> {
     enough_weights::require(weights, config.star.least_numbers())?;
-    let network = StarNetwork::new(config.star.clone(), config.training.seed, device)?;
-    load_parameters(network.parameters(), &config.network_origin(), weights)?;
-    Ok(network)
+    device.forecasting(&config.star, |layout| {
+        load_weights(layout, &config.network_origin(), weights)
+    })
 }

@@ -1,13 +1,12 @@
 //! The expert library of a run.
 
-use ddl::star::numbers_digest;
+use ddl::network::weights::numbers_digest;
 use ddl::{DeviceChoice, GoalModel, GoalRecipe, RunDirectory};
 use safetensors::tensor::{Dtype, TensorView};
 use tempfile::TempDir;
 
 use super::digested::Digested;
 use super::{names_file, smallest, with_file};
-use crate::tiny_model::use_one_thread;
 
 /// A run whose goals come from its library alone, and its sound file.
 struct Sound {
@@ -18,7 +17,6 @@ struct Sound {
 
 impl Sound {
     fn make() -> Result<Self, Box<dyn std::error::Error>> {
-        use_one_thread();
         let mut config = smallest::config();
         config.goals = GoalRecipe::retrieved(1);
         let positions: Vec<u8> = (0..2 * 20 * 2)

@@ -7,6 +7,7 @@ mod packed_file;
 pub mod packed_model;
 pub mod run_config;
 mod smallest;
+#[cfg(feature = "torch")]
 pub mod training_state;
 pub mod weights;
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use ddl::star::{HalfTensor, to_half};
+use ddl::network::weights::HalfTensor;
 use safetensors::tensor::{Dtype, TensorView};
 use sha2::{Digest as _, Sha256};
 
@@ -26,11 +26,11 @@ impl PackedFile {
         let config = smallest::config();
         let (network, proposal) = (smallest::network(&config), smallest::proposal(&config));
         let mut tensors = Vec::new();
-        for (head, parameters) in [
-            ("network.", network.parameters()),
-            ("proposal.", proposal.parameters()),
+        for (head, weights) in [
+            ("network.", network.weights()),
+            ("proposal.", proposal.weights()),
         ] {
-            for tensor in to_half(parameters).expect("new weights are small") {
+            for tensor in weights.to_half().expect("new weights are small") {
                 let name = format!("{head}{}", tensor.name);
                 tensors.push(HalfTensor { name, ..tensor });
             }

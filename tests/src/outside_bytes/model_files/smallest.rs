@@ -1,9 +1,7 @@
 //! The smallest networks there are: what is fuzzed is the reading.
 
-use ddl::star::{ComputeDevice, ProposalConfig, ProposalNetwork, StarConfig, StarNetwork};
-use ddl::{BuiltinModel, DeviceChoice, GoalRecipe, RunConfig};
-
-use crate::tiny_model::use_one_thread;
+use ddl::network::{MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig};
+use ddl::{BuiltinModel, GoalRecipe, RunConfig};
 
 /// The configuration of a run with the smallest networks, whose goals are proposed.
 pub(super) fn config() -> RunConfig {
@@ -35,23 +33,13 @@ pub(super) fn config() -> RunConfig {
     config
 }
 
-fn device() -> ComputeDevice {
-    use_one_thread();
-    ComputeDevice::open(DeviceChoice::Cpu).expect("the CPU is always there")
-}
-
 /// The forecasting network.
-pub(super) fn network(config: &RunConfig) -> StarNetwork {
-    network_of_seed(config, 1)
-}
-
-/// The forecasting network with other numbers.
-pub(super) fn network_of_seed(config: &RunConfig, seed: u64) -> StarNetwork {
-    StarNetwork::new(config.star.clone(), seed, device()).expect("a sound configuration")
+pub(super) fn network(config: &RunConfig) -> MotionNetwork {
+    MotionNetwork::new(config.star.clone(), 1).expect("a sound configuration")
 }
 
 /// The network that proposes goals.
 pub(super) fn proposal(config: &RunConfig) -> ProposalNetwork {
     let recipe = config.goals.proposal.clone().expect("goals are proposed");
-    ProposalNetwork::new(recipe.network, 1, device()).expect("a sound configuration")
+    ProposalNetwork::new(recipe.network, 1).expect("a sound configuration")
 }

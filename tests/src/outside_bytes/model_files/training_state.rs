@@ -3,7 +3,10 @@
 use std::cell::RefCell;
 use std::path::PathBuf;
 
-use ddl::star::{Objective, Origin, Trainer, TrainingConfig};
+use ddl::DeviceChoice;
+use ddl::network::weights::Origin;
+use ddl::network::{Objective, TrainingConfig};
+use ddl::star::{ComputeDevice, TorchNetwork, Trainer};
 use ddl_data::{PedestrianId, Window};
 use tempfile::TempDir;
 
@@ -31,7 +34,9 @@ impl Sound {
         };
         let walk = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect();
         let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![walk])?;
-        let mut trainer = Trainer::new(smallest::network(&config), vec![window], training)?;
+        let device = ComputeDevice::open(DeviceChoice::Cpu)?;
+        let network = TorchNetwork::new(config.star.clone(), 1, device)?;
+        let mut trainer = Trainer::new(network, vec![window], training)?;
         let folder = tempfile::tempdir()?;
         let path = folder.path().join("optimizer.safetensors");
         trainer.save(&origin, &path)?;

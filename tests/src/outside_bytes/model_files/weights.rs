@@ -2,21 +2,17 @@
 
 use std::path::PathBuf;
 
-use ddl::star::{Origin, StarNetwork, load_parameters, save_parameters};
+use ddl::network::weights::{Origin, Weights, load_weights, save_weights};
 use tempfile::TempDir;
 
 use super::digested::Digested;
 use super::{names_file, smallest, with_file};
 
-/// A network and the sound file of its weights.
+/// The weights of a network and the sound file of them.
 struct Sound {
-    network: StarNetwork,
+    weights: Weights,
     origin: Origin,
     file: Digested,
-    /// The numbers of the file.
-    numbers: Vec<f32>,
-    /// The file of other numbers, which the network has when a file is read.
-    others: PathBuf,
     path: PathBuf,
     _folder: TempDir,
 }
@@ -27,53 +23,39 @@ impl Sound {
         let (network, origin) = (smallest::network(&config), config.network_origin());
         let folder = tempfile::tempdir()?;
         let path = folder.path().join("model.safetensors");
-        save_parameters(network.parameters(), &origin, &path)?;
-        let numbers = network.parameters().to_vec()?;
-        let others = folder.path().join("others.safetensors");
-        let other = smallest::network_of_seed(&config, 2);
-        save_parameters(other.parameters(), &origin, &others)?;
-        load_parameters(network.parameters(), &origin, &others)?;
+        save_weights(network.weights(), &origin, &path)?;
         Ok(Self {
             file: Digested::new(std::fs::read(&path)?),
-            numbers,
-            others,
-            network,
+            weights: network.weights().clone(),
             origin,
             path,
             _folder: folder,
         })
-    }
-
-    fn now(&self) -> Vec<f32> {
-        let parameters = self.network.parameters();
-        parameters.to_vec().expect("the CPU's numbers can be read")
     }
 }
 
 /// Edits of a sound file.
 ///
 /// # Panics
-/// When an error changes the network or does not name the file, when the sound file is refused or reads as other numbers, or when what is read is not finite.
+/// When an error does not name the file, when the sound file is refused or reads as other numbers, or when what is read is not finite.
 pub fn read(bytes: &[u8]) {
-    // libtorch's tensors stay on their thread.
     thread_local! {
         static SOUND: Sound = Sound::make().expect("the sound file can be made");
     }
     SOUND.with(|sound| {
-        let (parameters, origin) = (sound.network.parameters(), &sound.origin);
-        let before = sound.now();
+        let layout = sound.weights.layout();
         let read = with_file(&sound.path, &sound.file.edited(bytes), |path| {
-            load_parameters(parameters, origin, path)
+            load_weights(layout, &sound.origin, path)
         });
-        let now = sound.now();
-        if let Err(error) = read {
-            assert!(bytes.len() > 1, "a sound file: {error}");
-            names_file(&error, "model.safetensors");
-            assert_eq!(now, before, "an error changes nothing");
-        } else {
-            assert!(now.iter().all(|number| number.is_finite()));
-            assert!(bytes.len() > 1 || now == sound.numbers);
-            load_parameters(parameters, origin, &sound.others).expect("a sound file");
+        match read {
+            Err(error) => {
+                assert!(bytes.len() > 1, "a sound file: {error}");
+                names_file(&error, "model.safetensors");
+            }
+            Ok(weights) => {
+                assert!(weights.numbers().iter().all(|number| number.is_finite()));
+                assert!(bytes.len() > 1 || weights == sound.weights);
+            }
         }
     });
 }

@@ -20,6 +20,8 @@ pub(in crate::command) fn program(workspace: &Workspace, cargo_profile: &str) ->
             "ddl-cli",
             "--bin",
             "ddl",
+            "--features",
+            "torch",
             "--profile",
             cargo_profile,
         ])

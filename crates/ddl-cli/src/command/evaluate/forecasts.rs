@@ -5,8 +5,9 @@ use super::super::test_windows::{TestWindows, ensure_scene_of_star};
 use anyhow::Context as _;
 use clap::Args;
 use ddl::data::{Convention, WindowRule};
-use ddl::eval::foreign::{self, Coverage, ForeignFormat};
-use ddl::eval::{Conditions, Report, baseline, gallery};
+use ddl::eval::external::{self, Coverage, ExternalFormat};
+use ddl::eval::{Conditions, baseline};
+use ddl::report::{Report, gallery};
 use ddl::{BuiltinModel, Protocol, Results};
 use std::path::{Path, PathBuf};
 
@@ -66,7 +67,7 @@ impl OtherProgram {
         commit: &str,
     ) -> anyhow::Result<Report> {
         if protocols.contains(&Protocol::Published) {
-            return Err(foreign::ForeignError::Published.into());
+            return Err(external::ExternalError::Published.into());
         }
         let (fold, windows) = self.windows.windows(recordings)?;
         let convention = self.windows.convention(recordings, Convention::Star);
@@ -76,7 +77,7 @@ impl OtherProgram {
         } else {
             Coverage::Whole
         };
-        let matched = foreign::read(file, ForeignFormat::of_file(file), &windows, coverage)
+        let matched = external::read(file, ExternalFormat::of_file(file), &windows, coverage)
             .map_err(|error| named(error, &(convention, &fold, rule)))?;
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
         let name = self.name.as_deref().unwrap_or(&stem);
@@ -86,7 +87,7 @@ impl OtherProgram {
                 commit: commit.to_owned(),
                 ..Conditions::new(convention, rule, protocol, &*fold, name)
             };
-            rows.extend(foreign::measure(
+            rows.extend(external::measure(
                 &conditions,
                 &matched,
                 baseline::NOISE_SEED,
@@ -105,12 +106,12 @@ impl OtherProgram {
 
 /// Where file and windows are not of the same walkers, which windows these were and which option scores the rest.
 fn named(
-    error: foreign::ForeignError,
+    error: external::ExternalError,
     (convention, fold, rule): &(Convention, &String, WindowRule),
 ) -> anyhow::Error {
     let differ = matches!(
         error,
-        foreign::ForeignError::Missing { .. } | foreign::ForeignError::Unknown { .. }
+        external::ExternalError::Missing { .. } | external::ExternalError::Unknown { .. }
     );
     if differ {
         anyhow::anyhow!(

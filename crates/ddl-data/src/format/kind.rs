@@ -1,0 +1,169 @@
+//! Which formats there are, and which one a file of tracks is written in.
+
+use std::fmt;
+use std::path::Path;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use crate::unknown_name::UnknownName;
+
+/// How a file of tracks is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Format {
+    /// Four lines of comma-separated numbers, one field an observation: frame, pedestrian, **y**, **x**
+    /// (m). The files of the `star` convention.
+    StarCsv,
+    /// One observation a line, four fields separated by tabs or blanks: frame, pedestrian, x, y (m).
+    /// The files of the `social-gan` convention.
+    SocialGan,
+    /// A comma-separated table with a header that names the columns `frame`, `pedestrian`, `x` and `y`
+    /// (m) in any order: the format for one's own tracks.
+    Table,
+    /// The newline-delimited JSON of TrajNet++: `{"track": {"f", "p", "x", "y"}}` a line (frame, pedestrian,
+    /// metres). Lines of forecasts (with `prediction_number`), of scenes and of anything else are no
+    /// observations.
+    #[serde(rename = "trajnet")]
+    TrajNet,
+    /// The `obsmat.txt` of the ETH recordings: eight columns separated by blanks, frame, pedestrian, x, z, **y**
+    /// (m) and three velocities, of which the ground plane is x and y.
+    Obsmat,
+}
+
+impl Format {
+    /// Every format.
+    pub const ALL: [Self; 5] = [
+        Self::StarCsv,
+        Self::SocialGan,
+        Self::Table,
+        Self::TrajNet,
+        Self::Obsmat,
+    ];
+
+    /// The format's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::StarCsv => "star-csv",
+            Self::SocialGan => "social-gan",
+            Self::Table => "table",
+            Self::TrajNet => "trajnet",
+            Self::Obsmat => "obsmat",
+        }
+    }
+
+    /// The format of a file, told by its extension and its first lines.
+    ///
+    /// - `.ndjson` and `.jsonl`, or a first line that begins with `{`: [`TrajNet`](Self::TrajNet);
+    /// - no comma in the first line of what is not called `.csv`: [`Obsmat`](Self::Obsmat) where it has 8 fields, else
+    ///   [`SocialGan`](Self::SocialGan);
+    /// - anything else: [`StarCsv`](Self::StarCsv) where it is four lines of numbers that are longer than four
+    ///   fields, else [`Table`](Self::Table).
+    ///
+    /// Extensions count in capital letters too. It is a guess for those who did not say: reading with the format guessed still checks everything.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_data::Format;
+    /// let obsmat = b"7.8e+02 1.0e+00 8.45 0.0 3.59 1.67 0.0 0.19\n";
+    /// assert_eq!(Format::guess("obsmat.txt".as_ref(), obsmat), Format::Obsmat);
+    /// assert_eq!(Format::guess("tracks.csv".as_ref(), b"frame,pedestrian,x,y\n"), Format::Table);
+    /// ```
+    #[must_use]
+    pub fn guess(path: &Path, bytes: &[u8]) -> Self {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+        let named = |name: &str| extension.eq_ignore_ascii_case(name);
+        let lines: Vec<&[u8]> = bytes.split(|&byte| byte == b'\n').take(6).collect();
+        let first = lines
+            .iter()
+            .find(|line| !line.trim_ascii().is_empty())
+            .map_or(&b""[..], |line| line.trim_ascii());
+        if named("ndjson") || named("jsonl") || first.starts_with(b"{") {
+            Self::TrajNet
+        } else if !first.contains(&b',') && (named("txt") || !(named("csv") || first.is_empty())) {
+            let fields = first
+                .split(u8::is_ascii_whitespace)
+                .filter(|field| !field.is_empty());
+            if fields.count() == 8 {
+                Self::Obsmat
+            } else {
+                Self::SocialGan
+            }
+        } else if is_star(&lines) {
+            Self::StarCsv
+        } else {
+            Self::Table
+        }
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Format {
+    type Err = UnknownName;
+
+    fn from_str(word: &str) -> Result<Self, UnknownName> {
+        let expected = "star-csv, social-gan, table, trajnet, obsmat";
+        UnknownName::find(word, &Self::ALL, Self::name, "format", expected)
+    }
+}
+
+/// Four lines of numbers. Four lines of four numbers may as well be a table whose header was forgotten, which had
+/// better be refused than read the wrong way round.
+fn is_star(lines: &[&[u8]]) -> bool {
+    let filled = lines.iter().filter(|line| !line.trim_ascii().is_empty());
+    let number = |field: &[u8]| {
+        let text = std::str::from_utf8(field).unwrap_or("");
+        text.trim().parse::<f64>().is_ok()
+    };
+    filled.clone().count() == 4
+        && filled.into_iter().all(|line| {
+            line.split(|&byte| byte == b',').count() != 4
+                && line.split(|&byte| byte == b',').next().is_some_and(number)
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_format_is_told_from_the_others() {
+        for (name, text, format) in [
+            ("a.ndjson", "", Format::TrajNet),
+            ("a", "\n {\"scene\": {}}", Format::TrajNet),
+            ("a.txt", "0 1 2 3 4 5 6 7\n", Format::Obsmat),
+            ("a.txt", "0\t1\t2\t3\n", Format::SocialGan),
+            ("a", "0 1 2 3\n", Format::SocialGan),
+            (
+                "a.csv",
+                "0,1,2,3,4\n1,1,1,1,1\n0,0,0,0,0\n1,1,1,1,1\n",
+                Format::StarCsv,
+            ),
+            ("a.csv", "frame,pedestrian,x,y\n0,1,2,3\n", Format::Table),
+            (
+                "a.csv",
+                "0,1,2,3\n0,1,2,3\n0,1,2,3\n0,1,2,3\n",
+                Format::Table,
+            ),
+            ("a.csv", "", Format::Table),
+            ("a.txt", "", Format::SocialGan),
+            ("a.txt", "frame,pedestrian,x,y\n0,1,2,3\n", Format::Table),
+            ("a.NDJSON", "", Format::TrajNet),
+            ("a.Jsonl", "", Format::TrajNet),
+            ("a.TXT", "0\t1\t2\t3\n", Format::SocialGan),
+            ("a.CSV", "frame pedestrian x y\n", Format::Table),
+        ] {
+            assert_eq!(
+                Format::guess(name.as_ref(), text.as_bytes()),
+                format,
+                "{name} {text:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! Where in a file something is.
+
+use crate::error::{FormatError, FormatProblem};
+
+/// A place within a file, both counted from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Place {
+    pub(super) line: usize,
+    pub(super) field: Option<usize>,
+}
+
+impl Place {
+    /// A whole line.
+    pub(super) fn line(line: usize) -> Self {
+        Self { line, field: None }
+    }
+
+    /// One field of a line.
+    pub(super) fn field(line: usize, field: usize) -> Self {
+        let field = Some(field);
+        Self { line, field }
+    }
+
+    /// The error that something is wrong at this place.
+    pub(super) fn wrong(self, origin: &str, problem: FormatProblem) -> FormatError {
+        let Self { line, field } = self;
+        FormatError {
+            origin: origin.to_owned(),
+            line,
+            field,
+            problem,
+        }
+    }
+
+    /// What was read at this place, or the error that it is wrong.
+    pub(super) fn read<T>(
+        self,
+        origin: &str,
+        read: Result<T, FormatProblem>,
+    ) -> Result<T, FormatError> {
+        read.map_err(|problem| self.wrong(origin, problem))
+    }
+}

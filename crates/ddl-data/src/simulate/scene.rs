@@ -1,0 +1,46 @@
+//! The five scenes by name.
+
+use std::fmt;
+
+/// A place where a crowd can be simulated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Scene {
+    /// A walled way with two pillars, walked in both directions.
+    Corridor,
+    /// Two ways that cross at right angles.
+    Crossing,
+    /// An open square with a fountain, crossed in all directions; people stop and talk.
+    Plaza,
+    /// A room that narrows to a passage.
+    Bottleneck,
+    /// Two halls joined by two doors.
+    Doorway,
+}
+
+impl Scene {
+    /// Every scene.
+    pub const ALL: [Self; 5] = [
+        Self::Corridor,
+        Self::Crossing,
+        Self::Plaza,
+        Self::Bottleneck,
+        Self::Doorway,
+    ];
+
+    /// The scene's name, which is that of its recording and of its fold.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Corridor => "corridor",
+            Self::Crossing => "crossing",
+            Self::Plaza => "plaza",
+            Self::Bottleneck => "bottleneck",
+            Self::Doorway => "doorway",
+        }
+    }
+}
+
+impl fmt::Display for Scene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}

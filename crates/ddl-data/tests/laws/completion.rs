@@ -1,0 +1,213 @@
+//! Observations that are not whole: what is made up, and what is never touched.
+
+use std::collections::BTreeMap;
+
+use ddl_data::{
+    Completion, CompletionError, MadeUp, OBSERVED, Observation, PedestrianId, Position, Recording,
+    Window,
+};
+use proptest::prelude::*;
+
+const STEP: i64 = 4;
+
+fn completion() -> impl Strategy<Value = Completion> {
+    (2..=8_usize, 0..=2_usize).prop_map(|(least, gap)| Completion::new(least, gap).unwrap())
+}
+
+/// Frames at which somebody is seen: mostly a step apart, with holes, and now and then off the beat.
+fn frames() -> impl Strategy<Value = Vec<i64>> {
+    let later = prop_oneof![
+        12 => Just(STEP),
+        3 => Just(2 * STEP),
+        2 => Just(3 * STEP),
+        1 => Just(4 * STEP),
+        1 => 1..3 * STEP,
+    ];
+    prop::collection::vec(later, 1..40).prop_map(|gaps| {
+        let add = |frame: &mut i64, later: i64| {
+            *frame += later;
+            Some(*frame)
+        };
+        gaps.into_iter().scan(-50, add).collect()
+    })
+}
+
+fn recording(tracks: &[Vec<(i64, Position)>]) -> Recording {
+    let of_track = |(id, track): (i64, &Vec<(i64, Position)>)| -> Vec<Observation> {
+        let seen = track.iter();
+        seen.map(|&(frame, place)| Observation::new(frame, PedestrianId(id), place))
+            .collect()
+    };
+    let seen = (0..).zip(tracks).flat_map(of_track).collect();
+    Recording::new("yard", STEP, seen).unwrap()
+}
+
+/// What the rule says, by search in the whole track, of somebody who is there at the frame `until`.
+fn by_search(
+    track: &BTreeMap<i64, Position>,
+    until: i64,
+    least_seen: usize,
+    longest_gap: i64,
+) -> Option<([Position; OBSERVED], MadeUp)> {
+    let mut places = Vec::new();
+    let mut seen = 0;
+    for k in 0..OBSERVED as i64 {
+        let frame = until - k * STEP;
+        if let Some(&place) = track.get(&frame) {
+            places.push(place);
+            seen += 1;
+            continue;
+        }
+        let before = track.range(..frame).next_back();
+        let after = track.range(frame..).next();
+        let (Some((&t0, a)), Some((&t1, b))) = (before, after) else {
+            break;
+        };
+        if longest_gap == 0 || t1 - t0 > (longest_gap + 1) * STEP {
+            break;
+        }
+        let share = (frame - t0) as f64 / (t1 - t0) as f64;
+        places.push([0, 1].map(|axis| a[axis] + share * (b[axis] - a[axis])));
+    }
+    if seen < least_seen {
+        return None;
+    }
+    let (found, last) = (places.len(), places[0]);
+    let first = places[found - 1];
+    for back in 1..=OBSERVED - found {
+        let share = back as f64 / (found - 1) as f64;
+        places.push([0, 1].map(|axis| first[axis] - share * (last[axis] - first[axis])));
+    }
+    places.reverse();
+    let made_up = MadeUp {
+        padded: OBSERVED - found,
+        filled: found - seen,
+    };
+    Some((places.try_into().unwrap(), made_up))
+}
+
+fn bits(track: &[Position]) -> Vec<[u64; 2]> {
+    track.iter().map(|place| place.map(f64::to_bits)).collect()
+}
+
+proptest! {
+    /// Frame by frame the same as by search in the whole recording, bit for bit.
+    #[test]
+    fn it_is_what_a_search_finds(
+        tracks in prop::collection::vec(frames(), 1..5),
+        places in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 40),
+        (least, gap) in (2..=8_usize, 0..=2_usize),
+    ) {
+        let tracks: Vec<Vec<(i64, Position)>> = tracks
+            .into_iter()
+            .map(|frames| frames.into_iter().zip(places.iter().copied()).collect())
+            .collect();
+        let recording = recording(&tracks);
+        let completion = Completion::new(least, gap).unwrap();
+        let windows = recording.completed_windows(completion);
+        let mut windows = windows.iter().peekable();
+        for &frame in recording.frames() {
+            let expected: Vec<_> = (0..)
+                .zip(&tracks)
+                .filter_map(|(id, track)| {
+                    let track: BTreeMap<i64, Position> = track.iter().copied().collect();
+                    track.get(&frame)?;
+                    let (places, made_up) = by_search(&track, frame, least, gap as i64)?;
+                    Some((PedestrianId(id), bits(&places), made_up))
+                })
+                .collect();
+            let window = windows.next_if(|window| window.frames()[OBSERVED - 1] == frame);
+            let found: Vec<_> = window.map_or(Vec::new(), |window| {
+                let ids = window.pedestrians().iter().enumerate();
+                ids.map(|(i, &id)| (id, bits(window.observed(i)), window.made_up(i))).collect()
+            });
+            prop_assert_eq!(found, expected, "frame {}", frame);
+        }
+        prop_assert!(windows.next().is_none());
+    }
+
+    /// Whoever walks evenly is completed to exactly that walk, however little was seen of it.
+    #[test]
+    fn an_even_walk_stays_one(
+        frames in frames(),
+        (x, y, vx, vy) in (-9.0..9.0_f64, -9.0..9.0_f64, -0.5..0.5_f64, -0.5..0.5_f64),
+        completion in completion(),
+    ) {
+        let at = |frame: i64| [x + vx * frame as f64, y + vy * frame as f64];
+        let track = frames.into_iter().map(|frame| (frame, at(frame))).collect();
+        for window in recording(&[track]).completed_windows(completion) {
+            for (place, &frame) in window.observed(0).iter().zip(window.frames()) {
+                let right = at(frame);
+                prop_assert!((place[0] - right[0]).hypot(place[1] - right[1]) < 1e-9);
+            }
+        }
+    }
+
+    /// Without completion the windows are those that are cut from whole observations; with one these are there too, and what was seen is not
+    /// touched.
+    #[test]
+    fn whole_observations_are_left_as_they_are(
+        tracks in prop::collection::vec(frames(), 1..4),
+        completion in completion(),
+    ) {
+        let tracks: Vec<Vec<(i64, Position)>> = (0..)
+            .zip(tracks)
+            .map(|(id, frames)| frames.into_iter().map(|frame| (frame, [frame as f64, f64::from(id)])).collect())
+            .collect();
+        let recording = recording(&tracks);
+        let whole = recording.observed_windows();
+        prop_assert_eq!(&recording.completed_windows(Completion::NONE), &whole);
+        let completed = recording.completed_windows(completion);
+        for window in whole {
+            let same = completed.iter().find(|other| other.frames() == window.frames()).unwrap();
+            let seen = same.keeping(|i| same.made_up(i).is_nothing());
+            prop_assert_eq!(seen, Some(window));
+        }
+    }
+}
+
+fn only_window(frames: &[i64], completion: Completion) -> Option<Window> {
+    let track = frames.iter().map(|&frame| (frame, [frame as f64, 1.0]));
+    let windows = recording(&[track.collect()]).completed_windows(completion);
+    let last = *frames.last().unwrap();
+    let mut windows = windows.into_iter();
+    windows.find(|window| window.frames()[OBSERVED - 1] == last)
+}
+
+/// By hand: two frames of a hole are filled, three are not and what lies behind them does not count.
+#[test]
+fn holes_of_two_frames_are_filled_and_longer_ones_are_ends() {
+    let made_up = |frames: &[i64]| {
+        only_window(frames, Completion::USUAL).map(|window| {
+            let MadeUp { padded, filled } = window.made_up(0);
+            (padded, filled, window.made_up(0).seen())
+        })
+    };
+    assert_eq!(made_up(&[0, 4, 8, 12, 16, 20, 24, 28]), Some((0, 0, 8)));
+    assert_eq!(made_up(&[0, 4, 8, 20, 24, 28]), Some((0, 2, 6)));
+    assert_eq!(made_up(&[0, 4, 20, 24, 28]), Some((5, 0, 3)));
+    assert_eq!(made_up(&[0, 12, 24, 28]), Some((0, 4, 4)));
+    assert_eq!(made_up(&[20, 28]), Some((5, 1, 2)));
+    assert_eq!(made_up(&[28]), None);
+    // off the beat: the place between is no observation
+    assert_eq!(made_up(&[22, 28]), None);
+    assert_eq!(made_up(&[18, 22, 28]), None);
+}
+
+#[test]
+fn what_is_asked_for_is_checked() {
+    for least in [0, 1, 9] {
+        let error = CompletionError::LeastSeen { found: least };
+        assert_eq!(Completion::new(least, 0), Err(error));
+    }
+    assert_eq!(
+        Completion::new(2, 3),
+        Err(CompletionError::LongestGap { found: 3 })
+    );
+    assert_eq!(Completion::new(8, 0), Ok(Completion::NONE));
+    assert_eq!(Completion::new(2, 2), Ok(Completion::USUAL));
+    let frames = [0, 4, 8, 20, 24, 28];
+    assert!(only_window(&frames, Completion::new(7, 2).unwrap()).is_none());
+    assert!(only_window(&frames, Completion::new(6, 2).unwrap()).is_some());
+    assert!(only_window(&frames, Completion::NONE).is_none());
+}

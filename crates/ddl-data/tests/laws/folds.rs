@@ -1,0 +1,198 @@
+//! Folds and the chronological split, on simulated and on real recordings.
+
+use std::collections::BTreeSet;
+
+use ddl_data::{Convention, Dataset, Recording, Window, WindowRule};
+
+use crate::recordings;
+
+/// What tells a window from all others of a data set.
+fn key(window: &Window) -> (String, i64) {
+    (window.recording().to_owned(), window.start_frame())
+}
+
+/// No moment is both in training and in validation, and neither has a window of its own making.
+fn check_splits(dataset: &Dataset) {
+    for fold in dataset.folds() {
+        for rule in [
+            WindowRule::Complete,
+            WindowRule::SocialGan { min_pedestrians: 1 },
+        ] {
+            let all: BTreeSet<_> = fold.training_windows(rule).iter().map(key).collect();
+            for fraction in [0.2, 0.5] {
+                let split = fold.training_split(rule, fraction);
+                assert!(!split.training.is_empty() && !split.validation.is_empty());
+                for recording in fold.training_recordings() {
+                    let of = |w: &&Window| w.recording() == recording.name();
+                    let frames = split.training.iter().filter(of).flat_map(Window::frames);
+                    let last = frames.max();
+                    let frames = split.validation.iter().filter(of).flat_map(Window::frames);
+                    let first = frames.min();
+                    if let (Some(last), Some(first)) = (last, first) {
+                        assert!(last < first, "{}: {last} and {first}", recording.name());
+                    }
+                }
+                let parts = split.training.iter().chain(&split.validation);
+                assert!(parts.clone().all(|w| all.contains(&key(w))));
+                let count = split.training.len() + split.validation.len();
+                assert_eq!(parts.map(key).collect::<BTreeSet<_>>().len(), count);
+            }
+            let all = fold.training_windows(rule);
+            for nothing in [0.0, -1.0, f64::NAN] {
+                let split = fold.training_split(rule, nothing);
+                assert!(split.validation.is_empty());
+                assert_eq!(split.training, all);
+            }
+            let split = fold.training_split(rule, 7.0);
+            assert!(split.training.is_empty());
+            assert_eq!(split.validation, all);
+        }
+    }
+}
+
+#[test]
+fn training_and_validation_share_no_moment_of_a_simulated_crowd() {
+    check_splits(&Dataset::simulated(2));
+}
+
+#[test]
+fn recordings_set_apart_are_validated_on_whole_and_not_trained_on() {
+    let dataset = Dataset::simulated(2);
+    let rule = WindowRule::Complete;
+    let whole = dataset.recording("crossing").unwrap().windows(rule);
+    let fold = dataset.fold("plaza").unwrap();
+    let apart = fold.clone().set_apart(&["crossing".to_owned()]).unwrap();
+    let split = apart.training_split(rule, 0.25);
+    let of_crossing: Vec<Window> = split
+        .validation
+        .iter()
+        .filter(|w| w.recording() == "crossing")
+        .cloned()
+        .collect();
+    assert_eq!(of_crossing, whole);
+    let training = apart.training_windows(rule);
+    assert!(
+        split
+            .training
+            .iter()
+            .chain(&training)
+            .all(|w| w.recording() != "crossing")
+    );
+    let others = fold
+        .training_split(rule, 0.25)
+        .training
+        .into_iter()
+        .filter(|w| w.recording() != "crossing");
+    assert_eq!(split.training, others.collect::<Vec<_>>());
+    let error = fold
+        .set_apart(&["plaza".to_owned()])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.starts_with("\"plaza\" is not one of these recordings: corridor"),
+        "{error}"
+    );
+}
+
+/// Rows of the files `NAME_train.txt` and `NAME_val.txt` that Social-GAN publishes, and the first frame of the
+/// latter: counted from published copies, outside this project.
+const PUBLISHED_PARTS: [(&str, usize, usize, i64); 8] = [
+    ("eth", 3666, 1826, 10_240),
+    ("hotel", 4946, 1597, 14_400),
+    ("zara01", 4307, 846, 7110),
+    ("zara02", 7621, 2101, 8420),
+    ("students001", 18_353, 3460, 3550),
+    ("students003", 15_641, 2312, 4320),
+    ("uni_examples", 2266, 481, 5940),
+    ("zara03", 3708, 1297, 6030),
+];
+
+#[test]
+fn the_social_gan_split_is_that_of_the_published_files() {
+    let Some(dataset) = recordings::load(Convention::SocialGan) else {
+        return;
+    };
+    assert_eq!(dataset.recordings().len(), PUBLISHED_PARTS.len());
+    for (name, training, validation, first) in PUBLISHED_PARTS {
+        let (train, val) = dataset.recording(name).unwrap().parts(0.2);
+        let (train, val) = (train.unwrap(), val.unwrap());
+        let rows = (train.observations().len(), val.observations().len());
+        assert_eq!(rows, (training, validation), "{name}");
+        assert_eq!(val.frames()[0], first, "{name}");
+    }
+    for min_pedestrians in [1, 2] {
+        let rule = WindowRule::SocialGan { min_pedestrians };
+        for fold in dataset.folds() {
+            let split = fold.social_gan_split(min_pedestrians);
+            let (mut training, mut validation) = (Vec::new(), Vec::new());
+            // redone as its authors do it, on two recordings
+            for recording in fold.training_recordings() {
+                let cut = recording.frames()[recording.frames().len() * 4 / 5];
+                let rows = recording.observations().iter().copied();
+                let (before, after): (Vec<_>, Vec<_>) = rows.partition(|o| o.frame < cut);
+                for (rows, windows) in [(before, &mut training), (after, &mut validation)] {
+                    let (name, step) = (recording.name(), recording.frame_step());
+                    windows.extend(Recording::new(name, step, rows).unwrap().windows(rule));
+                }
+            }
+            assert_eq!(split.training, training);
+            assert_eq!(split.validation, validation);
+            assert_eq!(split.test, fold.test_windows(rule));
+            assert!(!split.validation.is_empty() && !split.test.is_empty());
+        }
+    }
+}
+
+#[test]
+fn the_parts_of_a_recording_are_all_of_it_in_order() {
+    let dataset = Dataset::simulated(2);
+    for recording in dataset.recordings() {
+        for fraction in [0.0, 0.2, 0.5, 1.0, 7.0, -1.0, f64::NAN] {
+            let (first, rest) = recording.parts(fraction);
+            let parts = [first, rest];
+            let rows: Vec<_> = parts
+                .iter()
+                .flatten()
+                .flat_map(Recording::observations)
+                .collect();
+            assert!(rows.into_iter().eq(recording.observations()), "{fraction}");
+            for part in parts.iter().flatten() {
+                let again =
+                    Recording::new(part.name(), part.frame_step(), part.observations().to_vec());
+                assert_eq!(again.as_ref(), Ok(part));
+            }
+        }
+    }
+}
+
+#[test]
+fn training_and_validation_share_no_moment_of_a_real_recording() {
+    for convention in [Convention::Star, Convention::SocialGan] {
+        if let Some(dataset) = recordings::load(convention) {
+            check_splits(&dataset);
+        }
+    }
+}
+
+#[test]
+fn folds_never_train_on_what_they_test_on() {
+    let dataset = Dataset::simulated(2);
+    assert_eq!(
+        dataset.fold_names(),
+        ["corridor", "crossing", "plaza", "bottleneck", "doorway"]
+    );
+    for fold in dataset.folds() {
+        let names = |rs: &[&Recording]| rs.iter().map(|r| r.name().to_owned()).collect::<Vec<_>>();
+        let (test, training) = (
+            names(fold.test_recordings()),
+            names(fold.training_recordings()),
+        );
+        assert!(test.iter().all(|name| !training.contains(name)));
+        assert_eq!(test.len() + training.len(), dataset.recordings().len());
+    }
+    let error = dataset.fold("eth").unwrap_err().to_string();
+    assert!(
+        error.contains("\"eth\"") && error.contains("corridor, crossing"),
+        "{error}"
+    );
+}

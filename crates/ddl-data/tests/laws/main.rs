@@ -1,0 +1,18 @@
+//! Recordings, windows and folds: laws, and numbers computed outside this project.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod completion;
+mod folds;
+mod frames;
+mod homography;
+mod live;
+mod names;
+mod rate;
+mod reader_laws;
+mod readers;
+mod recordings;
+mod simulated_crowd;
+mod summary;
+mod window_counts;
+mod windows;
+mod written;

@@ -1,0 +1,89 @@
+//! Pedestrians whom files and streams know by words.
+
+use ddl_data::{Completion, Format, FrameReader, PedestrianId, PedestrianName, parse_recording};
+
+/// The same tracks with words for pedestrians, in every format that may have them.
+#[test]
+fn pedestrians_may_be_words() {
+    let names = ["7f3e-aa", "12", "007", "1e3"];
+    let rows: Vec<(i64, &str)> = (0..8).flat_map(|t| names.map(|name| (t, name))).collect();
+    let text = |head: &str, row: fn(i64, &str) -> String| {
+        head.to_owned()
+            + &rows
+                .iter()
+                .map(|&(t, name)| row(t, name))
+                .collect::<String>()
+    };
+    for (format, text) in [
+        (
+            Format::Table,
+            text("frame,pedestrian,x,y\n", |t, name| {
+                format!("{t},{name},{t},0\n")
+            }),
+        ),
+        (
+            Format::SocialGan,
+            text("", |t, name| format!("{t} {name} {t} 0\n")),
+        ),
+        (
+            Format::TrajNet,
+            text("", |t, name| {
+                format!("{{\"track\": {{\"f\": {t}, \"p\": \"{name}\", \"x\": {t}, \"y\": 0}}}}\n")
+            }),
+        ),
+    ] {
+        let recording = parse_recording(text.as_bytes(), "f", format).unwrap();
+        let window = &recording.observed_windows()[0];
+        let found: Vec<String> = (0..4).map(|i| window.name(i).to_string()).collect();
+        assert_eq!(found, names, "{format}");
+        assert!((0..4).all(|i| window.named(&window.name(i)) == Some(i)));
+        let completed = &recording.completed_windows(Completion::USUAL)[1];
+        assert_eq!(completed.name(3), PedestrianName::Word("1e3".to_owned()));
+        // twice in a frame, and named so
+        let twice = text.clone() + text.lines().last().unwrap();
+        let read = parse_recording(twice.as_bytes(), "f", format);
+        if format != Format::TrajNet {
+            let told = read.unwrap_err().to_string();
+            assert!(
+                told.contains("pedestrian 1e3 is in frame 7 already"),
+                "{told}"
+            );
+        }
+        // the stream reader gives the same names
+        let mut frames = FrameReader::new(text.as_bytes(), "tracker");
+        let mut read = 0;
+        while let Some(frame) = frames.next_frame().unwrap() {
+            let found: Vec<String> = frame
+                .people
+                .iter()
+                .map(|(id, _)| frame.names.of(*id).to_string())
+                .collect();
+            assert_eq!(found, names, "{format}");
+            read += 1;
+        }
+        assert_eq!(read, 8);
+    }
+}
+
+#[test]
+fn numbers_stay_numbers_however_they_are_written() {
+    let text = b"frame,pedestrian,x,y\n0,3.0,0,0\n0,1e1,0,0\n0,-2,0,0\n";
+    let recording = parse_recording(text, "f", Format::Table).unwrap();
+    let ids = recording.pedestrians();
+    assert_eq!(ids, [PedestrianId(-2), PedestrianId(3), PedestrianId(10)]);
+    for id in ids {
+        assert_eq!(recording.names().of(id), PedestrianName::Number(id.0));
+    }
+}
+
+/// A word among the pedestrians of a stream changes nothing for those who are there.
+#[test]
+fn a_number_of_a_stream_stays_one_when_words_come() {
+    let text = "frame,pedestrian,x,y\n0,17.0,0,0\n1,17.0,0,0\n2,17.0,0,0\n2,ab,5,5\n3,17.0,0,0\n3,ab,5,5\n";
+    let mut frames = FrameReader::new(text.as_bytes(), "tracker");
+    let mut first = Vec::new();
+    while let Some(frame) = frames.next_frame().unwrap() {
+        first.push(frame.people[0].0);
+    }
+    assert_eq!(first, [PedestrianId(17); 4]);
+}

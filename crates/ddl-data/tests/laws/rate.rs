@@ -1,0 +1,202 @@
+//! Recordings of other rates.
+
+use ddl_data::{Format, Observation, PedestrianId, RateError, Recording, parse_recording};
+use proptest::prelude::*;
+
+use crate::readers::complaint;
+
+/// Two people who walk straight on, seen at some frames; every `spacing`-th where none is left out.
+fn walkers(frames: impl Iterator<Item = i64>, spacing: i64) -> Recording {
+    let place = |id: i64, frame: i64| [0.05 * frame as f64 + id as f64, -0.02 * frame as f64];
+    let seen = frames.flat_map(|frame| {
+        [1, 2].map(|id| Observation::new(frame, PedestrianId(id), place(id, frame)))
+    });
+    Recording::new("film", spacing, seen.collect()).unwrap()
+}
+
+#[test]
+fn whole_numbers_of_frames_are_left_alone() {
+    for (rate, spacing, step) in [
+        (25.0, 1, 10),
+        (30.0, 1, 12),
+        (29.97, 1, 12),
+        (2.5, 1, 1),
+        (25.0, 10, 10),
+        (15.0, 6, 6),
+        (10.0, 2, 4),
+        (1000.0, 100, 400),
+    ] {
+        let recording = walkers((0..50).map(|t| t * spacing), spacing);
+        let steps = recording.in_steps(1.0 / rate).unwrap();
+        assert_eq!((steps.parts, steps.resampled), (1, false), "{rate}");
+        assert_eq!(steps.recording.frame_step(), step, "{rate}");
+        assert_eq!(steps.recording.observations(), recording.observations());
+        assert!((steps.step_seconds(1.0 / rate) - 0.4).abs() < 0.002);
+    }
+}
+
+/// By hand: 12 frames a second are 4.8 a step, 4 a second 1.6, 1 a second 0.4; 25 seen every third frame are 10 that are not seen.
+#[test]
+fn other_rates_are_counted_in_parts_of_a_frame() {
+    for (rate, spacing, parts, step) in [
+        (12.0, 1, 5, 24),
+        (24.0, 1, 5, 48),
+        (4.0, 1, 5, 8),
+        (1.0, 1, 5, 2),
+        (25.0, 3, 1, 10),
+        (7.0, 1, 5, 14),
+    ] {
+        let recording = walkers((0..50).map(|t| t * spacing), spacing);
+        let steps = recording.in_steps(1.0 / rate).unwrap();
+        assert_eq!(
+            (steps.parts, steps.recording.frame_step()),
+            (parts, step),
+            "{rate}"
+        );
+        let last = 49 * spacing * parts;
+        assert_eq!(steps.recording.frames().last(), Some(&last), "{rate}");
+        assert!((steps.step_seconds(1.0 / rate) - 0.4).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn a_hole_stays_a_hole() {
+    // 24 frames a second, frames 30 to 59 missing: more than a second
+    let seen = (0..30).chain(60..100);
+    let steps = walkers(seen, 1).in_steps(1.0 / 24.0).unwrap();
+    let frames = steps.recording.frames();
+    let missing = |frame: &&i64| (29 * 5 + 1..60 * 5).contains(*frame);
+    assert_eq!(frames.iter().find(missing), None);
+    assert!(frames.iter().any(|frame| *frame < 30 * 5));
+}
+
+#[test]
+fn what_is_no_rate_is_refused() {
+    let recording = walkers(0..20, 1);
+    for time in [0.0, -0.1, f64::NAN, f64::INFINITY, 1e-12] {
+        let error = recording.in_steps(time).unwrap_err();
+        assert!(matches!(error, RateError::FrameTime { .. }), "{time}");
+    }
+    assert_eq!(
+        recording.in_steps(1.5),
+        Err(RateError::TooSlow { apart: 1.5 })
+    );
+    let far = walkers((1 << 52)..(1 << 52) + 20, 1);
+    let error = far.in_steps(1.0 / 24.0).unwrap_err();
+    assert!(matches!(error, RateError::Frames { .. }), "{error}");
+}
+
+proptest! {
+    /// Whatever the rate, whoever walks straight on still does, at every step from the last frame back, and never before it was seen.
+    #[test]
+    fn an_even_walk_stays_one(
+        rate in 1.0..60.0_f64,
+        spacing in 1..4_i64,
+        first in -1000..1000_i64,
+        count in 2..60_i64,
+    ) {
+        let recording = walkers((0..count).map(|t| first + t * spacing), spacing);
+        let Ok(steps) = recording.in_steps(1.0 / rate) else {
+            prop_assert!(spacing as f64 / rate > 1.2);
+            return Ok(());
+        };
+        let parts = steps.parts as f64;
+        prop_assert!((steps.step_seconds(1.0 / rate) / 0.4 - 1.0).abs() <= 0.005 + 1e-9);
+        for seen in steps.recording.observations() {
+            let (frame, id) = (seen.frame as f64 / parts, seen.pedestrian.0 as f64);
+            let [x, y] = seen.position;
+            prop_assert!((x - 0.05 * frame - id).abs() < 1e-9 && (y + 0.02 * frame).abs() < 1e-9);
+            prop_assert!(frame >= first as f64);
+        }
+        if steps.resampled {
+            let frames = steps.recording.frames();
+            let last = (first + (count - 1) * spacing) * steps.parts;
+            prop_assert_eq!(frames.last(), Some(&last));
+            let step = steps.recording.frame_step();
+            prop_assert!(frames.windows(2).all(|pair| pair[1] - pair[0] == step));
+            prop_assert!(frames[0] - first * steps.parts < step);
+        }
+    }
+}
+
+/// Milliseconds of a clock that trembles by one: no two observations are exactly 0.4 s apart.
+#[test]
+fn a_clock_that_trembles_is_resampled() {
+    let frames = (0..60_i64).map(|t| 40 * t + [0, 1, -1, 0, 1][(t % 5) as usize]);
+    let steps = walkers(frames, 40).in_steps(0.001).unwrap();
+    assert_eq!((steps.parts, steps.resampled), (1, true));
+    let recording = &steps.recording;
+    assert_eq!(recording.frame_step(), 400);
+    let windows = recording.observed_windows();
+    assert!(windows.is_empty(), "2.4 s are no whole observation");
+    for seen in recording.observations() {
+        let [x, _] = seen.position;
+        assert!((x - 0.05 * seen.frame as f64 - seen.pedestrian.0 as f64).abs() < 1e-9);
+    }
+    assert_eq!(recording.frames().len(), 6);
+}
+
+/// Somebody who walks 1.3 m/s, seen twice a second, every 12 frame numbers.
+fn trajnet_at_2_fps(scenes: &str) -> String {
+    let track = |t: u32| {
+        let x = 0.65 * f64::from(t);
+        format!(
+            "{{\"track\": {{\"f\": {}, \"p\": 1, \"x\": {x}, \"y\": 0}}}}\n",
+            12 * t
+        )
+    };
+    scenes.to_owned() + &(0..30).map(track).collect::<String>()
+}
+
+#[test]
+fn scenes_of_trajnet_say_how_fast_their_frames_follow() {
+    let scene =
+        |fps: &str| format!("{{\"scene\": {{\"id\": 0, \"p\": 1, \"s\": 0, \"e\": 240{fps}}}}}\n");
+    let read = |scenes: &str| {
+        parse_recording(trajnet_at_2_fps(scenes).as_bytes(), "f", Format::TrajNet).unwrap()
+    };
+    let rate = |scenes: &str| read(scenes).rate();
+    assert_eq!(rate(""), None);
+    assert_eq!(rate(&scene("")), None);
+    assert_eq!(rate(&scene(r#", "fps": null"#)), None);
+    let two = scene(r#", "fps": 2"#);
+    assert_eq!(
+        rate(&(scene("") + &two + &scene(r#", "fps": 2.0"#))),
+        Some(2.0)
+    );
+
+    // 24 frame numbers a second, 9.6 in 0.4 s
+    let recording = read(&two);
+    let frame_time = recording.frame_time_told().unwrap();
+    assert!((frame_time - 1.0 / 24.0).abs() < 1e-12, "{frame_time}");
+    let steps = recording.in_steps(frame_time).unwrap();
+    assert!(steps.resampled);
+    let median = steps.recording.summary().median_speed.unwrap();
+    assert!((median - 1.3).abs() < 1e-9, "{median}");
+
+    // the usual files, whose frames are 0.4 s apart whatever their numbers, are left as they are
+    let usual = read(&scene(r#", "fps": 2.5"#));
+    let steps = usual.in_steps(usual.frame_time_told().unwrap()).unwrap();
+    assert_eq!((steps.recording, steps.resampled), (usual, false));
+}
+
+#[test]
+fn scenes_that_disagree_about_the_rate_are_named() {
+    let scenes =
+        "{\"scene\": {\"id\": 0, \"fps\": 2.5}}\n\n{\"scene\": {\"id\": 1, \"fps\": 25}}\n";
+    let told = complaint(trajnet_at_2_fps(scenes), Format::TrajNet);
+    assert!(
+        told.starts_with(
+            "f, line 3: scene.fps is 25, but 2.5 on line 1; a file is of one recording"
+        ),
+        "{told}"
+    );
+    for fps in ["0", "-2.5", "\"fast\"", "[2.5]"] {
+        let scenes = format!("{{\"scene\": {{\"id\": 0, \"fps\": {fps}}}}}\n");
+        let told = complaint(trajnet_at_2_fps(&scenes), Format::TrajNet);
+        let expected = format!(
+            "f, line 1: scene.fps must be a number above 0, the frames in a second, found {fps}"
+        );
+        assert_eq!(told, expected);
+    }
+}

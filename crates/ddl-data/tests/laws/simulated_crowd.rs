@@ -1,0 +1,196 @@
+//! Simulated crowds look like people: plausible speeds, nobody in a wall, groups that stay together.
+
+use ddl_data::simulate::{Crowd, Scene};
+use ddl_data::{
+    Convention, Dataset, PedestrianId, Position, Recording, TIME_STEP, Window, WindowRule,
+};
+
+const SEED: u64 = 1;
+
+fn distance(a: Position, b: Position) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Everybody's successive positions (m), 0.4 s apart.
+fn tracks(crowd: &Crowd) -> Vec<Vec<Position>> {
+    let recording = crowd.recording();
+    let positions = |id| recording.track(id).iter().map(|o| o.position).collect();
+    recording.pedestrians().into_iter().map(positions).collect()
+}
+
+/// Everybody's speed between each two successive positions (m/s).
+fn speeds(crowd: &Crowd) -> Vec<f64> {
+    let steps = |track: &Vec<Position>| {
+        track
+            .windows(2)
+            .map(|w| distance(w[0], w[1]) / TIME_STEP)
+            .collect::<Vec<_>>()
+    };
+    tracks(crowd).iter().flat_map(steps).collect()
+}
+
+fn share(count: usize, of: usize) -> f64 {
+    count as f64 / of as f64
+}
+
+/// Positions at one frame, frame by frame.
+fn scenes(crowd: &Crowd) -> impl Iterator<Item = Vec<(PedestrianId, Position)>> + '_ {
+    let recording = crowd.recording();
+    let at = |&frame| {
+        recording
+            .at(frame)
+            .iter()
+            .map(|o| (o.pedestrian, o.position))
+            .collect()
+    };
+    recording.frames().iter().map(at)
+}
+
+#[test]
+fn a_seed_gives_the_same_bytes_and_another_seed_others() {
+    assert_eq!(Dataset::simulated(SEED), Dataset::simulated(SEED));
+    for scene in Scene::ALL {
+        let (one, other) = (scene.simulate(SEED), scene.simulate(SEED + 1));
+        assert_ne!(
+            one.recording().observations(),
+            other.recording().observations()
+        );
+    }
+}
+
+#[test]
+fn the_recordings_are_those_of_the_convention() {
+    let dataset = Dataset::simulated(SEED);
+    let names: Vec<_> = dataset.recordings().iter().map(Recording::name).collect();
+    assert_eq!(
+        names,
+        Convention::Simulated.recording_names().collect::<Vec<_>>()
+    );
+    for (scene, planned) in Scene::ALL.into_iter().zip(dataset.recordings()) {
+        assert_eq!(scene.simulate(SEED).recording(), planned);
+        assert_eq!(scene.name(), planned.name());
+    }
+}
+
+#[test]
+fn windows_are_plentiful_and_a_fold_is_not_huge() {
+    let mut everybody = 0;
+    for seed in 1..4 {
+        for scene in Scene::ALL {
+            let crowd = scene.simulate(seed);
+            let windows = crowd.recording().windows(WindowRule::Complete);
+            let walkers: usize = windows.iter().map(Window::len).sum();
+            assert!(
+                (1500..=5000).contains(&walkers),
+                "{scene}, seed {seed}: {walkers}"
+            );
+            everybody += crowd.recording().pedestrians().len();
+        }
+    }
+    assert!((3 * 400..3 * 800).contains(&everybody), "{everybody}");
+}
+
+#[test]
+fn speeds_are_those_of_people() {
+    for scene in Scene::ALL {
+        let speeds = speeds(&scene.simulate(SEED));
+        let walking: Vec<_> = speeds.iter().copied().filter(|&v| v > 0.4).collect();
+        let mean = walking.iter().sum::<f64>() / walking.len() as f64;
+        assert!(
+            (1.0..1.4).contains(&mean),
+            "{scene}: mean of walkers {mean} m/s"
+        );
+        let fastest = speeds.iter().copied().fold(0.0, f64::max);
+        assert!(fastest < 2.7, "{scene}: {fastest} m/s");
+        let standing = share(speeds.iter().filter(|&&v| v < 0.2).count(), speeds.len());
+        assert!(
+            (0.005..0.3).contains(&standing),
+            "{scene}: {standing} of all steps stand still"
+        );
+    }
+}
+
+#[test]
+fn nobody_walks_through_a_wall_or_a_pillar() {
+    for scene in Scene::ALL {
+        let crowd = scene.simulate(SEED);
+        for track in tracks(&crowd) {
+            for pair in track.windows(2) {
+                let blocked = crowd
+                    .walls()
+                    .iter()
+                    .any(|wall| wall.blocks(pair[0], pair[1]));
+                assert!(!blocked, "{scene}: {pair:?}");
+            }
+            for &place in &track {
+                let mut pillars = crowd.pillars().iter();
+                let inside = pillars.any(|p| distance(p.centre, place) < p.radius);
+                assert!(!inside, "{scene}: {place:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn bodies_hardly_overlap() {
+    for scene in Scene::ALL {
+        let crowd = scene.simulate(SEED);
+        let (mut pairs, mut close) = (0, 0);
+        for people in scenes(&crowd) {
+            for (i, (_, a)) in people.iter().enumerate() {
+                let gaps = people[..i].iter().map(|(_, b)| distance(*a, *b));
+                for gap in gaps {
+                    assert!(gap > 0.3, "{scene}: two centres {gap} m apart");
+                    pairs += 1;
+                    close += usize::from(gap < 0.38);
+                }
+            }
+        }
+        assert!(
+            share(close, pairs) < 1e-3,
+            "{scene}: {close} of {pairs} pairs overlap"
+        );
+    }
+}
+
+#[test]
+fn groups_stay_together() {
+    for scene in Scene::ALL {
+        let crowd = scene.simulate(SEED);
+        assert!(crowd.groups().len() > 10, "{scene}");
+        let mut gaps = Vec::new();
+        for people in scenes(&crowd) {
+            for group in crowd.groups() {
+                let members: Vec<_> = people
+                    .iter()
+                    .filter(|(id, _)| group.contains(id))
+                    .map(|p| p.1)
+                    .collect();
+                for (i, &a) in members.iter().enumerate() {
+                    gaps.extend(members[..i].iter().map(|&b| distance(a, b)));
+                }
+            }
+        }
+        let near = share(gaps.iter().filter(|&&gap| gap < 2.5).count(), gaps.len());
+        assert!(
+            near > 0.95,
+            "{scene}: within 2.5 m of each other in {near} of all steps"
+        );
+    }
+}
+
+#[test]
+fn everybody_gets_somewhere() {
+    for scene in Scene::ALL {
+        // Two minutes for at most 30 m and a rest: whoever takes longer is stuck.
+        let longest = tracks(&scene.simulate(SEED))
+            .iter()
+            .map(Vec::len)
+            .max()
+            .unwrap();
+        assert!(
+            (longest as f64) * TIME_STEP < 120.0,
+            "{scene}: {longest} steps"
+        );
+    }
+}

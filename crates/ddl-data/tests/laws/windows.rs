@@ -1,0 +1,233 @@
+//! Laws of windows, neighbours and rotations, on made-up recordings.
+
+use ddl_data::{
+    NeighbourMask, OBSERVED, Observation, PedestrianId, Position, Recording, Rotation, Window,
+    WindowError, WindowRule,
+};
+use proptest::prelude::*;
+
+const RULES: [WindowRule; 4] = [
+    WindowRule::Published,
+    WindowRule::Complete,
+    WindowRule::SocialGan { min_pedestrians: 1 },
+    WindowRule::SocialGan { min_pedestrians: 3 },
+];
+
+/// Recordings in which people come, go, and now and then miss a frame.
+fn recording() -> impl Strategy<Value = Vec<Observation>> {
+    let walker = (
+        0_i64..30,
+        1_i64..60,
+        prop::collection::btree_set(0_i64..60, 0..3),
+    );
+    (prop::collection::vec(walker, 1..7), any::<bool>()).prop_map(|(walkers, origin)| {
+        let mut rows = Vec::new();
+        for (id, (start, length, missed)) in (0_i64..).zip(walkers) {
+            for t in (0..length).filter(|t| !missed.contains(t)) {
+                let here = [t as f64, id as f64];
+                // A walker who stands on the origin for a step: absent by the published rule.
+                let place = if origin && t == 30 { [0.0, 0.0] } else { here };
+                rows.push(Observation::new((start + t) * 6, PedestrianId(id), place));
+            }
+        }
+        rows.push(Observation::new(0, PedestrianId(99), [1.0, 1.0]));
+        rows
+    })
+}
+
+/// Who has 20 steps in a row from a frame on, straight from the definition.
+fn present(recording: &Recording, start: i64) -> Vec<PedestrianId> {
+    let step = recording.frame_step();
+    let here = |frame: i64, id| recording.at(frame).iter().any(|o| o.pedestrian == id);
+    let whole = |id| (0..20).all(|t| here(start + t * step, id));
+    recording
+        .at(start)
+        .iter()
+        .map(|o| o.pedestrian)
+        .filter(|&id| whole(id))
+        .collect()
+}
+
+proptest! {
+    /// The observed windows are those of everybody with 8 steps behind them, and contain the
+    /// observed part of every complete window.
+    #[test]
+    fn observed_windows_ask_nothing_of_the_future(rows in recording()) {
+        let recording = Recording::new("made up", 1, rows).unwrap();
+        let observed = recording.observed_windows();
+        for window in &observed {
+            prop_assert!(!window.has_future());
+            prop_assert_eq!(window.steps(), OBSERVED);
+        }
+        let expected = recording.observations().iter().filter(|last| {
+            (1..OBSERVED as i64).all(|back| {
+                recording.at(last.frame - back).iter().any(|o| o.pedestrian == last.pedestrian)
+            })
+        });
+        prop_assert_eq!(observed.iter().map(Window::len).sum::<usize>(), expected.count());
+        for whole in recording.windows(WindowRule::Complete) {
+            let window = observed.iter().find(|w| w.start_frame() == whole.start_frame()).unwrap();
+            for (i, id) in whole.pedestrians().iter().enumerate() {
+                let j = window.pedestrians().iter().position(|other| other == id).unwrap();
+                prop_assert_eq!(window.track(j), whole.observed(i));
+            }
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn windows_do_not_depend_on_the_order_of_rows(
+        (rows, shuffled) in
+            recording().prop_flat_map(|rows| (Just(rows.clone()), Just(rows).prop_shuffle())),
+    ) {
+        let one = Recording::new("r", 6, rows).unwrap();
+        let other = Recording::new("r", 6, shuffled).unwrap();
+        for rule in RULES {
+            prop_assert_eq!(one.windows(rule), other.windows(rule));
+        }
+    }
+
+    #[test]
+    fn tracks_of_windows_are_the_positions_of_the_recording(rows in recording()) {
+        let recording = Recording::new("r", 6, rows).unwrap();
+        for rule in RULES {
+            for window in recording.windows(rule) {
+                for (i, &id) in window.pedestrians().iter().enumerate() {
+                    for (&frame, &position) in window.frames().iter().zip(window.track(i)) {
+                        let seen = Observation::new(frame, id, position);
+                        prop_assert!(recording.at(frame).contains(&seen));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn complete_windows_are_those_of_the_definition(rows in recording()) {
+        let recording = Recording::new("r", 6, rows).unwrap();
+        let mut windows = recording.windows(WindowRule::Complete).into_iter();
+        for &frame in recording.frames() {
+            let expected = present(&recording, frame);
+            if !expected.is_empty() {
+                let window = windows.next().unwrap();
+                prop_assert_eq!(window.start_frame(), frame);
+                prop_assert_eq!(window.pedestrians(), &expected[..]);
+            }
+        }
+        prop_assert!(windows.next().is_none());
+    }
+
+    #[test]
+    fn published_windows_are_complete_ones_without_those_at_the_origin(rows in recording()) {
+        let recording = Recording::new("r", 6, rows).unwrap();
+        let complete = recording.windows(WindowRule::Complete);
+        for window in recording.windows(WindowRule::Published) {
+            let whole = complete.iter().find(|w| w.start_frame() == window.start_frame()).unwrap();
+            let kept: Vec<_> = (0..whole.len())
+                .filter(|&i| !whole.track(i).contains(&[0.0, 0.0]))
+                .map(|i| whole.pedestrians()[i])
+                .collect();
+            prop_assert_eq!(window.pedestrians(), &kept[..]);
+            prop_assert!(recording.frames().contains(&(window.start_frame() + 20 * 6)));
+        }
+    }
+
+    #[test]
+    fn rotation_preserves_distances_and_can_be_undone(
+        a in prop::array::uniform2(-100.0..100.0_f64),
+        b in prop::array::uniform2(-100.0..100.0_f64),
+        angle in -10.0..10.0_f64,
+    ) {
+        let turn = Rotation::new(angle);
+        let gap = |a: Position, b: Position| (a[0] - b[0]).hypot(a[1] - b[1]);
+        prop_assert!((gap(a, b) - gap(turn.apply(a), turn.apply(b))).abs() < 1e-10);
+        prop_assert!(gap(turn.inverse().apply(turn.apply(a)), a) < 1e-10);
+    }
+
+    #[test]
+    fn neighbours_are_symmetric_and_never_oneself(
+        places in prop::collection::vec(prop::array::uniform2(-20.0..20.0_f64), 0..12),
+    ) {
+        let mask = NeighbourMask::within_box(&places, 10.0);
+        prop_assert_eq!(mask.len(), places.len());
+        let mut pairs = 0;
+        for (i, a) in places.iter().enumerate() {
+            for (j, b) in places.iter().enumerate() {
+                let near = (a[0] - b[0]).abs() <= 10.0 && (a[1] - b[1]).abs() <= 10.0;
+                prop_assert_eq!(mask.is_neighbour(i, j), near && i != j);
+                prop_assert_eq!(mask.is_neighbour(i, j), mask.is_neighbour(j, i));
+                pairs += usize::from(mask.is_neighbour(i, j));
+            }
+        }
+        prop_assert_eq!(mask.pairs().count(), pairs);
+    }
+}
+
+fn ids(range: std::ops::Range<i64>) -> Vec<PedestrianId> {
+    range.map(PedestrianId).collect()
+}
+
+#[test]
+fn windows_refuse_what_is_no_window() {
+    let track = |length: usize| vec![[0.0, 0.0]; length];
+    let new = |ids, tracks| Window::new("r", 0, 10, ids, tracks).unwrap_err();
+    assert_eq!(new(vec![], vec![]), WindowError::Empty);
+    assert!(matches!(
+        new(ids(0..2), vec![track(20)]),
+        WindowError::Count { .. }
+    ));
+    assert!(matches!(
+        new(ids(0..1), vec![track(9)]),
+        WindowError::Length { found: 9, .. }
+    ));
+    assert!(matches!(
+        new(ids(0..2), vec![track(20), track(8)]),
+        WindowError::Length { .. }
+    ));
+    let mut spoiled = track(20);
+    spoiled[11] = [0.0, f64::NAN];
+    assert!(matches!(
+        new(ids(0..1), vec![spoiled]),
+        WindowError::NotFinite { index: 11, .. }
+    ));
+    let twice = vec![PedestrianId(1), PedestrianId(1)];
+    assert!(matches!(
+        new(twice, vec![track(8), track(8)]),
+        WindowError::Duplicate { .. }
+    ));
+    for (start, step) in [(0, 0), (0, -10), (i64::MAX, 10), (0, i64::MAX)] {
+        let refused = Window::new("r", start, step, ids(0..1), vec![track(20)]);
+        assert!(matches!(refused, Err(WindowError::Frames { .. })));
+    }
+}
+
+#[test]
+fn changing_positions_changes_those_alone() {
+    let tracks = vec![
+        (0..20).map(|t| [f64::from(t), 0.0]).collect(),
+        vec![[5.0, 5.0]; 20],
+    ];
+    let window = Window::new("r", 100, 6, ids(4..6), tracks).unwrap();
+    let later = |_, step, [x, y]: Position| {
+        if step >= OBSERVED {
+            [x + 1.0, y]
+        } else {
+            [x, y]
+        }
+    };
+    let changed = window.map_positions(later);
+    assert_eq!(changed.without_future(), window.without_future());
+    assert_ne!(changed.end(0), window.end(0));
+    assert_eq!(
+        (window.frames()[19], window.steps(), window.has_future()),
+        (214, 20, true)
+    );
+    let observation = window.without_future();
+    assert_eq!(
+        (observation.frames().len(), observation.has_future()),
+        (8, false)
+    );
+    assert!(observation.future(0).is_empty() && observation.end(0).is_none());
+    assert_eq!(observation.track(0), window.observed(0));
+}

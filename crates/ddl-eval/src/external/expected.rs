@@ -1,0 +1,231 @@
+//! The pedestrians of the windows, and what a file says of each.
+
+use std::collections::HashMap;
+
+use ddl_data::{HORIZON, OBSERVED, Position, Window};
+
+use super::error::{ExternalError, ExternalProblem};
+use super::hint::Unknown;
+use super::lines::{Wrong, in_field, whole_line};
+use super::pedestrian_key::{PedestrianKey, frames_ahead, in_short, last_observed};
+use crate::Forecast;
+
+/// What is forecast of one pedestrian, as the file has it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct PedestrianForecast {
+    /// `[K][12]`, metres.
+    pub(super) positions: Vec<Position>,
+    /// `[K]`; `None` for equal ones.
+    pub(super) weights: Option<Vec<f64>>,
+    /// `[K]`, metres.
+    pub(super) goals: Option<Vec<Position>>,
+    /// The 12 raw frames, where the file names them.
+    pub(super) frames: Option<Vec<i64>>,
+}
+
+impl PedestrianForecast {
+    pub(super) fn hypotheses(&self) -> usize {
+        self.positions.len() / HORIZON
+    }
+
+    fn check_weights(&self) -> Result<(), ExternalProblem> {
+        let Some(weights) = &self.weights else {
+            return Ok(());
+        };
+        if let Some(&found) = weights.iter().find(|&&weight| weight < 0.0) {
+            return Err(ExternalProblem::NegativeWeight { found });
+        }
+        let sum: f64 = weights.iter().sum();
+        if (sum - 1.0).abs() > Forecast::WEIGHT_TOLERANCE {
+            return Err(ExternalProblem::WeightSum { sum });
+        }
+        Ok(())
+    }
+}
+
+/// A forecast that has found its pedestrian.
+#[derive(Debug)]
+pub(super) struct Slot {
+    pub(super) forecast: PedestrianForecast,
+    pub(super) line: usize,
+    /// Whether it was made of this pedestrian for its own sake: always, but for neighbours of TrajNet++.
+    primary: bool,
+    /// Line of another forecast of this neighbour that says otherwise.
+    pub(super) conflict: Option<usize>,
+}
+
+/// Windows waiting for the forecasts of a file.
+#[derive(Debug)]
+pub(super) struct ExpectedForecasts<'a> {
+    pub(super) origin: String,
+    pub(super) windows: &'a [Window],
+    /// The recordings of the windows, each once.
+    pub(super) recordings: Vec<&'a str>,
+    /// Window of a recording's index and a last observed frame.
+    by_last: HashMap<(usize, i64), usize>,
+    /// `[window][pedestrian]`.
+    pub(super) slots: Vec<Vec<Option<Slot>>>,
+    /// K and the line that decided it.
+    hypotheses: Option<(usize, usize)>,
+    /// Whether there are goals, and the line that decided it.
+    goals: Option<(bool, usize)>,
+    pub(super) forecasts: usize,
+    pub(super) unknown: Unknown,
+}
+
+impl<'a> ExpectedForecasts<'a> {
+    pub(super) fn of(windows: &'a [Window], origin: &str) -> Result<Self, ExternalError> {
+        let mut expected = Self {
+            origin: origin.to_owned(),
+            windows,
+            recordings: Vec::new(),
+            by_last: HashMap::new(),
+            slots: Vec::with_capacity(windows.len()),
+            hypotheses: None,
+            goals: None,
+            forecasts: 0,
+            unknown: Unknown::default(),
+        };
+        for (index, window) in windows.iter().enumerate() {
+            let name = window.recording();
+            let recording = expected.index_of(name).unwrap_or_else(|| {
+                expected.recordings.push(name);
+                expected.recordings.len() - 1
+            });
+            let observed_until = last_observed(window);
+            if expected
+                .by_last
+                .insert((recording, observed_until), index)
+                .is_some()
+            {
+                return Err(ExternalError::AmbiguousWindows {
+                    recording: name.to_owned(),
+                    observed_until,
+                });
+            }
+            expected
+                .slots
+                .push(window.pedestrians().iter().map(|_| None).collect());
+        }
+        Ok(expected)
+    }
+
+    fn index_of(&self, recording: &str) -> Option<usize> {
+        self.recordings.iter().position(|&name| name == recording)
+    }
+
+    /// The window that is observed until a frame of a recording.
+    pub(super) fn window(&self, recording: usize, observed_until: i64) -> Option<usize> {
+        self.by_last.get(&(recording, observed_until)).copied()
+    }
+
+    /// The index of the recording named; where none is, of the only one there is. `None` for an unknown name.
+    pub(super) fn recording(&self, name: Option<&str>) -> Result<Option<usize>, Wrong> {
+        match name {
+            Some(name) => Ok(self.index_of(name)),
+            None if self.recordings.len() > 1 => {
+                let known = self.recordings.iter().map(|&r| r.to_owned()).collect();
+                let problem = ExternalProblem::WhichRecording { known };
+                Err(in_field("recording", problem))
+            }
+            None => Ok(self.recordings.first().map(|_| 0)),
+        }
+    }
+
+    /// Takes the forecast of a pedestrian that stands on a line; `primary` is false for the neighbours of a scene, whom
+    /// another scene may forecast for their own sake.
+    pub(super) fn put(
+        &mut self,
+        who: &PedestrianKey,
+        forecast: PedestrianForecast,
+        line: usize,
+        primary: bool,
+    ) -> Result<(), Wrong> {
+        self.forecasts += 1;
+        self.check(&forecast, line)?;
+        let recording = self.recording(who.recording.as_deref())?;
+        let window = recording.and_then(|r| self.window(r, who.observed_until));
+        let found = window.and_then(|window| {
+            let pedestrian = self.windows[window].named(&who.pedestrian)?;
+            Some((window, pedestrian))
+        });
+        let Some((window, pedestrian)) = found else {
+            self.remember_unknown(who, recording);
+            return Ok(());
+        };
+        check_frames(&self.windows[window], forecast.frames.as_deref())?;
+        let slot = &mut self.slots[window][pedestrian];
+        let new = Slot {
+            forecast,
+            line,
+            primary,
+            conflict: None,
+        };
+        match slot {
+            None => *slot = Some(new),
+            Some(known) if known.primary && primary => {
+                let first_line = known.line;
+                return Err(whole_line(ExternalProblem::Duplicate { first_line }));
+            }
+            Some(known) if !known.primary && primary => *known = new,
+            Some(known) if !known.primary && known.forecast != new.forecast => {
+                known.conflict = Some(line);
+            }
+            Some(_) => {}
+        }
+        Ok(())
+    }
+
+    /// What must hold of every forecast, also of those of nobody.
+    fn check(&mut self, forecast: &PedestrianForecast, line: usize) -> Result<(), Wrong> {
+        let found = forecast.hypotheses();
+        if found == 0 {
+            return Err(whole_line(ExternalProblem::NoHypothesis));
+        }
+        let (expected, first_line) = *self.hypotheses.get_or_insert((found, line));
+        if found != expected {
+            return Err(whole_line(ExternalProblem::Hypotheses {
+                expected,
+                found,
+                first_line,
+            }));
+        }
+        let has_goals = forecast.goals.is_some();
+        let (expected, first_line) = *self.goals.get_or_insert((has_goals, line));
+        if has_goals != expected {
+            return Err(whole_line(ExternalProblem::GoalsOfSome { first_line }));
+        }
+        forecast
+            .check_weights()
+            .map_err(|problem| in_field("weight", problem))
+    }
+
+    fn remember_unknown(&mut self, who: &PedestrianKey, recording: Option<usize>) {
+        let known = recording.map(|r| self.recordings[r]);
+        let in_window = |until: i64| {
+            let window = recording.and_then(|r| self.window(r, until));
+            window.is_some_and(|w| self.windows[w].named(&who.pedestrian).is_some())
+        };
+        let step = self.windows.first().map_or(1, Window::frame_step);
+        let as_first_frame = in_window(
+            who.observed_until
+                .saturating_add(step * (OBSERVED as i64 - 1)),
+        );
+        let as_next_frame = in_window(who.observed_until.saturating_sub(step));
+        self.unknown
+            .remember(who, known, as_first_frame, as_next_frame);
+    }
+}
+
+fn check_frames(window: &Window, frames: Option<&[i64]>) -> Result<(), Wrong> {
+    let Some(found) = frames else { return Ok(()) };
+    let ahead = frames_ahead(window);
+    if ahead.iter().any(|frames| frames == found) {
+        return Ok(());
+    }
+    let problem = ExternalProblem::Frames {
+        expected: in_short(&ahead[0]),
+        found: in_short(found),
+    };
+    Err(in_field("frames", problem))
+}

@@ -1,0 +1,84 @@
+//! Forecasts of nobody: whose they are, and what may be the reason.
+
+use super::pedestrian_key::{PedestrianKey, named};
+
+/// How many are named in a message.
+pub(super) const NAMED: usize = 3;
+
+/// Forecasts that belong to no pedestrian of the windows.
+#[derive(Debug, Default)]
+pub(super) struct Unknown {
+    pub(super) count: usize,
+    pub(super) first: Vec<String>,
+    /// The first recordings that the windows do not have.
+    recordings: Vec<String>,
+    /// How many would fit if the frame named were the first of the window.
+    as_first_frame: usize,
+    /// How many would fit if it were the first to forecast.
+    as_next_frame: usize,
+    frames: Option<(i64, i64)>,
+}
+
+impl Unknown {
+    pub(super) fn remember(
+        &mut self,
+        who: &PedestrianKey,
+        recording: Option<&str>,
+        as_first_frame: bool,
+        as_next_frame: bool,
+    ) {
+        self.count += 1;
+        let name = who.recording.as_deref().or(recording);
+        if self.first.len() < NAMED {
+            let text = named(name, who.observed_until, &who.pedestrian);
+            self.first.push(text);
+        }
+        if let (None, Some(name)) = (recording, name)
+            && self.recordings.len() < NAMED
+            && !self.recordings.iter().any(|known| known == name)
+        {
+            self.recordings.push(name.to_owned());
+        }
+        self.as_first_frame += usize::from(as_first_frame);
+        self.as_next_frame += usize::from(as_next_frame);
+        let frame = who.observed_until;
+        let (least, greatest) = self.frames.unwrap_or((frame, frame));
+        self.frames = Some((least.min(frame), greatest.max(frame)));
+    }
+
+    /// A likely reason why the forecasts match no pedestrian: what recordings the windows are of, the range of frames until which
+    /// they are observed, and how many other forecasts match.
+    pub(super) fn hint(
+        &self,
+        recordings: &[&str],
+        range: Option<(i64, i64)>,
+        fitting: usize,
+    ) -> String {
+        if !self.recordings.is_empty() {
+            return format!(
+                "the windows are of {}, the file also of {}; is it of another fold?",
+                recordings.join(" and "),
+                self.recordings.join(" and ")
+            );
+        }
+        // Where more fit as they are, the frame is not what is wrong.
+        let most = fitting.max(self.count / 2);
+        for (count, frame) in [
+            (self.as_first_frame, "first frame of a window"),
+            (self.as_next_frame, "first frame forecast"),
+        ] {
+            if count > most {
+                return format!(
+                    "most would fit if observed_until were the {frame}; it is the last observed one"
+                );
+            }
+        }
+        match (self.frames, range) {
+            (Some((from, to)), Some((least, greatest))) => format!(
+                "their frames run from {from} to {to}, those of the windows from {least} to {greatest}; is the \
+                 file of another fold, data convention or window rule?"
+            ),
+            _ => "is the file of another fold, data convention or window rule?".to_owned(),
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! A JSON object of a line, and where in it the fault is if it cannot be read.
+
+use std::borrow::Cow;
+
+use ddl_data::PedestrianName;
+use serde::{Deserialize, Deserializer, de::DeserializeOwned};
+use serde_json::{Number, Value};
+use serde_path_to_error::{Path, Segment};
+
+use super::error::ExternalProblem;
+use super::field::{self, quoted};
+use super::lines::{Wrong, in_field, whole_line};
+
+/// Words for numbers that JSON does not have and several programs write all the same.
+const NO_NUMBERS: [&str; 3] = ["NaN", "-Infinity", "Infinity"];
+
+/// A whole number, however it is written.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "Number")]
+pub(super) struct Whole(pub(super) i64);
+
+impl TryFrom<Number> for Whole {
+    type Error = &'static str;
+
+    fn try_from(number: Number) -> Result<Self, Self::Error> {
+        let whole = number.as_i64().or_else(|| field::whole(number.as_f64()?));
+        whole.map(Self).ok_or("no whole number")
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Name {
+    Number(Whole),
+    Word(String),
+}
+
+/// For fields: a [`Whole`] as the number it is.
+pub(super) fn whole<'de, D: Deserializer<'de>>(field: D) -> Result<i64, D::Error> {
+    Whole::deserialize(field).map(|Whole(number)| number)
+}
+
+/// For fields: a pedestrian, which is a whole number, however it is written, or a word in quotes.
+pub(super) fn pedestrian<'de, D: Deserializer<'de>>(field: D) -> Result<PedestrianName, D::Error> {
+    Ok(match Name::deserialize(field)? {
+        Name::Number(Whole(number)) => PedestrianName::Number(number),
+        Name::Word(word) => PedestrianName::Word(word),
+    })
+}
+
+/// The object of a line; fields of other names may stand beside those that are read.
+pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, Wrong> {
+    // The quick way knows no names of fields, so that a line it refuses is read again.
+    serde_json::from_str(text).or_else(|_| read_with_path(&without_no_numbers(text)))
+}
+
+fn read_with_path<T: DeserializeOwned>(text: &str) -> Result<T, Wrong> {
+    let json = |detail: String| whole_line(ExternalProblem::Json { detail });
+    let value: Value = serde_json::from_str(text).map_err(|error| json(error.to_string()))?;
+    if !value.is_object() {
+        return Err(json(format!("found {}", quoted(&value.to_string()))));
+    }
+    let mut reader = serde_json::Deserializer::from_str(text);
+    serde_path_to_error::deserialize(&mut reader).map_err(|error| {
+        let message = error.inner().to_string();
+        let field = |name: &str| match error.path().to_string().as_str() {
+            "." => name.to_owned(),
+            path => format!("{path}.{name}"),
+        };
+        match message.split('`').collect::<Vec<_>>()[..] {
+            ["missing field ", name, ..] => in_field(field(name), ExternalProblem::Missing),
+            ["duplicate field ", name, ..] => in_field(field(name), ExternalProblem::TwiceNamed),
+            _ => match problem(&value, error.path()) {
+                Some(problem) => in_field(error.path().to_string(), problem),
+                None => json(message),
+            },
+        }
+    })
+}
+
+/// That the value at a path is not what it must be there.
+fn problem(value: &Value, path: &Path) -> Option<ExternalProblem> {
+    let (mut found, mut name, mut depth) = (value, "", 0);
+    for segment in path {
+        match segment {
+            Segment::Map { key } => (found, name, depth) = (found.get(key)?, key, 0),
+            Segment::Seq { index } => (found, depth) = (found.get(index)?, depth + 1),
+            _ => return None,
+        }
+    }
+    let expected = match (name, depth) {
+        ("observed_until" | "id" | "s" | "e" | "f" | "prediction_number" | "scene_id", 0)
+        | ("frames", 1) => "a whole number",
+        ("pedestrian" | "p", 0) => "a whole number or a word",
+        ("recording", 0) => "a name in quotes",
+        ("frames" | "hypotheses" | "positions", 0) => "a list",
+        ("hypotheses", 1) | ("scene" | "track", 0) => "an object",
+        ("positions", 1) | ("goal", 0) => "[x, y] in metres",
+        _ => {
+            let found = match found {
+                Value::Null => "null, NaN or infinity".to_owned(),
+                found => quoted(&found.to_string()),
+            };
+            return Some(ExternalProblem::NotFinite { found });
+        }
+    };
+    let found = quoted(&found.to_string());
+    Some(ExternalProblem::Kind { expected, found })
+}
+
+/// The text with `null` for every word outside quotes that stands for no number, so that its field can be named.
+fn without_no_numbers(text: &str) -> Cow<'_, str> {
+    let mut replaced = String::new();
+    let (mut quoted, mut escaped, mut done) = (false, false, 0);
+    let mut at = 0;
+    while at < text.len() {
+        let byte = text.as_bytes()[at];
+        if quoted {
+            quoted = byte != b'"' || escaped;
+            escaped = byte == b'\\' && !escaped;
+        } else if byte == b'"' {
+            quoted = true;
+        } else if let Some(word) = NO_NUMBERS
+            .iter()
+            .find(|word| text.as_bytes()[at..].starts_with(word.as_bytes()))
+        {
+            replaced += &text[done..at];
+            replaced += "null";
+            at += word.len();
+            done = at;
+            continue;
+        }
+        at += 1;
+    }
+    if done == 0 {
+        return Cow::Borrowed(text);
+    }
+    replaced += &text[done..];
+    Cow::Owned(replaced)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_for_no_number_are_null_outside_quotes_alone() {
+        for (text, expected) in [
+            ("[1, NaN]", "[1, null]"),
+            ("[-Infinity,Infinity,NaN]", "[null,null,null]"),
+            (r#"{"NaN\"NaN": NaN}"#, r#"{"NaN\"NaN": null}"#),
+            (r#"["a\\", NaN, "ä NaN"]"#, r#"["a\\", null, "ä NaN"]"#),
+            ("{}", "{}"),
+        ] {
+            assert_eq!(without_no_numbers(text), expected);
+        }
+    }
+
+    #[derive(Debug, Deserialize)]
+    struct Object {
+        list: Vec<Inner>,
+        #[serde(deserialize_with = "pedestrian")]
+        pedestrian: PedestrianName,
+    }
+
+    #[derive(Debug, Deserialize)]
+    struct Inner {
+        x: f64,
+    }
+
+    #[test]
+    fn a_fault_is_named_with_its_path() {
+        let good = r#"{"other": 1, "other": NaN, "list": [{"x": 2}], "pedestrian": 3.0}"#;
+        let read_well: Object = read(good).unwrap();
+        assert!((read_well.list[0].x - 2.0).abs() < 1e-12);
+        assert_eq!(read_well.pedestrian, PedestrianName::Number(3));
+        for (text, field) in [
+            (
+                r#"{"list": [{"x": 1}, {"x": 1, "x": 1}], "pedestrian": 3}"#,
+                "list[1].x: is there twice",
+            ),
+            (
+                r#"{"list": [{"x": 1}, {}], "pedestrian": 3}"#,
+                "list[1].x: is missing",
+            ),
+            (r#"{"list": []}"#, "pedestrian: is missing"),
+            (
+                r#"{"list": [], "pedestrian": 3.5}"#,
+                "pedestrian: must be a whole number or a word, found 3.5",
+            ),
+            (
+                r#"{"list": [{"x": NaN}], "pedestrian": 3}"#,
+                "list[0].x: must be a finite number",
+            ),
+        ] {
+            let (path, problem) = read::<Object>(text).unwrap_err();
+            let found = format!("{}: {problem}", path.unwrap());
+            assert!(found.starts_with(field), "{found}");
+        }
+        assert!(
+            read::<Object>(&"[".repeat(100_000))
+                .unwrap_err()
+                .0
+                .is_none()
+        );
+    }
+}

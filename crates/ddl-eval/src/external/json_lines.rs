@@ -1,0 +1,111 @@
+//! JSON lines: an object for each pedestrian of a window.
+
+use std::io::BufRead;
+
+use ddl_data::{HORIZON, PedestrianName, Position};
+use serde::{Deserialize, Deserializer};
+
+use super::error::{ExternalError, ExternalProblem};
+use super::expected::{ExpectedForecasts, PedestrianForecast};
+use super::field::within_bounds;
+use super::json::{self, Whole};
+use super::lines::{Lines, Wrong, in_field};
+use super::pedestrian_key::PedestrianKey;
+use crate::Protocol;
+
+/// Fields of other names may stand beside these.
+#[derive(Debug, Deserialize)]
+struct JsonForecast {
+    recording: Option<String>,
+    #[serde(deserialize_with = "json::whole")]
+    observed_until: i64,
+    #[serde(deserialize_with = "json::pedestrian")]
+    pedestrian: PedestrianName,
+    frames: Option<Vec<Whole>>,
+    hypotheses: Vec<JsonHypothesis>,
+}
+
+#[derive(Debug, Deserialize)]
+struct JsonHypothesis {
+    #[serde(default, deserialize_with = "number")]
+    weight: Option<f64>,
+    /// `null` is no goal: what programs make of NaN is `[null, null]`, and refused.
+    goal: Option<Position>,
+    positions: Vec<Position>,
+}
+
+/// A field that is there must be a number: `null` is what programs make of NaN, and not nothing.
+fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    f64::deserialize(deserializer).map(Some)
+}
+
+pub(super) fn read(
+    mut lines: Lines<impl BufRead>,
+    expected: &mut ExpectedForecasts<'_>,
+) -> Result<(), ExternalError> {
+    while let Some((number, text)) = lines.next_line()? {
+        let taken = json::read(text).and_then(|line: JsonForecast| {
+            let (who, forecast) = line.taken_apart()?;
+            expected.put(&who, forecast, number, true)
+        });
+        if let Err(wrong) = taken {
+            return Err(lines.wrong(number, wrong));
+        }
+    }
+    Ok(())
+}
+
+impl JsonForecast {
+    fn taken_apart(self) -> Result<(PedestrianKey, PedestrianForecast), Wrong> {
+        let count = self.hypotheses.len();
+        let who = PedestrianKey {
+            recording: self.recording,
+            observed_until: self.observed_until,
+            pedestrian: self.pedestrian,
+        };
+        if count > Protocol::MOST_HYPOTHESES {
+            return Err(in_field("hypotheses", who.too_many_hypotheses()));
+        }
+        let weighted = self
+            .hypotheses
+            .iter()
+            .filter(|h| h.weight.is_some())
+            .count();
+        if weighted != 0 && weighted != count {
+            return Err(in_field("hypotheses", ExternalProblem::WeightsOfSome));
+        }
+        let with_goal = self.hypotheses.iter().filter(|h| h.goal.is_some()).count();
+        let mut forecast = PedestrianForecast {
+            positions: Vec::with_capacity(count * HORIZON),
+            weights: (weighted > 0).then(|| Vec::with_capacity(count)),
+            goals: (with_goal > 0).then(|| Vec::with_capacity(count)),
+            frames: self
+                .frames
+                .map(|frames| frames.iter().map(|frame| frame.0).collect()),
+        };
+        for (k, hypothesis) in self.hypotheses.into_iter().enumerate() {
+            let found = hypothesis.positions.len();
+            if found != HORIZON {
+                let expected = HORIZON;
+                let problem = ExternalProblem::Length { expected, found };
+                return Err(in_field(format!("hypotheses[{k}].positions"), problem));
+            }
+            for (t, &position) in hypothesis.positions.iter().enumerate() {
+                within_bounds(position, || format!("hypotheses[{k}].positions[{t}]"))?;
+            }
+            if let Some(goal) = hypothesis.goal {
+                within_bounds(goal, || format!("hypotheses[{k}].goal"))?;
+            }
+            forecast.positions.extend(hypothesis.positions);
+            if let (Some(weights), Some(weight)) = (&mut forecast.weights, hypothesis.weight) {
+                weights.push(weight);
+            }
+            if let Some(goals) = &mut forecast.goals {
+                let missing =
+                    || in_field(format!("hypotheses[{k}].goal"), ExternalProblem::Missing);
+                goals.push(hypothesis.goal.ok_or_else(missing)?);
+            }
+        }
+        Ok((who, forecast))
+    }
+}

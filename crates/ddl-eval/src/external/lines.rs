@@ -1,0 +1,88 @@
+//! A file, one line at a time, however large it is.
+
+use std::io::{BufRead, Read as _};
+
+use super::error::{ExternalError, ExternalProblem};
+
+/// Longest line, bytes: 20 hypotheses with certificates take twenty times less.
+const LIMIT: usize = 4 << 20;
+
+/// The lines of a file that hold something, with their numbers.
+#[derive(Debug)]
+pub(super) struct Lines<R> {
+    reader: R,
+    origin: String,
+    number: usize,
+    line: Vec<u8>,
+}
+
+/// A field, where it is one, and what is wrong with it.
+pub(super) type Wrong = (Option<String>, ExternalProblem);
+
+/// Something wrong with a whole line.
+pub(super) fn whole_line(problem: ExternalProblem) -> Wrong {
+    (None, problem)
+}
+
+/// Something wrong with a field of that name.
+pub(super) fn in_field(field: impl Into<String>, problem: ExternalProblem) -> Wrong {
+    (Some(field.into()), problem)
+}
+
+impl<R: BufRead> Lines<R> {
+    pub(super) fn new(reader: R, origin: &str) -> Self {
+        Self {
+            reader,
+            origin: origin.to_owned(),
+            number: 0,
+            line: Vec::new(),
+        }
+    }
+
+    /// The next line that is not blank, with its number from 1; `None` at the end of the file.
+    pub(super) fn next_line(&mut self) -> Result<Option<(usize, &str)>, ExternalError> {
+        loop {
+            self.line.clear();
+            self.number += 1;
+            let mut limited = self.reader.by_ref().take(LIMIT as u64 + 1);
+            let read = limited.read_until(b'\n', &mut self.line);
+            let length = read.map_err(|source| ExternalError::Io {
+                origin: self.origin.clone(),
+                source,
+            })?;
+            if length == 0 {
+                return Ok(None);
+            }
+            if length > LIMIT {
+                let problem = ExternalProblem::LongLine { limit: LIMIT };
+                return Err(self.wrong(self.number, whole_line(problem)));
+            }
+            if self.number == 1 && self.line.starts_with(b"\xef\xbb\xbf") {
+                // Spreadsheets mark UTF-8 text with a byte-order mark, which is no content.
+                self.line.drain(..3);
+            }
+            if !self.line.trim_ascii().is_empty() {
+                break;
+            }
+        }
+        match std::str::from_utf8(&self.line) {
+            Ok(text) => Ok(Some((self.number, text.trim()))),
+            Err(_) => Err(self.wrong(self.number, whole_line(ExternalProblem::NotUtf8))),
+        }
+    }
+
+    /// The error that something is wrong on a line.
+    pub(super) fn wrong(&self, line: usize, what: Wrong) -> ExternalError {
+        wrong(&self.origin, line, what)
+    }
+}
+
+/// The error that something is wrong on a line of a file.
+pub(super) fn wrong(origin: &str, line: usize, (field, problem): Wrong) -> ExternalError {
+    ExternalError::Line {
+        origin: origin.to_owned(),
+        line,
+        field,
+        problem,
+    }
+}

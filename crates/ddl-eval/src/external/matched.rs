@@ -1,0 +1,215 @@
+//! Forecasts in the order of the windows.
+
+use std::fmt::Write as _;
+
+use ddl_data::{HORIZON, Position, Window};
+
+use sha2::{Digest as _, Sha256};
+
+use super::error::{ExternalError, ExternalProblem};
+use super::expected::{ExpectedForecasts, Slot};
+use super::hint::NAMED;
+use super::lines::{whole_line, wrong};
+use super::pedestrian_key::{last_observed, named};
+use crate::Forecast;
+
+/// What to do where a file and the windows are not of the same pedestrians.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Coverage {
+    /// It is an error: the file must forecast exactly the pedestrians of the windows.
+    #[default]
+    Whole,
+    /// The pedestrians that are in both are scored, and the result says which part of all they are.
+    ///
+    /// They are scored among everybody: the others of their windows are still there for collisions with true futures, for
+    /// interactions, and for baselines that look at others. The collision rate, JADE and JFDE compare forecasts with
+    /// one another, and are among those forecast.
+    Intersection,
+}
+
+/// Windows and the forecasts of a file for them, one each, in the order of the windows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Matched {
+    /// The windows, reduced to the pedestrians who are forecast.
+    pub windows: Vec<Window>,
+    /// The same windows with everybody in them.
+    pub everybody: Vec<Window>,
+    /// Their forecasts.
+    pub forecasts: Vec<Forecast>,
+    file: String,
+    pedestrians: usize,
+}
+
+impl Matched {
+    pub(super) fn named_after(self, file: String) -> Self {
+        Self { file, ..self }
+    }
+
+    /// The name of the file, without its folder.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Pedestrians who are forecast, counted once for each window.
+    #[must_use]
+    pub fn forecast_pedestrians(&self) -> usize {
+        self.windows.iter().map(Window::len).sum()
+    }
+
+    /// Pedestrians that the windows asked for.
+    #[must_use]
+    pub fn pedestrians(&self) -> usize {
+        self.pedestrians
+    }
+
+    /// The words by which a result names that it is of a part of the pedestrians; `None` where it is of all.
+    ///
+    /// They name the file, both counts and a digest of who the pedestrians are: such a result is comparable with nothing but
+    /// results of the very same pedestrians.
+    #[must_use]
+    pub fn test_subset(&self) -> Option<String> {
+        let scored = self.forecast_pedestrians();
+        (scored < self.pedestrians).then(|| {
+            format!(
+                "walkers forecast by {}: {scored} of {}, digest {}",
+                self.file,
+                self.pedestrians,
+                self.digest()
+            )
+        })
+    }
+
+    /// The first 8 hexadecimal digits of the SHA-256 of recording, last observed frame and pedestrian of all pedestrians.
+    fn digest(&self) -> String {
+        let mut hash = Sha256::new();
+        for window in &self.windows {
+            let recording = window.recording();
+            for pedestrian in window.pedestrians() {
+                // The length first: no two lists of pedestrians make the same bytes.
+                hash.update((recording.len() as u64).to_le_bytes());
+                hash.update(recording);
+                hash.update(last_observed(window).to_le_bytes());
+                hash.update(pedestrian.0.to_le_bytes());
+            }
+        }
+        let digest = hash.finalize();
+        digest[..4].iter().fold(String::new(), |mut text, byte| {
+            let _ = write!(text, "{byte:02x}");
+            text
+        })
+    }
+}
+
+impl ExpectedForecasts<'_> {
+    /// The forecasts, once the whole file is read.
+    pub(super) fn matched(self, coverage: Coverage) -> Result<Matched, ExternalError> {
+        let all: usize = self.windows.iter().map(Window::len).sum();
+        let found = self.slots.iter().flatten().flatten().count();
+        if self.forecasts == 0 {
+            return Err(self.wrong(1, ExternalProblem::Empty));
+        }
+        let refused = match coverage {
+            Coverage::Whole => self.unknown.count > 0,
+            Coverage::Intersection => found == 0,
+        };
+        if refused {
+            let frames = self.windows.iter().map(last_observed);
+            let range = frames.clone().min().zip(frames.max());
+            let fitting = self.forecasts - self.unknown.count;
+            return Err(ExternalError::Unknown {
+                hint: self.unknown.hint(&self.recordings, range, fitting),
+                origin: self.origin,
+                unknown: self.unknown.count,
+                forecasts: self.forecasts,
+                first: self.unknown.first,
+            });
+        }
+        if coverage == Coverage::Whole && found < all {
+            return Err(ExternalError::Missing {
+                missing: all - found,
+                pedestrians: all,
+                first: self.first_missing(),
+                origin: self.origin,
+            });
+        }
+        self.refuse_conflicts()?;
+        let mut matched = Matched {
+            windows: Vec::with_capacity(self.windows.len()),
+            everybody: Vec::with_capacity(self.windows.len()),
+            forecasts: Vec::with_capacity(self.windows.len()),
+            file: self.origin.clone(),
+            pedestrians: all,
+        };
+        for (window, slots) in self.windows.iter().zip(self.slots) {
+            let Some(kept) = window.keeping(|i| slots[i].is_some()) else {
+                continue;
+            };
+            let slots: Vec<Slot> = slots.into_iter().flatten().collect();
+            matched.windows.push(kept);
+            matched.everybody.push(window.clone());
+            let forecast = forecast(slots).map_err(|source| ExternalError::Shape {
+                origin: self.origin.clone(),
+                source,
+            })?;
+            matched.forecasts.push(forecast);
+        }
+        Ok(matched)
+    }
+
+    fn first_missing(&self) -> Vec<String> {
+        let rows = self.windows.iter().zip(&self.slots);
+        rows.flat_map(|(window, slots)| {
+            let missing = (0..window.len()).filter(|&i| slots[i].is_none());
+            missing.map(move |i| (window, i))
+        })
+        .take(NAMED)
+        .map(|(window, i)| {
+            let name = window.name(i);
+            named(Some(window.recording()), last_observed(window), &name)
+        })
+        .collect()
+    }
+
+    fn refuse_conflicts(&self) -> Result<(), ExternalError> {
+        for (window, slots) in self.windows.iter().zip(&self.slots) {
+            for (i, slot) in slots.iter().enumerate() {
+                if let Some(slot) = slot
+                    && let Some(line) = slot.conflict
+                {
+                    let problem = ExternalProblem::Neighbours {
+                        pedestrian: window.name(i),
+                        first_line: slot.line,
+                    };
+                    return Err(self.wrong(line, problem));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn wrong(&self, line: usize, problem: ExternalProblem) -> ExternalError {
+        wrong(&self.origin, line, whole_line(problem))
+    }
+}
+
+/// One window's forecast from those of its pedestrians.
+fn forecast(slots: Vec<Slot>) -> Result<Forecast, crate::ForecastShapeError> {
+    let pedestrians = slots.len();
+    let hypotheses = slots.first().map_or(0, |slot| slot.forecast.hypotheses());
+    let mut positions: Vec<Position> = Vec::with_capacity(pedestrians * hypotheses * HORIZON);
+    let mut weights = Vec::with_capacity(pedestrians * hypotheses);
+    let mut goals: Option<Vec<Position>> = None;
+    for slot in slots {
+        let pedestrian = slot.forecast;
+        positions.extend(pedestrian.positions);
+        match pedestrian.weights {
+            Some(own) => weights.extend(own),
+            None => weights.extend(std::iter::repeat_n(1.0 / hypotheses as f64, hypotheses)),
+        }
+        if let Some(own) = pedestrian.goals {
+            goals.get_or_insert_default().extend(own);
+        }
+    }
+    Forecast::new(pedestrians, hypotheses, positions, weights, goals)
+}

@@ -1,0 +1,159 @@
+//! Forecasts that another program made: read from a file, matched with the windows of a fold, scored.
+//!
+//! A pedestrian of a window is named by three things: the recording, the raw frame number of the **last observed** frame
+//! (`observed_until`), and the pedestrian. [`write_windows`] hands another program what was observed, without the
+//! future; [`read`] takes its forecasts back, in one of three [formats](ExternalFormat), and puts them into the order of
+//! the windows; [`measure`] scores them beside the baselines. `docs/your-model.md` describes the files field by
+//! field.
+//!
+//! A file is read line by line; what is kept are the positions of the pedestrians asked for. Nothing is repaired:
+//! whatever is wrong is an error with its line and field.
+//!
+//! # Examples
+//! ```
+//! use ddl_data::{PedestrianId, Window};
+//! use ddl_eval::external::{self, Coverage, ExternalFormat};
+//!
+//! let walk = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect();
+//! let windows = [Window::new("yard", 0, 10, vec![PedestrianId(7)], vec![walk])?];
+//! let ahead: Vec<[f64; 2]> = (8..20).map(|t| [0.5 * f64::from(t), 0.25]).collect();
+//! let file = format!(
+//!     "{{\"observed_until\": 70, \"pedestrian\": 7, \"hypotheses\": [{{\"positions\": {ahead:?}}}]}}\n"
+//! );
+//! let matched = external::read_from(
+//!     file.as_bytes(), "mine.jsonl", ExternalFormat::JsonLines, &windows, Coverage::Whole,
+//! )?;
+//! assert_eq!(matched.forecasts[0].hypothesis(0, 0)[11], [9.5, 0.25]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod error;
+mod expected;
+mod field;
+mod hint;
+mod json;
+mod json_lines;
+mod lines;
+mod matched;
+mod measure;
+mod numbering;
+mod pedestrian_key;
+mod place;
+mod table;
+mod table_rows;
+mod trajnet;
+mod write;
+
+use std::fmt;
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::str::FromStr;
+
+use ddl_data::{UnknownName, Window};
+
+pub use error::{ExternalError, ExternalProblem};
+pub use matched::{Coverage, Matched};
+pub use measure::measure;
+pub use write::{write_forecasts, write_windows};
+
+use expected::ExpectedForecasts;
+
+/// How a file of forecasts is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ExternalFormat {
+    /// A JSON object for each pedestrian of a window: what [`write_forecasts`] and `ddl forecast --format jsonl` write.
+    JsonLines,
+    /// A comma-separated table with a header, a row for each position: what `ddl forecast` writes.
+    Table,
+    /// The newline-delimited JSON of TrajNet++, with 8 observed and 12 forecast frames.
+    TrajNet,
+}
+
+impl ExternalFormat {
+    /// Every format.
+    pub const ALL: [Self; 3] = [Self::JsonLines, Self::Table, Self::TrajNet];
+
+    /// `jsonl`, `csv` or `ndjson`: the extension that files of the format have.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::JsonLines => "jsonl",
+            Self::Table => "csv",
+            Self::TrajNet => "ndjson",
+        }
+    }
+
+    /// The format that the extension of a file names, in small letters or capitals; JSON lines where it names none.
+    #[must_use]
+    pub fn of_file(path: &Path) -> Self {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+        let named = extension.to_ascii_lowercase().parse();
+        named.unwrap_or(Self::JsonLines)
+    }
+}
+
+impl fmt::Display for ExternalFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for ExternalFormat {
+    type Err = UnknownName;
+
+    fn from_str(word: &str) -> Result<Self, UnknownName> {
+        Self::ALL
+            .into_iter()
+            .find(|format| format.name() == word)
+            .ok_or_else(|| UnknownName {
+                kind: "format of forecasts",
+                found: word.to_owned(),
+                expected: "jsonl, csv, ndjson",
+            })
+    }
+}
+
+/// Reads a file of forecasts and matches it with windows.
+///
+/// # Errors
+/// The file cannot be read; a line is wrong ([`ExternalProblem`] says what, the error says where); or, unless
+/// [`Coverage::Intersection`] is asked for, a pedestrian has no forecast, or a forecast belongs to no pedestrian of the windows.
+pub fn read(
+    path: &Path,
+    format: ExternalFormat,
+    windows: &[Window],
+    coverage: Coverage,
+) -> Result<Matched, ExternalError> {
+    let file = File::open(path).map_err(|source| ExternalError::File {
+        path: path.to_owned(),
+        source,
+    })?;
+    let origin = path.display().to_string();
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let reader = BufReader::with_capacity(1 << 20, file);
+    let matched = read_from(reader, &origin, format, windows, coverage)?;
+    Ok(matched.named_after(name.into_owned()))
+}
+
+/// The same for anything that can be read; `origin` is the file's name in error messages.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_from(
+    reader: impl BufRead,
+    origin: &str,
+    format: ExternalFormat,
+    windows: &[Window],
+    coverage: Coverage,
+) -> Result<Matched, ExternalError> {
+    let mut expected = ExpectedForecasts::of(windows, origin)?;
+    let lines = lines::Lines::new(reader, origin);
+    match format {
+        ExternalFormat::JsonLines => json_lines::read(lines, &mut expected),
+        ExternalFormat::Table => table::read(lines, &mut expected),
+        ExternalFormat::TrajNet => trajnet::read(lines, &mut expected),
+    }?;
+    expected.matched(coverage)
+}

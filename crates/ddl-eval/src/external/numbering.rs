@@ -1,0 +1,69 @@
+//! The numbers of hypotheses, where a file gives them: those of one number are one joint future of the scene.
+
+use super::error::ExternalProblem;
+
+/// From where a file counts its hypotheses, once its first pedestrian has shown it.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct HypothesisNumbering {
+    first: Option<i64>,
+}
+
+impl HypothesisNumbering {
+    /// Holds the sorted numbers of a pedestrian to 0, 1 ... K - 1, or to 1, 2 ... K: the same for all pedestrians of the file.
+    pub(super) fn check(
+        &mut self,
+        sorted: &[i64],
+        pedestrian: &str,
+    ) -> Result<(), ExternalProblem> {
+        let counts_from = |first: i64| sorted.iter().copied().eq((first..).take(sorted.len()));
+        let first = match self.first {
+            Some(first) => Some(first).filter(|&first| counts_from(first)),
+            None => [0, 1].into_iter().find(|&first| counts_from(first)),
+        };
+        if first.is_some() {
+            self.first = first;
+            return Ok(());
+        }
+        let last = sorted.len() as i64 - 1;
+        let expected = match self.first {
+            Some(first) => format!("{} as before", range(first, first + last)),
+            None => format!("{} or {}", range(0, last), range(1, 1 + last)),
+        };
+        let found: Vec<String> = sorted.iter().map(i64::to_string).collect();
+        Err(ExternalProblem::Numbers {
+            pedestrian: pedestrian.to_owned(),
+            numbers: format!("{}, expected {expected}", found.join(", ")),
+        })
+    }
+}
+
+fn range(first: i64, last: i64) -> String {
+    if first == last {
+        first.to_string()
+    } else {
+        format!("{first} to {last}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_pedestrian_shows_from_where_is_counted() {
+        let mut numbering = HypothesisNumbering::default();
+        let complaint = |numbering: &mut HypothesisNumbering, numbers: &[i64]| {
+            numbering.check(numbers, "W").unwrap_err().to_string()
+        };
+        assert!(
+            complaint(&mut numbering, &[0, 2]).starts_with(
+                "the hypotheses of W have the numbers 0, 2, expected 0 to 1 or 1 to 2"
+            )
+        );
+        assert!(complaint(&mut numbering, &[2]).contains("expected 0 or 1:"));
+        numbering.check(&[1, 2], "W").unwrap();
+        numbering.check(&[1, 2, 3], "W").unwrap();
+        assert!(complaint(&mut numbering, &[0, 1]).contains("expected 1 to 2 as before"));
+        assert!(complaint(&mut numbering, &[i64::MAX]).contains("expected 1 as before"));
+    }
+}

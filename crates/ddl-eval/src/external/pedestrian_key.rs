@@ -1,0 +1,68 @@
+//! Whom a forecast is of, and the frames it is of.
+
+use ddl_data::{HORIZON, OBSERVED, PedestrianName, Window};
+
+use super::error::ExternalProblem;
+use crate::Protocol;
+
+/// Whom a forecast is of.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct PedestrianKey {
+    pub(super) recording: Option<String>,
+    /// Raw frame number of the last observed frame.
+    pub(super) observed_until: i64,
+    pub(super) pedestrian: PedestrianName,
+}
+
+impl PedestrianKey {
+    /// The pedestrian, for messages.
+    pub(super) fn named(&self) -> String {
+        let recording = self.recording.as_deref();
+        named(recording, self.observed_until, &self.pedestrian)
+    }
+
+    /// That the pedestrian has more hypotheses than any protocol allows.
+    pub(super) fn too_many_hypotheses(&self) -> ExternalProblem {
+        ExternalProblem::TooManyHypotheses {
+            pedestrian: self.named(),
+            allowed: Protocol::MOST_HYPOTHESES,
+        }
+    }
+}
+
+/// A pedestrian, for messages.
+pub(super) fn named(
+    recording: Option<&str>,
+    observed_until: i64,
+    pedestrian: &PedestrianName,
+) -> String {
+    let recording = recording.map_or_else(String::new, |name| format!("`{name}` "));
+    format!("{recording}observed until {observed_until} pedestrian {pedestrian}")
+}
+
+/// Raw frame number of a window's last observed frame.
+pub(super) fn last_observed(window: &Window) -> i64 {
+    window.frames()[OBSERVED - 1]
+}
+
+/// The frames that a window asks to forecast: those it has, and those at its regular step, which differ where the
+/// recording has gaps.
+pub(super) fn frames_ahead(window: &Window) -> [Vec<i64>; 2] {
+    let (last, step) = (last_observed(window), window.frame_step());
+    let regular: Vec<i64> = (1..=HORIZON as i64).map(|t| last + t * step).collect();
+    let own = match &window.frames()[OBSERVED..] {
+        [] => regular.clone(),
+        frames => frames.to_vec(),
+    };
+    [own, regular]
+}
+
+/// Frames, for messages.
+pub(super) fn in_short(frames: &[i64]) -> String {
+    match frames {
+        [] => "none".to_owned(),
+        [one] => one.to_string(),
+        [first, second] => format!("{first}, {second}"),
+        [first, second, .., last] => format!("{first}, {second} to {last}"),
+    }
+}

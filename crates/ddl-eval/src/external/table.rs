@@ -1,0 +1,274 @@
+//! The comma-separated table: a row for each position.
+
+use std::io::BufRead;
+
+use ddl_data::{HORIZON, PedestrianName, Position};
+
+use super::error::{ExternalError, ExternalProblem};
+use super::field::{self, quoted, within_bounds};
+use super::lines::{Lines, Wrong, in_field, whole_line};
+use super::numbering::HypothesisNumbering;
+
+use super::expected::{ExpectedForecasts, PedestrianForecast};
+use super::pedestrian_key::{PedestrianKey, in_short};
+use super::table_rows::{AtLine, Fields, TableRows};
+use crate::Protocol;
+
+const REQUIRED: [&str; 5] = ["observed_until", "pedestrian", "frame", "x", "y"];
+
+pub(super) fn read(
+    lines: Lines<impl BufRead>,
+    expected: &mut ExpectedForecasts<'_>,
+) -> Result<(), ExternalError> {
+    let mut rows = TableRows::new(lines);
+    let Some(header) = rows.next()? else {
+        return Ok(());
+    };
+    let columns = TableColumns::of(&header).map_err(|wrong| rows.wrong(wrong))?;
+    let mut numbering = HypothesisNumbering::default();
+    let mut group: Option<PedestrianRows> = None;
+    while let Some(fields) = rows.next()? {
+        let row = columns.row(&fields).map_err(|wrong| rows.wrong(wrong))?;
+        let number = rows.number();
+        if group.as_ref().is_some_and(|group| group.who != row.who) {
+            put(group.take(), expected, &mut numbering).map_err(|wrong| rows.wrong_at(wrong))?;
+        }
+        let group = group.get_or_insert_with(|| PedestrianRows::new(row.who.clone(), number));
+        group.add(&row, number).map_err(|wrong| rows.wrong(wrong))?;
+    }
+    put(group, expected, &mut numbering).map_err(|wrong| rows.wrong_at(wrong))
+}
+
+/// Hands over a pedestrian whose rows are complete; an error with its line.
+fn put(
+    group: Option<PedestrianRows>,
+    expected: &mut ExpectedForecasts<'_>,
+    numbering: &mut HypothesisNumbering,
+) -> Result<(), AtLine<Wrong>> {
+    let Some(group) = group else { return Ok(()) };
+    let line = group.line;
+    let (who, forecast) = group.forecast(numbering)?;
+    let put = expected.put(&who, forecast, line, true);
+    put.map_err(|wrong| (line, wrong))
+}
+
+/// Which column holds what.
+#[derive(Debug)]
+struct TableColumns {
+    count: usize,
+    required: [usize; REQUIRED.len()],
+    recording: Option<usize>,
+    hypothesis: Option<usize>,
+    weight: Option<usize>,
+}
+
+/// One position.
+#[derive(Debug)]
+struct TablePosition {
+    who: PedestrianKey,
+    hypothesis: i64,
+    weight: Option<f64>,
+    frame: i64,
+    position: Position,
+}
+
+impl TableColumns {
+    fn of(header: &Fields<'_>) -> Result<Self, Wrong> {
+        let names: Vec<&str> = (0..header.len()).map(|i| header.get(i)).collect();
+        let wrong = |detail: String| whole_line(ExternalProblem::Header { detail });
+        let find = |name: &str| {
+            let mut places = (0..names.len()).filter(|&i| names[i] == name);
+            let place = places.next();
+            match places.next() {
+                None => Ok(place),
+                Some(_) => Err(wrong(format!("column {name} is there twice"))),
+            }
+        };
+        let mut required = [0; REQUIRED.len()];
+        for (place, name) in required.iter_mut().zip(REQUIRED) {
+            *place = find(name)?.ok_or_else(|| wrong(format!("column {name} is missing")))?;
+        }
+        Ok(Self {
+            count: names.len(),
+            required,
+            recording: find("recording")?,
+            hypothesis: find("hypothesis")?,
+            weight: find("weight")?,
+        })
+    }
+
+    fn row(&self, fields: &Fields<'_>) -> Result<TablePosition, Wrong> {
+        if fields.len() != self.count {
+            let (expected, found) = (self.count, fields.len());
+            return Err(whole_line(ExternalProblem::FieldCount { expected, found }));
+        }
+        let [observed_until, pedestrian, frame, x, y] =
+            self.required.map(|place| fields.get(place));
+        let who = PedestrianKey {
+            recording: self
+                .recording
+                .map(|place| fields.get(place))
+                .filter(|name| !name.is_empty())
+                .map(str::to_owned),
+            observed_until: whole(observed_until, REQUIRED[0])?,
+            pedestrian: name(pedestrian)?,
+        };
+        let hypothesis = match self.hypothesis {
+            None => 0,
+            Some(place) => whole(fields.get(place), "hypothesis")?,
+        };
+        let weight = match self.weight {
+            None => None,
+            Some(place) => Some(finite(fields.get(place), "weight")?),
+        };
+        let position = [finite(x, REQUIRED[3])?, finite(y, REQUIRED[4])?];
+        within_bounds(position, || "x, y".to_owned())?;
+        Ok(TablePosition {
+            who,
+            hypothesis,
+            weight,
+            frame: whole(frame, REQUIRED[2])?,
+            position,
+        })
+    }
+}
+
+/// The rows of one pedestrian so far.
+#[derive(Debug)]
+struct PedestrianRows {
+    who: PedestrianKey,
+    line: usize,
+    /// In the order of the file.
+    hypotheses: Vec<HypothesisRows>,
+}
+
+#[derive(Debug)]
+struct HypothesisRows {
+    hypothesis: i64,
+    line: usize,
+    weight: Option<f64>,
+    frames: Vec<i64>,
+    positions: Vec<Position>,
+}
+
+impl PedestrianRows {
+    fn new(who: PedestrianKey, line: usize) -> Self {
+        Self {
+            who,
+            line,
+            hypotheses: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, row: &TablePosition, line: usize) -> Result<(), Wrong> {
+        let hypothesis = row.hypothesis;
+        if self
+            .hypotheses
+            .last()
+            .is_none_or(|last| last.hypothesis != hypothesis)
+        {
+            if self
+                .hypotheses
+                .iter()
+                .any(|known| known.hypothesis == hypothesis)
+            {
+                let problem = ExternalProblem::Scattered { hypothesis };
+                return Err(in_field("hypothesis", problem));
+            }
+            if self.hypotheses.len() == Protocol::MOST_HYPOTHESES {
+                let problem = self.who.too_many_hypotheses();
+                return Err(in_field("hypothesis", problem));
+            }
+            self.hypotheses.push(HypothesisRows {
+                hypothesis,
+                line,
+                weight: row.weight,
+                frames: Vec::with_capacity(HORIZON),
+                positions: Vec::with_capacity(HORIZON),
+            });
+        }
+        let Some(rows) = self.hypotheses.last_mut() else {
+            return Ok(());
+        };
+        if let (Some(first), Some(found)) = (rows.weight, row.weight)
+            && first.to_bits() != found.to_bits()
+        {
+            let problem = ExternalProblem::WeightChanges { first, found };
+            return Err(in_field("weight", problem));
+        }
+        if rows.positions.len() == HORIZON {
+            let (expected, found) = (HORIZON, HORIZON + 1);
+            return Err(whole_line(ExternalProblem::Length { expected, found }));
+        }
+        rows.frames.push(row.frame);
+        rows.positions.push(row.position);
+        Ok(())
+    }
+
+    /// The forecast, or what is wrong with it and on which line.
+    fn forecast(
+        mut self,
+        numbering: &mut HypothesisNumbering,
+    ) -> Result<(PedestrianKey, PedestrianForecast), AtLine<Wrong>> {
+        self.hypotheses.sort_by_key(|rows| rows.hypothesis);
+        let numbers: Vec<i64> = self.hypotheses.iter().map(|rows| rows.hypothesis).collect();
+        numbering
+            .check(&numbers, &self.who.named())
+            .map_err(|problem| (self.line, in_field("hypothesis", problem)))?;
+        let mut forecast = PedestrianForecast::default();
+        for rows in self.hypotheses {
+            let found = rows.positions.len();
+            if found != HORIZON {
+                let expected = HORIZON;
+                let problem = ExternalProblem::Length { expected, found };
+                return Err((rows.line, whole_line(problem)));
+            }
+            let frames = forecast.frames.get_or_insert_with(|| rows.frames.clone());
+            if *frames != rows.frames {
+                let problem = ExternalProblem::Frames {
+                    expected: in_short(frames),
+                    found: in_short(&rows.frames),
+                };
+                return Err((rows.line, in_field("frame", problem)));
+            }
+            forecast.positions.extend(rows.positions);
+            if let Some(weight) = rows.weight {
+                forecast.weights.get_or_insert_default().push(weight);
+            }
+        }
+        Ok((self.who, forecast))
+    }
+}
+
+fn whole(text: &str, name: &'static str) -> Result<i64, Wrong> {
+    let number = text.parse().ok();
+    let number = number.or_else(|| field::whole(text.parse().ok()?));
+    number.ok_or_else(|| {
+        let (expected, found) = ("a whole number", format!("{:?}", quoted(text)));
+        in_field(name, ExternalProblem::Kind { expected, found })
+    })
+}
+
+/// A pedestrian: a whole number, or a word, which is no number at all.
+fn name(text: &str) -> Result<PedestrianName, Wrong> {
+    let wrong = text.is_empty()
+        || text
+            .parse::<f64>()
+            .is_ok_and(|n| !n.is_infinite() && n.fract() != 0.0);
+    if wrong {
+        let (expected, found) = ("a whole number or a word", format!("{:?}", quoted(text)));
+        return Err(in_field(
+            REQUIRED[1],
+            ExternalProblem::Kind { expected, found },
+        ));
+    }
+    Ok(PedestrianName::of_text(text))
+}
+
+fn finite(text: &str, name: &'static str) -> Result<f64, Wrong> {
+    let number = text.parse::<f64>().ok().filter(|n| n.is_finite());
+    number.ok_or_else(|| {
+        let found = format!("{:?}", quoted(text));
+        in_field(name, ExternalProblem::NotFinite { found })
+    })
+}

@@ -1,0 +1,98 @@
+//! The rows of a comma-separated file, with the numbers of their lines.
+
+use std::io::BufRead;
+
+use csv_core::{ReadRecordResult, Reader};
+
+use super::error::{ExternalError, ExternalProblem};
+use super::lines::{Lines, Wrong, whole_line};
+
+/// A value with the number of its line.
+pub(super) type AtLine<T> = (usize, T);
+
+/// The rows of a table. Each is taken from one line, so that an open quote does not swallow the file.
+pub(super) struct TableRows<R> {
+    lines: Lines<R>,
+    reader: Reader,
+    /// The line being read, its number, and where its next row begins: a carriage return ends a row too.
+    line: Vec<u8>,
+    number: usize,
+    at: usize,
+    fields: Vec<u8>,
+    ends: Vec<usize>,
+}
+
+/// The fields of a row.
+pub(super) struct Fields<'a> {
+    text: &'a [u8],
+    ends: &'a [usize],
+}
+
+impl Fields<'_> {
+    pub(super) fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// The field in a column, without blanks around it; nothing beyond the last.
+    pub(super) fn get(&self, column: usize) -> &str {
+        let start = column.checked_sub(1).map_or(0, |before| self.ends[before]);
+        // Lines are text, and their fields are cut at commas and quotes.
+        std::str::from_utf8(&self.text[start..self.ends[column]]).map_or("", str::trim)
+    }
+}
+
+impl<R: BufRead> TableRows<R> {
+    pub(super) fn new(lines: Lines<R>) -> Self {
+        Self {
+            lines,
+            reader: Reader::new(),
+            line: Vec::new(),
+            number: 0,
+            at: 0,
+            fields: Vec::new(),
+            ends: Vec::new(),
+        }
+    }
+
+    /// Number of the line of the row read last, from 1.
+    pub(super) fn number(&self) -> usize {
+        self.number
+    }
+
+    /// Reads the next row; `None` at the end of the file.
+    pub(super) fn next(&mut self) -> Result<Option<Fields<'_>>, ExternalError> {
+        if self.at == self.line.len() {
+            let Some((number, text)) = self.lines.next_line()? else {
+                return Ok(None);
+            };
+            (self.number, self.at) = (number, 0);
+            self.line.clear();
+            self.line.extend_from_slice(text.as_bytes());
+            self.line.push(b'\n');
+            // Fields take no more room than their line.
+            self.fields.resize(self.line.len(), 0);
+            self.ends.resize(self.line.len(), 0);
+        }
+        let line = &self.line[self.at..];
+        let (result, read, _, count) =
+            self.reader
+                .read_record(line, &mut self.fields, &mut self.ends);
+        self.at += read;
+        if result != ReadRecordResult::Record {
+            return Err(self.wrong(whole_line(ExternalProblem::OpenQuote)));
+        }
+        Ok(Some(Fields {
+            text: &self.fields,
+            ends: &self.ends[..count],
+        }))
+    }
+
+    /// The error that something is wrong with the row just read.
+    pub(super) fn wrong(&self, wrong: Wrong) -> ExternalError {
+        self.lines.wrong(self.number, wrong)
+    }
+
+    pub(super) fn wrong_at(&self, (line, wrong): AtLine<Wrong>) -> ExternalError {
+        self.lines.wrong(line, wrong)
+    }
+}

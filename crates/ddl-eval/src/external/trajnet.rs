@@ -1,0 +1,310 @@
+//! TrajNet++ ndjson: scenes of 8 or 9 observed and 12 forecast frames, and the tracks that were forecast in them.
+//!
+//! A scene stands for the window of its recording that starts at its first frame, or of 9 observed frames at the second. Its primary pedestrian is forecast
+//! for its own sake; a neighbour's forecast counts where no scene of the window has that pedestrian as its primary
+//! one. Neighbours who are not in the window (they left before its end) are not scored, and left out. Pedestrians that are
+//! forecast in several scenes have no joint future: hypothesis k of a window is then put together from those scenes.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::io::BufRead;
+
+use super::error::{ExternalError, ExternalProblem};
+use super::expected::{ExpectedForecasts, PedestrianForecast};
+use super::field::within_bounds;
+use super::json::{self, Whole};
+use super::lines::{Lines, Wrong, in_field, whole_line};
+use super::numbering::HypothesisNumbering;
+use super::pedestrian_key::{PedestrianKey, frames_ahead, in_short};
+use crate::Protocol;
+use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
+use serde::Deserialize;
+
+/// Lines and fields of other names may stand between.
+#[derive(Debug, Deserialize)]
+struct NdjsonLine {
+    scene: Option<NdjsonScene>,
+    track: Option<NdjsonTrack>,
+}
+
+/// `recording` is an addition of ours, for folds of several recordings.
+#[derive(Debug, Clone, Deserialize)]
+struct NdjsonScene {
+    #[serde(deserialize_with = "json::whole")]
+    id: i64,
+    #[serde(deserialize_with = "json::pedestrian")]
+    p: PedestrianName,
+    #[serde(deserialize_with = "json::whole")]
+    s: i64,
+    #[serde(deserialize_with = "json::whole")]
+    e: i64,
+    recording: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+struct NdjsonTrack {
+    #[serde(deserialize_with = "json::whole")]
+    f: i64,
+    #[serde(deserialize_with = "json::pedestrian")]
+    p: PedestrianName,
+    x: f64,
+    y: f64,
+    prediction_number: Option<Whole>,
+    scene_id: Option<Whole>,
+}
+
+/// What one pedestrian of a scene is forecast to do: for each prediction number, frames and positions.
+type Predictions = BTreeMap<i64, Vec<(i64, Position)>>;
+
+/// The scene whose tracks are being read.
+#[derive(Debug)]
+struct OpenScene<'a> {
+    scene: NdjsonScene,
+    /// The window it stands for.
+    window: Option<&'a Window>,
+    /// By pedestrian, with the line of the first row.
+    tracks: BTreeMap<PedestrianName, (usize, Predictions)>,
+}
+
+pub(super) fn read(
+    mut lines: Lines<impl BufRead>,
+    expected: &mut ExpectedForecasts<'_>,
+) -> Result<(), ExternalError> {
+    let mut reading = Reading::new(expected);
+    while let Some((number, text)) = lines.next_line()? {
+        let taken = json::read(text)
+            .map_err(|wrong| (number, wrong))
+            .and_then(|line| reading.take(line, number));
+        if let Err((number, wrong)) = taken {
+            return Err(lines.wrong(number, wrong));
+        }
+    }
+    let closed = reading.close();
+    closed.map_err(|(number, wrong)| lines.wrong(number, wrong))
+}
+
+#[derive(Debug)]
+struct Reading<'w, 'a> {
+    expected: &'w mut ExpectedForecasts<'a>,
+    /// Window of a recording's index and a first frame.
+    by_start: HashMap<(usize, i64), usize>,
+    scenes: HashMap<i64, NdjsonScene>,
+    finished: HashSet<i64>,
+    open: Option<OpenScene<'a>>,
+    numbering: HypothesisNumbering,
+}
+
+impl<'w, 'a> Reading<'w, 'a> {
+    fn new(expected: &'w mut ExpectedForecasts<'a>) -> Self {
+        let windows = expected.windows.iter().enumerate();
+        let by_start = windows
+            .filter_map(|(index, window)| {
+                let recording = expected
+                    .recordings
+                    .iter()
+                    .position(|&r| r == window.recording())?;
+                Some(((recording, window.start_frame()), index))
+            })
+            .collect();
+        Self {
+            expected,
+            by_start,
+            scenes: HashMap::new(),
+            finished: HashSet::new(),
+            open: None,
+            numbering: HypothesisNumbering::default(),
+        }
+    }
+
+    fn take(&mut self, line: NdjsonLine, number: usize) -> Result<(), (usize, Wrong)> {
+        if let Some(scene) = line.scene {
+            let id = scene.id;
+            if self.scenes.insert(id, scene).is_some() {
+                let problem = ExternalProblem::ScatteredScene { scene: id };
+                return Err((number, in_field("scene.id", problem)));
+            }
+        }
+        let Some(track) = line.track else {
+            return Ok(());
+        };
+        // Tracks without a number were observed.
+        let Some(Whole(prediction)) = track.prediction_number else {
+            return Ok(());
+        };
+        let missing = || in_field("track.scene_id", ExternalProblem::Missing);
+        let Whole(id) = track.scene_id.ok_or_else(|| (number, missing()))?;
+        if self.open.as_ref().is_none_or(|open| open.scene.id != id) {
+            self.close()?;
+            let wrong = |problem| Err((number, in_field("track.scene_id", problem)));
+            if self.finished.contains(&id) {
+                return wrong(ExternalProblem::ScatteredScene { scene: id });
+            }
+            let Some(scene) = self.scenes.get(&id).cloned() else {
+                return wrong(ExternalProblem::UnknownScene { scene: id });
+            };
+            let open = self.open(scene).map_err(|wrong| (number, wrong))?;
+            self.open = Some(open);
+        }
+        let Some(mut open) = self.open.take() else {
+            return Ok(());
+        };
+        let added = self.add(&mut open, &track, prediction, number);
+        self.open = Some(open);
+        added.map_err(|wrong| (number, wrong))
+    }
+
+    /// Finds the window of a scene.
+    fn open(&self, scene: NdjsonScene) -> Result<OpenScene<'a>, Wrong> {
+        let recording = self.expected.recording(scene.recording.as_deref())?;
+        let starting_at = |frame: i64| -> Option<&'a Window> {
+            let index = *self.by_start.get(&(recording?, frame))?;
+            Some(&self.expected.windows[index])
+        };
+        let at_first = starting_at(scene.s);
+        let at_second = starting_at(scene.s.saturating_add(self.step()));
+        let ends = |window: &&Window| ends_at(window, scene.e);
+        let window = at_first.filter(ends).or(at_second.filter(ends));
+        if let (None, Some(first)) = (window, at_first) {
+            return Err(wrong_end(first, &scene));
+        }
+        let tracks = BTreeMap::new();
+        Ok(OpenScene {
+            scene,
+            window,
+            tracks,
+        })
+    }
+
+    fn add(
+        &self,
+        open: &mut OpenScene<'a>,
+        track: &NdjsonTrack,
+        prediction: i64,
+        number: usize,
+    ) -> Result<(), Wrong> {
+        let in_window = |w: &Window| w.named(&track.p).is_some();
+        if track.p != open.scene.p && !open.window.is_some_and(in_window) {
+            return Ok(());
+        }
+        let who = || self.who(&open.scene, open.window, track.p.clone());
+        let (_, predictions) = open
+            .tracks
+            .entry(track.p.clone())
+            .or_insert_with(|| (number, Predictions::new()));
+        if predictions.len() == Protocol::MOST_HYPOTHESES && !predictions.contains_key(&prediction)
+        {
+            let problem = who().too_many_hypotheses();
+            return Err(in_field("track.prediction_number", problem));
+        }
+        let rows = predictions.entry(prediction).or_default();
+        if rows.len() == HORIZON {
+            let (expected, found) = (HORIZON, HORIZON + 1);
+            let path = format!("prediction_number {prediction}");
+            return Err(in_field(path, ExternalProblem::Length { expected, found }));
+        }
+        let position = [track.x, track.y];
+        within_bounds(position, || "track.x, track.y".to_owned())?;
+        rows.push((track.f, position));
+        Ok(())
+    }
+
+    fn who(
+        &self,
+        scene: &NdjsonScene,
+        window: Option<&Window>,
+        pedestrian: PedestrianName,
+    ) -> PedestrianKey {
+        PedestrianKey {
+            recording: scene.recording.clone(),
+            observed_until: window
+                .map_or_else(|| self.unknown_last(scene), |w| w.frames()[OBSERVED - 1]),
+            pedestrian,
+        }
+    }
+
+    /// Hands over the pedestrians of the open scene, whose tracks are complete.
+    fn close(&mut self) -> Result<(), (usize, Wrong)> {
+        let Some(open) = self.open.take() else {
+            return Ok(());
+        };
+        let OpenScene {
+            scene,
+            window,
+            tracks,
+        } = open;
+        self.finished.insert(scene.id);
+        for (pedestrian, (line, predictions)) in tracks {
+            let primary = pedestrian == scene.p;
+            let who = self.who(&scene, window, pedestrian);
+            let numbers: Vec<i64> = predictions.keys().copied().collect();
+            let numbered = self.numbering.check(&numbers, &who.named());
+            numbered.map_err(|problem| (line, in_field("prediction_number", problem)))?;
+            let forecast = forecast(predictions, window).map_err(|wrong| (line, wrong))?;
+            let put = self.expected.put(&who, forecast, line, primary);
+            put.map_err(|wrong| (line, wrong))?;
+        }
+        Ok(())
+    }
+
+    /// The last observed frame of a scene that is no window, for messages.
+    fn unknown_last(&self, scene: &NdjsonScene) -> i64 {
+        scene.e.saturating_sub(HORIZON as i64 * self.step())
+    }
+
+    /// Raw frames in a step.
+    fn step(&self) -> i64 {
+        self.expected.windows.first().map_or(1, Window::frame_step)
+    }
+}
+
+/// Whether a frame is the last of the 12 to forecast.
+fn ends_at(window: &Window, frame: i64) -> bool {
+    let last = frames_ahead(window).map(|frames| frames.last().copied());
+    last.contains(&Some(frame))
+}
+
+/// A scene of other frames than 8 or 9 observed and 12 to forecast is not the window that starts with it.
+fn wrong_end(window: &Window, scene: &NdjsonScene) -> Wrong {
+    let problem = ExternalProblem::SceneFrames {
+        found: format!("{} to {}", scene.s, scene.e),
+        observed: in_short(&window.frames()[..OBSERVED]),
+        ahead: in_short(&frames_ahead(window)[0]),
+    };
+    in_field(format!("scene {}", scene.id), problem)
+}
+
+/// All hypotheses of a pedestrian, by their numbers.
+fn forecast(
+    predictions: Predictions,
+    window: Option<&Window>,
+) -> Result<PedestrianForecast, Wrong> {
+    let mut forecast = PedestrianForecast::default();
+    for (number, mut rows) in predictions {
+        let path = || format!("prediction_number {number}");
+        rows.sort_by_key(|&(frame, _)| frame);
+        if rows.len() != HORIZON {
+            let (expected, found) = (HORIZON, rows.len());
+            return Err(in_field(
+                path(),
+                ExternalProblem::Length { expected, found },
+            ));
+        }
+        let frames: Vec<i64> = rows.iter().map(|&(frame, _)| frame).collect();
+        if let Some(window) = window {
+            let ahead = frames_ahead(window);
+            if !ahead.contains(&frames) {
+                let problem = ExternalProblem::Frames {
+                    expected: in_short(&ahead[0]),
+                    found: in_short(&frames),
+                };
+                return Err(in_field(path(), problem));
+            }
+        }
+        forecast
+            .positions
+            .extend(rows.into_iter().map(|(_, position)| position));
+    }
+    if forecast.positions.is_empty() {
+        return Err(whole_line(ExternalProblem::NoHypothesis));
+    }
+    Ok(forecast)
+}

@@ -1,0 +1,113 @@
+//! What another program reads, and our own forecasts in the same words.
+
+use std::io::Write;
+
+use ddl_data::{PedestrianName, Position, Window};
+use serde::Serialize;
+
+use super::error::ExternalError;
+use super::pedestrian_key::last_observed;
+use crate::{EvaluationError, Forecast, WindowProblem};
+
+#[derive(Serialize)]
+struct WrittenPedestrian<'a> {
+    recording: &'a str,
+    observed_until: i64,
+    pedestrian: PedestrianName,
+    observed: &'a [Position],
+}
+
+#[derive(Serialize)]
+struct WrittenForecast<'a> {
+    recording: &'a str,
+    observed_until: i64,
+    pedestrian: PedestrianName,
+    hypotheses: Vec<WrittenHypothesis<'a>>,
+}
+
+#[derive(Serialize)]
+struct WrittenHypothesis<'a> {
+    weight: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    goal: Option<Position>,
+    positions: &'a [Position],
+}
+
+/// Writes what was observed, and nothing of the future, as JSON lines: an object for each pedestrian of each window.
+///
+/// The lines of a window stand together: those who are seen together have the same `recording` and
+/// `observed_until`. Positions are `[x, y]` in metres, 0.4 s apart, the last one at `observed_until`; reading them
+/// back gives the same bits.
+///
+/// ```text
+/// {"recording":"zara01","observed_until":70,"pedestrian":3,"observed":[[x,y], ... 8 of them]}
+/// ```
+///
+/// # Errors
+/// [`ExternalError::Io`] when it cannot be written.
+pub fn write_windows(windows: &[Window], mut writer: impl Write) -> Result<(), ExternalError> {
+    for window in windows {
+        for i in 0..window.len() {
+            let line = WrittenPedestrian {
+                recording: window.recording(),
+                observed_until: last_observed(window),
+                pedestrian: window.name(i),
+                observed: window.observed(i),
+            };
+            write_line(&mut writer, &line)?;
+        }
+    }
+    writer.flush().map_err(cannot_write)
+}
+
+/// Writes forecasts as the JSON lines that [`read`](super::read) takes back, bit by bit; verdicts of certificates are
+/// left out.
+///
+/// # Errors
+/// Windows and forecasts are not of the same pedestrians, or it cannot be written.
+pub fn write_forecasts(
+    windows: &[Window],
+    forecasts: &[Forecast],
+    mut writer: impl Write,
+) -> Result<(), ExternalError> {
+    if windows.len() != forecasts.len() {
+        let (windows, forecasts) = (windows.len(), forecasts.len());
+        return Err(ExternalError::Count { windows, forecasts });
+    }
+    for (window, forecast) in windows.iter().zip(forecasts) {
+        let (expected, found) = (window.len(), forecast.pedestrians());
+        if expected != found {
+            let problem = WindowProblem::Pedestrians { expected, found };
+            return Err(EvaluationError::of(window, problem).into());
+        }
+        for i in 0..window.len() {
+            let hypotheses = (0..forecast.hypotheses())
+                .map(|k| WrittenHypothesis {
+                    weight: forecast.weight(i, k),
+                    goal: forecast.goal(i, k),
+                    positions: forecast.hypothesis(i, k),
+                })
+                .collect();
+            let line = WrittenForecast {
+                recording: window.recording(),
+                observed_until: last_observed(window),
+                pedestrian: window.name(i),
+                hypotheses,
+            };
+            write_line(&mut writer, &line)?;
+        }
+    }
+    writer.flush().map_err(cannot_write)
+}
+
+fn write_line(writer: &mut impl Write, line: &impl Serialize) -> Result<(), ExternalError> {
+    serde_json::to_writer(&mut *writer, line).map_err(|error| cannot_write(error.into()))?;
+    writer.write_all(b"\n").map_err(cannot_write)
+}
+
+fn cannot_write(source: std::io::Error) -> ExternalError {
+    ExternalError::Io {
+        origin: "cannot write".to_owned(),
+        source,
+    }
+}

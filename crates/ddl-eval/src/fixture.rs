@@ -1,0 +1,43 @@
+//! Small scenes whose errors can be worked out on paper.
+
+use ddl_data::{HORIZON, OBSERVED, PedestrianId, Position, WINDOW, Window};
+
+use crate::Forecast;
+
+/// Each pedestrian stands at `starts[i]` while observed, then walks `steps[i]` a frame.
+pub(crate) fn window(starts: &[Position], steps: &[Position]) -> Window {
+    let tracks = starts.iter().zip(steps).map(|(start, step)| {
+        let frame = |t: usize| at(*start, *step, (t + 1).saturating_sub(OBSERVED) as f64);
+        (0..WINDOW).map(frame).collect()
+    });
+    of_tracks(tracks.collect())
+}
+
+/// A window of these tracks.
+pub(crate) fn of_tracks(tracks: Vec<Vec<Position>>) -> Window {
+    let ids = (0..).take(tracks.len()).map(PedestrianId).collect();
+    Window::new("made up", 0, 10, ids, tracks).unwrap()
+}
+
+/// Pedestrians of constant velocity: where they are at first, and metres a frame.
+pub(crate) fn walking(all: &[(Position, Position)], frames: usize) -> Window {
+    let track = |&(start, step): &(Position, Position)| {
+        (0..frames).map(|t| at(start, step, t as f64)).collect()
+    };
+    of_tracks(all.iter().map(track).collect())
+}
+
+/// A straight walk of 12 frames that leaves `start` by `step` a frame.
+pub(crate) fn walk(start: Position, step: Position) -> Vec<Position> {
+    (1..=HORIZON).map(|t| at(start, step, t as f64)).collect()
+}
+
+/// A forecast of `pedestrians` equal groups of hypotheses, given in order, with equal weights.
+pub(crate) fn forecast(pedestrians: usize, hypotheses: &[Vec<Position>]) -> Forecast {
+    let k = hypotheses.len() / pedestrians;
+    Forecast::equally_likely(pedestrians, k, hypotheses.concat()).unwrap()
+}
+
+fn at(start: Position, step: Position, t: f64) -> Position {
+    [start[0] + t * step[0], start[1] + t * step[1]]
+}

@@ -1,0 +1,78 @@
+//! The metrics of one pedestrian of one window, before any mean.
+
+use crate::{
+    Scene,
+    category::Category,
+    metric::{
+        amd::DistributionErrors,
+        collision::{self, DISC_RADIUS, collides},
+        displacement::DisplacementErrors,
+        diversity::Diversity,
+        expected::{expected, most_likely_ade, most_likely_fde},
+        goal::goal_fde,
+        kde::kde_nll,
+        miss::{MISS_DISTANCES, is_miss},
+        region::{RegionScores, weight_log_loss},
+        true_neighbour_collision::collides_with_truth,
+    },
+};
+
+/// Lengths in metres.
+pub(crate) struct PedestrianScores {
+    pub(crate) min_ade: f64,
+    pub(crate) min_fde: f64,
+    pub(crate) fde_at_min_ade: f64,
+    pub(crate) ade_at_min_fde: f64,
+    pub(crate) expected_ade: f64,
+    pub(crate) expected_fde: f64,
+    pub(crate) most_likely_ade: f64,
+    pub(crate) most_likely_fde: f64,
+    /// By 0.5 m, 1 m and 2 m.
+    pub(crate) missed: [bool; 3],
+    pub(crate) collides: bool,
+    pub(crate) truly_collides: bool,
+    pub(crate) collides_with_truth: bool,
+    pub(crate) goal_fde: Option<f64>,
+    pub(crate) kde_nll: Option<f64>,
+    pub(crate) distribution: Option<DistributionErrors>,
+    pub(crate) diversity: Option<Diversity>,
+    /// -ln of the weight of the hypothesis whose goal is nearest to the true end, nats.
+    pub(crate) weight_log_loss: Option<f64>,
+    pub(crate) regions: Option<RegionScores>,
+    pub(crate) familiarity: Option<f64>,
+    pub(crate) categories: Vec<Category>,
+}
+
+impl PedestrianScores {
+    /// Those of every pedestrian of a scene, in its order.
+    pub(crate) fn of(scene: &Scene<'_>, errors: &DisplacementErrors) -> Vec<Self> {
+        let forecast = scene.forecast();
+        let collides_forecast = collides(&collision::representative_tracks(scene), DISC_RADIUS);
+        let collides_truly = collision::collides_truly(scene, DISC_RADIUS);
+        let collides_with_truth = collides_with_truth(scene, DISC_RADIUS);
+        (0..scene.pedestrians())
+            .map(|i| Self {
+                min_ade: errors.min_ade(i),
+                min_fde: errors.min_fde(i),
+                fde_at_min_ade: errors.fde_at_min_ade(i),
+                ade_at_min_fde: errors.ade_at_min_fde(i),
+                expected_ade: expected(forecast, i, errors.ade(i)),
+                expected_fde: expected(forecast, i, errors.fde(i)),
+                most_likely_ade: most_likely_ade(forecast, errors, i),
+                most_likely_fde: most_likely_fde(forecast, errors, i),
+                missed: MISS_DISTANCES.map(|far| is_miss(errors, i, far)),
+                collides: collides_forecast[i],
+                truly_collides: collides_truly[i],
+                collides_with_truth: collides_with_truth[i],
+                goal_fde: goal_fde(scene, i),
+                kde_nll: kde_nll(scene, i),
+                distribution: DistributionErrors::of(scene, i),
+                diversity: Diversity::of(scene, i),
+                weight_log_loss: weight_log_loss(scene, i),
+                regions: RegionScores::of(scene, i),
+                familiarity: forecast.familiarity(i),
+                categories: Category::of(scene.everybody(), scene.place(i)),
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,115 @@
+//! Two windows and files of forecasts for them.
+
+use std::fmt::Write as _;
+
+use ddl_data::{HORIZON, PedestrianId, Position, Window};
+use ddl_eval::Forecast;
+use ddl_eval::external::{self, Coverage, ExternalError, ExternalFormat, Matched};
+
+/// Two windows of the recording `yard`, observed until 70 and until 80: pedestrians 3 and 5, then 5.
+pub(crate) fn windows() -> Vec<Window> {
+    let walk = |y: f64| (0..20).map(|t| [0.5 * f64::from(t), y]).collect::<Vec<_>>();
+    let ids = |ids: &[i64]| ids.iter().map(|&id| PedestrianId(id)).collect();
+    vec![
+        Window::new("yard", 0, 10, ids(&[3, 5]), vec![walk(0.0), walk(2.0)]).unwrap(),
+        Window::new("yard", 10, 10, ids(&[5]), vec![walk(2.5)]).unwrap(),
+    ]
+}
+
+/// A forecast that stands still at (x, y).
+pub(crate) fn still(x: f64, y: f64) -> Vec<Position> {
+    vec![[x, y]; HORIZON]
+}
+
+pub(crate) fn line(observed_until: i64, pedestrian: i64, hypotheses: &str) -> String {
+    format!(
+        "{{\"observed_until\":{observed_until},\"pedestrian\":{pedestrian},\"hypotheses\":[{hypotheses}]}}\n"
+    )
+}
+
+pub(crate) fn hypothesis(x: f64) -> String {
+    format!("{{\"positions\":{:?}}}", still(x, 0.0))
+}
+
+/// All three pedestrians with one hypothesis each, at x = 1, 2 and 3.
+pub(crate) fn whole() -> String {
+    line(70, 3, &hypothesis(1.0)) + &line(70, 5, &hypothesis(2.0)) + &line(80, 5, &hypothesis(3.0))
+}
+
+pub(crate) fn read(
+    text: &str,
+    format: ExternalFormat,
+    coverage: Coverage,
+) -> Result<Matched, ExternalError> {
+    external::read_from(text.as_bytes(), "f", format, &windows(), coverage)
+}
+
+pub(crate) fn complaint(text: &str, format: ExternalFormat) -> String {
+    read(text, format, Coverage::Whole).unwrap_err().to_string()
+}
+
+pub(crate) fn expected() -> Vec<Forecast> {
+    let one = |at: &[f64]| {
+        let positions = at.iter().flat_map(|&x| still(x, 0.0)).collect();
+        Forecast::equally_likely(at.len(), 1, positions).unwrap()
+    };
+    vec![one(&[1.0, 2.0]), one(&[3.0])]
+}
+
+/// The rows of a table: a pedestrian and where it stands.
+pub(crate) fn rows(
+    recording: &str,
+    until: i64,
+    pedestrian: i64,
+    hypothesis: i64,
+    weight: f64,
+    x: f64,
+) -> String {
+    (1..=12).fold(String::new(), |mut text, t| {
+        let frame = until + 10 * t;
+        writeln!(
+            text,
+            "{recording},{until},{pedestrian},{hypothesis},{weight},{frame},{x},0,ok"
+        )
+        .unwrap();
+        text
+    })
+}
+
+pub(crate) const HEADER: &str =
+    "recording,observed_until,pedestrian,hypothesis,weight,frame,x,y,certified\n";
+
+pub(crate) fn table() -> String {
+    HEADER.to_owned()
+        + &rows("yard", 70, 3, 0, 1.0, 1.0)
+        + &rows("yard", 70, 5, 0, 1.0, 2.0)
+        + &rows("yard", 80, 5, 0, 1.0, 3.0)
+}
+
+pub(crate) fn scene(id: i64, primary: i64, start: i64) -> String {
+    let end = start + 190;
+    format!(
+        "{{\"scene\": {{\"id\": {id}, \"p\": {primary}, \"s\": {start}, \"e\": {end}, \"fps\": 2.5, \"tag\": 0}}}}\n"
+    )
+}
+
+pub(crate) fn tracks(scene: i64, pedestrian: i64, prediction: i64, until: i64, x: f64) -> String {
+    (1..=12).fold(String::new(), |mut text, t| {
+        let f = until + 10 * t;
+        writeln!(text, "{{\"track\": {{\"f\": {f}, \"p\": {pedestrian}, \"x\": {x:?}, \"y\": 0.0, \"prediction_number\": {prediction}, \"scene_id\": {scene}}}}}").unwrap();
+        text
+    })
+}
+
+/// Scene 0 forecasts 3 and its neighbours 5 and 9, who is in no window; scene 1 forecasts 5 for its own sake.
+pub(crate) fn ndjson() -> String {
+    scene(0, 3, 0)
+        + "{\"track\": {\"f\": 0, \"p\": 3, \"x\": 0.0, \"y\": 0.0}}\n"
+        + &tracks(0, 3, 0, 70, 1.0)
+        + &tracks(0, 5, 0, 70, 8.0)
+        + &tracks(0, 9, 0, 70, 9.0)
+        + &scene(1, 5, 0)
+        + &scene(2, 5, 10)
+        + &tracks(1, 5, 0, 70, 2.0)
+        + &tracks(2, 5, 0, 80, 3.0)
+}

@@ -1,0 +1,241 @@
+//! What must hold of files of forecasts, whatever is in them.
+
+use std::fmt::Write as _;
+
+use ddl_data::{OBSERVED, Position, Window};
+use ddl_eval::external::{self, Coverage, ExternalFormat};
+use ddl_eval::{Forecast, Scores};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use serde_json::{Value, json};
+
+use crate::generated;
+
+/// Any coordinate within the bounds, as other programs print them.
+fn coordinate() -> impl Strategy<Value = f64> + Clone {
+    prop_oneof![
+        -1e3..1e3_f64,
+        -ddl_data::COORDINATE_LIMIT..=ddl_data::COORDINATE_LIMIT,
+        prop::num::f64::SUBNORMAL,
+        Just(-0.0)
+    ]
+}
+
+fn position() -> impl Strategy<Value = Position> + Clone {
+    (coordinate(), coordinate()).prop_map(|(x, y)| [x, y])
+}
+
+/// Windows of two recordings, and forecasts of them with K hypotheses, with goals or without.
+fn forecast_windows() -> impl Strategy<Value = (Vec<Window>, Vec<Forecast>)> {
+    let shapes = (vec(1..4_usize, 1..5), 1..4_usize, any::<bool>());
+    shapes.prop_flat_map(|(sizes, k, with_goals)| {
+        let windows: Vec<_> = sizes
+            .into_iter()
+            .enumerate()
+            .map(|(index, n)| {
+                let name = if index % 2 == 0 {
+                    "yard"
+                } else {
+                    "a \"quoted\" ünusual name"
+                };
+                let from = (name, 6 * index as i64 - 9, 6);
+                let forecast = generated::forecast(n, k, with_goals, position());
+                (generated::window(from, n, position()), forecast)
+            })
+            .collect();
+        windows.prop_map(|pairs| pairs.into_iter().unzip())
+    })
+}
+
+fn written(windows: &[Window], forecasts: &[Forecast]) -> String {
+    let mut bytes = Vec::new();
+    external::write_forecasts(windows, forecasts, &mut bytes).unwrap();
+    String::from_utf8(bytes).unwrap()
+}
+
+proptest! {
+    #[test]
+    fn what_is_written_is_read_back_to_the_bit_in_any_order(
+        (windows, forecasts) in forecast_windows(),
+        seed in any::<prop::sample::Index>(),
+    ) {
+        let text = written(&windows, &forecasts);
+        let mut lines: Vec<&str> = text.lines().collect();
+        let by = seed.index(lines.len());
+        lines.rotate_left(by);
+        let text = lines.join("\n");
+        let matched = external::read_from(
+            text.as_bytes(), "f", ExternalFormat::JsonLines, &windows, Coverage::Whole,
+        ).unwrap();
+        prop_assert_eq!(&matched.forecasts, &forecasts);
+        prop_assert_eq!(&matched.windows, &windows);
+        // equal numbers may differ in the sign of zero; their text does not
+        prop_assert_eq!(written(&matched.windows, &matched.forecasts), written(&windows, &forecasts));
+    }
+
+    #[test]
+    fn windows_are_written_without_their_future((windows, _) in forecast_windows()) {
+        let (mut whole, mut observed) = (Vec::new(), Vec::new());
+        external::write_windows(&windows, &mut whole).unwrap();
+        let blind: Vec<Window> = windows.iter().map(Window::without_future).collect();
+        external::write_windows(&blind, &mut observed).unwrap();
+        prop_assert_eq!(&whole, &observed);
+        let text = String::from_utf8(whole).unwrap();
+        let mut lines = text.lines();
+        for window in &windows {
+            for (i, pedestrian) in window.pedestrians().iter().enumerate() {
+                let line: Value = serde_json::from_str(lines.next().unwrap()).unwrap();
+                prop_assert_eq!(line["recording"].as_str(), Some(window.recording()));
+                prop_assert_eq!(line["observed_until"].as_i64(), Some(window.frames()[OBSERVED - 1]));
+                prop_assert_eq!(line["pedestrian"].as_i64(), Some(pedestrian.0));
+                let read: Vec<Position> = serde_json::from_value(line["observed"].clone()).unwrap();
+                prop_assert_eq!(&read[..], window.observed(i));
+                prop_assert_eq!(line.as_object().unwrap().len(), 4);
+            }
+        }
+        prop_assert_eq!(lines.next(), None);
+    }
+
+    #[test]
+    fn no_bytes_make_a_reader_panic(bytes in vec(any::<u8>(), 0..300), (windows, _) in forecast_windows()) {
+        for format in ExternalFormat::ALL {
+            for coverage in [Coverage::Whole, Coverage::Intersection] {
+                let _ = external::read_from(&bytes[..], "f", format, &windows, coverage);
+            }
+        }
+    }
+
+    #[test]
+    fn no_text_of_the_right_words_makes_a_reader_panic(
+        text in "(\\{|\\}|\\[|\\]|,|:|\"|\n|[-0-9.e]|NaN|null|-Infinity|\"track\":|\"scene\":|\"p\":|\"scene_id\":0|\"prediction_number\":0|\"observed_until\":|\"pedestrian\":|\"hypotheses\":|\"positions\":|observed_until|pedestrian|frame|x|y){0,80}",
+        (windows, _) in forecast_windows(),
+    ) {
+        for format in ExternalFormat::ALL {
+            let _ = external::read_from(text.as_bytes(), "f", format, &windows, Coverage::Intersection);
+        }
+    }
+
+    /// A file with a few bytes changed is read, or refused, and what is read makes forecasts.
+    #[test]
+    fn no_change_of_a_valid_file_makes_a_reader_panic(
+        (windows, forecasts) in forecast_windows(),
+        changes in vec((any::<prop::sample::Index>(), any::<u8>(), 0..3), 1..5),
+    ) {
+        for (format, text) in [
+            (ExternalFormat::JsonLines, written(&windows, &forecasts)),
+            (ExternalFormat::Table, as_table(&windows, &forecasts)),
+            (ExternalFormat::TrajNet, as_trajnet(&windows, &forecasts)),
+        ] {
+            let mut bytes = text.into_bytes();
+            let whole = external::read_from(&bytes[..], "f", format, &windows, Coverage::Whole);
+            prop_assert_eq!(whole.unwrap().forecasts.len(), windows.len());
+            for (place, byte, kind) in &changes {
+                let index = place.index(bytes.len());
+                match kind {
+                    0 => bytes[index] = *byte,
+                    1 => bytes.insert(index, *byte),
+                    _ => bytes.truncate(index.max(1)),
+                }
+            }
+            if let Ok(matched) = external::read_from(&bytes[..], "f", format, &windows, Coverage::Intersection) {
+                for (window, forecast) in matched.windows.iter().zip(&matched.forecasts) {
+                    prop_assert_eq!(window.len(), forecast.pedestrians());
+                }
+            }
+        }
+    }
+
+    /// Whoever is scored alone among everybody sees what it sees where all are scored.
+    #[test]
+    fn what_looks_at_others_is_the_same_for_a_part((windows, forecasts) in forecast_windows()) {
+        let whole = Scores::evaluate(&windows, &forecasts).unwrap();
+        let (mut truly, mut into_truth, mut categories) = (0.0, 0.0, 0);
+        for line in written(&windows, &forecasts).lines() {
+            let matched = external::read_from(
+                line.as_bytes(), "f", ExternalFormat::JsonLines, &windows, Coverage::Intersection,
+            ).unwrap();
+            let alone = Scores::evaluate_among(&matched.windows, &matched.everybody, &matched.forecasts).unwrap();
+            truly += alone.true_collision_rate;
+            into_truth += alone.true_neighbour_collision_rate.unwrap();
+            categories += alone.categories.iter().map(|c| c.pedestrians).sum::<usize>();
+        }
+        let n = whole.pedestrians as f64;
+        prop_assert!((truly / n - whole.true_collision_rate).abs() < 1e-12);
+        prop_assert!((into_truth / n - whole.true_neighbour_collision_rate.unwrap()).abs() < 1e-12);
+        prop_assert_eq!(categories, whole.categories.iter().map(|c| c.pedestrians).sum::<usize>());
+    }
+
+    /// Tables and TrajNet++ carry the same positions, bit by bit.
+    #[test]
+    fn the_other_formats_carry_the_same_positions((windows, forecasts) in forecast_windows()) {
+        for (format, text) in [
+            (ExternalFormat::Table, as_table(&windows, &forecasts)),
+            (ExternalFormat::TrajNet, as_trajnet(&windows, &forecasts)),
+        ] {
+            let matched = external::read_from(text.as_bytes(), "f", format, &windows, Coverage::Whole).unwrap();
+            for (read, forecast) in matched.forecasts.iter().zip(&forecasts) {
+                for (i, k) in pairs(forecast) {
+                    prop_assert_eq!(read.hypothesis(i, k), forecast.hypothesis(i, k));
+                    if format == ExternalFormat::Table {
+                        prop_assert_eq!(read.weight(i, k).to_bits(), forecast.weight(i, k).to_bits());
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn pairs(forecast: &Forecast) -> Vec<(usize, usize)> {
+    let hypotheses = forecast.hypotheses();
+    (0..forecast.pedestrians())
+        .flat_map(|i| (0..hypotheses).map(move |k| (i, k)))
+        .collect()
+}
+
+fn as_table(windows: &[Window], forecasts: &[Forecast]) -> String {
+    let mut text = "recording,observed_until,pedestrian,hypothesis,weight,frame,x,y\n".to_owned();
+    for (window, forecast) in windows.iter().zip(forecasts) {
+        for (i, k) in pairs(forecast) {
+            let positions = forecast
+                .hypothesis(i, k)
+                .iter()
+                .zip(&window.frames()[OBSERVED..]);
+            for ([x, y], frame) in positions {
+                writeln!(
+                    text,
+                    "{},{},{},{k},{},{frame},{x:?},{y:?}",
+                    window.recording(),
+                    window.frames()[OBSERVED - 1],
+                    window.pedestrians()[i],
+                    forecast.weight(i, k)
+                )
+                .unwrap();
+            }
+        }
+    }
+    text
+}
+
+/// Every pedestrian is the primary one of a scene of its own.
+fn as_trajnet(windows: &[Window], forecasts: &[Forecast]) -> String {
+    let (mut text, mut id) = (String::new(), 0);
+    for (window, forecast) in windows.iter().zip(forecasts) {
+        let frames = window.frames();
+        for (i, pedestrian) in window.pedestrians().iter().enumerate() {
+            let (s, e) = (frames[0], frames[19]);
+            let scene = json!({"id": id, "p": pedestrian.0, "s": s, "e": e, "recording": window.recording()});
+            writeln!(text, "{}", json!({"scene": scene})).unwrap();
+            for k in 0..forecast.hypotheses() {
+                let positions = forecast.hypothesis(i, k).iter().zip(&frames[OBSERVED..]);
+                for ([x, y], f) in positions {
+                    let track = json!({
+                        "f": f, "p": pedestrian.0, "x": x, "y": y, "prediction_number": k, "scene_id": id,
+                    });
+                    writeln!(text, "{}", json!({"track": track})).unwrap();
+                }
+            }
+            id += 1;
+        }
+    }
+    text
+}

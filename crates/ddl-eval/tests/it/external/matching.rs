@@ -1,0 +1,423 @@
+//! What is read, matched with windows, and scored.
+
+use ddl_data::{Convention, Format, PedestrianId, Window, WindowRule, parse_recording};
+use ddl_eval::baseline::{self, SocialForce};
+use ddl_eval::category::TrajectoryType;
+use ddl_eval::external::{self, Coverage, ExternalError, ExternalFormat};
+use ddl_eval::{Category, Conditions, Forecast, Forecaster as _, Protocol, Scores};
+use std::fmt::Write as _;
+
+use super::files::{
+    HEADER, complaint, expected, hypothesis, line, ndjson, read, rows, scene, still, table, tracks,
+    whole, windows,
+};
+
+#[test]
+fn every_format_says_the_same() {
+    for (text, format) in [
+        (whole(), ExternalFormat::JsonLines),
+        (
+            format!("\u{feff}\n{}", whole().replace('\n', "\r\n")),
+            ExternalFormat::JsonLines,
+        ),
+        (table(), ExternalFormat::Table),
+        (table().replace('\n', "\r"), ExternalFormat::Table),
+        (
+            table()
+                .replace("yard,", "\"yard\" ,")
+                .replace(",3,0,", ",3.0, 0 ,"),
+            ExternalFormat::Table,
+        ),
+        (ndjson(), ExternalFormat::TrajNet),
+    ] {
+        let matched = read(&text, format, Coverage::Whole).unwrap();
+        assert_eq!(matched.forecasts, expected(), "{format}");
+        assert_eq!(matched.windows, windows());
+        assert_eq!(
+            (matched.forecast_pedestrians(), matched.pedestrians()),
+            (3, 3)
+        );
+        assert_eq!(matched.test_subset(), None);
+    }
+}
+
+#[test]
+fn a_neighbour_counts_where_no_scene_has_it_as_its_own() {
+    let text = scene(0, 3, 0)
+        + &tracks(0, 3, 0, 70, 1.0)
+        + &tracks(0, 5, 0, 70, 2.0)
+        + &scene(2, 5, 10)
+        + &tracks(2, 5, 0, 80, 3.0);
+    let matched = read(&text, ExternalFormat::TrajNet, Coverage::Whole).unwrap();
+    assert_eq!(matched.forecasts, expected());
+}
+
+/// The benchmark of TrajNet++ shows a frame more before the forecast; that of the second scene is the first of the other window.
+#[test]
+fn scenes_of_9_observed_frames_are_the_windows_of_their_last_8() {
+    let text = [(0, 3, 0), (1, 5, 0), (2, 5, 10)].map(|(id, primary, start)| {
+        let of_8 = scene(id, primary, start);
+        of_8.replace(
+            &format!("\"s\": {start},"),
+            &format!("\"s\": {},", start - 10),
+        )
+    });
+    let text = text.concat()
+        + &tracks(0, 3, 0, 70, 1.0)
+        + &tracks(1, 5, 0, 70, 2.0)
+        + &tracks(2, 5, 0, 80, 3.0);
+    let matched = read(&text, ExternalFormat::TrajNet, Coverage::Whole).unwrap();
+    assert_eq!(matched.forecasts, expected());
+}
+
+/// Pedestrians whom the recording knows by words are forecast under their words, in every format.
+#[test]
+fn pedestrians_may_have_words_for_names() {
+    let words = ["7f3e-aa41", "007"];
+    let mut seen = "frame,pedestrian,x,y\n".to_owned();
+    for t in 0..20 {
+        for (y, word) in words.iter().enumerate() {
+            writeln!(seen, "{},{word},{t},{y}", 10 * t).unwrap();
+        }
+    }
+    let recording = parse_recording(seen.as_bytes(), "yard", Format::Table).unwrap();
+    let windows = recording.windows(WindowRule::Complete);
+    let mut asked = Vec::new();
+    external::write_windows(&windows, &mut asked).unwrap();
+    let asked = String::from_utf8(asked).unwrap();
+    assert!(asked.contains("\"pedestrian\":\"007\""), "{asked}");
+
+    let (mut lines, mut table) = (String::new(), HEADER.to_owned());
+    let mut scenes = String::new();
+    for (id, word) in (0..).zip(words) {
+        let quoted = format!("\"{word}\"");
+        lines += &line(70, 1, &hypothesis(1.0)).replace(":1,\"hyp", &format!(":{quoted},\"hyp"));
+        table += &rows("yard", 70, 4, 0, 1.0, 1.0).replace(",70,4,", &format!(",70,{word},"));
+        let scene = scene(id, 4, 0) + &tracks(id, 4, 0, 70, 1.0);
+        scenes += &scene.replace("\"p\": 4", &format!("\"p\": {quoted}"));
+    }
+    for (text, format) in [
+        (lines, ExternalFormat::JsonLines),
+        (table, ExternalFormat::Table),
+        (scenes, ExternalFormat::TrajNet),
+    ] {
+        let matched = external::read_from(text.as_bytes(), "f", format, &windows, Coverage::Whole);
+        let both = [still(1.0, 0.0), still(1.0, 0.0)].concat();
+        let both = Forecast::equally_likely(2, 1, both).unwrap();
+        assert_eq!(matched.unwrap().forecasts, [both], "{format}");
+    }
+    let one = line(70, 1, &hypothesis(1.0)).replace(":1,\"hyp", ":\"007\",\"hyp");
+    let (format, whole) = (ExternalFormat::JsonLines, Coverage::Whole);
+    let missing = external::read_from(one.as_bytes(), "f", format, &windows, whole);
+    let told = missing.unwrap_err().to_string();
+    assert!(
+        told.contains("observed until 70 pedestrian 7f3e-aa41"),
+        "{told}"
+    );
+}
+
+#[test]
+fn the_output_of_ddl_forecast_is_read_as_it_is() {
+    let frames: Vec<i64> = (8..20).map(|t| 10 * t).collect();
+    let first = format!(
+        "{{\"observed_until\":70,\"pedestrian\":3,\"frames\":{frames:?},\"hypotheses\":[{{\"weight\":0.75,\"goal\":[1.0,0.0],\
+         \"positions\":{p:?},\"certificate\":{{\"holds\":true,\"violation\":null}}}},{{\"weight\":0.25,\"goal\":[2.0,0.0],\"positions\":{p:?}}}]}}\n",
+        p = still(1.0, 0.0)
+    );
+    let matched = read(&first, ExternalFormat::JsonLines, Coverage::Intersection).unwrap();
+    let forecast = &matched.forecasts[0];
+    assert_eq!((forecast.pedestrians(), forecast.hypotheses()), (1, 2));
+    assert_eq!(forecast.goal(0, 1), Some([2.0, 0.0]));
+    assert!((forecast.weight(0, 0) - 0.75).abs() < f64::EPSILON);
+    // goals that are null are none
+    let text = whole().replace(
+        "{\"positions\"",
+        "{\"goal\":null,\"weight\":1.0,\"positions\"",
+    );
+    let matched = read(&text, ExternalFormat::JsonLines, Coverage::Whole).unwrap();
+    assert_eq!(matched.forecasts, expected());
+}
+
+#[test]
+fn the_intersection_names_itself_and_scores_those_alone() {
+    let text = line(70, 5, &hypothesis(2.0)) + &line(70, 4, &hypothesis(9.0));
+    let matched = read(&text, ExternalFormat::JsonLines, Coverage::Intersection).unwrap();
+    assert_eq!(
+        matched.test_subset().unwrap(),
+        // of "yard", 70 and 5, computed with Python's hashlib
+        "walkers forecast by f: 1 of 3, digest f5c3a037"
+    );
+    assert_eq!(matched.windows.len(), 1);
+    assert_eq!(matched.windows[0].pedestrians(), [PedestrianId(5)]);
+    let conditions = Conditions::new(
+        Convention::Star,
+        WindowRule::Complete,
+        Protocol::Fair,
+        "yard",
+        "mine",
+    );
+    let rows = external::measure(&conditions, &matched, baseline::NOISE_SEED).unwrap();
+    for row in &rows {
+        assert_eq!(row.scores.pedestrians, 1);
+        assert_eq!(row.conditions.test_subset, matched.test_subset());
+    }
+    assert_eq!(rows[0].conditions.forecaster, "mine");
+    assert_eq!(
+        rows[0].scores,
+        Scores::evaluate(&matched.windows, &matched.forecasts).unwrap()
+    );
+    // he goes on from x = 4 to 9.5 at y = 2, and is forecast at (2, 0)
+    let end = f64::hypot(7.5, 2.0);
+    assert!((rows[0].scores.min_fde - end).abs() < 1e-12);
+}
+
+#[test]
+fn the_same_number_of_other_pedestrians_is_another_subset() {
+    let of = |pedestrian| {
+        let text = line(70, pedestrian, &hypothesis(2.0));
+        let matched = read(&text, ExternalFormat::JsonLines, Coverage::Intersection).unwrap();
+        matched.test_subset().unwrap()
+    };
+    assert_eq!(of(3), "walkers forecast by f: 1 of 3, digest 0f80b53d");
+    assert_ne!(of(3), of(5));
+}
+
+#[test]
+fn the_subset_of_the_caller_is_kept() {
+    let subset = |text: &str, coverage| {
+        let matched = read(text, ExternalFormat::JsonLines, coverage).unwrap();
+        let (rule, protocol) = (WindowRule::Complete, Protocol::Single);
+        let conditions = Conditions {
+            test_subset: Some("every second window".to_owned()),
+            ..Conditions::new(Convention::Star, rule, protocol, "yard", "mine")
+        };
+        let rows = external::measure(&conditions, &matched, 1).unwrap();
+        rows[1].conditions.test_subset.clone().unwrap()
+    };
+    assert_eq!(subset(&whole(), Coverage::Whole), "every second window");
+    assert_eq!(
+        subset(&line(70, 5, &hypothesis(2.0)), Coverage::Intersection),
+        "every second window; walkers forecast by f: 1 of 3, digest f5c3a037"
+    );
+}
+
+#[test]
+fn hypotheses_of_a_table_are_ordered_by_their_numbers() {
+    for first in [0, 1] {
+        let (second, last) = (first + 1, rows("yard", 80, 5, first, 0.25, 5.0));
+        let text = HEADER.to_owned()
+            + &rows("yard", 70, 3, first, 0.75, 1.0)
+            + &rows("yard", 70, 3, second, 0.25, 2.0)
+            + &rows("yard", 70, 5, second, 0.625, 4.0)
+            + &rows("yard", 70, 5, first, 0.375, 3.0)
+            + &last
+            + &rows("yard", 80, 5, second, 0.75, 6.0);
+        let matched = read(&text, ExternalFormat::Table, Coverage::Whole).unwrap();
+        let forecast = &matched.forecasts[0];
+        for (i, k, x) in [(0, 0, 1.0), (0, 1, 2.0), (1, 0, 3.0), (1, 1, 4.0)] {
+            assert_eq!(forecast.hypothesis(i, k), still(x, 0.0), "{i} {k}");
+        }
+        assert!((forecast.weight(1, 0) - 0.375).abs() < f64::EPSILON);
+    }
+}
+
+#[test]
+fn extensions_name_the_format_in_capitals_too() {
+    for (name, format) in [
+        ("a.csv", ExternalFormat::Table),
+        ("a.CSV", ExternalFormat::Table),
+        ("a.NdJson", ExternalFormat::TrajNet),
+        ("a.JSONL", ExternalFormat::JsonLines),
+        ("a", ExternalFormat::JsonLines),
+    ] {
+        assert_eq!(ExternalFormat::of_file(name.as_ref()), format, "{name}");
+    }
+}
+
+/// 1 goes east, meets 2, who goes west and whom nobody forecast, at frame 15, and turns; 3 is far away.
+#[test]
+fn who_is_not_forecast_is_still_there() {
+    let track = |at: fn(f64) -> [f64; 2]| (0..20).map(|t| at(f64::from(t))).collect::<Vec<_>>();
+    let tracks = vec![
+        track(|t| [0.5 * t, -0.5 * (t - 15.0).max(0.0)]),
+        track(|t| [15.0 - 0.5 * t, 0.125]),
+        track(|t| [0.5 * t, 50.0]),
+    ];
+    let ids = vec![PedestrianId(1), PedestrianId(2), PedestrianId(3)];
+    let windows = [Window::new("yard", 0, 10, ids, tracks).unwrap()];
+    let straight_on = |y: f64| {
+        let positions: Vec<_> = (8..20).map(|t| [0.5 * f64::from(t), y]).collect();
+        format!("{{\"positions\":{positions:?}}}")
+    };
+    let text = line(70, 1, &straight_on(0.0)) + &line(70, 3, &straight_on(50.0));
+    let matched = external::read_from(
+        text.as_bytes(),
+        "f",
+        ExternalFormat::JsonLines,
+        &windows,
+        Coverage::Intersection,
+    )
+    .unwrap();
+    assert_eq!(matched.everybody, windows);
+    let (rule, protocol) = (WindowRule::Complete, Protocol::Single);
+    let conditions = Conditions::new(Convention::Star, rule, protocol, "yard", "mine");
+    let rows = external::measure(&conditions, &matched, 1).unwrap();
+    let mine = &rows[0].scores;
+    assert_eq!(mine.pedestrians, 2);
+    assert!((mine.true_collision_rate - 0.5).abs() < f64::EPSILON);
+    assert_eq!(mine.true_neighbour_collision_rate, Some(0.5));
+    // nobody forecast where 2 goes
+    assert!(mine.collision_rate.abs() < f64::EPSILON);
+    let interacting = Category::Type(TrajectoryType::Interacting);
+    assert!(Category::of(&windows[0], 0).contains(&interacting));
+    assert!(!Category::of(&matched.windows[0], 0).contains(&interacting));
+    let found = mine.categories.iter().find(|c| c.category == interacting);
+    assert_eq!(found.unwrap().pedestrians, 1);
+    // the social force model gives way to 2
+    let forces = rows
+        .iter()
+        .find(|r| r.conditions.forecaster == "social force");
+    let forced = SocialForce.forecast(&windows[0]).unwrap();
+    let error = |i: usize, t: usize| {
+        let ([x, y], [u, v]) = (forced.hypothesis(i, 0)[t], windows[0].future(i)[t]);
+        f64::hypot(x - u, y - v)
+    };
+    let ade = |i: usize| (0..12).map(|t| error(i, t)).sum::<f64>() / 12.0;
+    assert!(ade(0) > 0.01, "{}", ade(0));
+    let expected = f64::midpoint(ade(0), ade(2));
+    assert!((forces.unwrap().scores.min_ade - expected).abs() < 1e-12);
+}
+
+#[test]
+fn the_protocol_published_is_refused_with_the_reason() {
+    let matched = read(&whole(), ExternalFormat::JsonLines, Coverage::Whole).unwrap();
+    let conditions = Conditions::new(
+        Convention::Star,
+        WindowRule::Complete,
+        Protocol::Published,
+        "yard",
+        "mine",
+    );
+    let error = external::measure(&conditions, &matched, 1).unwrap_err();
+    assert!(matches!(error, ExternalError::Published));
+    assert!(error.to_string().contains("inside the forecaster"));
+}
+
+#[test]
+fn pedestrians_that_are_missing_and_forecasts_of_nobody_are_counted_and_named() {
+    let mine = complaint(&line(70, 5, &hypothesis(2.0)), ExternalFormat::JsonLines);
+    assert_eq!(
+        mine,
+        "f forecasts 1 of the 3 walkers in the windows; 2 are missing, the first of them `yard` observed until 70 \
+         pedestrian 3, `yard` observed until 80 pedestrian 5; forecast them too, or score the intersection alone"
+    );
+    let hint = |text: &str| complaint(&(whole() + text), ExternalFormat::JsonLines);
+    let elsewhere = line(70, 5, &hypothesis(2.0)).replace("{\"obs", "{\"recording\":\"eth\",\"obs");
+    assert_eq!(
+        hint(&elsewhere),
+        "f: 1 of 4 forecasts are of nobody in the windows, the first of `eth` observed until 70 pedestrian 5; the \
+         windows are of yard, the file also of eth; is it of another fold?"
+    );
+    for (text, expected) in [
+        (
+            line(10, 5, &hypothesis(2.0)),
+            "if observed_until were the first frame of a window",
+        ),
+        (
+            line(90, 5, &hypothesis(2.0)),
+            "if observed_until were the first frame forecast",
+        ),
+        (
+            line(700, 5, &hypothesis(2.0)),
+            "their frames run from 700 to 700, those of the windows from 70 to 80",
+        ),
+        (
+            line(70, 6, &hypothesis(2.0)),
+            "another fold, data convention or window rule?",
+        ),
+    ] {
+        let alone = complaint(&text, ExternalFormat::JsonLines);
+        assert!(alone.contains(expected), "{alone}");
+    }
+    // Where the others fit as they are, one that would fit if it were shifted says nothing of the frame.
+    let among_others = hint(&line(90, 5, &hypothesis(2.0)));
+    assert!(
+        !among_others.contains("first frame forecast"),
+        "{among_others}"
+    );
+    let nothing = read(
+        &line(9, 9, &hypothesis(0.0)),
+        ExternalFormat::JsonLines,
+        Coverage::Intersection,
+    );
+    assert!(matches!(nothing, Err(ExternalError::Unknown { .. })));
+}
+
+#[test]
+fn the_recording_may_be_left_out_only_where_there_is_one() {
+    let mut two = windows();
+    let walk = vec![(0..20).map(|t| [f64::from(t), 9.0]).collect()];
+    two.push(Window::new("square", 0, 10, vec![PedestrianId(3)], walk).unwrap());
+    let text = whole();
+    let read = |text: &str| {
+        external::read_from(
+            text.as_bytes(),
+            "f",
+            ExternalFormat::JsonLines,
+            &two,
+            Coverage::Whole,
+        )
+    };
+    assert_eq!(
+        read(&text).unwrap_err().to_string(),
+        "f, line 1, recording: is missing, and the windows are of several recordings: yard, square"
+    );
+    let of = |text: &str, name: &str| {
+        text.replace("{\"obs", &format!("{{\"recording\":\"{name}\",\"obs"))
+    };
+    let both = of(&text, "yard") + &of(&line(70, 3, &hypothesis(4.0)), "square");
+    let matched = read(&both).unwrap();
+    assert_eq!(matched.forecasts.len(), 3);
+    assert_eq!(matched.forecasts[2].hypothesis(0, 0), still(4.0, 0.0));
+}
+
+/// Half of the forecasts begin elsewhere than their pedestrians: the usual reasons are named, and no part of such a file is scored.
+#[test]
+fn forecasts_that_begin_elsewhere_are_refused_with_a_likely_reason() {
+    let at = |[x, y]: [f64; 2]| format!("{{\"positions\":{:?}}}", still(x, y));
+    let file = |first, second, third| {
+        line(70, 3, &at(first)) + &line(70, 5, &at(second)) + &line(80, 5, &at(third))
+    };
+    // The pedestrians were last seen at (3.5, 0), (3.5, 2) and (3.5, 2.5).
+    let swapped = file([0.2, 9.5], [2.0, 9.5], [2.5, 9.5]);
+    let mut far = windows();
+    for window in &mut far {
+        *window = window.map_positions(|_, _, [x, y]| [x + 6.0, y]);
+    }
+    let measure = |text: &str| {
+        let (format, coverage) = (ExternalFormat::JsonLines, Coverage::Intersection);
+        let matched = external::read_from(text.as_bytes(), "f", format, &far, coverage).unwrap();
+        let (convention, rule) = (Convention::Star, WindowRule::Published);
+        let conditions = Conditions::new(convention, rule, Protocol::Fair, "eth", "mine");
+        external::measure(&conditions, &matched, 1)
+    };
+    for (text, expected) in [
+        (swapped, "if x and y were exchanged"),
+        (
+            file([0.4, 0.0], [0.5, 0.1], [0.3, 0.0]),
+            "relative to the last observed position",
+        ),
+        (
+            file([90.0, 0.0], [91.0, 0.0], [92.0, 0.0]),
+            "in metres, and of the same data convention",
+        ),
+    ] {
+        let complaint = measure(&text).unwrap_err().to_string();
+        assert!(complaint.contains(expected), "{complaint}");
+        assert!(
+            complaint.starts_with("f: half of the forecasts begin "),
+            "{complaint}"
+        );
+    }
+    assert!(measure(&file([9.9, 0.0], [9.8, 2.0], [9.5, 2.5])).is_ok());
+}

@@ -1,0 +1,99 @@
+//! What makes a forecast, and what is refused.
+
+use ddl_data::{HORIZON, Position};
+use ddl_eval::{Forecast, ForecastShapeError};
+
+fn constant(at: &[Position]) -> Vec<Position> {
+    at.iter().flat_map(|&p| [p; HORIZON]).collect()
+}
+
+#[test]
+fn layout_is_pedestrian_hypothesis_frame() {
+    let ends = [[0.0, 1.0], [0.0, 2.0], [0.0, 3.0], [0.0, 4.0]];
+    let forecast = Forecast::new(
+        2,
+        2,
+        constant(&ends),
+        vec![0.25, 0.75, 0.5, 0.5],
+        Some(ends.to_vec()),
+    )
+    .unwrap();
+    assert_eq!(forecast.hypothesis(1, 0), &[[0.0, 3.0]; HORIZON]);
+    assert_eq!(forecast.goal(0, 1), Some([0.0, 2.0]));
+    assert_eq!((forecast.most_likely(0), forecast.most_likely(1)), (1, 0));
+    let single = forecast.single();
+    assert_eq!((single.pedestrians(), single.hypotheses()), (2, 1));
+    assert_eq!(single.hypothesis(0, 0), &[[0.0, 2.0]; HORIZON]);
+    assert_eq!(single.goal(1, 0), Some([0.0, 3.0]));
+    assert_eq!(single.single(), single);
+}
+
+#[test]
+fn a_single_forecast_without_goals_has_none() {
+    let forecast = Forecast::equally_likely(1, 2, constant(&[[0.0, 1.0], [1.0, 1.0]])).unwrap();
+    assert!(!forecast.single().has_goals());
+}
+
+#[test]
+fn wrong_shapes_and_weights_are_named() {
+    let one = constant(&[[0.0, 0.0]]);
+    let twice = constant(&[[0.0, 0.0], [0.0, 0.0]]);
+    let mut nan = twice.clone();
+    nan[13] = [f64::NAN, 0.0];
+    let check = |n, k, positions: &[Position], weights: &[f64], expected: &str| {
+        let refused = Forecast::new(n, k, positions.to_vec(), weights.to_vec(), None);
+        let words = refused.unwrap_err().to_string();
+        assert!(words.starts_with(expected), "{words}");
+    };
+    check(0, 1, &[], &[], "a forecast needs at least one pedestrian");
+    check(1, 1, &one[1..], &[1.0], "`positions` must hold 12 entries");
+    check(1, 1, &one, &[], "`weights` must hold 1 entries");
+    check(1, 1, &one, &[0.9], "the weights of pedestrian 0 sum to 0.9");
+    let negative = "the weight of pedestrian 0, hypothesis 1 is -0.5, below 0";
+    check(1, 2, &twice, &[1.5, -0.5], negative);
+    let not_finite = "`positions` of pedestrian 1, hypothesis 0 is not finite";
+    check(2, 1, &nan, &[1.0, 1.0], not_finite);
+    let goals = Some(vec![[f64::INFINITY, 0.0]]);
+    let refused = Forecast::new(1, 1, one, vec![1.0], goals).unwrap_err();
+    assert!(matches!(
+        refused,
+        ForecastShapeError::NotFinite { field: "goals", .. }
+    ));
+}
+
+#[test]
+fn certificates_are_one_a_hypothesis_and_follow_it() {
+    let ends = [[0.0, 1.0], [0.0, 2.0], [0.0, 3.0], [0.0, 4.0]];
+    let weights = vec![0.25, 0.75, 0.5, 0.5];
+    let forecast = Forecast::new(2, 2, constant(&ends), weights, None).unwrap();
+    assert!(!forecast.has_certificates());
+    assert_eq!(forecast.certified(1, 1), None);
+    assert!(!forecast.single().has_certificates());
+    for wrong in [0, 3, 5] {
+        assert_eq!(
+            forecast
+                .clone()
+                .with_certified(vec![true; wrong])
+                .unwrap_err(),
+            ForecastShapeError::Length {
+                field: "certified",
+                layout: "pedestrian, hypothesis",
+                expected: 4,
+                found: wrong,
+            }
+        );
+    }
+    let forecast = forecast
+        .with_certified(vec![true, false, true, false])
+        .unwrap();
+    assert_eq!(
+        [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, k)| forecast.certified(i, k)),
+        [Some(true), Some(false), Some(true), Some(false)]
+    );
+    // of two the heavier: hypothesis 1 of the first pedestrian and 0 of the second
+    let single = forecast.single();
+    assert_eq!(
+        (single.certified(0, 0), single.certified(1, 0)),
+        (Some(false), Some(true))
+    );
+}

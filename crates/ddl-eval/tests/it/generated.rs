@@ -1,0 +1,44 @@
+//! Windows and forecasts of any numbers.
+
+use ddl_data::{HORIZON, PedestrianId, Position, WINDOW, Window};
+use ddl_eval::Forecast;
+use proptest::{collection::vec, prelude::*};
+
+/// Positions up to 20 m from the origin, along each axis.
+pub(crate) fn position() -> impl Strategy<Value = Position> + Clone {
+    (-20.0..20.0, -20.0..20.0).prop_map(|(x, y)| [x, y])
+}
+
+/// A window of pedestrians at such positions, from a frame of a recording on.
+pub(crate) fn window(
+    (recording, start, step): (&'static str, i64, i64),
+    pedestrians: usize,
+    position: impl Strategy<Value = Position>,
+) -> impl Strategy<Value = Window> {
+    vec(vec(position, WINDOW), pedestrians).prop_map(move |tracks| {
+        let ids = (0..).take(pedestrians).map(|id| PedestrianId(7 * id - 3));
+        Window::new(recording, start, step, ids.collect(), tracks).unwrap()
+    })
+}
+
+/// A forecast of `k` hypotheses at such positions with weights that sum to 1.
+pub(crate) fn forecast(
+    pedestrians: usize,
+    k: usize,
+    with_goals: bool,
+    position: impl Strategy<Value = Position> + Clone,
+) -> impl Strategy<Value = Forecast> {
+    let pairs = pedestrians * k;
+    let positions = vec(position.clone(), pairs * HORIZON);
+    let (weights, goals) = (vec(0.01..1.0_f64, pairs), vec(position, pairs));
+    (positions, weights, goals).prop_map(move |(positions, mut weights, goals)| {
+        for row in weights.chunks_mut(k) {
+            let sum: f64 = row.iter().sum();
+            for weight in row {
+                *weight /= sum;
+            }
+        }
+        let goals = with_goals.then_some(goals);
+        Forecast::new(pedestrians, k, positions, weights, goals).unwrap()
+    })
+}

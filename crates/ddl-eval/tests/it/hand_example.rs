@@ -1,0 +1,254 @@
+//! Every metric of one window of three pedestrians with two hypotheses each, against numbers worked out by hand.
+//!
+//! All offsets are sides of 3-4-5 triangles. Frames s = 1..12 are forecast; metres.
+//!
+//! ```text
+//!    truth                     weight  hypothesis, as offset from the truth     ADE        FDE   goal
+//! A  (3.5 + s/2, 0)            0.75    (0.24, 0.32)                             0.4        0.4   its end
+//!                              0.25    s (0.06, 0.08), a straight line          0.65       1.2   2 steps farther
+//! B  stands at (9.1, 2.56)     0.2     s (0.15, -0.2)                           1.625      3     0.5 m behind
+//!                              0.8     (0.9, -1.2)                              1.5        1.5   its end
+//! C  (12.5 - s/2, 0.3)         0.6     (0.72, 0.96)                             1.2        1.2   its end
+//!                              0.4     (1.28, -0.96), and 0 at s = 12           17.6/12    0     its end
+//! ```
+//!
+//! The mean of s is 6.5: 0.1 * 6.5 = 0.65 and 0.25 * 6.5 = 1.625.
+
+use ddl_data::{PedestrianId, Position, Window};
+use ddl_eval::{
+    Category, CategoryScores, Forecast, MotionKind, Scores, StabilityScores,
+    category::TrajectoryType,
+};
+
+/// A position at frame `s`.
+type Path = fn(f64) -> Position;
+
+/// Positions of the three pedestrians at frame `s`, 0 being the last observed one.
+const TRUTH: [Path; 3] = [
+    |s| [3.5 + 0.5 * s, 0.0],
+    |_| [9.1, 2.56],
+    |s| [12.5 - 0.5 * s, 0.3],
+];
+
+/// Offsets of the hypotheses from the truth at frame `s`.
+const OFFSETS: [[Path; 2]; 3] = [
+    [|_| [0.24, 0.32], |s| [0.06 * s, 0.08 * s]],
+    [|s| [0.15 * s, -0.2 * s], |_| [0.9, -1.2]],
+    [
+        |_| [0.72, 0.96],
+        |s| if s < 12.0 { [1.28, -0.96] } else { [0.0, 0.0] },
+    ],
+];
+
+fn hypothesis(i: usize, k: usize, s: f64) -> Position {
+    let (p, d) = (TRUTH[i](s), OFFSETS[i][k](s));
+    [p[0] + d[0], p[1] + d[1]]
+}
+
+fn scores() -> Scores {
+    let tracks = TRUTH.map(|at| (0..20).map(|t| at(f64::from(t - 7))).collect());
+    let ids = (0..3).map(PedestrianId).collect();
+    let window = Window::new("made up", 0, 10, ids, tracks.into()).unwrap();
+    let pairs = || (0..3).flat_map(|i| (0..2).map(move |k| (i, k)));
+    let path = |(i, k)| (1..=12).map(move |s| hypothesis(i, k, f64::from(s)));
+    let goals = pairs().map(|(i, k)| match (i, k) {
+        // Two steps of (0.56, 0.08) beyond its end, on its line.
+        (0, 1) => [3.5 + 14.0 * 0.56, 14.0 * 0.08],
+        (1, 0) => [9.1 - 0.3, 2.56 + 0.4],
+        _ => hypothesis(i, k, 12.0),
+    });
+    let weights = vec![0.75, 0.25, 0.2, 0.8, 0.6, 0.4];
+    let forecast = Forecast::new(
+        3,
+        2,
+        pairs().flat_map(path).collect(),
+        weights,
+        Some(goals.collect()),
+    );
+    let verdicts = vec![true, true, false, true, true, false];
+    let forecast = forecast.unwrap().with_certified(verdicts).unwrap();
+    Scores::evaluate(&[window], &[forecast]).unwrap()
+}
+
+fn check(what: &str, found: f64, expected: f64) {
+    assert!(
+        (found - expected).abs() < 1e-12,
+        "{what}: {found}, by hand {expected}"
+    );
+}
+
+#[test]
+fn displacement_errors() {
+    let s = scores();
+    assert_eq!((s.pedestrians, s.windows, s.hypotheses), (3, 1, 2));
+    // Least ADE: hypotheses 0, 1, 0. Least FDE: 0, 1, 1.
+    check("minADE", s.min_ade, (0.4 + 1.5 + 1.2) / 3.0);
+    check("minFDE", s.min_fde, (0.4 + 1.5 + 0.0) / 3.0);
+    check("FDE@minADE", s.fde_at_min_ade, (0.4 + 1.5 + 1.2) / 3.0);
+    check(
+        "ADE@minFDE",
+        s.ade_at_min_fde.unwrap(),
+        (0.4 + 1.5 + 17.6 / 12.0) / 3.0,
+    );
+    // Index 0 for all: ADE 3.225, FDE 4.6. Index 1: ADE 3.61666, FDE 2.7.
+    check("JADE", s.joint_ade, (0.4 + 1.625 + 1.2) / 3.0);
+    check("JFDE", s.joint_fde, (1.2 + 1.5 + 0.0) / 3.0);
+    // A 0.3 + 0.1625, B 0.325 + 1.2, C 0.72 + 0.4 * 17.6 / 12.
+    check(
+        "expected ADE",
+        s.expected_ade.unwrap(),
+        (0.4625 + 1.525 + 0.72 + 7.04 / 12.0) / 3.0,
+    );
+    // A 0.3 + 0.3, B 0.6 + 1.2, C 0.72 + 0.
+    check(
+        "expected FDE",
+        s.expected_fde.unwrap(),
+        (0.6 + 1.8 + 0.72) / 3.0,
+    );
+    // The most likely are the hypotheses 0, 1, 0.
+    check(
+        "most likely ADE",
+        s.most_likely_ade.unwrap(),
+        (0.4 + 1.5 + 1.2) / 3.0,
+    );
+    check(
+        "most likely FDE",
+        s.most_likely_fde.unwrap(),
+        (0.4 + 1.5 + 1.2) / 3.0,
+    );
+}
+
+#[test]
+fn misses_and_collisions() {
+    let s = scores();
+    // Nearest ends: 0.4, 1.5 and 0 m off.
+    check("missed by 0.5 m", s.miss_rate, 1.0 / 3.0);
+    check("missed by 1 m", s.miss_rate_1m.unwrap(), 1.0 / 3.0);
+    check("missed by 2 m", s.miss_rate_2m.unwrap(), 0.0);
+    // The representatives, of two the heavier: A along y = 0.32, B at (10, 1.36), C along y = 1.26 from x = 12.72 to 7.22. C passes B
+    // at 0.1 m; A stays 0.94 m from C and more than 1 m from B.
+    check("collisions", s.collision_rate, 2.0 / 3.0);
+    // In truth A and C pass each other at 0.3 m, and B is 2.26 m from C.
+    check("true collisions", s.true_collision_rate, 2.0 / 3.0);
+    // A (y = 0.32) against the true C (0.3): 0.02 m. B (1.36) against the true C: 1.06 m. C (1.26) against the
+    // true A (0) and B (2.56): 1.26 and 1.3 m.
+    check(
+        "collisions with the truth",
+        s.true_neighbour_collision_rate.unwrap(),
+        1.0 / 3.0,
+    );
+}
+
+/// Goals from the true ends: A 0.4 (the other 2.2), B 0.5 (the other 1.5), C 0 (the other 1.2).
+#[test]
+fn goals_and_stability() {
+    let s = scores();
+    check("goal FDE", s.goal_fde.unwrap(), (0.4 + 0.5 + 0.0) / 3.0);
+    let found = s.stability.unwrap();
+    let degrees = |y: f64, x: f64| (y / x).atan().to_degrees();
+    let turns = [
+        // The first step is (0.74, 0.32), the goal is at (6.24, 0.32); from then on straight to it.
+        degrees(0.32, 0.74) - degrees(0.32, 6.24),
+        0.0,
+        180.0,
+        0.0,
+        // The first step is (0.22, 0.96), the goal at (-5.28, 0.96): away from it at first.
+        180.0 - degrees(0.96, 5.28) - degrees(0.96, 0.22),
+        // (0.78, -0.96), the goal at (-6, 0).
+        180.0 - degrees(0.96, 0.78),
+    ];
+    let by_hand = StabilityScores {
+        rollouts: 6,
+        // Both of A, and the second of B, which is at its goal after one step.
+        decreasing: 0.5,
+        // Two steps of sqrt(0.56^2 + 0.08^2) = sqrt(0.32); B's first: 3 m and the 0.5 m behind it.
+        end_distance: (2.0 * 0.32_f64.sqrt() + 3.5) / 6.0,
+        largest_turn: turns.iter().sum::<f64>() / 6.0,
+        reversing: 0.5,
+        certified: Some(4.0 / 6.0),
+    };
+    assert_eq!(found.rollouts, by_hand.rollouts);
+    check("Phi falls", found.decreasing, by_hand.decreasing);
+    check("to goal", found.end_distance, by_hand.end_distance);
+    check("turn", found.largest_turn, by_hand.largest_turn);
+    check("reversing", found.reversing, by_hand.reversing);
+    check("certified", found.certified.unwrap(), 4.0 / 6.0);
+}
+
+#[test]
+fn diversity() {
+    let s = scores();
+    // A: |0.4 - 0.1 s| is 4.2 in all; B: |0.25 s - 1.5| is 9 in all; C: right angle, legs 1.2 and 1.6, so 2 m
+    // for 11 frames and 1.2 m at the end.
+    let path = (4.2 / 12.0 + 9.0 / 12.0 + 23.2 / 12.0) / 3.0;
+    check("diversity", s.diversity.unwrap(), path);
+    check(
+        "of the ends",
+        s.end_diversity.unwrap(),
+        (0.8 + 1.5 + 1.2) / 3.0,
+    );
+}
+
+/// Numbers of `hand_example()` in `tests/reference/distribution.py` (numpy 2.4.6, scipy 1.17.1), which has the
+/// offsets typed in anew and works with whole matrices.
+#[test]
+fn the_distribution_as_computed_elsewhere() {
+    let s = scores();
+    check("KDE NLL", s.kde_nll.unwrap(), 8.296_237_304_878_993);
+    // Worked out with 40 digits: across their line two hypotheses are 1 cm wide, which magnifies what 16 digits leave.
+    check("AMD", s.amd.unwrap(), 37.879_277_080_741_79);
+    check("AMV", s.amv.unwrap(), 0.336_472_522_377_543_5);
+}
+
+/// A and C walk straight on at one speed, B stands.
+#[test]
+fn categories() {
+    let walking = |category| CategoryScores {
+        category,
+        pedestrians: 2,
+        min_ade: 0.8,
+        min_fde: 0.2,
+        fde_at_min_ade: 0.8,
+        miss_rate: 0.0,
+        most_likely_ade: 0.8,
+        most_likely_fde: 0.8,
+        collision_rate: 0.5,
+    };
+    let standing = |category| CategoryScores {
+        category,
+        pedestrians: 1,
+        min_ade: 1.5,
+        min_fde: 1.5,
+        fde_at_min_ade: 1.5,
+        miss_rate: 1.0,
+        most_likely_ade: 1.5,
+        most_likely_fde: 1.5,
+        collision_rate: 1.0,
+    };
+    let by_hand = [
+        standing(Category::Motion(MotionKind::Standing)),
+        walking(Category::Motion(MotionKind::Straight)),
+        standing(Category::Type(TrajectoryType::Static)),
+        walking(Category::Type(TrajectoryType::Linear)),
+    ];
+    let found = scores().categories;
+    assert_eq!(found.len(), by_hand.len());
+    for (found, by_hand) in found.iter().zip(&by_hand) {
+        assert_eq!(found.category, by_hand.category);
+        assert_eq!(found.pedestrians, by_hand.pedestrians);
+        let numbers = |c: &CategoryScores| {
+            [
+                c.min_ade,
+                c.min_fde,
+                c.fde_at_min_ade,
+                c.miss_rate,
+                c.most_likely_ade,
+                c.most_likely_fde,
+                c.collision_rate,
+            ]
+        };
+        for (a, b) in numbers(found).into_iter().zip(numbers(by_hand)) {
+            check(&found.category.to_string(), a, b);
+        }
+    }
+}

@@ -1,0 +1,420 @@
+//! What must hold of the metrics whatever the forecast.
+
+use ddl_data::{HORIZON, PedestrianId, Position, Rotation, WINDOW, Window};
+use ddl_eval::{
+    Category, EvaluationError, Forecast, ForecastShapeError, Protocol, Scene, Scores, WindowProblem,
+};
+use proptest::{collection::vec, prelude::*};
+
+use crate::generated::{self, position};
+use ddl_eval::metric::{
+    collision::closest_approach,
+    displacement::{DisplacementErrors, distance},
+};
+
+/// Whether two lengths or shares agree but for rounding.
+fn agree(a: f64, b: f64) -> bool {
+    (a - b).abs() < 1e-9
+}
+
+/// A window of `n` pedestrians and a forecast of `k` hypotheses with weights and goals.
+fn scene(n: usize, k: usize) -> impl Strategy<Value = (Window, Forecast)> {
+    let forecast = generated::forecast(n, k, true, position());
+    (
+        generated::window(("made up", 0, 10), n, position()),
+        forecast,
+    )
+}
+
+fn any_scene() -> impl Strategy<Value = (Window, Forecast)> {
+    (1..5_usize, 1..6_usize).prop_flat_map(|(n, k)| scene(n, k))
+}
+
+fn scores(window: &Window, forecast: &Forecast) -> Scores {
+    Scores::evaluate(std::slice::from_ref(window), std::slice::from_ref(forecast)).unwrap()
+}
+
+/// The forecast with every position and goal moved.
+fn moved(forecast: &Forecast, by: impl Fn(Position) -> Position) -> Forecast {
+    let (n, k) = (forecast.pedestrians(), forecast.hypotheses());
+    let pairs = || (0..n).flat_map(move |i| (0..k).map(move |h| (i, h)));
+    let positions = pairs()
+        .flat_map(|(i, h)| forecast.hypothesis(i, h))
+        .map(|p| by(*p))
+        .collect();
+    let weights = pairs().map(|(i, h)| forecast.weight(i, h)).collect();
+    let goals = pairs().map(|(i, h)| forecast.goal(i, h).map(&by)).collect();
+    Forecast::new(n, k, positions, weights, goals).unwrap()
+}
+
+/// Lengths, shares and densities, which no motion of the plane changes.
+fn invariants(s: &Scores) -> Vec<f64> {
+    let stability = s.stability.unwrap();
+    let several = [s.kde_nll, s.amd, s.amv, s.diversity, s.end_diversity];
+    let always = [
+        s.goal_fde,
+        s.ade_at_min_fde,
+        s.expected_ade,
+        s.expected_fde,
+        s.most_likely_ade,
+        s.most_likely_fde,
+        s.miss_rate_1m,
+        s.miss_rate_2m,
+        s.true_neighbour_collision_rate,
+    ];
+    let plain = [
+        s.min_ade,
+        s.min_fde,
+        s.fde_at_min_ade,
+        s.joint_ade,
+        s.joint_fde,
+        s.miss_rate,
+        s.collision_rate,
+        s.true_collision_rate,
+        stability.decreasing,
+        stability.end_distance,
+        stability.reversing,
+    ];
+    let by_category = s.categories.iter().flat_map(|c| {
+        let rates = [c.miss_rate, c.collision_rate, c.pedestrians as f64];
+        let errors = [
+            c.min_ade,
+            c.min_fde,
+            c.fde_at_min_ade,
+            c.most_likely_ade,
+            c.most_likely_fde,
+        ];
+        rates.into_iter().chain(errors)
+    });
+    plain
+        .into_iter()
+        .chain(always.map(Option::unwrap))
+        .chain(several.into_iter().flatten())
+        .chain(by_category)
+        .collect()
+}
+
+/// Agreement up to the rounding that a narrow distribution magnifies.
+fn all_agree(a: &[f64], b: &[f64]) -> bool {
+    let close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9 + 1e-8 * a.abs();
+    a.len() == b.len() && a.iter().zip(b).all(close)
+}
+
+/// The hypotheses of every pedestrian in the order given, with their weights and goals.
+fn reordered(forecast: &Forecast, order: &[usize]) -> Forecast {
+    let n = forecast.pedestrians();
+    let pairs = || (0..n).flat_map(|i| order.iter().map(move |&k| (i, k)));
+    let positions = pairs()
+        .flat_map(|(i, k)| forecast.hypothesis(i, k))
+        .copied()
+        .collect();
+    let weights = pairs().map(|(i, k)| forecast.weight(i, k)).collect();
+    let goals = pairs().map(|(i, k)| forecast.goal(i, k)).collect();
+    Forecast::new(n, order.len(), positions, weights, goals).unwrap()
+}
+
+/// Pedestrians of up to 2 m/s who turn and change speed somewhat, near one another: of all categories.
+fn walking(n: usize) -> impl Strategy<Value = Window> {
+    let pedestrian = (
+        (-3.0..3.0_f64, -3.0..3.0_f64),
+        (0.0..0.8_f64, -3.2..3.2_f64),
+        (-0.12..0.12_f64, 0.94..1.06_f64),
+    );
+    vec(pedestrian, n).prop_map(|pedestrians| {
+        let tracks =
+            pedestrians
+                .iter()
+                .map(|&((x, y), (mut speed, mut heading), (turn, growth))| {
+                    let mut here = [x, y];
+                    let mut track = vec![here];
+                    for _ in 1..WINDOW {
+                        here = [
+                            here[0] + speed * heading.cos(),
+                            here[1] + speed * heading.sin(),
+                        ];
+                        track.push(here);
+                        speed = (speed * growth).min(0.8);
+                        heading += turn;
+                    }
+                    track
+                });
+        let ids = (0..).take(pedestrians.len()).map(PedestrianId).collect();
+        Window::new("made up", 0, 10, ids, tracks.collect()).unwrap()
+    })
+}
+
+fn categories(window: &Window) -> Vec<Vec<Category>> {
+    (0..window.len()).map(|i| Category::of(window, i)).collect()
+}
+
+/// The first `k` hypotheses, equally likely.
+fn first(forecast: &Forecast, k: usize) -> Forecast {
+    let n = forecast.pedestrians();
+    let pairs = (0..n).flat_map(|i| (0..k).map(move |h| (i, h)));
+    let positions = pairs
+        .flat_map(|(i, h)| forecast.hypothesis(i, h))
+        .copied()
+        .collect();
+    Forecast::equally_likely(n, k, positions).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn minima_are_below_every_hypothesis((window, forecast) in any_scene()) {
+        let errors = DisplacementErrors::of(&Scene::new(&window, &forecast).unwrap());
+        for i in 0..errors.pedestrians() {
+            prop_assert!(errors.ade(i).iter().all(|ade| errors.min_ade(i) <= *ade));
+            prop_assert!(errors.fde(i).iter().all(|fde| errors.min_fde(i) <= *fde));
+            prop_assert!(errors.min_fde(i) <= errors.fde_at_min_ade(i));
+        }
+    }
+
+    #[test]
+    fn more_hypotheses_never_hurt((window, forecast) in any_scene()) {
+        let all = scores(&window, &forecast);
+        for k in 1..=forecast.hypotheses() {
+            let fewer = scores(&window, &first(&forecast, k));
+            prop_assert!(all.min_ade <= fewer.min_ade && all.min_fde <= fewer.min_fde);
+            prop_assert!(all.joint_ade <= fewer.joint_ade && all.joint_fde <= fewer.joint_fde);
+            prop_assert!(all.miss_rate <= fewer.miss_rate);
+            prop_assert!(all.miss_rate_1m <= fewer.miss_rate_1m);
+            prop_assert!(all.miss_rate_2m <= fewer.miss_rate_2m);
+            for (all, fewer) in all.categories.iter().zip(&fewer.categories) {
+                prop_assert_eq!(all.category, fewer.category);
+                prop_assert!(all.min_ade <= fewer.min_ade && all.min_fde <= fewer.min_fde);
+                prop_assert!(all.miss_rate <= fewer.miss_rate);
+            }
+        }
+    }
+
+    #[test]
+    fn certificates_are_counted_and_change_nothing_else(
+        (window, forecast) in any_scene(),
+        verdicts in vec(any::<bool>(), 20),
+    ) {
+        let pairs = forecast.pedestrians() * forecast.hypotheses();
+        let verdicts = verdicts[..pairs].to_vec();
+        let held = verdicts.iter().filter(|&&held| held).count();
+        let certified = forecast.clone().with_certified(verdicts).unwrap();
+        let mut counted = scores(&window, &certified);
+        let stability = counted.stability.as_mut().unwrap();
+        let share = stability.certified.take().unwrap();
+        prop_assert!(agree(share * pairs as f64, held as f64));
+        prop_assert_eq!(counted, scores(&window, &forecast));
+        let mixed = Scores::evaluate(&[window.clone(), window], &[certified, forecast]);
+        let refused = matches!(
+            mixed,
+            Err(EvaluationError::Window { problem: WindowProblem::CertificatesOfSome, .. })
+        );
+        prop_assert!(refused);
+    }
+
+    #[test]
+    fn joint_choice_is_never_better((window, forecast) in any_scene()) {
+        let scores = scores(&window, &forecast);
+        prop_assert!(scores.joint_ade >= scores.min_ade - 1e-12);
+        prop_assert!(scores.joint_fde >= scores.min_fde - 1e-12);
+        if forecast.pedestrians() == 1 || forecast.hypotheses() == 1 {
+            prop_assert!(agree(scores.joint_ade, scores.min_ade));
+        }
+    }
+
+    #[test]
+    fn no_metric_depends_on_where_the_world_begins(
+        (window, forecast) in any_scene(),
+        angle in 0.0..std::f64::consts::TAU,
+        [dx, dy] in position(),
+    ) {
+        let rotation = Rotation::new(angle);
+        let motion = |p: Position| {
+            let [x, y] = rotation.apply(p);
+            [x + dx, y + dy]
+        };
+        let before = scores(&window, &forecast);
+        let after = scores(&window.map_positions(|_, _, p| motion(p)), &moved(&forecast, motion));
+        let (found, expected) = (invariants(&after), invariants(&before));
+        prop_assert!(all_agree(&found, &expected), "{found:?} {expected:?}");
+        let turn = |s: &Scores| s.stability.unwrap().largest_turn;
+        prop_assert!((turn(&before) - turn(&after)).abs() < 1e-5);
+    }
+
+    #[test]
+    fn perfect_forecasts_score_zero((window, _) in any_scene()) {
+        let n = window.len();
+        let truth = (0..n).flat_map(|i| window.future(i)).copied().collect();
+        let ends = (0..n).map(|i| window.end(i)).collect();
+        let perfect = Forecast::new(n, 1, truth, vec![1.0; n], ends).unwrap();
+        let scores = scores(&window, &perfect);
+        let zero = [
+            scores.min_ade, scores.min_fde, scores.fde_at_min_ade, scores.joint_ade,
+            scores.joint_fde, scores.miss_rate, scores.goal_fde.unwrap(),
+            scores.stability.unwrap().end_distance, scores.ade_at_min_fde.unwrap(),
+            scores.expected_ade.unwrap(), scores.expected_fde.unwrap(),
+            scores.most_likely_ade.unwrap(), scores.most_likely_fde.unwrap(),
+            scores.miss_rate_1m.unwrap(), scores.miss_rate_2m.unwrap(),
+        ];
+        prop_assert!(zero.into_iter().all(|metric| agree(metric, 0.0)), "{zero:?}");
+        prop_assert!(agree(scores.collision_rate, scores.true_collision_rate));
+        let against_truth = scores.true_neighbour_collision_rate.unwrap();
+        prop_assert!(agree(against_truth, scores.true_collision_rate));
+        let several = [scores.kde_nll, scores.amd, scores.amv, scores.diversity, scores.end_diversity];
+        prop_assert_eq!(several, [None; 5]);
+    }
+
+    /// All hypotheses on the truth: the narrowest distribution there is, (1 cm)^2 in all directions, with
+    /// the truth at its middle.
+    #[test]
+    fn certain_and_right_is_the_best_distribution((window, _) in any_scene(), k in 2..6_usize) {
+        let n = window.len();
+        let truth: Vec<Position> =
+            (0..n).flat_map(|i| window.future(i).repeat(k)).collect();
+        let scores = scores(&window, &Forecast::equally_likely(n, k, truth).unwrap());
+        let highest = -(std::f64::consts::TAU * 1e-4).ln();
+        prop_assert!((scores.kde_nll.unwrap() + highest).abs() < 1e-9);
+        prop_assert!(scores.amd.unwrap() < 1e-9);
+        prop_assert!((scores.amv.unwrap() - 1e-4).abs() < 1e-12);
+        let diversity = (scores.diversity, scores.end_diversity);
+        prop_assert_eq!(diversity, (Some(0.0), Some(0.0)));
+    }
+
+    #[test]
+    fn the_order_of_the_hypotheses_does_not_matter(
+        (window, forecast) in any_scene(),
+        keys in vec(any::<u32>(), 6),
+    ) {
+        let mut order: Vec<usize> = (0..forecast.hypotheses()).collect();
+        order.sort_by_key(|&k| keys[k]);
+        let found = invariants(&scores(&window, &reordered(&forecast, &order)));
+        let expected = invariants(&scores(&window, &forecast));
+        prop_assert!(all_agree(&found, &expected), "{found:?} {expected:?}");
+    }
+
+    #[test]
+    fn the_whole_lies_between_its_best_and_its_bounds((window, forecast) in any_scene()) {
+        let s = scores(&window, &forecast);
+        prop_assert!(s.min_ade <= s.expected_ade.unwrap() + 1e-12);
+        prop_assert!(s.min_fde <= s.expected_fde.unwrap() + 1e-12);
+        prop_assert!(s.min_ade <= s.most_likely_ade.unwrap());
+        prop_assert!(s.min_ade <= s.ade_at_min_fde.unwrap());
+        prop_assert!(s.miss_rate >= s.miss_rate_1m.unwrap());
+        prop_assert!(s.miss_rate_1m >= s.miss_rate_2m);
+        if let Some(nll) = s.kde_nll {
+            let highest = -(std::f64::consts::TAU * 1e-4).ln();
+            prop_assert!((-highest - 1e-9..=20.0).contains(&nll));
+            prop_assert!(s.amv.unwrap() >= 1e-4 - 1e-12 && s.amd.unwrap() >= 0.0);
+        }
+        // Each pedestrian has one motion kind and one type; sub-kinds are of type III.
+        let of = |wanted: fn(&Category) -> bool| -> usize {
+            let members = s.categories.iter().filter(|c| wanted(&c.category));
+            members.map(|c| c.pedestrians).sum()
+        };
+        prop_assert_eq!(of(|c| matches!(c, Category::Motion(_))), s.pedestrians);
+        prop_assert_eq!(of(|c| matches!(c, Category::Type(_))), s.pedestrians);
+        // So that the types' means, weighted by their pedestrians, are the totals.
+        let types = s.categories.iter().filter(|c| matches!(c.category, Category::Type(_)));
+        let mean = types.map(|c| c.min_ade * c.pedestrians as f64).sum::<f64>();
+        prop_assert!(agree(mean / s.pedestrians as f64, s.min_ade));
+    }
+
+    #[test]
+    fn categories_do_not_depend_on_where_the_world_begins(
+        window in walking(4),
+        angle in 0.0..std::f64::consts::TAU,
+        [dx, dy] in position(),
+    ) {
+        let rotation = Rotation::new(angle);
+        let moved = window.map_positions(|_, _, p| {
+            let [x, y] = rotation.apply(p);
+            [x + dx, y + dy]
+        });
+        prop_assert_eq!(categories(&moved), categories(&window));
+    }
+
+    #[test]
+    fn the_mirror_image_is_of_the_mirrored_category(window in walking(4)) {
+        use ddl_eval::MotionKind::{TurningLeft, TurningRight};
+        let mirrored = categories(&window.map_positions(|_, _, [x, y]| [x, -y]));
+        let swap = |category: Category| match category {
+            Category::Motion(TurningLeft) => Category::Motion(TurningRight),
+            Category::Motion(TurningRight) => Category::Motion(TurningLeft),
+            other => other,
+        };
+        let expected: Vec<Vec<Category>> = categories(&window)
+            .into_iter()
+            .map(|of_one| of_one.into_iter().map(swap).collect())
+            .collect();
+        prop_assert_eq!(mirrored, expected);
+    }
+
+    #[test]
+    fn rates_are_shares((window, forecast) in any_scene()) {
+        let scores = scores(&window, &forecast);
+        let stability = scores.stability.unwrap();
+        for rate in [
+            scores.miss_rate, scores.collision_rate, scores.true_collision_rate,
+            stability.decreasing, stability.reversing,
+        ] {
+            prop_assert!((0.0..=1.0).contains(&rate));
+        }
+        prop_assert!((0.0..=180.0).contains(&stability.largest_turn));
+    }
+
+    /// The closed form is never above, and hardly below, the least of many instants.
+    #[test]
+    fn closest_approach_is_the_minimum_over_time(
+        a in vec(position(), 4),
+        b in vec(position(), 4),
+    ) {
+        let exact = closest_approach(&a, &b);
+        let mut sampled = f64::INFINITY;
+        for t in 0..3 {
+            for s in 0..=400 {
+                let s = f64::from(s) / 400.0;
+                let on = |p: &[Position]| {
+                    let along = |c: usize| p[t][c] + s * (p[t + 1][c] - p[t][c]);
+                    [along(0), along(1)]
+                };
+                sampled = sampled.min(distance(on(&a), on(&b)));
+            }
+        }
+        // A relative step is shorter than 160 m: 1/800 of it on either side of a sample.
+        prop_assert!(exact <= sampled + 1e-12 && sampled <= exact + 0.2, "{exact} {sampled}");
+        prop_assert!(agree(exact, closest_approach(&b, &a)));
+    }
+
+    #[test]
+    fn weights_must_sum_to_one(weights in vec(0.0..1.0_f64, 3)) {
+        let sum: f64 = weights.iter().sum();
+        prop_assume!((sum - 1.0).abs() > 1e-5);
+        let positions = vec![[0.0, 0.0]; 3 * HORIZON];
+        let refused = Forecast::new(1, 3, positions.clone(), weights.clone(), None);
+        let is_refused = matches!(refused, Err(ForecastShapeError::NotNormalised { .. }));
+        prop_assert!(is_refused);
+        prop_assume!(sum > 1e-3);
+        let normalised = weights.iter().map(|weight| weight / sum).collect();
+        prop_assert!(Forecast::new(1, 3, positions, normalised, None).is_ok());
+    }
+
+    /// The single protocol keeps the representative hypothesis and nothing else.
+    #[test]
+    fn single_is_the_representative((window, forecast) in any_scene()) {
+        struct Fixed(Forecast);
+        impl ddl_eval::Forecaster for Fixed {
+            fn name(&self) -> String {
+                "fixed".to_owned()
+            }
+            fn forecast(&self, window: &Window) -> Result<Forecast, ddl_eval::ForecastError> {
+                assert!(!window.has_future(), "the future was shown");
+                Ok(self.0.clone())
+            }
+        }
+        let single = Protocol::Single.forecast(&Fixed(forecast.clone()), &[window]).unwrap();
+        for i in 0..forecast.pedestrians() {
+            let best = forecast.representative(i);
+            prop_assert_eq!(single[0].hypothesis(i, 0), forecast.hypothesis(i, best));
+            prop_assert_eq!(single[0].goal(i, 0), forecast.goal(i, best));
+        }
+    }
+}

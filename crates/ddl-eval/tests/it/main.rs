@@ -1,0 +1,15 @@
+//! What the crate promises, seen from outside.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a helper that fails is a test that fails"
+)]
+
+mod distribution;
+mod external;
+mod forecast;
+mod generated;
+mod hand_example;
+mod laws;
+mod real_recordings;
+mod representative;

@@ -1,0 +1,87 @@
+//! Categories and the leak test on the real recordings, against numbers computed independently.
+
+use ddl_data::{Convention, Dataset, WindowRule, locate};
+use ddl_eval::{
+    Category, Conditions, Forecaster, Protocol, ResultRow,
+    baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine, TrueEnd},
+    category::{Interaction, TrajectoryType},
+    leak,
+};
+
+/// The recordings of the `star` convention; without them the test is skipped, but not in CI.
+fn recordings() -> Option<Dataset> {
+    let found =
+        locate(Convention::Star, None).and_then(|folder| Dataset::load(Convention::Star, &folder));
+    match found {
+        Ok(dataset) => Some(dataset),
+        Err(why) => {
+            assert!(
+                std::env::var_os("CI").is_none(),
+                "in CI the recordings must be there: {why}"
+            );
+            eprintln!("skipped, the recordings are not here: {why}");
+            None
+        }
+    }
+}
+
+/// Pedestrians of each type, I to IV, and of each sub-kind of III, counted with numpy from the definitions in
+/// the docstrings, angles by arctan2 and the filter with whole matrices.
+#[test]
+fn pedestrians_are_of_the_types_counted_independently() {
+    let Some(dataset) = recordings() else { return };
+    let counted = [
+        [219, 484, 781, 1027, 230, 60, 356, 235],
+        [660, 165, 112, 89, 7, 11, 71, 26],
+        [4524, 1890, 15_189, 2651, 2584, 4569, 7127, 4442],
+        [132, 431, 861, 900, 144, 138, 537, 135],
+        [2767, 432, 1751, 950, 297, 301, 1048, 422],
+    ];
+    for (fold, expected) in Convention::Star.fold_names().zip(counted) {
+        let windows = dataset
+            .fold(fold)
+            .unwrap()
+            .test_windows(WindowRule::Published);
+        let row = ResultRow::measure(
+            Conditions::new(
+                Convention::Star,
+                WindowRule::Published,
+                Protocol::Single,
+                fold,
+                "any",
+            ),
+            &ConstantVelocity::last_step(),
+            &windows,
+        );
+        let categories = row.unwrap().scores.categories;
+        let types = TrajectoryType::ALL.map(Category::Type);
+        let interactions = Interaction::ALL.map(Category::Interaction);
+        let count = |category| {
+            let of = categories.iter().find(|c| c.category == category);
+            of.map_or(0, |c| c.pedestrians)
+        };
+        let found: Vec<usize> = types.into_iter().chain(interactions).map(count).collect();
+        assert_eq!(found, expected, "{fold}");
+    }
+}
+
+#[test]
+fn forecasters_that_look_ahead_are_found_out() {
+    let Some(dataset) = recordings() else { return };
+    let windows = dataset
+        .fold("zara1")
+        .unwrap()
+        .test_windows(WindowRule::Published);
+    let crowded = windows.iter().max_by_key(|window| window.len()).unwrap();
+    let honest: [Box<dyn Forecaster>; 5] = [
+        Box::new(ConstantVelocity::last_step()),
+        Box::new(ConstantVelocity::mean_observed()),
+        Box::new(ConstantVelocity::angular_noise(5)),
+        Box::new(ConstantAcceleration::bounded()),
+        Box::new(SocialForce),
+    ];
+    for forecaster in &honest {
+        assert_eq!(leak::find(forecaster, crowded).unwrap(), None);
+    }
+    assert!(leak::find(&StraightLine::to(TrueEnd), crowded).is_err());
+}

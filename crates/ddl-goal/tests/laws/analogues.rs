@@ -1,0 +1,128 @@
+//! The estimator in the heading frame against its definition (docs/goals.md, "Analogues in the walker's own frame"), written down in numpy
+//! outside this project: `reference/analogues.json` has a library of eight, and what of it two pedestrians get: one who walks and turns, and one
+//! with steps below 0.2 m.
+
+use ddl_goal::{GoalEstimator, GoalEstimatorParams};
+use serde::Deserialize;
+
+use crate::tracks::{Track, distance, estimator, walk};
+
+/// x = a t + b t², y = c t + d t² (m), t counting steps.
+type Coefficients = [f64; 4];
+
+#[derive(Deserialize)]
+struct Reference {
+    library: Vec<Coefficients>,
+    pedestrians: Vec<Pedestrian>,
+}
+
+#[derive(Deserialize)]
+struct Pedestrian {
+    track: Coefficients,
+    /// The six nearest.
+    analogues: Vec<Analogue>,
+    /// Places of the second analogue's track, carried over, by step.
+    carried: Vec<(usize, [f64; 2])>,
+}
+
+#[derive(Deserialize)]
+struct Analogue {
+    index: usize,
+    mirrored: bool,
+    distance: f64,
+    weight: f64,
+    end: [f64; 2],
+}
+
+fn track([a, b, c, d]: Coefficients) -> Track {
+    let place = |t: f64| [a * t + b * t * t, c * t + d * t * t];
+    (0..20).map(|t| place(f64::from(t))).collect()
+}
+
+fn reference() -> Reference {
+    serde_json::from_str(include_str!("reference/analogues.json")).unwrap()
+}
+
+/// Goals from the six nearest analogues.
+fn of_six(library: &[Coefficients], clusters: usize) -> GoalEstimator {
+    let params = GoalEstimatorParams::default().experts(6).clusters(clusters);
+    estimator(params, library.iter().map(|&walk| track(walk)).collect())
+}
+
+/// As many goals as analogues: each goal is one of them.
+#[test]
+fn distances_weights_and_ends_are_those_of_the_definition() {
+    let reference = reference();
+    let estimator = of_six(&reference.library, 6);
+    for pedestrian in reference.pedestrians {
+        let observed = &track(pedestrian.track)[..8];
+        let set = estimator.estimate(observed).unwrap();
+        assert_eq!(set.experts().len(), pedestrian.analogues.len());
+        for (k, analogue) in pedestrian.analogues.iter().enumerate() {
+            let expert = set.experts()[k];
+            let found = (expert.index, expert.mirrored);
+            assert_eq!(found, (analogue.index, analogue.mirrored));
+            // compared in f32
+            assert!((expert.distance - analogue.distance).abs() < 1e-7);
+            assert!((set.weights()[k] - analogue.weight).abs() < 1e-5);
+            assert!(distance(set.goals()[k], analogue.end) < 1e-8, "{set:?}");
+        }
+        let carried = estimator.carry_over(&set.experts()[1], observed).unwrap();
+        for (step, place) in pedestrian.carried {
+            assert!(distance(carried[step], place) < 1e-8, "{step}: {carried:?}");
+        }
+    }
+}
+
+/// Two goals: the first pedestrian's analogues divide where their ends lie apart, and a goal is the weighted mean of its own.
+#[test]
+fn a_goal_is_the_weighted_mean_of_its_analogues() {
+    let reference = reference();
+    let Pedestrian {
+        track: walk,
+        analogues,
+        ..
+    } = &reference.pedestrians[0];
+    let estimator = of_six(&reference.library, 2);
+    let set = estimator.estimate(&track(*walk)).unwrap();
+    for (k, group) in [&analogues[..3], &analogues[3..]].into_iter().enumerate() {
+        let total: f64 = group.iter().map(|analogue| analogue.weight).sum();
+        let mean = [0, 1].map(|axis| {
+            let ends = group.iter().map(|one| one.weight * one.end[axis]);
+            ends.sum::<f64>() / total
+        });
+        assert!((set.weights()[k] - total).abs() < 1e-5, "{set:?}");
+        assert!(distance(set.goals()[k], mean) < 1e-4, "{set:?}");
+    }
+}
+
+/// Analogues that moved exactly alike count the same, however they went on.
+#[test]
+fn equal_analogues_weigh_the_same() {
+    let turned = |side: f64| -> Track {
+        let mut track = walk(1.0, 0.0, 0.0);
+        let onward = track[8..].iter_mut().zip(1..);
+        onward.for_each(|(place, step)| place[1] += side * 0.1 * f64::from(step));
+        track
+    };
+    let params = GoalEstimatorParams::default().clusters(3);
+    let library = [3.0, 0.0, -3.0].map(turned).to_vec();
+    let set = estimator(params, library).estimate(&turned(0.0)).unwrap();
+    // each is there with its mirror image
+    for weight in set.weights() {
+        assert!((weight - 1.0 / 3.0).abs() < 1e-12, "{set:?}");
+    }
+}
+
+/// A hundred experts are kept to be shown, however many were asked for.
+#[test]
+fn the_nearest_hundred_experts_are_kept() {
+    let tracks = (0..300_u32).map(|i| walk(0.005 * f64::from(i), 0.1, 0.01));
+    let params = GoalEstimatorParams::default().experts(250);
+    let set = estimator(params, tracks.collect()).estimate(&walk(1.0, 0.1, 0.01));
+    let set = set.unwrap();
+    assert_eq!(set.experts().len(), 100);
+    let experts = set.experts();
+    assert!(experts.is_sorted_by(|a, b| a.distance <= b.distance));
+    assert_eq!(experts[0].index, 200);
+}

@@ -1,0 +1,285 @@
+//! The estimator on synthetic walkers: what it may read, what it depends on, what it returns.
+
+use ddl_goal::{
+    ExpertLibrary, GoalError, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan, TrackError,
+};
+use proptest::prelude::*;
+
+use crate::tracks::{self, Track, distance, walk};
+
+/// Walkers of several speeds, headings and turns, and people who stand.
+fn library() -> Vec<Track> {
+    let track = |i: u32| {
+        let speed = f64::from(i % 20) * 0.08;
+        let heading = f64::from(i / 20) * 0.31;
+        walk(speed, heading, f64::from(i % 7) * 0.02 - 0.06)
+    };
+    (0..400).map(track).collect()
+}
+
+fn estimator(params: GoalEstimatorParams) -> GoalEstimator {
+    tracks::estimator(params.restarts(2).experts(100), library())
+}
+
+/// The default, and the published estimator without the future.
+fn both_frames() -> [GoalEstimatorParams; 2] {
+    let world = GoalEstimatorParams::published().query(QuerySpan::Observed);
+    [GoalEstimatorParams::default(), world]
+}
+
+fn bits(set: &GoalSet) -> Vec<u64> {
+    let goals = set.goals().as_flattened().iter();
+    let numbers = goals.chain(set.weights()).map(|value| value.to_bits());
+    let experts = set
+        .experts()
+        .iter()
+        .flat_map(|e| [e.index as u64, e.distance.to_bits()]);
+    numbers.chain(experts).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn nothing_after_the_eighth_position_is_read(
+        speed in 0.0..1.6_f64, heading in -3.0..3.0_f64, turn in -0.1..0.1_f64,
+        future in prop::collection::vec(
+            prop::array::uniform2(prop_oneof![-50.0..50.0_f64, Just(f64::NAN), Just(f64::INFINITY)]), 0..12),
+    ) {
+        for params in both_frames() {
+            let estimator = estimator(params);
+            let track = walk(speed, heading, turn);
+            let mut other = track[..8].to_vec();
+            other.extend(&future);
+            prop_assert_eq!(bits(&estimator.estimate(&track)?), bits(&estimator.estimate(&other)?));
+        }
+    }
+
+    #[test]
+    fn always_as_many_goals_as_asked_with_weights_that_sum_to_1(
+        speed in prop_oneof![Just(0.0), 0.0..1.6_f64], heading in -3.0..3.0_f64,
+        clusters in 1..40_usize,
+    ) {
+        for params in both_frames() {
+            let goals = estimator(params.clusters(clusters)).estimate(&walk(speed, heading, 0.0))?;
+            prop_assert_eq!(goals.goals().len(), clusters);
+            prop_assert_eq!(goals.weights().len(), clusters);
+            prop_assert_eq!(goals.experts().len(), 100);
+            prop_assert!((goals.weights().iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            prop_assert!(goals.weights().is_sorted_by(|a, b| a >= b));
+            let likely = goals.weights()[goals.most_likely()];
+            prop_assert!(goals.weights().iter().all(|&weight| weight <= likely));
+            for (i, &goal) in goals.goals().iter().enumerate() {
+                let nearest = goals.nearest(goal);
+                prop_assert!(nearest <= i && goals.goals()[nearest] == goal);
+            }
+        }
+    }
+
+    #[test]
+    fn goals_move_with_the_walker(
+        speed in 0.0..1.6_f64, heading in -3.0..3.0_f64, by in prop::array::uniform2(-8_i32..8),
+    ) {
+        // Whole steps of 1/8 m move coordinates on a grid of 1/1024 m without rounding: the velocities keep every bit.
+        let grid = |v: f64| (v * 1024.0).round() / 1024.0;
+        let track: Track = walk(speed, heading, 0.0).iter().map(|p| p.map(grid)).collect();
+        let by = by.map(|v| f64::from(v) / 8.0);
+        let moved: Track = track.iter().map(|p| [p[0] + by[0], p[1] + by[1]]).collect();
+        for params in both_frames() {
+            let estimator = estimator(params);
+            let (here, there) = (estimator.estimate(&track)?, estimator.estimate(&moved)?);
+            prop_assert_eq!(here.experts(), there.experts());
+            for (a, b) in here.goals().iter().zip(there.goals()) {
+                prop_assert!((a[0] + by[0] - b[0]).abs() < 1e-12 && (a[1] + by[1] - b[1]).abs() < 1e-12);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_published_query_reads_the_ninth_position_and_no_further() {
+    let estimator = estimator(GoalEstimatorParams::published());
+    let track = walk(1.0, 0.3, 0.0);
+    let with = |index: usize| {
+        let mut changed = track.clone();
+        changed[index][0] += 0.5;
+        bits(&estimator.estimate(&changed).unwrap())
+    };
+    let original = bits(&estimator.estimate(&track).unwrap());
+    assert_ne!(with(8), original);
+    assert!((9..20).all(|index| with(index) == original));
+}
+
+#[test]
+fn a_walker_finds_itself_and_goals_near_where_it_goes() {
+    for params in [
+        GoalEstimatorParams::default(),
+        GoalEstimatorParams::published(),
+    ] {
+        let estimator = estimator(params);
+        let track = estimator.library().tracks()[237].clone();
+        let goals = estimator.estimate(&track).unwrap();
+        // In its own frame a walker is like itself, and like whoever walks the same way elsewhere or mirrored.
+        assert_eq!(goals.experts()[0].distance, 0.0);
+        let itself = goals.experts().iter().take_while(|e| e.distance == 0.0);
+        assert!(
+            itself
+                .into_iter()
+                .any(|e| (e.index, e.mirrored) == (237, false))
+        );
+        let nearest = goals.goals()[goals.nearest(track[19])];
+        let miss = distance(nearest, track[19]);
+        assert!(miss < 1.0, "{miss} m");
+    }
+}
+
+#[test]
+fn alone_or_in_a_batch_on_any_number_of_threads() {
+    for params in both_frames() {
+        alone_or_in_a_batch(&estimator(params));
+    }
+}
+
+fn alone_or_in_a_batch(estimator: &GoalEstimator) {
+    let tracks: Vec<Track> = (0..30)
+        .map(|i| walk(0.05 * f64::from(i), 0.2 * f64::from(i), 0.01))
+        .collect();
+    let alone: Vec<_> = tracks
+        .iter()
+        .map(|t| bits(&estimator.estimate(t).unwrap()))
+        .collect();
+    let slices: Vec<&[[f64; 2]]> = tracks.iter().map(Vec::as_slice).collect();
+    let reversed: Vec<&[[f64; 2]]> = slices.iter().rev().copied().collect();
+    for threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        let batch = pool.install(|| estimator.estimate_batch(&slices)).unwrap();
+        assert_eq!(batch.iter().map(bits).collect::<Vec<_>>(), alone);
+        let batch = pool
+            .install(|| estimator.estimate_batch(&reversed))
+            .unwrap();
+        assert_eq!(batch.iter().rev().map(bits).collect::<Vec<_>>(), alone);
+    }
+}
+
+#[test]
+fn the_seed_decides_in_the_frame_of_the_world_only() {
+    let [own, world] = both_frames();
+    let with = |seed| estimator(world.clone().seed(seed));
+    let track = walk(1.1, 0.4, 0.01);
+    let goals = |seed| with(seed).estimate(&track).unwrap();
+    assert_eq!(bits(&goals(1)), bits(&goals(1)));
+    assert!(
+        (2..12).any(|seed| bits(&goals(seed)) != bits(&goals(1))),
+        "k-means ignores the seed"
+    );
+    assert_eq!(goals(1).experts(), goals(2).experts());
+    let own = |seed| {
+        let estimator = estimator(own.clone().seed(seed));
+        bits(&estimator.estimate(&track).unwrap())
+    };
+    assert_eq!(own(1), own(2));
+}
+
+/// A rounding error may change the order of two equally near experts, or a tie of k-means, for a walker here and there.
+#[test]
+fn a_rounding_error_moves_goals_by_as_much() {
+    for params in both_frames() {
+        let estimator = estimator(params);
+        let mut moved = 0;
+        for i in 0..60_u32 {
+            let track = walk(
+                0.2 + 0.023 * f64::from(i),
+                0.11 * f64::from(i),
+                0.0007 * f64::from(i),
+            );
+            let error = |step: usize| if step.is_multiple_of(2) { 1e-9 } else { -1e-9 };
+            let nudged: Track = (0..8)
+                .map(|s| [track[s][0] + error(s), track[s][1] - error(s)])
+                .collect();
+            let (a, b) = (
+                estimator.estimate(&track).unwrap(),
+                estimator.estimate(&nudged).unwrap(),
+            );
+            let goals = b.goals().iter();
+            let furthest = goals.map(|&goal| distance(a.goals()[a.nearest(goal)], goal));
+            moved += u32::from(furthest.fold(0.0, f64::max) > 1e-6);
+        }
+        assert!(moved <= 3, "goals of {moved} of 60 walkers moved");
+    }
+}
+
+/// Everybody walks on at 1 m/s, but one in four stops after 4 s: the weights say so.
+#[test]
+fn weights_are_shares_of_how_alike_walkers_went_on() {
+    let track = |i: u32| -> Track {
+        let (stops, heading) = (i.is_multiple_of(4), 0.3_f64);
+        let (sin, cos) = heading.sin_cos();
+        let steps = (0..20).map(|s| {
+            if stops {
+                f64::from(s.min(10))
+            } else {
+                f64::from(s)
+            }
+        });
+        steps.map(|s| [0.4 * s * cos, 0.4 * s * sin]).collect()
+    };
+    let params = GoalEstimatorParams::default().clusters(2);
+    let estimator = tracks::estimator(params, (0..400).map(track).collect());
+    let goals = estimator.estimate(&track(1)).unwrap();
+    assert!(
+        (goals.weights()[0] - 0.75).abs() < 1e-3,
+        "{:?}",
+        goals.weights()
+    );
+    let (sin, cos) = 0.3_f64.sin_cos();
+    for (goal, far) in goals.goals().iter().zip([7.6, 4.0]) {
+        assert!(distance(*goal, [far * cos, far * sin]) < 1e-4, "{goal:?}");
+    }
+}
+
+#[test]
+fn bad_input_is_refused_by_name() {
+    let params = GoalEstimatorParams::published().experts(401);
+    let library_of = ExpertLibrary::new(library(), 0.4).unwrap();
+    let error = GoalEstimator::new(params.check().unwrap(), library_of).unwrap_err();
+    assert_eq!(
+        error,
+        GoalError::TooFewTracks {
+            tracks: 400,
+            experts: 401
+        }
+    );
+
+    let estimator = estimator(GoalEstimatorParams::default());
+    let track = walk(1.0, 0.0, 0.0);
+    // In its own frame a walker makes do with fewer.
+    let all = GoalEstimatorParams::default().experts(1_000);
+    let goals = tracks::estimator(all, library()).estimate(&track);
+    assert_eq!(goals.unwrap().goals().len(), 20);
+    let short = TrackError::TooShort {
+        found: 7,
+        needed: 8,
+    };
+    assert_eq!(
+        estimator.estimate(&track[..7]),
+        Err(GoalError::Track(short.clone()))
+    );
+    let source = Box::new(GoalError::Track(short));
+    let batch = estimator.estimate_batch(&[&track, &track[..7]]);
+    assert_eq!(batch, Err(GoalError::BatchTrack { index: 1, source }));
+    let far = [[0.0, 0.0], [1e308, 0.0]].repeat(4);
+    assert!(matches!(
+        estimator.estimate(&far),
+        Err(GoalError::Track(TrackError::VelocityOverflow { .. }))
+    ));
+    let mut broken = track;
+    broken[3][1] = f64::NAN;
+    assert_eq!(
+        estimator.estimate(&broken).unwrap_err().to_string(),
+        "the observed track: position 3 is (1.2000000000000002, NaN): must be finite"
+    );
+    assert_eq!(estimator.params().query(), QuerySpan::Observed);
+}

@@ -1,0 +1,179 @@
+//! A walker's own frame, and goals in it: what turning, moving and mirroring the scene does to them.
+
+use ddl_goal::{GoalEstimator, GoalEstimatorParams, HeadingFrame, TrackError};
+use proptest::prelude::*;
+
+use crate::tracks::{self, Track, distance, walk};
+
+/// A turned, then moved scene.
+#[derive(Clone, Copy, Debug)]
+struct Motion {
+    angle: f64,
+    by: [f64; 2],
+}
+
+impl Motion {
+    fn of(self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let (sin, cos) = self.angle.sin_cos();
+        [
+            cos * x - sin * y + self.by[0],
+            sin * x + cos * y + self.by[1],
+        ]
+    }
+}
+
+fn motion() -> impl Strategy<Value = Motion> {
+    (-4.0..4.0_f64, prop::array::uniform2(-100.0..100.0_f64))
+        .prop_map(|(angle, by)| Motion { angle, by })
+}
+
+/// 8 positions of somebody whose steps are up to 0.8 m long.
+fn observed() -> impl Strategy<Value = Track> {
+    let step = prop::array::uniform2(-0.8..0.8_f64);
+    let scale = prop_oneof![Just(1.0), Just(0.05)];
+    (prop::collection::vec(step, 7), scale).prop_map(|(steps, scale)| {
+        let mut position = [3.0, -2.0];
+        let walked = steps.into_iter().map(|[dx, dy]| {
+            position = [position[0] + scale * dx, position[1] + scale * dy];
+            position
+        });
+        std::iter::once([3.0, -2.0]).chain(walked).collect()
+    })
+}
+
+/// Whether the heading is far enough from the place where none exists.
+fn has_heading(track: &[[f64; 2]]) -> bool {
+    let (last, before, first) = (track[7], track[6], track[0]);
+    let step = distance(last, before);
+    let share = (1.0 - step / 0.2).max(0.0);
+    let toward = [0, 1].map(|d| last[d] - before[d] + share * (last[d] - first[d]));
+    toward[0].hypot(toward[1]) > 1e-3
+}
+
+/// Goals by walkers of several speeds and turns, in a scene.
+fn estimator(scene: &dyn Fn([f64; 2]) -> [f64; 2]) -> GoalEstimator {
+    let track = |i: u32| -> Track {
+        let turn = f64::from(i / 25) * 0.013 - 0.1;
+        let track = walk(f64::from(i % 25 + 1) * 0.07, 0.3, turn);
+        track.into_iter().map(scene).collect()
+    };
+    let params = GoalEstimatorParams::default().experts(90).clusters(6);
+    tracks::estimator(params, (0..400).map(track).collect())
+}
+
+/// Whether each goal of one set is within `tolerance` (m) of a goal of the other that weighs the same, and back.
+fn same_goals(a: &[([f64; 2], f64)], b: &[([f64; 2], f64)], tolerance: f64) -> bool {
+    let within = |a: &[([f64; 2], f64)], b: &[([f64; 2], f64)]| {
+        a.iter().all(|&(goal, weight)| {
+            b.iter()
+                .any(|&(other, w)| distance(goal, other) < tolerance && (w - weight).abs() < 1e-4)
+        })
+    };
+    within(a, b) && within(b, a)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn there_and_back(track in observed(), point in prop::array::uniform2(-1e3..1e3_f64)) {
+        let frame = HeadingFrame::new(&track)?;
+        prop_assert!(distance(frame.to_world(frame.to_frame(point)), point) < 1e-12 * 1e3);
+        prop_assert!(distance(frame.to_frame(frame.to_world(point)), point) < 1e-12 * 1e3);
+        let [cos, sin] = frame.heading();
+        prop_assert!((cos.hypot(sin) - 1.0).abs() < 1e-15);
+        prop_assert_eq!(frame.to_frame(frame.origin()), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn distances_are_kept(track in observed(), a in prop::array::uniform2(-50.0..50.0_f64),
+                          b in prop::array::uniform2(-50.0..50.0_f64)) {
+        let frame = HeadingFrame::new(&track)?;
+        prop_assert!((distance(frame.to_frame(a), frame.to_frame(b)) - distance(a, b)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn whoever_steps_out_heads_where_the_last_step_led(track in observed()) {
+        prop_assume!(distance(track[6], track[7]) > 0.2);
+        let frame = HeadingFrame::new(&track)?;
+        let [ahead, left] = frame.to_frame(track[6]);
+        prop_assert!(ahead < -0.2 && left.abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_frame_turns_and_moves_with_the_scene(
+        track in observed(), motion in motion(), point in prop::array::uniform2(-50.0..50.0_f64),
+    ) {
+        prop_assume!(has_heading(&track));
+        let moved: Track = track.iter().map(|&p| motion.of(p)).collect();
+        let (here, there) = (HeadingFrame::new(&track)?, HeadingFrame::new(&moved)?);
+        prop_assert!(distance(here.to_frame(point), there.to_frame(motion.of(point))) < 1e-8);
+    }
+
+    #[test]
+    fn mirroring_the_scene_changes_the_sign_of_left(
+        track in observed(), point in prop::array::uniform2(-50.0..50.0_f64),
+    ) {
+        prop_assume!(has_heading(&track));
+        let mirror = |[x, y]: [f64; 2]| [x, -y];
+        let mirrored: Track = track.iter().map(|&p| mirror(p)).collect();
+        let (here, there) = (HeadingFrame::new(&track)?, HeadingFrame::new(&mirrored)?);
+        prop_assert_eq!(there.to_frame(mirror(point)), mirror(here.to_frame(point)));
+    }
+
+    #[test]
+    fn a_small_change_turns_the_frame_little(track in observed(), change in prop::array::uniform2(-1e-7..1e-7_f64)) {
+        prop_assume!(has_heading(&track));
+        let mut changed = track.clone();
+        changed[7] = [changed[7][0] + change[0], changed[7][1] + change[1]];
+        let (a, b) = (HeadingFrame::new(&track)?.heading(), HeadingFrame::new(&changed)?.heading());
+        // |dh| is below 1e-7 · √2 · (2 + |l| / 0.2 m) with |l| below 8 m, and |h| above 1e-3 m.
+        prop_assert!(distance(a, b) < 2.0 * 1e-7 * 1.5 * 42.0 / 1e-3);
+    }
+
+    #[test]
+    fn goals_turn_and_move_with_the_scene(
+        speed in 0.3..1.6_f64, bend in -0.1..0.1_f64, motion in motion(),
+    ) {
+        let walk = |i: i32| {
+            let (sin, cos) = (bend * f64::from(i)).sin_cos();
+            [f64::from(i) * 0.4 * speed * cos, f64::from(i) * 0.4 * speed * sin]
+        };
+        let track: Track = (0..8).map(walk).collect();
+        let moved: Track = track.iter().map(|&p| motion.of(p)).collect();
+        let mirrored: Track = track.iter().map(|&[x, y]| [x, -y]).collect();
+        // The direction in the world counts a little, so the library turns with the walker.
+        let pairs = |track: &Track, scene: &dyn Fn([f64; 2]) -> [f64; 2]| -> Vec<([f64; 2], f64)> {
+            let set = estimator(scene).estimate(track).unwrap();
+            set.goals().iter().copied().zip(set.weights().iter().copied()).collect()
+        };
+        let here = pairs(&track, &|p| p);
+        let turned: Vec<_> = here.iter().map(|&(goal, weight)| (motion.of(goal), weight)).collect();
+        prop_assert!(same_goals(&pairs(&moved, &|p| motion.of(p)), &turned, 1e-3));
+        let image: Vec<_> = here.iter().map(|&([x, y], weight)| ([x, -y], weight)).collect();
+        prop_assert!(same_goals(&pairs(&mirrored, &|[x, y]| [x, -y]), &image, 1e-3));
+    }
+}
+
+#[test]
+fn who_stands_keeps_the_axes_of_the_world() {
+    let frame = HeadingFrame::new(&[[5.0, 6.0]; 8]).unwrap();
+    assert_eq!((frame.origin(), frame.heading()), ([5.0, 6.0], [1.0, 0.0]));
+    // Who stopped still faces where it walked.
+    let mut stopped: Track = (0..7).map(|i| [0.0, 0.1 * f64::from(i)]).collect();
+    stopped.push(stopped[6]);
+    assert_eq!(HeadingFrame::new(&stopped).unwrap().heading(), [0.0, 1.0]);
+}
+
+#[test]
+fn bad_positions_are_refused_by_name() {
+    let short = TrackError::TooShort {
+        found: 1,
+        needed: 2,
+    };
+    assert_eq!(HeadingFrame::new(&[[0.0, 0.0]]), Err(short));
+    let nan = HeadingFrame::new(&[[0.0, f64::NAN], [0.0, 0.0]]);
+    assert!(matches!(nan, Err(TrackError::NonFinite { index: 0, .. })));
+    let far = HeadingFrame::new(&[[-1e308, 0.0], [1e308, 0.0]]);
+    assert_eq!(far, Err(TrackError::VelocityOverflow { index: 0 }));
+}

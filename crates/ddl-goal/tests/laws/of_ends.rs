@@ -1,0 +1,92 @@
+//! Goals that stand for given ends.
+
+use ddl_goal::{GoalError, GoalSet, HeadingFrame};
+use proptest::prelude::*;
+
+fn frame() -> HeadingFrame {
+    HeadingFrame::new(&[[3.0, -1.0], [3.4, -0.7], [3.8, -0.4]]).unwrap()
+}
+
+fn mean_distance(set: &GoalSet, ends: &[[f64; 2]], weights: &[f64]) -> f64 {
+    let total: f64 = weights.iter().sum();
+    let nearest = |end: &[f64; 2]| {
+        let [x, y] = frame().to_world(*end);
+        let goal = set.goals()[set.nearest([x, y])];
+        (goal[0] - x).hypot(goal[1] - y)
+    };
+    ends.iter()
+        .zip(weights)
+        .map(|(end, w)| nearest(end) * w / total)
+        .sum()
+}
+
+proptest! {
+    #[test]
+    fn weights_are_a_distribution_and_enough_goals_are_the_ends(
+        ends in prop::collection::vec((prop::array::uniform2(-9.0..9.0_f64), 0.01..1.0_f64), 1..120),
+    ) {
+        let (ends, weights): (Vec<_>, Vec<_>) = ends.into_iter().unzip();
+        let set = |clusters| GoalSet::of_ends(&frame(), &ends, &weights, clusters).unwrap();
+        let mut last = f64::INFINITY;
+        for clusters in [1, 5, 150] {
+            let set = set(clusters);
+            prop_assert_eq!(set.goals().len(), clusters);
+            prop_assert!((set.weights().iter().sum::<f64>() - 1.0).abs() < 1e-9);
+            prop_assert!(set.weights().is_sorted_by(|a, b| a >= b));
+            let distance = mean_distance(&set, &ends, &weights);
+            last = distance;
+        }
+        prop_assert!(last < 1e-9, "as many goals as ends, and yet {} away", last);
+    }
+
+    #[test]
+    fn the_order_of_the_ends_and_the_scale_of_the_weights_do_not_matter(
+        ends in prop::collection::vec((prop::array::uniform2(-9.0..9.0_f64), 0.01..1.0_f64), 30..60),
+        scale in 0.1..50.0_f64,
+    ) {
+        let (points, weights): (Vec<_>, Vec<_>) = ends.iter().copied().unzip();
+        let (reversed, scaled): (Vec<_>, Vec<_>) =
+            ends.iter().rev().map(|&(end, weight)| (end, weight * scale)).unzip();
+        let one = GoalSet::of_ends(&frame(), &points, &weights, 8).unwrap();
+        let other = GoalSet::of_ends(&frame(), &reversed, &scaled, 8).unwrap();
+        let distance = |set: &GoalSet| mean_distance(set, &points, &weights);
+        prop_assert!((distance(&one) - distance(&other)).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn ends_of_no_weight_do_not_count_and_few_ends_repeat() {
+    let ends = [[4.0, 0.0], [100.0, 0.0], [5.0, 2.0]];
+    let set = GoalSet::of_ends(&frame(), &ends, &[0.75, 0.0, 0.25], 4).unwrap();
+    assert_eq!(set.weights(), [0.75, 0.25, 0.0, 0.0]);
+    assert_eq!(set.goals()[0], frame().to_world([4.0, 0.0]));
+    assert_eq!(set.goals()[1], frame().to_world([5.0, 2.0]));
+    assert!(
+        set.goals()[2..]
+            .iter()
+            .all(|goal| set.goals()[..2].contains(goal))
+    );
+}
+
+#[test]
+fn what_cannot_be_chosen_from_is_named() {
+    let of = |ends: &[[f64; 2]], weights: &[f64], clusters| match GoalSet::of_ends(
+        &frame(),
+        ends,
+        weights,
+        clusters,
+    ) {
+        Err(error @ GoalError::Ends { .. }) => error.to_string(),
+        other => panic!("{other:?}"),
+    };
+    let end = [[1.0, 1.0]];
+    assert!(of(&[], &[], 3).contains("0 ends"));
+    assert!(of(&end, &[0.5, 0.5], 3).contains("1 ends with 2 weights"));
+    assert!(of(&end, &[1.0], 0).contains("0 goals"));
+    assert!(of(&end, &[0.0], 3).contains("not all 0"));
+    assert!(of(&[end[0], end[0]], &[-1.0, 2.0], 3).contains("not negative"));
+    assert!(of(&end, &[f64::NAN], 3).contains("NaN"));
+    assert!(of(&end, &[f64::INFINITY], 3).contains("inf"));
+    assert!(of(&[[f64::NAN, 0.0]], &[1.0], 3).contains("end 0"));
+    assert!(of(&[[1e300, 0.0]], &[1.0], 3).contains("end 0"));
+}

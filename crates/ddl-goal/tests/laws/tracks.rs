@@ -1,0 +1,28 @@
+//! What the tests share: tracks of pedestrians who walk evenly.
+
+use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
+
+pub(crate) type Track = Vec<[f64; 2]>;
+
+/// 20 positions (m), 0.4 s apart, of somebody who turns by `turn` (rad) at each step.
+pub(crate) fn walk(speed: f64, heading: f64, turn: f64) -> Track {
+    let mut position = [3.0 * heading, -speed];
+    (0..20)
+        .map(|i| {
+            let here = position;
+            let (sin, cos) = (heading + turn * f64::from(i)).sin_cos();
+            position = [here[0] + 0.4 * speed * cos, here[1] + 0.4 * speed * sin];
+            here
+        })
+        .collect()
+}
+
+pub(crate) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// An estimator of valid parameters with a library of these tracks.
+pub(crate) fn estimator(params: GoalEstimatorParams, tracks: Vec<Track>) -> GoalEstimator {
+    let library = ExpertLibrary::new(tracks, 0.4).unwrap();
+    GoalEstimator::new(params.check().unwrap(), library).unwrap()
+}

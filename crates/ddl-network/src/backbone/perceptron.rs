@@ -1,0 +1,68 @@
+//! A small perceptron: what shapes a step depends on the goal offset and the observed motion, on nobody else.
+
+use super::features::Backbone;
+use super::output_layer::output_layer;
+use crate::StarConfig;
+use crate::backend::{Backend, Memory};
+use crate::config::Frame;
+use crate::weights::{Layout, Linear};
+use ddl_data::OBSERVED;
+
+/// The backbone without a Transformer: two hidden layers on where the pedestrian is now, relative to its goal, and where it was at
+/// the observed time steps, in its own frame with the velocities.
+#[derive(Debug, Clone)]
+pub struct Perceptron {
+    frame: Frame,
+    hidden: Linear,
+    token: Linear,
+    output: Linear,
+}
+
+impl Perceptron {
+    /// Declares its layers: a hidden one of `feed_forward_width`, and one of `model_width`.
+    pub fn new(layout: &mut Layout, config: &StarConfig) -> Self {
+        let inputs = config.temporal_inputs() as usize * (OBSERVED + 1);
+        let [width, hidden] = [config.model_width, config.feed_forward_width].map(|n| n as usize);
+        Self {
+            frame: config.frame,
+            hidden: layout.linear("hidden_layer", inputs, hidden),
+            token: layout.linear("token_layer", hidden, width),
+            output: output_layer(layout, config),
+        }
+    }
+}
+
+impl<B: Backend> Backbone<B> for Perceptron {
+    fn output(&self) -> Linear {
+        self.output
+    }
+
+    fn scene(&self, _: &B, centred: &B::Tokens, _: &B::Seen) -> B::Tokens {
+        centred.clone()
+    }
+
+    fn step(
+        &self,
+        backend: &B,
+        memory: &mut Memory<B>,
+        relative: &B::Tokens,
+        _: &B::Tokens,
+        _: &B::Seen,
+    ) -> B::Tokens {
+        if memory.tokens.len() < OBSERVED {
+            memory.tokens.push(relative.clone());
+        }
+        // What is not observed yet counts as what is observed now.
+        let observed = (0..OBSERVED).map(|t| memory.tokens.get(t).unwrap_or(relative));
+        let inputs = observed.fold(relative.clone(), |inputs, x| {
+            let x = backend.repeated(x, backend.entries(relative));
+            backend.beside(&inputs, &x)
+        });
+        let hidden = backend.relu(&backend.linear(self.hidden, &inputs));
+        let token = backend.relu(&backend.linear(self.token, &hidden));
+        match self.frame {
+            Frame::World => token,
+            Frame::Goal => backend.beside(&token, relative),
+        }
+    }
+}

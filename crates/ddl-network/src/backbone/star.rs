@@ -1,0 +1,115 @@
+//! STAR (Yu et al., ECCV 2020), one time step at a time.
+//!
+//! A pedestrian's position relative to its goal becomes a temporal token, its position relative to the scene becomes a spatial
+//! one; the two are fused, attend to the neighbours, and attend to the pedestrian's earlier tokens. The result is the
+//! pedestrian's token of that step: it is cached for later steps (the "graph memory") and gives, with the noise, the factor of
+//! the metric P.
+//!
+//! Only the newest token's output is used, and earlier tokens never change: so one query a step is computed, and keys and
+//! values of the past are cached. Same function as encoding the whole sequence anew, less work.
+
+use super::features::Backbone;
+use super::output_layer::output_layer;
+use crate::StarConfig;
+use crate::backend::{Backend, Memory};
+use crate::config::Frame;
+use crate::weights::{EncoderLayer, Layout, Linear, Sizes};
+
+/// The backbone of the paper.
+#[derive(Debug, Clone)]
+pub struct Star {
+    frame: Frame,
+    temporal_embedding: Linear,
+    spatial_embedding: Linear,
+    /// Two encoders of some layers each.
+    spatial: [Vec<EncoderLayer>; 2],
+    temporal: [EncoderLayer; 2],
+    fusion: Linear,
+    output: Linear,
+}
+
+impl Star {
+    /// Declares its layers.
+    pub fn new(layout: &mut Layout, config: &StarConfig) -> Self {
+        let sizes = Sizes {
+            width: config.model_width as usize,
+            heads: config.heads as usize,
+            hidden: config.feed_forward_width as usize,
+        };
+        let width = sizes.width;
+        let spatial = [1, 2].map(|encoder| {
+            let layer = |index: usize| {
+                format!("spatial_encoder_{encoder}.transformer_encoder.layers.{index}")
+            };
+            (0..config.spatial_layers)
+                .map(|index| layout.encoder_layer(&layer(index), sizes, config.spatial_dropout))
+                .collect()
+        });
+        let temporal = [1, 2].map(|encoder| {
+            layout.encoder_layer(&format!("temporal_encoder_{encoder}.layers.0"), sizes, 0.0)
+        });
+        let inputs = config.temporal_inputs() as usize;
+        // In this order they draw their initial weights.
+        let temporal_embedding = layout.linear("input_embedding_layer_temporal", inputs, width);
+        let spatial_embedding = layout.linear("input_embedding_layer_spatial", 2, width);
+        let output = output_layer(layout, config);
+        let fusion = layout.linear("fusion_layer", 2 * width, width);
+        Self {
+            frame: config.frame,
+            temporal_embedding,
+            spatial_embedding,
+            spatial,
+            temporal,
+            fusion,
+            output,
+        }
+    }
+}
+
+/// A spatial encoder: its layers one after the other.
+fn spatial_encoder<B: Backend>(
+    backend: &B,
+    layers: &[EncoderLayer],
+    x: &B::Tokens,
+    seen: &B::Seen,
+) -> B::Tokens {
+    layers.iter().fold(x.clone(), |x, &layer| {
+        backend.spatial_attention(layer, &x, seen)
+    })
+}
+
+impl<B: Backend> Backbone<B> for Star {
+    fn output(&self) -> Linear {
+        self.output
+    }
+
+    fn scene(&self, backend: &B, centred: &B::Tokens, seen: &B::Seen) -> B::Tokens {
+        let embedded = backend.relu(&backend.linear(self.spatial_embedding, centred));
+        spatial_encoder(backend, &self.spatial[0], &embedded, seen)
+    }
+
+    fn step(
+        &self,
+        backend: &B,
+        memory: &mut Memory<B>,
+        relative: &B::Tokens,
+        scene: &B::Tokens,
+        seen: &B::Seen,
+    ) -> B::Tokens {
+        memory.caches.resize_with(self.temporal.len(), Vec::new);
+        let [first, second] = self.temporal;
+        let newest = backend.relu(&backend.linear(self.temporal_embedding, relative));
+        let temporal = backend.temporal_attention(first, &newest, &memory.caches[0]);
+        let scene = backend.repeated(scene, backend.entries(&temporal));
+        let fused = backend.linear(self.fusion, &backend.beside(&temporal, &scene));
+        let among = spatial_encoder(backend, &self.spatial[1], &fused, seen);
+        let token = backend.temporal_attention(second, &among, &memory.caches[1]);
+        for (cache, layer) in memory.caches.iter_mut().zip(self.temporal) {
+            cache.push(backend.key_values(layer, &token));
+        }
+        match self.frame {
+            Frame::World => token,
+            Frame::Goal => backend.beside(&token, relative),
+        }
+    }
+}

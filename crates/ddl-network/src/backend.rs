@@ -1,0 +1,16 @@
+//! What computes a network: kernels on plain numbers, or another library.
+//!
+//! A backbone is written once, in the operations of a [`Backend`]. [`KernelBackend`] computes them on the CPU in `f32`, forwards
+//! and backwards; the crate `ddl-star` has one on libtorch.
+
+mod kernels;
+mod memory;
+mod operations;
+mod rows;
+mod tape;
+
+pub use crate::kernel::{Buffer, Scenes};
+pub use kernels::{KernelBackend, Kernels, RowKeyValues, SeenScenes};
+pub use memory::Memory;
+pub use operations::{Backend, Mode};
+pub use rows::Rows;

@@ -1,0 +1,334 @@
+//! The operations of a backbone by our own kernels, on the CPU in `f32`.
+
+use super::operations::{Backend, Mode};
+use super::rows::Rows;
+use super::tape::Tape;
+use crate::Precision;
+use crate::kernel::{self, Buffer, Dropout, Dropouts, Remembered, Scenes};
+use crate::weights::{EncoderLayer, Layout, Linear};
+use std::cell::{Cell, RefCell};
+use std::ops::Range;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// The weights of a network as kernels read them.
+#[derive(Debug, Clone)]
+pub struct Kernels {
+    layout: Arc<Layout>,
+    linears: Vec<Arc<kernel::Linear>>,
+    encoder_layers: Vec<Arc<kernel::EncoderLayer>>,
+    precision: Precision,
+}
+
+impl Kernels {
+    /// Kernels with these learned numbers, in the order of the layout.
+    ///
+    /// # Panics
+    /// When there are more or fewer numbers than the layout has.
+    #[must_use]
+    pub fn new(layout: &Arc<Layout>, numbers: &[f32], precision: Precision) -> Self {
+        let linear =
+            |layer: &Linear| Arc::new(kernel::Linear::zeros(layer.inputs(), layer.outputs()));
+        let encoder = |layer: &EncoderLayer| Arc::new(kernel::EncoderLayer::zeros(layer.sizes()));
+        let mut kernels = Self {
+            layout: Arc::clone(layout),
+            linears: layout.linears().iter().map(linear).collect(),
+            encoder_layers: layout.encoder_layers().iter().map(encoder).collect(),
+            precision,
+        };
+        kernels.update(numbers);
+        kernels
+    }
+
+    /// Takes over other learned numbers. What a backward pass still holds of the earlier ones stays as it was.
+    ///
+    /// # Panics
+    /// When there are more or fewer numbers than the layout has.
+    pub fn update(&mut self, numbers: &[f32]) {
+        assert_eq!(numbers.len(), self.layout.count(), "learned numbers");
+        for (kernel, layer) in self.linears.iter_mut().zip(self.layout.linears()) {
+            Arc::make_mut(kernel).update(&numbers[layer.span()]);
+        }
+        let layers = self.layout.encoder_layers();
+        for (kernel, layer) in self.encoder_layers.iter_mut().zip(layers) {
+            Arc::make_mut(kernel).update(&numbers[layer.span()], self.precision);
+        }
+    }
+
+    /// Precision of the products in feed-forward blocks.
+    #[must_use]
+    pub fn precision(&self) -> Precision {
+        self.precision
+    }
+}
+
+/// One pass of kernels through a network: forwards, and backwards where it was begun by [`training`](Self::training).
+#[derive(Debug)]
+pub struct KernelBackend {
+    kernels: Arc<Kernels>,
+    mode: Mode,
+    /// Seed of the next dropout.
+    seed: Cell<u64>,
+    tape: Option<Tape>,
+}
+
+/// Keys and values `[B, P, width]` each, and what has come back to them so far.
+#[derive(Debug)]
+pub struct RowKeyValues {
+    rows: Remembered,
+    /// None until the first query has given its share.
+    gradient: RefCell<Option<Remembered>>,
+}
+
+/// Who sees whom in some time steps of scenes.
+#[derive(Debug, Clone)]
+pub struct SeenScenes {
+    /// The scenes, with all their time steps.
+    pub scenes: Arc<Scenes>,
+    /// One time step for all batch entries, or one for each.
+    pub steps: Range<usize>,
+}
+
+impl KernelBackend {
+    /// A pass that no gradient is asked of, without dropout.
+    #[must_use]
+    pub fn forward_only(kernels: Arc<Kernels>) -> Self {
+        Self {
+            kernels,
+            mode: Mode::Evaluate,
+            seed: Cell::new(0),
+            tape: None,
+        }
+    }
+
+    /// A pass whose gradient [`backward`](Self::backward) gives, with dropout by this seed in [`Mode::Train`].
+    #[must_use]
+    pub fn training(kernels: Arc<Kernels>, mode: Mode, seed: u64) -> Self {
+        Self {
+            kernels,
+            mode,
+            seed: Cell::new(seed),
+            tape: Some(Tape::default()),
+        }
+    }
+
+    /// Runs `step` on the way back, when the gradients of all that comes later are known. It may add to the gradients of all
+    /// learned numbers.
+    pub fn on_the_way_back(&self, step: impl FnOnce(&mut [f32]) + 'static) {
+        if let Some(tape) = &self.tape {
+            tape.push(step);
+        }
+    }
+
+    /// Adds the gradients of all learned numbers to `of_weights`, from those that were added to tokens. The second call adds
+    /// nothing.
+    pub fn backward(&self, of_weights: &mut [f32]) {
+        if let Some(tape) = &self.tape {
+            tape.backward(of_weights);
+        }
+    }
+
+    /// One batch entry, `[1, P, width]`.
+    #[must_use]
+    pub fn entry(&self, x: &Rc<Rows>, entry: usize) -> Rc<Rows> {
+        let [_, pedestrians, width] = x.shape();
+        let first = entry * pedestrians * width;
+        let numbers = Buffer::copy(&x[first..][..pedestrians * width]);
+        let x = Rc::clone(x);
+        self.made([1, pedestrians, width], numbers, move |gradient, _| {
+            x.add_gradient_at(first, gradient);
+        })
+    }
+
+    /// What a kernel has computed; `backward` gets the gradient of it, and adds to those of the kernel's inputs and
+    /// of all learned numbers.
+    fn made(
+        &self,
+        shape: [usize; 3],
+        numbers: Buffer,
+        backward: impl FnOnce(&[f32], &mut [f32]) + 'static,
+    ) -> Rc<Rows> {
+        let rows = Rc::new(Rows::new(shape, numbers));
+        let output = Rc::clone(&rows);
+        self.on_the_way_back(move |of_weights| {
+            // Otherwise nothing of the loss depends on it.
+            if let Some(gradient) = output.take_gradient() {
+                backward(&gradient, of_weights);
+            }
+        });
+        rows
+    }
+
+    /// The dropouts of a layer, each with a seed of its own; none outside training.
+    fn dropouts(&self, layer: EncoderLayer) -> Dropouts {
+        let [weights, attended, hidden, fed] = [0; 4].map(|_| self.dropout(layer.dropout()));
+        Dropouts {
+            weights,
+            attended,
+            hidden,
+            fed,
+        }
+    }
+
+    fn dropout(&self, p: f64) -> Option<Dropout> {
+        if self.mode == Mode::Evaluate || p == 0.0 {
+            return None;
+        }
+        let seed = self.seed.get();
+        // An odd constant goes through all numbers before one comes back.
+        self.seed.set(seed.wrapping_add(0x9e37_79b9_7f4a_7c15));
+        Some(Dropout { p, seed })
+    }
+
+    fn encoder(&self, layer: EncoderLayer) -> Arc<kernel::EncoderLayer> {
+        Arc::clone(&self.kernels.encoder_layers[layer.number()])
+    }
+}
+
+impl Backend for KernelBackend {
+    type Tokens = Rc<Rows>;
+    type KeyValues = Rc<RowKeyValues>;
+    type Seen = SeenScenes;
+
+    fn entries(&self, x: &Rc<Rows>) -> usize {
+        x.shape()[0]
+    }
+
+    fn linear(&self, layer: Linear, x: &Rc<Rows>) -> Rc<Rows> {
+        let [batch, pedestrians, _] = x.shape();
+        let kernel = Arc::clone(&self.kernels.linears[layer.number()]);
+        let (y, x) = (kernel.forward(x), Rc::clone(x));
+        let shape = [batch, pedestrians, layer.outputs()];
+        self.made(shape, y, move |gy, of_weights| {
+            x.add_gradient(kernel.backward(&x, gy, &mut of_weights[layer.span()]));
+        })
+    }
+
+    fn relu(&self, x: &Rc<Rows>) -> Rc<Rows> {
+        let mut numbers = Buffer::any(x.len());
+        for (y, x) in numbers.iter_mut().zip(x.iter()) {
+            // NaN stays NaN.
+            *y = if *x < 0.0 { 0.0 } else { *x };
+        }
+        let x = Rc::clone(x);
+        self.made(x.shape(), numbers, move |gradient, _| {
+            let mut of_x = Buffer::any(x.len());
+            for ((of_x, x), gradient) in of_x.iter_mut().zip(x.iter()).zip(gradient) {
+                *of_x = if *x <= 0.0 { 0.0 } else { *gradient };
+            }
+            x.add_gradient(of_x);
+        })
+    }
+
+    fn beside(&self, x: &Rc<Rows>, other: &Rc<Rows>) -> Rc<Rows> {
+        let (a, b) = (Rc::clone(x), Rc::clone(other));
+        let [batch, pedestrians, width] = a.shape();
+        let both = width + b.shape()[2];
+        assert_eq!(b.shape()[..2], [batch, pedestrians], "rows side by side");
+        let mut numbers = Buffer::any(batch * pedestrians * both);
+        let rows = a.chunks_exact(width).zip(b.chunks_exact(both - width));
+        for (row, (a, b)) in numbers.chunks_exact_mut(both).zip(rows) {
+            row[..width].copy_from_slice(a);
+            row[width..].copy_from_slice(b);
+        }
+        self.made([batch, pedestrians, both], numbers, move |gradient, _| {
+            for (rows, columns) in [(&a, 0..width), (&b, width..both)] {
+                let mut part = Buffer::any(rows.len());
+                let parts = part.chunks_exact_mut(columns.len());
+                for (part, gradient) in parts.zip(gradient.chunks_exact(both)) {
+                    part.copy_from_slice(&gradient[columns.clone()]);
+                }
+                rows.add_gradient(part);
+            }
+        })
+    }
+
+    fn repeated(&self, x: &Rc<Rows>, batch: usize) -> Rc<Rows> {
+        let x = Rc::clone(x);
+        let [entries, pedestrians, width] = x.shape();
+        if entries == batch {
+            return x;
+        }
+        assert_eq!(entries, 1, "only a single batch entry can be repeated");
+        let mut numbers = Buffer::any(batch * x.len());
+        for entry in numbers.chunks_exact_mut(x.len()) {
+            entry.copy_from_slice(&x);
+        }
+        self.made([batch, pedestrians, width], numbers, move |gradient, _| {
+            for gradient in gradient.chunks_exact(x.len()) {
+                x.add_gradient_at(0, gradient);
+            }
+        })
+    }
+
+    fn spatial_attention(&self, layer: EncoderLayer, x: &Rc<Rows>, seen: &SeenScenes) -> Rc<Rows> {
+        let (kernel, dropouts) = (self.encoder(layer), self.dropouts(layer));
+        let frames = seen.scenes.during(seen.steps.clone());
+        let (y, kept) = kernel.among_pedestrians(x, frames, dropouts);
+        let (x, seen) = (Rc::clone(x), seen.clone());
+        self.made(x.shape(), y, move |gy, of_weights| {
+            let of_weights = &mut of_weights[layer.span()];
+            let frames = seen.scenes.during(seen.steps.clone());
+            let gx = kernel.among_pedestrians_backward(&x, frames, dropouts, &kept, gy, of_weights);
+            x.add_gradient(gx);
+        })
+    }
+
+    fn temporal_attention(
+        &self,
+        layer: EncoderLayer,
+        newest: &Rc<Rows>,
+        cache: &[Rc<RowKeyValues>],
+    ) -> Rc<Rows> {
+        let (kernel, dropouts) = (self.encoder(layer), self.dropouts(layer));
+        let (y, kept) = kernel.over_memory(newest, &rows(cache), dropouts);
+        if self.tape.is_none() {
+            return Rc::new(Rows::new(newest.shape(), y));
+        }
+        let (x, cache) = (Rc::clone(newest), cache.to_vec());
+        self.made(x.shape(), y, move |gy, of_weights| {
+            let mut shares: Vec<_> = cache.iter().map(|token| token.gradient.take()).collect();
+            let mut of_memory: Vec<&mut Remembered> = shares
+                .iter_mut()
+                .map(|share| share.get_or_insert_with(|| Remembered::zeros(x.len())))
+                .collect();
+            x.add_gradient(kernel.over_memory_backward(
+                &x,
+                &rows(&cache),
+                dropouts,
+                &kept,
+                gy,
+                &mut of_memory,
+                &mut of_weights[layer.span()],
+            ));
+            for (token, share) in cache.iter().zip(shares) {
+                token.gradient.replace(share);
+            }
+        })
+    }
+
+    fn key_values(&self, layer: EncoderLayer, x: &Rc<Rows>) -> Rc<RowKeyValues> {
+        let kernel = self.encoder(layer);
+        let cached = Rc::new(RowKeyValues {
+            rows: kernel.remember(x),
+            gradient: RefCell::new(None),
+        });
+        let (token, x) = (Rc::clone(&cached), Rc::clone(x));
+        self.on_the_way_back(move |of_weights| {
+            if let Some(gradient) = token.gradient.take() {
+                let of_weights = &mut of_weights[layer.span()];
+                x.add_gradient(kernel.remember_backward(&x, &gradient, of_weights));
+            }
+        });
+        cached
+    }
+
+    fn repeated_key_values(&self, cached: &Rc<RowKeyValues>, _: usize) -> Rc<RowKeyValues> {
+        // The kernels take fewer rows for repetitions.
+        Rc::clone(cached)
+    }
+}
+
+fn rows(cache: &[Rc<RowKeyValues>]) -> Vec<&Remembered> {
+    cache.iter().map(|token| &token.rows).collect()
+}

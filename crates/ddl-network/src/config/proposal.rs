@@ -1,0 +1,262 @@
+//! Shape of the proposal network, and how it is trained.
+
+use super::range::require;
+use crate::NetworkError;
+use serde::{Deserialize, Serialize};
+
+/// Shape of the proposal network.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProposalConfig {
+    /// Networks of the ensemble, each trained on its own batches.
+    pub members: i64,
+    /// Ends K that each member proposes.
+    pub ends: i64,
+    /// Width of the hidden layers.
+    pub width: i64,
+    /// Hidden layers after the neighbours have been taken in.
+    pub layers: usize,
+    /// Width of a neighbour's code.
+    pub neighbour_width: i64,
+    /// Heads of the attention over neighbours.
+    pub heads: i64,
+    /// Nearest neighbours looked at.
+    pub neighbours: usize,
+    /// Neighbours further away than this at the last observed step are not looked at (metres).
+    pub neighbour_range: f64,
+    /// Seconds between two positions.
+    pub time_step: f64,
+}
+
+impl Default for ProposalConfig {
+    fn default() -> Self {
+        Self {
+            members: 4,
+            ends: 20,
+            width: 192,
+            layers: 2,
+            neighbour_width: 64,
+            heads: 4,
+            neighbours: 8,
+            neighbour_range: 6.0,
+            time_step: 0.4,
+        }
+    }
+}
+
+impl ProposalConfig {
+    /// Weights of its largest layers alone: the network has more numbers than these, and a file with fewer is not of it.
+    ///
+    /// # Panics
+    /// Where numbers overflow, which [`check`](Self::check) excludes.
+    #[must_use]
+    pub fn least_numbers(&self) -> u64 {
+        let [members, ends, width, near] =
+            [self.members, self.ends, self.width, self.neighbour_width].map(|size| size as u64);
+        let layers = self.layers as u64;
+        // hidden layers, attention, and for each end a place, three waypoints and a probability
+        members * (layers * width * width + near * (3 * near + width) + 9 * width * ends)
+    }
+
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`NetworkError::Config`] naming the first field that is out of range.
+    pub fn check(&self) -> Result<(), NetworkError> {
+        // An upper limit keeps a damaged file from asking for all the memory there is.
+        for (field, value, most) in [
+            ("members", self.members, 64),
+            ("ends", self.ends, 1024),
+            ("width", self.width, 4096),
+            ("neighbour_width", self.neighbour_width, 4096),
+            ("heads", self.heads, 64),
+            ("neighbours", self.neighbours as i64, 256),
+        ] {
+            require(
+                (1..=most).contains(&value),
+                field,
+                &value,
+                "at least 1 and within reason",
+            )?;
+        }
+        require(
+            (1..=16).contains(&self.layers),
+            "layers",
+            &self.layers,
+            "1 to 16",
+        )?;
+        require(
+            self.neighbour_width % self.heads == 0,
+            "heads",
+            &self.heads,
+            "a divisor of neighbour_width",
+        )?;
+        let range = self.neighbour_range;
+        require(
+            range.is_finite() && range >= 0.0,
+            "neighbour_range",
+            &range,
+            "finite and not negative",
+        )?;
+        let step = self.time_step;
+        require(
+            step.is_finite() && step > 0.0,
+            "time_step",
+            &step,
+            "finite and positive",
+        )
+    }
+}
+
+/// How the proposal network is trained.
+///
+/// The defaults were chosen on validation splits of training recordings (`docs/goals.md`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProposalTraining {
+    /// Batches.
+    pub steps: u64,
+    /// Pedestrians a batch, for each member.
+    pub batch: i64,
+    /// Largest step size of Adam; it rises, then falls along a half cosine.
+    pub learning_rate: f64,
+    /// Largest allowed norm of a member's gradient, on average.
+    pub gradient_clip: f64,
+    /// Nearest ends that share the loss at the start; falls to 1, the winner alone.
+    pub relaxed_ends: f64,
+    /// Share of the training after which the winner takes all.
+    pub relaxed_share: f64,
+    /// Weight of the waypoints' distances in the loss, beside that of the end.
+    pub waypoint_weight: f64,
+    /// Weight of the cross-entropy of the ends' probabilities (metres).
+    pub probability_weight: f64,
+    /// Scenes are enlarged by exp(u), u uniform within ± this.
+    pub scale: f64,
+    /// Scenes are turned by a normal angle of this standard deviation (radians).
+    pub turn: f64,
+    /// Largest standard deviation of what is added to every observed position (metres); each pedestrian's is uniform from 0 to this.
+    pub jitter: f64,
+    /// Standard deviation of what is added to a neighbour's whole track (metres).
+    pub neighbour_jitter: f64,
+    /// Share of the pedestrians that see no neighbours in a batch.
+    pub blindness: f64,
+    /// Share of the pedestrians that walk backwards in time in a batch, where there are any to draw from.
+    pub reversed: f64,
+    /// Seed of initial weights, batches and augmentation.
+    pub seed: u64,
+}
+
+impl Default for ProposalTraining {
+    fn default() -> Self {
+        Self {
+            steps: 1500,
+            batch: 256,
+            learning_rate: 1e-3,
+            gradient_clip: 5.0,
+            relaxed_ends: 10.0,
+            relaxed_share: 0.6,
+            waypoint_weight: 0.5,
+            probability_weight: 0.1,
+            scale: 0.35,
+            turn: 0.1,
+            jitter: 0.08,
+            neighbour_jitter: 0.3,
+            blindness: 0.3,
+            reversed: 0.3,
+            seed: 1,
+        }
+    }
+}
+
+impl ProposalTraining {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`NetworkError::Config`] naming the first field that is out of range.
+    pub fn check(&self) -> Result<(), NetworkError> {
+        require(self.steps > 0, "steps", &self.steps, "at least 1")?;
+        require(self.batch > 0, "batch", &self.batch, "at least 1")?;
+        for (field, value) in [
+            ("learning_rate", self.learning_rate),
+            ("gradient_clip", self.gradient_clip),
+        ] {
+            require(
+                value.is_finite() && value > 0.0,
+                field,
+                &value,
+                "finite and positive",
+            )?;
+        }
+        let relaxed = self.relaxed_ends;
+        require(
+            relaxed.is_finite() && relaxed >= 1.0,
+            "relaxed_ends",
+            &relaxed,
+            "finite and at least 1",
+        )?;
+        for (field, value) in [
+            ("relaxed_share", self.relaxed_share),
+            ("blindness", self.blindness),
+            ("reversed", self.reversed),
+        ] {
+            require((0.0..=1.0).contains(&value), field, &value, "0 to 1")?;
+        }
+        for (field, value) in [
+            ("waypoint_weight", self.waypoint_weight),
+            ("probability_weight", self.probability_weight),
+            ("scale", self.scale),
+            ("turn", self.turn),
+            ("jitter", self.jitter),
+            ("neighbour_jitter", self.neighbour_jitter),
+        ] {
+            require(
+                value.is_finite() && value >= 0.0,
+                field,
+                &value,
+                "finite and not negative",
+            )?;
+        }
+        Ok(())
+    }
+
+    /// How many of the nearest ends share the loss of a step, a fraction counting for the last.
+    #[must_use]
+    pub fn relaxed_at(&self, step: u64) -> f64 {
+        let done = step as f64 / self.steps as f64;
+        let left = if self.relaxed_share > 0.0 {
+            (1.0 - done / self.relaxed_share).max(0.0)
+        } else {
+            0.0
+        };
+        1.0 + (self.relaxed_ends - 1.0) * left
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ProposalConfig, ProposalTraining};
+
+    #[test]
+    fn the_winner_takes_all_in_the_end() {
+        let training = ProposalTraining::default();
+        assert!((training.relaxed_at(0) - 10.0).abs() < 1e-12);
+        assert!((training.relaxed_at(450) - 5.5).abs() < 1e-12);
+        assert!((training.relaxed_at(1499) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_broken_value_is_named() {
+        ProposalConfig::default().check().unwrap();
+        ProposalTraining::default().check().unwrap();
+        let bad = ProposalConfig {
+            heads: 3,
+            ..ProposalConfig::default()
+        };
+        assert!(bad.check().unwrap_err().to_string().contains("heads"));
+        let bad = ProposalTraining {
+            turn: f64::NAN,
+            ..ProposalTraining::default()
+        };
+        assert!(bad.check().unwrap_err().to_string().contains("turn"));
+    }
+}

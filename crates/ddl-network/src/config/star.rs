@@ -1,0 +1,244 @@
+//! Size and constants of the forecasting network.
+
+use super::backbone_kind::BackboneKind;
+use super::range::require;
+use super::variant::Variant;
+use crate::NetworkError;
+use serde::{Deserialize, Serialize};
+
+/// The frame in which the network reads where a pedestrian is, and says how it goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Frame {
+    /// That of the recording, as published.
+    World,
+    /// The pedestrian's own, whose first axis points from where it was last observed to its goal. Velocities are read beside
+    /// positions, and the output layer reads both beside the token.
+    Goal,
+}
+
+/// Size and constants of the network. [`StarConfig::published`] gives the paper's.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StarConfig {
+    /// The network behind the shared rollout.
+    #[serde(default, skip_serializing_if = "is_star")]
+    pub backbone: BackboneKind,
+    /// What the network reads and what its output means.
+    pub variant: Variant,
+    /// The frame of what it reads of a pedestrian and of what it emits.
+    pub frame: Frame,
+    /// Width of a token.
+    pub model_width: i64,
+    /// Attention heads; must divide the width.
+    pub heads: i64,
+    /// Width of the hidden layer of each feed-forward block.
+    pub feed_forward_width: i64,
+    /// Layers of each of the two spatial encoders.
+    pub spatial_layers: usize,
+    /// Length of the Gaussian noise vector given to the output layer.
+    pub noise_width: i64,
+    /// Dropout of the spatial encoders (the temporal ones have none).
+    pub spatial_dropout: f64,
+    /// Half side of the square within which pedestrians are neighbours, in metres.
+    pub neighbour_box: f64,
+    /// sigma of P = L L^T + sigma I (eq. 11).
+    pub sigma: f64,
+    /// Seconds between two frames.
+    pub time_step: f64,
+}
+
+/// Configurations of earlier versions name no backbone: theirs is STAR.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+fn is_star(backbone: &BackboneKind) -> bool {
+    *backbone == BackboneKind::Star
+}
+
+/// As many as the kernels have room for.
+const MOST_HEADS: i64 = 256;
+/// Upper limits keep a damaged file from asking for all the memory there is.
+const MOST_LAYER_NUMBERS: i64 = 1 << 24;
+const MOST_LAYERS: usize = 64;
+
+impl StarConfig {
+    /// Weights of an encoder layer, without biases and normalisation.
+    fn layer_numbers(&self) -> i64 {
+        self.model_width * (4 * self.model_width + 2 * self.feed_forward_width)
+    }
+
+    /// Weights of the largest layers alone (of STAR its spatial encoders): the network has more numbers than these, and a file with fewer is not of it. So a file can
+    /// be refused before there is a network that it would have to fill.
+    ///
+    /// # Panics
+    /// Where numbers overflow, which [`check`](Self::check) excludes.
+    #[must_use]
+    pub fn least_numbers(&self) -> u64 {
+        match self.backbone {
+            BackboneKind::Star => 2 * self.spatial_layers as u64 * self.layer_numbers() as u64,
+            BackboneKind::Perceptron => (self.feed_forward_width * self.model_width) as u64,
+        }
+    }
+
+    /// The published network: 32-wide tokens, 8 heads, 2048-wide feed-forward blocks, two spatial
+    /// layers, 16 noise numbers, sigma = 1e-8, 0.4 s.
+    #[must_use]
+    pub fn published(variant: Variant) -> Self {
+        Self {
+            backbone: BackboneKind::Star,
+            variant,
+            frame: Frame::World,
+            model_width: 32,
+            heads: 8,
+            feed_forward_width: 2048,
+            spatial_layers: 2,
+            noise_width: 16,
+            spatial_dropout: 0.1,
+            neighbour_box: 10.0,
+            sigma: ddl_dynamics::PUBLISHED_SIGMA,
+            time_step: ddl_data::TIME_STEP,
+        }
+    }
+
+    /// The network that the protocols `fair` and `single` are measured with by default: narrower feed-forward blocks, and
+    /// everything in the pedestrians' own frames where the variant has goals to read (`docs/accuracy.md`).
+    #[must_use]
+    pub fn recommended(variant: Variant) -> Self {
+        Self {
+            frame: if variant.goal_shift() {
+                Frame::Goal
+            } else {
+                Frame::World
+            },
+            feed_forward_width: 128,
+            ..Self::published(variant)
+        }
+    }
+
+    /// Numbers the temporal encoders read of a pedestrian and step: where it is, and in its own frame its velocity too.
+    #[must_use]
+    pub fn temporal_inputs(&self) -> i64 {
+        match self.frame {
+            Frame::World => 2,
+            Frame::Goal => 4,
+        }
+    }
+
+    /// Numbers the output layer reads of a pedestrian and step, without noise: its token and, in its own frame, where it is and how
+    /// fast, past the layer normalisations, which forget lengths.
+    #[must_use]
+    pub fn output_inputs(&self) -> i64 {
+        match self.frame {
+            Frame::World => self.model_width,
+            Frame::Goal => self.model_width + self.temporal_inputs(),
+        }
+    }
+
+    /// Numbers the network emits a pedestrian and step: (a, b, c) of the Cholesky factor, or (x, y).
+    #[must_use]
+    pub fn output_width(&self) -> i64 {
+        if self.variant.dynamics() { 3 } else { 2 }
+    }
+
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`NetworkError::Config`] naming the first field that is out of range.
+    pub fn check(&self) -> Result<(), NetworkError> {
+        let positive = [
+            ("model_width", self.model_width),
+            ("heads", self.heads),
+            ("feed_forward_width", self.feed_forward_width),
+            ("spatial_layers", self.spatial_layers as i64),
+            ("noise_width", self.noise_width),
+        ];
+        for (field, value) in positive {
+            require(
+                value > 0 && value <= 65_536,
+                field,
+                &value,
+                "a whole number in 1..=65536",
+            )?;
+        }
+        require(
+            self.heads <= MOST_HEADS,
+            "heads",
+            &self.heads,
+            "at most 256",
+        )?;
+        let numbers = self.layer_numbers();
+        require(
+            numbers <= MOST_LAYER_NUMBERS,
+            "feed_forward_width",
+            &self.feed_forward_width,
+            "so that a layer has at most 2^24 weights",
+        )?;
+        require(
+            self.spatial_layers <= MOST_LAYERS,
+            "spatial_layers",
+            &self.spatial_layers,
+            "at most 64",
+        )?;
+        require(
+            self.model_width % self.heads == 0,
+            "heads",
+            &self.heads,
+            "must divide model_width",
+        )?;
+        require(
+            self.frame == Frame::World || self.variant.goal_shift(),
+            "frame",
+            &"goal",
+            "world for the variants without goal shift",
+        )?;
+        let dropout = self.spatial_dropout;
+        require(
+            (0.0..1.0).contains(&dropout),
+            "spatial_dropout",
+            &dropout,
+            "in [0, 1)",
+        )?;
+        for (field, value) in [
+            ("neighbour_box", self.neighbour_box),
+            ("sigma", self.sigma),
+            ("time_step", self.time_step),
+        ] {
+            require(
+                value.is_finite() && value > 0.0,
+                field,
+                &value,
+                "finite and positive",
+            )?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn published_sizes_are_accepted_and_broken_ones_named() {
+        let good = StarConfig::published(Variant::Full);
+        good.check().unwrap();
+        let bad = StarConfig {
+            heads: 5,
+            ..good.clone()
+        };
+        assert!(bad.check().unwrap_err().to_string().contains("heads = 5"));
+        let too_many = StarConfig {
+            model_width: 512,
+            heads: 512,
+            ..good.clone()
+        };
+        assert!(too_many.check().unwrap_err().to_string().contains("heads"));
+        let too_wide = StarConfig {
+            model_width: 65_536,
+            feed_forward_width: 65_536,
+            ..good.clone()
+        };
+        assert!(too_wide.check().is_err());
+        let bad = StarConfig { sigma: 0.0, ..good };
+        assert!(bad.check().unwrap_err().to_string().contains("sigma"));
+    }
+}

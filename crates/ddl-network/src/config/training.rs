@@ -1,0 +1,283 @@
+//! How to train.
+
+use super::range::require;
+use super::variant::Variant;
+use crate::NetworkError;
+use serde::{Deserialize, Serialize};
+
+/// How Adam's step size changes over the training.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LearningRateSchedule {
+    /// The same throughout, as published.
+    Constant,
+    /// Rises over the first twentieth, then falls along a half cosine to zero.
+    Cosine,
+}
+
+impl LearningRateSchedule {
+    /// Share of the training over which the cosine schedule rises.
+    const WARM_UP: f64 = 0.05;
+
+    /// Factor of the largest step size at step `step` of `total`, counted from 0.
+    #[must_use]
+    pub fn factor(self, step: u64, total: u64) -> f64 {
+        match self {
+            Self::Constant => 1.0,
+            Self::Cosine => {
+                let progress = (step as f64 + 0.5) / total.max(1) as f64;
+                let fall = (progress - Self::WARM_UP) / (1.0 - Self::WARM_UP);
+                if progress < Self::WARM_UP {
+                    progress / Self::WARM_UP
+                } else {
+                    0.5 * (1.0 + (std::f64::consts::PI * fall.min(1.0)).cos())
+                }
+            }
+        }
+    }
+}
+
+impl std::fmt::Display for LearningRateSchedule {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Constant => "constant",
+            Self::Cosine => "cosine",
+        })
+    }
+}
+
+impl std::str::FromStr for LearningRateSchedule {
+    type Err = NetworkError;
+
+    fn from_str(text: &str) -> Result<Self, NetworkError> {
+        match text {
+            "constant" => Ok(Self::Constant),
+            "cosine" => Ok(Self::Cosine),
+            _ => Err(NetworkError::Config {
+                field: "learning_rate_schedule",
+                value: text.to_owned(),
+                rule: "one of constant, cosine",
+            }),
+        }
+    }
+}
+
+/// What a step of training asks of the network.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Objective {
+    /// The next position from the true ones before it, on the way to the true end, with noise and by plain Euler steps:
+    /// squared distance (paper eq. 13), as published.
+    NextStep,
+    /// The walk that will be forecast: from the observed frames alone, by its own positions, to an estimated goal, with the
+    /// expected metric and by steps that keep the guarantee: distance from the true path.
+    Walk,
+}
+
+impl std::fmt::Display for Objective {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::NextStep => "next-step",
+            Self::Walk => "walk",
+        })
+    }
+}
+
+impl std::str::FromStr for Objective {
+    type Err = NetworkError;
+
+    fn from_str(text: &str) -> Result<Self, NetworkError> {
+        match text {
+            "next-step" => Ok(Self::NextStep),
+            "walk" => Ok(Self::Walk),
+            _ => Err(NetworkError::Config {
+                field: "objective",
+                value: text.to_owned(),
+                rule: "one of next-step, walk",
+            }),
+        }
+    }
+}
+
+/// How to train.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainingConfig {
+    /// What is asked of the network.
+    pub objective: Objective,
+    /// Passes over the training set (or over `walkers_per_epoch` of it).
+    pub epochs: usize,
+    /// Largest step size of Adam.
+    pub learning_rate: f64,
+    /// How the step size changes over the training.
+    pub learning_rate_schedule: LearningRateSchedule,
+    /// Largest allowed norm of the gradient.
+    pub gradient_clip: f64,
+    /// Windows are gathered into a batch until it holds more than this many pedestrians.
+    pub batch_walkers: usize,
+    /// Rotate each batch by a fresh random angle at every visit; angles add up, as published.
+    pub rotate: bool,
+    /// Mirror each batch at every other visit, drawn at random.
+    pub mirror: bool,
+    /// Move every observed coordinate by a normal error at every visit, whose deviation is uniform from 0 to this (m) for each
+    /// pedestrian; futures stay where they are. Only for [`Objective::Walk`].
+    pub jitter: f64,
+    /// Train on at most about this many pedestrians an epoch, going round the whole set.
+    pub walkers_per_epoch: Option<usize>,
+    /// Seed of initial weights, batch order, rotation, mirror images, jitter, noise and dropout.
+    pub seed: u64,
+}
+
+impl TrainingConfig {
+    /// The paper's training: 200 epochs of one-step forecasts, batches of 256 pedestrians, step size 1.5e-3.
+    #[must_use]
+    pub fn published() -> Self {
+        Self {
+            objective: Objective::NextStep,
+            epochs: 200,
+            learning_rate: 1.5e-3,
+            learning_rate_schedule: LearningRateSchedule::Constant,
+            gradient_clip: 1.0,
+            batch_walkers: 256,
+            rotate: true,
+            mirror: false,
+            jitter: 0.0,
+            walkers_per_epoch: None,
+            seed: 1,
+        }
+    }
+
+    /// The training behind the protocols `fair` and `single`, chosen on validation splits of training recordings
+    /// (`docs/accuracy.md`): whole walks to estimated goals, and for plain STAR, which has none, single steps.
+    #[must_use]
+    pub fn recommended(variant: Variant) -> Self {
+        let (objective, jitter) = if variant.uses_goal() {
+            (Objective::Walk, 0.06)
+        } else {
+            (Objective::NextStep, 0.0)
+        };
+        Self {
+            objective,
+            epochs: 20,
+            learning_rate: 1e-3,
+            learning_rate_schedule: LearningRateSchedule::Cosine,
+            batch_walkers: 64,
+            mirror: true,
+            jitter,
+            walkers_per_epoch: Some(5000),
+            ..Self::published()
+        }
+    }
+}
+
+/// So that steps can be counted, whatever the windows.
+const MOST_EPOCHS: usize = 1_000_000;
+
+impl TrainingConfig {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`NetworkError::Config`] naming the first field that is out of range.
+    pub fn check(&self) -> Result<(), NetworkError> {
+        require(
+            (1..=MOST_EPOCHS).contains(&self.epochs),
+            "epochs",
+            &self.epochs,
+            "a whole number in 1..=1000000",
+        )?;
+        let rate = self.learning_rate;
+        require(
+            rate.is_finite() && rate > 0.0,
+            "learning_rate",
+            &rate,
+            "finite and positive",
+        )?;
+        let jitter = self.jitter;
+        require(
+            jitter.is_finite() && jitter >= 0.0,
+            "jitter",
+            &jitter,
+            "finite and not negative",
+        )?;
+        require(
+            jitter == 0.0 || self.objective == Objective::Walk,
+            "jitter",
+            &jitter,
+            "0 unless the objective is walk: single steps are led to the observed positions themselves",
+        )?;
+        let clip = self.gradient_clip;
+        require(
+            clip.is_finite() && clip > 0.0,
+            "gradient_clip",
+            &clip,
+            "finite and positive",
+        )?;
+        require(
+            self.batch_walkers > 0,
+            "batch_walkers",
+            &self.batch_walkers,
+            "at least 1",
+        )?;
+        if let Some(pedestrians) = self.walkers_per_epoch {
+            require(
+                pedestrians > 0,
+                "walkers_per_epoch",
+                &pedestrians,
+                "at least 1",
+            )?;
+        }
+        Ok(())
+    }
+
+    /// Checks that a network of this variant can be trained so.
+    ///
+    /// # Errors
+    /// [`NetworkError::Config`] for walks of [`Variant::Star`], which has no goals to walk to: its forecasts live on the noise that
+    /// walks are trained without.
+    pub fn check_for(&self, variant: Variant) -> Result<(), NetworkError> {
+        require(
+            variant.uses_goal() || self.objective == Objective::NextStep,
+            "objective",
+            &"walk",
+            "next-step for the variant without goals",
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cosine_schedule_rises_then_falls_to_nothing() {
+        let factors: Vec<f64> = (0..1000)
+            .map(|step| LearningRateSchedule::Cosine.factor(step, 1000))
+            .collect();
+        let top = factors.iter().copied().fold(0.0, f64::max);
+        assert!((top - 1.0).abs() < 1e-2 && factors[0] < 0.02 && factors[999] < 1e-4);
+        let peak = factors.iter().position(|&factor| factor >= top).unwrap();
+        assert!((45..55).contains(&peak));
+        assert!(factors[..=peak].is_sorted());
+        assert!(factors[peak..].iter().rev().is_sorted());
+    }
+
+    #[test]
+    fn a_broken_value_is_named() {
+        TrainingConfig::published().check().unwrap();
+        let endless = TrainingConfig {
+            epochs: usize::MAX,
+            ..TrainingConfig::published()
+        };
+        assert!(endless.check().unwrap_err().to_string().contains("epochs"));
+        let bad = TrainingConfig {
+            learning_rate: f64::NAN,
+            ..TrainingConfig::published()
+        };
+        assert!(
+            bad.check()
+                .unwrap_err()
+                .to_string()
+                .contains("learning_rate")
+        );
+    }
+}

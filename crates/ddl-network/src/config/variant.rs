@@ -1,0 +1,90 @@
+//! The four variants of the paper's ablation.
+
+use crate::NetworkError;
+use serde::{Deserialize, Serialize};
+
+/// The four rows of the paper's Table II: goal shift (A) and dynamics (B), each on or off.
+///
+/// One network serves all four; a variant only chooses what it reads and what its output means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Variant {
+    /// Goal shift and dynamics: the method of the paper.
+    Full,
+    /// Dynamics without goal shift.
+    NoGoalShift,
+    /// Goal shift without dynamics.
+    NoDynamics,
+    /// Neither: plain STAR.
+    Star,
+}
+
+impl Variant {
+    /// All variants, in the order of the paper's Table II.
+    pub const ALL: [Self; 4] = [Self::Star, Self::NoGoalShift, Self::NoDynamics, Self::Full];
+
+    /// Whether the temporal encoders read positions relative to the goal (eq. 10) rather than
+    /// to the last observed position.
+    #[must_use]
+    pub fn goal_shift(self) -> bool {
+        matches!(self, Self::Full | Self::NoDynamics)
+    }
+
+    /// Whether the output is the Cholesky factor of the metric (eq. 12) rather than the next
+    /// position itself.
+    #[must_use]
+    pub fn dynamics(self) -> bool {
+        matches!(self, Self::Full | Self::NoGoalShift)
+    }
+
+    /// Whether a forecast depends on a goal at all.
+    #[must_use]
+    pub fn uses_goal(self) -> bool {
+        self != Self::Star
+    }
+
+    /// The name used on the command line and in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Full => "full",
+            Self::NoGoalShift => "no-goal-shift",
+            Self::NoDynamics => "no-dynamics",
+            Self::Star => "star",
+        }
+    }
+}
+
+impl std::fmt::Display for Variant {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl std::str::FromStr for Variant {
+    type Err = NetworkError;
+
+    fn from_str(text: &str) -> Result<Self, NetworkError> {
+        Self::ALL
+            .into_iter()
+            .find(|variant| variant.name() == text)
+            .ok_or_else(|| NetworkError::Config {
+                field: "variant",
+                value: text.to_owned(),
+                rule: "one of full, no-goal-shift, no-dynamics, star",
+            })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variants_round_trip_through_their_names() {
+        for variant in Variant::ALL {
+            assert_eq!(variant.name().parse::<Variant>().unwrap(), variant);
+        }
+        assert!("half".parse::<Variant>().is_err());
+    }
+}

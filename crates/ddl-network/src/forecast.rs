@@ -1,0 +1,20 @@
+//! Windows and goals in, positions out.
+
+mod batch;
+mod course;
+mod emission;
+mod forecast_windows;
+mod motion_bounds;
+mod network;
+mod own_frame;
+mod rollout;
+mod unit;
+mod visibility;
+
+pub use batch::{BatchRollout, ForecastBatch};
+pub use forecast_windows::ForecastWindows;
+pub use motion_bounds::motion_bounds;
+pub use network::MotionNetwork;
+pub use rollout::{Noise, StepRule, WindowRollout};
+pub use unit::motion_unit;
+pub use visibility::visibility;

@@ -1,0 +1,218 @@
+//! Windows that are forecast together, laid out side by side.
+
+use super::rollout::{Noise, StepRule, WindowRollout};
+use crate::NetworkError;
+use crate::seed::{Stage, stream};
+use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use rand::RngExt as _;
+use rand_distr::StandardNormal;
+
+/// Windows are rolled out together until they hold this many pedestrians: enough to fill the products, few enough for
+/// the tokens of their hypotheses to stay near the processor.
+const PEDESTRIANS_AT_ONCE: usize = 64;
+
+/// Several windows with their goals: P pedestrians, window after window.
+///
+/// Positions are relative to a point of each window, so that tracks in map coordinates lose nothing in `f32`: networks see
+/// differences of positions only.
+#[derive(Debug)]
+pub struct ForecastBatch<'a> {
+    originals: &'a [Window],
+    origins: Vec<Position>,
+    /// The windows, relative to their origins.
+    pub windows: Vec<Window>,
+    /// `[G][P]`, relative to the origin of each pedestrian's window.
+    pub goals: Vec<Vec<Position>>,
+    /// Share of the network's metric in what shapes a step, `[P]`.
+    pub shares: Option<Vec<f64>>,
+    /// Noise vectors `[H, noise]`; `None` for the expectation over them.
+    pub noise: Option<Vec<f64>>,
+    /// Number of noise vectors; 1 where there are none.
+    pub noise_vectors: usize,
+    /// How a velocity becomes the next position.
+    pub rule: StepRule,
+}
+
+/// What a network made of a [`ForecastBatch`].
+#[derive(Debug)]
+pub struct BatchRollout {
+    /// H.
+    pub hypotheses: usize,
+    /// `[12, H, P]`, relative to the origins, metres.
+    pub positions: Vec<[f64; 2]>,
+    /// `[12, H, P]`: (a, b, c); `None` for the variants without dynamics.
+    pub factors: Option<Vec<[f64; 3]>>,
+}
+
+/// Checks goals, noise and shares, and lays the windows out.
+pub(super) fn batches<'a>(
+    windows: &'a [Window],
+    goals: &[Vec<Vec<Position>>],
+    (noise, noise_width): (Noise, usize),
+    rule: StepRule,
+    shares: Option<&[Vec<f64>]>,
+) -> Result<Vec<ForecastBatch<'a>>, NetworkError> {
+    check_shares(windows, shares)?;
+    let goal_count = check_goals(windows, goals, noise)?;
+    let (noise, noise_vectors) = match noise {
+        Noise::Expected => (None, 1),
+        Noise::Draws { count, seed } => {
+            let mut rng = stream(seed, Stage::Forecast, 0);
+            let draws = (0..count * noise_width).map(|_| rng.sample(StandardNormal));
+            (Some(draws.collect::<Vec<f64>>()), count)
+        }
+    };
+    let mut batches = Vec::new();
+    let mut first = 0;
+    while first < windows.len() {
+        let mut last = first;
+        let mut pedestrians = 0;
+        while last < windows.len()
+            && (pedestrians == 0 || pedestrians + windows[last].len() <= PEDESTRIANS_AT_ONCE)
+        {
+            pedestrians += windows[last].len();
+            last += 1;
+        }
+        let originals = &windows[first..last];
+        let origins: Vec<Position> = originals.iter().map(origin).collect();
+        let of_goal = |k: usize| {
+            let each = goals[first..last].iter().zip(&origins);
+            each.flat_map(|(goals, &origin)| goals.iter().map(move |of| relative(of[k], origin)))
+                .collect()
+        };
+        batches.push(ForecastBatch {
+            windows: originals
+                .iter()
+                .zip(&origins)
+                .map(|(window, &origin)| window.map_positions(|_, _, p| relative(p, origin)))
+                .collect(),
+            goals: (0..goal_count).map(of_goal).collect(),
+            shares: shares.map(|shares| shares[first..last].concat()),
+            noise: noise.clone(),
+            noise_vectors,
+            rule,
+            originals,
+            origins,
+        });
+        first = last;
+    }
+    Ok(batches)
+}
+
+impl ForecastBatch<'_> {
+    /// P.
+    #[must_use]
+    pub fn pedestrians(&self) -> usize {
+        self.windows.iter().map(Window::len).sum()
+    }
+
+    /// H.
+    #[must_use]
+    pub fn hypotheses(&self) -> usize {
+        self.goals.len().max(self.noise_vectors)
+    }
+
+    /// The rollout, window by window, where the windows were.
+    pub(super) fn windows_of(&self, rollout: &BatchRollout) -> Vec<WindowRollout> {
+        let all = self.pedestrians();
+        let hypotheses = rollout.hypotheses;
+        let at = |t: usize, h: usize, i: usize| (t * hypotheses + h) * all + i;
+        let mut first = 0;
+        let windows = self.originals.iter().zip(&self.origins);
+        windows
+            .map(|(window, [x, y])| {
+                let own = first..first + window.len();
+                first = own.end;
+                let places = || {
+                    own.clone().flat_map(move |i| {
+                        (0..hypotheses).flat_map(move |h| (0..HORIZON).map(move |t| at(t, h, i)))
+                    })
+                };
+                WindowRollout {
+                    pedestrians: window.len(),
+                    hypotheses,
+                    positions: places()
+                        .map(|place| rollout.positions[place])
+                        .map(|p| [p[0] + x, p[1] + y])
+                        .collect(),
+                    factors: rollout
+                        .factors
+                        .as_ref()
+                        .map(|factors| places().map(|place| factors[place]).collect()),
+                }
+            })
+            .collect()
+    }
+}
+
+/// A point of the scene: where the first pedestrian was last observed.
+fn origin(window: &Window) -> Position {
+    window.observed(0)[OBSERVED - 1]
+}
+
+fn relative(position: Position, origin: Position) -> Position {
+    [position[0] - origin[0], position[1] - origin[1]]
+}
+
+fn check_shares(windows: &[Window], shares: Option<&[Vec<f64>]>) -> Result<(), NetworkError> {
+    let Some(shares) = shares else {
+        return Ok(());
+    };
+    let fault = |got: String| {
+        let windows = windows.len();
+        let expected = format!("a share from 0 to 1 for every pedestrian of {windows} windows");
+        Err(NetworkError::shape("forecast", expected, got))
+    };
+    let lengths = windows.iter().map(Window::len);
+    if !lengths.eq(shares.iter().map(Vec::len)) {
+        return fault(format!("those of {}", shares.len()));
+    }
+    let is_share = |share: &&f64| (0.0..=1.0).contains(*share);
+    match shares.iter().flatten().find(|share| !is_share(share)) {
+        Some(share) => fault(share.to_string()),
+        None => Ok(()),
+    }
+}
+
+fn check_goals(
+    windows: &[Window],
+    goals: &[Vec<Vec<Position>>],
+    noise: Noise,
+) -> Result<usize, NetworkError> {
+    let fault = |expected: String, got: String| Err(NetworkError::shape("forecast", expected, got));
+    if goals.len() != windows.len() {
+        return fault(
+            format!("goals of {} windows", windows.len()),
+            goals.len().to_string(),
+        );
+    }
+    let count = goals.iter().flatten().map(Vec::len).next().unwrap_or(1);
+    for (window, goals) in windows.iter().zip(goals) {
+        if goals.len() != window.len() {
+            return fault(
+                format!(
+                    "goals of {} pedestrians in {}",
+                    window.len(),
+                    window.recording()
+                ),
+                goals.len().to_string(),
+            );
+        }
+        if let Some(other) = goals
+            .iter()
+            .find(|goals| goals.len() != count || goals.is_empty())
+        {
+            return fault(
+                format!("{count} goals for every pedestrian"),
+                other.len().to_string(),
+            );
+        }
+    }
+    match noise {
+        Noise::Draws { count: draws, .. } if draws == 0 || (count > 1 && draws > 1) => fault(
+            "one goal with several noise vectors, or several goals with one".into(),
+            format!("{count} goals, {draws} noise vectors"),
+        ),
+        _ => Ok(count),
+    }
+}

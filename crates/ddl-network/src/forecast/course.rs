@@ -1,0 +1,290 @@
+//! Where everybody of a batch is, was and is led, on plain numbers.
+
+use super::batch::ForecastBatch;
+use super::motion_bounds::motion_bounds;
+use super::own_frame::OwnFrame;
+use super::rollout::StepRule;
+use super::unit::motion_unit;
+use super::visibility::visibility;
+use crate::StarConfig;
+use crate::backend::{Buffer, Rows, Scenes, SeenScenes};
+use crate::config::Frame;
+use ddl_data::{OBSERVED, Window};
+use ddl_dynamics::{
+    Attractor, CholeskyMetric, DynamicsError, Euler, MotionBounds, NaturalGradientFlow,
+    StableEuler, StepTime, rollout_into,
+};
+use nalgebra::Vector2;
+use std::ops::Range;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Everybody in every hypothesis, metres.
+#[derive(Debug)]
+pub(super) struct Course {
+    /// `[8, P]`.
+    observed: Vec<[f32; 2]>,
+    scenes: Arc<Scenes>,
+    pedestrians: usize,
+    hypotheses: usize,
+    /// What the network's temporal positions are relative to, `[E, P]`: E is G where that is the goal, otherwise 1.
+    references: Vec<[f32; 2]>,
+    /// `[E, P]`; `None` for the frame of the world.
+    frames: Option<Vec<OwnFrame>>,
+    /// `[G, P]`.
+    goals: Vec<[f32; 2]>,
+    /// Of the motion, `[P]`; `None` for plain Euler steps.
+    bounds: Option<Vec<MotionBounds<f32>>>,
+    /// Where everybody is, `[H, P]`.
+    positions: Vec<[f32; 2]>,
+    /// A step ago.
+    before: Vec<[f32; 2]>,
+    /// Over all time steps so far.
+    sums: Vec<[f32; 2]>,
+    sigma: f32,
+    time_step: f32,
+    dynamics: bool,
+}
+
+impl Course {
+    /// Everybody at the last observed time step.
+    pub(super) fn new(batch: &ForecastBatch<'_>, config: &StarConfig) -> Self {
+        let (pedestrians, hypotheses) = (batch.pedestrians(), batch.hypotheses());
+        let tracks = || {
+            let windows = batch.windows.iter();
+            windows.flat_map(|window| (0..window.len()).map(|i| window.observed(i)))
+        };
+        let at = |t: usize| tracks().map(move |track| track[t].map(|x| x as f32));
+        let observed: Vec<[f32; 2]> = (0..OBSERVED).flat_map(at).collect();
+        let last = observed[(OBSERVED - 1) * pedestrians..].to_vec();
+        let goals = batch.goals.concat();
+        let units: Vec<f64> = tracks()
+            .map(|track| motion_unit(track, config.time_step))
+            .collect();
+        let frames = (config.frame == Frame::Goal).then(|| {
+            let frames = batch.goals.iter().flat_map(|goals| {
+                let each = tracks().zip(goals).zip(&units);
+                each.map(|((track, &goal), &unit)| OwnFrame::new(track[OBSERVED - 1], goal, unit))
+            });
+            frames.collect()
+        });
+        let bounds = (batch.rule == StepRule::Bounded).then(|| {
+            let share = |i: usize| batch.shares.as_ref().map_or(1.0, |shares| shares[i]);
+            let absolute = config.frame == Frame::World;
+            let each = tracks().enumerate();
+            each.map(|(i, track)| {
+                let bounds = motion_bounds(track, config.time_step, share(i));
+                single(&bounds, absolute)
+            })
+            .collect()
+        });
+        let mut sums = vec![[0.0; 2]; pedestrians];
+        for positions in observed.chunks_exact(pedestrians) {
+            add(&mut sums, positions);
+        }
+        let goals: Vec<[f32; 2]> = goals.iter().map(|goal| goal.map(|x| x as f32)).collect();
+        Self {
+            scenes: Arc::new(scenes(&batch.windows, config.neighbour_box)),
+            references: if config.variant.goal_shift() {
+                goals.clone()
+            } else {
+                last.clone()
+            },
+            positions: last.repeat(hypotheses),
+            before: last.repeat(hypotheses),
+            sums: sums.repeat(hypotheses),
+            observed,
+            pedestrians,
+            hypotheses,
+            frames,
+            goals,
+            bounds,
+            sigma: config.sigma as f32,
+            time_step: config.time_step as f32,
+            dynamics: config.variant.dynamics(),
+        }
+    }
+
+    /// Where everybody is now, `[H, P]`.
+    pub(super) fn positions(&self) -> &[[f32; 2]] {
+        &self.positions
+    }
+
+    /// Who sees whom in observed time steps.
+    pub(super) fn seen(&self, steps: Range<usize>) -> SeenScenes {
+        SeenScenes {
+            scenes: Arc::clone(&self.scenes),
+            steps,
+        }
+    }
+
+    /// The observed positions relative to the mean over the scene and all time steps so far, `[8, P, 2]`.
+    pub(super) fn observed_centred(&self) -> Rc<Rows> {
+        let mut sums = vec![[0.0; 2]; self.pedestrians];
+        let mut centred = Buffer::copy(self.observed.as_flattened());
+        let (places, _) = centred.as_chunks_mut::<2>();
+        let steps = places.chunks_exact_mut(self.pedestrians);
+        for (t, places) in steps.enumerate() {
+            add(&mut sums, places);
+            self.centre(places, &sums, t + 1);
+        }
+        rows([OBSERVED, self.pedestrians, 2], centred)
+    }
+
+    /// The same of the newest positions, `[H, P, 2]`, which are counted into the mean as those of time step `steps`.
+    pub(super) fn centred(&mut self, steps: usize) -> Rc<Rows> {
+        add(&mut self.sums, &self.positions);
+        let mut centred = Buffer::copy(self.positions.as_flattened());
+        let (places, _) = centred.as_chunks_mut::<2>();
+        let entries = places.chunks_exact_mut(self.pedestrians);
+        for (places, sums) in entries.zip(self.sums.chunks_exact(self.pedestrians)) {
+            self.centre(places, sums, steps);
+        }
+        rows([self.hypotheses, self.pedestrians, 2], centred)
+    }
+
+    fn centre(&self, places: &mut [[f32; 2]], sums: &[[f32; 2]], steps: usize) {
+        for scene in self.scenes.ranges() {
+            let mut mean = [0.0; 2];
+            for [x, y] in &sums[scene.clone()] {
+                mean[0] += x;
+                mean[1] += y;
+            }
+            let share = 1.0 / (scene.len() * steps) as f32;
+            for [x, y] in &mut places[scene.clone()] {
+                *x -= mean[0] * share;
+                *y -= mean[1] * share;
+            }
+        }
+    }
+
+    /// What the network reads of everybody at an observed time step, `[E, P, inputs]`.
+    pub(super) fn observed_relative(&self, t: usize) -> Rc<Rows> {
+        let at = |t: usize| &self.observed[t * self.pedestrians..][..self.pedestrians];
+        self.relative(at(t), at(t.saturating_sub(1)))
+    }
+
+    /// The same of the newest positions, `[H, P, inputs]`.
+    pub(super) fn newest_relative(&self) -> Rc<Rows> {
+        self.relative(&self.positions, &self.before)
+    }
+
+    /// `positions` and those a step before, `[1 or more, P]`, relative to the references, in the frames with the velocity.
+    fn relative(&self, positions: &[[f32; 2]], before: &[[f32; 2]]) -> Rc<Rows> {
+        let count = positions.len().max(self.references.len());
+        let entries = count / self.pedestrians;
+        let place = |i: usize| {
+            let (now, reference) = (around(positions, i), around(&self.references, i));
+            [now[0] - reference[0], now[1] - reference[1]]
+        };
+        let Some(frames) = &self.frames else {
+            let mut numbers = Buffer::any(2 * count);
+            let (places, _) = numbers.as_chunks_mut::<2>();
+            for (i, row) in places.iter_mut().enumerate() {
+                *row = place(i);
+            }
+            return rows([entries, self.pedestrians, 2], numbers);
+        };
+        let mut numbers = Buffer::any(4 * count);
+        let (places, _) = numbers.as_chunks_mut::<4>();
+        for (i, row) in places.iter_mut().enumerate() {
+            let (now, earlier) = (around(positions, i), around(before, i));
+            let velocity = [0, 1].map(|axis| (now[axis] - earlier[axis]) / self.time_step);
+            let frame = around(frames, i);
+            let ([x, y], [vx, vy]) = (frame.of_world(place(i)), frame.of_world(velocity));
+            *row = [x, y, vx, vy];
+        }
+        rows([entries, self.pedestrians, 4], numbers)
+    }
+
+    /// Goes one step on by factors (a, b, c) or vectors, as the output layer emits them in the pedestrians' frames, `[H, P, outputs]`,
+    /// with `done` steps made and `left` of them left, this one included. The factors are in the frame of the world afterwards.
+    pub(super) fn advance(&mut self, emitted: &mut [f32], steps: (usize, usize)) {
+        self.before.copy_from_slice(&self.positions);
+        if self.dynamics {
+            let (factors, _) = emitted.as_chunks_mut::<3>();
+            self.follow(factors, steps);
+        } else {
+            let (vectors, _) = emitted.as_chunks::<2>();
+            for (i, (place, &vector)) in self.positions.iter_mut().zip(vectors).enumerate() {
+                let frames = self.frames.as_deref();
+                let [x, y] = frames.map_or(vector, |frames| around(frames, i).to_world(vector));
+                let reference = around(&self.references, i);
+                *place = [reference[0] + x, reference[1] + y];
+            }
+        }
+    }
+
+    /// One step of the dynamics for everybody, by the reference implementation.
+    fn follow(&mut self, factors: &mut [[f32; 3]], (done, left): (usize, usize)) {
+        let (sigma, dt) = (self.sigma, self.time_step);
+        let time = StepTime { done, left, dt };
+        for (i, (place, factor)) in self.positions.iter_mut().zip(factors).enumerate() {
+            if let Some(frames) = &self.frames {
+                *factor = around(frames, i).factor_to_world(*factor);
+            }
+            let bounds = self
+                .bounds
+                .as_ref()
+                .map(|bounds| &bounds[i % self.pedestrians]);
+            let goal = around(&self.goals, i);
+            // NaN goes on as NaN, and is reported by who walks the same way in f64.
+            *place = next(*place, goal, *factor, (sigma, time), bounds).unwrap_or([f32::NAN; 2]);
+        }
+    }
+}
+
+/// Entry `i`, where the entries stand for as many repetitions of themselves as are asked for.
+fn around<T: Copy>(entries: &[T], i: usize) -> T {
+    entries[i % entries.len()]
+}
+
+fn add(sums: &mut [[f32; 2]], terms: &[[f32; 2]]) {
+    for (sum, term) in sums.iter_mut().zip(terms) {
+        sum[0] += term[0];
+        sum[1] += term[1];
+    }
+}
+
+fn rows(shape: [usize; 3], numbers: Buffer) -> Rc<Rows> {
+    Rc::new(Rows::new(shape, numbers))
+}
+
+/// Who sees whom in the observed time steps.
+fn scenes(windows: &[Window], half_box: f64) -> Scenes {
+    let sizes: Vec<usize> = windows.iter().map(Window::len).collect();
+    Scenes::new(&sizes, &visibility(windows, OBSERVED, half_box))
+}
+
+/// The bounds in single precision. Invalid speeds are reported by the rollout in `f64`, which has the same bounds.
+fn single(bounds: &MotionBounds<f64>, absolute: bool) -> MotionBounds<f32> {
+    let velocity = bounds.velocity().map(|x| x as f32);
+    let (top, share) = (bounds.top_speed() as f32, bounds.share() as f32);
+    let single = MotionBounds::new(top, velocity, share).unwrap_or_default();
+    if absolute { single.absolute() } else { single }
+}
+
+fn next(
+    place: [f32; 2],
+    goal: [f32; 2],
+    [a, b, c]: [f32; 3],
+    (sigma, time): (f32, StepTime<f32>),
+    bounds: Option<&MotionBounds<f32>>,
+) -> Result<[f32; 2], DynamicsError> {
+    let attractor = Attractor::new(Vector2::from(goal))?;
+    let metric = CholeskyMetric::planar(a, b, c, sigma)?;
+    let start = Vector2::from(place);
+    let mut path = [start; 2];
+    match bounds {
+        None => {
+            let flow = NaturalGradientFlow::new(attractor, metric);
+            rollout_into(&flow, &Euler, start, time.dt, &mut path)?;
+        }
+        Some(bounds) => {
+            let metric = bounds.shape(&metric, &(attractor.goal() - start), time);
+            let flow = NaturalGradientFlow::new(attractor, metric);
+            rollout_into(&flow, &StableEuler, start, time.dt, &mut path)?;
+        }
+    }
+    Ok(path[1].into())
+}

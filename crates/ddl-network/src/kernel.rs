@@ -1,0 +1,41 @@
+//! The heavy parts of the network: only what is needed is computed, and what passes between two products stays in the cache.
+//!
+//! - [`encoder_layer`]: a whole encoder layer, made of
+//!   - [`affine`]: projections, and [`add_norm`]: residual connection and normalisation;
+//!   - [`among_pedestrians`]: attention of every pedestrian over those of its scene that it sees, as [`scenes`] has it;
+//!   - [`over_memory`]: attention of the newest token over the remembered ones;
+//!   - [`feed_forward`]: the feed-forward block;
+//! - [`linear`]: an affine map between layers.
+//!
+//! A computation is written once, as a `Kernel`, with the arithmetic of any [`ddl_simd::Simd`], sixteen numbers at a time.
+//! `ddl-simd` runs it with the fastest instructions that the machine has; what is `unsafe` lies there.
+//!
+//! Products of bf16 numbers, which the feed-forward block can be asked for, are a second arithmetic, [`ddl_simd::Pairs`], with
+//! instructions of its own.
+//!
+//! All results are the same for every number of threads; between instruction sets they agree to rounding.
+
+mod add_norm;
+mod affine;
+mod among_pedestrians;
+mod buffer;
+mod columns;
+mod dropout;
+mod encoder_layer;
+mod feed_forward;
+mod gelu;
+mod heads;
+mod linear;
+mod over_memory;
+mod scenes;
+#[cfg(test)]
+mod tests;
+mod threads;
+
+pub use buffer::Buffer;
+pub(crate) use dropout::Dropout;
+pub use encoder_layer::Sizes;
+pub(crate) use encoder_layer::{Dropouts, EncoderLayer, Remembered};
+pub(crate) use gelu::gelu;
+pub(crate) use linear::Linear;
+pub use scenes::Scenes;

@@ -1,0 +1,230 @@
+//! What follows a sublayer: dropout, the residual connection, layer normalisation (Ba et al. 2016).
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+#![expect(
+    clippy::needless_range_loop,
+    reason = "loops of a known count over registers"
+)]
+
+mod decisions;
+mod rows;
+#[cfg(test)]
+mod tests;
+
+use super::columns::{load, store};
+use ddl_simd::{DEPTH, LANES, Lanes, Simd};
+pub(super) use decisions::Decisions;
+use rows::{Four, USUAL, means};
+
+/// Added to the variance.
+const EPSILON: f32 = 1e-5;
+
+/// y = (s − mean s) / √(var s + 1e-5) · weight + bias of s = x + d(t) for each row, with dropout d.
+#[derive(Clone, Debug)]
+pub(super) struct AddNorm {
+    width: usize,
+    weight: Vec<Lanes>,
+    bias: Vec<Lanes>,
+    /// 1 within the width, 0 beyond.
+    inside: Vec<Lanes>,
+}
+
+/// What the backward pass needs of the forward one, row by row.
+#[derive(Debug)]
+pub(super) struct Normal<'a> {
+    /// (s − mean) / deviation, `[rows, width]`.
+    pub(super) numbers: &'a mut [f32],
+    /// 1 / deviation, `[rows]`.
+    pub(super) scales: &'a mut [f32],
+}
+
+impl AddNorm {
+    pub(super) fn new(width: usize) -> Self {
+        let vectors = width.div_ceil(LANES);
+        let mut inside = vec![Lanes::ZERO; vectors];
+        for column in 0..width {
+            inside[column / LANES].0[column % LANES] = 1.0;
+        }
+        Self {
+            width,
+            weight: vec![Lanes::ZERO; vectors],
+            bias: vec![Lanes::ZERO; vectors],
+            inside,
+        }
+    }
+
+    /// # Panics
+    /// Unless both are as long as a row.
+    pub(super) fn update(&mut self, weight: &[f32], bias: &[f32]) {
+        assert_eq!(weight.len(), self.width, "entries of the weight");
+        assert_eq!(bias.len(), self.width, "entries of the bias");
+        for (lanes, values) in [(&mut self.weight, weight), (&mut self.bias, bias)] {
+            for (lanes, values) in lanes.iter_mut().zip(values.chunks(LANES)) {
+                lanes.0[..values.len()].copy_from_slice(values);
+            }
+        }
+    }
+
+    /// # Shapes
+    /// `x`, `t` `[rows, width]`, the first of which has number `first` -> `normal` and `y` `[rows, width]`, overwritten.
+    #[inline(always)]
+    pub(super) fn forward<S: Simd>(
+        &self,
+        simd: S,
+        [x, t]: [&[f32]; 2],
+        decisions: Option<(Decisions, usize)>,
+        normal: &mut Normal<'_>,
+        y: &mut [f32],
+    ) {
+        match self.inside.len() {
+            USUAL => self.forward_rows(simd, USUAL, [x, t], decisions, normal, y),
+            vectors => self.forward_rows(simd, vectors, [x, t], decisions, normal, y),
+        }
+    }
+
+    #[inline(always)]
+    fn forward_rows<S: Simd>(
+        &self,
+        simd: S,
+        vectors: usize,
+        [x, t]: [&[f32]; 2],
+        decisions: Option<(Decisions, usize)>,
+        normal: &mut Normal<'_>,
+        y: &mut [f32],
+    ) {
+        let width = self.width;
+        let mut four = Four::new(vectors);
+        let rows = x.len() / width;
+        for first in (0..rows).step_by(DEPTH) {
+            let count = DEPTH.min(rows - first);
+            for r in 0..count {
+                let row = (first + r) * width..(first + r + 1) * width;
+                let (x, t) = (&x[row.clone()], &t[row]);
+                for v in 0..vectors {
+                    let at = v * LANES;
+                    let term = load(simd, t, at);
+                    let term = match decisions {
+                        Some((decisions, start)) => {
+                            decisions.apply(simd, term, start + first + r, at)
+                        }
+                        None => term,
+                    };
+                    four.set(simd, r, v, simd.add(load(simd, x, at), term));
+                }
+            }
+            let mean = means(simd, width, four.sums(simd));
+            for r in 0..DEPTH {
+                for v in 0..vectors {
+                    let centred = simd.sub(four.get(simd, r, v), mean[r]);
+                    let inside = simd.load(&self.inside[v].0);
+                    four.set(simd, r, v, simd.mul(centred, inside));
+                }
+            }
+            let variance = means(simd, width, four.products(simd, &four));
+            for r in 0..count {
+                let variance = simd.add(variance[r], simd.splat(EPSILON));
+                let scale = simd.div(simd.splat(1.0), simd.sqrt(variance));
+                let mut scales = Lanes::ZERO;
+                simd.store(scale, &mut scales.0);
+                normal.scales[first + r] = scales.0[0];
+                let row = (first + r) * width..(first + r + 1) * width;
+                let (normal, y) = (&mut normal.numbers[row.clone()], &mut y[row]);
+                for v in 0..vectors {
+                    let number = simd.mul(four.get(simd, r, v), scale);
+                    store(simd, number, normal, v * LANES);
+                    let weight = simd.load(&self.weight[v].0);
+                    let bias = simd.load(&self.bias[v].0);
+                    store(simd, simd.mul_add(number, weight, bias), y, v * LANES);
+                }
+            }
+        }
+    }
+
+    /// The derivatives with respect to x and t, and those with respect to the weights added to `weight` and `bias`.
+    ///
+    /// # Shapes
+    /// `normal` of the forward pass, `gy` `[rows, width]` -> `gx`, `gt` `[rows, width]`, overwritten.
+    #[inline(always)]
+    pub(super) fn backward<S: Simd>(
+        &self,
+        simd: S,
+        normal: [&[f32]; 2],
+        gy: &[f32],
+        decisions: Option<(Decisions, usize)>,
+        of_inputs: [&mut [f32]; 2],
+        of_weights: [&mut [f32]; 2],
+    ) {
+        match self.inside.len() {
+            USUAL => self.backward_rows(simd, USUAL, normal, gy, decisions, of_inputs, of_weights),
+            vectors => {
+                self.backward_rows(simd, vectors, normal, gy, decisions, of_inputs, of_weights);
+            }
+        }
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "one more than it is called with")]
+    #[inline(always)]
+    fn backward_rows<S: Simd>(
+        &self,
+        simd: S,
+        vectors: usize,
+        [numbers, scales]: [&[f32]; 2],
+        gy: &[f32],
+        decisions: Option<(Decisions, usize)>,
+        [gx, gt]: [&mut [f32]; 2],
+        [of_weight, of_bias]: [&mut [f32]; 2],
+    ) {
+        let width = self.width;
+        let (mut normal, mut gradient) = (Four::new(vectors), Four::new(vectors));
+        let mut sums = [Four::new(vectors), Four::new(vectors)];
+        let rows = numbers.len() / width;
+        for first in (0..rows).step_by(DEPTH) {
+            let count = DEPTH.min(rows - first);
+            for r in 0..count {
+                let row = (first + r) * width..(first + r + 1) * width;
+                let (numbers, gy) = (&numbers[row.clone()], &gy[row]);
+                for v in 0..vectors {
+                    let number = load(simd, numbers, v * LANES);
+                    let of_y = load(simd, gy, v * LANES);
+                    normal.set(simd, r, v, number);
+                    gradient.set(simd, r, v, simd.mul(of_y, simd.load(&self.weight[v].0)));
+                    let [weight, bias] = &mut sums;
+                    weight.set(
+                        simd,
+                        0,
+                        v,
+                        simd.mul_add(of_y, number, weight.get(simd, 0, v)),
+                    );
+                    bias.set(simd, 0, v, simd.add(of_y, bias.get(simd, 0, v)));
+                }
+            }
+            let mean = means(simd, width, gradient.sums(simd));
+            let product = means(simd, width, gradient.products(simd, &normal));
+            for r in 0..count {
+                let scale = simd.splat(scales[first + r]);
+                let row = (first + r) * width..(first + r + 1) * width;
+                let (gx, gt) = (&mut gx[row.clone()], &mut gt[row]);
+                for v in 0..vectors {
+                    let at = v * LANES;
+                    let centred = simd.sub(gradient.get(simd, r, v), mean[r]);
+                    let along = simd.mul(normal.get(simd, r, v), product[r]);
+                    let of_sum = simd.mul(simd.sub(centred, along), scale);
+                    store(simd, of_sum, gx, at);
+                    let of_term = match decisions {
+                        Some((decisions, start)) => {
+                            decisions.apply(simd, of_sum, start + first + r, at)
+                        }
+                        None => of_sum,
+                    };
+                    store(simd, of_term, gt, at);
+                }
+            }
+        }
+        for v in 0..vectors {
+            for (sum, into) in sums.iter().zip([&mut *of_weight, &mut *of_bias]) {
+                let total = simd.add(load(simd, into, v * LANES), sum.get(simd, 0, v));
+                store(simd, total, into, v * LANES);
+            }
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Four rows at a time, which makes sums over a row a matter of few instructions.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+#![expect(
+    clippy::needless_range_loop,
+    reason = "loops of a known count over registers"
+)]
+
+use ddl_simd::{DEPTH, Lanes, Simd, Vectors};
+
+/// The usual width of a row, in vectors: loops over it are spelled out.
+pub(super) const USUAL: usize = 2;
+
+/// Numbers of four rows, in the first-level cache.
+#[derive(Debug)]
+pub(super) struct Four {
+    usual: [[Lanes; USUAL]; DEPTH],
+    /// For rows of any other width.
+    wide: Vec<[Lanes; DEPTH]>,
+    vectors: usize,
+}
+
+impl Four {
+    /// Zeros.
+    #[inline(always)]
+    pub(super) fn new(vectors: usize) -> Self {
+        Self {
+            usual: [[Lanes::ZERO; USUAL]; DEPTH],
+            wide: if vectors == USUAL {
+                Vec::new()
+            } else {
+                vec![[Lanes::ZERO; DEPTH]; vectors]
+            },
+            vectors,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn get<S: Simd>(&self, simd: S, row: usize, vector: usize) -> S::Floats {
+        if self.vectors == USUAL {
+            simd.load(&self.usual[row][vector].0)
+        } else {
+            simd.load(&self.wide[vector][row].0)
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn set<S: Simd>(&mut self, simd: S, row: usize, vector: usize, value: S::Floats) {
+        if self.vectors == USUAL {
+            simd.store(value, &mut self.usual[row][vector].0);
+        } else {
+            simd.store(value, &mut self.wide[vector][row].0);
+        }
+    }
+
+    /// Sums over each row, still spread over the lanes.
+    #[inline(always)]
+    pub(super) fn sums<S: Simd>(&self, simd: S) -> Vectors<S> {
+        let mut sums = [simd.splat(0.0); DEPTH];
+        for r in 0..DEPTH {
+            for v in 0..self.vectors {
+                sums[r] = simd.add(sums[r], self.get(simd, r, v));
+            }
+        }
+        sums
+    }
+
+    /// Sums of products of the same places, likewise.
+    #[inline(always)]
+    pub(super) fn products<S: Simd>(&self, simd: S, other: &Self) -> Vectors<S> {
+        let mut sums = [simd.splat(0.0); DEPTH];
+        for r in 0..DEPTH {
+            for v in 0..self.vectors {
+                let (a, b) = (self.get(simd, r, v), other.get(simd, r, v));
+                sums[r] = simd.mul_add(a, b, sums[r]);
+            }
+        }
+        sums
+    }
+}
+
+/// Means over `width` numbers of sums that stand in four vectors, each in all lanes.
+#[inline(always)]
+pub(super) fn means<S: Simd>(simd: S, width: usize, sums: Vectors<S>) -> Vectors<S> {
+    // Lane 4 i + k: a part of the sum of row k.
+    let [a, b, c, d] = simd.transpose(sums);
+    let parts = simd.add(simd.add(a, b), simd.add(c, d));
+    let mean = simd.mul(simd.sum_of_quarters(parts), simd.splat(1.0 / width as f32));
+    [
+        simd.spread::<0x00>(mean),
+        simd.spread::<0x55>(mean),
+        simd.spread::<0xaa>(mean),
+        simd.spread::<0xff>(mean),
+    ]
+}

@@ -1,0 +1,191 @@
+//! Against the formula in double precision, and what dropout decides.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+
+use super::{AddNorm, Decisions, Normal};
+use crate::kernel::dropout::Dropout;
+use crate::kernel::tests::numbers::{Numbers, assert_close};
+use ddl_simd::{Dispatch, InstructionSet, Kernel, Simd};
+use proptest::prelude::*;
+
+/// Forwards and backwards; the first row is the 5th.
+struct Both<'a> {
+    norm: &'a AddNorm,
+    inputs: [&'a [f32]; 2],
+    gy: &'a [f32],
+    decisions: Option<Decisions>,
+    results: &'a mut Results,
+}
+
+#[derive(Default)]
+struct Results {
+    normal: Vec<f32>,
+    scales: Vec<f32>,
+    y: Vec<f32>,
+    gx: Vec<f32>,
+    gt: Vec<f32>,
+    weight: Vec<f32>,
+    bias: Vec<f32>,
+}
+
+impl Kernel for Both<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let results = self.results;
+        let decisions = self.decisions.map(|decisions| (decisions, 5));
+        let mut normal = Normal {
+            numbers: &mut results.normal,
+            scales: &mut results.scales,
+        };
+        self.norm
+            .forward(simd, self.inputs, decisions, &mut normal, &mut results.y);
+        self.norm.backward(
+            simd,
+            [&results.normal, &results.scales],
+            self.gy,
+            decisions,
+            [&mut results.gx, &mut results.gt],
+            [&mut results.weight, &mut results.bias],
+        );
+    }
+}
+
+struct Case {
+    width: usize,
+    x: Vec<f32>,
+    t: Vec<f32>,
+    gy: Vec<f32>,
+    weight: Vec<f32>,
+    bias: Vec<f32>,
+}
+
+impl Case {
+    fn new(seed: u64, width: usize, rows: usize) -> Self {
+        let mut numbers = Numbers(seed);
+        Self {
+            width,
+            x: numbers.even(rows * width, 2.0),
+            t: numbers.even(rows * width, 1.0),
+            gy: numbers.even(rows * width, 1.0),
+            weight: numbers.even(width, 1.5),
+            bias: numbers.even(width, 1.0),
+        }
+    }
+
+    fn run(&self, set: InstructionSet, dropout: Option<Dropout>) -> Results {
+        let mut norm = AddNorm::new(self.width);
+        norm.update(&self.weight, &self.bias);
+        let zeros = || vec![0.0; self.x.len()];
+        let mut results = Results {
+            normal: zeros(),
+            scales: vec![0.0; self.x.len() / self.width],
+            y: zeros(),
+            gx: zeros(),
+            gt: zeros(),
+            weight: vec![0.25; self.width],
+            bias: vec![0.25; self.width],
+        };
+        Dispatch::new(set).unwrap().run(Both {
+            norm: &norm,
+            inputs: [&self.x, &self.t],
+            gy: &self.gy,
+            decisions: dropout.and_then(Decisions::new),
+            results: &mut results,
+        });
+        results
+    }
+
+    /// By definition, with `factors` for t: y, gx and the gradients of weight and bias.
+    fn expected(&self, factors: &[f64]) -> [Vec<f64>; 4] {
+        let n = self.width as f64;
+        let (mut y, mut gx) = (Vec::new(), Vec::new());
+        let (mut of_weight, mut of_bias) = (vec![0.25; self.width], vec![0.25; self.width]);
+        for first in (0..self.x.len()).step_by(self.width) {
+            let at = |i: usize| first + i;
+            let sum =
+                |i: usize| f64::from(self.x[at(i)]) + factors[at(i)] * f64::from(self.t[at(i)]);
+            let sums: Vec<f64> = (0..self.width).map(sum).collect();
+            let mean = sums.iter().sum::<f64>() / n;
+            let variance = sums.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / n;
+            let deviation = (variance + 1e-5).sqrt();
+            let normal: Vec<f64> = sums.iter().map(|s| (s - mean) / deviation).collect();
+            let g: Vec<f64> = (0..self.width)
+                .map(|i| f64::from(self.gy[at(i)]) * f64::from(self.weight[i]))
+                .collect();
+            let g_mean = g.iter().sum::<f64>() / n;
+            let along = g.iter().zip(&normal).map(|(g, x)| g * x).sum::<f64>() / n;
+            for i in 0..self.width {
+                let gy = f64::from(self.gy[at(i)]);
+                y.push(normal[i] * f64::from(self.weight[i]) + f64::from(self.bias[i]));
+                gx.push((g[i] - g_mean - normal[i] * along) / deviation);
+                of_weight[i] += gy * normal[i];
+                of_bias[i] += gy;
+            }
+        }
+        [y, gx, of_weight, of_bias]
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn rows_are_normalised_and_their_gradients_are_those_of_the_formula(
+        width in 2..70_usize,
+        rows in 0..12_usize,
+        p in prop_oneof![Just(0.0), 0.05..0.9],
+        seed in any::<u64>(),
+    ) {
+        let case = Case::new(seed, width, rows);
+        for set in InstructionSet::available() {
+            let dropout = Dropout { p, seed };
+            let results = case.run(set, Some(dropout));
+            // What was decided shows in the gradient of t.
+            let factors: Vec<f64> = results.gx.iter().zip(&results.gt)
+                .map(|(gx, gt)| if *gt == 0.0 && *gx != 0.0 { 0.0 } else { 1.0 / (1.0 - p) })
+                .collect();
+            if p == 0.0 {
+                prop_assert_eq!(&results.gx, &results.gt);
+            }
+            let [y, gx, weight, bias] = case.expected(&factors);
+            // Rows of two nearly equal numbers have a derivative of some hundreds, and errors like it.
+            let tolerance = if width < 8 { 2e-3 } else { 2e-5 };
+            assert_close("y", &results.y, &y, tolerance);
+            assert_close("gx", &results.gx, &gx, tolerance);
+            assert_close("weight", &results.weight, &weight, tolerance);
+            assert_close("bias", &results.bias, &bias, tolerance);
+        }
+    }
+}
+
+#[test]
+fn dropout_drops_its_share_of_every_column_and_row() {
+    let case = Case::new(1, 32, 4000);
+    for set in InstructionSet::available() {
+        let results = case.run(set, Some(Dropout { p: 0.1, seed: 3 }));
+        let share = |of: &mut dyn Iterator<Item = usize>| {
+            let places: Vec<usize> = of.collect();
+            let dropped = places.iter().filter(|&&i| results.gt[i] == 0.0).count();
+            dropped as f64 / places.len() as f64
+        };
+        let all = share(&mut (0..results.gt.len()));
+        assert!((all - 0.1).abs() < 4e-3, "{all}"); // standard error 8e-4
+        for column in 0..32 {
+            let one = share(&mut (column..results.gt.len()).step_by(32));
+            assert!((one - 0.1).abs() < 0.025, "{column}: {one}"); // standard error 5e-3
+        }
+    }
+}
+
+#[test]
+fn decisions_are_the_same_for_every_instruction_set_and_start() {
+    let case = Case::new(2, 40, 30);
+    let dropped = |set| -> Vec<bool> {
+        let results = case.run(set, Some(Dropout { p: 0.4, seed: 9 }));
+        results.gt.iter().map(|&gt| gt == 0.0).collect()
+    };
+    let first = dropped(InstructionSet::Portable);
+    for set in InstructionSet::available() {
+        assert_eq!(dropped(set), first, "{set:?}");
+    }
+}

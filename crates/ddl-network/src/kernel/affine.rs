@@ -1,0 +1,105 @@
+//! Affine maps of rows: the projections before and after attention, embeddings, the fusion of tokens.
+
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+
+mod matrix;
+mod product;
+#[cfg(test)]
+mod tests;
+
+use super::columns::{Columns, ColumnsMut};
+use ddl_simd::{LANES, Lanes, Simd};
+use matrix::{Matrix, Start};
+pub(super) use product::sum_of_rows;
+use product::{add_transposed_product, multiply};
+
+/// y = W x + b, with the weights arranged for both directions.
+#[derive(Clone, Debug)]
+pub(super) struct Affine {
+    inputs: usize,
+    outputs: usize,
+    /// W^T, rows inputs.
+    transposed: Matrix,
+    /// W, rows outputs.
+    weight: Matrix,
+    bias: Vec<Lanes>,
+}
+
+impl Affine {
+    /// Zeros.
+    pub(super) fn new(inputs: usize, outputs: usize) -> Self {
+        assert!(inputs > 0 && outputs > 0, "a width of 0");
+        Self {
+            inputs,
+            outputs,
+            transposed: Matrix::zeros(inputs, outputs),
+            weight: Matrix::zeros(outputs, inputs),
+            bias: vec![Lanes::ZERO; outputs.div_ceil(2 * LANES) * 2],
+        }
+    }
+
+    /// # Shapes
+    /// `weight` `[outputs, inputs]`, `bias` `[outputs]`.
+    ///
+    /// # Panics
+    /// When a slice has another length.
+    pub(super) fn update(&mut self, weight: &[f32], bias: &[f32]) {
+        assert_eq!(weight.len(), self.outputs * self.inputs, "entries of W");
+        assert_eq!(bias.len(), self.outputs, "entries of b");
+        for (o, row) in weight.chunks_exact(self.inputs).enumerate() {
+            for (i, &value) in row.iter().enumerate() {
+                self.weight.set(o, i, value);
+                self.transposed.set(i, o, value);
+            }
+        }
+        for (lanes, values) in self.bias.iter_mut().zip(bias.chunks(LANES)) {
+            lanes.0[..values.len()].copy_from_slice(values);
+        }
+    }
+
+    /// y for every row of x.
+    ///
+    /// # Shapes
+    /// `x` `[rows, inputs]` -> `y` `[rows, outputs]`, overwritten.
+    #[inline(always)]
+    pub(super) fn forward<S: Simd, const R: usize, const V: usize>(
+        &self,
+        simd: S,
+        x: Columns<'_>,
+        y: &mut ColumnsMut<'_>,
+    ) {
+        multiply::<S, R, V>(simd, x, &self.transposed, Start::Row(&self.bias), y);
+    }
+
+    /// W^T gy for every row, which overwrites `gx`, or is added to it.
+    ///
+    /// # Shapes
+    /// `gy` `[rows, outputs]` -> `gx` `[rows, inputs]`.
+    #[inline(always)]
+    pub(super) fn backward<S: Simd, const R: usize, const V: usize>(
+        &self,
+        simd: S,
+        gy: Columns<'_>,
+        gx: &mut ColumnsMut<'_>,
+        add: bool,
+    ) {
+        let start = if add { Start::There } else { Start::Zero };
+        multiply::<S, R, V>(simd, gy, &self.weight, start, gx);
+    }
+
+    /// Adds the derivatives with respect to the weights.
+    ///
+    /// # Shapes
+    /// `x` `[rows, inputs]`, `gy` `[rows, outputs]` -> `weight` `[outputs, inputs]`, `bias` `[outputs]`.
+    #[inline(always)]
+    pub(super) fn add_gradients<S: Simd, const R: usize, const V: usize>(
+        &self,
+        simd: S,
+        x: Columns<'_>,
+        gy: Columns<'_>,
+        [weight, bias]: [&mut [f32]; 2],
+    ) {
+        add_transposed_product::<S, R, V>(simd, gy, self.outputs, x, self.inputs, weight);
+        sum_of_rows(simd, gy, bias);
+    }
+}

@@ -1,0 +1,198 @@
+//! Products of matrices of plain rows.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+#![expect(
+    clippy::needless_range_loop,
+    reason = "loops of a known count over registers, written as the matrices are"
+)]
+
+use super::matrix::{Matrix, Start};
+use crate::kernel::columns::{Columns, ColumnsMut, load, store};
+use ddl_simd::{LANES, Lanes, Simd, Tile};
+
+/// Rows of B that are gone through together.
+const BLOCK: usize = 32;
+
+/// y = start + A B.
+///
+/// # Shapes
+/// A `[rows, t]`, B `[t, columns]`, y `[rows, columns]`.
+#[inline(always)]
+pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    a: Columns<'_>,
+    b: &Matrix,
+    start: Start<'_>,
+    y: &mut ColumnsMut<'_>,
+) {
+    let rows = a.rows();
+    assert_eq!(rows, y.rows(), "rows of a product");
+    let mut row = 0;
+    while row + R <= rows {
+        tile::<S, R, V>(simd, a, b, start, y, row);
+        row += R;
+    }
+    while R > 4 && row + 4 <= rows {
+        tile::<S, 4, V>(simd, a, b, start, y, row);
+        row += 4;
+    }
+    while row < rows {
+        tile::<S, 1, V>(simd, a, b, start, y, row);
+        row += 1;
+    }
+}
+
+#[inline(always)]
+fn tile<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    a: Columns<'_>,
+    b: &Matrix,
+    start: Start<'_>,
+    y: &mut ColumnsMut<'_>,
+    row: usize,
+) {
+    let mut of_a: [&[f32]; R] = [&[]; R];
+    for r in 0..R {
+        of_a[r] = a.row(row + r);
+    }
+    for (column, pairs) in b.pairs.chunks_exact(b.rows).enumerate() {
+        for part in (0..2).step_by(V) {
+            let vector = 2 * column + part;
+            let mut sum = [[simd.splat(0.0); V]; R];
+            for r in 0..R {
+                for v in 0..V {
+                    sum[r][v] = match start {
+                        Start::Row(numbers) => simd.load(&numbers[vector + v].0),
+                        Start::Zero => simd.splat(0.0),
+                        Start::There => load(simd, y.row_mut(row + r), (vector + v) * LANES),
+                    };
+                }
+            }
+            let (blocks, rest) = pairs.as_chunks();
+            for (block, of_b) in blocks.iter().enumerate() {
+                sum = add_block(simd, sum, of_a, block * BLOCK, of_b, part);
+            }
+            for (t, of_b) in (blocks.len() * BLOCK..).zip(rest) {
+                for r in 0..R {
+                    let of_a = simd.splat(of_a[r][t]);
+                    for v in 0..V {
+                        sum[r][v] = simd.mul_add(of_a, simd.load(&of_b[part + v].0), sum[r][v]);
+                    }
+                }
+            }
+            for r in 0..R {
+                for v in 0..V {
+                    store(simd, sum[r][v], y.row_mut(row + r), (vector + v) * LANES);
+                }
+            }
+        }
+    }
+}
+
+/// sum + A B for 32 columns of A from `first`: the usual width, all of whose bounds are known.
+#[inline(always)]
+fn add_block<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    mut sum: Tile<S, R, V>,
+    a: [&[f32]; R],
+    first: usize,
+    b: &[[Lanes; 2]; BLOCK],
+    part: usize,
+) -> Tile<S, R, V> {
+    let mut of_a = [&[0.0; BLOCK]; R];
+    for r in 0..R {
+        of_a[r] = a[r][first..]
+            .first_chunk()
+            .expect("as many columns as rows of B");
+    }
+    for t in 0..BLOCK {
+        let mut of_b = [simd.splat(0.0); V];
+        for v in 0..V {
+            of_b[v] = simd.load(&b[t][part + v].0);
+        }
+        for r in 0..R {
+            let of_a = simd.splat(of_a[r][t]);
+            for v in 0..V {
+                sum[r][v] = simd.mul_add(of_a, of_b[v], sum[r][v]);
+            }
+        }
+    }
+    sum
+}
+
+/// Adds A^T B.
+///
+/// # Shapes
+/// A `[t, rows]`, B `[t, columns]`, sum `[rows, columns]`.
+#[inline(always)]
+pub(super) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    a: Columns<'_>,
+    rows: usize,
+    b: Columns<'_>,
+    columns: usize,
+    sum: &mut [f32],
+) {
+    assert_eq!(a.rows(), b.rows(), "rows of a product");
+    assert_eq!(sum.len(), rows * columns, "entries of a product");
+    let sum = &mut ColumnsMut::whole(sum, columns);
+    let mut row = 0;
+    while row + R <= rows {
+        transposed_tile::<S, R, V>(simd, a, b, columns, sum, row);
+        row += R;
+    }
+    while row < rows {
+        transposed_tile::<S, 1, V>(simd, a, b, columns, sum, row);
+        row += 1;
+    }
+}
+
+#[inline(always)]
+fn transposed_tile<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    a: Columns<'_>,
+    b: Columns<'_>,
+    columns: usize,
+    sums: &mut ColumnsMut<'_>,
+    row: usize,
+) {
+    for first in (0..columns).step_by(V * LANES) {
+        let mut sum = [[simd.splat(0.0); V]; R];
+        for t in 0..a.rows() {
+            let of_a = &a.row(t)[row..][..R];
+            let of_b = b.row(t);
+            let mut loaded = [simd.splat(0.0); V];
+            for v in 0..V {
+                loaded[v] = load(simd, of_b, first + v * LANES);
+            }
+            for r in 0..R {
+                let of_a = simd.splat(of_a[r]);
+                for v in 0..V {
+                    sum[r][v] = simd.mul_add(of_a, loaded[v], sum[r][v]);
+                }
+            }
+        }
+        for r in 0..R {
+            let into = sums.row_mut(row + r);
+            for v in 0..V {
+                // Added at the end: sums of sums are more exact than one long one.
+                let at = first + v * LANES;
+                let total = simd.add(load(simd, into, at), sum[r][v]);
+                store(simd, total, into, at);
+            }
+        }
+    }
+}
+
+/// Adds all rows of a matrix to `sums`.
+#[inline(always)]
+pub(in crate::kernel) fn sum_of_rows<S: Simd>(simd: S, rows: Columns<'_>, sums: &mut [f32]) {
+    for at in (0..sums.len()).step_by(LANES) {
+        let mut sum = simd.splat(0.0);
+        for row in 0..rows.rows() {
+            sum = simd.add(sum, load(simd, rows.row(row), at));
+        }
+        let total = simd.add(load(simd, sums, at), sum);
+        store(simd, total, sums, at);
+    }
+}

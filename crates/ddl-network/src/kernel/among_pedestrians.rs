@@ -1,0 +1,233 @@
+//! Attention of every pedestrian over the pedestrians of its scene that it sees (Vaswani et al. 2017, section 3.2).
+
+mod backward;
+mod dropout;
+mod forward;
+mod queries;
+mod task;
+#[cfg(test)]
+mod tests;
+
+use super::buffer::Buffer;
+use super::dropout::Dropout;
+use super::heads::Heads;
+use super::scenes::Frames;
+use super::threads::each;
+use backward::Backward;
+#[cfg(test)]
+use ddl_simd::InstructionSet;
+use ddl_simd::{Dispatch, Lanes};
+use dropout::Decisions;
+use forward::Forward;
+use queries::Buffers;
+use task::Task;
+
+/// Multiplications that take as long as a pair of a query and a key.
+const WORK_OF_A_PAIR: usize = 50;
+
+/// Multi-head attention within scenes.
+///
+/// `mixed_i = Σ_j d_ij softmax_j(q_i · k_j / √head width) v_j` over the j that i sees, for each head alone, where `d_ij`
+/// is 1 or what [`Dropout`] makes of it.
+///
+/// # Numerics
+/// Every number is computed by one thread in a fixed order: results do not depend on the number of threads. The
+/// instruction sets agree to rounding.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AmongPedestrians {
+    heads: Heads,
+    dispatch: Dispatch,
+}
+
+/// What came out of [`AmongPedestrians::forward`], and what its gradient needs.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Attended {
+    mixed: Buffer,
+    /// By entry, scene, group of heads and two queries: the largest score (log2 units), and 1 / Σ 2^(score − largest).
+    normalisers: Vec<[Lanes; 2]>,
+}
+
+impl Attended {
+    /// Mixed values, `[B, P, heads, head width]`.
+    pub(crate) fn mixed(&self) -> &[f32] {
+        &self.mixed
+    }
+}
+
+impl AmongPedestrians {
+    /// Attention with the fastest instructions of this machine.
+    ///
+    /// # Panics
+    /// When there are no heads or more than 256, or they have no width.
+    pub(crate) fn new(heads: usize, head_width: usize) -> Self {
+        Self {
+            heads: Heads::new(heads, head_width),
+            dispatch: Dispatch::detect(),
+        }
+    }
+
+    /// The same with chosen instructions; `None` when the machine lacks them.
+    #[cfg(test)]
+    pub(super) fn with_instructions(self, set: InstructionSet) -> Option<Self> {
+        let dispatch = Dispatch::new(set)?;
+        Some(Self { dispatch, ..self })
+    }
+
+    /// Mixes the values of what each pedestrian sees.
+    ///
+    /// # Shapes
+    /// `qkv` `[B, P, 3, heads, head width]`, with the pedestrians P of the scenes; `frames` one or B -> `attended`, whose
+    /// buffers are used again.
+    ///
+    /// # Panics
+    /// When a shape does not fit, or the probability of `dropout` does not lie in [0, 1).
+    pub(crate) fn forward(
+        &self,
+        qkv: &[f32],
+        frames: Frames<'_>,
+        dropout: Option<Dropout>,
+        attended: &mut Attended,
+    ) {
+        let entries = self.check(qkv, frames);
+        let rows = entries * frames.scenes().pedestrians();
+        let row = self.heads.row();
+        attended.mixed = Buffer::any(rows * row);
+        let normalisers = entries * self.normalisers(frames);
+        attended.normalisers.resize(normalisers, [Lanes::ZERO; 2]);
+        let (mut mixed, mut normalisers) = (&mut attended.mixed[..], &mut attended.normalisers[..]);
+        let mut jobs = Vec::new();
+        for (qkv, task) in self.tasks(qkv, frames, dropout) {
+            jobs.push(Forward {
+                qkv,
+                mixed: mixed
+                    .split_off_mut(..task.scene.pedestrians * row)
+                    .unwrap_or_default(),
+                normalisers: normalisers
+                    .split_off_mut(..task.normalisers())
+                    .unwrap_or_default(),
+                task,
+            });
+        }
+        each(
+            jobs,
+            self.work(frames, entries),
+            |job, buffers: &mut Buffers| {
+                self.dispatch.run(forward::Run { job, buffers });
+            },
+        );
+    }
+
+    /// The gradient of the inputs of [`AmongPedestrians::forward`] from that of its output.
+    ///
+    /// # Shapes
+    /// `mixed_gradient` `[B, P, heads, head width]` -> `qkv_gradient` `[B, P, 3, heads, head width]`, all of which is
+    /// overwritten.
+    ///
+    /// # Panics
+    /// When a shape does not fit. The first four arguments must be those of the forward pass.
+    pub(crate) fn backward(
+        &self,
+        qkv: &[f32],
+        frames: Frames<'_>,
+        dropout: Option<Dropout>,
+        attended: &Attended,
+        mixed_gradient: &[f32],
+        qkv_gradient: &mut [f32],
+    ) {
+        let entries = self.check(qkv, frames);
+        let rows = entries * frames.scenes().pedestrians();
+        let row = self.heads.row();
+        assert!(
+            attended.mixed.len() == rows * row
+                && attended.normalisers.len() == entries * self.normalisers(frames),
+            "attended holds {} numbers of {rows} rows of {row}",
+            attended.mixed.len()
+        );
+        assert!(
+            mixed_gradient.len() == rows * row,
+            "the gradient of mixed has {} numbers, not {rows} rows of {row}",
+            mixed_gradient.len()
+        );
+        assert!(
+            qkv_gradient.len() == qkv.len(),
+            "the gradient of qkv has {} numbers, qkv {}",
+            qkv_gradient.len(),
+            qkv.len()
+        );
+        let (mut mixed, mut normalisers) = (&attended.mixed[..], &attended.normalisers[..]);
+        let (mut mixed_gradient, mut qkv_gradient) = (mixed_gradient, qkv_gradient);
+        let mut jobs = Vec::new();
+        for (qkv, task) in self.tasks(qkv, frames, dropout) {
+            let pedestrians = task.scene.pedestrians;
+            jobs.push(Backward {
+                qkv,
+                mixed: mixed.split_off(..pedestrians * row).unwrap_or_default(),
+                normalisers: normalisers
+                    .split_off(..task.normalisers())
+                    .unwrap_or_default(),
+                mixed_gradient: mixed_gradient
+                    .split_off(..pedestrians * row)
+                    .unwrap_or_default(),
+                qkv_gradient: qkv_gradient.split_off_mut(..qkv.len()).unwrap_or_default(),
+                task,
+            });
+        }
+        each(
+            jobs,
+            self.work(frames, entries),
+            |job, buffers: &mut Buffers| {
+                self.dispatch.run(backward::Run { job, buffers });
+            },
+        );
+    }
+
+    /// What there is to be done, in multiplications.
+    fn work(&self, frames: Frames<'_>, entries: usize) -> usize {
+        frames.pairs(entries) * self.heads.groups() * self.heads.quads() * WORK_OF_A_PAIR
+    }
+
+    /// [`Task::normalisers`] of all scenes of an entry.
+    fn normalisers(&self, frames: Frames<'_>) -> usize {
+        let ranges = frames.scenes().ranges().iter();
+        self.heads.groups() * ranges.map(|range| range.len().div_ceil(2)).sum::<usize>()
+    }
+
+    /// Batch entries.
+    fn check(&self, qkv: &[f32], frames: Frames<'_>) -> usize {
+        let entry = frames.scenes().pedestrians() * 3 * self.heads.row();
+        assert!(
+            !qkv.is_empty() && qkv.len().is_multiple_of(entry),
+            "qkv has {} numbers, not a multiple of {entry}: {} pedestrians, 3 x {} x {}",
+            qkv.len(),
+            frames.scenes().pedestrians(),
+            self.heads.count,
+            self.heads.width
+        );
+        let entries = qkv.len() / entry;
+        frames.check(entries);
+        entries
+    }
+
+    /// Every scene of every entry, with its part of `qkv`, in the order of the rows.
+    fn tasks<'a>(
+        &self,
+        qkv: &'a [f32],
+        frames: Frames<'a>,
+        dropout: Option<Dropout>,
+    ) -> impl Iterator<Item = (&'a [f32], Task<'a>)> {
+        let (heads, decisions) = (self.heads, dropout.and_then(Decisions::new));
+        let row = 3 * heads.row();
+        let entries = qkv.chunks_exact(frames.scenes().pedestrians() * row);
+        entries.enumerate().flat_map(move |(entry, qkv)| {
+            frames.of_entry(entry).map(move |scene| {
+                let task = Task {
+                    scene,
+                    entry,
+                    decisions,
+                    heads,
+                };
+                (&qkv[scene.first * row..][..scene.pedestrians * row], task)
+            })
+        })
+    }
+}

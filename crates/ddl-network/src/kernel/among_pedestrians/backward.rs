@@ -1,0 +1,187 @@
+//! From the gradient of mixed values to that of queries, keys and values.
+//!
+//! With weights `w_ij = e_ij s_i`, where `s_i` is 1 over the sum of the powers `e_ij`, gradients `g_i` of mixed values and
+//! drop factors `d_ij`: `dv_j = Σ_i d_ij w_ij g_i`, and the gradient of the score of (i, j) is
+//! `w_ij (d_ij g_i · v_j − g_i · mixed_i)`.
+//! The powers are made anew from the scores: that is faster than to fetch them from where they would have to be kept.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use super::queries::{Buffers, UNSEEN, dot};
+use super::task::Task;
+use crate::kernel::heads::Part;
+use ddl_simd::{DEPTH, Kernel, Lanes, Simd, Vectors, ZERO_QUAD};
+
+/// The rows of one scene.
+#[derive(Debug)]
+pub(super) struct Backward<'a> {
+    pub(super) task: Task<'a>,
+    pub(super) qkv: &'a [f32],
+    pub(super) mixed: &'a [f32],
+    /// By group of heads and two queries.
+    pub(super) normalisers: &'a [[Lanes; 2]],
+    pub(super) mixed_gradient: &'a [f32],
+    pub(super) qkv_gradient: &'a mut [f32],
+}
+
+#[derive(Debug)]
+pub(super) struct Run<'a, 'b> {
+    pub(super) job: Backward<'a>,
+    pub(super) buffers: &'b mut Buffers,
+}
+
+impl Kernel for Run<'_, '_> {
+    #[inline(always)]
+    fn run<S: Simd>(mut self, simd: S) {
+        for group in 0..self.job.task.heads.groups() {
+            // The number of quads is spelled out for the usual one, which takes the loops over quads away.
+            match (
+                self.job.task.heads.quads(),
+                self.job.task.decisions.is_some(),
+            ) {
+                (1, false) => self.group::<S, false>(simd, group, 1),
+                (1, true) => self.group::<S, true>(simd, group, 1),
+                (quads, false) => self.group::<S, false>(simd, group, quads),
+                (quads, true) => self.group::<S, true>(simd, group, quads),
+            }
+        }
+    }
+}
+
+impl Run<'_, '_> {
+    #[inline(always)]
+    fn group<S: Simd, const DROP: bool>(&mut self, simd: S, group: usize, quads: usize) {
+        let task = self.job.task;
+        let row = task.heads.row();
+        self.buffers.load(simd, &task, self.job.qkv, group, quads);
+        self.load_gradients(simd, group, quads);
+        let buffers = &mut *self.buffers;
+        let rows = self.job.qkv_gradient.chunks_exact_mut(3 * row);
+        for (key, gradient) in rows.enumerate() {
+            weigh::<S, DROP>(simd, buffers, &task, key, quads);
+            let (key_gradient, value_gradient) = gradient[row..].split_at_mut(row);
+            for quad in 0..quads {
+                let (of_key, of_value) = spread(simd, buffers, key, quad, quads);
+                let part = Part::new(task.heads, group, quad);
+                // Queries were scaled to scores that are powers of two.
+                let of_key = simd.scaled(of_key, simd.splat(std::f32::consts::LN_2));
+                part.store_sum(simd, of_key, key_gradient);
+                part.store_sum(simd, of_value, value_gradient);
+            }
+        }
+        let scale = simd.splat(task.heads.scale());
+        let gradients = buffers.query_gradients.chunks_exact(quads);
+        for (two, gradients) in self.job.qkv_gradient.chunks_mut(6 * row).zip(gradients) {
+            let (first, second) = two.split_at_mut(3 * row);
+            let mut second = second.get_mut(..row);
+            for (quad, gradient) in gradients.iter().enumerate() {
+                let part = Part::new(task.heads, group, quad);
+                let gradient = simd.scaled(simd.read(gradient), scale);
+                part.store(simd, gradient, &mut first[..row], second.as_deref_mut());
+            }
+        }
+    }
+
+    /// Gradients of mixed values into lanes, with what normalises the weights; no gradients of queries yet.
+    #[inline(always)]
+    fn load_gradients<S: Simd>(&mut self, simd: S, group: usize, quads: usize) {
+        let (job, buffers) = (&self.job, &mut *self.buffers);
+        let (heads, row) = (job.task.heads, job.task.heads.row());
+        let twos = job.task.scene.pedestrians.div_ceil(2);
+        buffers.weights.resize(twos, Lanes::ZERO);
+        buffers.score_gradients.resize(twos, Lanes::ZERO);
+        buffers.inner.resize(twos, [Lanes::ZERO; 2]);
+        buffers.mixed_gradients.resize(twos * quads, ZERO_QUAD);
+        buffers.query_gradients.clear();
+        buffers.query_gradients.resize(twos * quads, ZERO_QUAD);
+        let rows = job
+            .mixed_gradient
+            .chunks(2 * row)
+            .zip(job.mixed.chunks(2 * row));
+        let rows = rows.zip(&job.normalisers[group * twos..]);
+        let results = buffers.mixed_gradients.chunks_exact_mut(quads);
+        let results = results.zip(&mut buffers.inner);
+        for (((gradient, mixed), [largest, share]), (gradients, inner)) in rows.zip(results) {
+            let share = simd.load(&share.0);
+            let mut product = simd.splat(0.0);
+            let (first, first_mixed) = (&gradient[..row], &mixed[..row]);
+            let (second, second_mixed) = (gradient.get(row..2 * row), mixed.get(row..2 * row));
+            for (quad, result) in gradients.iter_mut().enumerate() {
+                let part = Part::new(heads, group, quad);
+                let gradient = simd.scaled(part.load(simd, first, second), share);
+                let mixed = part.load(simd, first_mixed, second_mixed);
+                product = simd.dot(gradient, mixed, product);
+                simd.write(gradient, result);
+            }
+            inner[0] = *largest;
+            simd.store(product, &mut inner[1].0);
+        }
+    }
+}
+
+/// Weights with which the queries took a key's value, times their sum, and gradients of their scores.
+#[inline(always)]
+fn weigh<S: Simd, const DROP: bool>(
+    simd: S,
+    buffers: &mut Buffers,
+    task: &Task<'_>,
+    key: usize,
+    quads: usize,
+) {
+    let at = key * quads;
+    let (keys, values) = (&buffers.keys[at..][..quads], &buffers.values[at..][..quads]);
+    let codes = task.scene.codes.chunks_exact(task.scene.pedestrians);
+    let queries = buffers.queries.chunks_exact(quads);
+    let queries = queries.zip(buffers.mixed_gradients.chunks_exact(quads));
+    let queries = queries.zip(buffers.inner.iter().zip(codes));
+    let results = buffers.weights.iter_mut().zip(&mut buffers.score_gradients);
+    for (two, (((query, gradient), ([largest, inner], codes)), (weight, score_gradient))) in
+        queries.zip(results).enumerate()
+    {
+        let unseen = simd.load(&UNSEEN[usize::from(codes[key] & 3)].0);
+        let score = dot(simd, query, keys, unseen);
+        let power = simd.exp2(simd.sub(score, simd.load(&largest.0)));
+        let taken = dot(simd, gradient, values, simd.splat(0.0));
+        let inner = simd.load(&inner.0);
+        let (taking, change) = match task.decisions {
+            Some(decisions) if DROP => {
+                let factors = decisions.factors(&buffers.bits[two], task.scene.first + key);
+                let factors = simd.load(&factors.0);
+                let change = simd.sub(simd.mul(factors, taken), inner);
+                (simd.mul(power, factors), change)
+            }
+            _ => (power, simd.sub(taken, inner)),
+        };
+        simd.store(taking, &mut weight.0);
+        simd.store(simd.mul(power, change), &mut score_gradient.0);
+    }
+}
+
+/// Adds to the gradients of all queries; gives those of a key and its value, still apart for even and odd queries.
+#[inline(always)]
+fn spread<S: Simd>(
+    simd: S,
+    buffers: &mut Buffers,
+    key: usize,
+    quad: usize,
+    quads: usize,
+) -> (Vectors<S>, Vectors<S>) {
+    let (mut of_key, mut of_value) = ([simd.splat(0.0); DEPTH], [simd.splat(0.0); DEPTH]);
+    let key = simd.read(&buffers.keys[key * quads + quad]);
+    let queries = buffers.queries.chunks_exact(quads);
+    let queries = queries.zip(buffers.mixed_gradients.chunks_exact(quads));
+    let results = buffers.query_gradients.chunks_exact_mut(quads);
+    let weights = buffers.weights.iter().zip(&buffers.score_gradients);
+    for (((query, gradient), of_query), (weight, score_gradient)) in
+        queries.zip(results).zip(weights)
+    {
+        let score_gradient = simd.load(&score_gradient.0);
+        let (query, gradient) = (simd.read(&query[quad]), simd.read(&gradient[quad]));
+        of_key = simd.accumulate(of_key, score_gradient, query);
+        of_value = simd.accumulate(of_value, simd.load(&weight.0), gradient);
+        let of_query = &mut of_query[quad];
+        let sum = simd.accumulate(simd.read(of_query), score_gradient, key);
+        simd.write(sum, of_query);
+    }
+    (of_key, of_value)
+}

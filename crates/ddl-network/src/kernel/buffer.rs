@@ -1,0 +1,157 @@
+//! Memory for rows of numbers that is used again.
+
+use std::cell::RefCell;
+use std::ops::{Deref, DerefMut};
+
+use ddl_simd::LANES;
+
+/// Buffers that a thread keeps for the next ones: to ask the system for memory, and to be given it a page at a time, would
+/// take as long as the work on small batches.
+const SPARE: usize = 64;
+/// Numbers that all of them may hold together, 32 MiB: what one crowded frame took is given back.
+const SPARE_NUMBERS: usize = 1 << 23;
+
+#[derive(Debug)]
+struct Spares {
+    buffers: Vec<Vec<f32>>,
+    numbers: usize,
+}
+
+thread_local! {
+    static SPARES: RefCell<Spares> = const {
+        RefCell::new(Spares {
+            buffers: Vec::new(),
+            numbers: 0,
+        })
+    };
+}
+
+impl Spares {
+    fn take(&mut self) -> Vec<f32> {
+        let buffer = self.buffers.pop().unwrap_or_default();
+        self.numbers -= buffer.len();
+        buffer
+    }
+
+    fn keep(&mut self, buffer: Vec<f32>) {
+        if self.buffers.len() < SPARE && self.numbers + buffer.len() <= SPARE_NUMBERS {
+            self.numbers += buffer.len();
+            self.buffers.push(buffer);
+        }
+    }
+}
+
+/// Numbers that begin where a register's load begins.
+#[derive(Debug)]
+pub struct Buffer {
+    numbers: Vec<f32>,
+    first: usize,
+    count: usize,
+}
+
+impl Buffer {
+    /// `count` numbers, whatever was there before.
+    #[must_use]
+    pub fn any(count: usize) -> Self {
+        let mut numbers = SPARES.with_borrow_mut(Spares::take);
+        if numbers.len() < count + LANES {
+            numbers.resize(count + LANES, 0.0);
+        }
+        let aligned = numbers.as_ptr().align_offset(LANES * size_of::<f32>());
+        let first = if aligned < LANES { aligned } else { 0 };
+        Self {
+            numbers,
+            first,
+            count,
+        }
+    }
+
+    /// `count` numbers, all 0.
+    #[must_use]
+    pub fn zeros(count: usize) -> Self {
+        let mut buffer = Self::any(count);
+        buffer.fill(0.0);
+        buffer
+    }
+
+    /// These numbers.
+    #[must_use]
+    pub fn copy(numbers: &[f32]) -> Self {
+        let mut buffer = Self::any(numbers.len());
+        buffer.copy_from_slice(numbers);
+        buffer
+    }
+}
+
+impl Default for Buffer {
+    /// No numbers, and no memory.
+    fn default() -> Self {
+        Self {
+            numbers: Vec::new(),
+            first: 0,
+            count: 0,
+        }
+    }
+}
+
+impl Clone for Buffer {
+    fn clone(&self) -> Self {
+        Self::copy(self)
+    }
+}
+
+impl Deref for Buffer {
+    type Target = [f32];
+
+    fn deref(&self) -> &[f32] {
+        &self.numbers[self.first..][..self.count]
+    }
+}
+
+impl DerefMut for Buffer {
+    fn deref_mut(&mut self) -> &mut [f32] {
+        &mut self.numbers[self.first..][..self.count]
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        let numbers = std::mem::take(&mut self.numbers);
+        if numbers.is_empty() {
+            return;
+        }
+        // At the end of a thread there is no place to keep it any more.
+        let _ = SPARES.try_with(|spares| spares.borrow_mut().keep(numbers));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_kept_is_bounded() {
+        let many: Vec<Buffer> = (0..100).map(|_| Buffer::any(1 << 20)).collect();
+        drop(many);
+        drop(Buffer::any(2 * SPARE_NUMBERS));
+        SPARES.with_borrow(|spares| {
+            let kept: usize = spares.buffers.iter().map(Vec::len).sum();
+            assert_eq!(kept, spares.numbers);
+            assert!((1..=SPARE_NUMBERS).contains(&kept), "{kept} numbers");
+        });
+    }
+
+    #[test]
+    fn buffers_are_aligned_and_as_long_as_asked_for() {
+        for count in [0, 1, 17, 1000, 3, 500] {
+            let buffer = Buffer::zeros(count);
+            assert_eq!(buffer.len(), count);
+            assert!(buffer.iter().all(|&number| number == 0.0));
+            assert_eq!(buffer.as_ptr().align_offset(64), 0, "{count}");
+            let mut copy = Buffer::copy(&buffer);
+            copy.fill(1.0);
+            assert!(buffer.iter().all(|&number| number == 0.0));
+        }
+        assert!(Buffer::default().is_empty());
+    }
+}

@@ -1,0 +1,122 @@
+//! Some columns of matrices that lie row by row, and pieces of rows in registers.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use ddl_simd::{LANES, Simd};
+
+/// Columns of a matrix: all of them, or what stands side by side with others.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Columns<'a> {
+    numbers: &'a [f32],
+    rows: usize,
+    /// Numbers in a row of the whole matrix.
+    stride: usize,
+    first: usize,
+    count: usize,
+}
+
+/// [`Columns`] that are written.
+#[derive(Debug)]
+pub(super) struct ColumnsMut<'a> {
+    numbers: &'a mut [f32],
+    rows: usize,
+    stride: usize,
+    first: usize,
+    count: usize,
+}
+
+impl<'a> Columns<'a> {
+    /// The matrix whose rows are `count` numbers.
+    pub(super) fn whole(numbers: &'a [f32], count: usize) -> Self {
+        Self::part(numbers, count, 0, count)
+    }
+
+    /// `count` columns from `first` on, of a matrix whose rows are `stride` numbers.
+    pub(super) fn part(numbers: &'a [f32], stride: usize, first: usize, count: usize) -> Self {
+        assert!(
+            numbers.len().is_multiple_of(stride) && first + count <= stride,
+            "columns {first} to {} of {} numbers in rows of {stride}",
+            first + count,
+            numbers.len()
+        );
+        Self {
+            numbers,
+            rows: numbers.len() / stride,
+            stride,
+            first,
+            count,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn rows(&self) -> usize {
+        self.rows
+    }
+
+    #[inline(always)]
+    pub(super) fn row(&self, row: usize) -> &'a [f32] {
+        &self.numbers[row * self.stride + self.first..][..self.count]
+    }
+}
+
+impl<'a> ColumnsMut<'a> {
+    pub(super) fn whole(numbers: &'a mut [f32], count: usize) -> Self {
+        Self::part(numbers, count, 0, count)
+    }
+
+    pub(super) fn part(numbers: &'a mut [f32], stride: usize, first: usize, count: usize) -> Self {
+        let rows = Columns::part(numbers, stride, first, count).rows;
+        Self {
+            numbers,
+            rows,
+            stride,
+            first,
+            count,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn rows(&self) -> usize {
+        self.rows
+    }
+
+    #[inline(always)]
+    pub(super) fn row_mut(&mut self, row: usize) -> &mut [f32] {
+        &mut self.numbers[row * self.stride + self.first..][..self.count]
+    }
+}
+
+/// Sixteen numbers of a row from `at`; what is beyond its end counts as 0.
+#[inline(always)]
+pub(super) fn load<S: Simd>(simd: S, row: &[f32], at: usize) -> S::Floats {
+    match row.get(at..at + LANES) {
+        Some(whole) => simd.load(&whole.as_chunks().0[0]),
+        None => simd.load(&end(row, at)),
+    }
+}
+
+/// Writes sixteen numbers of a row from `at`, as far as it goes.
+#[inline(always)]
+pub(super) fn store<S: Simd>(simd: S, value: S::Floats, row: &mut [f32], at: usize) {
+    if let Some(whole) = row.get_mut(at..at + LANES) {
+        simd.store(value, &mut whole.as_chunks_mut().0[0]);
+    } else {
+        let mut numbers = [0.0; LANES];
+        simd.store(value, &mut numbers);
+        store_end(&numbers, row, at);
+    }
+}
+
+#[cold]
+fn end(row: &[f32], at: usize) -> [f32; LANES] {
+    let mut numbers = [0.0; LANES];
+    let rest = row.get(at..).unwrap_or_default();
+    numbers[..rest.len()].copy_from_slice(rest);
+    numbers
+}
+
+#[cold]
+fn store_end(numbers: &[f32; LANES], row: &mut [f32], at: usize) {
+    let rest = row.get_mut(at..).unwrap_or_default();
+    rest.copy_from_slice(&numbers[..rest.len()]);
+}

@@ -1,0 +1,254 @@
+//! From the gradient of a layer's output to those of its input and weights, a few rows at a time.
+//!
+//! Each piece of rows adds up gradients of weights of its own; these are added in the order of the rows.
+
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+
+use super::forward::ROWS;
+use super::keep::{Kept, Normal};
+use super::layer::{Dropouts, EncoderLayer};
+use crate::kernel::add_norm::{AddNorm, Decisions};
+use crate::kernel::affine::Affine;
+use crate::kernel::buffer::Buffer;
+use crate::kernel::columns::{Columns, ColumnsMut};
+use crate::kernel::dropout::Dropout;
+use crate::kernel::feed_forward::Gradients;
+use crate::kernel::threads::each;
+use ddl_simd::{Simd, TiledKernel};
+
+/// Gradients of projections.
+#[derive(Debug)]
+pub(super) enum Parts<'a> {
+    /// Side by side in every row.
+    Together(&'a [f32]),
+    /// Each a matrix of its own.
+    Apart(Vec<&'a [f32]>),
+}
+
+impl<'a> Parts<'a> {
+    /// The rows from `first` on, as many as there are in `rows`.
+    fn rows(&self, index: usize, width: usize, first: usize, rows: usize) -> Columns<'a> {
+        match self {
+            Self::Together(all) => {
+                let all = &all[first * 3 * width..][..rows * 3 * width];
+                Columns::part(all, 3 * width, index * width, width)
+            }
+            Self::Apart(all) => Columns::whole(&all[index][first * width..][..rows * width], width),
+        }
+    }
+}
+
+impl EncoderLayer {
+    /// What follows attention, backwards: the gradient of x so far, and that of what attention has mixed.
+    pub(super) fn before_attention(
+        &self,
+        kept: &Kept,
+        dropouts: Dropouts,
+        gy: &[f32],
+        of_weights: &mut [f32],
+    ) -> (Buffer, Buffer) {
+        let [_, _, wo, bo, w1, b1, w2, b2, n1, c1, n2, c2] = self.sizes.pieces_mut(of_weights);
+        let count = gy.len();
+        let [mut of_z, mut of_fed, mut through] = [0; 3].map(|_| Buffer::any(count));
+        let second = Sublayer {
+            norm: &self.norm2,
+            map: None,
+            normal: &kept.normal2,
+            dropout: dropouts.fed,
+        };
+        self.sublayer_backward(
+            &second,
+            gy,
+            [&mut of_z, &mut of_fed],
+            [n2, c2, &mut [], &mut []],
+        );
+        let mut grads = Gradients { w1, b1, w2, b2 };
+        self.feed_forward
+            .backward(&kept.z, &of_fed, dropouts.hidden, &mut through, &mut grads);
+        for (sum, term) in of_z.iter_mut().zip(through.iter()) {
+            *sum += term;
+        }
+        // Their contents are not needed any more.
+        let (mut gx, mut of_mixed) = (through, of_fed);
+        let first = Sublayer {
+            norm: &self.norm1,
+            map: Some((&self.out, kept.attention.mixed())),
+            normal: &kept.normal1,
+            dropout: dropouts.attended,
+        };
+        self.sublayer_backward(&first, &of_z, [&mut gx, &mut of_mixed], [n1, c1, wo, bo]);
+        (gx, of_mixed)
+    }
+
+    /// The gradients of x and t of a [`Sublayer`]; those of its weights are added up.
+    fn sublayer_backward(
+        &self,
+        layer: &Sublayer<'_>,
+        gy: &[f32],
+        [of_x, of_t]: [&mut [f32]; 2],
+        of_weights: [&mut [f32]; 4],
+    ) {
+        let width = self.sizes.width;
+        let (piece, count) = (ROWS * width, of_weights.iter().map(|part| part.len()).sum());
+        let decisions = layer.dropout.and_then(Decisions::new);
+        let normals = layer.normal.numbers.chunks(piece);
+        let inputs = normals
+            .zip(layer.normal.scales.chunks(ROWS))
+            .zip(gy.chunks(piece));
+        let outputs = of_x.chunks_mut(piece).zip(of_t.chunks_mut(piece));
+        let mut sums: Vec<Buffer> = Vec::new();
+        sums.resize_with(gy.len().div_ceil(piece), || Buffer::zeros(count));
+        let jobs = inputs.zip(outputs).zip(&mut sums).enumerate();
+        let jobs = jobs.map(|(i, (((normal, gy), (of_x, of_t)), sums))| Backward {
+            norm: layer.norm,
+            map: layer.map.map(|(map, t)| (map, &t[i * piece..][..gy.len()])),
+            width,
+            normal: [normal.0, normal.1],
+            gy,
+            decisions: decisions.map(|decisions| (decisions, i * ROWS)),
+            of_x,
+            of_t,
+            sums,
+        });
+        let work = gy.len() * layer.map.map_or(20, |_| 2 * width);
+        each(jobs.collect(), work, |job: Backward<'_>, (): &mut ()| {
+            self.dispatch.run(job);
+        });
+        add_up(&sums, of_weights);
+    }
+
+    /// Adds the gradients of x through the projections from `first` on, and those of their weights.
+    pub(super) fn project_backward(
+        &self,
+        first: usize,
+        x: &[f32],
+        parts: &Parts<'_>,
+        gx: &mut [f32],
+        of_weights: &mut [f32],
+    ) {
+        let width = self.sizes.width;
+        let [weight, bias, ..] = self.sizes.pieces_mut(of_weights);
+        let (weight, bias) = (
+            &mut weight[first * width * width..],
+            &mut bias[first * width..],
+        );
+        let mut sums: Vec<Buffer> = Vec::new();
+        let count = weight.len() + bias.len();
+        sums.resize_with(x.len().div_ceil(ROWS * width), || Buffer::zeros(count));
+        let rows = x.chunks(ROWS * width).zip(gx.chunks_mut(ROWS * width));
+        let jobs = rows.zip(&mut sums).enumerate();
+        let jobs = jobs.map(|(i, ((x, gx), sums))| {
+            let count = x.len() / width;
+            let projections = self.projections[first..].iter().enumerate();
+            let parts = projections
+                .map(|(index, projection)| (projection, parts.rows(index, width, i * ROWS, count)));
+            ProjectBackward {
+                parts: parts.collect(),
+                width,
+                x,
+                gx,
+                sums,
+            }
+        });
+        let work = 2 * x.len() * count / width;
+        each(
+            jobs.collect(),
+            work,
+            |job: ProjectBackward<'_>, (): &mut ()| {
+                self.dispatch.run(job);
+            },
+        );
+        add_up(&sums, [weight, bias]);
+    }
+}
+
+/// Adds what each piece of rows has summed up, in their order.
+fn add_up<const N: usize>(sums: &[Buffer], mut into: [&mut [f32]; N]) {
+    for sums in sums {
+        let mut terms = sums.iter();
+        for into in &mut into {
+            for (sum, term) in into.iter_mut().zip(terms.by_ref()) {
+                *sum += term;
+            }
+        }
+    }
+}
+
+/// y = norm(x + d(t)), or of an affine map of t.
+struct Sublayer<'a> {
+    norm: &'a AddNorm,
+    /// With its input.
+    map: Option<(&'a Affine, &'a [f32])>,
+    normal: &'a Normal,
+    dropout: Option<Dropout>,
+}
+
+/// Some rows of it.
+struct Backward<'a> {
+    norm: &'a AddNorm,
+    map: Option<(&'a Affine, &'a [f32])>,
+    width: usize,
+    normal: [&'a [f32]; 2],
+    gy: &'a [f32],
+    decisions: Option<(Decisions, usize)>,
+    of_x: &'a mut [f32],
+    of_t: &'a mut [f32],
+    /// Gradients of the weight and bias of the normalisation, and of those of the map.
+    sums: &'a mut [f32],
+}
+
+impl TiledKernel for Backward<'_> {
+    #[inline(always)]
+    fn run<S: Simd, const R: usize, const V: usize>(self, simd: S) {
+        let Self {
+            norm,
+            map,
+            width,
+            normal,
+            gy,
+            decisions,
+            of_x,
+            of_t,
+            sums,
+        } = self;
+        let (of_norm, of_map) = sums.split_at_mut(2 * width);
+        let of_norm: [&mut [f32]; 2] = of_norm.split_at_mut(width).into();
+        let Some((map, t)) = map else {
+            norm.backward(simd, normal, gy, decisions, [of_x, of_t], of_norm);
+            return;
+        };
+        let mut of_mapped = Buffer::any(of_t.len());
+        norm.backward(simd, normal, gy, decisions, [of_x, &mut of_mapped], of_norm);
+        let of_mapped = Columns::whole(&of_mapped, width);
+        let mut of_t = ColumnsMut::whole(of_t, width);
+        map.backward::<S, R, V>(simd, of_mapped, &mut of_t, false);
+        let of_map = of_map.split_at_mut(width * width).into();
+        map.add_gradients::<S, R, V>(simd, Columns::whole(t, width), of_mapped, of_map);
+    }
+}
+
+/// Some rows of the projections.
+struct ProjectBackward<'a> {
+    parts: Vec<(&'a Affine, Columns<'a>)>,
+    width: usize,
+    x: &'a [f32],
+    gx: &'a mut [f32],
+    /// Gradients of all weights, then of all biases.
+    sums: &'a mut [f32],
+}
+
+impl TiledKernel for ProjectBackward<'_> {
+    #[inline(always)]
+    fn run<S: Simd, const R: usize, const V: usize>(self, simd: S) {
+        let width = self.width;
+        let x = Columns::whole(self.x, width);
+        let mut gx = ColumnsMut::whole(self.gx, width);
+        let (weights, biases) = self.sums.split_at_mut(self.parts.len() * width * width);
+        let weights = weights.chunks_exact_mut(width * width);
+        let of_weights = weights.zip(biases.chunks_exact_mut(width));
+        for ((projection, gy), (weight, bias)) in self.parts.into_iter().zip(of_weights) {
+            projection.backward::<S, R, V>(simd, gy, &mut gx, true);
+            projection.add_gradients::<S, R, V>(simd, x, gy, [weight, bias]);
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! From the input of a layer to its output, a few rows at a time.
+
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+
+use super::keep::{Attention, Kept, Normal};
+use super::layer::{Dropouts, EncoderLayer};
+use crate::kernel::add_norm::{self, AddNorm, Decisions};
+use crate::kernel::affine::Affine;
+use crate::kernel::buffer::Buffer;
+use crate::kernel::columns::{Columns, ColumnsMut};
+use crate::kernel::dropout::Dropout;
+use crate::kernel::threads::each;
+use ddl_simd::{Simd, TiledKernel};
+
+/// Rows that are computed together. Always the same, so that sums over rows are.
+pub(super) const ROWS: usize = 256;
+
+/// Where projections of rows go.
+#[derive(Debug)]
+pub(super) enum Targets<'a> {
+    /// Side by side in every row.
+    Together(&'a mut [f32]),
+    /// Each into a matrix of its own.
+    Apart(Vec<&'a mut [f32]>),
+}
+
+impl<'a> Targets<'a> {
+    /// Takes the first rows off, `numbers` of each matrix.
+    fn split_off(&mut self, projections: usize, numbers: usize) -> Targets<'a> {
+        match self {
+            Self::Together(all) => {
+                let count = all.len().min(projections * numbers);
+                Targets::Together(all.split_off_mut(..count).unwrap_or_default())
+            }
+            Self::Apart(all) => {
+                let parts = all.iter_mut().map(|part| {
+                    let count = part.len().min(numbers);
+                    part.split_off_mut(..count).unwrap_or_default()
+                });
+                Targets::Apart(parts.collect())
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn columns(&mut self, index: usize, projections: usize, width: usize) -> ColumnsMut<'_> {
+        match self {
+            Self::Together(all) => ColumnsMut::part(all, projections * width, index * width, width),
+            Self::Apart(all) => ColumnsMut::whole(all[index], width),
+        }
+    }
+}
+
+impl EncoderLayer {
+    /// Queries, keys and values, or those of them from `first` on.
+    pub(super) fn project(&self, first: usize, x: &[f32], mut targets: Targets<'_>) {
+        let width = self.sizes.width;
+        assert_eq!(x.len() % width, 0, "x is not made of rows of {width}");
+        let projections = &self.projections[first..];
+        let jobs = x.chunks(ROWS * width).map(|x| Project {
+            projections,
+            width,
+            x,
+            targets: targets.split_off(projections.len(), x.len()),
+        });
+        let work = x.len() * width * projections.len();
+        each(jobs.collect(), work, |job: Project<'_>, (): &mut ()| {
+            self.dispatch.run(job);
+        });
+    }
+
+    /// What follows attention.
+    pub(super) fn after_attention(
+        &self,
+        x: &[f32],
+        attention: Attention,
+        dropouts: Dropouts,
+    ) -> (Buffer, Kept) {
+        let (mut z, mut fed, mut y) = (
+            Buffer::any(x.len()),
+            Buffer::any(x.len()),
+            Buffer::any(x.len()),
+        );
+        let mixed = attention.mixed();
+        let normal1 = self.add_norm(
+            &self.norm1,
+            Some(&self.out),
+            [x, mixed],
+            dropouts.attended,
+            &mut z,
+        );
+        self.feed_forward.forward(&z, dropouts.hidden, &mut fed);
+        let normal2 = self.add_norm(&self.norm2, None, [&z, &fed], dropouts.fed, &mut y);
+        let kept = Kept {
+            attention,
+            normal1,
+            z,
+            normal2,
+        };
+        (y, kept)
+    }
+
+    /// y = norm(x + d(t)), of an affine map of t where there is one.
+    fn add_norm(
+        &self,
+        norm: &AddNorm,
+        map: Option<&Affine>,
+        [x, t]: [&[f32]; 2],
+        dropout: Option<Dropout>,
+        y: &mut [f32],
+    ) -> Normal {
+        let width = self.sizes.width;
+        let rows = x.len() / width;
+        let mut normal = Normal {
+            numbers: Buffer::any(x.len()),
+            scales: Buffer::any(rows),
+        };
+        let decisions = dropout.and_then(Decisions::new);
+        let inputs = x.chunks(ROWS * width).zip(t.chunks(ROWS * width));
+        let numbers = normal.numbers.chunks_mut(ROWS * width);
+        let normals = numbers.zip(normal.scales.chunks_mut(ROWS));
+        let outputs = normals.zip(y.chunks_mut(ROWS * width));
+        let jobs = inputs.zip(outputs).enumerate();
+        let jobs = jobs.map(|(i, ((x, t), ((numbers, scales), y)))| Forward {
+            norm,
+            map,
+            width,
+            x,
+            t,
+            decisions: decisions.map(|decisions| (decisions, i * ROWS)),
+            normal: add_norm::Normal { numbers, scales },
+            y,
+        });
+        let work = x.len() * map.map_or(10, |_| width);
+        each(jobs.collect(), work, |job: Forward<'_>, (): &mut ()| {
+            self.dispatch.run(job);
+        });
+        normal
+    }
+}
+
+/// Projections of some rows.
+struct Project<'a> {
+    projections: &'a [Affine],
+    width: usize,
+    x: &'a [f32],
+    targets: Targets<'a>,
+}
+
+impl TiledKernel for Project<'_> {
+    #[inline(always)]
+    fn run<S: Simd, const R: usize, const V: usize>(mut self, simd: S) {
+        let x = Columns::whole(self.x, self.width);
+        let count = self.projections.len();
+        for (i, projection) in self.projections.iter().enumerate() {
+            let mut target = self.targets.columns(i, count, self.width);
+            projection.forward::<S, R, V>(simd, x, &mut target);
+        }
+    }
+}
+
+/// Some rows after a sublayer.
+struct Forward<'a> {
+    norm: &'a AddNorm,
+    map: Option<&'a Affine>,
+    width: usize,
+    x: &'a [f32],
+    t: &'a [f32],
+    decisions: Option<(Decisions, usize)>,
+    normal: add_norm::Normal<'a>,
+    y: &'a mut [f32],
+}
+
+impl TiledKernel for Forward<'_> {
+    #[inline(always)]
+    fn run<S: Simd, const R: usize, const V: usize>(mut self, simd: S) {
+        let mut mapped = Buffer::default();
+        let t = match self.map {
+            Some(map) => {
+                mapped = Buffer::any(self.t.len());
+                let t = Columns::whole(self.t, self.width);
+                let mut into = ColumnsMut::whole(&mut mapped, self.width);
+                map.forward::<S, R, V>(simd, t, &mut into);
+                &mapped
+            }
+            None => self.t,
+        };
+        self.norm
+            .forward(simd, [self.x, t], self.decisions, &mut self.normal, self.y);
+        drop(mapped);
+    }
+}

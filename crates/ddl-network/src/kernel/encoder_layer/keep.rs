@@ -1,0 +1,77 @@
+//! What outlives the forward pass: for later tokens and for the gradient.
+
+use crate::kernel::among_pedestrians::Attended;
+use crate::kernel::buffer::Buffer;
+use crate::kernel::over_memory::{KeyValue, KeyValueMut};
+
+/// What the gradient of an encoder layer needs of its forward pass.
+#[derive(Debug)]
+pub(crate) struct Kept {
+    pub(super) attention: Attention,
+    pub(super) normal1: Normal,
+    /// The output of the first normalisation.
+    pub(super) z: Buffer,
+    pub(super) normal2: Normal,
+}
+
+#[derive(Debug)]
+pub(super) enum Attention {
+    Among {
+        qkv: Buffer,
+        attended: Attended,
+    },
+    Over {
+        query: Buffer,
+        own: Remembered,
+        mixed: Buffer,
+    },
+}
+
+impl Attention {
+    pub(super) fn mixed(&self) -> &[f32] {
+        match self {
+            Self::Among { attended, .. } => attended.mixed(),
+            Self::Over { mixed, .. } => mixed,
+        }
+    }
+}
+
+/// Rows that were normalised, and by what.
+#[derive(Debug)]
+pub(super) struct Normal {
+    pub(super) numbers: Buffer,
+    pub(super) scales: Buffer,
+}
+
+/// Keys and values of tokens, `[rows, width]` each; also what their gradients are added to.
+#[derive(Debug)]
+pub(crate) struct Remembered {
+    /// What queries are compared with.
+    pub(crate) key: Buffer,
+    /// What is mixed.
+    pub(crate) value: Buffer,
+}
+
+impl Remembered {
+    /// Of `count` numbers each.
+    pub(crate) fn zeros(count: usize) -> Self {
+        Self {
+            key: Buffer::zeros(count),
+            value: Buffer::zeros(count),
+        }
+    }
+
+    pub(super) fn view(&self) -> KeyValue<'_> {
+        KeyValue {
+            key: &self.key,
+            value: &self.value,
+        }
+    }
+
+    pub(super) fn view_mut(&mut self) -> KeyValueMut<'_> {
+        KeyValueMut {
+            key: &mut self.key,
+            value: &mut self.value,
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! The learned numbers of a layer, as its passes read them.
+
+use super::weights::Sizes;
+use crate::Precision;
+use crate::kernel::add_norm::AddNorm;
+use crate::kernel::affine::Affine;
+use crate::kernel::among_pedestrians::AmongPedestrians;
+use crate::kernel::dropout::Dropout;
+use crate::kernel::feed_forward::FeedForward;
+use crate::kernel::over_memory::OverMemory;
+use ddl_simd::Dispatch;
+#[cfg(test)]
+use ddl_simd::InstructionSet;
+
+/// z = norm(x + d(W mixed + b)), y = norm(z + d(f(z))): `mixed` by attention from queries, keys and values, which are
+/// affine in x, f the feed-forward block.
+///
+/// # Numerics
+/// Results and gradients do not depend on the number of threads, results neither on the other rows that are computed
+/// along (attention among pedestrians aside). The instruction sets agree to rounding.
+#[derive(Clone, Debug)]
+pub(crate) struct EncoderLayer {
+    pub(super) sizes: Sizes,
+    /// To queries, keys and values.
+    pub(super) projections: [Affine; 3],
+    pub(super) out: Affine,
+    pub(super) norm1: AddNorm,
+    pub(super) norm2: AddNorm,
+    pub(super) feed_forward: FeedForward,
+    pub(super) among: AmongPedestrians,
+    pub(super) over: OverMemory,
+    pub(super) dispatch: Dispatch,
+}
+
+/// The four dropouts of a layer, each with a seed of its own.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Dropouts {
+    /// Of attention weights.
+    pub(crate) weights: Option<Dropout>,
+    /// Of what attention adds to its input.
+    pub(crate) attended: Option<Dropout>,
+    /// Of hidden activations.
+    pub(crate) hidden: Option<Dropout>,
+    /// Of what the feed-forward block adds to its input.
+    pub(crate) fed: Option<Dropout>,
+}
+
+impl EncoderLayer {
+    /// A layer whose learned numbers are all 0.
+    ///
+    /// # Panics
+    /// When a size is 0, or the heads are more than 256 or do not divide the width.
+    pub(crate) fn zeros(sizes: Sizes) -> Self {
+        let Sizes {
+            width,
+            heads,
+            hidden,
+        } = sizes;
+        assert!(
+            heads > 0 && width.is_multiple_of(heads),
+            "{heads} heads of a width of {width}"
+        );
+        Self {
+            sizes,
+            projections: [0; 3].map(|_| Affine::new(width, width)),
+            out: Affine::new(width, width),
+            norm1: AddNorm::new(width),
+            norm2: AddNorm::new(width),
+            feed_forward: FeedForward::zeros(width, hidden),
+            among: AmongPedestrians::new(heads, width / heads),
+            over: OverMemory::new(heads, width / heads),
+            dispatch: Dispatch::detect(),
+        }
+    }
+
+    /// The same with chosen instructions; `None` when the machine lacks them.
+    #[cfg(test)]
+    pub(in crate::kernel) fn with_instructions(self, set: InstructionSet) -> Option<Self> {
+        Some(Self {
+            feed_forward: self.feed_forward.with_instructions(set)?,
+            among: self.among.with_instructions(set)?,
+            over: self.over.with_instructions(set)?,
+            dispatch: Dispatch::new(set)?,
+            ..self
+        })
+    }
+
+    /// Takes over learned numbers, in the order of [`Sizes`], for a feed-forward block in that precision. There is no backward
+    /// pass in bf16.
+    ///
+    /// # Panics
+    /// When there are more or fewer than [`Sizes::count`].
+    pub(crate) fn update(&mut self, weights: &[f32], precision: Precision) {
+        let width = self.sizes.width;
+        let [w, b, wo, bo, w1, b1, w2, b2, n1, c1, n2, c2] = self.sizes.pieces(weights);
+        let parts = w.chunks_exact(width * width).zip(b.chunks_exact(width));
+        for (projection, (w, b)) in self.projections.iter_mut().zip(parts) {
+            projection.update(w, b);
+        }
+        self.out.update(wo, bo);
+        self.norm1.update(n1, c1);
+        self.norm2.update(n2, c2);
+        self.feed_forward.update([w1, b1, w2, b2], precision);
+    }
+}

@@ -1,0 +1,250 @@
+//! What must hold for every layer. That it is the layer of libtorch is tested where both meet, in `ddl-star`.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use super::{Dropouts, EncoderLayer, Remembered, Sizes};
+use crate::Precision;
+use crate::kernel::buffer::Buffer;
+use crate::kernel::dropout::Dropout;
+use crate::kernel::scenes::Scenes;
+use crate::kernel::tests::numbers::{Numbers, assert_close, bits, wide};
+use ddl_simd::InstructionSet;
+use proptest::prelude::*;
+use rayon::ThreadPoolBuilder;
+
+struct Case {
+    sizes: Sizes,
+    scenes: Scenes,
+    weights: Vec<f32>,
+    x: Vec<f32>,
+    gy: Vec<f32>,
+    memory: Vec<[Vec<f32>; 2]>,
+    dropouts: Dropouts,
+}
+
+/// Output, gradient of the input, of the weights and of the memory.
+type Results = [Vec<f32>; 4];
+
+impl Case {
+    fn new(seed: u64, sizes: Sizes, scenes: &[usize], p: f64) -> Self {
+        let mut numbers = Numbers(seed);
+        let visible = numbers.visible(scenes, 1);
+        let scenes = Scenes::new(scenes, &visible);
+        let count = 2 * scenes.pedestrians() * sizes.width;
+        let dropout = |seed| Some(Dropout { p, seed });
+        Self {
+            sizes,
+            scenes,
+            weights: numbers.even(sizes.count(), 0.4),
+            x: numbers.even(count, 1.0),
+            gy: numbers.even(count, 1.0),
+            memory: (0..3)
+                .map(|_| [0; 2].map(|_| numbers.even(count, 1.0)))
+                .collect(),
+            dropouts: Dropouts {
+                weights: dropout(seed),
+                attended: dropout(seed ^ 1),
+                hidden: dropout(seed ^ 2),
+                fed: dropout(seed ^ 3),
+            },
+        }
+    }
+
+    fn layer(&self, set: InstructionSet) -> EncoderLayer {
+        let mut layer = EncoderLayer::zeros(self.sizes)
+            .with_instructions(set)
+            .unwrap();
+        layer.update(&self.weights, Precision::F32);
+        layer
+    }
+
+    fn among(&self, layer: &EncoderLayer) -> Results {
+        let frames = self.scenes.throughout();
+        let (y, kept) = layer.among_pedestrians(&self.x, frames, self.dropouts);
+        let mut of_weights = vec![0.0; self.weights.len()];
+        let gx = layer.among_pedestrians_backward(
+            &self.x,
+            frames,
+            self.dropouts,
+            &kept,
+            &self.gy,
+            &mut of_weights,
+        );
+        [y.to_vec(), gx.to_vec(), of_weights, Vec::new()]
+    }
+
+    /// What is remembered of x is a token of the memory as well.
+    fn over(&self, layer: &EncoderLayer) -> Results {
+        let mut memory = vec![layer.remember(&self.x)];
+        memory.extend(self.memory.iter().map(|[key, value]| Remembered {
+            key: Buffer::copy(key),
+            value: Buffer::copy(value),
+        }));
+        let memory: Vec<&Remembered> = memory.iter().collect();
+        let (y, kept) = layer.over_memory(&self.x, &memory, self.dropouts);
+        let mut of_weights = vec![0.0; self.weights.len()];
+        let mut of_memory: Vec<_> = memory
+            .iter()
+            .map(|_| Remembered::zeros(self.x.len()))
+            .collect();
+        let gx = layer.over_memory_backward(
+            &self.x,
+            &memory,
+            self.dropouts,
+            &kept,
+            &self.gy,
+            &mut of_memory.iter_mut().collect::<Vec<_>>(),
+            &mut of_weights,
+        );
+        let through = layer.remember_backward(&self.x, &of_memory[0], &mut of_weights);
+        let gx = gx.iter().zip(through.iter()).map(|(a, b)| a + b).collect();
+        let given = of_memory[1..].iter();
+        let of_memory = given
+            .flat_map(|token| [&token.key[..], &token.value])
+            .flatten();
+        [y.to_vec(), gx, of_weights, of_memory.copied().collect()]
+    }
+}
+
+fn sizes() -> impl Strategy<Value = Sizes> {
+    (1..4_usize, 1..11_usize, 1..80_usize).prop_map(|(heads, head_width, hidden)| Sizes {
+        width: heads * head_width + usize::from(heads * head_width == 1),
+        heads: if heads * head_width == 1 { 1 } else { heads },
+        hidden,
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn instruction_sets_agree(sizes in sizes(), scenes in prop::collection::vec(1..5_usize, 1..4), seed in any::<u64>()) {
+        // Rows of few numbers are normalised by what may be next to nothing.
+        prop_assume!(sizes.width >= 8);
+        let case = Case::new(seed, sizes, &scenes, 0.3);
+        let first = case.layer(InstructionSet::Portable);
+        for set in InstructionSet::available() {
+            let layer = case.layer(set);
+            for (ours, known) in [
+                (case.among(&layer), case.among(&first)),
+                (case.over(&layer), case.over(&first)),
+            ] {
+                for (what, (ours, known)) in ours.iter().zip(&known).enumerate() {
+                    assert_close(&format!("{set:?} {what}"), ours, &wide(known), 1e-3);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    let sizes = Sizes {
+        width: 32,
+        heads: 8,
+        hidden: 100,
+    };
+    let case = Case::new(5, sizes, &[100, 3, 200, 1], 0.1);
+    for set in InstructionSet::available() {
+        let layer = case.layer(set);
+        let mut results = [1, 2, 3]
+            .map(|threads| {
+                let pool = ThreadPoolBuilder::new()
+                    .num_threads(threads)
+                    .build()
+                    .unwrap();
+                let both = pool.install(|| [case.among(&layer), case.over(&layer)]);
+                both.map(|results| results.map(|numbers| bits(&numbers)))
+            })
+            .into_iter();
+        let first = results.next().unwrap();
+        for other in results {
+            assert!(first == other, "{set:?}");
+        }
+    }
+}
+
+/// Along the gradient the output rises as steeply as the gradient is long, dropout included.
+#[test]
+fn gradients_are_slopes() {
+    let sizes = Sizes {
+        width: 32,
+        heads: 8,
+        hidden: 64,
+    };
+    let scenes = [4, 1, 6];
+    let moved = |numbers: &[f32], direction: &[f32], by: f64| -> Vec<f32> {
+        let moved = numbers.iter().zip(direction);
+        let moved = moved.map(|(n, d)| (f64::from(*n) + by * f64::from(*d)) as f32);
+        moved.collect()
+    };
+    let times = |numbers: &[f32], factor: f32| -> Vec<f32> {
+        numbers.iter().map(|number| number * factor).collect()
+    };
+    let dot = |a: &[f32], b: &[f32]| -> f64 {
+        let products = a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b));
+        products.sum()
+    };
+    for (over, p) in [(false, 0.0), (false, 0.2), (true, 0.0), (true, 0.2)] {
+        let case = Case::new(11, sizes, &scenes, p);
+        let run = |case: &Case| {
+            let layer = case.layer(InstructionSet::detect());
+            if over {
+                case.over(&layer)
+            } else {
+                case.among(&layer)
+            }
+        };
+        let [_, gx, of_weights, _] = run(&case);
+        for (of_x, of_weights_too) in [(1.0, 0.0), (0.0, 1.0)] {
+            let (gx, of_weights) = (times(&gx, of_x), times(&of_weights, of_weights_too));
+            let square = dot(&gx, &gx) + dot(&of_weights, &of_weights);
+            let loss = |by: f64| {
+                let case = Case {
+                    x: moved(&case.x, &gx, by),
+                    weights: moved(&case.weights, &of_weights, by),
+                    ..Case::new(11, sizes, &scenes, p)
+                };
+                dot(&run(&case)[0], &case.gy)
+            };
+            // So that all numbers together move by this much.
+            let step = 0.005 / square.sqrt();
+            let quotient = (loss(step) - loss(-step)) / (2.0 * step);
+            let error = (quotient / square - 1.0).abs();
+            assert!(
+                error < 0.02,
+                "over {over}, {p}, x {of_x}: {quotient} {square}"
+            );
+        }
+    }
+}
+
+/// And back: what `update` says last counts.
+#[test]
+fn the_feed_forward_block_alone_is_rounded() {
+    let sizes = Sizes {
+        width: 32,
+        heads: 8,
+        hidden: 256,
+    };
+    let case = Case::new(3, sizes, &[4, 1, 6], 0.0);
+    let forwards = |layer: &EncoderLayer| {
+        let memory = layer.remember(&case.x);
+        let frames = case.scenes.throughout();
+        let (among, _) = layer.among_pedestrians(&case.x, frames, case.dropouts);
+        let (over, _) = layer.over_memory(&case.x, &[&memory], case.dropouts);
+        [&memory.key, &memory.value, &among, &over].map(|numbers| numbers.to_vec())
+    };
+    for set in InstructionSet::available() {
+        let mut layer = case.layer(set);
+        let reference = forwards(&layer);
+        layer.update(&case.weights, Precision::Bf16);
+        let rounded = forwards(&layer);
+        assert_eq!(rounded[..2], reference[..2], "{set:?}");
+        for (what, (rounded, reference)) in rounded[2..].iter().zip(&reference[2..]).enumerate() {
+            assert_ne!(rounded, reference, "{set:?} {what}");
+            assert_close(&format!("{set:?} {what}"), rounded, &wide(reference), 0.02);
+        }
+        layer.update(&case.weights, Precision::F32);
+        assert_eq!(forwards(&layer), reference, "{set:?}");
+    }
+}

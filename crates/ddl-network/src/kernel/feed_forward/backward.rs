@@ -1,0 +1,200 @@
+//! The backward pass: groups of hidden units in parallel.
+//!
+//! The derivatives of a unit's weights belong to one group alone, so that nothing has to be added up over threads but
+//! gx, which is small: `rows * width` for each group. The groups are always the same, and so are the sums.
+
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+
+use std::ops::DerefMut;
+
+use super::block::{BLOCK, Block, Panel, tile_mut};
+use super::block_rows::{BlockRows, ROWS};
+use super::dropout::Decisions;
+use super::gradients::{Gradients, Part};
+use super::hidden::{activate, deactivate};
+use super::layer::FeedForward;
+use super::product::{add_product, add_transposed_product, sum_of_rows};
+use super::weights::Weights;
+use crate::kernel::dropout::Dropout;
+use crate::kernel::threads::each;
+use ddl_simd::{Simd, TiledKernel};
+
+/// Groups of hidden units at most.
+const GROUPS: usize = 8;
+/// Rows that a group goes through before the groups' gx are added up: they fit the second-level cache.
+const SPAN: usize = 512;
+/// Rows whose hidden activations of one block are kept for the derivatives of the weights, in the first-level cache.
+const KEPT: usize = 64;
+
+pub(super) fn run(
+    layer: &FeedForward,
+    [x, gy]: [&[f32]; 2],
+    dropout: Option<Dropout>,
+    gx: &mut [f32],
+    grads: &mut Gradients<impl DerefMut<Target = [f32]>>,
+) {
+    assert!(layer.rounded.is_none(), "a backward pass in bf16");
+    let weights = &layer.weights;
+    let Weights {
+        width,
+        hidden,
+        columns,
+        units,
+        ..
+    } = *weights;
+    assert_eq!(x.len() % width, 0, "x is not made of rows of {width}");
+    assert_eq!(x.len(), gy.len(), "entries of x and gy");
+    assert_eq!(x.len(), gx.len(), "entries of x and gx");
+    grads.check(width, hidden);
+    let decisions = dropout.and_then(|dropout| Decisions::new(dropout, x.len() / width));
+
+    for row in gy.chunks_exact(width) {
+        for (sum, term) in grads.b2.iter_mut().zip(row) {
+            *sum += term;
+        }
+    }
+    let group = units.div_ceil(GROUPS);
+    let rows = (x.len() / width).min(SPAN).next_multiple_of(ROWS);
+    let parts = grads.parts(width, group).into_iter();
+    let mut parts: Vec<_> = parts
+        .map(|part| (part, Scratch::new(rows, columns)))
+        .collect();
+    let pieces = x.chunks(SPAN * width).zip(gy.chunks(SPAN * width));
+    for (span, ((x, gy), gx)) in pieces.zip(gx.chunks_mut(SPAN * width)).enumerate() {
+        let x = BlockRows::padded(x, width);
+        let gy = BlockRows::padded(gy, width);
+        let groups: Vec<_> = parts.iter_mut().enumerate().collect();
+        let work = 5 * x.rows() * width * hidden;
+        each(groups, work, |(g, (part, scratch)), (): &mut ()| {
+            layer.dispatch.run(Backward {
+                weights,
+                decisions: decisions.as_ref(),
+                first: span * SPAN,
+                units: g * group,
+                x: &x,
+                gy: &gy,
+                scratch,
+                part,
+            });
+        });
+        gx.fill(0.0);
+        let work = gx.len() * parts.len();
+        let pieces: Vec<_> = gx.chunks_mut(KEPT * width).enumerate().collect();
+        each(pieces, work, |(piece, gx), (): &mut ()| {
+            for (_, scratch) in &parts {
+                scratch.gx.add_to(piece * KEPT, gx, width);
+            }
+        });
+    }
+}
+
+/// What a group works on.
+struct Scratch {
+    /// Its share of gx.
+    gx: BlockRows,
+    /// Sums over a span of the derivatives of W1, rows hidden units, for one block of them.
+    w1: Vec<Panel>,
+    /// Likewise of W2, rows entries of y.
+    w2: Vec<Panel>,
+    /// Hidden activations of some rows.
+    hidden: Vec<Block>,
+    /// Derivatives with respect to what they are activations of.
+    gradient: Vec<Block>,
+}
+
+impl Scratch {
+    fn new(rows: usize, columns: usize) -> Self {
+        Self {
+            gx: BlockRows::zeros(rows, columns),
+            w1: vec![[Block::ZERO; BLOCK]; columns],
+            w2: vec![[Block::ZERO; BLOCK]; columns],
+            hidden: vec![Block::ZERO; KEPT],
+            gradient: vec![Block::ZERO; KEPT],
+        }
+    }
+}
+
+/// One group of hidden units over one span of rows.
+struct Backward<'a, 'b> {
+    weights: &'a Weights,
+    decisions: Option<&'a Decisions>,
+    /// The first row's number.
+    first: usize,
+    /// The group's first block of units.
+    units: usize,
+    x: &'a BlockRows,
+    gy: &'a BlockRows,
+    scratch: &'a mut Scratch,
+    part: &'a mut Part<'b>,
+}
+
+impl TiledKernel for Backward<'_, '_> {
+    #[inline(always)]
+    fn run<S: Simd, const R: usize, const V: usize>(self, simd: S) {
+        let Self {
+            weights,
+            decisions,
+            first,
+            units,
+            x,
+            gy,
+            scratch,
+            part,
+        } = self;
+        let Scratch {
+            gx,
+            w1,
+            w2,
+            hidden,
+            gradient,
+        } = scratch;
+        let scale = match decisions {
+            Some(decisions) => decisions.scale,
+            None => 1.0,
+        };
+        for column in 0..weights.columns {
+            gx.column_mut(column).fill(Block::ZERO);
+        }
+        for (u, b1) in part.b1.chunks_mut(BLOCK).enumerate() {
+            let unit = units + u;
+            let of_unit = weights.unit(unit);
+            w1.fill([Block::ZERO; BLOCK]);
+            w2.fill([Block::ZERO; BLOCK]);
+            for start in (0..x.rows()).step_by(KEPT) {
+                let count = KEPT.min(x.rows() - start);
+                for r in (0..count).step_by(R) {
+                    let row = start + r;
+                    let hidden = tile_mut::<R>(hidden, r);
+                    let gradient = tile_mut::<R>(gradient, r);
+                    activate::<S, R, V>(simd, of_unit, x, row, hidden);
+                    if let Some(decisions) = decisions {
+                        decisions.apply(simd, hidden, first + row, unit);
+                    }
+                    deactivate::<S, R, V>(simd, of_unit, gy, row, scale, hidden, gradient);
+                    for column in 0..weights.columns {
+                        let gx = tile_mut(gx.column_mut(column), row);
+                        add_product::<S, R, V>(simd, gx, gradient, of_unit.w1(column));
+                    }
+                }
+                let (hidden, gradient) = (&hidden[..count], &gradient[..count]);
+                sum_of_rows::<S, V>(simd, gradient).add_to(b1);
+                for column in 0..weights.columns {
+                    let x = &x.column(column)[start..][..count];
+                    let gy = &gy.column(column)[start..][..count];
+                    add_transposed_product::<S, R, V>(simd, &mut w1[column], gradient, x);
+                    add_transposed_product::<S, R, V>(simd, &mut w2[column], gy, hidden);
+                }
+            }
+            for column in 0..weights.columns {
+                let rows = part.w1.chunks_exact_mut(weights.width).skip(u * BLOCK);
+                for (row, sums) in rows.zip(&w1[column]) {
+                    sums.add_to(&mut row[column * BLOCK..]);
+                }
+                let rows = part.w2.iter_mut().skip(column * BLOCK);
+                for (row, sums) in rows.zip(&w2[column]) {
+                    sums.add_to(&mut row[u * BLOCK..]);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Which hidden activations are dropped: a function of (seed, row, unit) alone, of 16 random bits.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use super::block::Block;
+use super::block_rows::ROWS;
+use crate::kernel::dropout::{Dropout, RowKey, Threshold, mixed};
+use ddl_simd::{LANES, Simd};
+
+/// What the kernels need to know of a [`Dropout`].
+#[derive(Clone, Debug)]
+pub(super) struct Decisions {
+    /// An activation is kept when its 16 bits, shifted to the upper half, are this or more.
+    least: u32,
+    /// 1 / (1 - p).
+    pub(super) scale: f32,
+    /// Of every row, up to a whole number of tiles.
+    rows: Vec<RowKey>,
+}
+
+impl Decisions {
+    /// Those of the rows 0 .. `rows`; `None` when nothing is dropped.
+    ///
+    /// # Panics
+    /// Unless 0 <= p < 1.
+    pub(super) fn new(dropout: Dropout, rows: usize) -> Option<Self> {
+        let Threshold { least, scale } = dropout.threshold(16)?;
+        // Seeds that follow one another must not give the rows of one another.
+        let seed = mixed(dropout.seed);
+        Some(Self {
+            least: least << 16,
+            scale,
+            rows: (0..rows.next_multiple_of(ROWS) as u64)
+                .map(|row| RowKey::new(seed, row))
+                .collect(),
+        })
+    }
+
+    /// Drops and scales the units of block `block` of the rows from `first`.
+    ///
+    /// A word of 32 bits decides for two units, 16 apart.
+    #[inline(always)]
+    pub(super) fn apply<S: Simd>(&self, simd: S, rows: &mut [Block], first: usize, block: usize) {
+        let scale = simd.splat(self.scale);
+        for (row, key) in rows.iter_mut().zip(&self.rows[first..]) {
+            let bits = key.bits(simd, block * LANES);
+            let lower = simd.shift_left::<16>(bits);
+            let lower = simd.keep(simd.load(row.part(0)), lower, self.least);
+            simd.store(simd.mul(lower, scale), row.part_mut(0));
+            let upper = simd.keep(simd.load(row.part(1)), bits, self.least);
+            simd.store(simd.mul(upper, scale), row.part_mut(1));
+        }
+    }
+}
+
+#[cfg(test)]
+pub(super) mod reference;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,158 @@
+//! Products of small matrices whose result stays in registers.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+#![expect(
+    clippy::needless_range_loop,
+    reason = "loops of a known count over registers, written as the matrices are"
+)]
+
+use super::block::{BLOCK, Block, PARTS, Panel, tile_mut};
+use ddl_simd::{Simd, Tile};
+
+/// sum + A B for R rows of A and V parts of the columns of B, from part `part`.
+///
+/// # Shapes
+/// A `[R, 32]`, B `[32, 32]`.
+#[inline(always)]
+pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    mut sum: Tile<S, R, V>,
+    a: &[Block; R],
+    b: &Panel,
+    part: usize,
+) -> Tile<S, R, V> {
+    for t in 0..BLOCK {
+        let mut of_b = [simd.splat(0.0); V];
+        for v in 0..V {
+            of_b[v] = simd.load(b[t].part(part + v));
+        }
+        for r in 0..R {
+            let of_a = simd.splat(a[r].0[t]);
+            for v in 0..V {
+                sum[r][v] = simd.mul_add(of_a, of_b[v], sum[r][v]);
+            }
+        }
+    }
+    sum
+}
+
+/// A^T B for R columns of A, from column `first`, and V parts of the columns of B, from part `part`.
+///
+/// # Shapes
+/// A `[t, 32]`, B `[t, 32]`.
+#[inline(always)]
+pub(super) fn multiply_transposed<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    a: &[Block],
+    first: usize,
+    b: &[Block],
+    part: usize,
+) -> Tile<S, R, V> {
+    assert!(first + R <= BLOCK);
+    let mut sum = [[simd.splat(0.0); V]; R];
+    for (a, b) in a.iter().zip(b) {
+        let mut of_b = [simd.splat(0.0); V];
+        for v in 0..V {
+            of_b[v] = simd.load(b.part(part + v));
+        }
+        for r in 0..R {
+            let of_a = simd.splat(a.0[first + r]);
+            for v in 0..V {
+                sum[r][v] = simd.mul_add(of_a, of_b[v], sum[r][v]);
+            }
+        }
+    }
+    sum
+}
+
+/// V parts of each row, from part `part`.
+#[inline(always)]
+pub(super) fn load_tile<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    from: &[Block; R],
+    part: usize,
+) -> Tile<S, R, V> {
+    let mut tile = [[simd.splat(0.0); V]; R];
+    for r in 0..R {
+        for v in 0..V {
+            tile[r][v] = simd.load(from[r].part(part + v));
+        }
+    }
+    tile
+}
+
+/// Writes V parts of each row, from part `part`.
+#[inline(always)]
+pub(super) fn store_tile<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    tile: &Tile<S, R, V>,
+    into: &mut [Block; R],
+    part: usize,
+) {
+    for r in 0..R {
+        for v in 0..V {
+            simd.store(tile[r][v], into[r].part_mut(part + v));
+        }
+    }
+}
+
+/// sum + A B, the sum in memory.
+///
+/// # Shapes
+/// `sum` and A `[R, 32]`, B `[32, 32]`.
+#[inline(always)]
+pub(super) fn add_product<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    sum: &mut [Block; R],
+    a: &[Block; R],
+    b: &Panel,
+) {
+    for part in (0..PARTS).step_by(V) {
+        let tile = load_tile::<S, R, V>(simd, sum, part);
+        let tile = multiply(simd, tile, a, b, part);
+        store_tile(simd, &tile, sum, part);
+    }
+}
+
+/// sum + A^T B, the sum in memory.
+///
+/// # Shapes
+/// `sum` `[32, 32]`, A and B `[t, 32]`.
+#[inline(always)]
+pub(super) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    sum: &mut Panel,
+    a: &[Block],
+    b: &[Block],
+) {
+    for first in (0..BLOCK).step_by(R) {
+        let sum = tile_mut::<R>(sum, first);
+        for part in (0..PARTS).step_by(V) {
+            let mut tile: Tile<S, R, V> = multiply_transposed(simd, a, first, b, part);
+            for r in 0..R {
+                for v in 0..V {
+                    // Added at the end: sums of sums are more exact than one long one.
+                    tile[r][v] = simd.add(tile[r][v], simd.load(sum[r].part(part + v)));
+                }
+            }
+            store_tile(simd, &tile, sum, part);
+        }
+    }
+}
+
+#[inline(always)]
+pub(super) fn sum_of_rows<S: Simd, const V: usize>(simd: S, rows: &[Block]) -> Block {
+    let mut result = Block::ZERO;
+    for part in (0..PARTS).step_by(V) {
+        let mut sum = [simd.splat(0.0); V];
+        for row in rows {
+            for v in 0..V {
+                sum[v] = simd.add(sum[v], simd.load(row.part(part + v)));
+            }
+        }
+        for v in 0..V {
+            simd.store(sum[v], result.part_mut(part + v));
+        }
+    }
+    result
+}

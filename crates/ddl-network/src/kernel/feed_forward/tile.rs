@@ -1,0 +1,51 @@
+//! The forward pass of a few rows.
+
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+
+use super::block::{Block, tile_mut};
+use super::block_rows::BlockRows;
+use super::dropout::Decisions;
+use super::hidden::activate;
+use super::product::add_product;
+use super::weights::Weights;
+use ddl_simd::{Simd, TiledKernel};
+
+/// Some rows.
+pub(super) struct Tile<'a> {
+    pub(super) weights: &'a Weights,
+    pub(super) decisions: Option<&'a Decisions>,
+    /// The first row's number.
+    pub(super) first: usize,
+    pub(super) x: &'a BlockRows,
+    pub(super) y: &'a mut BlockRows,
+}
+
+impl TiledKernel for Tile<'_> {
+    #[inline(always)]
+    fn run<S: Simd, const R: usize, const V: usize>(self, simd: S) {
+        let Self {
+            weights,
+            decisions,
+            first,
+            x,
+            y,
+        } = self;
+        for column in 0..weights.columns {
+            y.column_mut(column).fill(weights.b2[column]);
+        }
+        let mut hidden = [Block::ZERO; R];
+        for unit in 0..weights.units {
+            let of_unit = weights.unit(unit);
+            for row in (0..x.rows()).step_by(R) {
+                activate::<S, R, V>(simd, of_unit, x, row, &mut hidden);
+                if let Some(decisions) = decisions {
+                    decisions.apply(simd, &mut hidden, first + row, unit);
+                }
+                for column in 0..weights.columns {
+                    let y = tile_mut(y.column_mut(column), row);
+                    add_product::<S, R, V>(simd, y, &hidden, of_unit.w2_transposed(column));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Rows of heads in lanes: eight heads each of two pedestrians, four of their numbers (a quad) at a time.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use ddl_simd::{DEPTH, LANES, Simd, Vectors};
+
+/// Heads of a pedestrian that are computed together.
+pub(super) const GROUP: usize = LANES / 2;
+
+/// Number and width of the heads of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Heads {
+    pub(super) count: usize,
+    pub(super) width: usize,
+}
+
+impl Heads {
+    /// # Panics
+    /// When there are no heads or more than 256, or they have no width.
+    pub(super) fn new(count: usize, width: usize) -> Self {
+        assert!(
+            (1..=256).contains(&count) && width > 0,
+            "{count} heads of width {width}: 1 to 256 heads are needed, of at least one number"
+        );
+        Self { count, width }
+    }
+
+    /// Numbers in a row.
+    pub(super) fn row(self) -> usize {
+        self.count * self.width
+    }
+
+    /// Groups of heads in a row.
+    pub(super) fn groups(self) -> usize {
+        self.count.div_ceil(GROUP)
+    }
+
+    /// Quads that hold a head.
+    pub(super) fn quads(self) -> usize {
+        self.width.div_ceil(DEPTH)
+    }
+
+    /// 1 / √width, which keeps the variance of scores.
+    pub(super) fn scale(self) -> f32 {
+        (1.0 / (self.width as f64).sqrt()) as f32
+    }
+}
+
+/// A part of the numbers of a row: [`GROUP`] heads and [`DEPTH`] numbers of each.
+///
+/// Heads that lack in the last group and numbers that lack in the last quad are 0 when loaded, and not stored.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    heads: Heads,
+    group: usize,
+    quad: usize,
+}
+
+impl Part {
+    #[inline(always)]
+    pub(super) fn new(heads: Heads, group: usize, quad: usize) -> Self {
+        Self { heads, group, quad }
+    }
+
+    /// Heads of two rows side by side; a missing row counts as zeros. Vector d holds the d-th numbers.
+    ///
+    /// Lane l is head l / 4 + 4 (l mod 2) of row (l mod 4) / 2, for which rows need only be transposed within pieces of
+    /// four lanes.
+    #[inline(always)]
+    pub(super) fn load<S: Simd>(
+        self,
+        simd: S,
+        first: &[f32],
+        second: Option<&[f32]>,
+    ) -> Vectors<S> {
+        let [a, b] = self.row(simd, first);
+        let [c, d] = match second {
+            Some(second) => self.row(simd, second),
+            None => [simd.splat(0.0); 2],
+        };
+        simd.transpose([a, b, c, d])
+    }
+
+    /// The inverse of [`Part::load`].
+    #[inline(always)]
+    pub(super) fn store<S: Simd>(
+        self,
+        simd: S,
+        vectors: Vectors<S>,
+        first: &mut [f32],
+        second: Option<&mut [f32]>,
+    ) {
+        let [a, b, c, d] = simd.transpose(vectors);
+        self.store_row(simd, [a, b], first);
+        if let Some(second) = second {
+            self.store_row(simd, [c, d], second);
+        }
+    }
+
+    /// Stores the sum of what belongs to the two rows.
+    #[inline(always)]
+    pub(super) fn store_sum<S: Simd>(self, simd: S, vectors: Vectors<S>, row: &mut [f32]) {
+        let [a, b, c, d] = simd.transpose(vectors);
+        self.store_row(simd, [simd.add(a, c), simd.add(b, d)], row);
+    }
+
+    #[inline(always)]
+    fn row<S: Simd>(self, simd: S, row: &[f32]) -> [S::Floats; 2] {
+        let mut gathered = [0.0; GROUP * DEPTH];
+        let numbers = if let Some(whole) = self.whole(row) {
+            whole
+        } else {
+            self.each(|place, at| gathered[place] = row[at]);
+            &gathered
+        };
+        let halves = numbers.as_chunks().0;
+        [simd.load(&halves[0]), simd.load(&halves[1])]
+    }
+
+    #[inline(always)]
+    fn store_row<S: Simd>(self, simd: S, values: [S::Floats; 2], row: &mut [f32]) {
+        if let Some(whole) = self.whole_mut(row) {
+            let halves = whole.as_chunks_mut().0;
+            simd.store(values[0], &mut halves[0]);
+            simd.store(values[1], &mut halves[1]);
+        } else {
+            let mut numbers = [0.0; GROUP * DEPTH];
+            let halves = numbers.as_chunks_mut().0;
+            simd.store(values[0], &mut halves[0]);
+            simd.store(values[1], &mut halves[1]);
+            self.each(|place, at| row[at] = numbers[place]);
+        }
+    }
+
+    /// The part as one array, where nothing lacks and nothing lies between.
+    #[inline(always)]
+    fn whole(self, row: &[f32]) -> Option<&[f32; GROUP * DEPTH]> {
+        if self.heads.width != DEPTH {
+            return None;
+        }
+        row.get(self.group * GROUP * DEPTH..)?.first_chunk()
+    }
+
+    #[inline(always)]
+    fn whole_mut(self, row: &mut [f32]) -> Option<&mut [f32; GROUP * DEPTH]> {
+        if self.heads.width != DEPTH {
+            return None;
+        }
+        row.get_mut(self.group * GROUP * DEPTH..)?.first_chunk_mut()
+    }
+
+    /// The place of each number within the part, and in the row.
+    #[inline(always)]
+    fn each(self, mut f: impl FnMut(usize, usize)) {
+        let first = self.group * GROUP;
+        let numbers = self.quad * DEPTH..self.heads.width.min((self.quad + 1) * DEPTH);
+        for head in first..self.heads.count.min(first + GROUP) {
+            for number in numbers.clone() {
+                let place = (head - first) * DEPTH + number - self.quad * DEPTH;
+                f(place, head * self.heads.width + number);
+            }
+        }
+    }
+}
+
+/// Which of two rows is in a lane.
+pub(super) const fn row_of(lane: usize) -> usize {
+    lane % 4 / 2
+}
+
+/// Which head of a group is in a lane.
+pub(super) const fn head_of(lane: usize) -> usize {
+    lane / 4 + 4 * (lane % 2)
+}

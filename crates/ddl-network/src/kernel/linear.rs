@@ -1,0 +1,131 @@
+//! An affine map as a kernel of its own: embeddings, and the fusion of tokens.
+
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+
+use super::affine::Affine;
+use super::buffer::Buffer;
+use super::columns::{Columns, ColumnsMut};
+use super::threads::each;
+use ddl_simd::{Dispatch, Simd, TiledKernel};
+
+/// Rows that are computed together. Always the same, so that sums over rows are.
+const ROWS: usize = 512;
+
+/// y = W x + b.
+///
+/// # Numerics
+/// Nothing depends on the number of threads.
+#[derive(Clone, Debug)]
+pub(crate) struct Linear {
+    inputs: usize,
+    outputs: usize,
+    map: Affine,
+    dispatch: Dispatch,
+}
+
+impl Linear {
+    /// A map whose weights are all 0.
+    ///
+    /// # Panics
+    /// When a width is 0.
+    pub(crate) fn zeros(inputs: usize, outputs: usize) -> Self {
+        Self {
+            inputs,
+            outputs,
+            map: Affine::new(inputs, outputs),
+            dispatch: Dispatch::detect(),
+        }
+    }
+
+    /// Takes over the weights: W `[outputs, inputs]` by rows, then b.
+    ///
+    /// # Panics
+    /// When there are more or fewer numbers.
+    pub(crate) fn update(&mut self, weights: &[f32]) {
+        let (weight, bias) = weights.split_at(self.outputs * self.inputs);
+        self.map.update(weight, bias);
+    }
+
+    /// # Shapes
+    /// `x` `[rows, inputs]` -> `[rows, outputs]`.
+    ///
+    /// # Panics
+    /// When `x` is not made of rows.
+    pub(crate) fn forward(&self, x: &[f32]) -> Buffer {
+        let mut y = Buffer::any(x.len() / self.inputs * self.outputs);
+        let inputs = x.chunks(ROWS * self.inputs);
+        let jobs = inputs.zip(y.chunks_mut(ROWS * self.outputs));
+        let jobs = jobs.map(|(x, y)| Forward {
+            map: &self.map,
+            x: Columns::whole(x, self.inputs),
+            y: ColumnsMut::whole(y, self.outputs),
+        });
+        let work = x.len() * self.outputs;
+        each(jobs.collect(), work, |job: Forward<'_>, (): &mut ()| {
+            self.dispatch.run(job);
+        });
+        y
+    }
+
+    /// The gradient of x; that of the weights is added to `of_weights`.
+    ///
+    /// # Panics
+    /// When a shape does not fit.
+    pub(crate) fn backward(&self, x: &[f32], gy: &[f32], of_weights: &mut [f32]) -> Buffer {
+        let mut gx = Buffer::any(x.len());
+        let mut sums: Vec<Buffer> = Vec::new();
+        let pieces = x.len().div_ceil(ROWS * self.inputs);
+        sums.resize_with(pieces, || Buffer::zeros(of_weights.len()));
+        let inputs = x.chunks(ROWS * self.inputs);
+        let inputs = inputs.zip(gy.chunks(ROWS * self.outputs));
+        let outputs = gx.chunks_mut(ROWS * self.inputs).zip(&mut sums);
+        let jobs = inputs.zip(outputs).map(|((x, gy), (gx, sums))| Backward {
+            map: &self.map,
+            x: Columns::whole(x, self.inputs),
+            gy: Columns::whole(gy, self.outputs),
+            gx: ColumnsMut::whole(gx, self.inputs),
+            of_weights: sums.split_at_mut(self.outputs * self.inputs).into(),
+        });
+        let work = 2 * x.len() * self.outputs;
+        each(jobs.collect(), work, |job: Backward<'_>, (): &mut ()| {
+            self.dispatch.run(job);
+        });
+        for sums in &sums {
+            for (sum, term) in of_weights.iter_mut().zip(sums.iter()) {
+                *sum += term;
+            }
+        }
+        gx
+    }
+}
+
+struct Forward<'a> {
+    map: &'a Affine,
+    x: Columns<'a>,
+    y: ColumnsMut<'a>,
+}
+
+impl TiledKernel for Forward<'_> {
+    #[inline(always)]
+    fn run<S: Simd, const R: usize, const V: usize>(mut self, simd: S) {
+        self.map.forward::<S, R, V>(simd, self.x, &mut self.y);
+    }
+}
+
+struct Backward<'a> {
+    map: &'a Affine,
+    x: Columns<'a>,
+    gy: Columns<'a>,
+    gx: ColumnsMut<'a>,
+    of_weights: [&'a mut [f32]; 2],
+}
+
+impl TiledKernel for Backward<'_> {
+    #[inline(always)]
+    fn run<S: Simd, const R: usize, const V: usize>(mut self, simd: S) {
+        self.map
+            .backward::<S, R, V>(simd, self.gy, &mut self.gx, false);
+        self.map
+            .add_gradients::<S, R, V>(simd, self.x, self.gy, self.of_weights);
+    }
+}

@@ -1,0 +1,209 @@
+//! Attention of the newest token over itself and the remembered ones (Vaswani et al. 2017, section 3.2).
+
+mod backward;
+mod forward;
+mod key_value;
+#[cfg(test)]
+mod tests;
+mod tokens;
+
+use super::heads::Heads;
+use super::threads::each;
+use backward::Backward;
+use ddl_simd::Dispatch;
+#[cfg(test)]
+use ddl_simd::InstructionSet;
+use forward::Forward;
+pub(crate) use key_value::{KeyValue, KeyValueMut};
+use tokens::Buffers;
+
+/// Rows that a thread takes at once: with any number of heads they fill whole groups of lanes.
+const ROWS_AT_ONCE: usize = 64;
+
+/// Multiplications that take as long as a number of a token.
+const WORK_OF_A_NUMBER: usize = 8;
+
+/// Multi-head attention of one query a row over t remembered tokens and its own.
+///
+/// `mixed = Σ_e softmax_e(q · k_e / √head width) v_e` over the t + 1 tokens e, for each row and head alone.
+///
+/// # Numerics
+/// Every number is computed by one thread in a fixed order: results do not depend on the number of threads. The
+/// instruction sets agree to rounding.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OverMemory {
+    heads: Heads,
+    dispatch: Dispatch,
+}
+
+/// Where [`OverMemory::backward`] adds gradients.
+#[derive(Debug)]
+pub(crate) struct OverMemoryGradients<'a, 'b> {
+    /// `[rows, heads, head width]`.
+    pub(crate) query: &'a mut [f32],
+    /// Of the remembered tokens.
+    pub(crate) memory: &'b mut [KeyValueMut<'a>],
+    /// Of the query's own token.
+    pub(crate) own: KeyValueMut<'a>,
+}
+
+impl OverMemory {
+    /// Attention with the fastest instructions of this machine.
+    ///
+    /// # Panics
+    /// When there are no heads or more than 256, or they have no width.
+    pub(crate) fn new(heads: usize, head_width: usize) -> Self {
+        Self {
+            heads: Heads::new(heads, head_width),
+            dispatch: Dispatch::detect(),
+        }
+    }
+
+    /// The same with chosen instructions; `None` when the machine lacks them.
+    #[cfg(test)]
+    pub(super) fn with_instructions(self, set: InstructionSet) -> Option<Self> {
+        let dispatch = Dispatch::new(set)?;
+        Some(Self { dispatch, ..self })
+    }
+
+    /// Mixes the values of the remembered tokens and the query's own.
+    ///
+    /// A remembered token of fewer rows stands for all repetitions of them: row r of the query meets its row
+    /// r mod its number of rows, as when one memory serves many hypotheses.
+    ///
+    /// # Shapes
+    /// `query` and `own` `[rows, heads, head width]`; each of `memory` the same, or a divisor of the rows
+    /// -> `mixed` `[rows, heads, head width]`, all of which is overwritten.
+    ///
+    /// # Panics
+    /// When a shape does not fit.
+    pub(crate) fn forward(
+        &self,
+        query: &[f32],
+        memory: &[KeyValue<'_>],
+        own: KeyValue<'_>,
+        mixed: &mut [f32],
+    ) {
+        self.check(query, own, mixed);
+        for token in memory {
+            let whole = !token.key.is_empty()
+                && token.key.len() == token.value.len()
+                && token.key.len().is_multiple_of(self.heads.row())
+                && query.len().is_multiple_of(token.key.len());
+            assert!(
+                whole || query.is_empty(),
+                "keys and values of {} and {} numbers for queries of {}",
+                token.key.len(),
+                token.value.len(),
+                query.len()
+            );
+        }
+        let chunk = ROWS_AT_ONCE * self.heads.row();
+        let chunks = mixed.chunks_mut(chunk).enumerate();
+        let jobs: Vec<Forward<'_>> = chunks
+            .map(|(i, mixed)| Forward {
+                heads: self.heads,
+                first: i * chunk,
+                query,
+                memory,
+                own,
+                mixed,
+            })
+            .collect();
+        each(jobs, work(query, memory), |job, buffers: &mut Buffers| {
+            self.dispatch.run(forward::Run { job, buffers });
+        });
+    }
+
+    /// Adds the gradients of the inputs of [`OverMemory::forward`], from that of its output.
+    ///
+    /// # Shapes
+    /// All `[rows, heads, head width]`, also the remembered tokens.
+    ///
+    /// # Panics
+    /// When a shape does not fit.
+    pub(crate) fn backward(
+        &self,
+        query: &[f32],
+        memory: &[KeyValue<'_>],
+        own: KeyValue<'_>,
+        mixed_gradient: &[f32],
+        gradients: OverMemoryGradients<'_, '_>,
+    ) {
+        self.check(query, own, mixed_gradient);
+        self.check(
+            query,
+            KeyValue {
+                key: gradients.own.key,
+                value: gradients.own.value,
+            },
+            gradients.query,
+        );
+        assert!(
+            memory.len() == gradients.memory.len(),
+            "{} remembered tokens and gradients of {}",
+            memory.len(),
+            gradients.memory.len()
+        );
+        for (token, gradient) in memory.iter().zip(gradients.memory.iter()) {
+            self.check(query, *token, gradient.key);
+            assert!(
+                gradient.value.len() == query.len(),
+                "a gradient of {} numbers for queries of {}",
+                gradient.value.len(),
+                query.len()
+            );
+        }
+        let chunk = ROWS_AT_ONCE * self.heads.row();
+        let OverMemoryGradients {
+            query: mut query_gradient,
+            memory: token_gradients,
+            own: own_gradient,
+        } = gradients;
+        let mut token_gradients: Vec<KeyValueMut<'_>> = token_gradients
+            .iter_mut()
+            .map(KeyValueMut::reborrow)
+            .collect();
+        token_gradients.push(own_gradient);
+        let mut jobs = Vec::new();
+        for first in (0..query.len()).step_by(chunk) {
+            let count = chunk.min(query.len() - first);
+            let tokens = token_gradients.iter_mut();
+            jobs.push(Backward {
+                heads: self.heads,
+                first,
+                query,
+                memory,
+                own,
+                mixed_gradient,
+                query_gradient: query_gradient.split_off_mut(..count).unwrap_or_default(),
+                token_gradients: tokens.map(|token| token.split_off(count)).collect(),
+            });
+        }
+        each(jobs, work(query, memory), |job, buffers: &mut Buffers| {
+            self.dispatch.run(backward::Run { job, buffers });
+        });
+    }
+
+    fn check(&self, query: &[f32], own: KeyValue<'_>, mixed: &[f32]) {
+        assert!(
+            query.len().is_multiple_of(self.heads.row()),
+            "queries of {} numbers are not rows of {}",
+            query.len(),
+            self.heads.row()
+        );
+        for (what, other) in [("key", own.key), ("value", own.value), ("mixed", mixed)] {
+            assert!(
+                other.len() == query.len(),
+                "{what} of {} numbers for queries of {}",
+                other.len(),
+                query.len()
+            );
+        }
+    }
+}
+
+/// What there is to be done, in multiplications.
+fn work(query: &[f32], memory: &[KeyValue<'_>]) -> usize {
+    query.len() * (memory.len() + 1) * WORK_OF_A_NUMBER
+}

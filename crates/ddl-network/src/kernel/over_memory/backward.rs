@@ -1,0 +1,119 @@
+//! From the gradient of mixed values to that of queries, keys and values.
+//!
+//! With weights `w_e` and the gradient g of mixed values: `dv_e = w_e g`, and the gradient of score e is
+//! `w_e (g · v_e − Σ_f w_f g · v_f)`.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use super::key_value::{KeyValue, KeyValueMut};
+use super::tokens::{Buffers, Place, accumulate, dot, soften, weighted};
+use crate::kernel::heads::Heads;
+use ddl_simd::{DEPTH, Kernel, LANES, Lanes, Simd, ZERO_QUAD};
+
+/// Some of the rows.
+#[derive(Debug)]
+pub(super) struct Backward<'a> {
+    pub(super) heads: Heads,
+    /// Where the rows start in the whole.
+    pub(super) first: usize,
+    pub(super) query: &'a [f32],
+    pub(super) memory: &'a [KeyValue<'a>],
+    pub(super) own: KeyValue<'a>,
+    pub(super) mixed_gradient: &'a [f32],
+    /// Of these rows alone.
+    pub(super) query_gradient: &'a mut [f32],
+    /// Of these rows alone: the remembered tokens, then the own one.
+    pub(super) token_gradients: Vec<KeyValueMut<'a>>,
+}
+
+#[derive(Debug)]
+pub(super) struct Run<'a, 'b> {
+    pub(super) job: Backward<'a>,
+    pub(super) buffers: &'b mut Buffers,
+}
+
+impl Kernel for Run<'_, '_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        // The usual width is spelled out, which takes the loops over quads away.
+        match self.job.heads.width {
+            DEPTH => self.rows(simd, DEPTH, 1),
+            width => {
+                let quads = self.job.heads.quads();
+                self.rows(simd, width, quads);
+            }
+        }
+    }
+}
+
+impl Run<'_, '_> {
+    #[inline(always)]
+    fn rows<S: Simd>(mut self, simd: S, width: usize, quads: usize) {
+        let length = self.job.query_gradient.len();
+        self.buffers.query.resize(quads, ZERO_QUAD);
+        self.buffers.mixed_gradient.resize(quads, ZERO_QUAD);
+        self.buffers.query_gradient.resize(quads, ZERO_QUAD);
+        let tokens = self.job.memory.len() + 1;
+        self.buffers.taken.resize(tokens, Lanes::ZERO);
+        for at in (0..length).step_by(LANES * width) {
+            let place = Place::new(self.job.first, at, length, width);
+            self.group(simd, place, at, quads);
+        }
+    }
+
+    #[inline(always)]
+    fn group<S: Simd>(&mut self, simd: S, place: Place, at: usize, quads: usize) {
+        let (job, buffers) = (&mut self.job, &mut *self.buffers);
+        let scale = job.heads.scale();
+        let to_scores = simd.splat(scale * std::f32::consts::LOG2_E);
+        let query = &mut buffers.query[..quads];
+        let mixed_gradient = &mut buffers.mixed_gradient[..quads];
+        let query_gradient = &mut buffers.query_gradient[..quads];
+        for quad in 0..quads {
+            let loaded = place.load(simd, job.query, quad);
+            simd.write(simd.scaled(loaded, to_scores), &mut query[quad]);
+            let gradient = place.load(simd, job.mixed_gradient, quad);
+            simd.write(gradient, &mut mixed_gradient[quad]);
+            query_gradient[quad] = ZERO_QUAD;
+        }
+        let powers = &mut buffers.powers;
+        let share = soften(simd, place, query, job.memory, job.own, powers);
+        let mut mean = simd.splat(0.0);
+        let tokens = job.memory.iter().chain([&job.own]);
+        let weights = powers.iter_mut().zip(&mut buffers.taken);
+        for ((power, taken), token) in weights.zip(tokens) {
+            let mut product = simd.splat(0.0);
+            for (quad, gradient) in mixed_gradient.iter().enumerate() {
+                let value = place.load(simd, token.value, quad);
+                product = dot(simd, simd.read(gradient), value, product);
+            }
+            let weight = simd.mul(simd.load(&power.0), share);
+            mean = simd.mul_add(weight, product, mean);
+            simd.store(weight, &mut power.0);
+            simd.store(product, &mut taken.0);
+        }
+        let tokens = job.memory.iter().chain([&job.own]);
+        let tokens = tokens.zip(&mut job.token_gradients);
+        let weights = powers.iter().zip(&buffers.taken);
+        for ((weight, taken), (token, gradients)) in weights.zip(tokens) {
+            let weight = simd.load(&weight.0);
+            let score_gradient = simd.mul(weight, simd.sub(simd.load(&taken.0), mean));
+            // Queries were scaled to scores that are powers of two.
+            let key_weight = simd.mul(score_gradient, simd.splat(std::f32::consts::LN_2));
+            for quad in 0..quads {
+                let of_key = weighted(simd, key_weight, simd.read(&query[quad]));
+                place.add(simd, of_key, &mut gradients.key[at..], quad);
+                let of_value = weighted(simd, weight, simd.read(&mixed_gradient[quad]));
+                place.add(simd, of_value, &mut gradients.value[at..], quad);
+                let key = place.load(simd, token.key, quad);
+                let sum = simd.read(&query_gradient[quad]);
+                let sum = accumulate(simd, sum, score_gradient, key);
+                simd.write(sum, &mut query_gradient[quad]);
+            }
+        }
+        for (quad, gradient) in query_gradient.iter().enumerate() {
+            let gradient = simd.scaled(simd.read(gradient), simd.splat(scale));
+            place.add(simd, gradient, &mut job.query_gradient[at..], quad);
+        }
+    }
+}

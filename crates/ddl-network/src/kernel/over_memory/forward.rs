@@ -1,0 +1,70 @@
+//! From queries, keys and values to mixed values.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use super::key_value::KeyValue;
+use super::tokens::{Buffers, Place, accumulate, soften, weighted};
+use crate::kernel::heads::Heads;
+use ddl_simd::{DEPTH, Kernel, LANES, Simd, ZERO_QUAD};
+
+/// Some of the rows.
+#[derive(Debug)]
+pub(super) struct Forward<'a> {
+    pub(super) heads: Heads,
+    /// Where the rows start in the whole.
+    pub(super) first: usize,
+    pub(super) query: &'a [f32],
+    pub(super) memory: &'a [KeyValue<'a>],
+    pub(super) own: KeyValue<'a>,
+    /// Of these rows alone.
+    pub(super) mixed: &'a mut [f32],
+}
+
+#[derive(Debug)]
+pub(super) struct Run<'a, 'b> {
+    pub(super) job: Forward<'a>,
+    pub(super) buffers: &'b mut Buffers,
+}
+
+impl Kernel for Run<'_, '_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        // The usual width is spelled out, which takes the loops over quads away.
+        match self.job.heads.width {
+            DEPTH => self.rows(simd, DEPTH, 1),
+            width => {
+                let quads = self.job.heads.quads();
+                self.rows(simd, width, quads);
+            }
+        }
+    }
+}
+
+impl Run<'_, '_> {
+    #[inline(always)]
+    fn rows<S: Simd>(self, simd: S, width: usize, quads: usize) {
+        let Self { job, buffers } = self;
+        let scale = simd.splat(job.heads.scale() * std::f32::consts::LOG2_E);
+        let length = job.mixed.len();
+        buffers.query.resize(quads, ZERO_QUAD);
+        let query = &mut buffers.query[..quads];
+        for (group, mixed) in job.mixed.chunks_mut(LANES * width).enumerate() {
+            let place = Place::new(job.first, group * LANES * width, length, width);
+            for (quad, query) in query.iter_mut().enumerate() {
+                let loaded = place.load(simd, job.query, quad);
+                simd.write(simd.scaled(loaded, scale), query);
+            }
+            let powers = &mut buffers.powers;
+            let share = soften(simd, place, query, job.memory, job.own, powers);
+            for quad in 0..quads {
+                let mut sum = [simd.splat(0.0); DEPTH];
+                let tokens = job.memory.iter().chain([&job.own]);
+                for (power, token) in powers.iter().zip(tokens) {
+                    let value = place.load(simd, token.value, quad);
+                    sum = accumulate(simd, sum, simd.load(&power.0), value);
+                }
+                place.store(simd, weighted(simd, share, sum), mixed, quad);
+            }
+        }
+    }
+}

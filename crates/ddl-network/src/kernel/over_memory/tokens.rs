@@ -1,0 +1,204 @@
+//! Sixteen heads, one after the other across rows, four of their numbers (a quad) at a time, as they lie in memory.
+//!
+//! Rows and heads make one index here, since every row has a memory of its own. What there is one of for each head (a
+//! score, a weight) lies where transposing pieces of four lanes brings it: head 4 k + i in lane 4 i + k.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use super::key_value::KeyValue;
+use ddl_simd::{DEPTH, LANES, Lanes, Quad, Simd, Vectors, ZERO_QUAD};
+
+/// Room for sixteen heads, kept from group to group.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Buffers {
+    /// By quad, scaled so that scores are powers of two.
+    pub(super) query: Vec<Quad>,
+    /// By quad.
+    pub(super) mixed_gradient: Vec<Quad>,
+    /// By quad.
+    pub(super) query_gradient: Vec<Quad>,
+    /// By token: scores, then powers.
+    pub(super) powers: Vec<Lanes>,
+    /// By token: the value's product with the gradient of what was mixed.
+    pub(super) taken: Vec<Lanes>,
+}
+
+/// Where sixteen heads lie in a slice: `numbers` from `first` on, fewer than sixteen heads at its end.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) first: usize,
+    pub(super) numbers: usize,
+    pub(super) width: usize,
+}
+
+impl Place {
+    /// Of the group that starts at `at` of `length` numbers, `first` being added to it in the whole slice.
+    #[inline(always)]
+    pub(super) fn new(first: usize, at: usize, length: usize, width: usize) -> Self {
+        Self {
+            first: first + at,
+            numbers: (length - at).min(LANES * width),
+            width,
+        }
+    }
+
+    /// The numbers of a quad; those that lack are 0. A slice that is too short is repeated.
+    #[inline(always)]
+    pub(super) fn load<S: Simd>(self, simd: S, from: &[f32], quad: usize) -> Vectors<S> {
+        let first = if self.first < from.len() {
+            self.first
+        } else {
+            self.first % from.len()
+        };
+        if self.whole()
+            && let Some(numbers) = from[first..].first_chunk::<{ LANES * DEPTH }>()
+        {
+            let parts = numbers.as_chunks().0;
+            let mut result = [simd.splat(0.0); DEPTH];
+            for part in 0..DEPTH {
+                result[part] = simd.load(&parts[part]);
+            }
+            result
+        } else {
+            let mut gathered = ZERO_QUAD;
+            self.each(quad, |at, part, lane| {
+                gathered[part].0[lane] = from[(self.first + at) % from.len()];
+            });
+            simd.read(&gathered)
+        }
+    }
+
+    /// Adds to the numbers of a quad. The slice starts with the group.
+    #[inline(always)]
+    pub(super) fn add<S: Simd>(self, simd: S, sum: Vectors<S>, into: &mut [f32], quad: usize) {
+        if self.whole()
+            && let Some(numbers) = into.first_chunk_mut::<{ LANES * DEPTH }>()
+        {
+            let numbers = numbers.as_chunks_mut().0;
+            for part in 0..DEPTH {
+                let before = simd.load(&numbers[part]);
+                simd.store(simd.add(before, sum[part]), &mut numbers[part]);
+            }
+        } else {
+            let mut numbers = ZERO_QUAD;
+            simd.write(sum, &mut numbers);
+            self.each(quad, |at, part, lane| into[at] += numbers[part].0[lane]);
+        }
+    }
+
+    /// Sets the numbers of a quad. The slice starts with the group.
+    #[inline(always)]
+    pub(super) fn store<S: Simd>(self, simd: S, values: Vectors<S>, into: &mut [f32], quad: usize) {
+        if self.whole()
+            && let Some(numbers) = into.first_chunk_mut::<{ LANES * DEPTH }>()
+        {
+            let numbers = numbers.as_chunks_mut().0;
+            for part in 0..DEPTH {
+                simd.store(values[part], &mut numbers[part]);
+            }
+        } else {
+            let mut numbers = ZERO_QUAD;
+            simd.write(values, &mut numbers);
+            self.each(quad, |at, part, lane| into[at] = numbers[part].0[lane]);
+        }
+    }
+
+    /// Whether the numbers of the sixteen heads lie as those of a quad.
+    #[inline(always)]
+    fn whole(self) -> bool {
+        self.width == DEPTH && self.numbers == LANES * DEPTH
+    }
+
+    /// The place of a number after the first, and where it stands in a quad.
+    #[inline(always)]
+    fn each(self, quad: usize, mut f: impl FnMut(usize, usize, usize)) {
+        let numbers = quad * DEPTH..self.width.min((quad + 1) * DEPTH);
+        for head in 0..self.numbers / self.width {
+            for number in numbers.clone() {
+                let stands = head * DEPTH + number - quad * DEPTH;
+                f(head * self.width + number, stands / LANES, stands % LANES);
+            }
+        }
+    }
+}
+
+/// Σ a b over the numbers of each head, added to `start`.
+#[inline(always)]
+pub(super) fn dot<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>, start: S::Floats) -> S::Floats {
+    let mut products = a;
+    for part in 0..DEPTH {
+        products[part] = simd.mul(a[part], b[part]);
+    }
+    let [a, b, c, d] = simd.transpose(products);
+    simd.add(start, simd.add(simd.add(a, b), simd.add(c, d)))
+}
+
+/// `weight` of each head at each of its numbers.
+#[inline(always)]
+fn spread<S: Simd>(simd: S, weight: S::Floats) -> Vectors<S> {
+    [
+        simd.spread::<0x00>(weight),
+        simd.spread::<0x55>(weight),
+        simd.spread::<0xaa>(weight),
+        simd.spread::<0xff>(weight),
+    ]
+}
+
+/// `sum` + `weight` of each head · its numbers.
+#[inline(always)]
+pub(super) fn accumulate<S: Simd>(
+    simd: S,
+    sum: Vectors<S>,
+    weight: S::Floats,
+    numbers: Vectors<S>,
+) -> Vectors<S> {
+    let (mut sum, weights) = (sum, spread(simd, weight));
+    for part in 0..DEPTH {
+        sum[part] = simd.mul_add(weights[part], numbers[part], sum[part]);
+    }
+    sum
+}
+
+/// `weight` of each head · its numbers.
+#[inline(always)]
+pub(super) fn weighted<S: Simd>(simd: S, weight: S::Floats, numbers: Vectors<S>) -> Vectors<S> {
+    let (mut result, weights) = (numbers, spread(simd, weight));
+    for part in 0..DEPTH {
+        result[part] = simd.mul(weights[part], numbers[part]);
+    }
+    result
+}
+
+/// Into `powers` 2^(score − largest score) for every token, the own one last; 1 over their sum.
+#[inline(always)]
+pub(super) fn soften<S: Simd>(
+    simd: S,
+    place: Place,
+    query: &[Quad],
+    memory: &[KeyValue<'_>],
+    own: KeyValue<'_>,
+    powers: &mut Vec<Lanes>,
+) -> S::Floats {
+    powers.resize(memory.len() + 1, Lanes::ZERO);
+    let mut largest = simd.splat(f32::NEG_INFINITY);
+    for (token, power) in memory.iter().chain([&own]).zip(powers.iter_mut()) {
+        let mut score = simd.splat(0.0);
+        for (quad, query) in query.iter().enumerate() {
+            score = dot(
+                simd,
+                simd.read(query),
+                place.load(simd, token.key, quad),
+                score,
+            );
+        }
+        largest = simd.max(largest, score);
+        simd.store(score, &mut power.0);
+    }
+    let mut sum = simd.splat(0.0);
+    for power in powers {
+        let value = simd.exp2(simd.sub(simd.load(&power.0), largest));
+        sum = simd.add(sum, value);
+        simd.store(value, &mut power.0);
+    }
+    simd.div(simd.splat(1.0), sum)
+}

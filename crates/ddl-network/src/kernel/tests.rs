@@ -1,0 +1,4 @@
+//! What the tests of several kernels share.
+
+pub(super) mod attention;
+pub(super) mod numbers;

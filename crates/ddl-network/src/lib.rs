@@ -1,0 +1,29 @@
+#![doc = include_str!("../README.md")]
+
+mod arithmetic;
+pub mod backbone;
+pub mod backend;
+mod config;
+mod device_choice;
+mod error;
+mod forecast;
+mod kernel;
+mod precision;
+pub mod proposal;
+pub mod seed;
+mod training_report;
+pub mod weights;
+
+pub use config::{
+    BackboneKind, Frame, LearningRateSchedule, Objective, ProposalConfig, ProposalTraining,
+    StarConfig, TrainingConfig, Variant,
+};
+pub use device_choice::DeviceChoice;
+pub use error::NetworkError;
+pub use forecast::{
+    BatchRollout, ForecastBatch, ForecastWindows, MotionNetwork, Noise, StepRule, WindowRollout,
+    motion_bounds, motion_unit, visibility,
+};
+pub use precision::Precision;
+pub use proposal::{PedestrianView, ProposalExample, ProposalNetwork, ProposeEnds, ProposedEnds};
+pub use training_report::{EpochReport, ProposalStep, StepReport};

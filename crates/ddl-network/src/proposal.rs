@@ -1,0 +1,17 @@
+//! A small network that proposes where a pedestrian will be at the end of the horizon.
+//!
+//! It sees what the retrieval of similar pedestrians sees, one pedestrian in its own frame, and the pedestrians nearby. An
+//! ensemble of members, each with K ends, is trained so that the nearest of the K ends comes close to the true one ("winner
+//! takes all"): the K ends then lie where an error that counts only the nearest of them is smallest.
+
+mod ends;
+mod layers;
+mod network;
+mod seen;
+mod view;
+
+pub use ends::{END_UNIT, ProposeEnds, ProposedEnds};
+pub use layers::{MemberAffine, ProposalLayers, WAYPOINTS};
+pub use network::ProposalNetwork;
+pub use seen::{NEIGHBOUR_FEATURES, RECENT};
+pub use view::{PedestrianView, ProposalExample};

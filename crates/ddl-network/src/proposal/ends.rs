@@ -1,0 +1,40 @@
+//! Ends, and who proposes them.
+
+use super::view::PedestrianView;
+use crate::weights::Weights;
+use crate::{NetworkError, ProposalConfig};
+use ddl_data::Position;
+use std::fmt::Debug;
+
+/// Ends lie within a few metres of where the present velocity leads: the unit of the last layer (m).
+pub const END_UNIT: f64 = 3.0;
+
+/// Ends proposed for one pedestrian, those of all members one after the other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProposedEnds {
+    /// Ends in the pedestrian's frame (metres), members x K of them.
+    pub ends: Vec<Position>,
+    /// Probability of each to be the nearest to the true end; sums to 1.
+    pub weights: Vec<f64>,
+}
+
+/// A network that proposes ends, whoever computes it.
+pub trait ProposeEnds: Debug + Send + Sync {
+    /// Its shape.
+    fn config(&self) -> &ProposalConfig;
+
+    /// A copy of the learned numbers.
+    ///
+    /// # Errors
+    /// When they cannot be fetched from their device.
+    fn copy_weights(&self) -> Result<Weights, NetworkError>;
+
+    /// Proposes ends for each of the pedestrians.
+    ///
+    /// # Shapes
+    /// One [`ProposedEnds`] a view, in their order: `members * ends` places, in metres ahead and to the left.
+    ///
+    /// # Errors
+    /// When the implementation fails, for want of memory for instance.
+    fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEnds>, NetworkError>;
+}

@@ -1,0 +1,19 @@
+//! The learned numbers of a network, by name: what they are called, how they begin, and how they are kept in files.
+
+mod digest;
+mod file;
+mod half_precision;
+mod layout;
+mod learned;
+mod origin;
+
+pub use crate::kernel::Sizes;
+pub use digest::{DamagedNumbers, check_numbers, numbers_digest};
+pub use file::{
+    StoredNumbers, StoredTensor, find_tensor, load_weights, read_tensors, save_weights,
+    write_tensors,
+};
+pub use half_precision::HalfTensor;
+pub use layout::{EncoderLayer, Initial, Layout, Linear, TensorLayout};
+pub use learned::Weights;
+pub use origin::Origin;

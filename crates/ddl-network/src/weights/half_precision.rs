@@ -1,0 +1,192 @@
+//! Learned tensors in half precision: how weights travel when they are handed on to be used, not to be trained further.
+
+use super::layout::Layout;
+use super::learned::Weights;
+use crate::NetworkError;
+use half::f16;
+use std::sync::Arc;
+
+/// A learned tensor in IEEE 754 binary16.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct HalfTensor {
+    /// Its name in the network.
+    pub name: String,
+    /// Its shape.
+    pub shape: Vec<usize>,
+    /// Its numbers, two bytes each, in row-major order.
+    pub bytes: Vec<u8>,
+}
+
+impl Weights {
+    /// The learned tensors, in order, rounded to half precision.
+    ///
+    /// # Errors
+    /// [`NetworkError::Weights`] for a number that half precision has no room for: NaN, or at least 65,520 in size.
+    ///
+    /// # Numerics
+    /// A number is rounded to 11 significant bits: off by at most 2^-11 of its size, or by 2^-25 where it is smaller than 2^-14.
+    /// Rounding rounded numbers again changes nothing.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_network::weights::Weights;
+    /// use ddl_network::{MotionNetwork, StarConfig, Variant};
+    ///
+    /// let config = StarConfig { feed_forward_width: 16, ..StarConfig::published(Variant::Full) };
+    /// let learned = MotionNetwork::new(config, 1)?;
+    /// let packed = learned.weights().to_half()?;
+    /// let again = Weights::from_half(learned.weights().layout(), &packed)?;
+    /// assert_eq!(again.to_half()?, packed);
+    /// # Ok::<(), ddl_network::NetworkError>(())
+    /// ```
+    pub fn to_half(&self) -> Result<Vec<HalfTensor>, NetworkError> {
+        self.iter()
+            .map(|(tensor, numbers)| {
+                let halves: Vec<f16> = numbers.iter().map(|&x| f16::from_f32(x)).collect();
+                if !halves.iter().all(|half| half.is_finite()) {
+                    let size = |largest: f32, x: &f32| if x.is_nan() { f32::NAN } else { largest.max(x.abs()) };
+                    let largest = numbers.iter().fold(0.0, size);
+                    let problem = format!(
+                        "holds numbers as large as {largest}, and half precision ends at 65504; train it with a smaller step size"
+                    );
+                    return Err(NetworkError::weights(tensor.name(), problem));
+                }
+                Ok(HalfTensor {
+                    name: tensor.name().to_owned(),
+                    shape: tensor.shape().to_vec(),
+                    bytes: halves.iter().flat_map(|half| half.to_le_bytes()).collect(),
+                })
+            })
+            .collect()
+    }
+
+    /// The learned tensors of a layout from what was rounded of those of another network of the same configuration.
+    ///
+    /// # Errors
+    /// [`NetworkError::Weights`] when there are other names, shapes or counts of tensors than the layout has, or one holds NaN or
+    /// infinity.
+    pub fn from_half(layout: &Arc<Layout>, tensors: &[HalfTensor]) -> Result<Self, NetworkError> {
+        let known = |name: &str| layout.tensors().iter().any(|tensor| tensor.name() == name);
+        if let Some(other) = tensors.iter().find(|tensor| !known(&tensor.name)) {
+            return Err(NetworkError::weights(
+                &other.name,
+                "is no tensor of this network",
+            ));
+        }
+        let mut numbers = Vec::with_capacity(layout.count());
+        for wanted in layout.tensors() {
+            let name = wanted.name();
+            let mut named = tensors.iter().filter(|tensor| tensor.name == name);
+            let (Some(tensor), None) = (named.next(), named.next()) else {
+                return Err(NetworkError::weights(name, "is missing, or there twice"));
+            };
+            if tensor.shape != wanted.shape() {
+                let problem = format!(
+                    "has shape {:?}, expected {:?}",
+                    tensor.shape,
+                    wanted.shape()
+                );
+                return Err(NetworkError::weights(name, problem));
+            }
+            let expected = wanted.span().len() * size_of::<f16>();
+            if tensor.bytes.len() != expected {
+                let problem = format!("has {} bytes, expected {expected}", tensor.bytes.len());
+                return Err(NetworkError::weights(name, problem));
+            }
+            let (halves, _) = tensor.bytes.as_chunks();
+            let start = numbers.len();
+            numbers.extend(halves.iter().map(|&half| f16::from_le_bytes(half).to_f32()));
+            if !numbers[start..].iter().all(|number| number.is_finite()) {
+                return Err(NetworkError::weights(name, "holds NaN or infinite numbers"));
+            }
+        }
+        Ok(Self::new(Arc::clone(layout), numbers))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{MotionNetwork, StarConfig, Variant};
+    use proptest::prelude::*;
+
+    fn weights(seed: u64) -> Weights {
+        let config = StarConfig {
+            feed_forward_width: 8,
+            ..StarConfig::published(Variant::Full)
+        };
+        MotionNetwork::new(config, seed).unwrap().weights().clone()
+    }
+
+    /// The same with its first number another.
+    fn beginning_with(number: f32) -> Weights {
+        let weights = weights(1);
+        let mut numbers = weights.numbers().to_vec();
+        numbers[0] = number;
+        Weights::new(Arc::clone(weights.layout()), numbers)
+    }
+
+    /// The value of binary16 bits, from the definition of the format.
+    fn value(bits: u16) -> f64 {
+        let (exponent, fraction) = (i32::from(bits >> 10 & 31), f64::from(bits & 1023));
+        let size = if exponent == 0 {
+            fraction * f64::powi(2.0, -24)
+        } else {
+            (1.0 + fraction / 1024.0) * f64::powi(2.0, exponent - 15)
+        };
+        if bits >> 15 == 1 { -size } else { size }
+    }
+
+    #[test]
+    fn every_weight_comes_back_within_the_rounding() {
+        let learned = weights(1);
+        let packed = learned.to_half().unwrap();
+        let again = Weights::from_half(learned.layout(), &packed).unwrap();
+        let bits = packed
+            .iter()
+            .flat_map(|tensor| tensor.bytes.chunks_exact(2));
+        let halves = bits.map(|two| value(u16::from_le_bytes([two[0], two[1]])));
+        let pairs = learned.numbers().iter().zip(again.numbers());
+        let mut count = 0;
+        for ((&before, &now), half) in pairs.zip(halves) {
+            let (before, now) = (f64::from(before), f64::from(now));
+            assert!(now.to_bits() == half.to_bits(), "{now} of {half}");
+            let allowed = (before.abs() / 2048.0).max(f64::powi(2.0, -25));
+            assert!((now - before).abs() <= allowed, "{before} is {now}");
+            count += 1;
+        }
+        assert_eq!(count, learned.count());
+        assert_eq!(again.to_half().unwrap(), packed);
+    }
+
+    #[test]
+    fn numbers_without_room_are_refused() {
+        for large in [65_520.0, f32::INFINITY, f32::NAN] {
+            let error = beginning_with(large).to_half().unwrap_err().to_string();
+            assert!(error.contains("65504"), "{error}");
+        }
+        assert!(beginning_with(65_519.0).to_half().is_ok());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// Whatever is wrong with one tensor is an error.
+        #[test]
+        fn what_does_not_fit_is_refused(index in any::<prop::sample::Index>(), kind in 0..7) {
+            let learned = weights(1);
+            let mut packed = learned.to_half().unwrap();
+            let index = index.index(packed.len());
+            match kind {
+                0 => drop(packed.remove(index)),
+                1 => packed.push(packed[index].clone()),
+                2 => packed[index].name.push('x'),
+                3 => packed[index].shape.push(1),
+                4 => packed[index].bytes.truncate(1),
+                5 => packed[index].bytes[..2].copy_from_slice(&[0, 0x7c]), // infinite
+                _ => packed[index].bytes[..2].copy_from_slice(&[1, 0xfc]), // NaN
+            }
+            prop_assert!(Weights::from_half(learned.layout(), &packed).is_err());
+        }
+    }
+}

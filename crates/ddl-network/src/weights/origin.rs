@@ -1,0 +1,114 @@
+//! What a checkpoint is of, so that a file that lies beside the wrong configuration is noticed.
+
+use std::collections::{BTreeMap, HashMap};
+
+/// The facts that decide the numbers of a checkpoint, by name: configuration, seed, data.
+///
+/// They are written into the header of the file. A file of another origin is refused, also where all its
+/// shapes would fit: weights of another fold, seed or variant would give forecasts that look right.
+///
+/// # Examples
+/// ```
+/// use ddl_network::weights::Origin;
+///
+/// let eth = Origin::from_iter([("fold", "eth"), ("seed", "1")]);
+/// let zara = Origin::from_iter([("fold", "zara1"), ("seed", "1")]);
+/// assert_eq!(eth.difference(&eth), None);
+/// assert_eq!(eth.difference(&zara).unwrap(), "fold is eth, not zara1");
+/// ```
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Origin(BTreeMap<String, String>);
+
+impl<N: Into<String>, V: Into<String>> FromIterator<(N, V)> for Origin {
+    fn from_iter<I: IntoIterator<Item = (N, V)>>(facts: I) -> Self {
+        let facts = facts.into_iter();
+        Self(
+            facts
+                .map(|(name, value)| (name.into(), value.into()))
+                .collect(),
+        )
+    }
+}
+
+impl Origin {
+    /// The first fact, by name, in which this origin is not `other`, in words; `None` when they agree.
+    #[must_use]
+    pub fn difference(&self, other: &Self) -> Option<String> {
+        let names = self.0.keys().chain(other.0.keys());
+        let name = names
+            .filter(|&name| self.0.get(name) != other.0.get(name))
+            .min()?;
+        let in_words = |origin: &Self| {
+            let value = origin.0.get(name);
+            value.map_or_else(|| "nothing".to_owned(), String::clone)
+        };
+        Some(format!(
+            "{name} is {}, not {}",
+            in_words(self),
+            in_words(other)
+        ))
+    }
+
+    /// As the header of a safetensors file holds it, with the SHA-256 of the file's numbers ([`numbers_digest`](super::numbers_digest)):
+    /// one entry, so that the same origin and numbers are always the same bytes.
+    #[must_use]
+    pub fn to_header(&self, digest: &str) -> HashMap<String, String> {
+        let facts = self
+            .0
+            .iter()
+            .map(|(name, value)| (name.as_str(), value.as_str()));
+        let facts = facts.chain([(DIGEST, digest)]);
+        let facts = facts.map(|(name, value)| (name.to_owned(), value.into()));
+        let facts = serde_json::Value::Object(facts.collect());
+        HashMap::from([(HEADER.to_owned(), facts.to_string())])
+    }
+
+    /// What the header of a safetensors file says, and the SHA-256 of its numbers; nothing, when it is not a header of ours. Files of
+    /// earlier versions have no SHA-256.
+    #[must_use]
+    pub fn of_header(header: Option<&HashMap<String, String>>) -> (Self, Option<String>) {
+        let facts = header.and_then(|header| header.get(HEADER));
+        let mut origin = Self(
+            facts
+                .and_then(|facts| serde_json::from_str(facts).ok())
+                .unwrap_or_default(),
+        );
+        let digest = origin.0.remove(DIGEST);
+        (origin, digest)
+    }
+}
+
+/// Name of the header's entry.
+const HEADER: &str = "origin";
+/// Name of the fact that is none of the origin: the SHA-256 of the file's numbers.
+const DIGEST: &str = "numbers.sha256";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_difference_is_told_from_either_side() {
+        let one = Origin::from_iter([("b", "1"), ("c", "2")]);
+        let other = Origin::from_iter([("a", "0"), ("b", "1"), ("c", "3")]);
+        assert_eq!(one.difference(&other).unwrap(), "a is nothing, not 0");
+        assert_eq!(other.difference(&one).unwrap(), "a is 0, not nothing");
+        assert_eq!(one.difference(&one), None);
+    }
+
+    #[test]
+    fn a_header_brings_it_back() {
+        let origin = Origin::from_iter([("fold", "eth"), ("seed", "1")]);
+        let header = origin.to_header("ab12");
+        let digest = Some("ab12".to_owned());
+        assert_eq!(Origin::of_header(Some(&header)), (origin, digest));
+        let nothing = (Origin::default(), None);
+        assert_eq!(Origin::of_header(None), nothing);
+        let foreign = HashMap::from([(HEADER.to_owned(), "[1".to_owned())]);
+        assert_eq!(Origin::of_header(Some(&foreign)), nothing);
+        // of a version without a digest
+        let old = HashMap::from([(HEADER.to_owned(), r#"{"fold":"eth"}"#.to_owned())]);
+        let eth = Origin::from_iter([("fold", "eth")]);
+        assert_eq!(Origin::of_header(Some(&old)), (eth, None));
+    }
+}

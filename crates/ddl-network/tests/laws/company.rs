@@ -1,0 +1,47 @@
+//! Who else is there: nothing to a perceptron, something to STAR.
+
+use super::scenes::{Question, WINDOWS, distance, recommended};
+use ddl_data::{HORIZON, Window};
+use ddl_network::{BackboneKind, MotionNetwork, Variant, WindowRollout};
+
+/// How far a pedestrian's forecasts among others lie from those alone at most, over all windows (m); of who comes first in a window
+/// alone, since positions are rounded relative to it, and of everybody.
+fn furthest(backbone: BackboneKind) -> [f64; 2] {
+    let network = MotionNetwork::new(recommended(backbone, Variant::Full), 5).unwrap();
+    let question = Question::bounded(2);
+    let (mut first, mut any) = (0.0_f64, 0.0_f64);
+    for window in WINDOWS.iter().take(12).filter(|window| window.len() > 1) {
+        let together = &question.ask(&network, &[window])[0];
+        let alone: Vec<Window> = (0..window.len())
+            .map(|i| window.keeping(|other| other == i).unwrap())
+            .collect();
+        let alone: Vec<&Window> = alone.iter().collect();
+        let of_pedestrian = |rollout: &WindowRollout, i: usize| {
+            rollout.positions[2 * HORIZON * i..][..2 * HORIZON].to_vec()
+        };
+        for (i, alone) in question.ask(&network, &alone).iter().enumerate() {
+            let pairs = of_pedestrian(alone, 0)
+                .into_iter()
+                .zip(of_pedestrian(together, i));
+            let apart = pairs.map(|(a, b)| distance(a, b)).fold(0.0, f64::max);
+            any = any.max(apart);
+            if i == 0 {
+                first = first.max(apart);
+            }
+        }
+    }
+    [first, any]
+}
+
+#[test]
+fn a_perceptron_does_not_see_others() {
+    let [first, any] = furthest(BackboneKind::Perceptron);
+    assert_eq!(first.to_bits(), 0.0_f64.to_bits(), "{first} m");
+    assert!(any < 1e-4, "{any} m");
+}
+
+#[test]
+fn star_sees_others() {
+    let [_, any] = furthest(BackboneKind::Star);
+    assert!(any > 1e-3, "{any} m");
+}

@@ -1,0 +1,68 @@
+//! Forecasts move with the world.
+
+use super::scenes::{WINDOWS, configs, distance, goals, recommended};
+use ddl_data::{Position, Window};
+use ddl_network::{
+    BackboneKind, ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule, Variant,
+};
+use proptest::prelude::*;
+use proptest::sample::Index;
+
+/// How far forecasts in the moved world lie from moved forecasts at most (m).
+fn off(config: StarConfig, window: &Window, moved: impl Fn(Position) -> Position) -> f64 {
+    let network = MotionNetwork::new(config, 5).unwrap();
+    let forecast = |world: &dyn Fn(Position) -> Position| {
+        let observed = [window.without_future().map_positions(|_, _, p| world(p))];
+        let goals = goals(window, 3).into_iter();
+        let goals = [goals
+            .map(|of| of.into_iter().map(world).collect())
+            .collect()];
+        let rule = StepRule::Bounded;
+        let rollouts = network.forecast_windows(&observed, &goals, Noise::Expected, rule, None);
+        rollouts.unwrap().remove(0).positions
+    };
+    let pairs = forecast(&|p| p).into_iter().zip(forecast(&moved));
+    pairs
+        .map(|(here, there)| distance(moved(here), there))
+        .fold(0.0, f64::max)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    #[test]
+    fn with_the_scene(
+        config in prop::sample::select(configs()),
+        window in any::<Index>(),
+        [x, y] in [-1e4..1e4_f64, -1e4..1e4_f64],
+    ) {
+        let off = off(config, window.get(&WINDOWS), |p| [p[0] + x, p[1] + y]);
+        prop_assert!(off < 1e-4, "{off} m");
+    }
+
+    /// A perceptron reads everything in the pedestrian's own frame. STAR does not: where everybody is in the scene it reads in the
+    /// axes of the world.
+    #[test]
+    fn with_every_turn_of_it_in_the_own_frame(
+        variant in prop::sample::select(vec![Variant::Full, Variant::NoDynamics]),
+        window in any::<Index>(),
+        angle in 0.0..std::f64::consts::TAU,
+    ) {
+        let (sin, cos) = angle.sin_cos();
+        let config = recommended(BackboneKind::Perceptron, variant);
+        let turn = |[x, y]: Position| [cos * x - sin * y, sin * x + cos * y];
+        let off = off(config, window.get(&WINDOWS), turn);
+        prop_assert!(off < 1e-4, "{off} m");
+    }
+}
+
+/// In map coordinates f32 resolves half a metre: positions must be taken relative to the scene first.
+#[test]
+fn even_to_map_coordinates() {
+    let city = [691_608.0, 5_334_763.0]; // in metres, as maps have it
+    for config in configs() {
+        let name = format!("{config:?}");
+        let off = off(config, &WINDOWS[3], |p| [p[0] + city[0], p[1] + city[1]]);
+        assert!(off < 1e-4, "{name}: {off} m");
+    }
+}

@@ -1,0 +1,133 @@
+//! Proposals: what they are, what they depend on, and what they do not.
+
+use super::scenes::{WINDOWS, distance, with_threads};
+use ddl_data::{OBSERVED, Position, Window};
+use ddl_network::{
+    PedestrianView, ProposalConfig, ProposalNetwork, ProposeEnds as _, ProposedEnds,
+};
+use proptest::prelude::*;
+use proptest::sample::Index;
+use std::sync::LazyLock;
+
+fn network(config: ProposalConfig) -> ProposalNetwork {
+    ProposalNetwork::new(config, 3).unwrap()
+}
+
+fn small() -> ProposalConfig {
+    ProposalConfig {
+        members: 2,
+        ends: 6,
+        width: 32,
+        neighbour_width: 16,
+        ..ProposalConfig::default()
+    }
+}
+
+/// What a pedestrian of a window sees, up to the turn.
+fn seen(window: &Window, i: usize) -> PedestrianView {
+    let here = window.observed(i)[OBSERVED - 1];
+    let relative = |j: usize| -> [Position; OBSERVED] {
+        std::array::from_fn(|t| {
+            let [x, y] = window.observed(j)[t];
+            [x - here[0], y - here[1]]
+        })
+    };
+    let others = (0..window.len()).filter(|&j| j != i);
+    PedestrianView {
+        own: relative(i),
+        neighbours: others.map(relative).collect(),
+    }
+}
+
+/// Everybody in all windows but the crowd: a whole chunk and more, some of whom are alone.
+static VIEWS: LazyLock<Vec<PedestrianView>> = LazyLock::new(|| {
+    let windows = WINDOWS[..WINDOWS.len() - 1].iter();
+    let mut views: Vec<_> = windows
+        .flat_map(|window| (0..window.len()).map(|i| seen(window, i)))
+        .collect();
+    views.extend([0.0, 1.0, 1.6].map(|speed| view(speed, 0)));
+    assert!(views.len() > 100);
+    views
+});
+
+/// A view of somebody who walks at `speed` (m/s) with `neighbours` ahead.
+fn view(speed: f64, neighbours: usize) -> PedestrianView {
+    let walk = |speed: f64, x: f64, y: f64| {
+        std::array::from_fn(|t| [x + speed * 0.4 * (t as f64 - 7.0), y])
+    };
+    PedestrianView {
+        own: walk(speed, 0.0, 0.0),
+        neighbours: (0..neighbours)
+            .map(|j| walk(-0.8, 2.0 + j as f64, 0.3 * j as f64))
+            .collect(),
+    }
+}
+
+fn bits(proposed: &ProposedEnds) -> Vec<u64> {
+    let numbers = proposed.ends.as_flattened().iter().chain(&proposed.weights);
+    numbers.map(|number| number.to_bits()).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn a_pedestrian_alone_and_among_others(
+        chosen in prop::collection::vec(any::<Index>(), 1..150),
+        looked_at in any::<Index>(),
+        published in any::<bool>(),
+        threads in 1..4_usize,
+    ) {
+        let network = network(if published { ProposalConfig::default() } else { small() });
+        let views: Vec<_> = chosen.iter().map(|index| index.get(&VIEWS).clone()).collect();
+        let together = with_threads(threads, || network.propose(&views)).unwrap();
+        prop_assert_eq!(together.len(), views.len());
+        let i = looked_at.index(views.len());
+        let alone = network.propose(&views[i..=i]).unwrap();
+        prop_assert_eq!(bits(&alone[0]), bits(&together[i]));
+        let sum: f64 = together[i].weights.iter().sum();
+        prop_assert!((sum - 1.0).abs() < 1e-9);
+        prop_assert!(together[i].ends.as_flattened().iter().all(|x| x.is_finite()));
+    }
+}
+
+#[test]
+fn as_many_ends_as_asked_for() {
+    for proposed in network(small())
+        .propose(&[view(1.0, 0), view(0.0, 3)])
+        .unwrap()
+    {
+        assert_eq!(proposed.ends.len(), 12);
+        assert_eq!(proposed.weights.len(), 12);
+    }
+    assert!(network(small()).propose(&[]).unwrap().is_empty());
+}
+
+/// Largest difference of the ends proposed in two views.
+fn apart(a: &PedestrianView, b: &PedestrianView) -> f64 {
+    let network = network(small());
+    let ends = |view: &PedestrianView| {
+        let mut proposed = network.propose(std::slice::from_ref(view)).unwrap();
+        proposed.remove(0).ends
+    };
+    let pairs = ends(a).into_iter().zip(ends(b));
+    pairs.map(|(a, b)| distance(a, b)).fold(0.0, f64::max)
+}
+
+#[test]
+fn only_near_neighbours_count_in_any_order() {
+    let pedestrian = view(1.1, 4);
+    let mut shuffled = pedestrian.clone();
+    shuffled.neighbours.reverse();
+    assert!(apart(&pedestrian, &shuffled) < 1e-4);
+    let mut with_far = pedestrian.clone();
+    with_far.neighbours.push([[40.0, 3.0]; OBSERVED]);
+    assert!(apart(&pedestrian, &with_far) < 1e-9);
+    // and a neighbour in the way does
+    assert!(apart(&pedestrian, &view(1.1, 0)) > 1e-3);
+    // more neighbours than are looked at
+    let crowd = view(1.0, 30);
+    let mut seen = crowd.clone();
+    seen.neighbours.truncate(8);
+    assert!(apart(&crowd, &seen) < 1e-9);
+}

@@ -1,0 +1,103 @@
+//! A window's forecast has the same bits alone and among others, and with every number of threads.
+
+use super::scenes::{Question, WINDOWS, configs, with_threads};
+use ddl_data::{Dataset, Window, WindowRule};
+use ddl_network::{MotionNetwork, Noise, Precision, StarConfig, StepRule, Variant, WindowRollout};
+use proptest::prelude::*;
+use proptest::sample::Index;
+
+/// All numbers of a rollout, bit by bit.
+fn bits(rollout: &WindowRollout) -> Vec<u64> {
+    let factors = rollout.factors.iter().flatten().flatten();
+    let numbers = rollout.positions.as_flattened().iter().chain(factors);
+    numbers.map(|number| number.to_bits()).collect()
+}
+
+fn questions() -> impl Strategy<Value = Question> {
+    let noise = prop_oneof![
+        (1..4_usize).prop_map(|goals| (goals, Noise::Expected)),
+        (1..4_usize, any::<u64>()).prop_map(|(count, seed)| (1, Noise::Draws { count, seed })),
+    ];
+    let rule = prop_oneof![Just(StepRule::Euler), Just(StepRule::Bounded)];
+    (noise, rule, any::<bool>()).prop_map(|((goals, noise), rule, shared)| Question {
+        goals,
+        noise,
+        rule,
+        shared,
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    /// Others come before and after, in any order and repeatedly; the crowd is one of them.
+    #[test]
+    fn a_window_alone_and_among_others(
+        config in prop::sample::select(configs()),
+        precision in prop::sample::select(vec![Precision::F32, Precision::Bf16]),
+        question in questions(),
+        chosen in prop::collection::vec(any::<Index>(), 1..10),
+        threads in 1..4_usize,
+    ) {
+        let network = MotionNetwork::new(config, 5).unwrap().in_precision(precision);
+        let windows: Vec<&Window> = chosen.iter().map(|index| index.get(&WINDOWS)).collect();
+        let together = with_threads(threads, || question.ask(&network, &windows));
+        prop_assert_eq!(together.len(), windows.len());
+        for (window, together) in windows.into_iter().zip(&together) {
+            let alone = with_threads(1, || question.ask(&network, &[window]));
+            prop_assert!(together.positions.as_flattened().iter().all(|x| x.is_finite()));
+            prop_assert_eq!(bits(&alone[0]), bits(together));
+        }
+    }
+}
+
+/// A crowd is work for several threads, and goes through attention by who is seen.
+#[test]
+fn a_crowd_with_any_number_of_threads() {
+    let crowd = WINDOWS.last().unwrap();
+    for config in [
+        StarConfig::published(Variant::Full),
+        StarConfig::recommended(Variant::Full),
+    ] {
+        let network = MotionNetwork::new(config, 5).unwrap();
+        let ask = |threads| {
+            let rollouts = with_threads(threads, || Question::bounded(2).ask(&network, &[crowd]));
+            bits(&rollouts[0])
+        };
+        let one = ask(1);
+        for threads in [2, 3] {
+            assert_eq!(ask(threads), one, "{threads} threads");
+        }
+    }
+}
+
+/// The windows of either half of a recording are forecast as those of the whole.
+#[test]
+fn a_window_cut_from_a_longer_recording() {
+    let dataset = Dataset::simulated(2);
+    let recording = &dataset.recordings()[1];
+    let (first, second) = recording.parts(0.5);
+    let halves = [first.unwrap(), second.unwrap()];
+    let whole = recording.windows(WindowRule::Complete);
+    let whole: Vec<&Window> = whole.iter().collect();
+    for config in configs()
+        .into_iter()
+        .filter(|config| config.variant == Variant::Full)
+    {
+        let network = MotionNetwork::new(config, 5).unwrap();
+        let question = Question::bounded(1);
+        let of_whole = question.ask(&network, &whole);
+        let mut compared = 0;
+        for half in &halves {
+            let cut = half.windows(WindowRule::Complete);
+            let cut: Vec<&Window> = cut.iter().collect();
+            for (window, rollout) in cut.iter().zip(question.ask(&network, &cut)) {
+                let same = |other: &&Window| other.start_frame() == window.start_frame();
+                let place = whole.iter().position(same).unwrap();
+                assert_eq!(bits(&rollout), bits(&of_whole[place]));
+                compared += 1;
+            }
+        }
+        assert!(compared > 20, "{compared} windows");
+    }
+}

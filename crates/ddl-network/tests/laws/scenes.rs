@@ -1,0 +1,127 @@
+//! Simulated windows, their goals, and untrained networks.
+
+use ddl_data::{Dataset, PedestrianId, Position, Window, WindowRule};
+use ddl_network::{
+    BackboneKind, ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule, Variant,
+    WindowRollout,
+};
+use std::sync::LazyLock;
+
+/// Windows of all simulated scenes with their futures, and a crowd of 150 pedestrians.
+pub(crate) static WINDOWS: LazyLock<Vec<Window>> = LazyLock::new(|| {
+    let dataset = Dataset::simulated(1);
+    let recordings = dataset.recordings().iter();
+    let mut windows: Vec<Window> = recordings
+        .flat_map(|recording| {
+            recording
+                .windows(WindowRule::Complete)
+                .into_iter()
+                .step_by(23)
+        })
+        .take(30)
+        .collect();
+    let tracks = windows
+        .iter()
+        .flat_map(|window| (0..window.len()).map(|i| window.track(i)));
+    let tracks: Vec<Vec<Position>> = tracks.take(150).map(<[Position]>::to_vec).collect();
+    assert_eq!(tracks.len(), 150);
+    let pedestrians = (0..).take(150).map(PedestrianId).collect();
+    windows.push(Window::new("crowd", 0, 10, pedestrians, tracks).unwrap());
+    windows
+});
+
+/// So many goals for everybody, that depend on the window alone: where it really ends, and places around.
+pub(crate) fn goals(window: &Window, count: usize) -> Vec<Vec<Position>> {
+    let around = |[x, y]: Position, k: usize| {
+        let (sin, cos) = (2.0 * k as f64).sin_cos();
+        [x + 1.5 * k as f64 * cos, y + 1.5 * k as f64 * sin]
+    };
+    (0..window.len())
+        .map(|i| {
+            (0..count)
+                .map(|k| around(window.end(i).unwrap(), k))
+                .collect()
+        })
+        .collect()
+}
+
+/// Shares of 0 to 1 that depend on the window alone.
+pub(crate) fn shares(window: &Window) -> Vec<f64> {
+    (0..window.len()).map(|i| (i % 5) as f64 / 4.0).collect()
+}
+
+/// What a window is forecast with.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Question {
+    pub goals: usize,
+    pub noise: Noise,
+    pub rule: StepRule,
+    pub shared: bool,
+}
+
+impl Question {
+    /// The expectation over the noise by bounded steps.
+    pub(crate) fn bounded(goals: usize) -> Self {
+        Self {
+            goals,
+            noise: Noise::Expected,
+            rule: StepRule::Bounded,
+            shared: false,
+        }
+    }
+
+    /// The rollouts of windows with a future, which the network does not see.
+    pub(crate) fn ask(self, network: &MotionNetwork, windows: &[&Window]) -> Vec<WindowRollout> {
+        let observed: Vec<Window> = windows
+            .iter()
+            .map(|window| window.without_future())
+            .collect();
+        let goals: Vec<_> = windows
+            .iter()
+            .map(|window| goals(window, self.goals))
+            .collect();
+        let shares: Vec<_> = windows.iter().map(|window| shares(window)).collect();
+        let shares = self.shared.then_some(&shares[..]);
+        network
+            .forecast_windows(&observed, &goals, self.noise, self.rule, shares)
+            .unwrap()
+    }
+}
+
+/// Both backbones, all variants, published and recommended; with narrow feed-forward blocks.
+pub(crate) fn configs() -> Vec<StarConfig> {
+    let mut configs = Vec::new();
+    for backbone in BackboneKind::ALL {
+        for variant in Variant::ALL {
+            for config in [
+                StarConfig::published(variant),
+                StarConfig::recommended(variant),
+            ] {
+                configs.push(StarConfig {
+                    backbone,
+                    feed_forward_width: 64,
+                    ..config
+                });
+            }
+        }
+    }
+    configs
+}
+
+/// The recommended configuration with a backbone.
+pub(crate) fn recommended(backbone: BackboneKind, variant: Variant) -> StarConfig {
+    StarConfig {
+        backbone,
+        ..StarConfig::recommended(variant)
+    }
+}
+
+pub(crate) fn distance(a: Position, b: Position) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Runs with so many threads.
+pub(crate) fn with_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.unwrap().install(run)
+}

@@ -1,0 +1,209 @@
+//! Weights in files: they come back, and broken files are refused.
+
+use ddl_network::weights::{
+    Origin, StoredNumbers, StoredTensor, Weights, load_weights, numbers_digest, read_tensors,
+    save_weights, write_tensors,
+};
+use ddl_network::{
+    ForecastWindows as _, MotionNetwork, NetworkError, ProposalConfig, ProposalNetwork, StarConfig,
+    Variant,
+};
+use safetensors::SafeTensors;
+use safetensors::tensor::{Dtype, TensorView};
+use std::path::Path;
+
+fn network(variant: Variant, seed: u64) -> MotionNetwork {
+    let config = StarConfig {
+        feed_forward_width: 64,
+        ..StarConfig::published(variant)
+    };
+    MotionNetwork::new(config, seed).unwrap()
+}
+
+fn origin() -> Origin {
+    Origin::from_iter([("fold", "corridor"), ("seed", "7")])
+}
+
+/// The file with its tensors changed, and the digest of what they are then.
+fn forged(whole: &[u8], change: impl Fn(&mut String, &mut Dtype, &mut Vec<u8>)) -> Vec<u8> {
+    let file = SafeTensors::deserialize(whole).unwrap();
+    let mut tensors: Vec<_> = file
+        .iter()
+        .map(|(name, view)| {
+            let (mut name, mut kind) = (name.to_owned(), view.dtype());
+            let mut bytes = view.data().to_vec();
+            change(&mut name, &mut kind, &mut bytes);
+            (name, kind, view.shape().to_vec(), bytes)
+        })
+        .collect();
+    tensors.sort_by(|a, b| a.0.cmp(&b.0));
+    let views = || {
+        tensors.iter().map(|(name, kind, shape, bytes)| {
+            (
+                name.as_str(),
+                TensorView::new(*kind, shape.clone(), bytes).unwrap(),
+            )
+        })
+    };
+    let header = origin().to_header(&numbers_digest(views()));
+    safetensors::serialize(views(), Some(header)).unwrap()
+}
+
+/// The bytes, as a file of a network's weights, have to be refused.
+fn refuse(bytes: &[u8], said: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let broken = folder.path().join("broken.safetensors");
+    std::fs::write(&broken, bytes).unwrap();
+    let network = network(Variant::Full, 2);
+    let error = load_weights(network.weights().layout(), &origin(), &broken).unwrap_err();
+    assert!(matches!(error, NetworkError::Checkpoint { .. }), "{error}");
+    assert!(error.to_string().contains(said), "{said}: {error}");
+    assert!(error.to_string().contains("broken.safetensors"), "{error}");
+}
+
+/// The bytes of a file of weights.
+fn saved(weights: &Weights, origin: &Origin) -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.safetensors");
+    save_weights(weights, origin, &path).unwrap();
+    std::fs::read(&path).unwrap()
+}
+
+#[test]
+fn weights_survive_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.safetensors");
+    let check = |weights: &Weights| {
+        save_weights(weights, &origin(), &path).unwrap();
+        let loaded = load_weights(weights.layout(), &origin(), &path).unwrap();
+        assert_eq!(&loaded, weights);
+    };
+    for variant in Variant::ALL {
+        check(network(variant, 1).weights());
+    }
+    check(
+        ProposalNetwork::new(ProposalConfig::default(), 1)
+            .unwrap()
+            .weights(),
+    );
+    let one = network(Variant::Full, 1);
+    assert_ne!(one.weights(), network(Variant::Full, 2).weights());
+    let again = network(Variant::Full, 2)
+        .with_weights(one.weights().clone())
+        .unwrap();
+    assert_eq!(again.weights(), one.weights());
+}
+
+#[test]
+fn broken_files_are_refused() {
+    let whole = saved(network(Variant::Full, 1).weights(), &origin());
+    for length in [0, 7, 100, whole.len() / 2, whole.len() - 1] {
+        refuse(&whole[..length], "not a whole safetensors file");
+    }
+    refuse(&vec![0; whole.len() * 3 + (2 << 20)], "bytes long");
+    let mut turned = whole.clone();
+    let last = turned.len() - 4;
+    turned[last] ^= 1;
+    refuse(&turned, "the SHA-256 of its numbers");
+    // What was meant, and carries the right digest.
+    let renamed = forged(&whole, |name, _, _| {
+        if name == "fusion_layer.bias" {
+            *name = "xusion_layer.bias".to_owned();
+        }
+    });
+    refuse(&renamed, "lacks the tensor fusion_layer.bias");
+    for number in [f32::NAN, f32::INFINITY] {
+        let poisoned = forged(&whole, |_, _, bytes| {
+            bytes[..4].copy_from_slice(&number.to_le_bytes());
+        });
+        refuse(&poisoned, "NaN or infinite");
+    }
+    let integers = forged(&whole, |_, kind, _| *kind = Dtype::I32);
+    refuse(&integers, "expected 32- or 64-bit floats");
+}
+
+#[test]
+fn files_of_something_else_are_refused() {
+    let network = network(Variant::Full, 1);
+    let star = self::network(Variant::Star, 2);
+    refuse(
+        &saved(star.weights(), &origin()),
+        "output_layer.weight has shape",
+    );
+    let shallow = StarConfig {
+        spatial_layers: 1,
+        ..network.config().clone()
+    };
+    let shallow = MotionNetwork::new(shallow, 1).unwrap();
+    let written = saved(shallow.weights(), &origin());
+    refuse(&written, "it was written for another configuration");
+    let elsewhere = Origin::from_iter([("fold", "plaza"), ("seed", "7")]);
+    refuse(
+        &saved(network.weights(), &elsewhere),
+        "its fold is plaza, not corridor",
+    );
+    let whole = saved(network.weights(), &origin());
+    let file = SafeTensors::deserialize(&whole).unwrap();
+    let foreign = safetensors::serialize(file.iter(), None).unwrap();
+    refuse(&foreign, "its fold is nothing, not corridor");
+}
+
+fn double(shape: &[usize], numbers: Vec<f64>) -> StoredTensor {
+    StoredTensor {
+        name: "moments".to_owned(),
+        shape: shape.to_vec(),
+        numbers: StoredNumbers::Double(numbers),
+    }
+}
+
+#[test]
+fn tensors_of_either_precision_are_kept_as_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("state.safetensors");
+    let moments = double(&[3], vec![1.0 / 3.0, -0.0, 1e300]);
+    write_tensors(std::slice::from_ref(&moments), &origin(), &path).unwrap();
+    let read = read_tensors(&path, 24, &origin()).unwrap();
+    assert_eq!(read, [moments]);
+    assert_eq!(
+        read[0].double(&[3], &path).unwrap()[2].to_bits(),
+        1e300_f64.to_bits()
+    );
+    // in single precision infinite
+    let error = read[0].single(&[3], &path).unwrap_err().to_string();
+    assert!(error.contains("NaN or infinite"), "{error}");
+    let error = read[0].double(&[1, 3], &path).unwrap_err().to_string();
+    assert!(
+        error.contains("moments has shape [3], expected [1, 3]"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_file_that_cannot_be_written_leaves_the_old_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.safetensors");
+    let network = network(Variant::Full, 1);
+    save_weights(network.weights(), &origin(), &path).unwrap();
+    let before = std::fs::read(&path).unwrap();
+    let impossible = double(&[4], vec![1.0; 3]);
+    write_tensors(&[impossible], &origin(), &path).unwrap_err();
+    assert_eq!(std::fs::read(&path).unwrap(), before);
+    let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().collect();
+    assert_eq!(left.len(), 1, "{left:?}");
+
+    let nowhere = |path: &Path| {
+        let error = save_weights(network.weights(), &origin(), path).unwrap_err();
+        assert!(matches!(error, NetworkError::Io { .. }), "{error}");
+    };
+    nowhere(
+        &folder
+            .path()
+            .join("no such folder")
+            .join("model.safetensors"),
+    );
+    // A folder of that name cannot be replaced by a file.
+    let taken = folder.path().join("taken");
+    std::fs::create_dir_all(taken.join("kept")).unwrap();
+    nowhere(&taken);
+    assert!(taken.join("kept").is_dir());
+}

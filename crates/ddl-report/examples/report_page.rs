@@ -1,0 +1,261 @@
+//! Writes the report page of the simulated crowds: `report_page FOLDER` makes `page.html`, `figures/*.svg`, and the data
+//! they show, `report.json` and `moments.json`; and `viewer.html`, the player alone, of people who go out of sight.
+//!
+//! The forecaster is a stand-in with 20 weighted goals, the training curves are made up, and both say so on the page.
+
+use std::{error::Error, f64::consts::TAU, path::Path};
+
+use ddl_data::{Convention, Dataset, HORIZON, OBSERVED, Position, Window, WindowRule};
+use ddl_eval::{
+    Conditions, Forecast, ForecastError, Forecaster, Protocol, ResultRow,
+    baseline::{self, GoalSource, StraightLine, WeightedGoals},
+    metric::{displacement::distance, stability::RolloutStability},
+};
+use ddl_report::{
+    EpochPoint, Moment, Report, TrainingCurve, gallery,
+    page::{Page, Viewer},
+};
+
+/// Goals a pedestrian: turns and speeds of the fan.
+const TURNS_DEG: [f64; 5] = [-38.0, -15.0, 0.0, 15.0, 38.0];
+const SPEEDS: [f64; 4] = [0.45, 0.8, 1.0, 1.2];
+/// Moments of the player alone.
+const MOMENTS: usize = 8;
+
+/// Goals in a fan around the point that the mean velocity reaches: straight on and as fast is likeliest.
+#[derive(Clone, Copy)]
+struct Fan;
+
+impl Fan {
+    fn of(observed: &[Position]) -> (Vec<Position>, Vec<f64>) {
+        let (first, last) = (observed[3], observed[OBSERVED - 1]);
+        let ahead = [0, 1].map(|axis| (last[axis] - first[axis]) / 4.0 * HORIZON as f64);
+        let mut goals = Vec::new();
+        let mut weights = Vec::new();
+        for turn in TURNS_DEG {
+            let (sin, cos) = turn.to_radians().sin_cos();
+            for speed in SPEEDS {
+                goals.push([
+                    last[0] + speed * (cos * ahead[0] - sin * ahead[1]),
+                    last[1] + speed * (sin * ahead[0] + cos * ahead[1]),
+                ]);
+                weights.push((-(turn / 20.0).powi(2) - ((speed - 1.0) / 0.3).powi(2)).exp());
+            }
+        }
+        let sum: f64 = weights.iter().sum();
+        (goals, weights.iter().map(|w| w / sum).collect())
+    }
+}
+
+impl GoalSource for Fan {
+    fn name(&self) -> String {
+        "a fan of 20 goals".to_owned()
+    }
+
+    fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
+        let of = |i| {
+            let (goals, weights) = Fan::of(window.observed(i));
+            Ok(WeightedGoals::new(goals, weights)?)
+        };
+        (0..window.len()).map(of).collect()
+    }
+}
+
+/// Walks on as before and bends to the goal, which is nearly reached at the end. Shown the future, it takes the goal
+/// nearest the true end and twenty ways there.
+struct Bending;
+
+/// The way from where the pedestrian is, with its velocity, to the goal; `bend` moves its middle aside, m.
+fn way(observed: &[Position], goal: Position, bend: f64) -> Vec<Position> {
+    let (before, last) = (observed[OBSERVED - 2], observed[OBSERVED - 1]);
+    let (dx, dy) = (goal[0] - last[0], goal[1] - last[1]);
+    let length = dx.hypot(dy).max(1e-9);
+    (1..=HORIZON)
+        .map(|t| {
+            let s = t as f64 / HORIZON as f64;
+            // A parabola that leaves with the pedestrian's velocity, faded into the straight line.
+            let fade = s * s * (3.0 - 2.0 * s);
+            let aside = bend * (std::f64::consts::PI * s).sin() / length;
+            let along = 1.0 - (1.0 - s).powf(1.15);
+            let on = |axis: usize, to: f64, across: f64| {
+                let inertia = last[axis] + (last[axis] - before[axis]) * t as f64;
+                let straight = last[axis] + 0.985 * along * to;
+                (1.0 - fade) * inertia + fade * straight + aside * across
+            };
+            [on(0, dx, -dy), on(1, dy, dx)]
+        })
+        .collect()
+}
+
+impl Forecaster for Bending {
+    fn name(&self) -> String {
+        "bending to a fan of 20 goals".to_owned()
+    }
+
+    fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
+        let (mut positions, mut weights, mut goals, mut certified) =
+            (vec![], vec![], vec![], vec![]);
+        for i in 0..window.len() {
+            let observed = window.observed(i);
+            let (fan, fan_weights) = Fan::of(observed);
+            let nearest = |end| {
+                let nearer = |a: &&Position, b: &&Position| {
+                    distance(**a, end).total_cmp(&distance(**b, end))
+                };
+                fan.iter().min_by(nearer).copied()
+            };
+            let chosen: Vec<(Position, f64, f64)> = match window.end(i).and_then(nearest) {
+                Some(goal) => (0..20)
+                    .map(|k| (goal, 0.05 * (f64::from(k) - 9.5), 0.05))
+                    .collect(),
+                None => fan
+                    .iter()
+                    .zip(&fan_weights)
+                    .map(|(goal, weight)| (*goal, 0.0, *weight))
+                    .collect(),
+            };
+            for (goal, bend, weight) in chosen {
+                let path = way(observed, goal, bend);
+                let judged = RolloutStability::of(observed[OBSERVED - 1], &path, goal);
+                certified.push(judged.decreasing && judged.largest_turn < 75.0);
+                positions.extend(path);
+                weights.push(weight);
+                goals.push(goal);
+            }
+        }
+        let k = weights.len() / window.len();
+        let forecast = Forecast::new(window.len(), k, positions, weights, Some(goals))?;
+        Ok(forecast.with_certified(certified)?)
+    }
+}
+
+fn rows(
+    fold: &str,
+    windows: &[Window],
+    rule: WindowRule,
+) -> Result<Vec<ResultRow>, Box<dyn Error>> {
+    let mut rows = Vec::new();
+    for protocol in Protocol::ALL {
+        let named = |forecaster: String| Conditions {
+            device: "cpu".to_owned(),
+            commit: "example".to_owned(),
+            ..Conditions::new(Convention::Simulated, rule, protocol, fold, forecaster)
+        };
+        rows.push(ResultRow::measure(
+            named(Bending.name()),
+            &Bending,
+            windows,
+        )?);
+        let straight = StraightLine::to(Fan);
+        rows.push(ResultRow::measure(
+            named(straight.name()),
+            &straight,
+            windows,
+        )?);
+        // Two seeds of what is random; what is not is the same twice, and kept once.
+        for seed in [1, 2] {
+            rows.extend(baseline::measure(&named(String::new()), windows, seed)?);
+        }
+    }
+    Ok(rows)
+}
+
+/// The player alone, as for tracks that are still going on: what then happened was seen of everybody at first, of some later, of nobody
+/// at the end.
+fn viewer(windows: &[Window]) -> Result<Viewer, Box<dyn Error>> {
+    let spread = windows.iter().step_by((windows.len() / MOMENTS).max(1));
+    let mut moments = Vec::new();
+    for (at, window) in spread.enumerate() {
+        let under_way = window.without_future();
+        let forecast = Bending.forecast(&under_way)?;
+        let seen: Vec<Vec<Position>> = (0..window.len())
+            .map(|i| {
+                let steps =
+                    HORIZON.saturating_sub(5 * at * (i % 3)) * usize::from(at + 1 < MOMENTS);
+                window.track(i)[OBSERVED..OBSERVED + steps].to_vec()
+            })
+            .collect();
+        moments.push(Moment::under_way(
+            Bending.name(),
+            &under_way,
+            &forecast,
+            &seen,
+        )?);
+    }
+    Ok(Viewer::new("People who go out of sight", moments)
+        .lead("A simulated crowd, and a stand-in for a forecaster."))
+}
+
+/// Curves that look like a training's. Nothing was trained.
+fn made_up(folds: &[&str]) -> Vec<TrainingCurve> {
+    let mut curves = Vec::new();
+    for (f, fold) in folds.iter().enumerate() {
+        for (v, variant) in ["full", "no-dynamics", "no-goal-shift"]
+            .into_iter()
+            .enumerate()
+        {
+            for seed in [1, 2] {
+                let floor = 0.02 + 0.006 * f as f64 + 0.012 * v as f64;
+                let wobble = |epoch: usize| (TAU * (0.37 * epoch as f64 + 0.3 * seed as f64)).sin();
+                let point = |epoch: usize| {
+                    let descent = (-(epoch as f64) / (4.0 + v as f64)).exp();
+                    EpochPoint {
+                        epoch,
+                        loss: floor * (1.0 + 0.04 * wobble(epoch)) + 0.3 * descent,
+                        validation: Some(
+                            5.0 * floor * (1.0 + 0.05 * wobble(epoch + 3)) + 0.5 * descent,
+                        ),
+                        seconds: 12.0,
+                    }
+                };
+                curves.push(TrainingCurve {
+                    fold: (*fold).to_owned(),
+                    variant: variant.to_owned(),
+                    seed,
+                    loss: "made-up loss for this example (nothing was trained), m²".to_owned(),
+                    epochs: (1..=30).map(point).collect(),
+                });
+            }
+        }
+    }
+    curves
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [folder] = arguments.as_slice() else {
+        return Err("usage: report_page FOLDER".into());
+    };
+    let folder = Path::new(folder);
+    let dataset = Dataset::simulated(1);
+    let (mut results, mut shown) = (Vec::new(), Vec::new());
+    for fold in dataset.folds() {
+        let windows = fold.test_windows(WindowRule::Published);
+        results.extend(rows(fold.name(), &windows, WindowRule::Published)?);
+        let complete = fold.test_windows(WindowRule::Complete);
+        results.extend(rows(fold.name(), &complete, WindowRule::Complete)?);
+        let forecasts = Protocol::Fair.forecast(&Bending, &windows)?;
+        let forecaster = Bending.name();
+        shown.extend(gallery::moments(
+            fold.name(),
+            &forecaster,
+            &windows,
+            &forecasts,
+        )?);
+    }
+    let report = Report::new("Stand-in forecasters on simulated crowds", results)?;
+    let curves = made_up(&dataset.fold_names());
+    let page = Page::new(&report).moments(shown.clone()).curves(curves);
+
+    std::fs::create_dir_all(folder.join("figures"))?;
+    std::fs::write(folder.join("page.html"), page.to_html()?)?;
+    let crowd = dataset.folds()[0].test_windows(WindowRule::Published);
+    let viewer = viewer(&crowd)?.to_html()?;
+    std::fs::write(folder.join("viewer.html"), viewer)?;
+    for (name, svg) in page.figures()? {
+        std::fs::write(folder.join("figures").join(name), svg)?;
+    }
+    std::fs::write(folder.join("report.json"), report.to_json()?)?;
+    std::fs::write(folder.join("moments.json"), serde_json::to_string(&shown)?)?;
+    Ok(())
+}

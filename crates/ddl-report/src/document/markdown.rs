@@ -1,0 +1,57 @@
+//! A document as markdown.
+
+use super::parts::{Document, Part, unfolded};
+
+impl Document {
+    /// Markdown that reads well both as text and rendered; tables of pipes.
+    #[must_use]
+    pub fn to_markdown(&self) -> String {
+        let head = format!("{}\n\n# {}\n", self.lead, self.title);
+        let parts = unfolded(&self.parts).map(render);
+        parts.fold(head, |page, part| page + "\n" + &part)
+    }
+}
+
+fn render(part: &Part) -> String {
+    match part {
+        Part::Heading { level, text } => format!("#{} {text}\n", "#".repeat(*level)),
+        Part::Paragraph(text) => format!("{text}\n"),
+        Part::Warning(text) => format!("> **Warning.** {text}\n"),
+        Part::List(items) => items.iter().flat_map(|item| ["- ", item, "\n"]).collect(),
+        // Unfolded above.
+        Part::Details { .. } => String::new(),
+        Part::Table(table) => match table.caption() {
+            Some(caption) => format!("{caption}\n\n{table}"),
+            None => table.to_string(),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Table;
+
+    #[test]
+    fn parts_are_separated_by_empty_lines() {
+        let mut table = Table::new(["a"]);
+        table.row(["1"]);
+        let document = Document {
+            lead: "First.".to_owned(),
+            title: "Title".to_owned(),
+            parts: vec![
+                Part::heading("One"),
+                Part::List(vec!["x".to_owned(), "`y`".to_owned()]),
+                Part::Warning("Mind.".to_owned()),
+                Part::subheading("Two"),
+                Part::Paragraph("Words.".to_owned()),
+                Part::Table(table.captioned("In metres.")),
+            ],
+        };
+        assert_eq!(
+            document.to_markdown(),
+            "First.\n\n# Title\n\n## One\n\n- x\n- `y`\n\n> **Warning.** Mind.\n\n### Two\n\nWords.\n\n\
+             In metres.\n\n| a |\n|---|\n| 1 |\n"
+        );
+    }
+}

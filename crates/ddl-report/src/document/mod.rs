@@ -1,0 +1,13 @@
+//! A page of results before it has a form: what is said in which order, to be rendered as markdown, HTML or LaTeX.
+//!
+//! All three are made from the same parts, so that a number cannot differ between them.
+
+mod html;
+mod latex;
+mod markdown;
+mod parts;
+mod table;
+
+pub(crate) use html::{ContentsEntry, escape, identifier, inline, unused};
+pub use parts::{Document, Part};
+pub use table::Table;

@@ -1,0 +1,178 @@
+//! A table of text and numbers; as text, a markdown table.
+
+use comfy_table::{CellAlignment, presets::ASCII_MARKDOWN};
+
+/// A table whose first column is text, aligned left, and whose other columns are numbers, aligned
+/// right, unless [`text_column`](Self::text_column) says otherwise.
+///
+/// # Examples
+/// ```
+/// use ddl_report::document::Table;
+/// let mut table = Table::new(["method", "eth"]);
+/// table.row(["STAR", "0.36/0.65"]);
+/// assert_eq!(
+///     table.to_string(),
+///     "| method |       eth |\n|--------|----------:|\n| STAR   | 0.36/0.65 |\n"
+/// );
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Table {
+    caption: Option<String>,
+    header: Vec<String>,
+    text: Vec<bool>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table with these column names and no row yet.
+    #[must_use]
+    pub fn new<S: Into<String>>(header: impl IntoIterator<Item = S>) -> Self {
+        let header: Vec<_> = header.into_iter().map(Into::into).collect();
+        let text = (0..header.len()).map(|column| column == 0).collect();
+        Self {
+            caption: None,
+            header,
+            text,
+            rows: Vec::new(),
+        }
+    }
+
+    /// Makes the columns of this name text.
+    #[must_use]
+    pub fn text_column(mut self, name: &str) -> Self {
+        for (text, _) in self
+            .text
+            .iter_mut()
+            .zip(&self.header)
+            .filter(|(_, cell)| *cell == name)
+        {
+            *text = true;
+        }
+        self
+    }
+
+    /// The table with words of its own about what its numbers are: convention, unit, what was averaged.
+    #[must_use]
+    pub fn captioned(self, caption: impl Into<String>) -> Self {
+        Self {
+            caption: Some(caption.into()),
+            ..self
+        }
+    }
+
+    /// The caption, if it has one.
+    #[must_use]
+    pub fn caption(&self) -> Option<&str> {
+        self.caption.as_deref()
+    }
+
+    /// The column names.
+    #[must_use]
+    pub fn header(&self) -> &[String] {
+        &self.header
+    }
+
+    /// The rows, each as long as the header.
+    #[must_use]
+    pub fn rows(&self) -> &[Vec<String>] {
+        &self.rows
+    }
+
+    /// Whether a column is text, and not numbers.
+    #[must_use]
+    pub fn is_text(&self, column: usize) -> bool {
+        self.text.get(column).copied().unwrap_or(false)
+    }
+
+    /// Adds a row. Missing cells are empty, cells beyond the header are dropped.
+    pub fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) -> &mut Self {
+        let mut row: Vec<_> = cells.into_iter().map(Into::into).collect();
+        row.resize(self.header.len(), String::new());
+        self.rows.push(row);
+        self
+    }
+}
+
+/// A cell must not end its column or its line.
+fn escape(cell: &str) -> String {
+    cell.replace('|', "\\|").replace(['\n', '\r'], " ")
+}
+
+impl std::fmt::Display for Table {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut table = comfy_table::Table::new();
+        table
+            .load_style(ASCII_MARKDOWN)
+            .set_header(self.header.iter().map(|cell| escape(cell)))
+            .add_rows(
+                self.rows
+                    .iter()
+                    .map(|row| row.iter().map(|cell| escape(cell))),
+            );
+        for (column, text) in table.column_iter_mut().zip(&self.text) {
+            let side = if *text {
+                CellAlignment::Left
+            } else {
+                CellAlignment::Right
+            };
+            column.set_cell_alignment(side);
+        }
+        for (number, line) in table.lines().enumerate() {
+            // The rule under the header carries the alignment of the rendered table.
+            let line = if number == 1 {
+                align_numbers(&line, &self.text)
+            } else {
+                line
+            };
+            writeln!(f, "{line}")?;
+        }
+        Ok(())
+    }
+}
+
+/// `|---|---|---|` becomes `|---|--:|--:|` where the last two columns are numbers.
+fn align_numbers(rule: &str, text: &[bool]) -> String {
+    let columns = rule.trim_matches('|').split('|').zip(text);
+    columns.fold("|".to_owned(), |rule, (dashes, text)| {
+        match dashes.strip_suffix('-') {
+            Some(shorter) if !text => rule + shorter + ":|",
+            _ => rule + dashes + "|",
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_and_line_ends_stay_inside_their_cell() {
+        let mut table = Table::new(["a|b", "c"]);
+        table.row(["x\ny"]).row(["1", "2", "3"]);
+        let lines: Vec<String> = table.to_string().lines().map(str::to_owned).collect();
+        assert_eq!(
+            lines,
+            [
+                "| a\\|b | c |",
+                "|------|--:|",
+                "| x y  |   |",
+                "| 1    | 2 |"
+            ]
+        );
+    }
+
+    #[test]
+    fn text_columns_are_aligned_left() {
+        let mut table = Table::new(["a", "bb", "c"]).text_column("c");
+        table.row(["1", "2", "three"]);
+        let lines: Vec<String> = table.to_string().lines().map(str::to_owned).collect();
+        assert_eq!(
+            lines,
+            [
+                "| a | bb | c     |",
+                "|---|---:|-------|",
+                "| 1 |  2 | three |"
+            ]
+        );
+    }
+}

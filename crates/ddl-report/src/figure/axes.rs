@@ -1,0 +1,183 @@
+//! The frame of a plot in metres, with its grid and numbers.
+
+use ddl_data::Position;
+
+use super::{
+    drawing::Drawing,
+    plan::{PlanView, bounds},
+    scale::{round_step, ticks},
+};
+
+/// A scene where everybody stands still is shown this wide, metres.
+const LEAST_SPAN: f64 = 4.0;
+
+/// Sizes of one kind of plot, pixels.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PlotLayout {
+    /// Neither side of the plot is smaller: across, up.
+    pub(super) smallest: [f64; 2],
+    /// The plot fills at most this much: across, up.
+    pub(super) largest: [f64; 2],
+    /// Space to the left of the plot and above it.
+    pub(super) before: [f64; 2],
+    /// Space to the right of the plot and below it.
+    pub(super) after: [f64; 2],
+    /// Margin around the points within the plot, share of the span.
+    pub(super) margin: f64,
+    /// Steps on the longer side, about.
+    pub(super) steps: f64,
+}
+
+/// One scene; the legend stands on the right.
+pub(super) const SCENE: PlotLayout = PlotLayout {
+    smallest: [360.0, 270.0],
+    largest: [720.0, 560.0],
+    before: [62.0, 46.0],
+    after: [258.0, 56.0],
+    margin: 0.05,
+    steps: 10.0,
+};
+
+/// One of several plots of the same size; two lines of title and one of text stand above it.
+pub(super) const PANEL: PlotLayout = PlotLayout {
+    smallest: [300.0; 2],
+    largest: [300.0; 2],
+    before: [44.0, 68.0],
+    after: [14.0, 36.0],
+    margin: 0.1,
+    steps: 7.0,
+};
+
+/// The plot area of a picture.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Axes {
+    /// Lower left and upper right corner, metres.
+    low: Position,
+    high: Position,
+    plan: PlanView,
+    layout: &'static PlotLayout,
+}
+
+impl Axes {
+    /// A plot that holds every point; its space, lettering included, begins at the origin.
+    pub(super) fn around(points: &[Position], layout: &'static PlotLayout) -> Self {
+        // Without points there is nothing to show but empty axes.
+        let [low, high] = bounds(points.iter().copied()).unwrap_or([[0.0; 2]; 2]);
+        let centre = [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]));
+        let fitting = |axis: usize| {
+            let span: f64 = high[axis] - low[axis];
+            span.max(LEAST_SPAN) * (1.0 + 2.0 * layout.margin)
+        };
+        let spans = [0, 1].map(fitting);
+        let scale = (layout.largest[0] / spans[0]).min(layout.largest[1] / spans[1]);
+        let half = [0, 1].map(|axis| 0.5 * spans[axis].max(layout.smallest[axis] / scale));
+        Self {
+            low: [0, 1].map(|axis| centre[axis] - half[axis]),
+            high: [0, 1].map(|axis| centre[axis] + half[axis]),
+            plan: PlanView {
+                centre,
+                middle: [0, 1].map(|axis| layout.before[axis] + scale * half[axis]),
+                scale,
+            },
+            layout,
+        }
+    }
+
+    /// The same plot, its space moved by so many pixels.
+    pub(super) fn moved(mut self, by: [f64; 2]) -> Self {
+        self.plan.middle = [0, 1].map(|axis| self.plan.middle[axis] + by[axis]);
+        self
+    }
+
+    /// Size of the space that plot and lettering have together, pixels.
+    pub(super) fn size(&self) -> [f64; 2] {
+        let [from, to] = self.frame();
+        [0, 1]
+            .map(|axis| self.layout.before[axis] + to[axis] - from[axis] + self.layout.after[axis])
+    }
+
+    /// Where places are drawn.
+    pub(super) fn plan(&self) -> &PlanView {
+        &self.plan
+    }
+
+    /// Upper left and lower right corner of the plot, pixels.
+    pub(super) fn frame(&self) -> [[f64; 2]; 2] {
+        [
+            self.plan.px([self.low[0], self.high[1]]),
+            self.plan.px([self.high[0], self.low[1]]),
+        ]
+    }
+
+    /// Draws grid, frame and numbers.
+    pub(super) fn draw(&self, drawing: &mut Drawing) {
+        let [[left, top], [right, bottom]] = self.frame();
+        let span = (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]);
+        let step = round_step(span / self.layout.steps);
+        for (tick, label) in ticks(self.low[0], self.high[0], step) {
+            let [x, _] = self.plan.px([tick, 0.0]);
+            drawing.line("grid", [x, top], [x, bottom]);
+            drawing.text("small middle", [x, bottom + 17.0], label);
+        }
+        for (tick, label) in ticks(self.low[1], self.high[1], step) {
+            let [_, y] = self.plan.px([0.0, tick]);
+            drawing.line("grid", [left, y], [right, y]);
+            drawing.text("small end", [left - 8.0, y + 4.0], label);
+        }
+        drawing.rectangle("frame", self.frame());
+    }
+
+    /// Writes the names of the axes outside the numbers.
+    pub(super) fn draw_names(&self, drawing: &mut Drawing) {
+        let [[left, top], [right, bottom]] = self.frame();
+        let across = [f64::midpoint(left, right), bottom + 40.0];
+        drawing.text("middle", across, "x (m)");
+        let up = [left - 42.0, f64::midpoint(top, bottom)];
+        drawing.upward_text("middle", up, "y (m)");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_metre_is_as_long_up_as_across() {
+        for layout in [&SCENE, &PANEL] {
+            let axes = Axes::around(&[[0.0, 0.0], [30.0, 2.0]], layout).moved([700.0, 90.0]);
+            let [a, b, c] = [[1.0, 1.0], [2.0, 1.0], [1.0, 2.0]].map(|p| axes.plan().px(p));
+            assert!(((b[0] - a[0]) - (a[1] - c[1])).abs() < 1e-9);
+            let [from, to] = axes.frame();
+            for corner in [[0.0, 0.0], [30.0, 2.0]] {
+                let shown = axes.plan().px(corner);
+                assert!((0..2).all(|axis| (from[axis]..=to[axis]).contains(&shown[axis])));
+            }
+        }
+    }
+
+    #[test]
+    fn extreme_scenes_have_readable_axes() {
+        for points in [vec![], vec![[5.0, -3.0]], vec![[-1e5, 0.0], [1e5, 0.0]]] {
+            for (layout, most) in [(&SCENE, 11), (&PANEL, 8)] {
+                let axes = Axes::around(&points, layout);
+                let [width, height] = axes.size();
+                assert!(width <= 1100.0 && height < 800.0, "{width} x {height}");
+                let mut drawing = Drawing::new(width, height, "");
+                axes.draw(&mut drawing);
+                let count = drawing.inline("").matches("small middle").count();
+                assert!((2..=most).contains(&count), "{count} ticks");
+            }
+        }
+    }
+
+    #[test]
+    fn panels_are_of_one_size_wherever_they_are() {
+        let size = |points: &[Position], by| {
+            let size = Axes::around(points, &PANEL).moved(by).size();
+            size.map(|side| (side * 1e6).round() as i64)
+        };
+        let one = size(&[[0.0, 0.0], [30.0, 2.0]], [0.0, 0.0]);
+        assert_eq!(one, size(&[[0.0, 0.0], [1.0, 50.0]], [640.0, 1300.0]));
+        assert_eq!(one, size(&[], [20.0, 0.0]));
+    }
+}

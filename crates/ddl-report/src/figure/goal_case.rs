@@ -1,0 +1,256 @@
+//! A pedestrian with its estimated goals: one panel of a picture.
+
+use ddl_data::{OBSERVED, Position, WINDOW};
+
+use super::error::{FigureError, GoalCaseProblem};
+use ddl_eval::{Forecast, baseline::WeightedGoals, metric::displacement::distance};
+
+/// Places farther from the pedestrian are taken for a mistake (m): at such a scale nothing is seen anyway.
+const FARTHEST: f64 = 1e6;
+
+/// What was seen of a pedestrian, how it went on, and where it was thought to be going.
+///
+/// # Examples
+/// ```
+/// use ddl_eval::baseline::WeightedGoals;
+/// use ddl_report::figure::{self, GoalCase};
+/// let track: Vec<_> = (0..20).map(|t| [0.4 * f64::from(t), 0.0]).collect();
+/// let goals = WeightedGoals::new(vec![[7.6, 0.3], [6.0, 2.0]], vec![0.8, 0.2])?;
+/// let case = GoalCase::new("corridor, frame 120, pedestrian 7: straight on", &track, goals)?;
+/// assert_eq!(case.nearest_goal(), 0);
+/// assert!((case.error() - 0.3).abs() < 1e-12);
+/// let svg = figure::goals("Estimated goals", &[case])?;
+/// assert!(svg.contains("nearest goal 0.30 m off"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct GoalCase {
+    title: String,
+    track: Vec<Position>,
+    goals: WeightedGoals,
+    experts: Vec<Vec<Position>>,
+    nearest: usize,
+}
+
+impl GoalCase {
+    /// A pedestrian and its goals, without experts.
+    ///
+    /// # Shapes
+    /// `track`: 20 positions (m), 8 observed and 12 true future ones; `goals` in the same coordinates.
+    ///
+    /// # Errors
+    /// Not 20 positions; a position or goal that is not finite or more than 1000 km from the last observed
+    /// position; weights that are no probabilities or do not sum to 1.
+    pub fn new(
+        title: impl Into<String>,
+        track: &[Position],
+        goals: WeightedGoals,
+    ) -> Result<Self, FigureError> {
+        let title = title.into();
+        let nearest = check(track, &goals).map_err(|problem| FigureError::GoalCase {
+            case: title.clone(),
+            problem,
+        })?;
+        Ok(Self {
+            title,
+            track: track.to_vec(),
+            goals,
+            experts: Vec::new(),
+            nearest,
+        })
+    }
+
+    /// The same case with the pedestrians that the goals come from, in any order.
+    ///
+    /// # Shapes
+    /// Each expert: 20 positions (m), carried over to this pedestrian, in the coordinates of its track. The last
+    /// 12 are drawn.
+    ///
+    /// # Errors
+    /// As [`GoalCase::new`], for the experts.
+    pub fn with_experts(mut self, experts: Vec<Vec<Position>>) -> Result<Self, FigureError> {
+        let here = self.here();
+        let faulty = (0..).zip(&experts).find_map(|(index, expert)| {
+            if expert.len() != WINDOW {
+                let found = expert.len();
+                return Some(GoalCaseProblem::ExpertLength { index, found });
+            }
+            check_near(here, expert, |at| {
+                format!("position {at} of expert {index}")
+            })
+            .err()
+        });
+        if let Some(problem) = faulty {
+            let case = self.title;
+            return Err(FigureError::GoalCase { case, problem });
+        }
+        self.experts = experts;
+        Ok(self)
+    }
+
+    /// The title.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// The goals with their weights.
+    #[must_use]
+    pub fn goals(&self) -> &WeightedGoals {
+        &self.goals
+    }
+
+    /// Index of the goal nearest the true end: of equally near ones the likeliest, of these the first.
+    #[must_use]
+    pub fn nearest_goal(&self) -> usize {
+        self.nearest
+    }
+
+    /// Distance of the nearest goal from the true end, metres.
+    #[must_use]
+    pub fn error(&self) -> f64 {
+        distance(self.goals.goals()[self.nearest], self.track[WINDOW - 1])
+    }
+
+    /// The last observed position.
+    pub(super) fn here(&self) -> Position {
+        self.track[OBSERVED - 1]
+    }
+
+    pub(super) fn observed(&self) -> &[Position] {
+        &self.track[..OBSERVED]
+    }
+
+    /// The true path after the last observed position.
+    pub(super) fn truth(&self) -> &[Position] {
+        &self.track[OBSERVED..]
+    }
+
+    /// The path of each expert from where it stood when the pedestrian was last observed.
+    pub(super) fn expert_paths(&self) -> impl Iterator<Item = &[Position]> {
+        self.experts.iter().map(|expert| &expert[OBSERVED - 1..])
+    }
+}
+
+/// Index of the nearest goal, if the case is sound.
+fn check(track: &[Position], goals: &WeightedGoals) -> Result<usize, GoalCaseProblem> {
+    if track.len() != WINDOW {
+        return Err(GoalCaseProblem::TrackLength { found: track.len() });
+    }
+    let (here, end) = (track[OBSERVED - 1], track[WINDOW - 1]);
+    check_near(here, track, |at| format!("position {at} of the track"))?;
+    check_near(here, goals.goals(), |at| format!("goal {at}"))?;
+    let weights = goals.weights();
+    for (goal, &weight) in weights.iter().enumerate() {
+        if !(0.0..=1.0 + Forecast::WEIGHT_TOLERANCE).contains(&weight) {
+            return Err(GoalCaseProblem::Weight { goal, weight });
+        }
+    }
+    let sum: f64 = weights.iter().sum();
+    if (sum - 1.0).abs() > Forecast::WEIGHT_TOLERANCE {
+        return Err(GoalCaseProblem::NotNormalised { sum });
+    }
+    let distances = goals.goals().iter().map(|goal| distance(*goal, end));
+    let by_distance = |a: &(usize, (f64, &f64)), b: &(usize, (f64, &f64))| {
+        let ((_, (a, v)), (_, (b, w))) = (a, b);
+        a.total_cmp(b).then(w.total_cmp(v))
+    };
+    let nearest = distances.zip(weights).enumerate().min_by(by_distance);
+    Ok(nearest.map_or(0, |(index, _)| index))
+}
+
+fn check_near(
+    here: Position,
+    places: &[Position],
+    name: impl Fn(usize) -> String,
+) -> Result<(), GoalCaseProblem> {
+    // Not a number is not near.
+    let near = |place: &Position| distance(*place, here) <= FARTHEST;
+    match places.iter().position(|place| !near(place)) {
+        None => Ok(()),
+        Some(at) => Err(GoalCaseProblem::Place {
+            what: name(at),
+            position: places[at],
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn track() -> Vec<Position> {
+        (0..WINDOW).map(|t| [0.5 * t as f64, 1.0]).collect()
+    }
+
+    fn goals(goals: &[Position], weights: &[f64]) -> WeightedGoals {
+        WeightedGoals::new(goals.to_vec(), weights.to_vec()).unwrap()
+    }
+
+    fn message(result: Result<GoalCase, FigureError>) -> String {
+        result.unwrap_err().to_string()
+    }
+
+    #[test]
+    fn the_nearest_goal_is_nearest_to_the_end_and_not_to_the_pedestrian() {
+        let set = goals(&[[4.0, 1.0], [9.5, 1.5], [9.5, 3.0]], &[0.6, 0.1, 0.3]);
+        let case = GoalCase::new("a", &track(), set).unwrap();
+        assert_eq!(case.nearest_goal(), 1);
+        assert!((case.error() - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn of_equally_near_goals_the_likeliest_is_meant() {
+        let set = goals(&[[9.5, 2.0], [9.5, 0.0], [9.5, 2.0]], &[0.0, 0.4, 0.6]);
+        let case = GoalCase::new("a", &track(), set).unwrap();
+        assert_eq!(case.nearest_goal(), 2);
+    }
+
+    #[test]
+    fn what_is_no_case_says_where_and_why() {
+        let good = || goals(&[[9.0, 1.0], [8.0, 1.0]], &[0.5, 0.5]);
+        let short = GoalCase::new("hotel, pedestrian 3", &track()[..19], good());
+        assert_eq!(
+            message(short),
+            "case `hotel, pedestrian 3`: the track must hold 20 positions (8 observed, 12 true), found 19"
+        );
+        let mut broken = track();
+        broken[7] = [f64::NAN, 0.0];
+        let nan = message(GoalCase::new("a", &broken, good()));
+        assert!(nan.contains("position 0 of the track"), "{nan}");
+        broken[7] = track()[7];
+        broken[13][1] = f64::INFINITY;
+        let infinite = message(GoalCase::new("a", &broken, good()));
+        assert!(
+            infinite.contains("position 13 of the track is [6.5, inf]"),
+            "{infinite}"
+        );
+        for far in [f64::NAN, 1e300, -2e6] {
+            let set = goals(&[[9.0, 1.0], [far, 1.0]], &[0.5, 0.5]);
+            assert!(message(GoalCase::new("a", &track(), set)).contains("goal 1 is"));
+        }
+        for (first, said) in [
+            (f64::NAN, "goal 0 has the weight NaN"),
+            (-0.5, "goal 0 has the weight -0.5"),
+            (0.25, "the weights sum to 0.75, not to 1"),
+        ] {
+            let set = goals(&[[9.0, 1.0], [8.0, 1.0]], &[first, 0.5]);
+            let found = message(GoalCase::new("a", &track(), set));
+            assert!(found.contains(said), "{found}");
+        }
+    }
+
+    #[test]
+    fn experts_are_checked_one_by_one() {
+        let case = GoalCase::new("a", &track(), goals(&[[9.0, 1.0]], &[1.0])).unwrap();
+        assert!(case.clone().with_experts(vec![]).is_ok());
+        let short = case
+            .clone()
+            .with_experts(vec![track(), track()[1..].to_vec()]);
+        assert!(message(short).contains("expert 1 must hold 20 positions, found 19"));
+        let mut lost = track();
+        lost[19][0] = f64::NEG_INFINITY;
+        let lost = message(case.with_experts(vec![track(), track(), lost]));
+        assert!(lost.contains("position 19 of expert 2 is"), "{lost}");
+    }
+}

@@ -1,0 +1,114 @@
+//! What was seen and forecast of one pedestrian: the same in every picture.
+
+use ddl_data::{OBSERVED, Position, TIME_STEP};
+
+use super::{
+    drawing::Drawing,
+    marks::{arrow, star},
+    plan::PlanView,
+};
+use crate::{MomentHypothesis, MomentPedestrian};
+
+/// Steps between two arrows.
+const ARROW_EVERY: usize = 3;
+/// An arrow is as long as the way of this time, s: its length is proportional to the speed.
+const ARROW_SECONDS: f64 = 0.8;
+
+fn from_last<'a>(
+    observed: &'a [Position],
+    path: &'a [Position],
+) -> impl Iterator<Item = &'a Position> {
+    observed[OBSERVED - 1..].iter().chain(path)
+}
+
+/// Somebody whom the picture is not about.
+pub(crate) fn bystander(drawing: &mut Drawing, plan: &PlanView, pedestrian: &MomentPedestrian) {
+    drawing.path("bystander", &plan.path(&pedestrian.observed));
+    let ahead = plan.path(from_last(&pedestrian.observed, &pedestrian.truth));
+    drawing.path("bystander-ahead", &ahead);
+    drawing.circle(
+        "bystander-dot",
+        plan.px(pedestrian.observed[OBSERVED - 1]),
+        2.6,
+    );
+}
+
+/// Every hypothesis but the representative: the heavier, the clearer.
+pub(crate) fn other_hypotheses(
+    drawing: &mut Drawing,
+    plan: &PlanView,
+    pedestrian: &MomentPedestrian,
+) {
+    let representative = pedestrian.representative();
+    let weights = pedestrian.hypotheses.iter().map(|h| h.weight);
+    let heaviest = weights.fold(1e-9, f64::max);
+    for (k, hypothesis) in pedestrian.hypotheses.iter().enumerate() {
+        if k == representative {
+            continue;
+        }
+        let share = (hypothesis.weight / heaviest).clamp(0.0, 1.0);
+        let path = plan.path(from_last(&pedestrian.observed, &hypothesis.positions));
+        drawing.styled_path("hypothesis", &path, &hypothesis_style(share));
+        let opacity = format!("opacity:{:.2}", 0.3 + 0.5 * share);
+        if let Some(goal) = hypothesis.goal {
+            drawing.styled_circle("goal", plan.px(goal), 2.5 + 3.5 * share.sqrt(), &opacity);
+        }
+    }
+}
+
+/// How a hypothesis is drawn whose weight is this share of the heaviest one's.
+pub(super) fn hypothesis_style(share: f64) -> String {
+    let (opacity, width) = (0.14 + 0.5 * share, 0.8 + share);
+    format!("opacity:{opacity:.2};stroke-width:{width:.1}")
+}
+
+/// The goal of the hypothesis that stands for all.
+pub(crate) fn representative_goal(
+    drawing: &mut Drawing,
+    plan: &PlanView,
+    pedestrian: &MomentPedestrian,
+) {
+    if let Some(goal) = pedestrian.hypotheses[pedestrian.representative()].goal {
+        drawing.circle("goal representative", plan.px(goal), 8.0);
+    }
+}
+
+/// The hypothesis that stands for all: dashes with a star at the end, and arrows of its velocity where they are asked for.
+pub(crate) fn representative(
+    drawing: &mut Drawing,
+    plan: &PlanView,
+    pedestrian: &MomentPedestrian,
+    with_velocities: bool,
+) {
+    let hypothesis: &MomentHypothesis = &pedestrian.hypotheses[pedestrian.representative()];
+    let way = from_last(&pedestrian.observed, &hypothesis.positions);
+    let way: Vec<Position> = way.copied().collect();
+    drawing.path("forecast", &plan.path(&way));
+    let arrows = way.windows(2).step_by(ARROW_EVERY);
+    for pair in arrows.filter(|_| with_velocities) {
+        let seconds = ARROW_SECONDS / TIME_STEP;
+        let tip = [0, 1].map(|axis| pair[0][axis] + seconds * (pair[1][axis] - pair[0][axis]));
+        for stroke in arrow(plan.px(pair[0]), plan.px(tip)).into_iter().flatten() {
+            drawing.path("velocity", &stroke);
+        }
+    }
+    if let Some(end) = way.last() {
+        drawing.polygon("star", &star(plan.px(*end), 7.0));
+    }
+}
+
+/// Dots where somebody was observed, and a line to a full dot along what then happened.
+pub(crate) fn track(
+    drawing: &mut Drawing,
+    plan: &PlanView,
+    observed: &[Position],
+    truth: &[Position],
+) {
+    if let Some(end) = truth.last() {
+        drawing.path("truth", &plan.path(from_last(observed, truth)));
+        drawing.circle("truth-end", plan.px(*end), 3.6);
+    }
+    for place in observed {
+        drawing.circle("observed", plan.px(*place), 2.4);
+    }
+}

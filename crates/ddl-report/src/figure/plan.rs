@@ -1,0 +1,36 @@
+//! Places seen from above: metres to pixels at one scale for both axes, y up.
+
+use ddl_data::Position;
+
+/// Where places are drawn.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PlanView {
+    /// The place in the middle, metres.
+    pub(crate) centre: Position,
+    /// Where it is drawn, pixels.
+    pub(crate) middle: [f64; 2],
+    /// Pixels a metre.
+    pub(crate) scale: f64,
+}
+
+impl PlanView {
+    pub(crate) fn px(&self, place: Position) -> [f64; 2] {
+        let [x, y] = [0, 1].map(|axis| self.scale * (place[axis] - self.centre[axis]));
+        [self.middle[0] + x, self.middle[1] - y]
+    }
+
+    pub(crate) fn path<'a>(&self, places: impl IntoIterator<Item = &'a Position>) -> Vec<[f64; 2]> {
+        places.into_iter().map(|place| self.px(*place)).collect()
+    }
+}
+
+/// Lower left and upper right corner of what must be seen, metres; `None` where there is nothing.
+pub(crate) fn bounds(places: impl IntoIterator<Item = Position>) -> Option<[Position; 2]> {
+    places.into_iter().fold(None, |bounds, place| {
+        let [low, high] = bounds.unwrap_or([place; 2]);
+        Some([
+            [0, 1].map(|axis| low[axis].min(place[axis])),
+            [0, 1].map(|axis| high[axis].max(place[axis])),
+        ])
+    })
+}

@@ -1,0 +1,162 @@
+//! One scene: everybody's past, future and forecast.
+
+use ddl_data::{OBSERVED, Position, Window};
+use ddl_eval::Forecast;
+
+use super::{
+    axes::{Axes, SCENE},
+    drawing::{Drawing, PLOT_STYLE},
+    error::FigureError,
+    legend::{self, Entry},
+    pedestrian,
+};
+use crate::{Moment, MomentPedestrian};
+
+/// Draws a scene with default settings; see [`SceneFigure`].
+///
+/// # Errors
+/// As [`SceneFigure::to_svg`].
+pub fn scene(window: &Window, forecast: &Forecast) -> Result<String, FigureError> {
+    SceneFigure::new(window, forecast).to_svg()
+}
+
+/// A picture of one window and its forecast.
+///
+/// # Examples
+/// ```
+/// use ddl_data::{PedestrianId, Window};
+/// use ddl_eval::{Forecaster, baseline::ConstantVelocity};
+/// use ddl_report::figure::SceneFigure;
+/// let walk = (0..20).map(|t| [0.4 * f64::from(t), 0.02 * f64::from(t * t)]).collect();
+/// let window = Window::new("corridor", 0, 10, vec![PedestrianId(7)], vec![walk])?;
+/// let forecast = ConstantVelocity::angular_noise(1).forecast(&window)?;
+/// let svg = SceneFigure::new(&window, &forecast).title("A curve ahead").to_svg()?;
+/// assert!(svg.contains("<svg") && svg.contains("A curve ahead"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct SceneFigure<'a> {
+    window: &'a Window,
+    forecast: &'a Forecast,
+    title: Option<String>,
+    pedestrians: Option<Vec<usize>>,
+}
+
+impl<'a> SceneFigure<'a> {
+    /// A picture of everybody, titled with the recording and the first frame.
+    #[must_use]
+    pub fn new(window: &'a Window, forecast: &'a Forecast) -> Self {
+        Self {
+            window,
+            forecast,
+            title: None,
+            pedestrians: None,
+        }
+    }
+
+    /// Another title.
+    #[must_use]
+    pub fn title(mut self, title: impl Into<String>) -> Self {
+        self.title = Some(title.into());
+        self
+    }
+
+    /// Draws the forecasts of these rows of the window alone; the others are shown pale, without
+    /// forecasts. Rows that the window does not have are ignored.
+    #[must_use]
+    pub fn only(mut self, pedestrians: impl IntoIterator<Item = usize>) -> Self {
+        self.pedestrians = Some(pedestrians.into_iter().collect());
+        self
+    }
+
+    /// The picture as the text of an SVG file. The same input gives the same bytes.
+    ///
+    /// # Errors
+    /// The forecast is not of the window's pedestrians.
+    pub fn to_svg(&self) -> Result<String, FigureError> {
+        let (window, forecast) = (self.window, self.forecast);
+        let seen = |i: usize| window.track(i)[OBSERVED..].to_vec();
+        let seen: Vec<Vec<Position>> = (0..window.len()).map(seen).collect();
+        let moment = Moment::under_way("", window, forecast, &seen).map_err(|_| {
+            let (expected, found) = (window.len(), forecast.pedestrians());
+            FigureError::Pedestrians { expected, found }
+        })?;
+        let is_drawn = |i: &usize| self.pedestrians.as_ref().is_none_or(|of| of.contains(i));
+        let (drawn, others): (Vec<usize>, Vec<usize>) = (0..window.len()).partition(is_drawn);
+        let [drawn, others] = [drawn, others].map(|of| -> Vec<&MomentPedestrian> {
+            of.into_iter().map(|i| &moment.pedestrians[i]).collect()
+        });
+        let axes = Axes::around(&extent(&drawn), &SCENE);
+        let [width, height] = axes.size();
+        let heading = self.heading();
+        let mut drawing = Drawing::new(width, height, &heading);
+        axes.draw(&mut drawing);
+        axes.draw_names(&mut drawing);
+        let [[left, top], [right, _]] = axes.frame();
+        drawing.text("heading", [left, top - 18.0], heading);
+        legend::draw_column(&mut drawing, [right + 20.0, top], &self.entries());
+        // The plot is cut to those drawn: of the others, what lies within is shown.
+        drawing.within(axes.frame(), |drawing| {
+            for pedestrian in others {
+                pedestrian::bystander(drawing, axes.plan(), pedestrian);
+            }
+            for pedestrian in &drawn {
+                pedestrian::other_hypotheses(drawing, axes.plan(), pedestrian);
+            }
+            for pedestrian in &drawn {
+                pedestrian::representative_goal(drawing, axes.plan(), pedestrian);
+            }
+            for pedestrian in &drawn {
+                let (observed, truth) = (&pedestrian.observed, &pedestrian.truth);
+                drawing.path("seen", &axes.plan().path(observed));
+                pedestrian::track(drawing, axes.plan(), observed, truth);
+            }
+            for pedestrian in &drawn {
+                pedestrian::representative(drawing, axes.plan(), pedestrian, false);
+            }
+        });
+        Ok(drawing.to_file(PLOT_STYLE))
+    }
+
+    fn heading(&self) -> String {
+        self.title.clone().unwrap_or_else(|| {
+            format!(
+                "{}, from frame {}",
+                self.window.recording(),
+                self.window.start_frame()
+            )
+        })
+    }
+
+    /// What the legend names: the roles that the picture has.
+    fn entries(&self) -> Vec<Entry> {
+        let several = self.forecast.hypotheses() > 1;
+        let mut entries = vec![Entry::Observed];
+        if self.window.has_future() {
+            entries.push(Entry::Truth);
+        }
+        if several {
+            let paler = Entry::Note("(the paler, the less likely)");
+            entries.extend([Entry::Representative, Entry::OtherHypotheses, paler]);
+        } else {
+            entries.push(Entry::Forecast);
+        }
+        if self.forecast.has_goals() {
+            entries.push(Entry::Goals(if several { "goals" } else { "goal" }));
+        }
+        entries
+    }
+}
+
+/// Every point that the picture must hold.
+fn extent(drawn: &[&MomentPedestrian]) -> Vec<Position> {
+    let of_one = |pedestrian: &&MomentPedestrian| {
+        let mut points = [&pedestrian.observed[..], &pedestrian.truth].concat();
+        for hypothesis in &pedestrian.hypotheses {
+            points.extend(&hypothesis.positions);
+            points.extend(hypothesis.goal);
+        }
+        points
+    };
+    drawn.iter().flat_map(of_one).collect()
+}

@@ -1,0 +1,108 @@
+//! Which pedestrians to show: of each kind of motion one with an ordinary error.
+
+use ddl_eval::MotionKind;
+
+/// Picks a pedestrian of each kind of motion whose error is the median of its kind.
+///
+/// A picture of the best results says nothing about a method, so the rule leaves no choice: the pedestrians of a
+/// kind are ordered by their error, and the middle one is picked, the lower of the two middle ones where
+/// their number is even. Of equal errors the pedestrian that comes first in `pedestrians` is picked.
+///
+/// `pedestrians` holds the kind of motion of each pedestrian and its error (m), such as the distance of the nearest
+/// goal from the true end. The result holds indices into it, in the order of [`MotionKind::ALL`]; kinds that
+/// nobody has are left out, and so are pedestrians whose error is not finite.
+///
+/// # Examples
+/// ```
+/// use ddl_eval::MotionKind::{SpeedingUp, Standing};
+/// use ddl_report::figure::typical_pedestrians;
+/// let pedestrians = [(SpeedingUp, 0.9), (SpeedingUp, 0.1), (Standing, 0.02), (SpeedingUp, 0.4)];
+/// assert_eq!(typical_pedestrians(&pedestrians), [2, 3]);
+/// ```
+#[must_use]
+pub fn typical_pedestrians(pedestrians: &[(MotionKind, f64)]) -> Vec<usize> {
+    MotionKind::ALL
+        .into_iter()
+        .filter_map(|kind| typical_of(kind, pedestrians))
+        .collect()
+}
+
+fn typical_of(kind: MotionKind, pedestrians: &[(MotionKind, f64)]) -> Option<usize> {
+    let of_kind = |(_, pedestrian): &(usize, &(MotionKind, f64))| pedestrian.0 == kind;
+    let mut errors: Vec<(f64, usize)> = pedestrians
+        .iter()
+        .enumerate()
+        .filter(of_kind)
+        .map(|(index, pedestrian)| (pedestrian.1, index))
+        .filter(|(error, _)| error.is_finite())
+        .collect();
+    errors.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let median = errors.get(errors.len().checked_sub(1)? / 2)?.0;
+    errors
+        .into_iter()
+        .find_map(|(error, index)| error.total_cmp(&median).is_eq().then_some(index))
+}
+
+#[cfg(test)]
+mod tests {
+    use MotionKind::{Standing, Straight, TurningLeft};
+    use proptest::{collection::vec, prelude::*};
+
+    use super::*;
+
+    #[test]
+    fn neither_the_best_nor_the_worst_is_shown() {
+        let errors = [0.9, 0.1, 0.3, 0.2, 5.0];
+        let pedestrians = errors.map(|error| (Straight, error));
+        assert_eq!(typical_pedestrians(&pedestrians), [2]);
+        // Four: the lower of 0.2 and 0.3.
+        assert_eq!(typical_pedestrians(&pedestrians[..4]), [3]);
+    }
+
+    #[test]
+    fn equal_errors_and_errors_that_are_none() {
+        let pedestrians = [
+            (TurningLeft, f64::NAN),
+            (Straight, 0.5),
+            (Straight, 0.5),
+            (Straight, 0.5),
+            (Standing, f64::INFINITY),
+            (Standing, 0.0),
+        ];
+        assert_eq!(typical_pedestrians(&pedestrians), [5, 1]);
+        assert!(typical_pedestrians(&[]).is_empty());
+    }
+
+    proptest! {
+        #[test]
+        fn half_of_a_kind_is_no_better_and_half_no_worse(
+            pedestrians in vec((0..6_usize, 0.0..3.0_f64), 1..60)
+        ) {
+            let pedestrians: Vec<_> = pedestrians.into_iter().map(|(k, e)| (MotionKind::ALL[k], e)).collect();
+            let picked = typical_pedestrians(&pedestrians);
+            let kinds: Vec<_> = picked.iter().map(|&i| pedestrians[i].0).collect();
+            let present = MotionKind::ALL.into_iter().filter(|k| pedestrians.iter().any(|w| w.0 == *k));
+            prop_assert!(present.eq(kinds));
+            for i in picked {
+                let (kind, error) = pedestrians[i];
+                let count = |holds: &dyn Fn(f64) -> bool| {
+                    pedestrians.iter().filter(|w| w.0 == kind && holds(w.1)).count()
+                };
+                let all = count(&|_| true);
+                prop_assert!(2 * count(&|e| e <= error) >= all && 2 * count(&|e| e >= error) >= all);
+            }
+        }
+
+        #[test]
+        fn the_error_shown_does_not_depend_on_the_order(
+            pedestrians in vec((0..6_usize, 0.0..3.0_f64), 1..60)
+        ) {
+            let pedestrians: Vec<_> = pedestrians.into_iter().map(|(k, e)| (MotionKind::ALL[k], e)).collect();
+            let shown = |pedestrians: &[(MotionKind, f64)]| -> Vec<(MotionKind, f64)> {
+                typical_pedestrians(pedestrians).into_iter().map(|i| pedestrians[i]).collect()
+            };
+            let reversed: Vec<_> = pedestrians.iter().rev().copied().collect();
+            prop_assert_eq!(shown(&pedestrians), shown(&reversed));
+        }
+    }
+}

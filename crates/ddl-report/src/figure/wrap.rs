@@ -1,0 +1,122 @@
+//! Titles in lines that fit into a width.
+
+use super::drawing::text_width;
+
+/// A text in at most `most` lines (at least one); what does not fit into them is cut.
+///
+/// Lines end after a comma or colon, so that what belongs together stays together, unless the text then
+/// needs more room than there is.
+pub(super) fn wrapped(text: &str, size: f64, width: f64, most: usize) -> Vec<String> {
+    let fits = |line: &str| text_width(line, size) <= width;
+    let at_pauses = broken(text, fits, most, true);
+    if at_pauses.iter().all(|line| fits(line)) {
+        return at_pauses;
+    }
+    let mut lines = broken(text, fits, most, false);
+    for line in &mut lines {
+        if !fits(line) {
+            while !line.is_empty() && !fits(&format!("{line}…")) {
+                line.pop();
+            }
+            line.push('…');
+        }
+    }
+    lines
+}
+
+/// Fills line after line; all that is left goes into the last.
+fn broken(text: &str, fits: impl Fn(&str) -> bool, most: usize, at_pauses: bool) -> Vec<String> {
+    let (mut lines, mut line) = (Vec::new(), String::new());
+    for word in text.split_whitespace() {
+        if line.is_empty() {
+            word.clone_into(&mut line);
+            continue;
+        }
+        let longer = format!("{line} {word}");
+        if fits(&longer) || lines.len() + 1 >= most {
+            line = longer;
+            continue;
+        }
+        let (full, rest) = match line.rfind([',', ':']) {
+            // Not the comma of a number.
+            Some(pause) if at_pauses && line[pause + 1..].starts_with(' ') => {
+                let (full, rest) = line.split_at(pause + 1);
+                (full.to_owned(), format!("{} {word}", rest.trim_start()))
+            }
+            _ => (line, word.to_owned()),
+        };
+        lines.push(full);
+        line = rest;
+    }
+    lines.push(line);
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const SIZE: f64 = 12.0;
+    const WIDTH: f64 = 300.0;
+
+    #[test]
+    fn short_titles_stay_whole() {
+        assert_eq!(
+            wrapped("eth, frame 1234", SIZE, WIDTH, 2),
+            ["eth, frame 1234"]
+        );
+        assert_eq!(wrapped("", SIZE, WIDTH, 2), [""]);
+    }
+
+    #[test]
+    fn long_titles_break_after_a_comma_or_colon() {
+        let title = "students003, frame 10510, pedestrian 204: straight on";
+        assert_eq!(
+            wrapped(title, SIZE, WIDTH, 2),
+            ["students003, frame 10510, pedestrian 204:", "straight on"]
+        );
+        // Not within a number, and not where the rest would no longer fit.
+        for (title, lines) in [
+            (
+                "1,000 walkers and one more",
+                ["1,000 walkers", "and one more"],
+            ),
+            (
+                "many walkers, so few goals",
+                ["many walkers,", "so few goals"],
+            ),
+            (
+                "all, of them as it happens",
+                ["all, of them as", "it happens"],
+            ),
+        ] {
+            assert_eq!(wrapped(title, SIZE, 112.0, 2), lines);
+        }
+        let plain = "walkers of the test scene whose goal is the median one";
+        let lines = wrapped(plain, SIZE, WIDTH, 2);
+        assert_eq!((lines.len(), lines.join(" ")), (2, plain.to_owned()));
+    }
+
+    #[test]
+    fn what_is_too_long_is_cut() {
+        for title in ["many words ".repeat(50), "x".repeat(400)] {
+            let lines = wrapped(&title, SIZE, WIDTH, 2);
+            assert!(lines.iter().any(|line| line.ends_with('…')));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn lines_are_few_and_fit(text in "[a-zé,: ]{0,200}", width in 20.0..500.0_f64, most in 1..4_usize) {
+            let lines = wrapped(&text, SIZE, width, most);
+            prop_assert!((1..=most).contains(&lines.len()));
+            prop_assert!(lines.iter().all(|line| text_width(line, SIZE) <= width));
+            if !lines.iter().any(|line| line.ends_with('…')) {
+                let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+                prop_assert_eq!(words(&lines.join(" ")), words(&text));
+            }
+        }
+    }
+}

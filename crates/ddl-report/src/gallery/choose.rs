@@ -1,0 +1,186 @@
+//! The moments of a fold that are shown: typical cases of each kind, and the rest of the day.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use ddl_data::{HORIZON, Position, Window};
+
+use super::{Pick, Show};
+use crate::Moment;
+use ddl_eval::{
+    EvaluationError, Forecast, Scene,
+    category::{Interaction, MotionKind},
+    metric::{
+        collision::closest_approach,
+        displacement::{DisplacementErrors, distance},
+    },
+};
+
+/// Moments shown of each recording, besides those that are picked.
+const MOMENTS_A_RECORDING: usize = 8;
+/// Who converges has gone this far and is this near to the goal, m.
+const GONE: f64 = 2.0;
+const ARRIVED: f64 = 0.2;
+/// Who keeps distance does not touch the other: twice the radius of a pedestrian, m.
+const APART: f64 = 0.4;
+
+/// What to show of the forecasts of one fold, one a window, in order of recording and time.
+///
+/// For each kind of case ([`Show`]) the moment of one pedestrian: of all pedestrians of that kind the one of median minADE, so that
+/// neither a success nor a failure is picked by hand. And of each recording 8 moments evenly spread over its windows.
+///
+/// # Errors
+/// A window has no future, or a forecast is not of its window's pedestrians.
+pub fn moments(
+    fold: &str,
+    forecaster: &str,
+    windows: &[Window],
+    forecasts: &[Forecast],
+) -> Result<Vec<Moment>, EvaluationError> {
+    if windows.len() != forecasts.len() {
+        let (windows, forecasts) = (windows.len(), forecasts.len());
+        return Err(EvaluationError::Count { windows, forecasts });
+    }
+    let mut shown: BTreeMap<usize, Vec<Pick>> = spread_over_time(windows)
+        .into_iter()
+        .map(|index| (index, Vec::new()))
+        .collect();
+    for (index, pick) in picks(windows, forecasts)? {
+        shown.entry(index).or_default().push(pick);
+    }
+    shown
+        .into_iter()
+        .map(|(index, picks)| {
+            let moment = Moment::new(fold, forecaster, &windows[index], &forecasts[index])?;
+            Ok(moment.picked(picks))
+        })
+        .collect()
+}
+
+/// A pedestrian who is a case of something.
+struct GalleryCase {
+    window: usize,
+    pedestrians: Vec<usize>,
+    min_ade: f64,
+}
+
+/// One pick of each kind that occurs, with the index of its window.
+fn picks(
+    windows: &[Window],
+    forecasts: &[Forecast],
+) -> Result<Vec<(usize, Pick)>, EvaluationError> {
+    let mut cases: BTreeMap<Show, Vec<GalleryCase>> = BTreeMap::new();
+    for (index, (window, forecast)) in windows.iter().zip(forecasts).enumerate() {
+        let scene = Scene::new(window, forecast)?;
+        let errors = DisplacementErrors::of(&scene);
+        for i in 0..window.len() {
+            for (show, pedestrians) in shows(&scene, i) {
+                cases.entry(show).or_default().push(GalleryCase {
+                    window: index,
+                    pedestrians,
+                    min_ade: errors.min_ade(i),
+                });
+            }
+        }
+    }
+    Ok(cases
+        .into_iter()
+        .map(|(show, cases)| median(show, cases))
+        .collect())
+}
+
+/// The case of median error; of an even number the better of the two in the middle.
+fn median(show: Show, mut cases: Vec<GalleryCase>) -> (usize, Pick) {
+    let count = cases.len();
+    cases.sort_by(|a, b| {
+        a.min_ade
+            .total_cmp(&b.min_ade)
+            .then(a.window.cmp(&b.window))
+    });
+    let case = cases.swap_remove((count - 1) / 2);
+    let rule = match count {
+        1 => format!("the only such walker (minADE {:.2} m)", case.min_ade),
+        _ => format!(
+            "of {count} such walkers the one of median minADE ({:.2} m)",
+            case.min_ade
+        ),
+    };
+    let pick = Pick {
+        show,
+        pedestrians: case.pedestrians,
+        rule,
+    };
+    (case.window, pick)
+}
+
+/// What pedestrian `i` is a case of, and whom else it is about.
+fn shows(scene: &Scene<'_>, i: usize) -> Vec<(Show, Vec<usize>)> {
+    let window = scene.window();
+    let mut shows = Vec::new();
+    if converges(scene, i) {
+        shows.push((Show::Convergence, vec![i]));
+    }
+    match MotionKind::of(window.track(i)) {
+        Some(MotionKind::SlowingDown) => shows.push((Show::SlowingDown, vec![i])),
+        Some(MotionKind::TurningLeft | MotionKind::TurningRight) => {
+            shows.push((Show::Turning, vec![i]));
+        }
+        _ => {}
+    }
+    if let Some((other, _)) = nearest(window, i, Interaction::Group, mean_distance) {
+        shows.push((Show::Group, vec![i, other]));
+    }
+    let passed = nearest(window, i, Interaction::CollisionAvoidance, closest_approach);
+    if let Some((other, apart)) = passed
+        && apart >= APART
+    {
+        shows.push((Show::KeepingDistance, vec![i, other]));
+    }
+    shows
+}
+
+/// Whether the representative hypothesis goes a way and arrives.
+fn converges(scene: &Scene<'_>, i: usize) -> bool {
+    let k = scene.forecast().representative(i);
+    let end = scene.forecast().hypothesis(i, k)[HORIZON - 1];
+    distance(scene.last_observed(i), end) >= GONE
+        && scene
+            .forecast()
+            .goal(i, k)
+            .is_some_and(|goal| distance(end, goal) <= ARRIVED)
+}
+
+/// Of those with whom pedestrian `i` has an interaction of this kind the one whose true future is nearest, and how near.
+fn nearest(
+    window: &Window,
+    i: usize,
+    kind: Interaction,
+    apart: fn(&[Position], &[Position]) -> f64,
+) -> Option<(usize, f64)> {
+    (0..window.len())
+        .filter(|&j| Interaction::between(window, i, j).contains(&kind))
+        .map(|j| (j, apart(window.future(i), window.future(j))))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+fn mean_distance(a: &[Position], b: &[Position]) -> f64 {
+    let sum: f64 = a.iter().zip(b).map(|(p, q)| distance(*p, *q)).sum();
+    sum / a.len() as f64
+}
+
+/// Indices of windows evenly spread over those of each recording: the middles of 8 equal parts.
+fn spread_over_time(windows: &[Window]) -> BTreeSet<usize> {
+    let mut of_recording: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (index, window) in windows.iter().enumerate() {
+        of_recording
+            .entry(window.recording())
+            .or_default()
+            .push(index);
+    }
+    of_recording
+        .values()
+        .flat_map(|indices| {
+            (0..MOMENTS_A_RECORDING)
+                .map(|part| indices[(2 * part + 1) * indices.len() / (2 * MOMENTS_A_RECORDING)])
+        })
+        .collect()
+}

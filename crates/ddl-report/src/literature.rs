@@ -1,0 +1,260 @@
+//! Published results and measured baselines as data, each row with its source and data convention.
+//!
+//! Values are those printed by the source, in metres, ADE/FDE. Rows of different conventions are not
+//! comparable: on ETH the same system errs about 60 % more in the `social-gan` files than in the
+//! `star` files, because their frames are farther apart.
+
+use std::sync::LazyLock;
+
+use ddl_data::Convention;
+use serde::Deserialize;
+
+use crate::document::Table;
+
+/// The folds of every table here, in the order of its columns.
+pub const FOLDS: [&str; 5] = ["eth", "hotel", "univ", "zara1", "zara2"];
+
+/// What `literature.toml` holds.
+pub static LITERATURE: LazyLock<Literature> = LazyLock::new(|| {
+    toml::from_str(include_str!("literature.toml")).expect("the file is part of this crate")
+});
+
+/// Every number of others, and those of this project that none of its models made.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Literature {
+    /// Table I of the DDL paper, as printed: ADE/FDE, best of 20. It mixes data conventions.
+    pub table_one: Vec<PublishedRow>,
+    /// The best published systems measured in the `star` convention: minADE20/minFDE20.
+    pub star_convention: Vec<PublishedRow>,
+    /// Table II of the DDL paper: `star` convention, protocol `published`.
+    pub ablation: Vec<AblationRow>,
+    /// Baselines on all test windows of the `star` convention, cut by the published rule.
+    pub measured: Vec<MeasuredRow>,
+}
+
+/// One row of a published table.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PublishedRow {
+    /// Name of the method.
+    pub method: String,
+    /// Who published the method, and where.
+    pub source: String,
+    /// Data convention of the measurement; `None` where it is neither or could not be verified.
+    pub convention: Option<Convention>,
+    /// What a reader must know before comparing.
+    pub remark: Option<String>,
+    /// ADE and FDE (m) of each fold, in the order of [`FOLDS`].
+    pub folds: [[f64; 2]; 5],
+    /// The mean as printed; it may differ from the mean of the printed folds by rounding.
+    pub mean: [f64; 2],
+}
+
+/// One row of the ablation, Table II of the DDL paper.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AblationRow {
+    /// Name of the variant in this project: `star`, `no-goal-shift`, `no-dynamics` or `full`.
+    pub variant: String,
+    /// Component A: positions relative to the goal.
+    pub goal_shift: bool,
+    /// Component B: the stable dynamical system.
+    pub dynamics: bool,
+    /// ADE and FDE (m) of each fold, in the order of [`FOLDS`].
+    pub folds: [[f64; 2]; 5],
+    /// The mean as printed.
+    pub mean: [f64; 2],
+}
+
+/// A baseline measured with this project's definitions: `star` files, published test windows.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeasuredRow {
+    /// What was measured.
+    pub method: String,
+    /// What it reads or chooses that a forecaster cannot.
+    pub remark: Option<String>,
+    /// ADE of each fold, metres; `None` for rows that are errors of goals.
+    pub ade: Option<[f64; 5]>,
+    /// FDE of each fold, metres.
+    pub fde: [f64; 5],
+}
+
+/// Table I of the DDL paper, with the source and the convention of each row.
+#[must_use]
+pub fn table_one() -> Table {
+    published_table(&LITERATURE.table_one)
+}
+
+/// The best published systems in the `star` convention.
+#[must_use]
+pub fn star_convention_table() -> Table {
+    published_table(&LITERATURE.star_convention)
+}
+
+fn published_table(rows: &[PublishedRow]) -> Table {
+    let mut table = table_of_folds(&["method"], &["mean", "convention", "source"])
+        .text_column("convention")
+        .text_column("source");
+    for row in rows {
+        let convention = row.convention.map(|convention| convention.to_string());
+        let convention = convention.unwrap_or_else(|| "other or unknown".to_owned());
+        let source = [Some(&row.source), row.remark.as_ref()]
+            .into_iter()
+            .flatten();
+        let source: Vec<&str> = source.map(String::as_str).collect();
+        let start = [row.method.clone()].into_iter();
+        let end = [convention, source.join("; ")];
+        table.row(start.chain(cells(&row.folds, row.mean)).chain(end));
+    }
+    table
+}
+
+/// Table II of the DDL paper: what each component adds.
+#[must_use]
+pub fn ablation_table() -> Table {
+    let mut table = table_of_folds(&["variant", "goal shift", "dynamics"], &["mean"])
+        .text_column("goal shift")
+        .text_column("dynamics");
+    for row in &LITERATURE.ablation {
+        let start = [row.variant.clone()].into_iter().chain(row.components());
+        table.row(start.chain(cells(&row.folds, row.mean)));
+    }
+    table
+}
+
+impl AblationRow {
+    /// Whether the variant has the goal shift and the dynamics, in words.
+    pub(crate) fn components(&self) -> [String; 2] {
+        [self.goal_shift, self.dynamics].map(|has| if has { "yes" } else { "no" }.to_owned())
+    }
+}
+
+/// The measured baselines, with the plain mean of their folds.
+#[must_use]
+pub fn measured_table() -> Table {
+    let mut table = table_of_folds(&["baseline"], &["mean", "remark"]).text_column("remark");
+    let mean = |values: [f64; 5]| values.iter().sum::<f64>() / 5.0;
+    for row in &LITERATURE.measured {
+        let cell = |ade: Option<f64>, fde: f64| match ade {
+            Some(ade) => format!("{ade:.3}/{fde:.3}"),
+            None => format!("-/{fde:.3}"),
+        };
+        let folds = (0..5).map(|f| cell(row.ade.map(|ade| ade[f]), row.fde[f]));
+        let mean = cell(row.ade.map(mean), mean(row.fde));
+        let end = [mean, row.remark.clone().unwrap_or_default()];
+        table.row([row.method.clone()].into_iter().chain(folds).chain(end));
+    }
+    table
+}
+
+/// A table without rows: a column a fold between these.
+fn table_of_folds(start: &[&str], end: &[&str]) -> Table {
+    Table::new([start, &FOLDS, end].concat())
+}
+
+fn cells(folds: &[[f64; 2]; 5], mean: [f64; 2]) -> impl Iterator<Item = String> {
+    let all = folds.iter().copied().chain([mean]);
+    all.map(|[ade, fde]| format!("{ade:.2}/{fde:.2}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A typing error in a cell moves the mean of its row: printed means agree to their rounding.
+    #[test]
+    fn printed_means_are_the_means_of_the_printed_folds() {
+        let published = LITERATURE
+            .table_one
+            .iter()
+            .chain(&LITERATURE.star_convention);
+        let rows = published.map(|row| (&row.method, row.folds, row.mean));
+        let ablation = LITERATURE.ablation.iter();
+        for (name, folds, mean) in
+            rows.chain(ablation.map(|row| (&row.variant, row.folds, row.mean)))
+        {
+            for (error, printed) in mean.into_iter().enumerate() {
+                let found = folds.iter().map(|fold| fold[error]).sum::<f64>() / 5.0;
+                assert!(
+                    (found - printed).abs() < 0.0101,
+                    "{name}: {found} against {printed}"
+                );
+            }
+            assert!(
+                folds.iter().all(|[ade, fde]| ade < fde),
+                "{name}: ADE and FDE swapped?"
+            );
+        }
+    }
+
+    /// Fixed rows, typed in anew from the papers, and the number of rows of each table.
+    #[test]
+    fn the_file_holds_the_rows_of_the_papers() {
+        let Literature {
+            table_one,
+            star_convention,
+            ablation,
+            measured,
+        } = &*LITERATURE;
+        let rows = [
+            table_one.len(),
+            star_convention.len(),
+            ablation.len(),
+            measured.len(),
+        ];
+        assert_eq!(rows, [11, 5, 4, 12]);
+        let star = [
+            [0.36, 0.65],
+            [0.17, 0.36],
+            [0.31, 0.62],
+            [0.26, 0.55],
+            [0.22, 0.46],
+        ];
+        assert_eq!((&*table_one[3].method, table_one[3].folds), ("STAR", star));
+        assert_eq!((&*ablation[0].variant, ablation[0].folds), ("star", star));
+        let ddl = [
+            [0.26, 0.50],
+            [0.15, 0.35],
+            [0.29, 0.58],
+            [0.16, 0.29],
+            [0.13, 0.22],
+        ];
+        assert_eq!((&*table_one[10].method, table_one[10].folds), ("DDL", ddl));
+        assert_eq!(
+            (&*ablation[3].variant, ablation[3].mean),
+            ("full", table_one[10].mean)
+        );
+        let conventions = |convention| {
+            table_one
+                .iter()
+                .filter(|row| row.convention == convention)
+                .count()
+        };
+        assert_eq!(
+            [Some(Convention::Star), Some(Convention::SocialGan), None].map(conventions),
+            [2, 3, 6]
+        );
+        // Sums over all cells of each table.
+        let published = |rows: &[PublishedRow]| -> f64 {
+            rows.iter().flat_map(|row| row.folds).flatten().sum()
+        };
+        let sums = [
+            (published(table_one), 51.82),
+            (published(star_convention), 11.752),
+            (
+                ablation.iter().flat_map(|row| row.folds).flatten().sum(),
+                13.8,
+            ),
+            (
+                measured.iter().filter_map(|row| row.ade).flatten().sum(),
+                25.374,
+            ),
+            (measured.iter().flat_map(|row| row.fde).sum(), 59.57),
+        ];
+        for (found, expected) in sums {
+            assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+        }
+    }
+}

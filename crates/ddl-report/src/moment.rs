@@ -1,0 +1,244 @@
+//! One moment of a recording and what was forecast then, as data for galleries and the player.
+
+use ddl_data::{HORIZON, MadeUp, OBSERVED, PedestrianName, Position, Window};
+use serde::{Deserialize, Serialize};
+
+use crate::gallery::Pick;
+use ddl_eval::{
+    EvaluationError, Forecast, Scene, WindowProblem,
+    metric::{displacement::average_displacement, stability::RolloutStability},
+    representative::medoid,
+};
+
+/// Decimals of the positions and weights kept: a millimetre, a thousandth.
+const KEPT: f64 = 1e3;
+/// Probability of the region that is shown.
+const REGION: f64 = 0.9;
+
+/// What was observed, what was forecast and what then happened, at one moment of a recording.
+///
+/// Positions are metres rounded to the millimetre, weights to a thousandth: for looking at. The verdicts are those of the
+/// unrounded forecast.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Moment {
+    /// The fold whose test scene it is from.
+    pub fold: String,
+    /// Who forecast.
+    pub forecaster: String,
+    /// The recording.
+    pub recording: String,
+    /// Raw number of the last observed frame.
+    pub frame: i64,
+    /// Raw frames a step of 0.4 s.
+    pub frame_step: i64,
+    /// Everybody in the window.
+    #[serde(rename = "walkers")]
+    pub pedestrians: Vec<MomentPedestrian>,
+    /// What the moment was chosen to show; empty when it was chosen for its place in time alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub picks: Vec<Pick>,
+}
+
+/// One person of a [`Moment`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct MomentPedestrian {
+    /// The person's number or word in the recording.
+    pub pedestrian: PedestrianName,
+    /// 8 observed positions, m.
+    pub observed: Vec<Position>,
+    /// What then happened: 12 true positions, m; the first of them where no more were seen.
+    pub truth: Vec<Position>,
+    /// How many of the observed positions were made up; `None` where all were seen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub made_up: Option<MadeUp>,
+    /// How much the observed motion is like those of the training, 0 to 1; `None` where the forecaster does not say.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub familiarity: Option<f64>,
+    /// K hypotheses.
+    pub hypotheses: Vec<MomentHypothesis>,
+}
+
+/// One hypothesis of a [`MomentPedestrian`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct MomentHypothesis {
+    /// Its weight, in [0, 1].
+    pub weight: f64,
+    /// 12 positions, m.
+    pub positions: Vec<Position>,
+    /// Radii of its discs in the region that holds the pedestrian with a probability of 90 %, one a step, m; 0 where it has none, no radii for
+    /// forecasts without regions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub radii: Vec<f64>,
+    /// Where it heads, m; `None` for forecasts without goals.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub goal: Option<Position>,
+    /// Whether the distance to the goal, Phi, falls at every step; `None` without a goal.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub decreasing: Option<bool>,
+    /// Whether the forecaster's certificate holds; `None` where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certified: Option<bool>,
+}
+
+impl MomentPedestrian {
+    /// The hypothesis shown as the forecast: [`Forecast::representative`], of the rounded paths and weights kept here.
+    pub(crate) fn representative(&self) -> usize {
+        let weights: Vec<f64> = self.hypotheses.iter().map(|h| h.weight).collect();
+        let path = |k: usize| &self.hypotheses[k].positions;
+        medoid(&weights, |k, j| average_displacement(path(k), path(j)))
+    }
+}
+
+impl Moment {
+    /// The moment of a window and its forecast.
+    ///
+    /// # Errors
+    /// The forecast is not of the window's pedestrians, or the window has no future.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_data::{PedestrianId, Window};
+    /// use ddl_eval::{Forecaster, baseline::ConstantVelocity};
+    /// use ddl_report::Moment;
+    /// let walk = (0..20).map(|t| [0.4 * f64::from(t), 0.0]).collect();
+    /// let window = Window::new("corridor", 0, 10, vec![PedestrianId(7)], vec![walk])?;
+    /// let forecast = ConstantVelocity::last_step().forecast(&window)?;
+    /// let moment = Moment::new("corridor", "constant velocity", &window, &forecast)?;
+    /// assert_eq!(moment.frame, 70);
+    /// assert_eq!(moment.pedestrians[0].hypotheses[0].positions[11], [7.6, 0.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn new(
+        fold: impl Into<String>,
+        forecaster: impl Into<String>,
+        window: &Window,
+        forecast: &Forecast,
+    ) -> Result<Self, EvaluationError> {
+        let scene = Scene::new(window, forecast)?;
+        let truths: Vec<&[Position]> = (0..window.len()).map(|i| scene.truth(i)).collect();
+        Ok(Self::of(
+            (fold.into(), forecaster.into()),
+            window,
+            forecast,
+            &truths,
+        ))
+    }
+
+    /// The moment of a window without a future, such as one of tracks that are still going on.
+    ///
+    /// `seen[i]` is what then happened to pedestrian i as far as it was seen, m: the first of the 12 positions, or none.
+    ///
+    /// # Errors
+    /// The forecast or `seen` is not of the window's pedestrians, or more than 12 positions of somebody are there.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_data::{PedestrianId, Window};
+    /// use ddl_eval::{Forecaster, baseline::ConstantVelocity};
+    /// use ddl_report::Moment;
+    /// let walk = (0..8).map(|t| [0.4 * f64::from(t), 0.0]).collect();
+    /// let window = Window::new("yard", 0, 10, vec![PedestrianId(7)], vec![walk])?;
+    /// let forecast = ConstantVelocity::last_step().forecast(&window)?;
+    /// let moment = Moment::under_way("constant velocity", &window, &forecast, &[vec![[3.2, 0.0]]])?;
+    /// assert_eq!(moment.pedestrians[0].truth, [[3.2, 0.0]]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn under_way(
+        forecaster: impl Into<String>,
+        window: &Window,
+        forecast: &Forecast,
+        seen: &[Vec<Position>],
+    ) -> Result<Self, EvaluationError> {
+        for found in [forecast.pedestrians(), seen.len()] {
+            if found != window.len() {
+                let problem = WindowProblem::Pedestrians {
+                    expected: window.len(),
+                    found,
+                };
+                return Err(EvaluationError::of(window, problem));
+            }
+        }
+        let seen: Vec<&[Position]> = seen.iter().map(Vec::as_slice).collect();
+        if let Some(longest) = seen.iter().map(|path| path.len()).max()
+            && longest > HORIZON
+        {
+            return Err(EvaluationError::Seen { longest });
+        }
+        let fold = window.recording().to_owned();
+        Ok(Self::of((fold, forecaster.into()), window, forecast, &seen))
+    }
+
+    fn of(
+        (fold, forecaster): (String, String),
+        window: &Window,
+        forecast: &Forecast,
+        truths: &[&[Position]],
+    ) -> Self {
+        Self {
+            fold,
+            forecaster,
+            recording: window.recording().to_owned(),
+            frame: window.frames()[OBSERVED - 1],
+            frame_step: window.frame_step(),
+            pedestrians: truths
+                .iter()
+                .enumerate()
+                .map(|(i, truth)| pedestrian(window, forecast, truth, i))
+                .collect(),
+            picks: Vec::new(),
+        }
+    }
+
+    /// The same moment, chosen to show something.
+    #[must_use]
+    pub fn picked(self, picks: Vec<Pick>) -> Self {
+        Self { picks, ..self }
+    }
+}
+
+fn pedestrian(
+    window: &Window,
+    forecast: &Forecast,
+    truth: &[Position],
+    i: usize,
+) -> MomentPedestrian {
+    let last = window.observed(i)[OBSERVED - 1];
+    let hypothesis = |k: usize| {
+        let goal = forecast.goal(i, k);
+        let path = forecast.hypothesis(i, k);
+        debug_assert_eq!(path.len(), HORIZON);
+        MomentHypothesis {
+            weight: round(forecast.weight(i, k)),
+            positions: positions(path),
+            radii: match forecast.regions() {
+                None => Vec::new(),
+                Some(_) => (0..HORIZON)
+                    .map(|t| round(forecast.region_radius(i, k, t, REGION).unwrap_or(0.0)))
+                    .collect(),
+            },
+            goal: goal.map(|goal| goal.map(round)),
+            decreasing: goal.map(|goal| RolloutStability::of(last, path, goal).decreasing),
+            certified: forecast.certified(i, k),
+        }
+    };
+    let made_up = window.made_up(i);
+    MomentPedestrian {
+        pedestrian: window.name(i),
+        observed: positions(window.observed(i)),
+        truth: positions(truth),
+        made_up: (made_up != MadeUp::default()).then_some(made_up),
+        familiarity: forecast.familiarity(i).map(round),
+        hypotheses: (0..forecast.hypotheses()).map(hypothesis).collect(),
+    }
+}
+
+fn positions(path: &[Position]) -> Vec<Position> {
+    path.iter().map(|p| p.map(round)).collect()
+}
+
+fn round(value: f64) -> f64 {
+    (value * KEPT).round() / KEPT
+}

@@ -1,0 +1,21 @@
+//! The report as one HTML page that needs nothing else: no network, no other file.
+//!
+//! It has the comparison, a player of recorded moments, a gallery of cases, training curves and every table of the
+//! report. The numbers come from the `report.json` that is embedded in it; tables are those of
+//! [`Report::document`](crate::Report::document).
+
+mod error;
+mod figure;
+mod gallery_section;
+mod headline;
+mod moment_data;
+mod player;
+mod report_page;
+mod standing;
+mod template;
+mod training_section;
+mod viewer;
+
+pub use error::{MomentProblem, PageError};
+pub use report_page::Page;
+pub use viewer::Viewer;

@@ -1,0 +1,244 @@
+//! Moments as compact JSON: whole millimetres, differences along a path.
+//!
+//! ```text
+//! observed  [x0, y0, dx, dy, ...]   the first position, then steps             mm
+//! truth     [dx, dy, ...]           steps from the last observed position      mm; fewer than 12 where no more was seen
+//! paths     [[dx, dy, ...], ...]    the same, one a hypothesis                 mm
+//! goals     [[dx, dy] or null, ...] from the last observed position            mm
+//! weights   [...]                   thousandths
+//! radii     [[...], ...]            of the discs of the region of 90 %, one a step, mm; left out where there are no regions
+//! familiarity                       thousandths; left out where nothing is known
+//! representative                    index of the hypothesis that stands for all
+//! falls, certified                  one letter a hypothesis: y, n, - (nothing known)
+//! made_up                           how many observed positions were; left out where none was
+//! ```
+//!
+//! Moments hold whole millimetres, so that nothing is lost: `x / 1000` is the number that was there.
+
+use ddl_data::{HORIZON, MadeUp, OBSERVED, PedestrianName, Position};
+use serde::Serialize;
+
+use super::error::{MomentProblem, PageError};
+use crate::{Moment, MomentHypothesis, MomentPedestrian, gallery::Pick};
+
+/// Beyond this nothing is a place, m: millimetres stay far from the largest whole number of an `f64`.
+const REACH: f64 = ddl_data::COORDINATE_LIMIT;
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct MomentData<'a> {
+    fold: &'a str,
+    forecaster: &'a str,
+    recording: &'a str,
+    frame: i64,
+    frame_step: i64,
+    picks: &'a [Pick],
+    #[serde(rename = "walkers")]
+    pedestrians: Vec<PedestrianData<'a>>,
+}
+
+#[derive(Serialize)]
+struct PedestrianData<'a> {
+    pedestrian: &'a PedestrianName,
+    observed: Vec<i64>,
+    truth: Vec<i64>,
+    paths: Vec<Vec<i64>>,
+    goals: Vec<Option<[i64; 2]>>,
+    weights: Vec<i64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    radii: Vec<Vec<i64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    familiarity: Option<i64>,
+    representative: usize,
+    falls: String,
+    certified: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    made_up: Option<MadeUp>,
+}
+
+/// How much of what then happened must be there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Truth {
+    /// All of it: errors are shown.
+    Whole,
+    /// As far as it was seen.
+    AsSeen,
+}
+
+/// Checks that every moment is whole, and names the first that is not.
+pub(super) fn check(moments: &[Moment], truth: Truth) -> Result<(), PageError> {
+    for (index, moment) in moments.iter().enumerate() {
+        problem(moment, truth).map_or(Ok(()), |problem| {
+            Err(PageError::Moment {
+                index,
+                recording: moment.recording.clone(),
+                frame: moment.frame,
+                problem,
+            })
+        })?;
+    }
+    Ok(())
+}
+
+fn problem(moment: &Moment, truth: Truth) -> Option<MomentProblem> {
+    if moment.pedestrians.is_empty() {
+        return Some(MomentProblem::Empty("there is nobody in it"));
+    }
+    let people = moment.pedestrians.len();
+    let absent = |pick: &Pick| {
+        let pedestrian = *pick.pedestrians.iter().find(|&&one| one >= people)?;
+        Some(MomentProblem::Pick {
+            show: pick.show,
+            pedestrian,
+            pedestrians: people,
+        })
+    };
+    let mut numbered = moment.pedestrians.iter().enumerate();
+    numbered
+        .find_map(|(pedestrian, who)| of_pedestrian(pedestrian, who, truth))
+        .or_else(|| moment.picks.iter().find_map(absent))
+}
+
+fn of_pedestrian(pedestrian: usize, who: &MomentPedestrian, truth: Truth) -> Option<MomentProblem> {
+    if who.hypotheses.is_empty() {
+        return Some(MomentProblem::Empty("a walker has no hypothesis"));
+    }
+    let path = |field, path: &[Position], expected| {
+        if path.len() != expected {
+            let found = path.len();
+            return Some(MomentProblem::Length {
+                pedestrian,
+                field,
+                expected,
+                found,
+            });
+        }
+        place(pedestrian, field, path)
+    };
+    path("observed", &who.observed, OBSERVED)
+        .or_else(|| {
+            let expected = match truth {
+                Truth::Whole => HORIZON,
+                Truth::AsSeen => who.truth.len().min(HORIZON),
+            };
+            path("truth", &who.truth, expected)
+        })
+        .or_else(|| {
+            let mut numbered = who.hypotheses.iter().enumerate();
+            numbered.find_map(|(hypothesis, of)| {
+                let goal = of.goal.as_slice();
+                path("hypotheses", &of.positions, HORIZON)
+                    .or_else(|| place(pedestrian, "goal", goal))
+                    .or_else(|| {
+                        (!(0.0..=1.0).contains(&of.weight)).then_some(MomentProblem::Weight {
+                            pedestrian,
+                            hypothesis,
+                            weight: of.weight,
+                        })
+                    })
+            })
+        })
+}
+
+fn place(pedestrian: usize, field: &'static str, path: &[Position]) -> Option<MomentProblem> {
+    let value = *path
+        .as_flattened()
+        .iter()
+        .find(|value| value.is_nan() || value.abs() > REACH)?;
+    Some(MomentProblem::Coordinate {
+        pedestrian,
+        field,
+        value,
+    })
+}
+
+/// The moments as one JSON array, each on a line of its own.
+pub(super) fn to_json(moments: &[Moment]) -> Result<String, PageError> {
+    let lines: Vec<String> = moments
+        .iter()
+        .map(|moment| serde_json::to_string(&MomentData::of(moment)))
+        .collect::<Result<_, _>>()?;
+    Ok(format!("[{}]", lines.join(",\n")))
+}
+
+impl<'a> MomentData<'a> {
+    fn of(moment: &'a Moment) -> Self {
+        Self {
+            fold: &moment.fold,
+            forecaster: &moment.forecaster,
+            recording: &moment.recording,
+            frame: moment.frame,
+            frame_step: moment.frame_step,
+            picks: &moment.picks,
+            pedestrians: moment.pedestrians.iter().map(PedestrianData::of).collect(),
+        }
+    }
+}
+
+impl<'a> PedestrianData<'a> {
+    fn of(pedestrian: &'a MomentPedestrian) -> Self {
+        let last = pedestrian.observed[OBSERVED - 1];
+        let all = &pedestrian.hypotheses;
+        let letters =
+            |of: fn(&MomentHypothesis) -> Option<bool>| all.iter().map(of).map(letter).collect();
+        Self {
+            pedestrian: &pedestrian.pedestrian,
+            observed: steps([0.0, 0.0], &pedestrian.observed),
+            truth: steps(last, &pedestrian.truth),
+            paths: all.iter().map(|h| steps(last, &h.positions)).collect(),
+            goals: all
+                .iter()
+                .map(|h| {
+                    h.goal
+                        .map(|goal| [0, 1].map(|axis| mm(goal[axis]) - mm(last[axis])))
+                })
+                .collect(),
+            weights: all.iter().map(|h| mm(h.weight)).collect(),
+            radii: if all.iter().all(|h| h.radii.len() == HORIZON) {
+                let in_mm =
+                    |h: &MomentHypothesis| h.radii.iter().map(|&radius| mm(radius)).collect();
+                all.iter().map(in_mm).collect()
+            } else {
+                Vec::new()
+            },
+            familiarity: pedestrian.familiarity.map(mm),
+            representative: pedestrian.representative(),
+            falls: letters(|h| h.decreasing),
+            certified: letters(|h| h.certified),
+            made_up: pedestrian.made_up,
+        }
+    }
+}
+
+fn letter(verdict: Option<bool>) -> char {
+    verdict.map_or('-', |yes| if yes { 'y' } else { 'n' })
+}
+
+fn steps(from: Position, path: &[Position]) -> Vec<i64> {
+    let mut here = from.map(mm);
+    let mut steps = Vec::with_capacity(2 * path.len());
+    for next in path.iter().map(|p| p.map(mm)) {
+        steps.extend([next[0] - here[0], next[1] - here[1]]);
+        here = next;
+    }
+    steps
+}
+
+/// Thousandths: of a metre, or of a weight.
+fn mm(value: f64) -> i64 {
+    (value * 1e3).round() as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_add_up_to_the_positions() {
+        let path = [[0.1, -0.2], [0.3, -0.2], [0.299, 7.0]];
+        let steps = steps([0.0, 0.05], &path);
+        assert_eq!(steps, [100, -250, 200, 0, -1, 7200]);
+        let x: i64 = steps.iter().step_by(2).sum();
+        assert_eq!((x as f64 / 1000.0).to_bits(), 0.299_f64.to_bits());
+    }
+}

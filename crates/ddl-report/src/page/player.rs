@@ -1,0 +1,42 @@
+//! What every page with a player has: its head, the player, the scripts.
+
+use super::template::fill;
+use crate::{Moment, document::escape, figure::drawing};
+
+/// Of every page, up to its body.
+const HEAD: &str = include_str!("head.html");
+/// Light, dark, or as the system has it.
+pub(super) const THEME_BUTTON: &str = include_str!("theme_button.html");
+const PLAYER: &str = include_str!("player.html");
+const STYLE: &str = include_str!("style.css");
+/// Of the player. Run in this order, inside one function.
+pub(super) const PLAYER_SCRIPTS: [&str; 12] = [
+    include_str!("script/theme.js"),
+    include_str!("script/print.js"),
+    include_str!("script/moments.js"),
+    include_str!("script/metrics.js"),
+    include_str!("script/palette.js"),
+    include_str!("script/view.js"),
+    include_str!("script/scene.js"),
+    include_str!("script/phi_chart.js"),
+    include_str!("script/hypothesis_list.js"),
+    include_str!("script/clock.js"),
+    include_str!("script/player.js"),
+    include_str!("script/keys.js"),
+];
+
+/// The head of a page under this title.
+pub(super) fn head(title: &str) -> String {
+    let slots = [
+        ("title", &*escape(title)),
+        ("style", STYLE),
+        ("figure-style", drawing::STYLE),
+    ];
+    fill(HEAD, &slots)
+}
+
+/// The player, which shows the embedded moments.
+pub(super) fn player(moments: &[Moment]) -> String {
+    let state = if moments.is_empty() { "empty" } else { "ready" };
+    fill(PLAYER, &[("player-state", state)])
+}

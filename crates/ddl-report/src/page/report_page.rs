@@ -1,0 +1,149 @@
+//! The page of a report.
+
+use super::{
+    error::PageError,
+    figure::{Shape, headline_chart},
+    gallery_section, headline,
+    moment_data::{self, Truth},
+    player::{PLAYER_SCRIPTS, THEME_BUTTON, head, player},
+    standing,
+    template::{fill, json_in_script},
+    training_section,
+};
+use crate::{
+    Moment, Report, TrainingCurve,
+    document::{ContentsEntry, escape, identifier, inline, unused},
+    figure::drawing::Drawing,
+};
+
+const TEMPLATE: &str = include_str!("page.html");
+/// Of what is on this page besides the player; run after its scripts.
+const REPORT_SCRIPTS: [&str; 2] = [
+    include_str!("script/curves.js"),
+    include_str!("script/report_file.js"),
+];
+
+/// A page of results under way: the report, and what to show besides.
+///
+/// # Examples
+/// ```
+/// use ddl_data::{PedestrianId, Window};
+/// use ddl_eval::{Forecaster, baseline::ConstantVelocity};
+/// use ddl_report::{Moment, Report, page::Page};
+/// let walk = (0..20).map(|t| [0.4 * f64::from(t), 0.0]).collect();
+/// let window = Window::new("corridor", 0, 10, vec![PedestrianId(7)], vec![walk])?;
+/// let forecast = ConstantVelocity::last_step().forecast(&window)?;
+/// let moment = Moment::new("corridor", "constant velocity", &window, &forecast)?;
+///
+/// let report = Report::new("Nothing measured yet", [])?;
+/// let html = Page::new(&report).moments(vec![moment]).to_html()?;
+/// assert!(html.starts_with("<!doctype html>"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Page<'a> {
+    report: &'a Report,
+    moments: Vec<Moment>,
+    curves: Vec<TrainingCurve>,
+}
+
+impl<'a> Page<'a> {
+    /// A page of the report alone.
+    #[must_use]
+    pub fn new(report: &'a Report) -> Self {
+        Self {
+            report,
+            moments: Vec::new(),
+            curves: Vec::new(),
+        }
+    }
+
+    /// Moments for the player; those with [picks](Moment::picks) are also shown in the gallery.
+    #[must_use]
+    pub fn moments(mut self, moments: Vec<Moment>) -> Self {
+        self.moments = moments;
+        self
+    }
+
+    /// Training curves.
+    #[must_use]
+    pub fn curves(mut self, curves: Vec<TrainingCurve>) -> Self {
+        self.curves = curves;
+        self
+    }
+
+    /// The page, to be written into a file and opened in a browser.
+    ///
+    /// # Errors
+    /// A moment is not whole, or the epochs of a curve do not ascend; the message names it.
+    pub fn to_html(&self) -> Result<String, PageError> {
+        self.check()?;
+        let document = self.report.document();
+        let (tables, contents) = document.sections();
+        let contents: Vec<String> = contents.iter().map(item).collect();
+        let report = json_in_script(&self.report.to_json()?);
+        let moments = json_in_script(&moment_data::to_json(&self.moments)?);
+        let curves = json_in_script(&serde_json::to_string(&self.curves)?);
+        let scripts = [PLAYER_SCRIPTS.join("\n"), REPORT_SCRIPTS.join("\n")].join("\n");
+        Ok(fill(
+            TEMPLATE,
+            &[
+                ("head", &head(&document.title)),
+                ("theme-button", THEME_BUTTON),
+                ("title", &escape(&document.title)),
+                ("lead", &inline(&document.lead)),
+                ("headline", &headline::headline(self.report)),
+                ("player", &player(&self.moments)),
+                ("gallery", &gallery_section::html(&self.moments)),
+                ("training", &training_section::html(&self.curves)),
+                ("contents", &contents.concat()),
+                ("tables", &tables),
+                ("report-json", &report),
+                ("moments-json", &moments),
+                ("curves-json", &curves),
+                ("scripts", &scripts),
+            ],
+        ))
+    }
+
+    /// Every figure as an SVG file: its name and its content. They stand alone on white.
+    ///
+    /// # Errors
+    /// As [`to_html`](Self::to_html).
+    pub fn figures(&self) -> Result<Vec<(String, String)>, PageError> {
+        self.check()?;
+        let mut figures: Vec<(String, Drawing)> = Vec::new();
+        if let Some(standing) = standing::standing(self.report) {
+            figures.push((
+                "comparison".to_owned(),
+                headline_chart(&standing, Shape::Wide),
+            ));
+        }
+        figures.extend(gallery_section::figures(&self.moments));
+        figures.extend(training_section::figures(&self.curves));
+        let mut used: Vec<String> = Vec::new();
+        let named = |(name, drawing): (String, Drawing)| {
+            let name = unused(identifier(&name), &mut used);
+            (format!("{name}.svg"), drawing.to_file(""))
+        };
+        Ok(figures.into_iter().map(named).collect())
+    }
+
+    fn check(&self) -> Result<(), PageError> {
+        moment_data::check(&self.moments, Truth::Whole)?;
+        training_section::check(&self.curves)
+    }
+}
+
+/// A line of the list of tables.
+fn item(entry: &ContentsEntry) -> String {
+    let class = if entry.warned {
+        " class=\"warned\""
+    } else {
+        ""
+    };
+    format!(
+        "<li{class}><a href=\"#{}\">{}</a></li>\n",
+        entry.id, entry.heading
+    )
+}

@@ -1,0 +1,125 @@
+//! The comparison at the head of the page: rows that may be compared, and which of them is best.
+
+use ddl_data::WindowRule;
+
+use crate::{
+    Report,
+    report::{Group, TableLine, groups, order},
+};
+use ddl_eval::{Conditions, Scores};
+
+/// Comparable lines of a report: one convention, window rule, protocol and scored part.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Standing {
+    /// What all lines share; fold and forecaster are those of one row.
+    pub(super) shared: Conditions,
+    /// The same in words.
+    pub(super) in_words: String,
+    /// The folds measured, in the order of the convention.
+    pub(super) folds: Vec<String>,
+    /// Whether these are all folds of the convention.
+    pub(super) all_folds: bool,
+    /// Lines, the best first.
+    pub(super) lines: Vec<StandingLine>,
+}
+
+/// One forecaster in a [`Standing`].
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct StandingLine {
+    /// Its name, numbered as in the tables where names repeat.
+    pub(super) label: String,
+    /// Conditions of its first row.
+    pub(super) conditions: Conditions,
+    /// Under what conditions it came about, in words.
+    pub(super) settings: String,
+    /// Hypotheses a pedestrian.
+    pub(super) hypotheses: usize,
+    /// minADE and minFDE on each fold, m, mean over seeds; `None` where it was not measured.
+    pub(super) folds: Vec<Option<[f64; 2]>>,
+    /// Plain mean of the folds, `None` unless all are there.
+    pub(super) mean: Option<[f64; 2]>,
+    /// Pedestrians and windows scored, each fold once.
+    pub(super) scored: [usize; 2],
+}
+
+impl Standing {
+    /// The forecaster that the report is about: the best trained one, as it is where it is there with something changed ("DDL" for
+    /// "DDL without an expert library"); else that of another program; else the best of all.
+    pub(super) fn subject(&self) -> Option<&StandingLine> {
+        let trained = |line: &&StandingLine| line.conditions.epochs.is_some();
+        let foreign = |line: &&StandingLine| line.conditions.selection.is_some();
+        let lines = || self.lines.iter();
+        let name = |line: &StandingLine| line.conditions.forecaster.clone();
+        let best = lines().find(trained).map(name).unwrap_or_default();
+        lines()
+            .filter(trained)
+            .filter(|line| best.starts_with(&line.conditions.forecaster))
+            .min_by_key(|line| line.conditions.forecaster.len())
+            .or_else(|| lines().find(foreign))
+            .or(self.lines.first())
+    }
+
+    /// The lines that can be ranked against one: as many hypotheses, and every fold measured; the best first.
+    pub(super) fn comparable(&self, to: &StandingLine) -> impl Iterator<Item = &StandingLine> {
+        let hypotheses = to.hypotheses;
+        let mut lines = self.lines.iter();
+        std::iter::from_fn(move || {
+            lines.find(|line| line.mean.is_some() && line.hypotheses == hypotheses)
+        })
+    }
+}
+
+/// The results that the page begins with: under `fair` if there are any, else `single`, else `published`; of these, those
+/// by the published window rule on all test windows if there are any.
+pub(super) fn standing(report: &Report) -> Option<Standing> {
+    let groups = groups(report.rows());
+    // Groups stand in the order of conventions and rules already; the first of equals is taken.
+    let rank = |group: &&Group<'_>| {
+        let other_rule = group.window_rule != WindowRule::Published;
+        (order(group.protocol), group.convention, other_rule)
+    };
+    let group = groups.iter().min_by_key(rank)?;
+    let measured = |fold: &&str| !group.pedestrians(fold).is_empty();
+    let folds: Vec<&str> = group.folds().into_iter().filter(measured).collect();
+    let mut lines: Vec<StandingLine> = group
+        .labelled()
+        .map(|(line, label)| StandingLine::of(line, label, &folds))
+        .collect();
+    // Lines without a mean stand last; the sort is stable.
+    let order = |line: &StandingLine| line.mean.map_or(f64::INFINITY, |mean| mean[0]);
+    lines.sort_by(|a, b| order(a).total_cmp(&order(b)));
+    Some(Standing {
+        shared: group.lines.first()?.conditions().clone(),
+        in_words: group.conditions_in_words(),
+        all_folds: all_folds(group, &folds),
+        folds: folds.into_iter().map(str::to_owned).collect(),
+        lines,
+    })
+}
+
+fn all_folds(group: &Group<'_>, measured: &[&str]) -> bool {
+    let mut named = group.convention.fold_names();
+    named.all(|name| measured.contains(&name))
+}
+
+impl StandingLine {
+    fn of(line: &TableLine<'_>, label: String, folds: &[&str]) -> Self {
+        let both = |of: &dyn Fn(fn(&Scores) -> f64) -> Option<f64>| {
+            Some([of(|s| s.min_ade)?, of(|s| s.min_fde)?])
+        };
+        let on_fold = |fold: &&str| both(&|of| Some(line.on_fold(fold, of)?.mean()));
+        let count = |of: fn(&Scores) -> usize| -> usize {
+            let first = folds.iter().filter_map(|fold| line.on(fold).next());
+            first.map(|row| of(&row.scores)).sum()
+        };
+        Self {
+            label,
+            conditions: line.conditions().clone(),
+            settings: line.settings(),
+            hypotheses: line.rows[0].scores.hypotheses,
+            folds: folds.iter().map(on_fold).collect(),
+            mean: both(&|of| Some(line.over_folds(folds, of)?.mean())),
+            scored: [count(|s| s.pedestrians), count(|s| s.windows)],
+        }
+    }
+}

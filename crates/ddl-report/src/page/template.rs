@@ -1,0 +1,78 @@
+//! Texts with `{{slots}}`, filled once, and what JSON must look like to stand in one.
+
+/// Replaces every `{{name}}` that `slots` knows; what is filled in is never looked at again.
+///
+/// # Panics
+/// When a slot of the template is not among `slots`: both are part of this crate.
+pub(super) fn fill(template: &str, slots: &[(&str, &str)]) -> String {
+    let mut filled = String::with_capacity(template.len());
+    let mut rest = template;
+    while let Some((before, after)) = rest.split_once("{{") {
+        let Some((name, after)) = after.split_once("}}") else {
+            break;
+        };
+        let slot = slots.iter().find(|(known, _)| *known == name);
+        assert!(slot.is_some(), "the template has an unknown slot `{name}`");
+        filled.push_str(before);
+        filled.push_str(slot.map_or("", |(_, text)| text));
+        rest = after;
+    }
+    filled.push_str(rest);
+    filled
+}
+
+/// JSON that can stand in a `<script type="application/json">`: the same value to a parser, and nothing in it that ends
+/// the element or that older scripts take for the end of a line.
+///
+/// `<` occurs in JSON inside strings alone, so that its escape `\u003c` means the same.
+pub(super) fn json_in_script(json: &str) -> String {
+    let mut escaped = String::with_capacity(json.len());
+    let mut rest = json;
+    while let Some(at) = rest.find(['<', '\u{2028}', '\u{2029}']) {
+        escaped.push_str(&rest[..at]);
+        let mut characters = rest[at..].chars();
+        match characters.next() {
+            Some('\u{2028}') => escaped.push_str("\\u2028"),
+            Some('\u{2029}') => escaped.push_str("\\u2029"),
+            // What `</script`, `<!--` and `<script` begin with.
+            _ if rest[at + 1..].starts_with(['/', '!', 's', 'S']) => {
+                escaped.push_str("\\u003c");
+            }
+            _ => escaped.push('<'),
+        }
+        rest = characters.as_str();
+    }
+    escaped + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_filled_in_is_not_filled_again() {
+        let slots = [("a", "{{b}}"), ("b", "2")];
+        assert_eq!(fill("x {{a}} y {{b}} {{", &slots), "x {{b}} y 2 {{");
+    }
+
+    #[test]
+    #[should_panic(expected = "unknown slot `c`")]
+    fn an_unknown_slot_is_a_mistake_of_ours() {
+        let _ = fill("{{c}}", &[]);
+    }
+
+    #[test]
+    fn nothing_ends_the_element_and_the_value_stays() {
+        let value =
+            serde_json::json!({"a </script>": ["<!-- <script>", "x < y", "\u{2028}\u{2029}"]});
+        let text = json_in_script(&value.to_string());
+        for end in ["</", "<!--", "<script", "\u{2028}", "\u{2029}"] {
+            assert!(!text.contains(end), "{text}");
+        }
+        assert!(text.contains("x < y"));
+        assert_eq!(
+            serde_json::from_str::<serde_json::Value>(&text).unwrap(),
+            value
+        );
+    }
+}

@@ -1,0 +1,89 @@
+//! The player alone, on a page of its own: for forecasts that there is nothing to measure with.
+
+use super::{
+    error::PageError,
+    moment_data::{self, Truth},
+    player::{PLAYER_SCRIPTS, THEME_BUTTON, head, player},
+    template::{fill, json_in_script},
+};
+use crate::{Moment, document::escape};
+
+const TEMPLATE: &str = include_str!("viewer.html");
+
+/// A page that plays forecasts of somebody's own tracks: one file that needs nothing else, no network, no other file.
+///
+/// # Examples
+/// ```
+/// use ddl_data::{PedestrianId, Window};
+/// use ddl_eval::{Forecaster, baseline::ConstantVelocity};
+/// use ddl_report::{Moment, page::Viewer};
+/// let walk = (0..8).map(|t| [0.4 * f64::from(t), 0.0]).collect();
+/// let window = Window::new("yard", 0, 10, vec![PedestrianId(7)], vec![walk])?;
+/// let forecast = ConstantVelocity::last_step().forecast(&window)?;
+/// let moment = Moment::under_way("constant velocity", &window, &forecast, &[vec![]])?;
+///
+/// let html = Viewer::new("yard.csv", vec![moment]).lead("One pedestrian, seen for 3.2 s.").to_html()?;
+/// assert!(html.starts_with("<!doctype html>") && html.contains("yard.csv"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Viewer {
+    title: String,
+    lead: String,
+    notes: Vec<String>,
+    moments: Vec<Moment>,
+}
+
+impl Viewer {
+    /// A page under this title that plays these moments.
+    pub fn new(title: impl Into<String>, moments: Vec<Moment>) -> Self {
+        Self {
+            title: title.into(),
+            lead: String::new(),
+            notes: Vec::new(),
+            moments,
+        }
+    }
+
+    /// What it shows, in a sentence or two.
+    #[must_use]
+    pub fn lead(self, lead: impl Into<String>) -> Self {
+        Self {
+            lead: lead.into(),
+            ..self
+        }
+    }
+
+    /// What is to be known besides, below the player: a paragraph a note.
+    #[must_use]
+    pub fn notes(self, notes: Vec<String>) -> Self {
+        Self { notes, ..self }
+    }
+
+    /// The page, to be written into a file and opened in a browser.
+    ///
+    /// # Errors
+    /// A moment is not whole; the message names it.
+    pub fn to_html(&self) -> Result<String, PageError> {
+        moment_data::check(&self.moments, Truth::AsSeen)?;
+        let moments = json_in_script(&moment_data::to_json(&self.moments)?);
+        let notes: Vec<String> = self
+            .notes
+            .iter()
+            .map(|note| format!("<p>{}</p>\n", escape(note)))
+            .collect();
+        Ok(fill(
+            TEMPLATE,
+            &[
+                ("head", &head(&self.title)),
+                ("theme-button", THEME_BUTTON),
+                ("title", &escape(&self.title)),
+                ("lead", &escape(&self.lead)),
+                ("player", &player(&self.moments)),
+                ("notes", &notes.concat()),
+                ("moments-json", &moments),
+                ("scripts", &PLAYER_SCRIPTS.join("\n")),
+            ],
+        ))
+    }
+}

@@ -1,0 +1,115 @@
+//! The ablation: what the goal and the dynamics each add, beside the paper's Table II.
+
+use super::{
+    cells::{NOTHING, errors},
+    group::{Group, TableLine},
+};
+use crate::{
+    document::{Part, Table},
+    literature::{AblationRow, LITERATURE, ablation_table},
+};
+use ddl_eval::Conditions;
+
+/// One table a group that has a variant without one of the two components, then the paper's.
+pub(super) fn parts(groups: &[Group<'_>]) -> Vec<Part> {
+    let ablated: Vec<&Group<'_>> = groups.iter().filter(|g| has_ablated_variant(g)).collect();
+    if ablated.is_empty() {
+        return Vec::new();
+    }
+    let mut parts = vec![
+        Part::heading("Ablation: goal shift and dynamics"),
+        Part::Paragraph(
+            "Goal shift: positions enter the network relative to the goal, which it does not see otherwise. Dynamics: the network \
+             shapes a flow to the goal instead of emitting positions. Without either it is plain STAR, which has no goals and draws 20 \
+             noise samples."
+                .to_owned(),
+        ),
+    ];
+    for group in ablated {
+        parts.push(Part::subheading(group.title()));
+        parts.extend(group.warning());
+        parts.push(Part::Paragraph(if alike(group) {
+            "The variants have the same folds, seeds, epochs, recipe and commit.".to_owned()
+        } else {
+            "The variants were NOT made alike: folds, seeds, epochs, recipe or commit differ (see the conditions beside the table of this \
+             protocol), and so differences are not those of the components alone."
+                .to_owned()
+        }));
+        parts.push(Part::Table(measured(group).captioned(format!(
+            "Ablation, minADE/minFDE in metres; FDE@minADE of the mean is what the paper prints as FDE. {}",
+            group.conditions_in_words()
+        ))));
+    }
+    parts.extend([
+        Part::subheading(
+            "Table II of the DDL paper (ablation; convention `star`, protocol `published`)",
+        ),
+        Part::Paragraph(
+            "As printed. Compare with results under `published` in the `star` convention alone."
+                .to_owned(),
+        ),
+        Part::Table(ablation_table()),
+    ]);
+    parts
+}
+
+fn has_ablated_variant(group: &Group<'_>) -> bool {
+    let ablated = |line: &TableLine<'_>| variant(line).is_some_and(|row| row.variant != "full");
+    group.lines.iter().any(ablated)
+}
+
+/// Whether the variants of a group differ in the variant alone.
+fn alike(group: &Group<'_>) -> bool {
+    let made = |line: &TableLine<'_>| {
+        let rows = line
+            .rows
+            .iter()
+            .map(|row| (row.conditions.fold.clone(), row.conditions.seed));
+        let mut rows: Vec<_> = rows.collect();
+        rows.sort_unstable();
+        let conditions = Conditions {
+            variant: None,
+            fold: String::new(),
+            seed: None,
+            ..line.conditions().clone()
+        };
+        (rows, conditions)
+    };
+    let mut lines = group.lines.iter().filter(|line| variant(line).is_some());
+    let first = lines.next().map(made);
+    lines.all(|line| Some(made(line)) == first)
+}
+
+/// The row of Table II that a line corresponds to: a variant as it is, walked as the protocol has it.
+fn variant(line: &TableLine<'_>) -> Option<&'static AblationRow> {
+    let conditions = line.conditions();
+    let name = conditions.variant.as_deref()?;
+    // "DDL with plain Euler steps" and the like are no variants of their own.
+    let mut rows = LITERATURE.ablation.iter();
+    rows.find(|row| conditions.forecaster == "DDL" && row.variant == name)
+}
+
+fn measured(group: &Group<'_>) -> Table {
+    let folds = group.folds();
+    let start = ["variant", "goal shift", "dynamics", "seeds"];
+    let columns = start.into_iter().chain(folds.iter().copied());
+    let mut table = Table::new(columns.chain(["mean", "mean FDE@minADE"]))
+        .text_column("goal shift")
+        .text_column("dynamics")
+        .text_column("seeds");
+    for row in &LITERATURE.ablation {
+        let lines = group
+            .lines
+            .iter()
+            .filter(|line| variant(line).is_some_and(|known| known.variant == row.variant));
+        for line in lines {
+            let seeds: Vec<String> = line.seeds().iter().flatten().map(u64::to_string).collect();
+            let start = [row.variant.clone()].into_iter().chain(row.components());
+            let start = start.chain([seeds.join(", ")]);
+            let at_ade = line.over_folds(&folds, |s| s.fde_at_min_ade);
+            let at_ade = at_ade.map_or(NOTHING.to_owned(), |spread| spread.to_string());
+            table.row(start.chain(errors(line, &folds)).chain([at_ade]));
+        }
+    }
+    table
+}

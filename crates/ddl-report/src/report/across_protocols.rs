@@ -1,0 +1,89 @@
+//! The same forecaster under every protocol: what choosing with the truth is worth.
+//!
+//! The one table in which protocols meet. It is there to show that their numbers must not be compared, and says so.
+
+use super::{
+    cells::{NOTHING, errors},
+    group::{Group, TableLine},
+};
+use crate::document::{Part, Table};
+use ddl_eval::Protocol;
+
+const NOTE: &str = "The same windows and folds in every line, from the published pipeline to the honest one. Under `published` the goal of \
+    each pedestrian is chosen with the true end among those of the published estimator, whose query reads one future frame; then the \
+    best of 20 noise samples on it is kept, of the epoch that is best on test walkers; steps are plain Euler's. The line with the \
+    published goals, all 20 kept, under `fair` has the same estimator without that frame, and nothing is chosen but the best of its 20 \
+    hypotheses. The other lines under `fair` go to the forecaster's own goals, and under `single` to one that stands for them. Which \
+    training each line had stands beside the tables above.";
+
+/// For each convention, window rule and scored part that has results under `published` and another protocol, the lines
+/// of trained forecasters and of straight lines to goals, protocol by protocol.
+pub(super) fn parts(groups: &[Group<'_>]) -> Vec<Part> {
+    let mut parts = Vec::new();
+    for oracle in groups.iter().filter(|g| g.protocol == Protocol::Published) {
+        let mut comparable: Vec<&Group<'_>> =
+            groups.iter().filter(|g| g.same_windows(oracle)).collect();
+        // From the published pipeline to the honest one.
+        comparable.sort_by_key(|g| g.protocol != Protocol::Published);
+        if comparable.len() < 2 {
+            continue;
+        }
+        parts.extend([
+            Part::heading(format!(
+                "One forecaster under several protocols, window rule `{}`, convention `{}`",
+                oracle.window_rule, oracle.convention
+            )),
+            Part::Paragraph(NOTE.to_owned()),
+        ]);
+        parts.extend(oracle.warning());
+        parts.push(Part::Table(table(&comparable).captioned(format!(
+            "minADE/minFDE in metres by protocol. NOT comparable with one another: see the warning. Data convention `{}`, \
+             window rule `{}`; scored: {}.",
+            oracle.convention,
+            oracle.window_rule,
+            oracle.test_subset.unwrap_or("all test windows")
+        ))));
+    }
+    parts
+}
+
+fn table(groups: &[&Group<'_>]) -> Table {
+    let folds = groups[0].folds();
+    let columns = ["forecaster", "protocol", "candidates"].into_iter();
+    let mut table = Table::new(columns.chain(folds.iter().copied()).chain(["mean"]))
+        .text_column("protocol")
+        .text_column("candidates");
+    for group in groups {
+        for (line, label) in group.labelled() {
+            if !heads_for_goals(line) {
+                continue;
+            }
+            let candidates = match group.protocol {
+                Protocol::Published => {
+                    let goals = line.rows[0].scores.goal_fde.map(|_| "20 goals");
+                    let samples = line.conditions().epochs.map(|_| "20 samples");
+                    let both: Vec<&str> = goals.into_iter().chain(samples).collect();
+                    both.join(" x ")
+                }
+                _ => line.rows[0].scores.hypotheses.to_string(),
+            };
+            let start = [label, group.protocol.to_string(), candidates];
+            table.row(start.into_iter().chain(errors(line, &folds)));
+        }
+    }
+    if table.rows().is_empty() {
+        table.row([NOTHING]);
+    }
+    table
+}
+
+/// Whether a protocol has a goal to choose: trained forecasters, and straight lines to estimated goals.
+fn heads_for_goals(line: &TableLine<'_>) -> bool {
+    line.conditions().epochs.is_some()
+        || line.rows[0].scores.goal_fde.is_some()
+            && !line.conditions().forecaster.contains("the TRUE end")
+        || line
+            .conditions()
+            .forecaster
+            .contains("nearest the TRUE end")
+}

@@ -1,0 +1,95 @@
+//! Results by kind of motion and of interaction.
+
+use super::{
+    cells::{NOTHING, counts},
+    group::{Group, TableLine},
+};
+use crate::document::{Part, Table};
+use ddl_eval::{CategoryScores, category::Category};
+
+/// What the categories are.
+pub(super) const LEGEND: &str = "By category of walker: minADE/minFDE in metres, mean over the walkers of the folds named, which all \
+    forecasters of the table have (not over the folds: some hold few walkers of a kind). First the walker's own motion, then the \
+    types of TrajNet++ (static, linear, interacting, non-interacting), then the kinds of interaction, of which a walker may have \
+    several. Categories are told with the true future, after the forecasts are made.";
+
+/// One table with a line a category and a column a forecaster; nothing where no row knows its categories, or no fold is shared.
+pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
+    let known: Vec<(&TableLine<'_>, String)> = group
+        .labelled()
+        .filter(|(line, _)| {
+            let mut rows = line.rows.iter();
+            rows.all(|row| !row.scores.categories.is_empty())
+        })
+        .collect();
+    let mut folds = group.folds();
+    for (line, _) in &known {
+        folds = line.present(&folds);
+    }
+    if known.is_empty() || folds.is_empty() {
+        return Vec::new();
+    }
+    let columns = ["category", "walkers"].map(str::to_owned).into_iter();
+    let mut table = Table::new(columns.chain(known.iter().map(|(_, label)| label.clone())));
+    for category in Category::all() {
+        let cells: Vec<Option<Pooled>> = known
+            .iter()
+            .map(|(line, _)| Pooled::of(line, &folds, category))
+            .collect();
+        if cells.iter().all(Option::is_none) {
+            continue;
+        }
+        let pedestrians = cells.iter().flatten().map(|cell| cell.pedestrians);
+        let start = [category.to_string(), counts(pedestrians.collect())];
+        let cells = cells
+            .into_iter()
+            .map(|cell| cell.map_or(NOTHING.to_owned(), |cell| cell.in_words()));
+        table.row(start.into_iter().chain(cells));
+    }
+    vec![
+        Part::subheading("By category of walker"),
+        Part::Table(table.captioned(format!(
+            "minADE/minFDE in metres by category of walker, pooled over {}. {}",
+            folds.join(", "),
+            group.conditions_in_words()
+        ))),
+    ]
+}
+
+/// The pedestrians of one category on some folds together.
+struct Pooled {
+    pedestrians: usize,
+    min_ade: f64,
+    min_fde: f64,
+}
+
+impl Pooled {
+    /// Seeds are averaged on each fold first; `None` where nobody is of the category.
+    fn of(line: &TableLine<'_>, folds: &[&str], category: Category) -> Option<Self> {
+        let (mut pedestrians, mut ade, mut fde) = (0, 0.0, 0.0);
+        for fold in folds {
+            let of_seeds: Vec<&CategoryScores> = line
+                .on(fold)
+                .flat_map(|row| &row.scores.categories)
+                .filter(|scores| scores.category == category)
+                .collect();
+            // Every seed is scored on the same windows.
+            let Some(first) = of_seeds.first() else {
+                continue;
+            };
+            let weight = first.pedestrians as f64 / of_seeds.len() as f64;
+            pedestrians += first.pedestrians;
+            ade += weight * of_seeds.iter().map(|s| s.min_ade).sum::<f64>();
+            fde += weight * of_seeds.iter().map(|s| s.min_fde).sum::<f64>();
+        }
+        (pedestrians > 0).then(|| Self {
+            pedestrians,
+            min_ade: ade / pedestrians as f64,
+            min_fde: fde / pedestrians as f64,
+        })
+    }
+
+    fn in_words(&self) -> String {
+        format!("{:.3}/{:.3}", self.min_ade, self.min_fde)
+    }
+}

@@ -1,0 +1,49 @@
+//! What stands in the cells of the tables.
+
+use super::group::TableLine;
+
+/// What a table shows where there is nothing to show.
+pub(super) const NOTHING: &str = "-";
+
+/// `ADE/FDE`, where there are both.
+pub(super) fn pair<T: std::fmt::Display>(ade: Option<T>, fde: Option<T>) -> String {
+    match (ade, fde) {
+        (Some(ade), Some(fde)) => format!("{ade}/{fde}"),
+        _ => NOTHING.to_owned(),
+    }
+}
+
+/// minADE/minFDE of a line on each fold, then their mean.
+pub(super) fn errors(line: &TableLine<'_>, folds: &[&str]) -> Vec<String> {
+    let of_fold = |fold: &&str| {
+        pair(
+            line.on_fold(fold, |s| s.min_ade),
+            line.on_fold(fold, |s| s.min_fde),
+        )
+    };
+    let mean = pair(
+        line.over_folds(folds, |s| s.min_ade),
+        line.over_folds(folds, |s| s.min_fde),
+    );
+    folds.iter().map(of_fold).chain([mean]).collect()
+}
+
+/// Counts that should be one, or nothing.
+pub(super) fn counts(mut counts: Vec<usize>) -> String {
+    counts.sort_unstable();
+    counts.dedup();
+    if counts.is_empty() {
+        return NOTHING.to_owned();
+    }
+    let counts: Vec<String> = counts.iter().map(usize::to_string).collect();
+    counts.join(" or ")
+}
+
+/// The folds that a number is of, of those there are.
+pub(super) fn folds(present: &[&str], all: &[&str]) -> String {
+    if present.len() == all.len() {
+        "all".to_owned()
+    } else {
+        present.join(", ")
+    }
+}

@@ -1,0 +1,66 @@
+//! What a report says, in which order.
+
+use ddl_data::Convention;
+
+use super::{
+    ablation, across_protocols, categories,
+    group::{Group, groups},
+    metrics, published, section, significance,
+};
+use crate::document::{Document, Part};
+use ddl_eval::ResultRow;
+
+pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
+    let groups = groups(rows);
+    let mut parts: Vec<Part> = groups.iter().flat_map(section::parts).collect();
+    if !groups.is_empty() {
+        parts.push(Part::heading("How to read the tables"));
+        parts.push(Part::List(
+            [
+                metrics::FURTHER_LEGEND,
+                metrics::WHOLE_LEGEND,
+                significance::LEGEND,
+                categories::LEGEND,
+            ]
+            .map(str::to_owned)
+            .to_vec(),
+        ));
+    }
+    parts.extend(across_protocols::parts(&groups));
+    parts.extend(ablation::parts(&groups));
+    parts.extend(published::parts(rows));
+    Document {
+        lead: first_line(&groups),
+        title: title.to_owned(),
+        parts,
+    }
+}
+
+fn first_line(groups: &[Group<'_>]) -> String {
+    let mut conventions: Vec<Convention> = groups.iter().map(|group| group.convention).collect();
+    conventions.dedup();
+    let all: Vec<String> = conventions
+        .iter()
+        .map(|convention| format!("`{convention}` ({})", describe_convention(*convention)))
+        .collect();
+    match all.as_slice() {
+        [] => "Data convention: none, this report holds no results.".to_owned(),
+        [one] => format!("Data convention: {one}."),
+        several => format!(
+            "Data conventions: {}. Numbers of different conventions are not comparable and stand in \
+             separate tables.",
+            several.join("; ")
+        ),
+    }
+}
+
+fn describe_convention(convention: Convention) -> &'static str {
+    match convention {
+        Convention::Star => "ETH/UCY as in SR-LSTM, STAR and DDL: ETH every 6 frames",
+        Convention::SocialGan => "ETH/UCY as in Social-GAN: ETH every 10 frames",
+        Convention::Simulated => {
+            "simulated crowds, NOT real recordings: comparable with no published number"
+        }
+        Convention::Own => "own recordings, comparable with no published number",
+    }
+}

@@ -1,0 +1,284 @@
+//! Which rows may stand in one table, and which make one line of it.
+
+use ddl_data::{Convention, WindowRule};
+
+use super::spread::SeedSpread;
+use crate::document::Part;
+use ddl_eval::{Conditions, Protocol, ResultRow, Scores, significance::BlockErrors};
+
+/// Rows whose numbers are comparable: one table.
+pub(crate) struct Group<'a> {
+    pub(crate) convention: Convention,
+    pub(crate) window_rule: WindowRule,
+    pub(crate) protocol: Protocol,
+    pub(crate) test_subset: Option<&'a str>,
+    pub(crate) lines: Vec<TableLine<'a>>,
+}
+
+/// Results that differ in fold and seed alone: one line of a table.
+pub(crate) struct TableLine<'a> {
+    pub(crate) rows: Vec<&'a ResultRow>,
+}
+
+/// Sorts rows into tables: by convention, then the published window rule before others, then the
+/// headline protocol first. Lines stand in the order in which their first row was given.
+pub(crate) fn groups(rows: &[ResultRow]) -> Vec<Group<'_>> {
+    let mut groups: Vec<Group<'_>> = Vec::new();
+    for row in rows {
+        let c = &row.conditions;
+        let at = groups
+            .iter()
+            .position(|group| group.admits(c))
+            .unwrap_or_else(|| {
+                groups.push(Group {
+                    convention: c.convention,
+                    window_rule: c.window_rule,
+                    protocol: c.protocol,
+                    test_subset: c.test_subset.as_deref(),
+                    lines: Vec::new(),
+                });
+                groups.len() - 1
+            });
+        let group = &mut groups[at];
+        match group.lines.iter_mut().find(|line| line.admits(c)) {
+            Some(line) => line.rows.push(row),
+            None => group.lines.push(TableLine { rows: vec![row] }),
+        }
+    }
+    groups.sort_by_key(|group| {
+        let convention = Convention::ALL.iter().position(|c| *c == group.convention);
+        let rule = (
+            group.window_rule != WindowRule::Published,
+            group.window_rule.to_string(),
+        );
+        (convention, rule, order(group.protocol), group.test_subset)
+    });
+    groups
+}
+
+/// Of protocols: the headline one first, the one that chooses with the truth last.
+pub(crate) fn order(protocol: Protocol) -> usize {
+    match protocol {
+        Protocol::Fair => 0,
+        Protocol::Single => 1,
+        Protocol::Published => 2,
+    }
+}
+
+impl Group<'_> {
+    fn admits(&self, c: &Conditions) -> bool {
+        (
+            self.convention,
+            self.window_rule,
+            self.protocol,
+            self.test_subset,
+        ) == (
+            c.convention,
+            c.window_rule,
+            c.protocol,
+            c.test_subset.as_deref(),
+        )
+    }
+
+    /// Whether both groups score the same windows of the same data, under whatever protocol.
+    pub(crate) fn same_windows(&self, other: &Self) -> bool {
+        (self.convention, self.window_rule, self.test_subset)
+            == (other.convention, other.window_rule, other.test_subset)
+    }
+
+    /// What the table is of.
+    pub(crate) fn title(&self) -> String {
+        format!(
+            "Protocol `{}`, window rule `{}`, convention `{}`",
+            self.protocol, self.window_rule, self.convention
+        )
+    }
+
+    /// Protocol, window rule, convention and scored part: what a caption must name.
+    pub(crate) fn conditions_in_words(&self) -> String {
+        format!(
+            "Data convention `{}`, window rule `{}`, protocol `{}`; scored: {}.",
+            self.convention,
+            self.window_rule,
+            self.protocol,
+            self.test_subset.unwrap_or("all test windows")
+        )
+    }
+
+    /// The columns: the folds of the convention, and any other fold that a row names.
+    pub(crate) fn folds(&self) -> Vec<&str> {
+        let mut folds: Vec<&str> = self.convention.fold_names().collect();
+        for row in self.lines.iter().flat_map(|line| &line.rows) {
+            if !folds.contains(&row.conditions.fold.as_str()) {
+                folds.push(&row.conditions.fold);
+            }
+        }
+        folds
+    }
+
+    /// The name of each line; equal names of different settings are numbered.
+    pub(crate) fn labels(&self) -> Vec<String> {
+        let labels: Vec<String> = self.lines.iter().map(|l| l.conditions().label()).collect();
+        let numbered = |(at, label): (usize, &String)| {
+            let same = labels.iter().filter(|other| *other == label).count();
+            let before = labels[..at].iter().filter(|other| *other == label).count();
+            if same > 1 {
+                format!("{label} #{}", before + 1)
+            } else {
+                label.clone()
+            }
+        };
+        labels.iter().enumerate().map(numbered).collect()
+    }
+
+    /// The lines with their [`labels`](Self::labels).
+    pub(crate) fn labelled(&self) -> impl Iterator<Item = (&TableLine<'_>, String)> {
+        self.lines.iter().zip(self.labels())
+    }
+
+    /// The numbers of pedestrians scored on a fold, one a row.
+    pub(crate) fn pedestrians(&self, fold: &str) -> Vec<usize> {
+        let rows = self.lines.iter().flat_map(|line| line.on(fold));
+        rows.map(|row| row.scores.pedestrians).collect()
+    }
+
+    /// What a reader must be told beside the numbers.
+    pub(crate) fn warning(&self) -> Option<Part> {
+        let words = self.protocol.warning()?;
+        Some(Part::Warning(words.to_owned()))
+    }
+}
+
+impl<'a> TableLine<'a> {
+    fn admits(&self, c: &Conditions) -> bool {
+        let mine = self.conditions();
+        let same = Conditions {
+            fold: mine.fold.clone(),
+            seed: mine.seed,
+            ..c.clone()
+        };
+        *mine == same
+    }
+
+    /// The conditions of the line; fold and seed are those of its first row only.
+    pub(crate) fn conditions(&self) -> &'a Conditions {
+        &self.rows[0].conditions
+    }
+
+    /// The rows of one fold, one a seed.
+    pub(crate) fn on<'b>(&'b self, fold: &'b str) -> impl Iterator<Item = &'a ResultRow> + 'b {
+        self.rows
+            .iter()
+            .copied()
+            .filter(move |row| row.conditions.fold == fold)
+    }
+
+    /// The errors by block on one fold, mean over the seeds; `None` where a row has none, or the seeds were not measured on
+    /// the same windows.
+    pub(crate) fn blocks(&self, fold: &str) -> Option<Vec<BlockErrors>> {
+        let rows: Vec<&ResultRow> = self.on(fold).collect();
+        let count = rows.len() as f64;
+        let mut mean = rows.first()?.blocks.clone();
+        for row in &rows[1..] {
+            if row.blocks.len() != mean.len() {
+                return None;
+            }
+            for (sum, block) in mean.iter_mut().zip(&row.blocks) {
+                if !sum.same_windows(block) {
+                    return None;
+                }
+                sum.min_ade += block.min_ade;
+                sum.min_fde += block.min_fde;
+            }
+        }
+        for sum in &mut mean {
+            sum.min_ade /= count;
+            sum.min_fde /= count;
+        }
+        (!mean.is_empty()).then_some(mean)
+    }
+
+    /// The seeds, sorted; `None` stands for results that have no seed.
+    pub(crate) fn seeds(&self) -> Vec<Option<u64>> {
+        let mut seeds: Vec<_> = self.rows.iter().map(|row| row.conditions.seed).collect();
+        seeds.sort_unstable();
+        seeds.dedup();
+        seeds
+    }
+
+    /// A number on one fold, over the seeds.
+    pub(crate) fn on_fold(&self, fold: &str, of: impl Fn(&Scores) -> f64) -> Option<SeedSpread> {
+        SeedSpread::of(&self.on(fold).map(|row| of(&row.scores)).collect::<Vec<_>>())
+    }
+
+    /// The plain mean over the folds, over the seeds; `None` unless every seed has every fold.
+    pub(crate) fn over_folds(
+        &self,
+        folds: &[&str],
+        of: impl Fn(&Scores) -> f64,
+    ) -> Option<SeedSpread> {
+        let mean_of_seed = |seed: Option<u64>| {
+            let on_fold = |fold: &&str| {
+                let row = self.on(fold).find(|row| row.conditions.seed == seed)?;
+                Some(of(&row.scores))
+            };
+            let values: Option<Vec<f64>> = folds.iter().map(on_fold).collect();
+            values.map(|values| values.iter().sum::<f64>() / folds.len() as f64)
+        };
+        let means: Option<Vec<f64>> = self.seeds().into_iter().map(mean_of_seed).collect();
+        SeedSpread::of(&means?)
+    }
+
+    /// Under what conditions the line came about, in words: seeds, training, device, commit.
+    pub(crate) fn settings(&self) -> String {
+        let c: &Conditions = self.conditions();
+        let known = |text: &str| {
+            if text.is_empty() {
+                "unknown".to_owned()
+            } else {
+                text.to_owned()
+            }
+        };
+        let commit = known(&c.commit);
+        // What made the forecasts of another program is known to it alone.
+        if let (None, Some(origin)) = (c.epochs, &c.selection) {
+            return format!(
+                "{origin}; its seed, its training and what it saw of the future are not known here; scored at commit {commit}"
+            );
+        }
+        let seeds: Vec<String> = self.seeds().iter().flatten().map(u64::to_string).collect();
+        let mut parts = vec![match seeds.len() {
+            0 => "no seed (nothing random)".to_owned(),
+            1 => format!("seed {}", seeds[0]),
+            _ => format!("seeds {}", seeds.join(", ")),
+        }];
+        match c.epochs {
+            None => parts.push("not trained".to_owned()),
+            Some(epochs) => {
+                let selection = c
+                    .selection
+                    .as_deref()
+                    .map_or(String::new(), |s| format!(" ({s})"));
+                parts.push(format!("{epochs} epochs{selection}"));
+                let subset = c
+                    .training_subset
+                    .as_deref()
+                    .unwrap_or("all training windows");
+                parts.push(format!("trained on {subset}"));
+                parts.extend(c.recipe.clone());
+            }
+        }
+        parts.push(format!("device {}", known(&c.device)));
+        parts.push(format!("commit {commit}"));
+        parts.join("; ")
+    }
+
+    /// The folds that the line has, in the order of `folds`.
+    pub(crate) fn present<'f>(&self, folds: &[&'f str]) -> Vec<&'f str> {
+        folds
+            .iter()
+            .copied()
+            .filter(|fold| self.on(fold).next().is_some())
+            .collect()
+    }
+}

@@ -1,0 +1,110 @@
+//! Everything that is measured besides minADE and minFDE.
+
+use super::{
+    cells::{self, NOTHING},
+    group::Group,
+};
+use crate::document::{Part, Table};
+use ddl_eval::Scores;
+
+/// A metric of the tables after the first: its column, its decimals, and where it is found in the scores.
+type Column = (&'static str, usize, fn(&Scores) -> Option<f64>);
+
+pub(super) const FURTHER_LEGEND: &str = "Further metrics, mean over the folds named. FDE@minADE: FDE of the \
+    hypothesis of least ADE; JADE, JFDE: one hypothesis index for the whole scene; missed: every \
+    hypothesis ends more than 0.5 m off; collide: discs of radius 0.2 m overlap between the \
+    forecasts that protocol `single` would take (in brackets: between true futures); goal FDE: nearest goal from the true end; Phi \
+    falls: rollouts that come nearer to their goal at every step; certified: rollouts whose Lyapunov \
+    certificate, the model's evidence of it step by step, holds; to goal: distance left at the end; \
+    turn: largest angle between a step and the goal direction; reverse: rollouts that turn by more \
+    than 90 degrees; K: hypotheses a pedestrian.";
+
+const FURTHER: [Column; 13] = [
+    ("FDE@minADE m", 3, |s| Some(s.fde_at_min_ade)),
+    ("JADE m", 3, |s| Some(s.joint_ade)),
+    ("JFDE m", 3, |s| Some(s.joint_fde)),
+    ("missed %", 1, |s| Some(100.0 * s.miss_rate)),
+    ("collide %", 1, |s| Some(100.0 * s.collision_rate)),
+    ("(true %)", 1, |s| Some(100.0 * s.true_collision_rate)),
+    ("goal FDE m", 3, |s| s.goal_fde),
+    ("Phi falls %", 1, |s| {
+        s.stability.map(|st| 100.0 * st.decreasing)
+    }),
+    ("certified %", 1, |s| {
+        s.stability?.certified.map(|share| 100.0 * share)
+    }),
+    ("to goal m", 3, |s| s.stability.map(|st| st.end_distance)),
+    ("turn deg", 1, |s| s.stability.map(|st| st.largest_turn)),
+    ("reverse %", 1, |s| {
+        s.stability.map(|st| 100.0 * st.reversing)
+    }),
+    ("K", 0, |s| Some(s.hypotheses as f64)),
+];
+
+pub(super) const WHOLE_LEGEND: &str = "The forecast as a whole, mean over the folds named. ADE@minFDE: ADE of \
+    the hypothesis of least FDE; expected: errors of all hypotheses, weighted; likely: errors of the \
+    hypothesis of greatest weight; missed 1 m, 2 m: every hypothesis ends farther off; runs into: \
+    forecasts, those that protocol `single` would take, that overlap the TRUE future of another (Col-II; discs of radius 0.2 m); KDE NLL: negative \
+    log-likelihood of the truth under a Gaussian kernel density of the weighted hypotheses, clipped at 20 \
+    nats; AMD: Mahalanobis distance of the truth in deviations of the hypotheses; AMV: largest \
+    eigenvalue of their mean covariance; APD, FPD: mean distance between two hypotheses, over the path and \
+    of the ends. Distributions need several hypotheses, and depend on how many there are.";
+
+/// Of the forecast as a whole: all hypotheses with their weights, not the best one.
+const WHOLE: [Column; 13] = [
+    ("ADE@minFDE m", 3, |s| s.ade_at_min_fde),
+    ("expected ADE m", 3, |s| s.expected_ade),
+    ("expected FDE m", 3, |s| s.expected_fde),
+    ("likely ADE m", 3, |s| s.most_likely_ade),
+    ("likely FDE m", 3, |s| s.most_likely_fde),
+    ("missed 1 m %", 1, |s| {
+        s.miss_rate_1m.map(|rate| 100.0 * rate)
+    }),
+    ("missed 2 m %", 1, |s| {
+        s.miss_rate_2m.map(|rate| 100.0 * rate)
+    }),
+    ("runs into %", 1, |s| {
+        s.true_neighbour_collision_rate.map(|rate| 100.0 * rate)
+    }),
+    ("KDE NLL nats", 3, |s| s.kde_nll),
+    ("AMD", 3, |s| s.amd),
+    ("AMV m²", 3, |s| s.amv),
+    ("APD m", 3, |s| s.diversity),
+    ("FPD m", 3, |s| s.end_diversity),
+];
+
+/// The tables of both, each below its heading.
+pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
+    let both = [
+        ("Further metrics", &FURTHER[..]),
+        ("The forecast as a whole", &WHOLE),
+    ];
+    let part = |(name, columns): (&str, &[Column])| {
+        let caption = format!("{name}. {}", group.conditions_in_words());
+        let table = table(group, columns).captioned(caption);
+        [Part::subheading(name), Part::Table(table)]
+    };
+    both.into_iter().flat_map(part).collect()
+}
+
+/// One line a forecaster, one column a metric, mean over the folds that it has.
+fn table(group: &Group<'_>, metrics: &[Column]) -> Table {
+    let folds = group.folds();
+    let columns = ["forecaster", "folds"]
+        .into_iter()
+        .chain(metrics.iter().map(|(name, ..)| *name));
+    let mut table = Table::new(columns).text_column("folds");
+    for (line, label) in group.labelled() {
+        let present = line.present(&folds);
+        let named = cells::folds(&present, &folds);
+        let cells = metrics.iter().map(|&(_, decimals, of)| {
+            // A metric that a fold lacks is NaN there, and so is its mean.
+            let spread = line.over_folds(&present, |s| of(s).unwrap_or(f64::NAN));
+            let text = spread.map(|spread| format!("{spread:.decimals$}"));
+            text.filter(|text| !text.contains("NaN"))
+                .unwrap_or_else(|| NOTHING.to_owned())
+        });
+        table.row([label, named].into_iter().chain(cells));
+    }
+    table
+}

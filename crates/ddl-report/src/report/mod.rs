@@ -1,0 +1,182 @@
+//! Results of several runs put together: tables for people, JSON for programs.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{ReportError, document::Document};
+use ddl_eval::ResultRow;
+
+mod ablation;
+mod across_protocols;
+mod categories;
+mod cells;
+mod content;
+mod group;
+mod metrics;
+mod published;
+mod recordings;
+mod section;
+mod significance;
+mod spread;
+
+pub(crate) use group::{Group, TableLine, groups, order};
+
+/// Version of the JSON file.
+const FORMAT: u32 = 1;
+
+/// Results of any number of runs.
+///
+/// Rows are grouped into one table for each data convention, window rule, protocol and test subset,
+/// so that no column mixes numbers that cannot be compared.
+///
+/// # Examples
+/// ```
+/// use ddl_data::{Convention, WindowRule};
+/// use ddl_eval::{Conditions, Protocol, baseline};
+/// use ddl_report::Report;
+/// # use ddl_data::{PedestrianId, Window};
+/// # let walk = (0..20).map(|t| [0.4 * f64::from(t), 0.0]).collect();
+/// # let test_windows = vec![Window::new("eth", 0, 6, vec![PedestrianId(1)], vec![walk])?];
+/// let conditions =
+///     Conditions::new(Convention::Star, WindowRule::Published, Protocol::Single, "eth", "");
+/// let rows = baseline::measure(&conditions, &test_windows, 1)?;
+/// let report = Report::new("Baselines on eth", rows)?;
+/// assert!(report.to_markdown().starts_with("Data convention: `star`"));
+/// assert_eq!(Report::from_json(&report.to_json()?)?, report);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    format: u32,
+    title: String,
+    rows: Vec<ResultRow>,
+}
+
+impl Report {
+    /// A report of these rows. A row given twice is kept once.
+    ///
+    /// # Errors
+    /// Two rows name the same conditions and hold different scores.
+    pub fn new(
+        title: impl Into<String>,
+        rows: impl IntoIterator<Item = ResultRow>,
+    ) -> Result<Self, ReportError> {
+        let mut report = Self {
+            format: FORMAT,
+            title: title.into(),
+            rows: Vec::new(),
+        };
+        report.extend(rows)?;
+        Ok(report)
+    }
+
+    /// Adds rows, for instance those of another run's report.
+    ///
+    /// # Errors
+    /// As [`Report::new`]; the rows before the conflict are kept.
+    pub fn extend(&mut self, rows: impl IntoIterator<Item = ResultRow>) -> Result<(), ReportError> {
+        for row in rows {
+            match self
+                .rows
+                .iter()
+                .find(|known| known.conditions == row.conditions)
+            {
+                None => self.rows.push(row),
+                Some(known) if known.scores == row.scores => {}
+                Some(known) => {
+                    return Err(ReportError::Conflict {
+                        row: row.conditions.label(),
+                        fold: row.conditions.fold,
+                        first: known.scores.min_ade,
+                        second: row.scores.min_ade,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The title.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// The rows, in the order they were given.
+    #[must_use]
+    pub fn rows(&self) -> &[ResultRow] {
+        &self.rows
+    }
+
+    /// The report as a page of markdown; its first line names the data convention of the numbers.
+    #[must_use]
+    pub fn to_markdown(&self) -> String {
+        self.document().to_markdown()
+    }
+
+    /// The report as a document, to be rendered as markdown, HTML or LaTeX.
+    #[must_use]
+    pub fn document(&self) -> Document {
+        content::document(&self.title, &self.rows)
+    }
+
+    /// The report as JSON, a line a row, from which [`Report::from_json`] makes the same report, bit by bit.
+    ///
+    /// # Errors
+    /// None in practice: scores are finite.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        let rows: Vec<String> = self
+            .rows
+            .iter()
+            .map(serde_json::to_string)
+            .collect::<Result<_, _>>()?;
+        let title = serde_json::to_string(&self.title)?;
+        Ok(format!(
+            "{{\"format\":{},\"title\":{title},\"rows\":[\n{}\n]}}\n",
+            self.format,
+            rows.join(",\n")
+        ))
+    }
+
+    /// Reads what [`Report::to_json`] wrote.
+    ///
+    /// # Errors
+    /// The text is not a report, is of a newer format, or holds conflicting rows.
+    pub fn from_json(text: &str) -> Result<Self, ReportError> {
+        let read: Self = serde_json::from_str(text)?;
+        if read.format != FORMAT {
+            return Err(ReportError::Format {
+                found: read.format,
+                supported: FORMAT,
+            });
+        }
+        Self::new(read.title, read.rows)
+    }
+
+    /// Its files, each with its name: `report.md`, `report.tex` (its tables for a paper) and `report.json`.
+    ///
+    /// # Errors
+    /// As [`Report::to_json`].
+    pub fn files(&self) -> Result<[(&'static str, String); 3], ReportError> {
+        let document = self.document();
+        Ok([
+            ("report.md", document.to_markdown()),
+            ("report.tex", document.to_latex()),
+            ("report.json", self.to_json()?),
+        ])
+    }
+
+    /// Reads a `report.json`.
+    ///
+    /// # Errors
+    /// The file cannot be read, or as [`Report::from_json`].
+    pub fn load(path: &Path) -> Result<Self, ReportError> {
+        let in_file = |source| ReportError::File {
+            path: path.to_owned(),
+            source,
+        };
+        let text = std::fs::read_to_string(path).map_err(in_file)?;
+        Self::from_json(&text)
+    }
+}

@@ -1,0 +1,41 @@
+//! What others published, as printed by them.
+
+use ddl_data::Convention;
+
+use crate::{document::Part, literature};
+use ddl_eval::ResultRow;
+
+/// The tables of the literature that the results may be read against, and those that they may not.
+pub(super) fn parts(rows: &[ResultRow]) -> Vec<Part> {
+    let star = rows
+        .iter()
+        .any(|row| row.conditions.convention == Convention::Star);
+    let other = if star || rows.is_empty() {
+        ""
+    } else {
+        " No result above is in the `star` convention: none is comparable with STAR, DDL or the \
+         reference values below."
+    };
+    vec![
+        Part::heading("Published numbers"),
+        Part::Paragraph(format!(
+            "As printed by their sources, ADE/FDE in metres, best of 20. None of them was measured here.{other}"
+        )),
+        Part::subheading("Table I of the DDL paper"),
+        Part::Paragraph(
+            "This table mixes data conventions: most rows above DDL were measured by their authors in the \
+             `social-gan` convention, whose ETH is harder; STAR and DDL are in `star`. Compare DDL and STAR with \
+             `published` results in the `star` convention alone."
+                .to_owned(),
+        ),
+        Part::Table(literature::table_one()),
+        Part::subheading("Best published systems in the `star` convention (minADE20/minFDE20)"),
+        Part::Table(literature::star_convention_table()),
+        Part::heading("Reference values of baselines"),
+        Part::Paragraph(
+            "Measured once on all test windows of the `star` convention, window rule `published`; ADE/FDE in metres."
+                .to_owned(),
+        ),
+        Part::Table(literature::measured_table()),
+    ]
+}

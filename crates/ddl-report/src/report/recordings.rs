@@ -1,0 +1,71 @@
+//! Own recordings that were measured together, one by one.
+
+use super::{cells::pair, group::Group};
+use crate::document::{Part, Table};
+use ddl_data::Convention;
+use ddl_eval::{RecordingErrors, ResultRow};
+
+/// A table for each set of own recordings: a row a recording and one for all, a column a forecaster.
+pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
+    if group.convention != Convention::Own {
+        return Vec::new();
+    }
+    let folds = group.folds();
+    let tables: Vec<Part> = folds
+        .iter()
+        .filter_map(|fold| table(group, fold))
+        .map(Part::Table)
+        .collect();
+    if tables.is_empty() {
+        return Vec::new();
+    }
+    [Part::subheading("By recording")]
+        .into_iter()
+        .chain(tables)
+        .collect()
+}
+
+/// `None` for a single recording.
+fn table(group: &Group<'_>, fold: &str) -> Option<Table> {
+    // of several seeds the first
+    let rows = group.lines.iter().map(|line| line.on(fold).next());
+    let measured: Vec<(String, &ResultRow, Vec<RecordingErrors>)> = group
+        .labels()
+        .into_iter()
+        .zip(rows)
+        .filter_map(|(label, row)| Some((label, row?, row?.by_recording())))
+        .collect();
+    let (_, first, recordings) = measured.first()?;
+    if recordings.len() < 2 {
+        return None;
+    }
+    let columns = ["recording".to_owned(), "pedestrian-windows".to_owned()];
+    let forecasters = measured.iter().map(|(label, ..)| label.clone());
+    let mut table = Table::new(columns.into_iter().chain(forecasters));
+    for of in recordings {
+        let errors = measured.iter().map(|(.., recordings)| {
+            let same = recordings
+                .iter()
+                .find(|same| same.recording == of.recording);
+            pair(
+                same.map(|of| rounded(of.min_ade)),
+                same.map(|of| rounded(of.min_fde)),
+            )
+        });
+        let start = [of.recording.clone(), of.pedestrians.to_string()];
+        table.row(start.into_iter().chain(errors));
+    }
+    let errors = measured.iter().map(|(_, ResultRow { scores, .. }, _)| {
+        pair(Some(rounded(scores.min_ade)), Some(rounded(scores.min_fde)))
+    });
+    let start = ["all".to_owned(), first.scores.pedestrians.to_string()];
+    table.row(start.into_iter().chain(errors));
+    Some(table.captioned(format!(
+        "minADE/minFDE in metres, mean over the pedestrians of each recording, and of all; of several seeds the first. {}",
+        group.conditions_in_words()
+    )))
+}
+
+fn rounded(metres: f64) -> String {
+    format!("{metres:.3}")
+}

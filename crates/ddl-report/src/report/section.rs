@@ -1,0 +1,92 @@
+//! One table of comparable results: how they were measured, the table, what it cannot show.
+
+use ddl_data::WindowRule;
+
+use super::{
+    categories,
+    cells::{counts, errors},
+    group::Group,
+    metrics, recordings, significance,
+};
+use crate::document::{Part, Table};
+
+/// The results of one group, from its heading to its further metrics.
+pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
+    let rule = describe_rule(group.window_rule);
+    let subset = group.test_subset.unwrap_or("all test windows");
+    let mut parts = vec![
+        Part::heading(group.title()),
+        Part::List(vec![
+            format!(
+                "Protocol `{}`: {}.",
+                group.protocol,
+                group.protocol.description()
+            ),
+            format!("Window rule `{}`: {rule}.", group.window_rule),
+            format!("Scored: {subset}."),
+            "Cells: minADE/minFDE in metres over the hypotheses of each pedestrian, mean over \
+             pedestrians; `mean`: plain mean of the folds, given when all are there; ±: standard \
+             deviation over seeds."
+                .to_owned(),
+            "What the other columns are: see \"How to read the tables\", below.".to_owned(),
+        ]),
+    ];
+    parts.extend(group.warning());
+    parts.push(Part::Table(headline(group).captioned(caption(group))));
+    parts.push(Part::List(conditions(group)));
+    parts.extend(recordings::parts(group));
+    let mut more = metrics::parts(group);
+    more.extend(significance::parts(group));
+    more.extend(categories::parts(group));
+    parts.push(Part::Details {
+        summary: "Further metrics, the forecast as a whole, how sure the means are, by category of walker".to_owned(),
+        parts: more,
+    });
+    parts
+}
+
+fn caption(group: &Group<'_>) -> String {
+    format!("minADE/minFDE in metres. {}", group.conditions_in_words())
+}
+
+fn describe_rule(rule: WindowRule) -> String {
+    match rule {
+        WindowRule::Published => "the windows of the published STAR and DDL code".to_owned(),
+        WindowRule::Complete => "every pedestrian with all 20 frames, every start".to_owned(),
+        WindowRule::SocialGan { min_pedestrians } => {
+            format!("as Social-GAN cuts them, windows of at least {min_pedestrians} pedestrians")
+        }
+        other => format!("{other:?}"),
+    }
+}
+
+fn headline(group: &Group<'_>) -> Table {
+    let folds = group.folds();
+    let columns = ["forecaster"]
+        .into_iter()
+        .chain(folds.iter().copied())
+        .chain(["mean"]);
+    let mut table = Table::new(columns);
+    let pedestrians = folds.iter().map(|fold| counts(group.pedestrians(fold)));
+    table.row(["walkers scored".to_owned()].into_iter().chain(pedestrians));
+    for (line, label) in group.labelled() {
+        table.row([label].into_iter().chain(errors(line, &folds)));
+    }
+    table
+}
+
+/// Under what conditions each line came about; lines alike are named together.
+fn conditions(group: &Group<'_>) -> Vec<String> {
+    let mut alike: Vec<(String, Vec<String>)> = Vec::new();
+    for (line, label) in group.labelled() {
+        let settings = line.settings();
+        match alike.iter_mut().find(|(known, _)| *known == settings) {
+            Some((_, labels)) => labels.push(label),
+            None => alike.push((settings, vec![label])),
+        }
+    }
+    alike
+        .iter()
+        .map(|(settings, labels)| format!("{}: {settings}.", labels.join(", ")))
+        .collect()
+}

@@ -1,0 +1,137 @@
+//! How sure the numbers of a table are, and the differences between its lines.
+
+use rayon::prelude::*;
+
+use super::{
+    cells::{self, NOTHING},
+    group::{Group, TableLine},
+};
+use crate::document::{Part, Table};
+use ddl_eval::significance::{
+    BlockErrors, BlockMetric, Interval, mean_interval, paired_difference,
+};
+
+/// What the intervals and p-values are.
+pub(super) const LEGEND: &str = "How sure the means are: in brackets the 95 % interval over 10,000 resamples of 20 s of recording \
+    (windows overlap and are no independent samples); p: how often chance alone would make as large a difference from the \
+    forecaster named in the head of the column, by changing the sign of the difference of every 20 s at random (a cautious answer where the folds disagree); not corrected for the \
+    number of comparisons. Nothing is said where a fold has fewer than 10 such stretches. Seeds are averaged first: how much they \
+    differ is the ± of the first table and not in these intervals. The intervals speak of other moments in the same places, not of \
+    other places: for that, look at how much the folds differ.";
+
+/// Intervals of every line that has errors by block, and its differences from the first trained one of those with the most folds.
+pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
+    let folds = group.folds();
+    let lines: Vec<(Measured<'_>, String)> = group
+        .labelled()
+        .filter_map(|(line, label)| Some((Measured::of(line, &folds)?, label)))
+        .collect();
+    let most = lines.iter().map(|(m, _)| m.folds.len()).max();
+    let mut candidates = lines.iter().filter(|(m, _)| Some(m.folds.len()) == most);
+    let first = candidates.clone().next();
+    let trained = candidates.find(|(m, _)| m.line.conditions().epochs.is_some());
+    let Some((reference, name)) = trained.or(first) else {
+        return Vec::new();
+    };
+    let mut table = Table::new([
+        "forecaster".to_owned(),
+        "folds".to_owned(),
+        "minADE m".to_owned(),
+        "minFDE m".to_owned(),
+        format!("minADE - {name} m"),
+        "p".to_owned(),
+        format!("minFDE - {name} m"),
+        "p".to_owned(),
+    ])
+    .text_column("folds");
+    let rows: Vec<Vec<String>> = lines
+        .par_iter()
+        .map(|(measured, label)| {
+            let mut cells = vec![label.clone(), cells::folds(&measured.names(), &folds)];
+            for metric in [BlockMetric::MinAde, BlockMetric::MinFde] {
+                let interval = mean_interval(&measured.slices(), metric);
+                cells.push(interval.map_or(NOTHING.to_owned(), in_words));
+            }
+            for metric in [BlockMetric::MinAde, BlockMetric::MinFde] {
+                cells.extend(difference(measured, reference, metric));
+            }
+            cells
+        })
+        .collect();
+    for row in rows {
+        table.row(row);
+    }
+    vec![
+        Part::subheading("How sure the means are"),
+        Part::Table(table.captioned(format!(
+            "95 % intervals and paired differences. {}",
+            group.conditions_in_words()
+        ))),
+    ]
+}
+
+/// A line with its errors by block, seeds averaged.
+struct Measured<'a> {
+    line: &'a TableLine<'a>,
+    /// The folds it has, each with its blocks.
+    folds: Vec<(String, Vec<BlockErrors>)>,
+}
+
+impl<'a> Measured<'a> {
+    /// `None` where a row has no errors by block.
+    fn of(line: &'a TableLine<'a>, folds: &[&str]) -> Option<Self> {
+        let present = line.present(folds);
+        let folds: Option<Vec<_>> = present
+            .iter()
+            .map(|&fold| Some((fold.to_owned(), line.blocks(fold)?)))
+            .collect();
+        let folds = folds.filter(|folds| !folds.is_empty())?;
+        Some(Self { line, folds })
+    }
+
+    fn slices(&self) -> Vec<&[BlockErrors]> {
+        self.folds.iter().map(|(_, blocks)| &blocks[..]).collect()
+    }
+
+    fn names(&self) -> Vec<&str> {
+        self.folds.iter().map(|(name, _)| name.as_str()).collect()
+    }
+}
+
+/// The difference and its p-value as two cells; nothing where the two have other folds or windows, or are the same line.
+fn difference(
+    measured: &Measured<'_>,
+    reference: &Measured<'_>,
+    metric: BlockMetric,
+) -> [String; 2] {
+    let nothing = || [NOTHING.to_owned(), NOTHING.to_owned()];
+    if std::ptr::eq(measured.line, reference.line) || measured.names() != reference.names() {
+        return nothing();
+    }
+    match paired_difference(&measured.slices(), &reference.slices(), metric) {
+        Ok(Some(pair)) => {
+            let p = match pair.p_value {
+                small if small < 1e-3 => "<0.001".to_owned(),
+                p => format!("{p:.3}"),
+            };
+            let Interval { mean, low, high } = pair.difference;
+            let [mean, low, high] = [mean, low, high].map(signed);
+            [format!("{mean} [{low}, {high}]"), p]
+        }
+        Ok(None) | Err(_) => nothing(),
+    }
+}
+
+/// With its sign, unless it rounds to nothing.
+fn signed(metres: f64) -> String {
+    let text = format!("{metres:+.3}");
+    match text.as_str() {
+        "+0.000" | "-0.000" => "0.000".to_owned(),
+        _ => text,
+    }
+}
+
+fn in_words(interval: Interval) -> String {
+    let Interval { mean, low, high } = interval;
+    format!("{mean:.3} [{low:.3}, {high:.3}]")
+}

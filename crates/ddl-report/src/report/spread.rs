@@ -1,0 +1,57 @@
+//! A number over several seeds: mean and standard deviation.
+
+use std::fmt;
+
+/// Mean and spread of one number over the seeds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SeedSpread {
+    mean: f64,
+    /// Sample standard deviation (n - 1); `None` for one seed.
+    deviation: Option<f64>,
+}
+
+impl SeedSpread {
+    /// `None` when there are no values.
+    pub(crate) fn of(values: &[f64]) -> Option<Self> {
+        let n = values.len() as f64;
+        if values.is_empty() {
+            return None;
+        }
+        let mean = values.iter().sum::<f64>() / n;
+        let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+        let deviation = (values.len() > 1).then(|| (squares / (n - 1.0)).sqrt());
+        Some(Self { mean, deviation })
+    }
+}
+
+impl SeedSpread {
+    /// The mean alone.
+    pub(crate) fn mean(self) -> f64 {
+        self.mean
+    }
+}
+
+impl fmt::Display for SeedSpread {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let precision = f.precision().unwrap_or(3);
+        write!(f, "{:.precision$}", self.mean)?;
+        match self.deviation {
+            Some(deviation) => write!(f, "±{deviation:.precision$}"),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 1, 2, 3, 4: mean 2.5, squares 5, variance 5/3, deviation 1.291.
+    #[test]
+    fn mean_and_sample_deviation() {
+        let spread = SeedSpread::of(&[1.0, 2.0, 3.0, 4.0]).unwrap();
+        assert_eq!(spread.to_string(), "2.500±1.291");
+        assert_eq!(format!("{:.1}", SeedSpread::of(&[2.0]).unwrap()), "2.0");
+        assert_eq!(SeedSpread::of(&[]), None);
+    }
+}

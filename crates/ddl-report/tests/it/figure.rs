@@ -1,0 +1,105 @@
+//! What a picture holds; how it looks is for eyes.
+
+use ddl_data::{PedestrianId, Window};
+use ddl_eval::{
+    Forecaster,
+    baseline::{ConstantVelocity, StraightLine, TrueEnd},
+};
+use ddl_report::{
+    FigureError,
+    figure::{self, SceneFigure},
+};
+
+fn window(pedestrians: i64) -> Window {
+    let track = |i: i64| (0..20).map(move |t| [0.4 * f64::from(t), i as f64 + 0.05 * f64::from(t)]);
+    let ids: Vec<_> = (0..pedestrians).map(PedestrianId).collect();
+    let tracks = (0..pedestrians).map(|i| track(i).collect()).collect();
+    Window::new("<corridor> & \"co\"", 120, 10, ids, tracks).unwrap()
+}
+
+const STAR: &str = "class=\"star\"";
+
+fn count(svg: &str, shape: &str) -> usize {
+    svg.matches(shape).count()
+}
+
+#[test]
+fn every_role_is_drawn_and_named() {
+    let window = window(2);
+    let forecast = StraightLine::to(TrueEnd).forecast(&window).unwrap();
+    let svg = figure::scene(&window, &forecast).unwrap();
+    assert!(svg.starts_with("<?xml") && svg.trim_end().ends_with("</svg>"));
+    for text in [
+        "observed, 3.2 s",
+        "truth, 4.8 s",
+        "forecast",
+        "goal",
+        "x (m)",
+        "y (m)",
+    ] {
+        assert!(svg.contains(text), "no `{text}`");
+    }
+    // Text of the user's files must not become markup.
+    assert!(svg.contains("&lt;corridor&gt; &amp; ") && !svg.contains("<corridor>"));
+    // 8 observed dots, a true end and a goal for each of the two, and the legend's 4, 1 and 1.
+    assert_eq!(count(&svg, "<circle"), 2 * (8 + 1 + 1) + 4 + 1 + 1);
+    // A star for each of the two and for the legend.
+    assert_eq!(count(&svg, STAR), 2 + 1);
+}
+
+#[test]
+fn hypotheses_are_drawn_for_those_asked_for() {
+    let window = window(3);
+    let forecast = ConstantVelocity::angular_noise(1)
+        .forecast(&window)
+        .unwrap();
+    let everybody = SceneFigure::new(&window, &forecast).to_svg().unwrap();
+    let one = SceneFigure::new(&window, &forecast)
+        .only([1])
+        .title("One")
+        .to_svg()
+        .unwrap();
+    assert_eq!(count(&everybody, STAR), 3 + 1);
+    assert_eq!(count(&one, STAR), 1 + 1);
+    assert!(one.contains(">\nOne\n</text>") && !one.contains("corridor"));
+    // The two others are shown as they walked, and nothing is forecast of them.
+    assert_eq!(count(&one, "class=\"bystander\""), 2);
+    assert_eq!(
+        everybody,
+        SceneFigure::new(&window, &forecast).to_svg().unwrap()
+    );
+}
+
+#[test]
+fn a_window_without_future_has_no_truth() {
+    let window = window(1).without_future();
+    let forecast = ConstantVelocity::last_step().forecast(&window).unwrap();
+    let svg = figure::scene(&window, &forecast).unwrap();
+    assert!(!svg.contains("class=\"truth") && !svg.contains("truth, 4.8 s"));
+}
+
+#[test]
+fn nobody_and_strangers_are_handled() {
+    let window = window(2);
+    let forecast = ConstantVelocity::last_step().forecast(&window).unwrap();
+    assert!(
+        SceneFigure::new(&window, &forecast)
+            .only([])
+            .to_svg()
+            .is_ok()
+    );
+    assert!(
+        SceneFigure::new(&window, &forecast)
+            .only([99])
+            .to_svg()
+            .is_ok()
+    );
+    let error = figure::scene(&self::window(1), &forecast).unwrap_err();
+    assert!(matches!(
+        error,
+        FigureError::Pedestrians {
+            expected: 1,
+            found: 2
+        }
+    ));
+}

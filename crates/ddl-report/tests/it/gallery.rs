@@ -1,0 +1,134 @@
+//! What is shown of a fold is chosen by rule.
+
+use ddl_data::{Dataset, Window, WindowRule};
+use ddl_eval::{
+    Forecast, Protocol,
+    baseline::{ConstantVelocity, StraightLine, TrueEnd},
+    metric::displacement::average_displacement,
+};
+use ddl_report::{
+    Moment,
+    gallery::{self, Show},
+};
+
+fn windows() -> Vec<Window> {
+    let dataset = Dataset::simulated(1);
+    dataset
+        .fold("corridor")
+        .unwrap()
+        .test_windows(WindowRule::Complete)
+}
+
+fn oracle(windows: &[Window]) -> Vec<Forecast> {
+    Protocol::Published
+        .forecast(&StraightLine::to(TrueEnd), windows)
+        .unwrap()
+}
+
+fn shown(moments: &[Moment]) -> Vec<Show> {
+    let mut shown: Vec<Show> = moments
+        .iter()
+        .flat_map(|m| &m.picks)
+        .map(|pick| pick.show)
+        .collect();
+    shown.sort();
+    shown
+}
+
+#[test]
+fn each_kind_of_case_is_picked_once_and_time_is_covered() {
+    let windows = windows();
+    let moments = gallery::moments("corridor", "oracle", &windows, &oracle(&windows)).unwrap();
+    let kinds = shown(&moments);
+    assert!(
+        kinds.contains(&Show::Convergence) && kinds.contains(&Show::KeepingDistance),
+        "{kinds:?}"
+    );
+    let mut once = kinds.clone();
+    once.dedup();
+    assert_eq!(kinds, once);
+    let plain = moments.iter().filter(|m| m.picks.is_empty()).count();
+    assert!((8 - kinds.len()..=8).contains(&plain), "{plain}");
+    // In order of time, from the first to the last eighth of the recording.
+    let frames: Vec<i64> = moments.iter().map(|m| m.frame).collect();
+    assert!(frames.is_sorted());
+    let all: Vec<i64> = windows.iter().map(|w| w.frames()[7]).collect();
+    let (first, last) = (all[all.len() / 8], all[7 * all.len() / 8]);
+    assert!(frames[0] <= first && frames[frames.len() - 1] >= last);
+    for moment in &moments {
+        for pick in &moment.picks {
+            assert!(
+                pick.pedestrians
+                    .iter()
+                    .all(|&i| i < moment.pedestrians.len())
+            );
+            assert!(pick.rule.contains("minADE"), "{}", pick.rule);
+        }
+    }
+}
+
+/// Half of the cases of a kind are forecast better than the one shown, half worse: counted anew from the definition.
+#[test]
+fn the_case_shown_is_the_median_one() {
+    let windows = windows();
+    let forecasts = oracle(&windows);
+    let moments = gallery::moments("corridor", "oracle", &windows, &forecasts).unwrap();
+    let moment = moments
+        .iter()
+        .find(|m| m.picks.iter().any(|p| p.show == Show::Convergence))
+        .unwrap();
+    let pick = moment
+        .picks
+        .iter()
+        .find(|p| p.show == Show::Convergence)
+        .unwrap();
+    let error = |window: &Window, i: usize, forecast: &Forecast| {
+        average_displacement(forecast.hypothesis(i, 0), window.future(i))
+    };
+    // The oracle's lines all arrive; those who go at least two metres are the cases.
+    let mut errors: Vec<f64> = Vec::new();
+    let mut shown = None;
+    for (window, forecast) in windows.iter().zip(&forecasts) {
+        for i in 0..window.len() {
+            let ([x, y], end) = (window.observed(i)[7], forecast.hypothesis(i, 0)[11]);
+            if (end[0] - x).hypot(end[1] - y) < 2.0 {
+                continue;
+            }
+            errors.push(error(window, i, forecast));
+            if window.frames()[7] == moment.frame && i == pick.pedestrians[0] {
+                shown = errors.last().copied();
+            }
+        }
+    }
+    errors.sort_by(f64::total_cmp);
+    assert_eq!(shown, Some(errors[(errors.len() - 1) / 2]));
+    assert!(
+        pick.rule
+            .starts_with(&format!("of {} such walkers", errors.len())),
+        "{}",
+        pick.rule
+    );
+}
+
+#[test]
+fn forecasts_without_goals_converge_nowhere_and_few_windows_are_all_shown() {
+    let windows = windows();
+    let forecasts = Protocol::Fair
+        .forecast(&ConstantVelocity::last_step(), &windows[..3])
+        .unwrap();
+    let moments = gallery::moments("corridor", "CV", &windows[..3], &forecasts).unwrap();
+    assert_eq!(moments.len(), 3);
+    assert!(!shown(&moments).contains(&Show::Convergence));
+    assert_eq!(gallery::moments("corridor", "CV", &[], &[]).unwrap(), []);
+    assert!(gallery::moments("corridor", "CV", &windows, &forecasts).is_err());
+    assert!(gallery::moments("c", "CV", &[windows[0].without_future()], &forecasts[..1]).is_err());
+}
+
+#[test]
+fn moments_survive_json() {
+    let windows = windows();
+    let moments = gallery::moments("corridor", "oracle", &windows, &oracle(&windows)).unwrap();
+    let text = serde_json::to_string(&moments).unwrap();
+    let read: Vec<Moment> = serde_json::from_str(&text).unwrap();
+    assert_eq!(read, moments);
+}

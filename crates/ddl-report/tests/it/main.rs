@@ -1,0 +1,14 @@
+//! What the crate promises, seen from outside.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a helper that fails is a test that fails"
+)]
+
+mod figure;
+mod gallery;
+mod goal_figure;
+mod measured_baselines;
+mod page;
+mod recordings;
+mod report;

@@ -1,0 +1,382 @@
+//! What the report page holds, and what it refuses. What it does in a browser is checked by `tests/page/check_page.py`.
+
+use ddl_data::{Convention, PedestrianId, Position, Window, WindowRule};
+use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, baseline};
+use ddl_report::{
+    EpochPoint, Moment, Report, TrainingCurve,
+    gallery::{Pick, Show},
+    page::{Page, Viewer},
+};
+use proptest::prelude::*;
+use serde_json::Value;
+
+/// Pedestrians side by side, each with hypotheses that fan out, rounded as a recording would be.
+fn window_and_forecast(pedestrians: usize, hypotheses: usize, goals: bool) -> (Window, Forecast) {
+    let track = |i: usize| -> Vec<Position> {
+        (0..20)
+            .map(|t| {
+                [
+                    0.437 * f64::from(t),
+                    1.3 * i as f64 + 0.05 * f64::from(t * t % 7),
+                ]
+            })
+            .collect()
+    };
+    let tracks: Vec<_> = (0..pedestrians).map(track).collect();
+    let ids = (1..).map(PedestrianId).take(pedestrians).collect();
+    let mut positions = Vec::new();
+    let mut ends = Vec::new();
+    for track in &tracks {
+        for k in 0..hypotheses {
+            let [x, y] = track[7];
+            let slope = 0.1 * (k as f64 - hypotheses as f64 / 2.0);
+            let path = (1..=12).map(|t| [x + 0.41 * f64::from(t), y + slope * f64::from(t)]);
+            positions.extend(path);
+            ends.push([x + 5.0, y + 12.5 * slope]);
+        }
+    }
+    let weights = vec![1.0 / hypotheses as f64; pedestrians * hypotheses];
+    let forecast = Forecast::new(
+        pedestrians,
+        hypotheses,
+        positions,
+        weights,
+        goals.then_some(ends),
+    );
+    let window = Window::new("scene", 0, 10, ids, tracks).unwrap();
+    (window, forecast.unwrap())
+}
+
+fn moment(pedestrians: usize, hypotheses: usize, goals: bool) -> Moment {
+    let (window, forecast) = window_and_forecast(pedestrians, hypotheses, goals);
+    Moment::new("fold", "stand-in", &window, &forecast).unwrap()
+}
+
+fn report() -> Report {
+    let (window, _) = window_and_forecast(3, 1, false);
+    let row = |protocol| {
+        let conditions =
+            Conditions::new(Convention::Star, WindowRule::Published, protocol, "eth", "");
+        baseline::measure(&conditions, std::slice::from_ref(&window), 1).unwrap()
+    };
+    Report::new("A & B", Protocol::ALL.into_iter().flat_map(row)).unwrap()
+}
+
+fn embedded<'a>(html: &'a str, id: &str) -> &'a str {
+    let (_, rest) = html.split_once(&format!("id=\"{id}\">")).unwrap();
+    rest.split_once("</script>").unwrap().0
+}
+
+fn curve(epochs: &[usize]) -> TrainingCurve {
+    let point = |&epoch: &usize| EpochPoint {
+        epoch,
+        loss: 1.0 / epoch as f64,
+        validation: None,
+        seconds: 1.0,
+    };
+    TrainingCurve {
+        fold: "eth".to_owned(),
+        variant: "full".to_owned(),
+        seed: 1,
+        loss: "loss, m²".to_owned(),
+        epochs: epochs.iter().map(point).collect(),
+    }
+}
+
+#[test]
+fn the_report_is_embedded_bit_for_bit_and_its_tables_are_there() {
+    let report = report();
+    let html = Page::new(&report).to_html().unwrap();
+    assert_eq!(embedded(&html, "report-json"), report.to_json().unwrap());
+    assert!(html.contains("<title>A &amp; B</title>"));
+    let tables = report.document().to_html();
+    let (_, sections) = tables.split_once("</header>\n").unwrap();
+    assert!(html.contains(sections));
+    // Every entry of the contents leads somewhere, and what uses the future says so.
+    for link in html.split("<a href=\"#").skip(1) {
+        let (id, _) = link.split_once('"').unwrap();
+        assert_eq!(html.matches(&format!("id=\"{id}\"")).count(), 1, "{id}");
+    }
+    assert!(html.contains(
+        "<section id=\"protocol-published-window-rule-published-convention-star\" class=\"warned\">"
+    ));
+    assert!(html.contains("<section id=\"protocol-fair-window-rule-published-convention-star\">"));
+}
+
+#[test]
+fn the_head_takes_fair_results_and_the_published_ones_bring_their_warning() {
+    let all = report();
+    let head = |report: &Report| {
+        let html = Page::new(report).to_html().unwrap();
+        let (_, rest) = html.split_once("class=\"headline\">").unwrap();
+        rest.split_once("<section id=\"player\"")
+            .unwrap()
+            .0
+            .to_owned()
+    };
+    let fair = head(&all);
+    assert!(fair.contains("protocol <code>fair</code>") && !fair.contains("class=\"warning\""));
+    assert!(
+        !fair.contains("TRUE end"),
+        "an oracle stands in the fair comparison"
+    );
+    let published = all
+        .rows()
+        .iter()
+        .filter(|row| row.conditions.protocol == Protocol::Published);
+    let published = head(&Report::new("Published", published.cloned()).unwrap());
+    assert!(
+        published.contains("protocol <code>published</code>")
+            && published.contains("class=\"warning\"")
+    );
+    assert!(head(&Report::new("Nothing", []).unwrap()).contains("This report holds no results."));
+}
+
+/// Even where the same with something changed is better.
+#[test]
+fn the_head_is_about_the_model_as_it_is() {
+    let (window, forecast) = window_and_forecast(1, 1, false);
+    let windows = std::slice::from_ref(&window);
+    let right: Vec<Position> = window.future(0).to_vec();
+    let right = Forecast::new(1, 1, right, vec![1.0], None).unwrap();
+    let row = |name: &str, forecast: &Forecast| {
+        let single = Protocol::Single;
+        let conditions = Conditions {
+            seed: Some(0),
+            epochs: Some(40),
+            selection: Some("last epoch".to_owned()),
+            ..Conditions::new(Convention::Star, WindowRule::Published, single, "eth", name)
+        };
+        ResultRow::score(conditions, windows, std::slice::from_ref(forecast)).unwrap()
+    };
+    let rows = [
+        row("DDL with hindsight", &right),
+        row("DDL", &forecast),
+        row("another", &forecast),
+    ];
+    let html = Page::new(&Report::new("Heads", rows).unwrap())
+        .to_html()
+        .unwrap();
+    let (_, verdict) = html.split_once("class=\"verdict\">").unwrap();
+    assert!(
+        verdict.starts_with("<strong>DDL</strong>"),
+        "{}",
+        &verdict[..80]
+    );
+}
+
+#[test]
+fn a_page_loads_nothing() {
+    let html = Page::new(&report())
+        .moments(vec![moment(2, 3, true)])
+        .to_html()
+        .unwrap();
+    for loading in [
+        " src=",
+        "@import",
+        "url(",
+        "fetch(",
+        "XMLHttpRequest",
+        "<iframe",
+    ] {
+        assert!(!html.contains(loading), "{loading}");
+    }
+    let namespace = "http://www.w3.org/2000/svg";
+    assert_eq!(
+        html.matches("http").count(),
+        html.matches(namespace).count()
+    );
+}
+
+#[test]
+fn names_cannot_become_markup() {
+    let hostile = "</script><script>alert(1)</script><!--";
+    let mut bad = moment(2, 2, true);
+    bad.recording = hostile.to_owned();
+    bad.forecaster = hostile.to_owned();
+    let bad = bad.picked(vec![Pick::new(Show::Turning, vec![1], hostile)]);
+    let mut trained = curve(&[1, 2]);
+    trained.variant = hostile.to_owned();
+    let report = report();
+    let page = Page::new(&report).moments(vec![bad]).curves(vec![trained]);
+    let html = page.to_html().unwrap();
+    assert!(!html.contains("<script>alert") && !html.contains("</script><script>a"));
+    let moments: Value = serde_json::from_str(embedded(&html, "moments-json")).unwrap();
+    assert_eq!(moments[0]["recording"], hostile);
+    for (name, svg) in page.figures().unwrap() {
+        assert!(!svg.contains("<script"), "{name}");
+        assert!(
+            name.chars()
+                .all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '.'),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn figures_are_files_of_their_own() {
+    let pick = |show| Pick::new(show, vec![0, 1], "by hand");
+    let picked = moment(3, 20, true).picked(vec![
+        pick(Show::Group),
+        pick(Show::Group),
+        pick(Show::Turning),
+    ]);
+    let report = report();
+    let page = Page::new(&report)
+        .moments(vec![picked, moment(1, 1, false)])
+        .curves(vec![curve(&[1, 2, 5]), curve(&[7])]);
+    let figures = page.figures().unwrap();
+    let names: Vec<&str> = figures.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(
+        names,
+        [
+            "comparison.svg",
+            "case-walking-together-scene-70.svg",
+            "case-walking-together-scene-70-2.svg",
+            "case-turning-scene-70.svg",
+            "training-eth-loss-m.svg"
+        ]
+    );
+    for (name, svg) in &figures {
+        assert!(
+            svg.starts_with("<?xml") && svg.contains("<title>"),
+            "{name}"
+        );
+        assert!(
+            !svg.contains("NaN") && !svg.contains("inf") && !svg.contains("var("),
+            "{name}"
+        );
+    }
+    let html = page.to_html().unwrap();
+    assert_eq!(html.matches("Play this moment</button>").count(), 3);
+}
+
+#[test]
+fn what_is_not_there_is_said() {
+    let html = Page::new(&report()).to_html().unwrap();
+    for words in [
+        "<section id=\"player\" class=\"empty\">",
+        "No moments were recorded",
+        "No cases were picked",
+        "no training was recorded",
+    ] {
+        assert!(html.contains(words), "{words}");
+    }
+}
+
+/// A change that spoils a moment, and what is said of it.
+type Fault = (fn(&mut Moment), &'static str);
+
+#[test]
+fn what_is_not_whole_is_refused_by_name() {
+    let report = report();
+    let cases: [Fault; 7] = [
+        (
+            |m| m.pedestrians[1].truth.truncate(11),
+            "walker 1 has 11 positions in `truth`, not 12",
+        ),
+        (
+            |m| m.pedestrians[0].hypotheses[1].positions[3][0] = f64::NAN,
+            "walker 0 has the coordinate NaN m in `hypotheses`; coordinates must be within",
+        ),
+        (
+            |m| m.pedestrians[0].hypotheses[1].goal = Some([0.0, 1e9]),
+            "walker 0 has the coordinate 1000000000 m in `goal`; coordinates must be within",
+        ),
+        (
+            |m| m.pedestrians[0].hypotheses[1].weight = -0.5,
+            "hypothesis 1 of walker 0 has the weight -0.5, which is not between 0 and 1",
+        ),
+        (|m| m.pedestrians.clear(), "there is nobody in it"),
+        (
+            |m| m.pedestrians[1].hypotheses.clear(),
+            "a walker has no hypothesis",
+        ),
+        (
+            |m| m.picks = vec![Pick::new(Show::Group, vec![0, 2], "")],
+            "the pick `walking together` names walker 2, and there are 2, counted from 0",
+        ),
+    ];
+    for (change, expected) in cases {
+        let mut bad = moment(2, 2, true);
+        change(&mut bad);
+        let page = Page::new(&report).moments(vec![moment(1, 1, false), bad]);
+        let words = page.to_html().unwrap_err().to_string();
+        let expected = format!("moment 1 (recording `scene`, frame 70): {expected}");
+        assert!(words.starts_with(&expected), "{words}");
+        assert_eq!(page.figures().unwrap_err().to_string(), words);
+    }
+    let curves = Page::new(&report).curves(vec![curve(&[1, 3, 3])]);
+    let words = curves.to_html().unwrap_err().to_string();
+    assert!(
+        words.contains("fold `eth`") && words.contains("epoch 3 follows 3"),
+        "{words}"
+    );
+}
+
+#[test]
+fn forty_crowded_moments_stay_below_six_megabytes() {
+    let moments = vec![moment(25, 20, true); 40];
+    let html = Page::new(&report()).moments(moments).to_html().unwrap();
+    assert!(html.len() < 6_000_000, "{} bytes", html.len());
+}
+
+/// The positions that a script makes of compact ones.
+fn walked(mut at: [i64; 2], steps: &Value) -> (Vec<Position>, [i64; 2]) {
+    let steps: Vec<i64> = steps
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|n| n.as_i64().unwrap())
+        .collect();
+    let mut path = Vec::new();
+    for step in steps.chunks_exact(2) {
+        at = [at[0] + step[0], at[1] + step[1]];
+        path.push(at.map(|mm| mm as f64 / 1000.0));
+    }
+    (path, at)
+}
+
+proptest! {
+    /// Whole millimetres anywhere within reach come out of the page as the same numbers, bit for bit.
+    #[test]
+    fn positions_survive_their_compact_form(places in prop::collection::vec([-1_000_000_000_i64..=1_000_000_000, -50_000..=50_000], 32)) {
+        let metres: Vec<Position> = places.iter().map(|p| p.map(|mm| mm as f64 / 1000.0)).collect();
+        let mut moment = moment(1, 1, true);
+        let pedestrian = &mut moment.pedestrians[0];
+        pedestrian.observed = metres[..8].to_vec();
+        pedestrian.truth = metres[8..20].to_vec();
+        pedestrian.hypotheses[0].positions = metres[20..].to_vec();
+        let html = Page::new(&report()).moments(vec![moment]).to_html().unwrap();
+        let data: Value = serde_json::from_str(embedded(&html, "moments-json")).unwrap();
+        let data = &data[0]["walkers"][0];
+        let (observed, last) = walked([0, 0], &data["observed"]);
+        prop_assert_eq!(&observed[..], &metres[..8]);
+        prop_assert_eq!(&walked(last, &data["truth"]).0[..], &metres[8..20]);
+        prop_assert_eq!(&walked(last, &data["paths"][0]).0[..], &metres[20..]);
+    }
+}
+
+#[test]
+fn a_viewer_plays_what_is_not_over_yet() {
+    let mut under_way = moment(2, 2, true);
+    under_way.pedestrians[1].truth.truncate(3);
+    under_way.pedestrians[0].truth.clear();
+    let page = Viewer::new("yard <1>", vec![under_way.clone()])
+        .lead("two & two")
+        .notes(vec!["made by x < y".to_owned()]);
+    let html = page.to_html().unwrap();
+    for words in [
+        "<title>yard &lt;1&gt;</title>",
+        "two &amp; two",
+        "<p>made by x &lt; y</p>",
+        "<section id=\"player\" class=\"ready\">",
+    ] {
+        assert!(html.contains(words), "{words}");
+    }
+    assert!(!html.contains("{{") && !html.contains("report-json"));
+
+    let thirteen = vec![[0.0; 2]; 13];
+    under_way.pedestrians[1].truth = thirteen;
+    assert!(Viewer::new("yard", vec![under_way]).to_html().is_err());
+}

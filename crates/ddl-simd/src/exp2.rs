@@ -1,0 +1,162 @@
+//! Powers of two, from additions and multiplications.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use crate::register::Register;
+
+/// Largest exponent of [`Register::exp2_each`], negated: a larger one counts as this.
+pub const COST_LIMIT: f32 = 124.0;
+/// Bound on the relative error of [`Register::exp2_each`].
+pub const EXP2_ERROR: f64 = 3e-7;
+/// Largest exponent of [`wide_exp2_each`], negated.
+pub const COST_LIMIT_64: f64 = 900.0;
+/// Bound on the relative error of [`wide_exp2_each`], ten units of rounding.
+pub const EXP2_ERROR_64: f64 = 1.2e-15;
+
+/// Adding and subtracting 1.5 · 2^23 rounds a small number to an integer, which then sits in the low bits of the sum.
+const ROUNDING: f32 = 12_582_912.0;
+/// 1.5 · 2^52, likewise.
+const WIDE_ROUNDING: f64 = 6_755_399_441_055_744.0;
+
+/// A polynomial of degree 5, and the exponent below which it is not asked.
+struct Approximation {
+    lowest: f32,
+    coefficients: [f32; 6],
+}
+
+/// 2^f on [−1/2, 1/2] with the least largest relative error (Remez exchange, 7.5e-8).
+const NORMAL: Approximation = Approximation {
+    lowest: -COST_LIMIT,
+    coefficients: [
+        1.000_000_1,
+        0.693_146_97,
+        0.240_221_2,
+        0.055_507_13,
+        0.009_675_541,
+        0.001_327_647_2,
+    ],
+};
+
+/// 2^f on [−1/2, 1/2]: of the polynomials with P(0) = 1 the one with the least largest relative error (iteratively
+/// reweighted least squares; 1.1e-7 with coefficients of f32).
+#[expect(clippy::approx_constant, reason = "the fit, not ln 2")]
+const VANISHING: Approximation = Approximation {
+    lowest: -127.0,
+    coefficients: [
+        1.0,
+        0.693_147,
+        0.240_222_42,
+        0.055_507_336,
+        0.009_671_513,
+        0.001_326_472_7,
+    ],
+};
+
+/// 2^f on [0, 1], degree 5 (Remez exchange, 7.5e-8).
+#[cfg(target_arch = "x86_64")]
+#[expect(clippy::excessive_precision, reason = "as the exchange printed them")]
+pub(crate) const UPWARD_POLYNOMIAL: [f32; 6] = [
+    0.999_999_9,
+    0.693_153_07,
+    0.240_153_62,
+    0.055_826_318,
+    0.008_989_34,
+    0.001_877_576_7,
+];
+
+/// 2^f on [−1/2, 1/2], degree 11 (Remez exchange, 3.1e-18).
+#[expect(
+    clippy::excessive_precision,
+    clippy::approx_constant,
+    reason = "as the exchange printed them"
+)]
+const WIDE_POLYNOMIAL: [f64; 12] = [
+    1.0,
+    0.693_147_180_559_945_330_461,
+    0.240_226_506_959_101_562_046,
+    0.055_504_108_664_819_921_483_0,
+    0.009_618_129_107_588_335_083_32,
+    0.001_333_355_814_678_995_032_25,
+    0.000_154_035_304_625_146_130_257,
+    0.000_015_252_733_489_960_804_600_1,
+    0.000_001_321_543_308_959_462_903_69,
+    1.017_819_803_332_852_766_16e-7,
+    7.074_105_626_245_659_370_85e-9,
+    4.435_280_944_610_336_161_06e-10,
+];
+
+/// [`Register::exp2_each`] without instructions of its own.
+#[inline(always)]
+pub(crate) fn normal<R: Register, const G: usize>(
+    register: R,
+    exponents: [R::Floats; G],
+) -> [R::Floats; G] {
+    by_rounding(register, exponents, &NORMAL)
+}
+
+/// [`Simd::exp2`](crate::Simd::exp2): P(0) = 1 and a biased exponent of 0 leave no bit at −127.
+#[inline(always)]
+pub(crate) fn vanishing<R: Register, const G: usize>(
+    register: R,
+    exponents: [R::Floats; G],
+) -> [R::Floats; G] {
+    by_rounding(register, exponents, &VANISHING)
+}
+
+/// exponent = k + f with integer k and |f| ≤ 1/2: a polynomial gives 2^f, and k is added to its exponent.
+#[inline(always)]
+fn by_rounding<R: Register, const G: usize>(
+    register: R,
+    mut exponents: [R::Floats; G],
+    approximation: &Approximation,
+) -> [R::Floats; G] {
+    let rounding = register.splat(ROUNDING);
+    let mut fractions = exponents;
+    for g in 0..G {
+        let exponent = register.max(exponents[g], register.splat(approximation.lowest));
+        exponents[g] = register.add(exponent, rounding);
+        fractions[g] = register.sub(exponent, register.sub(exponents[g], rounding));
+    }
+    let [lower @ .., highest] = approximation.coefficients;
+    let mut powers = [register.splat(highest); G];
+    for coefficient in lower.into_iter().rev() {
+        for g in 0..G {
+            powers[g] = register.mul_add(powers[g], fractions[g], register.splat(coefficient));
+        }
+    }
+    for g in 0..G {
+        powers[g] = register.scale(powers[g], exponents[g]);
+    }
+    powers
+}
+
+/// 2^exponent of several registers of `f64`, for exponents that are not positive.
+///
+/// # Numerics
+/// The relative error is below [`EXP2_ERROR_64`], the bits are the same with every instruction set. Exponents below
+/// −[`COST_LIMIT_64`] (and NaN) count as −[`COST_LIMIT_64`]: no result is denormal.
+#[inline(always)]
+pub fn wide_exp2_each<R: Register, const G: usize>(
+    register: R,
+    mut exponents: [R::Wide; G],
+) -> [R::Wide; G] {
+    let rounding = register.wide_splat(WIDE_ROUNDING);
+    let mut fractions = exponents;
+    for g in 0..G {
+        let exponent = register.wide_max(exponents[g], register.wide_splat(-COST_LIMIT_64));
+        exponents[g] = register.wide_add(exponent, rounding);
+        fractions[g] = register.wide_sub(exponent, register.wide_sub(exponents[g], rounding));
+    }
+    let [lower @ .., highest] = WIDE_POLYNOMIAL;
+    let mut powers = [register.wide_splat(highest); G];
+    for coefficient in lower.into_iter().rev() {
+        for g in 0..G {
+            let product = register.wide_mul(powers[g], fractions[g]);
+            powers[g] = register.wide_add(product, register.wide_splat(coefficient));
+        }
+    }
+    for g in 0..G {
+        powers[g] = register.wide_scale(powers[g], exponents[g]);
+    }
+    powers
+}

@@ -1,0 +1,20 @@
+#![doc = include_str!("../README.md")]
+
+mod dispatch;
+mod emulated;
+mod exp2;
+mod lanes;
+mod pairs;
+mod portable;
+mod register;
+mod simd;
+mod sixteen;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+pub use dispatch::{Dispatch, InstructionSet, PairDispatch};
+pub use exp2::{COST_LIMIT, COST_LIMIT_64, EXP2_ERROR, EXP2_ERROR_64, wide_exp2_each};
+pub use lanes::{DEPTH, LANES, Lanes, Quad, WIDE_LANES, ZERO_QUAD};
+pub use pairs::{Floats, PairKernel, Pairs};
+pub use register::{Register, RegisterKernel};
+pub use simd::{Kernel, Simd, Tile, TiledKernel, Vectors};

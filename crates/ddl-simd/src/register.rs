@@ -1,0 +1,131 @@
+//! Arithmetic on one register of an instruction set: what each instruction set has to offer.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use crate::lanes::{LANES, WIDE_LANES};
+use crate::simd::{Simd, TiledKernel};
+
+/// Arithmetic on one register at a time, of `f32`, of `f64` and of words of 32 bits.
+///
+/// Sixteen numbers of `f32` (eight of `f64`) are a group, which fills [`PARTS`](Self::PARTS) registers. A kernel that
+/// needs many registers goes through a group part by part; the others take [`Simd`], a whole group at a time.
+///
+/// A value of a type that implements it is the proof that the machine has the instructions, so that all methods are safe
+/// to call. Loads and stores panic when `part >= PARTS`, a check that disappears in a loop over `0..PARTS`.
+///
+/// # Numerics
+/// Operations on `f64` are rounded one by one (there is no fused multiplication), so that every instruction set gives the
+/// same bits. Those on `f32` may be fused.
+pub trait Register: Copy + Send + Sync {
+    /// `WIDTH` numbers of `f32`.
+    type Floats: Copy;
+    /// `WIDTH` words of 32 bits.
+    type Bits: Copy;
+    /// `WIDTH / 2` numbers of `f64`.
+    type Wide: Copy;
+    /// Arithmetic on a group.
+    type Sixteen: Simd;
+    /// Numbers of `f32` in a register.
+    const WIDTH: usize;
+    /// Whether [`mul_add`](Self::mul_add) is rounded once.
+    const FUSED: bool;
+    /// Registers that make up a group.
+    const PARTS: usize = LANES / Self::WIDTH;
+
+    /// Compiles `kernel` with this instruction set and runs it.
+    fn run<K: RegisterKernel>(self, kernel: K) -> K::Output;
+    /// The same instructions on whole groups.
+    fn sixteen(self) -> Self::Sixteen;
+    /// Runs `kernel`, within one that runs already, with the [`Tile`](crate::Tile) that the registers hold.
+    fn run_tiled<K: TiledKernel>(self, kernel: K);
+
+    /// `value` in every lane.
+    fn splat(self, value: f32) -> Self::Floats;
+    /// The lanes `part * WIDTH ..` of a group.
+    fn load(self, from: &[f32; LANES], part: usize) -> Self::Floats;
+    /// Writes the lanes `part * WIDTH ..` of a group.
+    fn store(self, value: Self::Floats, into: &mut [f32; LANES], part: usize);
+    /// a + b.
+    fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// a − b.
+    fn sub(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// a b.
+    fn mul(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// a / b.
+    fn div(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// √a.
+    fn sqrt(self, a: Self::Floats) -> Self::Floats;
+    /// The larger of each two numbers; `b` where one is NaN.
+    fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// a b + c, rounded once or twice.
+    fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
+    /// c − a b, rounded once or twice.
+    fn neg_mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
+    /// Bit l is set where a >= b in lane l.
+    fn at_least(self, a: Self::Floats, b: Self::Floats) -> u32;
+    /// 0 where `condition` <= 0, `a` elsewhere (also where `condition` is NaN).
+    fn zero_unless_positive(self, condition: Self::Floats, a: Self::Floats) -> Self::Floats;
+    /// Adds the low bits of `exponent`'s representation to the exponent of `power`.
+    fn scale(self, power: Self::Floats, exponent: Self::Floats) -> Self::Floats;
+    /// 2^exponent of several registers, for exponents that are not positive, a stage at a time, so that none waits for
+    /// the others.
+    ///
+    /// # Numerics
+    /// The relative error is below [`EXP2_ERROR`](crate::EXP2_ERROR). Exponents below −[`COST_LIMIT`](crate::COST_LIMIT)
+    /// (and NaN) count as −[`COST_LIMIT`](crate::COST_LIMIT): no result is denormal.
+    fn exp2_each<const G: usize>(self, exponents: [Self::Floats; G]) -> [Self::Floats; G];
+
+    /// [`exp2_each`](Self::exp2_each) of one register.
+    #[inline(always)]
+    fn exp2(self, exponent: Self::Floats) -> Self::Floats {
+        let [power] = self.exp2_each([exponent]);
+        power
+    }
+
+    /// [`Simd::transpose`] of a part.
+    fn transpose(self, groups: [Self::Floats; 4]) -> [Self::Floats; 4];
+    /// [`Simd::spread`] of a part.
+    fn spread<const FROM: i32>(self, a: Self::Floats) -> Self::Floats;
+    /// Lane 4 i + j of the result is the sum of the lanes 4 k + j over k, the farthest ones first.
+    fn sum_of_fours(self, a: Self::Floats) -> Self::Floats;
+
+    /// Lane l is `first` xor l.
+    fn count_from(self, first: u32) -> Self::Bits;
+    /// a xor b.
+    fn xor(self, a: Self::Bits, b: u32) -> Self::Bits;
+    /// a xor (a >> `N`).
+    fn xor_shift<const N: u32>(self, a: Self::Bits) -> Self::Bits;
+    /// a << `N`.
+    fn shift_left<const N: u32>(self, a: Self::Bits) -> Self::Bits;
+    /// The low 32 bits of the product.
+    fn mul_low(self, a: Self::Bits, b: u32) -> Self::Bits;
+    /// `a` where `bits` >= `least`, 0 elsewhere.
+    fn keep(self, a: Self::Floats, bits: Self::Bits, least: u32) -> Self::Floats;
+
+    /// `value` in every lane.
+    fn wide_splat(self, value: f64) -> Self::Wide;
+    /// The lanes `part * WIDTH / 2 ..` of a group.
+    fn wide_load(self, from: &[f64; WIDE_LANES], part: usize) -> Self::Wide;
+    /// Writes the lanes `part * WIDTH / 2 ..` of a group.
+    fn wide_store(self, value: Self::Wide, into: &mut [f64; WIDE_LANES], part: usize);
+    /// a + b.
+    fn wide_add(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    /// a − b.
+    fn wide_sub(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    /// a b.
+    fn wide_mul(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    /// The larger of each two numbers; `b` where one is NaN.
+    fn wide_max(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    /// √a.
+    fn wide_sqrt(self, a: Self::Wide) -> Self::Wide;
+    /// Adds the low bits of `exponent`'s representation to the exponent of `power`.
+    fn wide_scale(self, power: Self::Wide, exponent: Self::Wide) -> Self::Wide;
+}
+
+/// A [`Kernel`](crate::Kernel) that is written for one register at a time, with a result. What is said there holds.
+pub trait RegisterKernel {
+    /// The result.
+    type Output;
+    /// The computation.
+    fn run<R: Register>(self, register: R) -> Self::Output;
+}

@@ -1,0 +1,157 @@
+//! Arithmetic on sixteen numbers, and the computations that are written with it.
+
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use crate::lanes::{DEPTH, LANES, Quad};
+
+/// Arithmetic on sixteen numbers at a time, in one or more registers.
+///
+/// A value of a type that implements it is the proof that the machine has the instructions, so that all methods are safe
+/// to call.
+///
+/// # Numerics
+/// Every operation is rounded once to the nearest `f32`, but [`mul_add`](Self::mul_add), which portable code may round
+/// twice.
+pub trait Simd: Copy + Send + Sync {
+    /// Sixteen numbers.
+    type Floats: Copy;
+    /// Sixteen words of 32 bits.
+    type Bits: Copy;
+
+    /// Runs `kernel`, within one that runs already, with the [`Tile`] that the registers hold.
+    fn run_tiled<K: TiledKernel>(self, kernel: K);
+
+    /// `value` in every lane.
+    fn splat(self, value: f32) -> Self::Floats;
+    /// The numbers of an array.
+    fn load(self, from: &[f32; LANES]) -> Self::Floats;
+    /// Writes the numbers to an array.
+    fn store(self, value: Self::Floats, into: &mut [f32; LANES]);
+    /// a + b.
+    fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// a − b.
+    fn sub(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// a b.
+    fn mul(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// a / b.
+    fn div(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// √a.
+    fn sqrt(self, a: Self::Floats) -> Self::Floats;
+    /// The larger of each two numbers; `b` where one is NaN.
+    fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// a b + c, rounded once or twice.
+    fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
+    /// 0 where `condition` <= 0, `a` elsewhere (also where `condition` is NaN).
+    fn zero_unless_positive(self, condition: Self::Floats, a: Self::Floats) -> Self::Floats;
+    /// 2^`exponent` for exponents that are not positive, and exactly 0 from −127 on.
+    ///
+    /// # Numerics
+    /// The relative error is below 3e-7 down to −126, and the result is exactly 1 at 0. Below −126 it lies in [0, 2^−125].
+    /// NaN counts as −127.
+    fn exp2(self, exponent: Self::Floats) -> Self::Floats;
+    /// Lane 4 i + j of group k becomes lane 4 i + k of group j: its own inverse.
+    fn transpose(self, groups: Vectors<Self>) -> Vectors<Self>;
+    /// Lane 4 i + j of the result is lane 4 i + `FROM` / 0x55 of `a`, the way instructions encode it.
+    fn spread<const FROM: i32>(self, a: Self::Floats) -> Self::Floats;
+    /// Lane 4 i + j of the result is the sum of the lanes 4 k + j of `a` over k, (0 + 2) + (1 + 3).
+    fn sum_of_quarters(self, a: Self::Floats) -> Self::Floats;
+
+    /// Lane l is `first` xor l.
+    fn count_from(self, first: u32) -> Self::Bits;
+    /// a xor b.
+    fn xor(self, a: Self::Bits, b: u32) -> Self::Bits;
+    /// a xor (a >> `N`).
+    fn xor_shift<const N: u32>(self, a: Self::Bits) -> Self::Bits;
+    /// a << `N`.
+    fn shift_left<const N: u32>(self, a: Self::Bits) -> Self::Bits;
+    /// The low 32 bits of the product.
+    fn mul_low(self, a: Self::Bits, b: u32) -> Self::Bits;
+    /// `a` where `bits` >= `least`, 0 elsewhere.
+    fn keep(self, a: Self::Floats, bits: Self::Bits, least: u32) -> Self::Floats;
+
+    /// The vectors of a quad.
+    #[inline(always)]
+    fn read(self, quad: &Quad) -> Vectors<Self> {
+        let [a, b, c, d] = quad;
+        [
+            self.load(&a.0),
+            self.load(&b.0),
+            self.load(&c.0),
+            self.load(&d.0),
+        ]
+    }
+
+    /// Writes the vectors to a quad.
+    #[inline(always)]
+    fn write(self, vectors: Vectors<Self>, quad: &mut Quad) {
+        for d in 0..DEPTH {
+            self.store(vectors[d], &mut quad[d].0);
+        }
+    }
+
+    /// Σ a b over four vectors, added to `start`.
+    #[inline(always)]
+    fn dot(self, a: Vectors<Self>, b: Vectors<Self>, start: Self::Floats) -> Self::Floats {
+        let mut sum = start;
+        for d in 0..DEPTH {
+            sum = self.mul_add(a[d], b[d], sum);
+        }
+        sum
+    }
+
+    /// `sum` + `weight` · `vectors`.
+    #[inline(always)]
+    fn accumulate(
+        self,
+        sum: Vectors<Self>,
+        weight: Self::Floats,
+        vectors: Vectors<Self>,
+    ) -> Vectors<Self> {
+        let mut sum = sum;
+        for d in 0..DEPTH {
+            sum[d] = self.mul_add(weight, vectors[d], sum[d]);
+        }
+        sum
+    }
+
+    /// `factor` · `vectors`.
+    #[inline(always)]
+    fn scaled(self, vectors: Vectors<Self>, factor: Self::Floats) -> Vectors<Self> {
+        let mut result = vectors;
+        for d in 0..DEPTH {
+            result[d] = self.mul(vectors[d], factor);
+        }
+        result
+    }
+}
+
+/// Four times sixteen numbers: a [`Quad`] in registers.
+pub type Vectors<S> = [<S as Simd>::Floats; DEPTH];
+
+/// Accumulators of a product of matrices: `R` rows of `V` times sixteen numbers.
+pub type Tile<S, const R: usize, const V: usize> = [[<S as Simd>::Floats; V]; R];
+
+/// A computation that is compiled once for each instruction set.
+///
+/// `run` must be `#[inline(always)]`, and so must everything it calls with vectors: code that is not inlined, closures
+/// included, is not compiled for the instruction set.
+pub trait Kernel {
+    /// The computation.
+    fn run<S: Simd>(self, simd: S);
+}
+
+/// A [`Kernel`] of products of matrices, written for a [`Tile`] of any size.
+///
+/// The instruction set says how many accumulators its registers hold: `R` divides 8, `V` is 1 or 2. What is said of
+/// [`Kernel`] holds here as well.
+pub trait TiledKernel {
+    /// The computation.
+    fn run<S: Simd, const R: usize, const V: usize>(self, simd: S);
+}
+
+impl<K: TiledKernel> Kernel for K {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        simd.run_tiled(self);
+    }
+}

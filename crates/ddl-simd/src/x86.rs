@@ -1,0 +1,370 @@
+//! Vector instructions of x86-64 processors: the only unsafe code of the crate.
+//!
+//! [`Avx2`], [`Avx512`] and [`Avx512Bf16`] can be made by their `detect` alone, which asks the processor: whoever holds one
+//! may execute its instructions.
+
+#![allow(
+    unsafe_code,
+    reason = "instructions that not every processor has, and loads and stores through pointers"
+)]
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+#![allow(
+    clippy::wildcard_imports,
+    reason = "the names of instructions say where they are from"
+)]
+
+use std::arch::x86_64::*;
+
+use crate::exp2::{COST_LIMIT, UPWARD_POLYNOMIAL, normal};
+use crate::lanes::{LANES, WIDE_LANES};
+use crate::pairs::{PairKernel, Pairs};
+use crate::register::{Register, RegisterKernel};
+use crate::simd::TiledKernel;
+use crate::sixteen::Sixteen;
+
+/// The proof that the processor has AVX2 and fused multiplication.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Avx2(());
+
+/// The proof that the processor has AVX-512 F and DQ, beside AVX2.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Avx512(());
+
+/// The proof that the processor has AVX-512 BF16 and BW, beside F and DQ.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Avx512Bf16(Avx512);
+
+impl Avx2 {
+    pub(crate) fn detect() -> Option<Self> {
+        let found = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+        found.then_some(Self(()))
+    }
+}
+
+impl Avx512 {
+    /// With the instructions of AVX2, which code that is compiled along may use.
+    pub(crate) fn detect() -> Option<Self> {
+        let found = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq");
+        Avx2::detect().filter(|_| found).map(|_| Self(()))
+    }
+}
+
+impl Avx512Bf16 {
+    pub(crate) fn detect() -> Option<Self> {
+        let found = is_x86_feature_detected!("avx512bw") && is_x86_feature_detected!("avx512bf16");
+        Avx512::detect().filter(|_| found).map(Self)
+    }
+
+    /// Compiles `kernel` with these instructions and runs it.
+    #[inline]
+    pub(crate) fn run<K: PairKernel>(self, kernel: K) {
+        #[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512bw,avx512bf16")]
+        fn compiled<K: PairKernel>(pairs: Avx512Bf16, kernel: K) {
+            kernel.run(pairs);
+        }
+        // SAFETY: `self` is the proof that the processor has the instructions.
+        unsafe { compiled(self, kernel) }
+    }
+}
+
+/// Methods that are one expression of instructions of the set each.
+macro_rules! instructions {
+    ($(fn $name:ident$(<const $n:ident: $constant:ty>)?($($argument:ident: $kind:ty),*) -> $result:ty = $value:expr;)*) => {$(
+        #[inline(always)]
+        fn $name$(<const $n: $constant>)?(self, $($argument: $kind),*) -> $result {
+            // SAFETY: `self` is the proof that the processor has the instructions. They touch no memory but, without
+            // asking for alignment, the whole of an array.
+            unsafe { $value }
+        }
+    )*};
+}
+
+/// Loads and stores of the parts of a group.
+macro_rules! memory {
+    ($($load:ident, $store:ident: $value:ty = [$number:ty; $lanes:expr], $load_from:ident, $store_to:ident;)*) => {$(
+        #[inline(always)]
+        fn $load(self, from: &[$number; $lanes], part: usize) -> $value {
+            assert!(part < Self::PARTS);
+            // SAFETY: `self` is the proof that the processor has the instruction; PARTS registers are as long as the
+            // array, and the instruction asks for no alignment.
+            unsafe { $load_from(from.as_ptr().add(part * ($lanes / Self::PARTS))) }
+        }
+
+        #[inline(always)]
+        fn $store(self, value: $value, into: &mut [$number; $lanes], part: usize) {
+            assert!(part < Self::PARTS);
+            // SAFETY: as in the load.
+            unsafe { $store_to(into.as_mut_ptr().add(part * ($lanes / Self::PARTS)), value) }
+        }
+    )*};
+}
+
+impl Register for Avx512 {
+    type Floats = __m512;
+    type Bits = __m512i;
+    type Wide = __m512d;
+    type Sixteen = Sixteen<Self, 1>;
+    const WIDTH: usize = 16;
+    const FUSED: bool = true;
+
+    #[inline]
+    fn run<K: RegisterKernel>(self, kernel: K) -> K::Output {
+        #[target_feature(enable = "avx2,fma,avx512f,avx512dq")]
+        fn compiled<K: RegisterKernel>(register: Avx512, kernel: K) -> K::Output {
+            kernel.run(register)
+        }
+        // SAFETY: `self` is the proof that the processor has the instructions.
+        unsafe { compiled(self, kernel) }
+    }
+
+    #[inline(always)]
+    fn sixteen(self) -> Self::Sixteen {
+        Sixteen(self)
+    }
+
+    #[inline(always)]
+    fn run_tiled<K: TiledKernel>(self, kernel: K) {
+        kernel.run::<Self::Sixteen, 8, 2>(Sixteen(self));
+    }
+
+    memory! {
+        load, store: __m512 = [f32; LANES], _mm512_loadu_ps, _mm512_storeu_ps;
+        wide_load, wide_store: __m512d = [f64; WIDE_LANES], _mm512_loadu_pd, _mm512_storeu_pd;
+    }
+
+    instructions! {
+        fn splat(value: f32) -> __m512 = _mm512_set1_ps(value);
+        fn add(a: __m512, b: __m512) -> __m512 = _mm512_add_ps(a, b);
+        fn sub(a: __m512, b: __m512) -> __m512 = _mm512_sub_ps(a, b);
+        fn mul(a: __m512, b: __m512) -> __m512 = _mm512_mul_ps(a, b);
+        fn div(a: __m512, b: __m512) -> __m512 = _mm512_div_ps(a, b);
+        fn sqrt(a: __m512) -> __m512 = _mm512_sqrt_ps(a);
+        // The second operand is the result when one is NaN.
+        fn max(a: __m512, b: __m512) -> __m512 = _mm512_max_ps(a, b);
+        fn mul_add(a: __m512, b: __m512, c: __m512) -> __m512 = _mm512_fmadd_ps(a, b, c);
+        fn neg_mul_add(a: __m512, b: __m512, c: __m512) -> __m512 = _mm512_fnmadd_ps(a, b, c);
+        fn at_least(a: __m512, b: __m512) -> u32 = u32::from(_mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, b));
+        fn zero_unless_positive(condition: __m512, a: __m512) -> __m512 =
+            _mm512_maskz_mov_ps(_mm512_cmp_ps_mask::<_CMP_NLE_UQ>(condition, _mm512_setzero_ps()), a);
+        fn scale(power: __m512, exponent: __m512) -> __m512 = _mm512_castsi512_ps(_mm512_add_epi32(
+            _mm512_castps_si512(power),
+            _mm512_slli_epi32::<23>(_mm512_castps_si512(exponent)),
+        ));
+        fn spread<const FROM: i32>(a: __m512) -> __m512 = _mm512_permute_ps::<FROM>(a);
+        fn sum_of_fours(a: __m512) -> __m512 = {
+            let halves = _mm512_add_ps(a, _mm512_shuffle_f32x4::<0b01_00_11_10>(a, a));
+            _mm512_add_ps(halves, _mm512_shuffle_f32x4::<0b10_11_00_01>(halves, halves))
+        };
+        fn transpose(groups: [__m512; 4]) -> [__m512; 4] = {
+            let [a, b, c, d] = groups;
+            let [low, high] = [_mm512_unpacklo_ps(a, b), _mm512_unpacklo_ps(c, d)];
+            let [low, high] = [_mm512_castps_pd(low), _mm512_castps_pd(high)];
+            let [first, second] = [_mm512_unpacklo_pd(low, high), _mm512_unpackhi_pd(low, high)];
+            let [low, high] = [_mm512_unpackhi_ps(a, b), _mm512_unpackhi_ps(c, d)];
+            let [low, high] = [_mm512_castps_pd(low), _mm512_castps_pd(high)];
+            let [third, fourth] = [_mm512_unpacklo_pd(low, high), _mm512_unpackhi_pd(low, high)];
+            [
+                _mm512_castpd_ps(first),
+                _mm512_castpd_ps(second),
+                _mm512_castpd_ps(third),
+                _mm512_castpd_ps(fourth),
+            ]
+        };
+
+        fn count_from(first: u32) -> __m512i = _mm512_xor_si512(
+            _mm512_set1_epi32(first.cast_signed()),
+            _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
+        );
+        fn xor(a: __m512i, b: u32) -> __m512i = _mm512_xor_si512(a, _mm512_set1_epi32(b.cast_signed()));
+        fn xor_shift<const N: u32>(a: __m512i) -> __m512i = _mm512_xor_si512(a, _mm512_srli_epi32::<N>(a));
+        fn shift_left<const N: u32>(a: __m512i) -> __m512i = _mm512_slli_epi32::<N>(a);
+        fn mul_low(a: __m512i, b: u32) -> __m512i = _mm512_mullo_epi32(a, _mm512_set1_epi32(b.cast_signed()));
+        fn keep(a: __m512, bits: __m512i, least: u32) -> __m512 =
+            _mm512_maskz_mov_ps(_mm512_cmpge_epu32_mask(bits, _mm512_set1_epi32(least.cast_signed())), a);
+
+        fn wide_splat(value: f64) -> __m512d = _mm512_set1_pd(value);
+        fn wide_add(a: __m512d, b: __m512d) -> __m512d = _mm512_add_pd(a, b);
+        fn wide_sub(a: __m512d, b: __m512d) -> __m512d = _mm512_sub_pd(a, b);
+        fn wide_mul(a: __m512d, b: __m512d) -> __m512d = _mm512_mul_pd(a, b);
+        fn wide_max(a: __m512d, b: __m512d) -> __m512d = _mm512_max_pd(a, b);
+        fn wide_sqrt(a: __m512d) -> __m512d = _mm512_sqrt_pd(a);
+        fn wide_scale(power: __m512d, exponent: __m512d) -> __m512d = _mm512_castsi512_pd(_mm512_add_epi64(
+            _mm512_castpd_si512(power),
+            _mm512_slli_epi64::<52>(_mm512_castpd_si512(exponent)),
+        ));
+    }
+
+    /// With f = exponent − floor(exponent), and the power scaled, by one instruction each.
+    #[inline(always)]
+    fn exp2_each<const G: usize>(self, mut exponents: [__m512; G]) -> [__m512; G] {
+        let mut fractions = exponents;
+        for g in 0..G {
+            exponents[g] = self.max(exponents[g], self.splat(-COST_LIMIT));
+            fractions[g] = self.above_floor(exponents[g]);
+        }
+        let [lower @ .., highest] = UPWARD_POLYNOMIAL;
+        let mut powers = [self.splat(highest); G];
+        for coefficient in lower.into_iter().rev() {
+            for g in 0..G {
+                powers[g] = self.mul_add(powers[g], fractions[g], self.splat(coefficient));
+            }
+        }
+        for g in 0..G {
+            powers[g] = self.scale_by_floor(powers[g], exponents[g]);
+        }
+        powers
+    }
+}
+
+impl Avx512 {
+    instructions! {
+        fn above_floor(a: __m512) -> __m512 = _mm512_reduce_ps::<{ _MM_FROUND_FLOOR }>(a);
+        fn scale_by_floor(power: __m512, exponent: __m512) -> __m512 = _mm512_scalef_ps(power, exponent);
+    }
+}
+
+impl Pairs for Avx512Bf16 {
+    type Simd = Sixteen<Avx512, 1>;
+    type Words = __m512i;
+
+    #[inline(always)]
+    fn simd(self) -> Self::Simd {
+        Sixteen(self.0)
+    }
+
+    instructions! {
+        fn splat(pair: u32) -> __m512i = _mm512_set1_epi32(pair.cast_signed());
+        fn load(from: &[u32; LANES]) -> __m512i = _mm512_loadu_epi32(from.as_ptr().cast());
+        fn store(value: __m512i, into: &mut [u32; LANES]) -> () =
+            _mm512_storeu_epi32(into.as_mut_ptr().cast(), value);
+        fn neighbours(a: [__m512; 1], b: [__m512; 1]) -> __m512i = words(_mm512_cvtne2ps_pbh(b[0], a[0]));
+        // Rounded numbers 0 of a and b, which are 0 and 16 of both side by side; then 1 and 17, and so on.
+        fn across(a: [__m512; 1], b: [__m512; 1]) -> __m512i = _mm512_permutexvar_epi16(
+            _mm512_add_epi32(
+                _mm512_mullo_epi32(
+                    _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
+                    _mm512_set1_epi32(0x0001_0001),
+                ),
+                _mm512_set1_epi32(0x0010_0000),
+            ),
+            words(_mm512_cvtne2ps_pbh(b[0], a[0])),
+        );
+        fn dot(a: __m512i, b: __m512i, sum: [__m512; 1]) -> [__m512; 1] =
+            [_mm512_dpbf16_ps(sum[0], pairs(a), pairs(b))];
+    }
+}
+
+#[inline(always)]
+fn words(pairs: __m512bh) -> __m512i {
+    // SAFETY: both are any 512 bits.
+    unsafe { std::mem::transmute(pairs) }
+}
+
+#[inline(always)]
+fn pairs(words: __m512i) -> __m512bh {
+    // SAFETY: both are any 512 bits.
+    unsafe { std::mem::transmute(words) }
+}
+
+impl Register for Avx2 {
+    type Floats = __m256;
+    type Bits = __m256i;
+    type Wide = __m256d;
+    type Sixteen = Sixteen<Self, 2>;
+    const WIDTH: usize = 8;
+    const FUSED: bool = true;
+
+    #[inline]
+    fn run<K: RegisterKernel>(self, kernel: K) -> K::Output {
+        #[target_feature(enable = "avx2,fma")]
+        fn compiled<K: RegisterKernel>(register: Avx2, kernel: K) -> K::Output {
+            kernel.run(register)
+        }
+        // SAFETY: `self` is the proof that the processor has the instructions.
+        unsafe { compiled(self, kernel) }
+    }
+
+    #[inline(always)]
+    fn sixteen(self) -> Self::Sixteen {
+        Sixteen(self)
+    }
+
+    #[inline(always)]
+    fn run_tiled<K: TiledKernel>(self, kernel: K) {
+        kernel.run::<Self::Sixteen, 4, 1>(Sixteen(self));
+    }
+
+    memory! {
+        load, store: __m256 = [f32; LANES], _mm256_loadu_ps, _mm256_storeu_ps;
+        wide_load, wide_store: __m256d = [f64; WIDE_LANES], _mm256_loadu_pd, _mm256_storeu_pd;
+    }
+
+    instructions! {
+        fn splat(value: f32) -> __m256 = _mm256_set1_ps(value);
+        fn add(a: __m256, b: __m256) -> __m256 = _mm256_add_ps(a, b);
+        fn sub(a: __m256, b: __m256) -> __m256 = _mm256_sub_ps(a, b);
+        fn mul(a: __m256, b: __m256) -> __m256 = _mm256_mul_ps(a, b);
+        fn div(a: __m256, b: __m256) -> __m256 = _mm256_div_ps(a, b);
+        fn sqrt(a: __m256) -> __m256 = _mm256_sqrt_ps(a);
+        // The second operand is the result when one is NaN.
+        fn max(a: __m256, b: __m256) -> __m256 = _mm256_max_ps(a, b);
+        fn mul_add(a: __m256, b: __m256, c: __m256) -> __m256 = _mm256_fmadd_ps(a, b, c);
+        fn neg_mul_add(a: __m256, b: __m256, c: __m256) -> __m256 = _mm256_fnmadd_ps(a, b, c);
+        fn at_least(a: __m256, b: __m256) -> u32 =
+            _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(a, b)).cast_unsigned();
+        fn zero_unless_positive(condition: __m256, a: __m256) -> __m256 =
+            _mm256_and_ps(_mm256_cmp_ps::<_CMP_NLE_UQ>(condition, _mm256_setzero_ps()), a);
+        fn scale(power: __m256, exponent: __m256) -> __m256 = _mm256_castsi256_ps(_mm256_add_epi32(
+            _mm256_castps_si256(power),
+            _mm256_slli_epi32::<23>(_mm256_castps_si256(exponent)),
+        ));
+        fn spread<const FROM: i32>(a: __m256) -> __m256 = _mm256_permute_ps::<FROM>(a);
+        fn sum_of_fours(a: __m256) -> __m256 = _mm256_add_ps(a, _mm256_permute2f128_ps::<1>(a, a));
+        fn transpose(groups: [__m256; 4]) -> [__m256; 4] = {
+            let [a, b, c, d] = groups;
+            let [low, high] = [_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d)];
+            let [low, high] = [_mm256_castps_pd(low), _mm256_castps_pd(high)];
+            let [first, second] = [_mm256_unpacklo_pd(low, high), _mm256_unpackhi_pd(low, high)];
+            let [low, high] = [_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d)];
+            let [low, high] = [_mm256_castps_pd(low), _mm256_castps_pd(high)];
+            let [third, fourth] = [_mm256_unpacklo_pd(low, high), _mm256_unpackhi_pd(low, high)];
+            [
+                _mm256_castpd_ps(first),
+                _mm256_castpd_ps(second),
+                _mm256_castpd_ps(third),
+                _mm256_castpd_ps(fourth),
+            ]
+        };
+
+        fn count_from(first: u32) -> __m256i = _mm256_xor_si256(
+            _mm256_set1_epi32(first.cast_signed()),
+            _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
+        );
+        fn xor(a: __m256i, b: u32) -> __m256i = _mm256_xor_si256(a, _mm256_set1_epi32(b.cast_signed()));
+        fn xor_shift<const N: u32>(a: __m256i) -> __m256i =
+            _mm256_xor_si256(a, _mm256_srl_epi32(a, _mm_cvtsi32_si128(N.cast_signed())));
+        fn shift_left<const N: u32>(a: __m256i) -> __m256i =
+            _mm256_sll_epi32(a, _mm_cvtsi32_si128(N.cast_signed()));
+        fn mul_low(a: __m256i, b: u32) -> __m256i = _mm256_mullo_epi32(a, _mm256_set1_epi32(b.cast_signed()));
+        // There is no comparison of unsigned words: a >= b where their maximum is a.
+        fn keep(a: __m256, bits: __m256i, least: u32) -> __m256 = _mm256_and_ps(a, _mm256_castsi256_ps(
+            _mm256_cmpeq_epi32(bits, _mm256_max_epu32(bits, _mm256_set1_epi32(least.cast_signed())))
+        ));
+
+        fn wide_splat(value: f64) -> __m256d = _mm256_set1_pd(value);
+        fn wide_add(a: __m256d, b: __m256d) -> __m256d = _mm256_add_pd(a, b);
+        fn wide_sub(a: __m256d, b: __m256d) -> __m256d = _mm256_sub_pd(a, b);
+        fn wide_mul(a: __m256d, b: __m256d) -> __m256d = _mm256_mul_pd(a, b);
+        fn wide_max(a: __m256d, b: __m256d) -> __m256d = _mm256_max_pd(a, b);
+        fn wide_sqrt(a: __m256d) -> __m256d = _mm256_sqrt_pd(a);
+        fn wide_scale(power: __m256d, exponent: __m256d) -> __m256d = _mm256_castsi256_pd(_mm256_add_epi64(
+            _mm256_castpd_si256(power),
+            _mm256_slli_epi64::<52>(_mm256_castpd_si256(exponent)),
+        ));
+    }
+
+    #[inline(always)]
+    fn exp2_each<const G: usize>(self, exponents: [__m256; G]) -> [__m256; G] {
+        normal(self, exponents)
+    }
+}

@@ -1,0 +1,291 @@
+//! Every operation is what its documentation says, with every instruction set: against plain numbers, one after the other.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+
+use ddl_simd::{
+    DEPTH, Dispatch, InstructionSet, Kernel, LANES, Lanes, Quad, Register, RegisterKernel, Simd,
+    TiledKernel, WIDE_LANES, ZERO_QUAD,
+};
+use proptest::prelude::*;
+
+type Narrow = [f32; LANES];
+type Wide = [f64; WIDE_LANES];
+
+fn each_set() -> impl Iterator<Item = Dispatch> {
+    InstructionSet::available()
+        .into_iter()
+        .map(|set| Dispatch::new(set).unwrap())
+}
+
+/// The results of all operations on three groups of numbers and a word.
+struct OnGroups<'a> {
+    numbers: &'a [Narrow; 3],
+    word: u32,
+    floats: &'a mut Vec<Narrow>,
+}
+
+impl Kernel for OnGroups<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let [a, b, c] = [0, 1, 2].map(|i: usize| simd.load(&self.numbers[i]));
+        let bits = simd.count_from(self.word);
+        let mixed = simd.mul_low(
+            simd.xor_shift::<7>(simd.shift_left::<3>(simd.xor(bits, 0x9e37_79b9))),
+            0x85eb_ca6b,
+        );
+        let [d, e, f, g] = simd.transpose([a, b, c, simd.sub(a, b)]);
+        let results = [
+            simd.splat(2.5),
+            simd.add(a, b),
+            simd.sub(a, b),
+            simd.mul(a, b),
+            simd.div(a, b),
+            simd.sqrt(a),
+            simd.max(a, b),
+            simd.zero_unless_positive(a, b),
+            simd.spread::<0x00>(a),
+            simd.spread::<0x55>(a),
+            simd.spread::<0xaa>(a),
+            simd.spread::<0xff>(a),
+            simd.sum_of_quarters(a),
+            simd.keep(a, mixed, 0x8000_0000),
+            simd.keep(b, mixed, 0x2000_0000),
+            d,
+            e,
+            f,
+            g,
+            // A product of two and a sum are rounded once or twice.
+            simd.mul_add(a, b, c),
+        ];
+        for result in results {
+            let mut lanes = [0.0; LANES];
+            simd.store(result, &mut lanes);
+            self.floats.push(lanes);
+        }
+    }
+}
+
+fn mixed(first: u32, lane: usize) -> u32 {
+    let word = (first ^ lane as u32 ^ 0x9e37_79b9) << 3;
+    (word ^ (word >> 7)).wrapping_mul(0x85eb_ca6b)
+}
+
+/// The same for one lane, as documented.
+fn expected([a, b, c]: &[Narrow; 3], word: u32, l: usize) -> Vec<f32> {
+    let four = l / DEPTH * DEPTH;
+    let quarter = |from: usize| a[l % DEPTH + from * DEPTH];
+    let keep = |number: f32, least| if mixed(word, l) >= least { number } else { 0.0 };
+    let groups = [*a, *b, *c, std::array::from_fn(|l| a[l] - b[l])];
+    let mut expected = vec![
+        2.5,
+        a[l] + b[l],
+        a[l] - b[l],
+        a[l] * b[l],
+        a[l] / b[l],
+        a[l].sqrt(),
+        if a[l] > b[l] { a[l] } else { b[l] },
+        if a[l] <= 0.0 { 0.0 } else { b[l] },
+    ];
+    expected.extend((0..DEPTH).map(|from| a[four + from]));
+    expected.push((quarter(0) + quarter(2)) + (quarter(1) + quarter(3)));
+    expected.extend([keep(a[l], 0x8000_0000), keep(b[l], 0x2000_0000)]);
+    expected.extend((0..DEPTH).map(|j| groups[l % DEPTH][four + j]));
+    expected
+}
+
+fn same(a: f32, b: f32) -> bool {
+    a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
+}
+
+/// a b + c, rounded once or twice.
+fn is_product(found: f32, a: f32, b: f32, c: f32) -> bool {
+    same(found, a.mul_add(b, c)) || same(found, a * b + c)
+}
+
+fn number() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        -4.0..4.0_f32,
+        any::<u32>().prop_map(f32::from_bits),
+        prop_oneof![Just(0.0_f32), Just(-0.0), Just(f32::NAN)],
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn groups(numbers in prop::array::uniform3(prop::array::uniform16(number())), word in any::<u32>()) {
+        for dispatch in each_set() {
+            let mut floats = Vec::new();
+            dispatch.run(OnGroups { numbers: &numbers, word, floats: &mut floats });
+            let product = floats.pop().unwrap();
+            for l in 0..LANES {
+                let expected = expected(&numbers, word, l);
+                prop_assert_eq!(floats.len(), expected.len());
+                for (i, (found, expected)) in floats.iter().zip(expected).enumerate() {
+                    prop_assert!(same(found[l], expected), "{:?}, {}, lane {}: {} {}", dispatch, i, l, found[l], expected);
+                }
+                let [a, b, c] = numbers.map(|numbers| numbers[l]);
+                prop_assert!(is_product(product[l], a, b, c), "{:?}, lane {}", dispatch, l);
+            }
+        }
+    }
+
+    #[test]
+    fn registers(
+        numbers in prop::array::uniform3(prop::array::uniform16(number())),
+        wide in prop::array::uniform2(prop::array::uniform8(prop_oneof![-4.0..4.0_f64, any::<f64>()])),
+    ) {
+        for dispatch in each_set() {
+            let found = dispatch.run_on_registers(OnRegisters(&numbers, &wide));
+            for l in 0..LANES {
+                let [a, b, c] = numbers.map(|numbers| numbers[l]);
+                let expected = [a + b, a - b, a * b, a / b, if a > b { a } else { b }, 2.5];
+                for (found, expected) in found.narrow.iter().zip(expected) {
+                    prop_assert!(same(found[l], expected), "{:?}: {} {}", dispatch, found[l], expected);
+                }
+                prop_assert_eq!(found.mask >> l & 1 == 1, a >= b);
+                prop_assert!(is_product(found.products[0][l], a, b, c));
+                prop_assert!(is_product(found.products[1][l], -a, b, c));
+            }
+            for l in 0..WIDE_LANES {
+                let [a, b] = wide.map(|numbers| numbers[l]);
+                let expected = [a + b, a - b, a * b, if a > b { a } else { b }, a.sqrt(), 2.5];
+                for (found, expected) in found.wide.iter().zip(expected) {
+                    let same = found[l].to_bits() == expected.to_bits() || found[l].is_nan() && expected.is_nan();
+                    prop_assert!(same, "{:?}: {} {}", dispatch, found[l], expected);
+                }
+            }
+        }
+    }
+}
+
+/// Every operation of registers that groups lack, on three groups.
+struct OnRegisters<'a>(&'a [Narrow; 3], &'a [Wide; 2]);
+
+struct Results {
+    narrow: [Narrow; 6],
+    products: [Narrow; 2],
+    mask: u32,
+    wide: [Wide; 6],
+}
+
+impl RegisterKernel for OnRegisters<'_> {
+    type Output = Results;
+
+    #[inline(always)]
+    fn run<R: Register>(self, register: R) -> Results {
+        let mut results = Results {
+            narrow: [[0.0; LANES]; 6],
+            products: [[0.0; LANES]; 2],
+            mask: 0,
+            wide: [[0.0; WIDE_LANES]; 6],
+        };
+        for part in 0..R::PARTS {
+            let [a, b, c] = [0, 1, 2].map(|i: usize| register.load(&self.0[i], part));
+            let narrow = [
+                register.add(a, b),
+                register.sub(a, b),
+                register.mul(a, b),
+                register.div(a, b),
+                register.max(a, b),
+                register.splat(2.5),
+            ];
+            for (value, into) in narrow.into_iter().zip(&mut results.narrow) {
+                register.store(value, into, part);
+            }
+            let products = [register.mul_add(a, b, c), register.neg_mul_add(a, b, c)];
+            for (value, into) in products.into_iter().zip(&mut results.products) {
+                register.store(value, into, part);
+            }
+            results.mask |= register.at_least(a, b) << (part * R::WIDTH);
+            let [a, b] = [0, 1].map(|i: usize| register.wide_load(&self.1[i], part));
+            let wide = [
+                register.wide_add(a, b),
+                register.wide_sub(a, b),
+                register.wide_mul(a, b),
+                register.wide_max(a, b),
+                register.wide_sqrt(a),
+                register.wide_splat(2.5),
+            ];
+            for (value, into) in wide.into_iter().zip(&mut results.wide) {
+                register.wide_store(value, into, part);
+            }
+        }
+        results
+    }
+}
+
+/// What is made of the operations, on small whole numbers, which are exact.
+struct OnQuads<'a>(&'a Quad, &'a Quad, &'a mut Quad);
+
+impl Kernel for OnQuads<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let (a, b) = (simd.read(self.0), simd.read(self.1));
+        let dot = simd.dot(a, b, simd.splat(1.0));
+        let sum = simd.accumulate(a, dot, b);
+        simd.write(simd.scaled(sum, simd.splat(2.0)), self.2);
+    }
+}
+
+#[test]
+#[expect(clippy::float_cmp, reason = "small whole numbers are exact")]
+fn quads() {
+    let quad = |seed: usize| -> Quad {
+        std::array::from_fn(|d| {
+            Lanes(std::array::from_fn(|l| {
+                ((l * 7 + d * 5 + seed) % 11) as f32 - 5.0
+            }))
+        })
+    };
+    let (a, b) = (quad(0), quad(3));
+    for dispatch in each_set() {
+        let mut found = ZERO_QUAD;
+        dispatch.run(OnQuads(&a, &b, &mut found));
+        for l in 0..LANES {
+            let dot: f32 = (0..DEPTH).map(|d| a[d].0[l] * b[d].0[l]).sum::<f32>() + 1.0;
+            for d in 0..DEPTH {
+                let expected = 2.0 * (a[d].0[l] + dot * b[d].0[l]);
+                assert_eq!(found[d].0[l], expected, "{dispatch:?}");
+            }
+        }
+    }
+}
+
+/// Notes the size of the tile that it is run with.
+struct Sizes<'a>(&'a mut Option<(usize, usize)>);
+
+impl TiledKernel for Sizes<'_> {
+    #[inline(always)]
+    fn run<S: Simd, const R: usize, const V: usize>(self, _: S) {
+        *self.0 = Some((R, V));
+    }
+}
+
+#[test]
+fn tiles_are_of_the_sizes_that_are_promised() {
+    for dispatch in each_set() {
+        let mut size = None;
+        dispatch.run(Sizes(&mut size));
+        let (rows, vectors) = size.expect("the kernel is run");
+        assert!(8 % rows == 0 && (1..=2).contains(&vectors), "{dispatch:?}");
+    }
+}
+
+#[test]
+fn the_fastest_set_is_the_last_of_those_that_are_available() {
+    let available = InstructionSet::available();
+    assert_eq!(available.last(), Some(&InstructionSet::detect()));
+    assert_eq!(available.first(), Some(&InstructionSet::Portable));
+    assert_eq!(
+        Dispatch::detect().instruction_set(),
+        InstructionSet::detect()
+    );
+    for dispatch in each_set() {
+        let set = dispatch.instruction_set();
+        assert!(set.is_available());
+        // AVX2 is taken with fused multiplication alone.
+        assert!(dispatch.is_fused() || set == InstructionSet::Portable);
+    }
+}

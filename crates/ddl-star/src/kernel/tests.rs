@@ -1,5 +1,0 @@
-//! What the tests of several kernels share.
-
-pub(super) mod attention;
-pub(super) mod numbers;
-mod pairs;

@@ -1,0 +1,136 @@
+//! The operations of a backbone by libtorch: on any device, in any precision, with its own gradients.
+
+use super::attention::Attention;
+use super::dropout::dropout;
+use super::neighbours::Seen;
+use super::parameters::Parameters;
+use super::shared_weights::SharedWeights;
+use ddl_network::backend::{Backend, Mode};
+use ddl_network::weights::{EncoderLayer, Linear};
+use std::rc::Rc;
+use tch::{TchError, Tensor};
+
+/// One pass of libtorch through a network.
+#[derive(Debug)]
+pub struct TorchBackend {
+    tensors: Vec<Tensor>,
+    mode: Mode,
+    /// For training on a device where small operations cost as much as large ones.
+    shared: Option<SharedWeights>,
+}
+
+impl TorchBackend {
+    /// A pass whose gradients are libtorch's own.
+    pub(crate) fn new(parameters: &Parameters, mode: Mode) -> Self {
+        let tensors = parameters.tensors().iter();
+        Self {
+            tensors: tensors.map(Tensor::shallow_clone).collect(),
+            mode,
+            shared: None,
+        }
+    }
+
+    /// A pass of training: gradients of weights come from all their uses at once, by [`gradient`](Self::gradient).
+    pub(crate) fn training(parameters: &Parameters, mode: Mode) -> Self {
+        Self {
+            shared: Some(SharedWeights::default()),
+            ..Self::new(parameters, mode)
+        }
+    }
+
+    pub(super) fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// y = x W^T + b with the weight of that number and the bias after it.
+    ///
+    /// # Shapes
+    /// `x` `[.., inputs]` -> `[.., outputs]`.
+    pub(super) fn affine(&self, x: &Tensor, weight: usize) -> Tensor {
+        let [weight, bias] = [weight, weight + 1].map(|number| &self.tensors[number]);
+        match &self.shared {
+            Some(shared) => shared.linear(x, weight, bias),
+            None => x.linear(weight, Some(bias)),
+        }
+    }
+
+    /// The gradient of `loss` with respect to all learned numbers, as one vector.
+    pub(crate) fn gradient(
+        &self,
+        loss: &Tensor,
+        parameters: &Parameters,
+    ) -> Result<Tensor, TchError> {
+        match &self.shared {
+            Some(shared) => shared.gradient(loss, parameters),
+            None => parameters.gradient_of(loss),
+        }
+    }
+
+    /// What follows attention in an encoder layer: residual connections, normalisations, the feed-forward block.
+    fn after_attention(&self, layer: EncoderLayer, x: &Tensor, attended: Tensor) -> Tensor {
+        let (first, p, mode) = (layer.tensor(), layer.dropout(), self.mode);
+        let x = self.norm(&(x + dropout(attended, p, mode)), first + 8);
+        let hidden = dropout(self.affine(&x, first + 4).relu(), p, mode);
+        let fed = dropout(self.affine(&hidden, first + 6), p, mode);
+        self.norm(&(x + fed), first + 10)
+    }
+
+    /// Layer normalisation over the last dimension (Ba et al. 2016), eps = 1e-5.
+    fn norm(&self, x: &Tensor, weight: usize) -> Tensor {
+        let [weight, bias] = [weight, weight + 1].map(|number| &self.tensors[number]);
+        x.layer_norm(weight.size(), Some(weight), Some(bias), 1e-5, true)
+    }
+}
+
+impl Backend for TorchBackend {
+    type Tokens = Rc<Tensor>;
+    type KeyValues = Rc<Tensor>;
+    type Seen = Seen;
+
+    fn entries(&self, x: &Rc<Tensor>) -> usize {
+        x.size()[0] as usize
+    }
+
+    fn linear(&self, layer: Linear, x: &Rc<Tensor>) -> Rc<Tensor> {
+        Rc::new(self.affine(x, layer.tensor()))
+    }
+
+    fn relu(&self, x: &Rc<Tensor>) -> Rc<Tensor> {
+        Rc::new(x.relu())
+    }
+
+    fn beside(&self, x: &Rc<Tensor>, other: &Rc<Tensor>) -> Rc<Tensor> {
+        Rc::new(Tensor::cat(&[&**x, &**other], -1))
+    }
+
+    fn repeated(&self, x: &Rc<Tensor>, batch: usize) -> Rc<Tensor> {
+        if self.entries(x) == batch {
+            Rc::clone(x)
+        } else {
+            Rc::new(x.expand([batch as i64, -1, -1], false))
+        }
+    }
+
+    fn spatial_attention(&self, layer: EncoderLayer, x: &Rc<Tensor>, seen: &Seen) -> Rc<Tensor> {
+        let attended = Attention::new(self, layer).among_pedestrians(x, seen);
+        Rc::new(self.after_attention(layer, x, attended))
+    }
+
+    fn temporal_attention(
+        &self,
+        layer: EncoderLayer,
+        newest: &Rc<Tensor>,
+        cache: &[Rc<Tensor>],
+    ) -> Rc<Tensor> {
+        let attended = Attention::new(self, layer).over_cache(newest, cache);
+        Rc::new(self.after_attention(layer, newest, attended))
+    }
+
+    fn key_values(&self, layer: EncoderLayer, x: &Rc<Tensor>) -> Rc<Tensor> {
+        Rc::new(Attention::new(self, layer).key_values(x))
+    }
+
+    fn repeated_key_values(&self, cached: &Rc<Tensor>, batch: usize) -> Rc<Tensor> {
+        Rc::new(cached.expand([batch as i64, -1, -1], false))
+    }
+}

@@ -1,0 +1,133 @@
+//! Several windows side by side as tensors.
+
+use super::neighbours::Neighbours;
+use super::scene_means::SceneMeans;
+use crate::StarError;
+use ddl_data::{Rotation, Window};
+use ddl_network::{NetworkError, visibility};
+use std::rc::Rc;
+use tch::{Device, Kind, Tensor};
+
+/// The walkers of several windows, one after the other, with who sees whom.
+///
+/// # Shapes
+/// T frames, P walkers in all: positions `[T, P, 2]` in metres; who sees whom in the first M frames.
+#[derive(Debug)]
+pub struct SceneBatch {
+    pub(crate) positions: Tensor,
+    pub(crate) neighbours: Rc<Neighbours>,
+    pub(crate) scene_means: SceneMeans,
+    /// Share of the network's metric in what shapes a step, `[1]` or `[1, P, 1]`.
+    pub(crate) share: Tensor,
+}
+
+impl SceneBatch {
+    /// Lays out windows: `frames` of each, with the neighbours of the first `mask_frames`.
+    ///
+    /// # Errors
+    /// [`NetworkError::Shape`] when there is no window, or one is shorter than `frames`.
+    pub fn new(
+        windows: &[&Window],
+        frames: usize,
+        mask_frames: usize,
+        neighbour_box: f64,
+        device: Device,
+        kind: Kind,
+    ) -> Result<Self, StarError> {
+        let walkers: usize = windows.iter().map(|window| window.len()).sum();
+        if walkers == 0 {
+            let got = format!("{} windows", windows.len());
+            let expected = "at least one window with a pedestrian";
+            return Err(NetworkError::shape("scene batch", expected, got).into());
+        }
+        let mut positions = vec![0.0; frames * walkers * 2];
+        let mut first = 0;
+        for window in windows {
+            check_length(window, frames)?;
+            for i in 0..window.len() {
+                for (t, [x, y]) in window.track(i).iter().take(frames).enumerate() {
+                    let at = 2 * (t * walkers + first + i);
+                    positions[at] = *x;
+                    positions[at + 1] = *y;
+                }
+            }
+            first += window.len();
+        }
+        let (t, p) = (frames as i64, walkers as i64);
+        let neighbours = neighbours(windows, mask_frames, neighbour_box, device, kind);
+        Ok(Self {
+            positions: Tensor::from_slice(&positions)
+                .f_to_kind(kind)?
+                .f_reshape([t, p, 2])?
+                .f_to_device(device)?,
+            scene_means: SceneMeans::new(neighbours.scenes().ranges(), device, kind),
+            neighbours: Rc::new(neighbours),
+            share: Tensor::ones([1], (kind, device)),
+        })
+    }
+
+    /// All positions turned about the world's origin. Neighbours stay as they were found.
+    #[must_use]
+    pub fn rotated(&self, rotation: Rotation) -> Self {
+        let ([xx, xy], [yx, yy]) = (rotation.apply([1.0, 0.0]), rotation.apply([0.0, 1.0]));
+        let images = Tensor::from_slice(&[xx, xy, yx, yy])
+            .reshape([2, 2])
+            .to_kind(self.positions.kind())
+            .to_device(self.positions.device());
+        self.turned(&images)
+    }
+
+    /// All positions turned as the axes are: `images` `[2, 2]`, one a row. Neighbours stay as they were found.
+    pub(crate) fn turned(&self, images: &Tensor) -> Self {
+        Self {
+            positions: self.positions.matmul(images),
+            ..self.shared()
+        }
+    }
+
+    /// The same batch, without copying.
+    pub(crate) fn shared(&self) -> Self {
+        Self {
+            positions: self.positions.shallow_clone(),
+            neighbours: Rc::clone(&self.neighbours),
+            scene_means: self.scene_means.shallow_clone(),
+            share: self.share.shallow_clone(),
+        }
+    }
+
+    /// Walkers in all windows together.
+    pub fn walkers(&self) -> usize {
+        self.positions.size()[1] as usize
+    }
+
+    /// Positions, `[T, P, 2]`, metres.
+    pub fn positions(&self) -> &Tensor {
+        &self.positions
+    }
+}
+
+/// Who sees whom in the first `frames` of the windows.
+fn neighbours(
+    windows: &[&Window],
+    frames: usize,
+    half_box: f64,
+    device: Device,
+    kind: Kind,
+) -> Neighbours {
+    let sizes: Vec<usize> = windows.iter().map(|window| window.len()).collect();
+    let visible = visibility(windows.iter().copied(), frames, half_box);
+    Neighbours::new(&sizes, visible, device, kind)
+}
+
+fn check_length(window: &Window, frames: usize) -> Result<(), StarError> {
+    let got = window.track(0).len();
+    if got >= frames {
+        return Ok(());
+    }
+    Err(NetworkError::shape(
+        "scene batch",
+        format!("{frames} frames in every window"),
+        format!("{got} in {}@{}", window.recording(), window.start_frame()),
+    )
+    .into())
+}

@@ -1,0 +1,165 @@
+//! From tokens to what they mean: the output layer and its noise.
+
+use ddl_network::StarConfig;
+use tch::Tensor;
+
+/// The noise of the output layer.
+#[derive(Debug)]
+pub enum NoiseInput {
+    /// One vector a hypothesis (or one for all), `[1 or H, noise]`.
+    Draws(Tensor),
+    /// The expectation over N(0, 1) noise.
+    Expected,
+}
+
+impl NoiseInput {
+    /// Hypotheses that differ by their noise.
+    pub(crate) fn count(&self) -> i64 {
+        match self {
+            Self::Draws(draws) => draws.size()[0],
+            Self::Expected => 1,
+        }
+    }
+}
+
+/// The output layer under some noise, prepared once for all steps.
+#[derive(Debug)]
+pub(crate) struct Emission<'a> {
+    weight: &'a Tensor,
+    bias: &'a Tensor,
+    noise: Prepared<'a>,
+}
+
+#[derive(Debug)]
+enum Prepared<'a> {
+    Draws(&'a Tensor),
+    Expected {
+        /// The columns for the token.
+        weight: Tensor,
+        /// For the variants with dynamics.
+        spread: Option<Spread>,
+    },
+}
+
+impl<'a> Emission<'a> {
+    pub(crate) fn new(
+        weight: &'a Tensor,
+        bias: &'a Tensor,
+        noise: &'a NoiseInput,
+        config: &StarConfig,
+    ) -> Self {
+        let (width, count) = (config.output_inputs(), config.noise_width);
+        let noise = match noise {
+            NoiseInput::Draws(draws) => Prepared::Draws(draws),
+            NoiseInput::Expected => {
+                let of_noise = weight.narrow(1, width, count);
+                let dynamics = config.variant.dynamics();
+                Prepared::Expected {
+                    weight: weight.narrow(1, 0, width),
+                    spread: dynamics.then(|| Spread::of(&of_noise)),
+                }
+            }
+        };
+        Self {
+            weight,
+            bias,
+            noise,
+        }
+    }
+
+    /// What the tokens mean: (a, b, c), or (x, y), a walker. Noise is shared by all walkers.
+    ///
+    /// # Shapes
+    /// `tokens` `[B, P, width]` -> `[B, P, outputs]`.
+    pub(crate) fn of(&self, tokens: &Tensor) -> Tensor {
+        let (batch, walkers) = (tokens.size()[0], tokens.size()[1]);
+        let bias = Some(self.bias);
+        match &self.noise {
+            Prepared::Draws(noise) => {
+                let noise = noise.unsqueeze(1).expand([batch, walkers, -1], false);
+                Tensor::cat(&[tokens, &noise], -1).linear(self.weight, bias)
+            }
+            Prepared::Expected { weight, spread } => {
+                let mean = tokens.linear(weight, bias);
+                match spread {
+                    Some(spread) => spread.expected_factor(&mean),
+                    None => mean,
+                }
+            }
+        }
+    }
+}
+
+/// What noise adds to the metric: entries of C = W W^T, the covariance of W n for noise n ~ N(0, I).
+#[derive(Debug)]
+struct Spread {
+    c11: Tensor,
+    c12: Tensor,
+    c22: Tensor,
+}
+
+impl Spread {
+    /// # Shapes
+    /// `weight` `[3, noise]`, the columns of the output layer for the noise.
+    fn of(weight: &Tensor) -> Self {
+        let covariance = weight.matmul(&weight.transpose(0, 1));
+        let c = |i: i64, j: i64| covariance.get(i).get(j);
+        Self {
+            c11: c(0, 0),
+            c12: c(0, 1),
+            c22: c(1, 1) + c(2, 2),
+        }
+    }
+
+    /// The Cholesky factor of E[L L^T] when noise adds W n to (a, b, c).
+    ///
+    /// The output is linear in the noise, so E[L L^T] = L0 L0^T + E[D D^T] with D built from W n: the mean
+    /// velocity of the noisy walkers, in closed form. The noise-free L0 alone would be too slow: P is
+    /// quadratic in L, and the noise's share of it is not small.
+    ///
+    /// # Shapes
+    /// `mean` `[.., 3]` -> `[.., 3]`.
+    fn expected_factor(&self, mean: &Tensor) -> Tensor {
+        let l = |i: i64| mean.narrow(-1, i, 1);
+        let (a, b, d) = (l(0), l(1), l(2));
+        let p11 = a.square() + &self.c11;
+        let p12 = &a * &b + &self.c12;
+        let p22 = b.square() + d.square() + &self.c22;
+        let first = p11.clamp_min(SMALLEST_PIVOT).sqrt();
+        let below = p12 / &first;
+        let second = (p22 - below.square()).clamp_min(SMALLEST_PIVOT).sqrt();
+        Tensor::cat(&[first, below, second], -1)
+    }
+}
+
+/// Pivots of the expected metric below this count as this, in m/s.
+const SMALLEST_PIVOT: f64 = 1e-12;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tch::{Device, Kind};
+
+    /// The metric of the factor is the mean of the noisy metrics.
+    #[test]
+    fn the_expected_factor_is_that_of_the_mean_metric() {
+        tch::manual_seed(3);
+        let options = (Kind::Double, Device::Cpu);
+        let (mean, weight) = (
+            Tensor::randn([3], options),
+            Tensor::randn([3, 16], options) * 0.1,
+        );
+        let metric = |factors: &Tensor| {
+            let entry = |i: i64| factors.select(-1, i);
+            let (a, b, c) = (entry(0), entry(1), entry(2));
+            Tensor::stack(&[a.square(), &a * &b, b.square() + c.square()], -1)
+        };
+        let noise = Tensor::randn([400_000, 16], options);
+        let sampled = metric(&(&mean + noise.matmul(&weight.transpose(0, 1))));
+        let sampled = sampled.mean_dim([0i64].as_slice(), false, None::<Kind>);
+        let expected = metric(&Spread::of(&weight).expected_factor(&mean));
+        // standard error of the sampled mean: about 2e-3
+        let difference = (sampled - expected).abs().max().double_value(&[]);
+        assert!(difference < 1e-2, "{difference}");
+    }
+}

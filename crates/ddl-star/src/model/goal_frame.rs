@@ -1,0 +1,142 @@
+//! A pedestrian's own frame: the first axis points from where it was last observed to its goal, and lengths are in
+//! its own [unit](ddl_network::motion_unit).
+//!
+//! What the network reads and emits in this frame turns with the pedestrian and its goal, so that one walk in one direction
+//! teaches it all directions; and a runner looks to it like somebody who walks fast.
+
+use super::own_motion;
+use ddl_data::OBSERVED;
+use tch::Tensor;
+
+/// Nearer to its goal than this (metres) a walker has the axes of the world.
+const SMALLEST_DISTANCE: f64 = 1e-6;
+/// Squares of pivots below this count as this, in m/s.
+const SMALLEST_PIVOT: f64 = 1e-12;
+
+/// The first axis of every pedestrian in every hypothesis, as cosine and sine, and its unit.
+///
+/// # Shapes
+/// `[G, P, 1]`, the unit `[1, P, 1]` (no unit: metres a metre).
+#[derive(Debug)]
+pub(crate) struct GoalFrame {
+    cos: Tensor,
+    sin: Tensor,
+    unit: Tensor,
+}
+
+impl GoalFrame {
+    /// # Shapes
+    /// `observed` `[8, P, 2]`; `goals` `[G, P, 2]`; `time_step` in seconds.
+    pub(crate) fn new(observed: &Tensor, goals: &Tensor, time_step: f64) -> Self {
+        let towards = goals - observed.narrow(0, OBSERVED as i64 - 1, 1);
+        let distance = towards.norm_scalaropt_dim(2, [-1i64].as_slice(), true);
+        let near = distance.lt(SMALLEST_DISTANCE);
+        let along = |axis: i64, near_goal: f64| {
+            (towards.narrow(-1, axis, 1) / &distance).masked_fill(&near, near_goal)
+        };
+        Self {
+            cos: along(0, 1.0),
+            sin: along(1, 0.0),
+            unit: own_motion::units(observed, time_step),
+        }
+    }
+
+    /// Vectors of the world in the pedestrians' axes and units.
+    ///
+    /// # Shapes
+    /// `[.., P, 2]`, broadcast with `[G, P, 1]`.
+    pub(crate) fn of_world(&self, vectors: &Tensor) -> Tensor {
+        let (x, y) = (vectors.narrow(-1, 0, 1), vectors.narrow(-1, 1, 1));
+        Tensor::cat(
+            &[
+                &self.cos * &x + &self.sin * &y,
+                &self.cos * &y - &self.sin * &x,
+            ],
+            -1,
+        ) / &self.unit
+    }
+
+    /// The reverse of [`of_world`](Self::of_world).
+    pub(crate) fn to_world(&self, vectors: &Tensor) -> Tensor {
+        let (x, y) = (vectors.narrow(-1, 0, 1), vectors.narrow(-1, 1, 1));
+        Tensor::cat(
+            &[
+                &self.cos * &x - &self.sin * &y,
+                &self.cos * &y + &self.sin * &x,
+            ],
+            -1,
+        ) * &self.unit
+    }
+
+    /// The lower-triangular factor of the same metric in the world: L' L'^T = R^T L L^T R.
+    ///
+    /// # Shapes
+    /// `factors` `[.., P, 3]` holds (a, b, c) of L = [[a, 0], [b, c]]; the same of L' comes back.
+    ///
+    /// # Numerics
+    /// Where the first row of R^T L vanishes (L singular, its null space along the world's x axis) the square of the first pivot is raised to 1e-12 m/s and
+    /// what the second row is worth is lost: the walker stands, and P is still positive definite.
+    pub(crate) fn factors_to_world(&self, factors: &Tensor) -> Tensor {
+        let l = |i: i64| factors.narrow(-1, i, 1);
+        let (a, b, c) = (l(0), l(1), l(2));
+        let (x1, x2) = (&self.cos * &a - &self.sin * &b, -(&self.sin * &c));
+        let (y1, y2) = (&self.sin * &a + &self.cos * &b, &self.cos * &c);
+        let first = (x1.square() + x2.square()).clamp_min(SMALLEST_PIVOT).sqrt();
+        let below = (x1 * y1 + x2 * y2) / &first;
+        let rest = &a * &c / &first;
+        Tensor::cat(&[first, below, rest], -1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tch::{Device, Kind};
+
+    /// The metric itself is what turns, P' = R^T P R, .
+    #[test]
+    fn the_metric_turns_with_the_frame() {
+        tch::manual_seed(5);
+        let options = (Kind::Double, Device::Cpu);
+        let (observed, goals) = (
+            Tensor::randn([8, 40, 2], options),
+            Tensor::randn([3, 40, 2], options),
+        );
+        let frame = GoalFrame::new(&observed, &goals, 0.4);
+        let factors = Tensor::randn([3, 40, 3], options);
+        let u = Tensor::randn([3, 40, 2], options);
+        let turned = frame.factors_to_world(&factors);
+        let own = metric_times(&factors, &frame.of_world(&u));
+        let difference = (metric_times(&turned, &u) - frame.to_world(&own))
+            .abs()
+            .max();
+        assert!(difference.double_value(&[]) < 1e-12);
+    }
+
+    #[test]
+    fn the_goal_lies_ahead_and_whoever_is_there_looks_along_x() {
+        let options = (Kind::Double, Device::Cpu);
+        let last = Tensor::from_slice(&[1.0, 2.0, 5.0, 5.0]).reshape([1, 2, 2]);
+        let goals = Tensor::from_slice(&[1.0, 4.0, 5.0, 5.0]).reshape([1, 2, 2]);
+        let frame = GoalFrame::new(&last.expand([8, -1, -1], false), &goals, 0.4);
+        let ahead = frame.of_world(&(&goals - &last));
+        assert_eq!(
+            Vec::<f64>::try_from(ahead.reshape([-1])).unwrap_or_default(),
+            [2.0, 0.0, 0.0, 0.0]
+        );
+        let east = frame.to_world(&Tensor::ones([1, 2, 2], options));
+        assert_eq!(
+            Vec::<f64>::try_from(east.reshape([-1])).unwrap_or_default(),
+            [-1.0, 1.0, 1.0, 1.0]
+        );
+    }
+
+    fn metric_times(factors: &Tensor, u: &Tensor) -> Tensor {
+        let l = |i: i64| factors.narrow(-1, i, 1);
+        let (w1, w2) = (
+            l(0) * u.narrow(-1, 0, 1) + l(1) * u.narrow(-1, 1, 1),
+            l(2) * u.narrow(-1, 1, 1),
+        );
+        Tensor::cat(&[l(0) * &w1, l(1) * &w1 + l(2) * w2], -1)
+    }
+}

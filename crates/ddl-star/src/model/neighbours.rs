@@ -1,0 +1,142 @@
+//! Who sees whom in a batch of scenes.
+
+use std::cell::OnceCell;
+use std::ops::Range;
+use std::rc::Rc;
+
+use tch::{Device, Kind, Tensor};
+
+use super::packing::Packing;
+use ddl_network::backend::Scenes;
+use std::sync::Arc;
+
+/// Who sees whom in each frame of a batch: scene by scene for the kernels, in rows for libtorch.
+#[derive(Debug)]
+pub(crate) struct Neighbours {
+    scenes: Arc<Scenes>,
+    /// For each frame, for each scene, `[size, size]`.
+    visible: Vec<bool>,
+    device: Device,
+    kind: Kind,
+    rows: OnceCell<MaskedRows>,
+}
+
+impl Neighbours {
+    /// # Shapes
+    /// `sizes`: walkers of each scene; `visible`: for each frame, for each scene, `[size, size]`.
+    pub(crate) fn new(sizes: &[usize], visible: Vec<bool>, device: Device, kind: Kind) -> Self {
+        Self {
+            scenes: Arc::new(Scenes::new(sizes, &visible)),
+            visible,
+            device,
+            kind,
+            rows: OnceCell::new(),
+        }
+    }
+
+    /// The scenes, for the kernels.
+    pub(crate) fn scenes(&self) -> &Arc<Scenes> {
+        &self.scenes
+    }
+
+    /// Who sees whom during some frames: one frame serves every batch entry, several one entry each.
+    pub(crate) fn during(self: &Rc<Self>, frames: Range<usize>) -> Seen {
+        Seen {
+            neighbours: Rc::clone(self),
+            frames,
+        }
+    }
+
+    /// The rows for libtorch, made when first asked for.
+    fn rows(&self) -> &MaskedRows {
+        self.rows.get_or_init(|| {
+            let scenes = &self.scenes;
+            let packing = Packing::new(scenes.ranges());
+            let (rows, length) = (packing.rows(), packing.length());
+            let frames = scenes.frames();
+            let mut mask = vec![f32::NEG_INFINITY; frames * rows * length * length];
+            let mut visible = self.visible.iter();
+            for mask in mask.chunks_exact_mut(rows * length * length) {
+                // Who fills a row up sees itself, so that its weights are numbers.
+                for (place, row) in mask.chunks_exact_mut(length).enumerate() {
+                    row[place % length] = 0.0;
+                }
+                for scene in scenes.ranges() {
+                    let places = &packing.places()[scene.clone()];
+                    for place in places {
+                        let row = &mut mask[place * length..][places[0] % length..][..scene.len()];
+                        for (entry, &seen) in row.iter_mut().zip(visible.by_ref()) {
+                            if seen {
+                                *entry = 0.0;
+                            }
+                        }
+                    }
+                }
+            }
+            let shape = [frames, rows, length, length].map(|size| size as i64);
+            let indices = |numbers: &[usize]| {
+                let numbers: Vec<i64> = numbers.iter().map(|&number| number as i64).collect();
+                Tensor::from_slice(&numbers).to_device(self.device)
+            };
+            MaskedRows {
+                walkers: indices(&packing.walkers()),
+                places: indices(packing.places()),
+                mask: Tensor::from_slice(&mask)
+                    .to_kind(self.kind)
+                    .reshape(shape)
+                    .to_device(self.device),
+            }
+        })
+    }
+}
+
+/// The walkers of all scenes in rows of one length, as [`Packing`] has them.
+#[derive(Debug)]
+struct MaskedRows {
+    /// The walker at each place, `[R * L]`.
+    walkers: Tensor,
+    /// The place of each walker, `[P]`.
+    places: Tensor,
+    /// `[frames, R, L, L]`, 0 where a walker sees another or itself, -inf elsewhere.
+    mask: Tensor,
+}
+
+/// [`Neighbours`] during some frames.
+#[derive(Debug, Clone)]
+pub struct Seen {
+    neighbours: Rc<Neighbours>,
+    frames: Range<usize>,
+}
+
+impl Seen {
+    /// Walkers in rows of one length, for libtorch.
+    ///
+    /// # Shapes
+    /// `x` `[B, P, n]` -> `[B * R, L, n]`.
+    pub(crate) fn in_rows(&self, x: &Tensor) -> Tensor {
+        let rows = self.neighbours.rows();
+        let length = rows.mask.size()[3];
+        x.index_select(1, &rows.walkers)
+            .view([-1, length, x.size()[2]])
+    }
+
+    /// Undoes [`in_rows`](Self::in_rows).
+    ///
+    /// # Shapes
+    /// `x` `[B * R, L, n]` -> `[B, P, n]`.
+    pub(crate) fn out_of_rows(&self, x: &Tensor) -> Tensor {
+        let rows = self.neighbours.rows();
+        let (places, width) = (rows.walkers.size()[0], x.size()[2]);
+        x.reshape([-1, places, width]).index_select(1, &rows.places)
+    }
+
+    /// Who sees whom in the rows of a batch of `entries`: `[B * R, 1, L, L]`, 0 or -inf. Nobody sees beyond its
+    /// scene, and everybody sees somebody.
+    pub(crate) fn row_mask(&self, entries: i64) -> Tensor {
+        let mask = &self.neighbours.rows().mask;
+        let (rows, length) = (mask.size()[1], mask.size()[3]);
+        mask.narrow(0, self.frames.start as i64, self.frames.len() as i64)
+            .expand([entries, rows, length, length], false)
+            .reshape([entries * rows, 1, length, length])
+    }
+}

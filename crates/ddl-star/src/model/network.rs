@@ -1,0 +1,217 @@
+//! The forecasting network on libtorch: for training, for CUDA, and as the oracle of the kernels.
+
+use super::backend::TorchBackend;
+use super::batch::SceneBatch;
+use super::emission::{Emission, NoiseInput};
+use super::parameters::Parameters;
+use super::rollout::Rollout;
+use super::tensor_backend::Pass;
+use crate::StarError;
+use crate::device::ComputeDevice;
+use ddl_data::{HORIZON, OBSERVED, Window};
+use ddl_network::backbone::{Backbone, Perceptron, Star};
+use ddl_network::backend::{KernelBackend, Kernels, Mode};
+use ddl_network::seed::{Stage, stream};
+use ddl_network::weights::{Layout, Linear, Weights};
+use ddl_network::{
+    BackboneKind, BatchRollout, ForecastBatch, ForecastWindows, NetworkError, Precision, StarConfig,
+};
+use std::sync::{Arc, Mutex, PoisonError};
+use tch::{Device, Kind, Tensor};
+
+/// The network on libtorch's tensors, on a device.
+///
+/// Its backbone stands in both forms, because on the CPU in `f32` kernels compute it in training.
+#[derive(Debug)]
+pub struct TorchNetwork {
+    config: StarConfig,
+    parameters: Parameters,
+    device: Device,
+    kind: Kind,
+    on_tensors: Box<dyn Backbone<TorchBackend>>,
+    on_rows: Box<dyn Backbone<KernelBackend>>,
+    output: Linear,
+}
+
+impl TorchNetwork {
+    /// A network with seeded initial values, on a device, in f32.
+    ///
+    /// # Errors
+    /// [`StarError::Network`] when the configuration is out of range.
+    pub fn new(config: StarConfig, seed: u64, device: ComputeDevice) -> Result<Self, StarError> {
+        Self::with_precision(config, seed, device, Kind::Float)
+    }
+
+    /// A network in f32 (`Kind::Float`) or f64 (`Kind::Double`).
+    ///
+    /// # Errors
+    /// [`StarError::Network`] when the configuration is out of range.
+    pub fn with_precision(
+        config: StarConfig,
+        seed: u64,
+        device: ComputeDevice,
+        kind: Kind,
+    ) -> Result<Self, StarError> {
+        let seeded = (seed, device, kind);
+        match config.backbone {
+            BackboneKind::Star => Self::with_backbone(config, seeded, Star::new),
+            BackboneKind::Perceptron => Self::with_backbone(config, seeded, Perceptron::new),
+        }
+    }
+
+    /// A network with a backbone of one's own; `make` declares its layers.
+    ///
+    /// # Errors
+    /// [`StarError::Network`] when the configuration is out of range.
+    pub fn with_backbone<T>(
+        config: StarConfig,
+        (seed, device, kind): (u64, ComputeDevice, Kind),
+        make: impl FnOnce(&mut Layout, &StarConfig) -> T,
+    ) -> Result<Self, StarError>
+    where
+        T: Backbone<TorchBackend> + Backbone<KernelBackend> + Clone + 'static,
+    {
+        let device = device.torch();
+        config.check()?;
+        let mut layout = Layout::default();
+        let backbone = make(&mut layout, &config);
+        let output = Backbone::<KernelBackend>::output(&backbone);
+        let initial = layout.initial(stream(seed, Stage::Weights, 0));
+        Ok(Self {
+            config,
+            parameters: Parameters::new(layout, &initial, device, kind),
+            device,
+            kind,
+            on_tensors: Box::new(backbone.clone()),
+            on_rows: Box::new(backbone),
+            output,
+        })
+    }
+
+    /// Size and constants.
+    pub fn config(&self) -> &StarConfig {
+        &self.config
+    }
+
+    /// The learned tensors.
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// Where the network computes.
+    pub fn device(&self) -> Device {
+        self.device
+    }
+
+    /// Kind of all its numbers.
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// The weights as kernels read them; `None` where they cannot compute: elsewhere than on the CPU, or in f64.
+    pub(crate) fn kernels(&self) -> Result<Option<Arc<Kernels>>, StarError> {
+        if (self.device, self.kind) != (Device::Cpu, Kind::Float) {
+            return Ok(None);
+        }
+        let weights = self.parameters.to_weights()?;
+        let kernels = Kernels::new(weights.layout(), weights.numbers(), Precision::F32);
+        Ok(Some(Arc::new(kernels)))
+    }
+
+    /// The backbone on libtorch.
+    pub(super) fn on_tensors(&self) -> &dyn Backbone<TorchBackend> {
+        &*self.on_tensors
+    }
+
+    /// The backbone on kernels.
+    pub(super) fn on_rows(&self) -> &dyn Backbone<KernelBackend> {
+        &*self.on_rows
+    }
+
+    /// What the output layer makes of features under this noise.
+    pub(super) fn emission<'a>(&'a self, noise: &'a NoiseInput) -> Emission<'a> {
+        let [weight, bias] =
+            [0, 1].map(|one| &self.parameters.tensors()[self.output.tensor() + one]);
+        Emission::new(weight, bias, noise, &self.config)
+    }
+
+    /// This network behind the trait that forecasts are asked of, computed by libtorch.
+    #[must_use]
+    pub fn into_forecaster(self) -> Box<dyn ForecastWindows> {
+        Box::new(TorchForecaster {
+            config: self.config.clone(),
+            network: Mutex::new(self),
+        })
+    }
+
+    /// Forecasts one batch by libtorch.
+    fn roll_out_batch(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, StarError> {
+        let _guard = tch::no_grad_guard();
+        let (device, kind) = (self.device, self.kind);
+        let views: Vec<&Window> = batch.windows.iter().collect();
+        let half_box = self.config.neighbour_box;
+        let mut scenes = SceneBatch::new(&views, OBSERVED, OBSERVED, half_box, device, kind)?;
+        let tensor = |numbers: &[f64], shape: &[i64]| -> Result<Tensor, StarError> {
+            let tensor = Tensor::f_from_slice(numbers)?.f_reshape(shape)?;
+            Ok(tensor.f_to_kind(kind)?.f_to_device(device)?)
+        };
+        let pedestrians = scenes.walkers() as i64;
+        if let Some(shares) = &batch.shares {
+            scenes.share = tensor(shares, &[1, pedestrians, 1])?;
+        }
+        let goals = batch.goals.concat();
+        let shape = [batch.goals.len() as i64, pedestrians, 2];
+        let goals = tensor(goals.as_flattened(), &shape)?;
+        let noise = match &batch.noise {
+            None => NoiseInput::Expected,
+            Some(draws) => {
+                let shape = [batch.noise_vectors as i64, self.config.noise_width];
+                NoiseInput::Draws(tensor(draws, &shape)?)
+            }
+        };
+        let pass = Pass::Torch(TorchBackend::new(&self.parameters, Mode::Evaluate));
+        let steps = (HORIZON, batch.rule);
+        let Rollout { positions, factors } =
+            self.roll_out_in(&scenes, &goals, &noise, steps, &pass);
+        Ok(BatchRollout {
+            hypotheses: positions.size()[1] as usize,
+            positions: arrays(&positions)?,
+            factors: factors.as_ref().map(arrays).transpose()?,
+        })
+    }
+}
+
+/// The last dimension as arrays of N.
+fn arrays<const N: usize>(tensor: &Tensor) -> Result<Vec<[f64; N]>, StarError> {
+    let tensor = tensor.to_device(Device::Cpu).to_kind(Kind::Double);
+    let numbers: Vec<f64> = Vec::try_from(tensor.contiguous().reshape([-1]))?;
+    let (groups, _) = numbers.as_chunks::<N>();
+    Ok(groups.to_vec())
+}
+
+/// Forecasts by libtorch. Tensors may move between threads, but not be shared: one forecast at a time.
+#[derive(Debug)]
+struct TorchForecaster {
+    config: StarConfig,
+    network: Mutex<TorchNetwork>,
+}
+
+impl ForecastWindows for TorchForecaster {
+    fn config(&self) -> &StarConfig {
+        &self.config
+    }
+
+    fn copy_weights(&self) -> Result<Weights, NetworkError> {
+        let network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(network.parameters.to_weights()?)
+    }
+
+    fn precision(&self) -> Precision {
+        Precision::F32
+    }
+
+    fn roll_out(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, NetworkError> {
+        let network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(network.roll_out_batch(batch)?)
+    }
+}

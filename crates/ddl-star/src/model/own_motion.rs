@@ -1,0 +1,93 @@
+//! What everybody's own motion was when it was last observed, on tensors: the twins of
+//! [`motion_unit`](ddl_network::motion_unit) and [`motion_bounds`](ddl_network::motion_bounds).
+
+use ddl_dynamics::MotionBounds;
+use tch::{Kind, Tensor};
+
+/// Speed (m/s) around which the unit of length begins to grow.
+const FAST_WALK: f64 = 2.0;
+/// Mean length of the second differences of positions (m) that takes the last step all but a third of its say.
+const JITTER: f64 = 0.06;
+/// Steps whose mean velocity counts where the last step alone says little.
+const RECENT: usize = 3;
+
+/// Units of length of everybody in a batch, metres.
+///
+/// # Shapes
+/// `observed` `[T, P, 2]` -> `[1, P, 1]`.
+pub(crate) fn units(observed: &Tensor, time_step: f64) -> Tensor {
+    let steps = step_lengths(observed);
+    let relative = steps.mean_dim([0i64].as_slice(), true, None::<Kind>) / (time_step * FAST_WALK);
+    let larger = relative.clamp_min(1.0);
+    &larger
+        * (larger.pow_tensor_scalar(-4) + (relative / &larger).pow_tensor_scalar(4))
+            .pow_tensor_scalar(0.25)
+}
+
+/// Lengths of the steps between positions, metres.
+///
+/// # Shapes
+/// `[T, P, 2]` -> `[T - 1, P, 1]`.
+pub(crate) fn step_lengths(positions: &Tensor) -> Tensor {
+    let steps = positions.size()[0] - 1;
+    let moved = positions.narrow(0, 1, steps) - positions.narrow(0, 0, steps);
+    moved.norm_scalaropt_dim(2, [-1i64].as_slice(), true)
+}
+
+/// Top speeds of all pedestrians in a batch, m/s.
+///
+/// # Shapes
+/// `observed` `[T, P, 2]` -> `[1, P, 1]`.
+pub(crate) fn top_speeds(observed: &Tensor, time_step: f64) -> Tensor {
+    let fastest = step_lengths(observed).amax([0i64].as_slice(), true) / time_step;
+    (fastest * MotionBounds::<f64>::SPEEDING_UP + MotionBounds::<f64>::SPEED_MARGIN)
+        .clamp_min(MotionBounds::<f64>::LEAST_TOP_SPEED)
+}
+
+/// Own velocities of all pedestrians in a batch, m/s.
+///
+/// # Shapes
+/// `observed` `[T, P, 2]`, T at least 4 -> `[1, P, 2]`.
+pub(crate) fn velocities(observed: &Tensor, time_step: f64) -> Tensor {
+    let frames = observed.size()[0];
+    let steps = observed.narrow(0, 1, frames - 1) - observed.narrow(0, 0, frames - 1);
+    let tremble = step_lengths(&steps).mean_dim([0i64].as_slice(), true, None::<Kind>);
+    let recent = steps.narrow(0, frames - 1 - RECENT as i64, RECENT as i64);
+    let mean = recent.mean_dim([0i64].as_slice(), true, None::<Kind>);
+    let even = (-(tremble / JITTER).square()).exp();
+    let last = steps.narrow(0, frames - 2, 1);
+    (&mean + (last - &mean) * even) / time_step
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ddl_data::Position;
+    use ddl_network::{motion_bounds, motion_unit};
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Tensors and positions agree, for walks that tremble, at every scale.
+        #[test]
+        fn tensors_and_positions_agree(
+            track in prop::collection::vec([-0.2..0.2f64, -0.2..0.2f64], 8),
+            [vx, vy] in [-4.0..4.0f64, -4.0..4.0f64],
+            tremble in 0.0..1.0f64,
+            scale in -6.0..6.0f64,
+        ) {
+            let at = |(t, p): (usize, &[f64; 2])| [0.4 * vx * t as f64 + tremble * p[0], 0.4 * vy * t as f64 + tremble * p[1]];
+            let track: Vec<Position> = track.iter().enumerate().map(at).collect();
+            let tensor = Tensor::from_slice(track.as_flattened()).reshape([8, 1, 2]);
+            let top = top_speeds(&tensor, 0.4).double_value(&[0, 0, 0]);
+            let velocity = [0, 1].map(|axis| velocities(&tensor, 0.4).double_value(&[0, 0, axis]));
+            let bounds = motion_bounds(&track, 0.4, 0.5);
+            let other = MotionBounds::new(top, velocity.into(), 0.5).unwrap();
+            prop_assert!((bounds.top_speed() - other.top_speed()).abs() < 1e-12);
+            prop_assert!((bounds.velocity() - other.velocity()).norm() < 1e-12);
+            let scaled: Vec<Position> = track.iter().map(|p| p.map(|x| x * 10f64.powf(scale))).collect();
+            let tensor = Tensor::from_slice(scaled.as_flattened()).reshape([8, 1, 2]);
+            let unit = units(&tensor, 0.4).double_value(&[0, 0, 0]);
+            prop_assert!((motion_unit(&scaled, 0.4) / unit - 1.0).abs() < 1e-12);
+        }
+    }
+}

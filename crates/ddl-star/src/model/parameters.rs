@@ -1,0 +1,132 @@
+//! The learned tensors, by name and in order.
+
+use crate::StarError;
+use ddl_network::weights::{Layout, TensorLayout, Weights};
+use std::sync::Arc;
+use tch::{Device, Kind, Tensor};
+
+/// The learned tensors of a network, in the order of its [`Layout`].
+///
+/// All of them are views into one flat vector, so that the optimiser, gradient clipping and
+/// checkpoints of its state work on a single tensor.
+#[derive(Debug)]
+pub struct Parameters {
+    layout: Arc<Layout>,
+    tensors: Vec<Tensor>,
+    flat: Tensor,
+}
+
+impl Parameters {
+    /// Tensors that begin with these numbers.
+    pub(crate) fn new(layout: Layout, initial: &[f64], device: Device, kind: Kind) -> Self {
+        let _guard = tch::no_grad_guard();
+        let flat = Tensor::from_slice(initial).to_kind(kind).to_device(device);
+        let tensors = layout
+            .tensors()
+            .iter()
+            .map(|tensor| {
+                let (span, shape) = (tensor.span(), sizes(tensor.shape()));
+                let view = flat.narrow(0, span.start as i64, span.len() as i64);
+                let view = view.view(shape.as_slice());
+                let mut learned = view.copy().set_requires_grad(true);
+                learned.set_data(&view);
+                learned
+            })
+            .collect();
+        Self {
+            layout: Arc::new(layout),
+            tensors,
+            flat,
+        }
+    }
+
+    /// Names, shapes and places.
+    pub fn layout(&self) -> &Arc<Layout> {
+        &self.layout
+    }
+
+    /// Names and tensors, in order.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &Tensor)> {
+        let names = self.layout.tensors().iter().map(TensorLayout::name);
+        names.zip(&self.tensors)
+    }
+
+    /// The tensor of that name.
+    pub fn get(&self, name: &str) -> Option<&Tensor> {
+        self.iter()
+            .find(|(candidate, _)| *candidate == name)
+            .map(|(_, tensor)| tensor)
+    }
+
+    /// How many numbers are learned in all.
+    pub fn count(&self) -> usize {
+        self.layout.count()
+    }
+
+    /// A copy of all learned numbers in single precision.
+    ///
+    /// # Errors
+    /// [`StarError::Torch`] when they cannot be fetched from their device.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl_network::{DeviceChoice, StarConfig, Variant};
+    /// use ddl_star::{ComputeDevice, TorchNetwork};
+    ///
+    /// let device = ComputeDevice::open(DeviceChoice::Cpu)?;
+    /// let network = TorchNetwork::new(StarConfig::recommended(Variant::Full), 1, device)?;
+    /// let weights = network.parameters().to_weights()?;
+    /// assert_eq!(weights.count(), network.parameters().count());
+    /// # Ok::<(), ddl_star::StarError>(())
+    /// ```
+    pub fn to_weights(&self) -> Result<Weights, StarError> {
+        let here = self.flat.detach().f_to_device(Device::Cpu)?;
+        let numbers = Vec::try_from(here.f_to_kind(Kind::Float)?)?;
+        Ok(Weights::new(Arc::clone(&self.layout), numbers))
+    }
+
+    /// Takes over other learned numbers of the same layout.
+    ///
+    /// # Errors
+    /// [`StarError::Network`] when they are of another layout; the parameters are then unchanged.
+    pub fn set(&self, weights: &Weights) -> Result<(), StarError> {
+        weights.ensure_of(&self.layout)?;
+        let _guard = tch::no_grad_guard();
+        let numbers = Tensor::f_from_slice(weights.numbers())?;
+        self.flat.shallow_clone().f_copy_(&numbers)?;
+        Ok(())
+    }
+
+    /// The learned tensors, in order.
+    pub(crate) fn tensors(&self) -> &[Tensor] {
+        &self.tensors
+    }
+
+    /// All learned numbers as one vector that shares its memory with the tensors.
+    pub(crate) fn flat(&self) -> &Tensor {
+        &self.flat
+    }
+
+    /// The gradient of a loss that only libtorch's operations lead to, as one vector like [`flat`](Self::flat).
+    ///
+    /// Nothing is added up in the tensors: there is nothing to forget before, and nothing to add to.
+    pub(crate) fn gradient_of(&self, loss: &Tensor) -> Result<Tensor, tch::TchError> {
+        let rows = Tensor::f_run_backward(&[loss], &self.tensors, false, false)?
+            .iter()
+            .zip(&self.tensors)
+            .map(|(gradient, tensor)| {
+                if gradient.defined() {
+                    gradient.f_reshape([-1])
+                } else {
+                    tensor.f_zeros_like()?.f_reshape([-1])
+                }
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        Tensor::f_cat(&rows, 0)
+    }
+}
+
+/// A shape as libtorch counts.
+pub(crate) fn sizes(shape: &[usize]) -> Vec<i64> {
+    shape.iter().map(|&size| size as i64).collect()
+}

@@ -1,0 +1,309 @@
+//! Kernels and tape against libtorch.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use super::*;
+use crate::device::ComputeDevice;
+use crate::model::{NoiseInput, TorchNetwork};
+use ddl_data::{Dataset, WINDOW, Window, WindowRule};
+use ddl_network::{
+    BackboneKind, DeviceChoice, ForecastWindows, MotionNetwork, Noise, StarConfig, StepRule,
+    Variant, WindowRollout,
+};
+use tch::Kind;
+
+/// Windows of very different numbers of pedestrians, a lone one among them, or that one alone.
+fn scenes() -> [Vec<Window>; 3] {
+    let dataset = Dataset::simulated(1);
+    let windows = dataset.recordings()[0].windows(WindowRule::Complete);
+    let alone = Window::new(
+        "alone",
+        0,
+        10,
+        windows[0].pedestrians()[..1].to_vec(),
+        vec![windows[0].track(0).to_vec()],
+    )
+    .unwrap();
+    let some: Vec<Window> = windows.into_iter().step_by(9).take(4).collect();
+    let many = some.iter().chain([&alone]).cloned().collect();
+    [some, many, vec![alone]]
+}
+
+fn batch(windows: &[Window], kind: Kind) -> SceneBatch {
+    let windows: Vec<&Window> = windows.iter().collect();
+    SceneBatch::new(&windows, WINDOW, WINDOW - 1, 2.0, tch::Device::Cpu, kind).unwrap()
+}
+
+/// The networks of all variants, and those in the pedestrians' own frames, with either backbone.
+fn configs() -> Vec<StarConfig> {
+    let own = [Variant::NoDynamics, Variant::Full].map(StarConfig::recommended);
+    let world = Variant::ALL.map(StarConfig::published);
+    let with = |config: StarConfig| {
+        BackboneKind::ALL.map(|backbone| StarConfig {
+            backbone,
+            feed_forward_width: 96,
+            ..config.clone()
+        })
+    };
+    world.into_iter().chain(own).flat_map(with).collect()
+}
+
+fn name(config: &StarConfig) -> String {
+    format!("{} {} {:?}", config.backbone, config.variant, config.frame)
+}
+
+fn network(config: &StarConfig, kind: Kind) -> TorchNetwork {
+    crate::set_threads(1);
+    let cpu = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
+    TorchNetwork::with_precision(config.clone(), 3, cpu, kind).unwrap()
+}
+
+/// By what a gradient is computed.
+#[derive(Debug, Clone, Copy)]
+enum By {
+    /// Kernels and tape, in single precision.
+    Kernels,
+    /// libtorch in double precision, with weights shared by all their uses, as on CUDA.
+    SharedWeights,
+    /// libtorch alone, in double precision.
+    Torch,
+}
+
+/// A loss and its gradient, in double precision.
+fn gradient(
+    config: &StarConfig,
+    by: By,
+    loss: impl FnOnce(&TorchNetwork, &Pass) -> Tensor,
+) -> (f64, Tensor) {
+    let kind = match by {
+        By::Kernels => Kind::Float,
+        By::SharedWeights | By::Torch => Kind::Double,
+    };
+    let network = network(config, kind);
+    let parameters = network.parameters();
+    let pass = match by {
+        By::Torch => Pass::Torch(TorchBackend::new(parameters, Mode::Evaluate)),
+        By::Kernels | By::SharedWeights => {
+            let kernels = network.kernels().unwrap();
+            Pass::training(Mode::Evaluate, 0, parameters, kernels.as_ref())
+        }
+    };
+    assert_eq!(
+        matches!(pass, Pass::Kernels(_)),
+        matches!(by, By::Kernels),
+        "{by:?}"
+    );
+    let loss = loss(&network, &pass);
+    let gradient = pass.gradient(&loss, parameters).unwrap();
+    (loss.double_value(&[]), gradient.to_kind(Kind::Double))
+}
+
+/// Loss and gradient of a whole teacher-forced pass: through kernels and tape as libtorch alone has them in
+/// double precision.
+#[test]
+fn kernels_and_tape_give_the_gradients_of_libtorch() {
+    for (config, windows) in configs()
+        .iter()
+        .flat_map(|config| scenes().map(|windows| (config, windows)))
+    {
+        let of = |by: By| {
+            gradient(config, by, |network, pass| {
+                let kind = network.kind();
+                let batch = batch(&windows, kind);
+                let ones = Tensor::ones([1, 16], (kind, tch::Device::Cpu));
+                let noise = NoiseInput::Draws(ones * 0.3);
+                let goals = batch.positions().get(WINDOW as i64 - 1);
+                let forecast = network.teacher_forced_in(&batch, &goals, &noise, pass);
+                let truth = batch.positions().narrow(0, 1, WINDOW as i64 - 1);
+                (forecast - truth).square().mean(None::<Kind>)
+            })
+        };
+        let name = name(config);
+        let (loss, ours) = of(By::Kernels);
+        let (known_loss, known) = of(By::Torch);
+        let (_, shared) = of(By::SharedWeights);
+        let size = known.norm().double_value(&[]);
+        let difference = (shared - &known).norm().double_value(&[]);
+        assert!(difference < 1e-12 * size, "{name}: {difference} of {size}");
+        assert!(
+            (loss / known_loss - 1.0).abs() < 1e-5,
+            "{name}: {loss} {known_loss}"
+        );
+        let difference = (&ours - &known).norm().double_value(&[]);
+        assert!(difference < 1e-4 * size, "{name}: {difference} of {size}");
+    }
+}
+
+/// Loss and gradient of a whole walk, whose own positions are read again: through kernels and tape as libtorch alone has
+/// them in double precision.
+#[test]
+fn kernels_and_tape_give_the_gradients_of_a_walk() {
+    let [some, many, _] = scenes();
+    for (config, windows) in configs()
+        .iter()
+        .flat_map(|config| [(config, &some), (config, &many)])
+    {
+        let of = |by: By| {
+            gradient(config, by, |network, pass| {
+                let batch = batch(windows, network.kind());
+                let goals = batch.positions().narrow(0, WINDOW as i64 - 1, 1) + 0.3;
+                let (noise, steps) = (NoiseInput::Expected, (12, StepRule::Bounded));
+                let walk = network.roll_out_in(&batch, &goals, &noise, steps, pass);
+                let truth = batch.positions().narrow(0, 8, 12);
+                let apart = walk.positions.squeeze_dim(1) - truth;
+                let distances = apart.norm_scalaropt_dim(2, [-1i64].as_slice(), false);
+                distances.mean(None::<Kind>)
+            })
+        };
+        let name = name(config);
+        let (loss, ours) = of(By::Kernels);
+        let (known_loss, known) = of(By::Torch);
+        assert!(
+            (loss / known_loss - 1.0).abs() < 1e-4,
+            "{name}: {loss} {known_loss}"
+        );
+        let difference = (&ours - &known).norm().double_value(&[]);
+        let size = known.norm().double_value(&[]);
+        assert!(
+            size > 1e-3 && difference < 5e-3 * size,
+            "{name}: {difference} of {size}"
+        );
+    }
+}
+
+/// What is asked of a network: windows, goals, noise, step rule, shares.
+type Question = (
+    Vec<Window>,
+    Vec<Vec<Vec<[f64; 2]>>>,
+    Noise,
+    StepRule,
+    Option<Vec<Vec<f64>>>,
+);
+
+/// Several goals or several noise vectors, all of the metric or shares of it.
+fn questions(rule: StepRule) -> Vec<Question> {
+    // Next to the goal rounding decides where a plain step leads: those goals are out of reach.
+    let beyond = if rule == StepRule::Euler { 20.0 } else { 0.0 };
+    let [_, many, alone] = scenes();
+    let mut questions = Vec::new();
+    for windows in [many, alone] {
+        let draws = Noise::Draws { count: 3, seed: 5 };
+        for (count, noise) in [(3_u8, Noise::Expected), (1, draws)] {
+            let goals = |window: &Window, i: usize| {
+                let [x, y] = window.track(i)[WINDOW - 1];
+                let wave = |k: u8| (f64::from(k) + i as f64).sin();
+                (0..count)
+                    .map(|k| [x + beyond + wave(2 * k), y - wave(2 * k + 1)])
+                    .collect()
+            };
+            let of_window = |window: &Window| -> Vec<Vec<[f64; 2]>> {
+                (0..window.len()).map(|i| goals(window, i)).collect()
+            };
+            let goals: Vec<_> = windows.iter().map(of_window).collect();
+            let of_window = |window: &Window| -> Vec<f64> {
+                (0..window.len()).map(|i| (i % 4) as f64 / 3.0).collect()
+            };
+            let shares: Vec<_> = windows.iter().map(of_window).collect();
+            for shares in [None, Some(shares)] {
+                questions.push((windows.clone(), goals.clone(), noise, rule, shares));
+            }
+        }
+    }
+    questions
+}
+
+fn answers(network: &dyn ForecastWindows, questions: &[Question]) -> Vec<WindowRollout> {
+    let answer = |(windows, goals, noise, rule, shares): &Question| {
+        let shares = shares.as_deref();
+        network.forecast_windows(windows, goals, *noise, *rule, shares)
+    };
+    questions.iter().flat_map(|q| answer(q).unwrap()).collect()
+}
+
+/// Largest difference of positions (m) and factors.
+fn apart(ours: &[WindowRollout], known: &[WindowRollout]) -> f64 {
+    assert_eq!(ours.len(), known.len());
+    let numbers = |rollout: &WindowRollout| -> Vec<f64> {
+        let factors = rollout.factors.iter().flatten().flatten();
+        let positions = rollout.positions.as_flattened().iter();
+        positions.chain(factors).copied().collect()
+    };
+    let pairs = ours.iter().zip(known).flat_map(|(ours, known)| {
+        let (ours, known) = (numbers(ours), numbers(known));
+        assert_eq!(ours.len(), known.len());
+        ours.into_iter().zip(known)
+    });
+    let differences = pairs.map(|(ours, known)| (ours - known).abs());
+    // NaN is the largest.
+    differences.max_by(f64::total_cmp).unwrap()
+}
+
+/// Positions and factors of forecasts by the plain network as libtorch has them in double precision, before and after the
+/// weights change.
+#[test]
+fn plain_numbers_give_the_forecasts_of_libtorch() {
+    let [bounded, euler] = [StepRule::Bounded, StepRule::Euler].map(questions);
+    for config in configs() {
+        let name = name(&config);
+        let agree = |plain: &MotionNetwork, torch: TorchNetwork, questions: &[&[Question]]| {
+            let weights = torch.parameters().to_weights().unwrap();
+            assert_eq!(plain.weights(), &weights, "{name}");
+            let torch = torch.into_forecaster();
+            for questions in questions {
+                let ours = answers(plain, questions);
+                assert!(ours.iter().all(|rollout| rollout.hypotheses == 3));
+                let difference = apart(&ours, &answers(&*torch, questions));
+                assert!(difference < 1e-4, "{name}: {difference}");
+            }
+        };
+        let plain = MotionNetwork::new(config.clone(), 3).unwrap();
+        agree(&plain, network(&config, Kind::Double), &[&bounded, &euler]);
+
+        let before = answers(&plain, &bounded);
+        let torch = network(&config, Kind::Double);
+        let mut flat = torch.parameters().flat().shallow_clone();
+        flat *= 1.3;
+        let weights = torch.parameters().to_weights().unwrap();
+        let plain = plain.with_weights(weights).unwrap();
+        agree(&plain, torch, &[&bounded]);
+        let change = apart(&answers(&plain, &bounded), &before);
+        assert!(change > 2e-2, "{name}: {change}");
+    }
+}
+
+/// Layers of one pass lose different numbers, the same ones again in a pass with the same seed, and none where there is no
+/// dropout.
+#[test]
+fn every_dropout_has_a_seed_of_its_own() {
+    let config = StarConfig::published(Variant::Full);
+    let network = network(&config, Kind::Float);
+    let kernels = network.kernels().unwrap().unwrap();
+    let layers = network.parameters().layout().encoder_layers();
+    let with = layers.iter().find(|layer| layer.dropout() > 0.0).unwrap();
+    let without = layers.iter().find(|layer| layer.dropout() == 0.0).unwrap();
+    let [windows, ..] = scenes();
+    let batch = batch(&windows, Kind::Float);
+    let outputs = |layer, mode, seed| -> Vec<Vec<u32>> {
+        let backend = KernelBackend::training(Arc::clone(&kernels), mode, seed);
+        let shape = [1, batch.walkers(), config.model_width as usize];
+        let mut x = Buffer::any(shape.iter().product());
+        for (i, x) in x.iter_mut().enumerate() {
+            *x = (i as f32).sin();
+        }
+        let x = Rc::new(Rows::new(shape, x));
+        let seen = backend.seen(&batch, 0..1);
+        let pass = || backend.spatial_attention(layer, &x, &seen);
+        let bits = |rows: Rc<Rows>| rows.iter().map(|x| x.to_bits()).collect();
+        (0..25).map(|_| bits(pass())).collect()
+    };
+    let distinct = |mut outputs: Vec<Vec<u32>>| {
+        outputs.sort_unstable();
+        outputs.dedup();
+        outputs.len()
+    };
+    let dropped = outputs(*with, Mode::Train, 7);
+    assert_eq!(dropped, outputs(*with, Mode::Train, 7));
+    assert_ne!(dropped[0], outputs(*with, Mode::Train, 8)[0]);
+    assert_eq!(distinct(dropped), 25);
+    assert_eq!(distinct(outputs(*without, Mode::Train, 7)), 1);
+    assert_eq!(distinct(outputs(*with, Mode::Evaluate, 7)), 1);
+}

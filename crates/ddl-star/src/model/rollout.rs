@@ -1,0 +1,259 @@
+//! From windows and goals to positions on tensors: teacher-forced for training, recurrent for forecasts.
+
+use super::backend::TorchBackend;
+use super::batch::SceneBatch;
+use super::course::Course;
+use super::emission::NoiseInput;
+use super::flow::{FlowConstants, StepBounds};
+use super::goal_frame::GoalFrame;
+use super::network::TorchNetwork;
+use super::own_motion;
+use super::tensor_backend::{Pass, TensorBackend};
+use ddl_data::OBSERVED;
+use ddl_network::backbone::Backbone;
+use ddl_network::backend::{Memory, Mode};
+use ddl_network::{Frame, StepRule};
+use std::slice::from_ref;
+use tch::{Kind, Tensor};
+
+/// What the network made of observed frames: where everybody goes, and what shaped the way.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Rollout {
+    /// `[horizon, H, P, 2]`, metres.
+    pub positions: Tensor,
+    /// `[horizon, H, P, 3]`: (a, b, c) of L = [[a, 0], [b, c]], in (m/s)^(1/2), with which each position
+    /// was reached; `None` for the variants without dynamics.
+    pub factors: Option<Tensor>,
+}
+
+impl TorchNetwork {
+    /// One-step-ahead positions: from the true positions up to each frame, the next one.
+    ///
+    /// # Shapes
+    /// `batch` of T frames with neighbours of at least T - 1, T at least 8 in the walkers' own frames and without goal shift; `goals`
+    /// `[P, 2]`; `noise` one vector, or none -> `[T - 1, P, 2]`, the forecasts of frames 1..T.
+    pub fn teacher_forced(
+        &self,
+        batch: &SceneBatch,
+        goals: &Tensor,
+        noise: &NoiseInput,
+        mode: Mode,
+    ) -> Tensor {
+        let pass = Pass::Torch(TorchBackend::new(self.parameters(), mode));
+        self.teacher_forced_in(batch, goals, noise, &pass)
+    }
+
+    /// [`teacher_forced`](Self::teacher_forced) in a pass of its own.
+    pub(crate) fn teacher_forced_in(
+        &self,
+        batch: &SceneBatch,
+        goals: &Tensor,
+        noise: &NoiseInput,
+        pass: &Pass,
+    ) -> Tensor {
+        match pass {
+            Pass::Torch(backend) => {
+                self.teacher_forced_by(batch, goals, noise, (backend, self.on_tensors()))
+            }
+            Pass::Kernels(backend) => {
+                self.teacher_forced_by(batch, goals, noise, (backend, self.on_rows()))
+            }
+        }
+    }
+
+    fn teacher_forced_by<B: TensorBackend>(
+        &self,
+        batch: &SceneBatch,
+        goals: &Tensor,
+        noise: &NoiseInput,
+        (backend, backbone): (&B, &dyn Backbone<B>),
+    ) -> Tensor {
+        let steps = batch.positions.size()[0] as usize - 1;
+        let positions = batch.positions.narrow(0, 0, steps as i64);
+        // The frames are known, so the backbone looks at all their scenes at once.
+        let centred = backend.given(&centre(batch, &positions));
+        let scenes = backbone.scene(backend, &centred, &backend.seen(batch, 0..steps));
+        let scenes = backend.each_entry(&scenes);
+        let course = self.course(batch, goals, StepRule::Euler);
+        let before = Tensor::cat(
+            &[
+                positions.narrow(0, 0, 1),
+                positions.narrow(0, 0, steps as i64 - 1),
+            ],
+            0,
+        );
+        let relative = backend.each_entry(&backend.given(&course.seen(&positions, &before)));
+        let mut memory = Memory::default();
+        let features: Vec<B::Tokens> = (0..steps)
+            .map(|t| {
+                let seen = backend.seen(batch, t..t + 1);
+                backbone.step(backend, &mut memory, &relative[t], &scenes[t], &seen)
+            })
+            .collect();
+        let emitted = course.to_world(&self.emission(noise).of(&backend.joined(&features)));
+        course.next_positions(&positions, goals, &emitted, (0, steps))
+    }
+
+    /// Forecast positions: 8 frames observed, then every forecast is the input of the next step.
+    ///
+    /// Neighbours are those of the last observed frame throughout. H = G hypotheses with one goal
+    /// each, or H = number of noise vectors when all share one goal (G = 1).
+    ///
+    /// # Shapes
+    /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` 1 or H vectors, or none
+    /// -> positions `[horizon, H, P, 2]` and factors `[horizon, H, P, 3]`.
+    pub fn roll_out(
+        &self,
+        batch: &SceneBatch,
+        goals: &Tensor,
+        noise: &NoiseInput,
+        horizon: usize,
+        rule: StepRule,
+    ) -> Rollout {
+        let pass = Pass::Torch(TorchBackend::new(self.parameters(), Mode::Evaluate));
+        self.roll_out_in(batch, goals, noise, (horizon, rule), &pass)
+    }
+
+    /// [`roll_out`](Self::roll_out) in a pass of its own. Gradients come back through the walk and through the memory of
+    /// tokens, not through the positions that the network reads: those are given, as observed ones are.
+    pub(crate) fn roll_out_in(
+        &self,
+        batch: &SceneBatch,
+        goals: &Tensor,
+        noise: &NoiseInput,
+        (horizon, rule): (usize, StepRule),
+        pass: &Pass,
+    ) -> Rollout {
+        match pass {
+            Pass::Torch(backend) => {
+                let by = (backend, self.on_tensors());
+                self.roll_out_by(batch, goals, noise, (horizon, rule), by)
+            }
+            Pass::Kernels(backend) => {
+                let by = (backend, self.on_rows());
+                self.roll_out_by(batch, goals, noise, (horizon, rule), by)
+            }
+        }
+    }
+
+    fn roll_out_by<B: TensorBackend>(
+        &self,
+        batch: &SceneBatch,
+        goals: &Tensor,
+        noise: &NoiseInput,
+        (horizon, rule): (usize, StepRule),
+        (backend, backbone): (&B, &dyn Backbone<B>),
+    ) -> Rollout {
+        let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
+        let last = OBSERVED as i64 - 1;
+        let hypotheses = goals.size()[0].max(noise.count());
+        let course = self.course(batch, goals, rule);
+        let centred = backend.given(&centre(batch, &observed));
+        let scene = backbone.scene(backend, &centred, &backend.seen(batch, 0..OBSERVED));
+        // The observed frames differ between hypotheses only through the goal they are shifted by:
+        // `relative` has one batch entry a distinct reference.
+        let mut memory = Memory::default();
+        let mut features = Vec::new();
+        for (t, scene) in backend.each_entry(&scene).iter().enumerate() {
+            let at = |t: usize| observed.get(t as i64);
+            let relative = backend.given(&course.seen(&at(t), &at(t.saturating_sub(1))));
+            let seen = backend.seen(batch, t..t + 1);
+            features = vec![backbone.step(backend, &mut memory, &relative, scene, &seen)];
+        }
+        let mut features = features.remove(0);
+        if backend.entries(&features) < hypotheses as usize {
+            features = backend.repeated(&features, hypotheses as usize);
+            memory = memory.repeated(backend, hypotheses as usize);
+        }
+        let seen = backend.seen(batch, OBSERVED - 1..OBSERVED);
+        let emission = self.emission(noise);
+        let mut position = observed
+            .narrow(0, last, 1)
+            .expand([hypotheses, -1, -1], false);
+        let mut sum = observed
+            .sum_dim_intlist([0i64].as_slice(), true, None::<Kind>)
+            .expand([hypotheses, -1, -1], false);
+        let mut path = Vec::with_capacity(horizon);
+        let mut factors = Vec::with_capacity(horizon);
+        for t in OBSERVED..OBSERVED + horizon {
+            let joined = backend.joined(from_ref(&features));
+            let emitted = course.to_world(&emission.of(&joined));
+            let before = position.detach();
+            let steps = (t - OBSERVED, OBSERVED + horizon - t);
+            position = course.next_positions(&position, goals, &emitted, steps);
+            path.push(position.shallow_clone());
+            factors.push(emitted);
+            if t + 1 < OBSERVED + horizon {
+                let position = position.detach();
+                sum = &sum + &position;
+                let centred = &position - batch.scene_means.of(&sum) / (t + 1) as f64;
+                let scene = backbone.scene(backend, &backend.given(&centred), &seen);
+                let relative = backend.given(&course.seen(&position, &before));
+                features = backbone.step(backend, &mut memory, &relative, &scene, &seen);
+            }
+        }
+        let shaped = self.config().variant.dynamics();
+        Rollout {
+            positions: Tensor::stack(&path, 0),
+            factors: shaped.then(|| Tensor::stack(&factors, 0)),
+        }
+    }
+
+    /// Where the walkers are led, as this network reads it.
+    ///
+    /// # Shapes
+    /// `batch` of at least 8 frames, unless the network reads positions relative to the goal in the world's frame; `goals`
+    /// `[.., P, 2]`.
+    fn course(&self, batch: &SceneBatch, goals: &Tensor, rule: StepRule) -> Course {
+        let config = self.config();
+        let time_step = config.time_step;
+        let observed = || batch.positions.narrow(0, 0, OBSERVED as i64);
+        let last = || batch.positions.narrow(0, OBSERVED as i64 - 1, 1);
+        let goals = if goals.dim() == 2 {
+            goals.unsqueeze(0)
+        } else {
+            goals.shallow_clone()
+        };
+        let frame = match config.frame {
+            Frame::World => None,
+            Frame::Goal => Some(GoalFrame::new(&observed(), &goals, time_step)),
+        };
+        Course {
+            reference: if config.variant.goal_shift() {
+                goals
+            } else {
+                last()
+            },
+            frame,
+            dynamics: config.variant.dynamics(),
+            constants: FlowConstants {
+                sigma: config.sigma,
+                time_step,
+            },
+            bounds: match rule {
+                StepRule::Euler => None,
+                StepRule::Bounded => Some(StepBounds {
+                    top_speed: own_motion::top_speeds(&observed(), time_step),
+                    velocity: own_motion::velocities(&observed(), time_step),
+                    share: batch.share.shallow_clone(),
+                    absolute: config.frame == Frame::World,
+                }),
+            },
+        }
+    }
+}
+
+/// Positions relative to the mean over all walkers of the scene and all frames so far.
+///
+/// # Shapes
+/// `positions` `[T, P, 2]` -> the same.
+fn centre(batch: &SceneBatch, positions: &Tensor) -> Tensor {
+    let frames = positions.size()[0];
+    let count = Tensor::arange_start(1, frames + 1, (positions.kind(), positions.device()))
+        .view([frames, 1, 1]);
+    positions
+        - batch
+            .scene_means
+            .of(&(positions.cumsum(0, positions.kind()) / count))
+}

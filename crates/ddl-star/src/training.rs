@@ -1,0 +1,19 @@
+//! Training of the forecasting network.
+
+pub(crate) mod checkpoint;
+mod draws;
+pub(crate) mod gate;
+mod loss;
+pub(crate) mod optimizer;
+mod prepared;
+mod schedule;
+mod trainer;
+
+pub use loss::{mean_distance, mean_squared_distance};
+pub use trainer::Trainer;
+
+use std::sync::Mutex;
+
+/// libtorch has one generator a process: two trainings side by side take turns to draw from it, so
+/// that neither disturbs the other.
+pub(crate) static GENERATOR: Mutex<()> = Mutex::new(());

@@ -1,0 +1,132 @@
+//! The state of a training under way, as one file: checked when read, atomic when written.
+
+use super::optimizer::Adam;
+use crate::StarError;
+use crate::model::Parameters;
+use ddl_network::NetworkError;
+use ddl_network::weights::{
+    Origin, StoredNumbers, StoredTensor, find_tensor, read_tensors, write_tensors,
+};
+use std::path::Path;
+use tch::{Device, Kind, Tensor};
+
+const WEIGHTS: &str = "parameters";
+const FIRST_MOMENT: &str = "first_moment";
+const SECOND_MOMENT: &str = "second_moment";
+const PROGRESS: &str = "progress";
+
+/// What lies beside weights and moments: the counters of a training, as `progress`, and vectors like the weights.
+#[derive(Debug)]
+pub(crate) struct Extra<'a> {
+    /// The first one is the number of steps.
+    pub(crate) progress: Vec<f64>,
+    /// By name.
+    pub(crate) vectors: Vec<(&'static str, &'a Tensor)>,
+}
+
+/// How far a training run has come.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Progress {
+    /// Batches seen, over all epochs.
+    pub(crate) steps: u64,
+    /// Sum of the loss over the batches of the running epoch.
+    pub(crate) loss_sum: f64,
+    /// Seconds spent in the running epoch.
+    pub(crate) seconds: f64,
+}
+
+/// Writes everything a killed run needs to go on: weights, Adam's moments and the progress, in one
+/// file, so that they can never disagree.
+pub(crate) fn save(
+    parameters: &Parameters,
+    adam: &Adam,
+    extra: &Extra<'_>,
+    origin: &Origin,
+    path: &Path,
+) -> Result<(), StarError> {
+    let own = [
+        (WEIGHTS, parameters.flat()),
+        (FIRST_MOMENT, &adam.first_moment),
+        (SECOND_MOMENT, &adam.second_moment),
+    ];
+    let mut tensors = own
+        .iter()
+        .chain(&extra.vectors)
+        .map(|(name, tensor)| stored(name, tensor))
+        .collect::<Result<Vec<_>, _>>()?;
+    tensors.push(StoredTensor {
+        name: PROGRESS.to_owned(),
+        shape: vec![extra.progress.len()],
+        numbers: StoredNumbers::Double(extra.progress.clone()),
+    });
+    Ok(write_tensors(&tensors, origin, path)?)
+}
+
+/// Restores all of it, and gives the progress, whose first number is the number of steps; nothing is changed when the file is not
+/// whole.
+pub(crate) fn load(
+    parameters: &Parameters,
+    adam: &mut Adam,
+    extra: &mut Extra<'_>,
+    most_steps: u64,
+    origin: &Origin,
+    path: &Path,
+) -> Result<u64, StarError> {
+    let vectors = 3 + extra.vectors.len() as u64;
+    let tensors = read_tensors(path, parameters.count() as u64 * vectors * 8, origin)?;
+    let find = |name: &str| -> Result<Tensor, StarError> {
+        let stored = find_tensor(&tensors, name, path)?;
+        let shape = [parameters.count()];
+        Ok(match parameters.flat().kind() {
+            Kind::Double => Tensor::f_from_slice(&stored.double(&shape, path)?)?,
+            _ => Tensor::f_from_slice(&stored.single(&shape, path)?)?,
+        })
+    };
+    let (weights, first, second) = (find(WEIGHTS)?, find(FIRST_MOMENT)?, find(SECOND_MOMENT)?);
+    let names = extra.vectors.iter();
+    let others = names
+        .map(|(name, _)| find(name))
+        .collect::<Result<Vec<_>, _>>()?;
+    // Adam divides by the root of its second moment: a negative one would turn weights into NaN.
+    if second.lt(0.0).any().int64_value(&[]) != 0 {
+        let problem = format!(
+            "{SECOND_MOMENT} holds negative numbers; delete it and run the same training again"
+        );
+        return Err(NetworkError::checkpoint(path, problem).into());
+    }
+    let progress = find_tensor(&tensors, PROGRESS, path)?.double(&[extra.progress.len()], path)?;
+    let steps = whole_steps(progress[0], most_steps, path)?;
+    let _guard = tch::no_grad_guard();
+    parameters.flat().shallow_clone().f_copy_(&weights)?;
+    adam.first_moment.f_copy_(&first)?;
+    adam.second_moment.f_copy_(&second)?;
+    adam.set_steps(steps);
+    for ((_, vector), stored) in extra.vectors.iter().zip(others) {
+        vector.shallow_clone().f_copy_(&stored)?;
+    }
+    extra.progress = progress;
+    Ok(steps)
+}
+
+/// A number of steps as the file holds it.
+fn whole_steps(number: f64, most: u64, path: &Path) -> Result<u64, StarError> {
+    if number.fract() == 0.0 && (0.0..=most as f64).contains(&number) {
+        return Ok(number as u64);
+    }
+    let problem = format!(
+        "the step count is {number}, not a whole number in 0..={most}; delete it and run the same training again"
+    );
+    Err(NetworkError::checkpoint(path, problem).into())
+}
+
+fn stored(name: &str, tensor: &Tensor) -> Result<StoredTensor, StarError> {
+    let here = tensor.detach().f_to_device(Device::Cpu)?.f_reshape([-1])?;
+    Ok(StoredTensor {
+        name: name.to_owned(),
+        shape: vec![here.numel()],
+        numbers: match here.kind() {
+            Kind::Double => StoredNumbers::Double(Vec::try_from(here)?),
+            _ => StoredNumbers::Single(Vec::try_from(here)?),
+        },
+    })
+}

@@ -1,0 +1,161 @@
+//! What training steps draw: noise, rotation and seeds, for many steps at once.
+
+use super::schedule::Schedule;
+use crate::StarError;
+use ddl_data::Rotation;
+use ddl_network::seed::{Stage, stream};
+use rand::{Rng as _, RngExt as _};
+use rand_distr::StandardNormal;
+use std::ops::Range;
+use tch::{Device, Kind, Tensor};
+
+/// Everything random of some steps in a row. Each step draws from a stream of its own; the numbers of all
+/// of them go to the device in one copy, so that no step has to wait for one.
+#[derive(Debug)]
+pub(crate) struct StepDraws {
+    steps: Range<u64>,
+    seeds: Vec<Seeds>,
+    /// `[steps, noise]`.
+    noise: Tensor,
+    /// `[steps, 2, 2]`, the images of the axes; `None` where nothing is turned.
+    turns: Option<Tensor>,
+}
+
+/// Where the generators of one step start.
+#[derive(Debug, Clone, Copy)]
+struct Seeds {
+    libtorch: i64,
+    kernels: u64,
+}
+
+/// What one step draws.
+#[derive(Debug)]
+pub(crate) struct StepDraw {
+    /// Seed of libtorch's generator.
+    pub(crate) libtorch: i64,
+    /// Seed of the kernels' dropout.
+    pub(crate) kernels: u64,
+    /// The noise vector that all walkers and frames share, `[1, noise]`.
+    pub(crate) noise: Tensor,
+    /// The images of the axes under the step's rotation and mirror, `[2, 2]`.
+    pub(crate) turn: Option<Tensor>,
+}
+
+impl StepDraws {
+    /// Draws for `steps`; `turned` and `mirrored` where batches are to be.
+    ///
+    /// # Errors
+    /// [`StarError::Torch`] when the device cannot hold the numbers.
+    pub(crate) fn new(
+        steps: Range<u64>,
+        schedule: &Schedule,
+        (turned, mirrored): (bool, bool),
+        noise_width: i64,
+        device: Device,
+        kind: Kind,
+    ) -> Result<Self, StarError> {
+        let mut seeds = Vec::new();
+        let mut noise: Vec<f64> = Vec::new();
+        let mut turns = Vec::new();
+        for step in steps.clone() {
+            let mut rng = stream(schedule.seed(), Stage::Step, step);
+            let libtorch = (rng.next_u64() >> 1).cast_signed();
+            noise.extend((0..noise_width).map(|_| rng.sample::<f64, _>(StandardNormal)));
+            let kernels = rng.next_u64();
+            seeds.push(Seeds { libtorch, kernels });
+            if turned || mirrored {
+                let rotation = if turned {
+                    schedule.rotation(step)
+                } else {
+                    Rotation::new(0.0)
+                };
+                let side = if mirrored && rng.random::<bool>() {
+                    -1.0
+                } else {
+                    1.0
+                };
+                turns.extend(rotation.apply([1.0, 0.0]));
+                turns.extend(rotation.apply([0.0, side]));
+            }
+        }
+        let count = seeds.len() as i64;
+        let tensor = |numbers: &[f64], shape: &[i64]| -> Result<Tensor, tch::TchError> {
+            Tensor::from_slice(numbers)
+                .f_to_kind(kind)?
+                .f_reshape(shape)?
+                .f_to_device(device)
+        };
+        let turns = if turned || mirrored {
+            Some(tensor(&turns, &[count, 2, 2])?)
+        } else {
+            None
+        };
+        Ok(Self {
+            steps,
+            seeds,
+            noise: tensor(&noise, &[count, noise_width])?,
+            turns,
+        })
+    }
+
+    /// What a step draws; `None` for a step that these draws are not for.
+    pub(crate) fn at(&self, step: u64) -> Option<StepDraw> {
+        let index = step.checked_sub(self.steps.start)?;
+        let seeds = self.seeds.get(index as usize)?;
+        let row = index as i64;
+        Some(StepDraw {
+            libtorch: seeds.libtorch,
+            kernels: seeds.kernels,
+            noise: self.noise.narrow(0, row, 1),
+            turn: self.turns.as_ref().map(|turns| turns.get(row)),
+        })
+    }
+
+    /// Makes the noise of a step no number.
+    #[cfg(test)]
+    pub(crate) fn spoil(&mut self, step: u64) {
+        let row = (step - self.steps.start) as i64;
+        let _ = self.noise.narrow(0, row, 1).fill_(f64::NAN);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+    use super::*;
+    use ddl_data::{Dataset, WindowRule};
+    use ddl_network::TrainingConfig;
+
+    /// Whether a run was stopped in between makes no difference to what a step draws.
+    #[test]
+    fn a_step_draws_the_same_whatever_it_is_drawn_with() {
+        let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
+        let schedule = Schedule::new(&windows, &TrainingConfig::published());
+        let draws = |steps| {
+            StepDraws::new(
+                steps,
+                &schedule,
+                (true, true),
+                16,
+                Device::Cpu,
+                Kind::Double,
+            )
+            .unwrap()
+        };
+        let (whole, part) = (draws(0..9), draws(6..9));
+        for step in 6..9 {
+            let (one, other) = (whole.at(step).unwrap(), part.at(step).unwrap());
+            assert_eq!((one.libtorch, one.kernels), (other.libtorch, other.kernels));
+            assert_eq!(one.noise, other.noise);
+            assert_eq!(one.turn, other.turn);
+        }
+        assert_ne!(whole.at(1).unwrap().noise, whole.at(2).unwrap().noise);
+        assert!(whole.at(9).is_none() && part.at(5).is_none());
+        // a rotation: its columns have length 1 and are at right angles
+        let turn = whole.at(3).unwrap().turn.unwrap();
+        let gram = turn.matmul(&turn.transpose(0, 1));
+        let difference = gram - Tensor::eye(2, (Kind::Double, Device::Cpu));
+        assert!(difference.abs().max().double_value(&[]) < 1e-15);
+    }
+}

@@ -1,0 +1,193 @@
+//! The batches of a training, made once.
+
+use crate::StarError;
+use crate::model::SceneBatch;
+use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
+use std::cell::OnceCell;
+use tch::{Device, Kind, Tensor};
+
+/// Training windows as batches that stay where the network computes.
+///
+/// A schedule shuffles its windows once, so that every window belongs to one batch for good: a batch is
+/// laid out (positions, who sees whom) and copied to the device at its first visit, and found there at
+/// every later one.
+#[derive(Debug)]
+pub(crate) struct PreparedBatches {
+    windows: Vec<Window>,
+    /// One a walker of each window; `None` for the true ends.
+    goals: Option<Vec<Vec<Position>>>,
+    neighbour_box: f64,
+    device: Device,
+    kind: Kind,
+    made: Vec<OnceCell<TrainingBatch>>,
+}
+
+/// A batch with its future, and where its walkers are led.
+#[derive(Debug)]
+pub(crate) struct TrainingBatch {
+    pub(crate) scenes: SceneBatch,
+    /// `[P, 2]`, metres.
+    pub(crate) goals: Tensor,
+}
+
+impl TrainingBatch {
+    /// The same with all positions turned as the axes are: `images` `[2, 2]`, one a row.
+    pub(crate) fn turned(&self, images: &Tensor) -> Self {
+        Self {
+            scenes: self.scenes.turned(images),
+            goals: self.goals.matmul(images),
+        }
+    }
+
+    /// The same as if it had been observed less exactly: every observed coordinate is off by a normal error, whose deviation is
+    /// uniform from 0 to `jitter` (m) for each walker. The future and the goals stay where they are. Draws from libtorch's
+    /// generator.
+    pub(crate) fn jittered(self, jitter: f64) -> Self {
+        let Self { scenes, goals } = self;
+        let observed = scenes.positions.narrow(0, 0, OBSERVED as i64);
+        let future = scenes.positions.narrow(0, OBSERVED as i64, HORIZON as i64);
+        let options = (observed.kind(), observed.device());
+        let deviations = Tensor::rand([1, observed.size()[1], 1], options) * jitter;
+        let observed = &observed + observed.randn_like() * deviations;
+        let positions = Tensor::cat(&[observed, future], 0);
+        Self {
+            scenes: SceneBatch {
+                positions,
+                ..scenes
+            },
+            goals,
+        }
+    }
+
+    /// The same, without copying.
+    pub(crate) fn shared(&self) -> Self {
+        Self {
+            scenes: self.scenes.shared(),
+            goals: self.goals.shallow_clone(),
+        }
+    }
+}
+
+impl PreparedBatches {
+    /// Room for `count` batches of `windows`, each with its future and, where they do not lead to the true ends, its goals.
+    pub(crate) fn new(
+        (windows, goals): (Vec<Window>, Option<Vec<Vec<Position>>>),
+        count: usize,
+        neighbour_box: f64,
+        device: Device,
+        kind: Kind,
+    ) -> Self {
+        Self {
+            windows,
+            goals,
+            neighbour_box,
+            device,
+            kind,
+            made: (0..count).map(|_| OnceCell::new()).collect(),
+        }
+    }
+
+    /// A window.
+    pub(crate) fn window(&self, index: usize) -> &Window {
+        &self.windows[index]
+    }
+
+    /// The batch of that number, which consists of `windows`, the same at every call.
+    ///
+    /// # Shapes
+    /// All 20 frames, with neighbours of the first 19.
+    ///
+    /// # Errors
+    /// Those of [`SceneBatch::new`].
+    pub(crate) fn batch(
+        &self,
+        index: usize,
+        windows: &[usize],
+    ) -> Result<&TrainingBatch, StarError> {
+        let place = &self.made[index];
+        if let Some(batch) = place.get() {
+            return Ok(batch);
+        }
+        let scenes: Vec<&Window> = windows.iter().map(|&index| &self.windows[index]).collect();
+        let scenes = SceneBatch::new(
+            &scenes,
+            WINDOW,
+            WINDOW - 1,
+            self.neighbour_box,
+            self.device,
+            self.kind,
+        )?;
+        let goals = match &self.goals {
+            None => scenes.positions.f_get(WINDOW as i64 - 1)?,
+            Some(goals) => {
+                let goals = windows.iter().flat_map(|&index| &goals[index]);
+                let goals: Vec<f64> = goals.flatten().copied().collect();
+                Tensor::f_from_slice(&goals)?
+                    .f_reshape([-1, 2])?
+                    .f_to_kind(self.kind)?
+                    .f_to_device(self.device)?
+            }
+        };
+        Ok(place.get_or_init(|| TrainingBatch { scenes, goals }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+    use super::*;
+    use ddl_data::{Dataset, WindowRule};
+
+    #[test]
+    fn a_batch_is_made_once_and_is_that_of_its_windows() {
+        let dataset = Dataset::simulated(1);
+        let windows = dataset.recordings()[0].windows(WindowRule::Complete);
+        let (device, kind) = (Device::Cpu, Kind::Double);
+        let prepared = PreparedBatches::new((windows.clone(), None), 2, 10.0, device, kind);
+        let first = prepared.batch(1, &[3, 0]).unwrap();
+        let some = [&windows[3], &windows[0]];
+        let fresh = SceneBatch::new(&some, WINDOW, WINDOW - 1, 10.0, device, kind).unwrap();
+        assert_eq!(first.scenes.positions(), fresh.positions());
+        assert_eq!(first.goals, fresh.positions().get(19));
+        assert!(std::ptr::eq(first, prepared.batch(1, &[3, 0]).unwrap()));
+        assert_eq!(prepared.window(3).start_frame(), windows[3].start_frame());
+        assert!(prepared.batch(0, &[]).is_err());
+    }
+
+    #[test]
+    fn jitter_moves_what_was_observed_and_nothing_else() {
+        let dataset = Dataset::simulated(1);
+        let windows = dataset.recordings()[0].windows(WindowRule::Complete);
+        let (device, kind) = (Device::Cpu, Kind::Double);
+        let all: Vec<usize> = (0..windows.len()).collect();
+        let prepared = PreparedBatches::new((windows, None), 1, 10.0, device, kind);
+        let exact = prepared.batch(0, &all).unwrap();
+        tch::manual_seed(7);
+        let off = exact.shared().jittered(0.05);
+        let moved = off.scenes.positions() - exact.scenes.positions();
+        let (observed, future) = (moved.slice(0, 0, 8, 1), moved.slice(0, 8, 20, 1));
+        assert!(
+            future
+                .eq_tensor(&future.zeros_like())
+                .all()
+                .int64_value(&[])
+                == 1
+        );
+        assert_eq!(off.goals, exact.goals);
+        // Every walker, frame and axis has an error of its own, some walkers' are small, and over all of them the mean
+        // square of a uniform deviation is a third of that of the largest.
+        let squares = observed.square();
+        let all = squares.mean(Kind::Double).double_value(&[]).sqrt();
+        assert!((all - 0.05 / 3_f64.sqrt()).abs() < 0.004, "{all}");
+        assert!(observed.abs().min().double_value(&[]) > 0.0);
+        let each = squares
+            .mean_dim([0i64, 2].as_slice(), false, Kind::Double)
+            .sqrt();
+        let (least, most) = (each.min().double_value(&[]), each.max().double_value(&[]));
+        assert!(
+            least < 0.01 && most > 0.04 && most < 0.1,
+            "{least} to {most}"
+        );
+    }
+}

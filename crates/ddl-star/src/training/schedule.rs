@@ -1,0 +1,92 @@
+//! Which windows form a batch, in which order batches are visited, and how each is turned.
+
+use ddl_data::{Rotation, Window};
+use ddl_network::TrainingConfig;
+use ddl_network::seed::{Stage, stream};
+use rand::RngExt as _;
+use std::f64::consts::PI;
+
+/// Batches of window indices, visited round and round in a fixed order (as published: windows are
+/// shuffled once).
+#[derive(Debug)]
+pub(crate) struct Schedule {
+    batches: Vec<Vec<usize>>,
+    steps_per_epoch: usize,
+    seed: u64,
+}
+
+impl Schedule {
+    /// Shuffles the windows and gathers them into batches of more than `batch_walkers` walkers; an
+    /// incomplete last batch is dropped, unless it is the only one.
+    pub(crate) fn new(windows: &[Window], config: &TrainingConfig) -> Self {
+        let mut order: Vec<usize> = (0..windows.len()).collect();
+        let mut rng = stream(config.seed, Stage::BatchOrder, 0);
+        for last in (1..order.len()).rev() {
+            order.swap(last, rng.random_range(0..=last));
+        }
+        let mut batches = Vec::new();
+        let (mut batch, mut walkers) = (Vec::new(), 0);
+        for index in order {
+            batch.push(index);
+            walkers += windows[index].len();
+            if walkers > config.batch_walkers {
+                batches.push(std::mem::take(&mut batch));
+                walkers = 0;
+            }
+        }
+        if batches.is_empty() && !batch.is_empty() {
+            batches.push(batch);
+        }
+        let steps_per_epoch = config.walkers_per_epoch.map_or(batches.len(), |walkers| {
+            walkers
+                .div_ceil(config.batch_walkers)
+                .clamp(1, batches.len().max(1))
+        });
+        Self {
+            batches,
+            steps_per_epoch,
+            seed: config.seed,
+        }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.batches.is_empty()
+    }
+
+    pub(crate) fn steps_per_epoch(&self) -> usize {
+        self.steps_per_epoch
+    }
+
+    /// Batches of the training set.
+    pub(crate) fn batches(&self) -> usize {
+        self.batches.len()
+    }
+
+    /// The seed that everything random of the training comes from.
+    pub(crate) fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Index of the batch visited at a step.
+    pub(crate) fn batch_index(&self, step: u64) -> usize {
+        (step % self.batches.len() as u64) as usize
+    }
+
+    /// Windows of a batch.
+    pub(crate) fn batch(&self, index: usize) -> &[usize] {
+        &self.batches[index]
+    }
+
+    /// How the batch of a step is turned: one angle in [0, pi) a visit, added up over its visits.
+    pub(crate) fn rotation(&self, step: u64) -> Rotation {
+        let batches = self.batches.len() as u64;
+        let (visit, index) = (step / batches, step % batches);
+        let angle: f64 = (0..=visit)
+            .map(|visit| {
+                let mut rng = stream(self.seed, Stage::Rotation, visit * batches + index);
+                PI * rng.random::<f64>()
+            })
+            .sum();
+        Rotation::new(angle)
+    }
+}

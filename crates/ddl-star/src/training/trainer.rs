@@ -1,0 +1,421 @@
+//! The training loop, one step at a time, so that the caller decides when to report, save and stop.
+
+use super::GENERATOR;
+use super::checkpoint::{self, Extra, Progress};
+use super::draws::{StepDraw, StepDraws};
+use super::gate::Gate;
+use super::loss::{mean_distance, mean_squared_distance};
+use super::optimizer::Adam;
+use super::prepared::{PreparedBatches, TrainingBatch};
+use super::schedule::Schedule;
+use crate::StarError;
+use crate::model::{NoiseInput, Pass, TorchNetwork};
+use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
+use ddl_network::backend::{Kernels, Mode};
+use ddl_network::weights::{Origin, Weights};
+use ddl_network::{EpochReport, NetworkError, Objective, StepReport, StepRule, TrainingConfig};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::PoisonError;
+use std::time::Instant;
+use tch::{Device, Kind, Tensor};
+
+/// Steps whose losses CUDA keeps before they are read.
+const READ_EVERY_ON_CUDA: usize = 16;
+
+/// A network in training. Every step draws from its own random stream, so that a run that was
+/// stopped, saved and resumed gives the same weights as one that was not.
+#[derive(Debug)]
+pub struct Trainer {
+    network: TorchNetwork,
+    /// The weights as kernels read them, where kernels compute.
+    kernels: Option<Arc<Kernels>>,
+    adam: Adam,
+    schedule: Schedule,
+    batches: PreparedBatches,
+    draws: Option<StepDraws>,
+    gate: Gate,
+    /// Loss and norm of the gradient of the last steps, `[2]` each, not read yet.
+    unread: Vec<Tensor>,
+    read_every: usize,
+    config: TrainingConfig,
+    progress: Progress,
+}
+
+impl Trainer {
+    /// Prepares training of `network` on `windows`, each with its future.
+    ///
+    /// # Errors
+    /// [`StarError::Network`] for a bad configuration, [`StarError::NoTrainingWindows`] when no
+    /// window has a future.
+    pub fn new(
+        network: TorchNetwork,
+        windows: Vec<Window>,
+        config: TrainingConfig,
+    ) -> Result<Self, StarError> {
+        let lessons = windows.into_iter().filter(Window::has_future).collect();
+        Self::of(network, lessons, None, config)
+    }
+
+    /// Prepares training of `network` on `windows`, whose walkers are led to `goals` instead of their true ends.
+    ///
+    /// # Shapes
+    /// `goals[w][i]` is that of pedestrian i of window w, metres.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); [`NetworkError::Shape`] when the goals do not fit the windows.
+    pub fn towards(
+        network: TorchNetwork,
+        windows: Vec<Window>,
+        goals: Vec<Vec<Position>>,
+        config: TrainingConfig,
+    ) -> Result<Self, StarError> {
+        let walkers: Vec<usize> = windows.iter().map(Window::len).collect();
+        let given: Vec<usize> = goals.iter().map(Vec::len).collect();
+        if given != walkers {
+            let first = walkers.iter().zip(&given).position(|(a, b)| a != b);
+            let (expected, got) = match first {
+                Some(w) => (
+                    format!("{} goals, one a walker, of window {w}", walkers[w]),
+                    format!("{}", given[w]),
+                ),
+                None => (
+                    format!("the goals of {} windows", walkers.len()),
+                    format!("those of {}", given.len()),
+                ),
+            };
+            return Err(NetworkError::shape("training", expected, got).into());
+        }
+        let (windows, goals) = windows
+            .into_iter()
+            .zip(goals)
+            .filter(|(window, _)| window.has_future())
+            .unzip();
+        Self::of(network, windows, Some(goals), config)
+    }
+
+    fn of(
+        network: TorchNetwork,
+        windows: Vec<Window>,
+        goals: Option<Vec<Vec<Position>>>,
+        config: TrainingConfig,
+    ) -> Result<Self, StarError> {
+        config.check()?;
+        config.check_for(network.config().variant)?;
+        let schedule = Schedule::new(&windows, &config);
+        if schedule.is_empty() {
+            return Err(StarError::NoTrainingWindows);
+        }
+        let batches = PreparedBatches::new(
+            (windows, goals),
+            schedule.batches(),
+            network.config().neighbour_box,
+            network.device(),
+            network.kind(),
+        );
+        let gate = Gate::new(network.device(), network.kind());
+        let read_every = match network.device() {
+            Device::Cpu => 1,
+            _ => READ_EVERY_ON_CUDA,
+        };
+        Ok(Self {
+            adam: Adam::new(network.parameters()),
+            kernels: network.kernels()?,
+            network,
+            schedule,
+            batches,
+            draws: None,
+            gate,
+            unread: Vec::new(),
+            read_every,
+            config,
+            progress: Progress::default(),
+        })
+    }
+
+    /// The network as trained so far.
+    pub fn network(&self) -> &TorchNetwork {
+        &self.network
+    }
+
+    /// A copy of the learned numbers as trained so far.
+    ///
+    /// # Errors
+    /// [`StarError::Torch`] when they cannot be fetched from their device.
+    pub fn weights(&self) -> Result<Weights, StarError> {
+        self.network.parameters().to_weights()
+    }
+
+    /// Ends training and hands the network over. On CUDA, losses not read yet are never looked at: end at the
+    /// end of an epoch, or [`save`](Self::save) first.
+    #[must_use]
+    pub fn into_network(self) -> TorchNetwork {
+        self.network
+    }
+
+    /// Whether all epochs are done.
+    pub fn is_finished(&self) -> bool {
+        self.completed_epochs() >= self.config.epochs
+    }
+
+    /// Whole epochs done.
+    pub fn completed_epochs(&self) -> usize {
+        (self.progress.steps / self.schedule.steps_per_epoch() as u64) as usize
+    }
+
+    /// Steps done, over all epochs, and steps in all.
+    pub fn steps(&self) -> (u64, u64) {
+        let total = self.schedule.steps_per_epoch() * self.config.epochs;
+        (self.progress.steps, total as u64)
+    }
+
+    /// Saves weights, optimiser and progress to one file.
+    ///
+    /// # Errors
+    /// When the file cannot be written; an earlier one is then left as it was. [`StarError::NonFinite`] as in
+    /// [`step`](Self::step).
+    pub fn save(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
+        self.read()?;
+        let Progress {
+            steps,
+            loss_sum,
+            seconds,
+        } = self.progress;
+        let extra = Extra {
+            progress: vec![steps as f64, loss_sum, seconds],
+            vectors: Vec::new(),
+        };
+        checkpoint::save(self.network.parameters(), &self.adam, &extra, origin, path)
+    }
+
+    /// Goes on from a saved state of the same run.
+    ///
+    /// # Errors
+    /// [`NetworkError::Checkpoint`] when the file is of another origin, or not a whole state of this network.
+    pub fn resume(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
+        let (_, total) = self.steps();
+        let parameters = self.network.parameters();
+        let mut extra = Extra {
+            progress: vec![0.0; 3],
+            vectors: Vec::new(),
+        };
+        let steps = checkpoint::load(parameters, &mut self.adam, &mut extra, total, origin, path)?;
+        self.progress = Progress {
+            steps,
+            loss_sum: extra.progress[1],
+            seconds: extra.progress[2],
+        };
+        self.unread.clear();
+        self.gate.reopen();
+        Ok(())
+    }
+
+    /// One batch: forward, backward, clipped Adam step.
+    ///
+    /// Nothing is read back from the device but what [`StepReport::loss`] says. That a step changes nothing
+    /// when its loss is no longer a number is decided on the device, and so does no later one; the
+    /// next reading finds out.
+    ///
+    /// # Errors
+    /// [`StarError::NonFinite`] when loss or gradient of this step, or of one since the last reading, is no longer a
+    /// number. The weights and the steps done are then those before that step.
+    pub fn step(&mut self) -> Result<StepReport, StarError> {
+        let started = Instant::now();
+        let step = self.progress.steps;
+        let draw = self.draw(step)?;
+        self.update_kernels()?;
+        let batch = self.batch(step, &draw)?;
+        let (loss, pass) = {
+            // Held from seeding to the last draw of dropout.
+            let _generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
+            tch::manual_seed(draw.libtorch);
+            let batch = if self.config.jitter > 0.0 {
+                batch.jittered(self.config.jitter)
+            } else {
+                batch
+            };
+            let parameters = self.network.parameters();
+            let kernels = self.kernels.as_ref();
+            let pass = Pass::training(Mode::Train, draw.kernels, parameters, kernels);
+            (self.loss(&batch, draw.noise, &pass)?, pass)
+        };
+        let gradient = pass.gradient(&loss, self.network.parameters())?;
+        let norm = gradient.norm();
+        let both = Tensor::f_stack(&[loss.detach(), norm.shallow_clone()], 0)?;
+        self.gate.watch(&both);
+        let (_, total) = self.steps();
+        let config = &self.config;
+        let rate = config.learning_rate * config.learning_rate_schedule.factor(step, total);
+        self.adam.step(
+            self.network.parameters(),
+            &gradient,
+            &norm,
+            config.gradient_clip,
+            rate,
+            &self.gate,
+        );
+        self.unread.push(both);
+        self.progress.steps += 1;
+        let epoch_ends = self
+            .progress
+            .steps
+            .is_multiple_of(self.schedule.steps_per_epoch() as u64);
+        let loss = if epoch_ends || self.unread.len() >= self.read_every {
+            self.read()?
+        } else {
+            None
+        };
+        self.progress.seconds += started.elapsed().as_secs_f64();
+        Ok(self.report(step, loss))
+    }
+
+    /// Hands the present weights to the kernels.
+    fn update_kernels(&mut self) -> Result<(), StarError> {
+        if let Some(kernels) = &mut self.kernels {
+            let weights = self.network.parameters().to_weights()?;
+            // In place, unless an earlier pass still holds those of before.
+            Arc::make_mut(kernels).update(weights.numbers());
+        }
+        Ok(())
+    }
+
+    /// Reads the losses that are not read yet: their mean, if there are any. Waits for the device.
+    ///
+    /// # Errors
+    /// [`StarError::NonFinite`] for the first step that has none; training is then back before that step.
+    fn read(&mut self) -> Result<Option<f64>, StarError> {
+        let unread = std::mem::take(&mut self.unread);
+        if unread.is_empty() {
+            return Ok(None);
+        }
+        let numbers = Tensor::f_stack(&unread, 0)?
+            .f_to_device(Device::Cpu)?
+            .f_to_kind(Kind::Double)?
+            .f_reshape([-1])?;
+        let numbers: Vec<f64> = Vec::try_from(numbers)?;
+        let (pairs, _) = numbers.as_chunks::<2>();
+        let mut sum = 0.0;
+        for (&[loss, norm], left) in pairs.iter().zip((1..=pairs.len() as u64).rev()) {
+            let bad = [("loss", loss), ("gradient norm", norm)]
+                .into_iter()
+                .find(|(_, value)| !value.is_finite());
+            if let Some((quantity, value)) = bad {
+                self.progress.steps -= left;
+                self.adam.set_steps(self.progress.steps);
+                self.gate.reopen();
+                return Err(self.non_finite(quantity, value));
+            }
+            self.progress.loss_sum += loss;
+            sum += loss;
+        }
+        Ok(Some(sum / pairs.len() as f64))
+    }
+
+    /// Loss of a batch.
+    fn loss(&self, batch: &TrainingBatch, noise: Tensor, pass: &Pass) -> Result<Tensor, StarError> {
+        let (scenes, goals) = (&batch.scenes, &batch.goals);
+        let after = |frames: usize| {
+            let count = (WINDOW - frames) as i64;
+            scenes.positions().f_narrow(0, frames as i64, count)
+        };
+        match self.config.objective {
+            Objective::NextStep => {
+                let noise = NoiseInput::Draws(noise);
+                let forecast = self.network.teacher_forced_in(scenes, goals, &noise, pass);
+                Ok(mean_squared_distance(&forecast, &after(1)?))
+            }
+            Objective::Walk => {
+                let (goals, steps) = (goals.unsqueeze(0), (HORIZON, StepRule::Bounded));
+                let noise = NoiseInput::Expected;
+                let walk = self
+                    .network
+                    .roll_out_in(scenes, &goals, &noise, steps, pass);
+                Ok(mean_distance(
+                    &walk.positions.squeeze_dim(1),
+                    &after(OBSERVED)?,
+                ))
+            }
+        }
+    }
+
+    /// The batch of a step, turned as it draws.
+    fn batch(&self, step: u64, draw: &StepDraw) -> Result<TrainingBatch, StarError> {
+        let index = self.schedule.batch_index(step);
+        let batch = self.batches.batch(index, self.schedule.batch(index))?;
+        Ok(match &draw.turn {
+            Some(images) => batch.turned(images),
+            None => batch.shared(),
+        })
+    }
+
+    /// What a step draws, drawn with all that is left of its epoch.
+    fn draw(&mut self, step: u64) -> Result<StepDraw, StarError> {
+        loop {
+            if let Some(draw) = self.draws.as_ref().and_then(|draws| draws.at(step)) {
+                return Ok(draw);
+            }
+            let epoch = self.schedule.steps_per_epoch() as u64;
+            self.draws = Some(StepDraws::new(
+                step..(step / epoch + 1) * epoch,
+                &self.schedule,
+                (self.config.rotate, self.config.mirror),
+                self.network.config().noise_width,
+                self.network.device(),
+                self.network.kind(),
+            )?);
+        }
+    }
+
+    /// What is said when the next step is the one at fault.
+    fn non_finite(&self, quantity: &'static str, value: f64) -> StarError {
+        let batch = self.schedule.batch_index(self.progress.steps);
+        let windows = self
+            .schedule
+            .batch(batch)
+            .first()
+            .map_or_else(String::new, |&index| {
+                let window = self.batches.window(index);
+                format!(
+                    "{}@{} and following",
+                    window.recording(),
+                    window.start_frame()
+                )
+            });
+        let epoch = self.completed_epochs() + 1;
+        StarError::NonFinite {
+            epoch,
+            batch,
+            quantity,
+            value,
+            windows,
+        }
+    }
+
+    fn report(&mut self, step: u64, loss: Option<f64>) -> StepReport {
+        let steps_per_epoch = self.schedule.steps_per_epoch();
+        let epoch = (step / steps_per_epoch as u64) as usize + 1;
+        let done = (step % steps_per_epoch as u64) as usize + 1;
+        let finished_epoch = (done == steps_per_epoch).then(|| {
+            let report = EpochReport {
+                epoch,
+                loss: self.progress.loss_sum / steps_per_epoch as f64,
+                batches: steps_per_epoch,
+                seconds: self.progress.seconds,
+                validation: None,
+            };
+            (self.progress.loss_sum, self.progress.seconds) = (0.0, 0.0);
+            report
+        });
+        StepReport {
+            epoch,
+            done,
+            steps_per_epoch,
+            loss,
+            finished_epoch,
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "trainer_tests.rs"]
+mod tests;

@@ -1,0 +1,171 @@
+//! Training whose losses are read now and then, as on CUDA.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use super::*;
+use crate::device::ComputeDevice;
+use ddl_data::{Dataset, WindowRule};
+use ddl_network::{DeviceChoice, StarConfig, Variant};
+
+/// Seven steps an epoch; in `Double` all of it is libtorch's.
+fn trainer(kind: Kind, read_every: usize) -> Trainer {
+    crate::set_threads(1);
+    let config = StarConfig {
+        feed_forward_width: 32,
+        ..StarConfig::published(Variant::Full)
+    };
+    let cpu = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
+    let network = TorchNetwork::with_precision(config, 5, cpu, kind).unwrap();
+    let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
+    let training = TrainingConfig {
+        epochs: 2,
+        batch_walkers: 10,
+        walkers_per_epoch: Some(70),
+        seed: 5,
+        ..TrainingConfig::published()
+    };
+    let windows = windows.into_iter().take(40).collect();
+    let mut trainer = Trainer::new(network, windows, training).unwrap();
+    assert_eq!(trainer.schedule.steps_per_epoch(), 7);
+    trainer.read_every = read_every;
+    trainer
+}
+
+fn state(trainer: &Trainer) -> [Tensor; 3] {
+    let adam = &trainer.adam;
+    let flat = trainer.network.parameters().flat();
+    [flat, &adam.first_moment, &adam.second_moment].map(|tensor| tensor.detach().copy())
+}
+
+#[test]
+fn when_losses_are_read_makes_no_difference() {
+    for kind in [Kind::Float, Kind::Double] {
+        let mut every = trainer(kind, 1);
+        let mut some = trainer(kind, 4);
+        let mut losses = Vec::new();
+        let steps = every.schedule.steps_per_epoch();
+        for done in 1..=steps {
+            let (one, other) = (every.step().unwrap(), some.step().unwrap());
+            losses.push(one.loss.unwrap());
+            let read = done % 4 == 0 || done == steps;
+            assert_eq!(other.loss.is_some(), read, "step {done} of {steps}");
+            if let Some(mean) = other.loss {
+                let known = losses.iter().sum::<f64>() / losses.len() as f64;
+                assert!((mean - known).abs() < 1e-12, "{mean} {known}");
+                losses.clear();
+            }
+            let of_epoch = |report: &StepReport| report.finished_epoch.as_ref().map(|e| e.loss);
+            assert_eq!(of_epoch(&one), of_epoch(&other));
+        }
+        assert_eq!(state(&every), state(&some));
+    }
+}
+
+#[test]
+fn a_bad_step_is_found_later_and_nothing_after_it_counts() {
+    for kind in [Kind::Float, Kind::Double] {
+        let mut known = trainer(kind, 1);
+        for _ in 0..2 {
+            known.step().unwrap();
+        }
+        let mut trainer = trainer(kind, 5);
+        trainer.step().unwrap();
+        trainer.draws.as_mut().unwrap().spoil(2);
+        for _ in 0..3 {
+            assert_eq!(trainer.step().unwrap().loss, None);
+        }
+        let error = trainer.step().unwrap_err();
+        let StarError::NonFinite { epoch, batch, .. } = error else {
+            panic!("{error}")
+        };
+        assert_eq!((epoch, batch), (1, trainer.schedule.batch_index(2)));
+        let first = trainer.schedule.batch(batch)[0];
+        let window = trainer.batches.window(first);
+        let named = format!("{}@{}", window.recording(), window.start_frame());
+        assert!(error.to_string().contains(&named), "{error}");
+        assert_eq!(state(&trainer), state(&known));
+        assert_eq!(trainer.steps(), known.steps());
+        assert!((trainer.progress.loss_sum - known.progress.loss_sum).abs() < 1e-15);
+
+        // Drawn afresh, the step is as good as any other.
+        trainer.draws = None;
+        trainer.read_every = 1;
+        assert_eq!(trainer.step().unwrap().loss, known.step().unwrap().loss);
+        assert_eq!(state(&trainer), state(&known));
+    }
+}
+
+#[test]
+fn saving_reads_what_is_not_read_yet() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("state.safetensors");
+    let (mut every, mut some) = (trainer(Kind::Float, 1), trainer(Kind::Float, 16));
+    for _ in 0..3 {
+        every.step().unwrap();
+        some.step().unwrap();
+    }
+    some.save(&Origin::default(), &path).unwrap();
+    let mut resumed = trainer(Kind::Float, 16);
+    resumed.resume(&Origin::default(), &path).unwrap();
+    let bits = |trainer: &Trainer| trainer.progress.loss_sum.to_bits();
+    assert_eq!(bits(&resumed), bits(&every));
+    assert_eq!(resumed.steps(), every.steps());
+    assert_eq!(state(&resumed), state(&every));
+
+    some.draws.as_mut().unwrap().spoil(3);
+    some.step().unwrap();
+    assert!(matches!(
+        some.save(&Origin::default(), &path),
+        Err(StarError::NonFinite { .. })
+    ));
+}
+
+/// Saved halfway between two readings, resumed, and trained on: as one that was never stopped.
+#[test]
+fn a_resumed_training_goes_on_alike() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("state.safetensors");
+    for kind in [Kind::Float, Kind::Double] {
+        let (mut whole, mut first) = (trainer(kind, 16), trainer(kind, 16));
+        for _ in 0..3 {
+            first.step().unwrap();
+        }
+        first.save(&Origin::default(), &path).unwrap();
+        let mut second = trainer(kind, 16);
+        second.resume(&Origin::default(), &path).unwrap();
+        while !second.is_finished() {
+            second.step().unwrap();
+        }
+        while !whole.is_finished() {
+            whole.step().unwrap();
+        }
+        assert_eq!(state(&second), state(&whole), "{kind:?}");
+    }
+}
+
+/// What Adam would make NaN of, and steps that are not the run's.
+#[test]
+fn a_state_that_cannot_be_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("state.safetensors");
+    let refused = |spoil: &dyn Fn(&mut Trainer), words: &str| {
+        let mut spoilt = trainer(Kind::Float, 1);
+        spoilt.step().unwrap();
+        spoil(&mut spoilt);
+        spoilt.save(&Origin::default(), &path).unwrap();
+        let mut other = trainer(Kind::Float, 1);
+        let before = state(&other);
+        let error = other.resume(&Origin::default(), &path).unwrap_err();
+        assert!(error.to_string().contains(words), "{error}");
+        assert_eq!(state(&other), before);
+    };
+    refused(
+        &|trainer| {
+            let _guard = tch::no_grad_guard();
+            let _ = trainer.adam.second_moment.get(0).fill_(-1.0);
+        },
+        "negative",
+    );
+    refused(&|trainer| trainer.progress.steps = 15, "0..=14");
+    refused(&|trainer| trainer.progress.steps = u64::MAX, "0..=14");
+}

@@ -1,0 +1,168 @@
+//! A backbone of one's own: trained on libtorch, forecast by kernels.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use ddl_data::{Dataset, OBSERVED, Window, WindowRule};
+use ddl_network::backbone::{Backbone, output_layer};
+use ddl_network::backend::{Backend, Memory};
+use ddl_network::weights::{EncoderLayer, Layout, Linear, Sizes};
+use ddl_network::{
+    DeviceChoice, Frame, MotionNetwork, NetworkError, Noise, StarConfig, StepRule, TrainingConfig,
+    Variant,
+};
+use ddl_network::{ForecastWindows, WindowRollout};
+use ddl_star::{ComputeDevice, TorchNetwork, Trainer};
+use tch::Kind;
+
+/// One recurrent layer, whose state looks at the neighbours once a time step.
+#[derive(Debug, Clone)]
+struct Recurrent {
+    first: Linear,
+    later: Linear,
+    neighbours: EncoderLayer,
+    output: Linear,
+}
+
+impl Recurrent {
+    fn new(layout: &mut Layout, config: &StarConfig) -> Self {
+        assert_eq!(config.frame, Frame::Goal);
+        let [inputs, width, hidden] = [
+            config.temporal_inputs() + 2,
+            config.model_width,
+            config.feed_forward_width,
+        ]
+        .map(|n| n as usize);
+        let sizes = Sizes {
+            width,
+            heads: config.heads as usize,
+            hidden,
+        };
+        Self {
+            first: layout.linear("first_layer", inputs, width),
+            later: layout.linear("later_layer", inputs + width, width),
+            neighbours: layout.encoder_layer("neighbours", sizes, config.spatial_dropout),
+            output: output_layer(layout, config),
+        }
+    }
+}
+
+impl<B: Backend> Backbone<B> for Recurrent {
+    fn output(&self) -> Linear {
+        self.output
+    }
+
+    fn scene(&self, _: &B, centred: &B::Tokens, _: &B::Seen) -> B::Tokens {
+        centred.clone()
+    }
+
+    fn step(
+        &self,
+        backend: &B,
+        memory: &mut Memory<B>,
+        relative: &B::Tokens,
+        scene: &B::Tokens,
+        seen: &B::Seen,
+    ) -> B::Tokens {
+        let scene = backend.repeated(scene, backend.entries(relative));
+        let inputs = backend.beside(relative, &scene);
+        let state = match memory.tokens.pop() {
+            None => backend.linear(self.first, &inputs),
+            Some(state) => {
+                let state = backend.repeated(&state, backend.entries(relative));
+                backend.linear(self.later, &backend.beside(&inputs, &state))
+            }
+        };
+        let state = backend.spatial_attention(self.neighbours, &backend.relu(&state), seen);
+        memory.tokens.push(state.clone());
+        backend.beside(&state, relative)
+    }
+}
+
+fn config() -> StarConfig {
+    StarConfig {
+        model_width: 16,
+        heads: 4,
+        feed_forward_width: 32,
+        ..StarConfig::recommended(Variant::Full)
+    }
+}
+
+fn windows() -> Vec<Window> {
+    let dataset = Dataset::simulated(1);
+    let windows = dataset.recordings()[0].windows(WindowRule::Complete);
+    windows.into_iter().take(24).collect()
+}
+
+fn torch(kind: Kind) -> TorchNetwork {
+    ddl_star::set_threads(1);
+    let cpu = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
+    TorchNetwork::with_backbone(config(), (7, cpu, kind), Recurrent::new).unwrap()
+}
+
+fn forecasts(network: &dyn ForecastWindows) -> Result<Vec<WindowRollout>, NetworkError> {
+    let windows: Vec<Window> = windows().iter().map(Window::without_future).collect();
+    let around = |[x, y]: [f64; 2]| vec![[x + 3.0, y], [x, y - 2.0], [x - 0.5, y + 0.1]];
+    let of_window = |window: &Window| -> Vec<Vec<[f64; 2]>> {
+        let last = |i: usize| window.observed(i)[OBSERVED - 1];
+        (0..window.len()).map(|i| around(last(i))).collect()
+    };
+    let goals: Vec<_> = windows.iter().map(of_window).collect();
+    network.forecast_windows(&windows, &goals, Noise::Expected, StepRule::Bounded, None)
+}
+
+#[test]
+fn a_third_backbone_is_trained_and_forecasts_without_libtorch() {
+    let training = TrainingConfig {
+        epochs: 25,
+        batch_walkers: 40,
+        walkers_per_epoch: None,
+        seed: 7,
+        jitter: 0.0,
+        ..TrainingConfig::recommended(Variant::Full)
+    };
+    let mut trainer = Trainer::new(torch(Kind::Float), windows(), training).unwrap();
+    let mut losses = Vec::new();
+    while !trainer.is_finished() {
+        let epoch = trainer.step().unwrap().finished_epoch;
+        losses.extend(epoch.map(|epoch| epoch.loss));
+    }
+    assert!(losses[24] < 0.8 * losses[0], "{losses:?}");
+
+    let weights = trainer.weights().unwrap();
+    let exact = torch(Kind::Double);
+    exact.parameters().set(&weights).unwrap();
+    let untrained = MotionNetwork::with_backbone(config(), 7, Recurrent::new).unwrap();
+    let before = forecasts(&untrained).unwrap();
+    let plain = untrained.with_weights(weights).unwrap();
+    let ours = forecasts(&plain).unwrap();
+    let apart = |ours: &[WindowRollout], known: &[WindowRollout]| {
+        let positions = |rollouts: &[WindowRollout]| -> Vec<[f64; 2]> {
+            rollouts.iter().flat_map(|r| r.positions.clone()).collect()
+        };
+        let (ours, known) = (positions(ours), positions(known));
+        assert_eq!(ours.len(), known.len());
+        let pairs = ours.into_iter().zip(known);
+        pairs
+            .map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]))
+            .max_by(f64::total_cmp)
+            .unwrap() // NaN is the largest
+    };
+    let difference = apart(&ours, &forecasts(&*exact.into_forecaster()).unwrap());
+    assert!(difference < 1e-3, "{difference} m");
+    // and it is what was learned that shapes them
+    let change = apart(&ours, &before);
+    assert!(change > 1e-2, "{change} m");
+}
+
+#[test]
+fn weights_of_another_backbone_are_refused() {
+    let star = MotionNetwork::new(config(), 1).unwrap();
+    let error = torch(Kind::Float)
+        .parameters()
+        .set(star.weights())
+        .unwrap_err();
+    assert!(error.to_string().contains("of another one"), "{error}");
+    let plain = MotionNetwork::with_backbone(config(), 7, Recurrent::new).unwrap();
+    let error = plain.with_weights(star.weights().clone()).unwrap_err();
+    assert!(matches!(error, NetworkError::Shape { .. }), "{error}");
+}

@@ -1,0 +1,66 @@
+//! The first stage of a training: what the goals come from.
+
+use crate::run_directory::{RunDirectory, SAVE_EVERY};
+use crate::{DdlError, ProposalRecipe, experts, views};
+use ddl_data::Window;
+use ddl_goal::GoalError;
+use ddl_network::ProposalStep;
+use ddl_network::weights::{Origin, Weights, save_weights};
+use ddl_star::{ComputeDevice, ProposalTrainer, TorchProposals};
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+/// Writes the expert library and trains the proposal network, whatever of it is not there yet; from the weights of `start` where there is one, and then
+/// the network that is kept is the one of `choose`.
+pub(crate) fn train(
+    recipe: Option<&ProposalRecipe>,
+    (start, choose): (
+        Option<Weights>,
+        impl FnOnce(Weights) -> Result<Weights, DdlError>,
+    ),
+    windows: &[Window],
+    (run, origin): (&RunDirectory, &Origin),
+    device: ComputeDevice,
+    mut observe: impl FnMut((u64, u64), &ProposalStep) -> ControlFlow<()>,
+) -> Result<(), DdlError> {
+    if !run.experts().is_file() {
+        experts::save(&experts::library(windows)?, origin, &run.experts())?;
+    }
+    let Some(recipe) = recipe.filter(|_| !run.proposal().is_file()) else {
+        return Ok(());
+    };
+    let seen = |windows: &[Window]| {
+        views::examples(windows, recipe.network.neighbours, recipe.network.time_step)
+            .map_err(GoalError::from)
+    };
+    let examples = seen(windows)?;
+    let whole = windows.iter().filter(|window| window.has_future());
+    let reversed = seen(&whole.map(Window::reversed).collect::<Vec<_>>())?;
+    let network = TorchProposals::new(recipe.network.clone(), recipe.training.seed, device)?;
+    if let Some(start) = start {
+        network.parameters().set(&start)?;
+    }
+    let mut trainer = ProposalTrainer::new(network, &examples, &reversed, recipe.training.clone())?;
+    drop((examples, reversed));
+    let state = run.proposal_state();
+    if state.is_file() {
+        trainer.resume(origin, &state)?;
+    }
+    let mut saved = Instant::now();
+    while !trainer.is_finished() {
+        let step = trainer.step()?;
+        let stop = observe(trainer.steps(), &step).is_break();
+        if stop || saved.elapsed() > SAVE_EVERY {
+            trainer.save(origin, &state)?;
+            saved = Instant::now();
+        }
+        if stop {
+            return Err(DdlError::Interrupted);
+        }
+    }
+    let weights = choose(trainer.into_network()?.parameters().to_weights()?)?;
+    save_weights(&weights, origin, &run.proposal())?;
+    // of no use any more; a file that cannot be removed does no harm
+    let _ = std::fs::remove_file(&state);
+    Ok(())
+}

@@ -1,0 +1,304 @@
+//! The stages of a training, one after the other: what goals come from, then the forecasting network.
+
+use super::early_stopping::{EarlyStopping, better_goals};
+use super::starting_weights::StartingWeights;
+use super::{
+    TrainingProgress, TrainingRequest, TrainingStage, TrainingStep, digest, digest_of_recording,
+    fold_of, goals, learned_from, training_rule,
+};
+use crate::run_config::{FORMAT, RunConfig, TrainingData};
+use crate::run_directory::{RunDirectory, SAVE_EVERY};
+use crate::{Ddl, DdlError, Device, GoalModel, GoalRecipe, StartingModel, best_epoch};
+use ddl_data::{Convention, Dataset, Fold, Window, WindowRule};
+use ddl_goal::RetrievalFrame;
+use ddl_network::weights::{Origin, load_weights, save_weights};
+use ddl_network::{EpochReport, Objective};
+use ddl_star::{LIBTORCH_VERSION, StarError, TorchNetwork, Trainer};
+use std::collections::BTreeMap;
+use std::ops::{ControlFlow, RangeInclusive};
+use std::time::Instant;
+
+/// Weights of at most about this many epochs are kept for the protocol `published`.
+const KEPT_EPOCHS: usize = 20;
+
+pub(super) fn train(
+    request: &TrainingRequest,
+    dataset: &Dataset,
+    mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
+) -> Result<(), DdlError> {
+    // Everything is checked before the directory is claimed: a mistake must not leave a run behind.
+    request.star.check()?;
+    request.training.check()?;
+    request.training.check_for(request.star.variant)?;
+    request.goals.check()?;
+    if !(0.0..1.0).contains(&request.validation) {
+        return Err(DdlError::Validation(request.validation));
+    }
+    let device = Device::open(request.device)?;
+    let fold = fold_of(dataset, &request.fold)?.set_apart(&request.validation_recordings)?;
+    let window_rule = training_rule(dataset.convention());
+    let windows = if request.validation > 0.0 {
+        fold.training_split(window_rule, request.validation)
+            .training
+    } else {
+        fold.training_windows(window_rule)
+    };
+    if windows.is_empty() {
+        return Err(StarError::NoTrainingWindows.into());
+    }
+    ensure_patience(request, &fold, window_rule)?;
+    ensure_enough_tracks(&request.goals, &windows)?;
+    let starting_weights = || {
+        let from = request.from.as_ref();
+        let sizes = (&request.star, &request.goals);
+        from.map(|source| StartingWeights::of(source, sizes, request.device))
+            .transpose()
+    };
+    let start = starting_weights()?;
+    let run = &request.out;
+    let began_with = start.as_ref().map(|start| start.record.clone());
+    let config = config_of(
+        request,
+        dataset,
+        (&fold, window_rule, &windows),
+        (began_with, device),
+    );
+    let _claimed = run.claim(&config)?;
+    let (network, proposal) =
+        start.map_or((None, None), |start| (Some(start.network), start.proposal));
+    let better = |trained| match starting_weights()? {
+        None => Ok(trained),
+        Some(start) => better_goals(start, trained, (run, &config, device), &fold),
+    };
+    goals::train(
+        config.goals.proposal.as_ref(),
+        (proposal, better),
+        &windows,
+        (run, &config.goals_origin()),
+        device.torch()?,
+        |steps, step| {
+            let step = TrainingStep::Goals(step.clone());
+            observe(&TrainingProgress { steps, step })
+        },
+    )?;
+    if run.is_trained() {
+        // Finished is what can be loaded: a file that was damaged since is named.
+        return Ddl::load(run.path(), request.device).map(drop);
+    }
+    if request.until == TrainingStage::Goals {
+        return Ok(());
+    }
+    let origin = config.network_origin();
+    let goals = GoalModel::of_run(run.clone(), config.clone(), device)?;
+    let early_stopping = EarlyStopping::of(&goals, &fold)?;
+    let (star, seed) = (config.star.clone(), config.training.seed);
+    let first = TorchNetwork::new(star, seed, device.torch()?)?;
+    if let Some(start) = network {
+        first.parameters().set(&start)?;
+    }
+    let mut trainer = trainer(&config, windows, &goals, first)?;
+    if run.optimizer().is_file() {
+        trainer.resume(&origin, &run.optimizer())?;
+    }
+    let kept = (config.keep_every, early_stopping.as_ref());
+    let min_ade = |trainer: &Trainer, stopping: &EarlyStopping| -> Result<f64, DdlError> {
+        let weights = trainer.weights()?;
+        stopping.min_ade(&*device.forecasting(&config.star, |_| Ok(weights))?)
+    };
+    run_epochs(&mut trainer, (run, &origin), (kept, min_ade), observe)
+}
+
+/// What a run's `config.json` says: the request, what is learned from, and what it is computed with.
+fn config_of(
+    request: &TrainingRequest,
+    dataset: &Dataset,
+    (fold, window_rule, windows): (&Fold<'_>, WindowRule, &[Window]),
+    (began_with, device): (Option<StartingModel>, Device),
+) -> RunConfig {
+    RunConfig {
+        format: FORMAT,
+        star: request.star.clone(),
+        training: request.training.clone(),
+        goals: request.goals.clone(),
+        data: TrainingData {
+            convention: dataset.convention(),
+            fold: fold.name().to_owned(),
+            window_rule,
+            validation: request.validation,
+            validation_recordings: request.validation_recordings.clone(),
+            windows: windows.len(),
+            walkers: windows.iter().map(Window::len).sum(),
+            sha256: digest(windows),
+            recordings: match dataset.convention() {
+                Convention::Own => learned_from(fold)
+                    .map(|recording| (recording.name().to_owned(), digest_of_recording(recording)))
+                    .collect(),
+                _ => BTreeMap::new(),
+            },
+        },
+        keep_every: match (request.patience, request.last_epoch_only) {
+            // any of them may be the best
+            (Some(_), _) => 1,
+            (None, true) => request.training.epochs,
+            (None, false) => request.training.epochs.div_ceil(KEPT_EPOCHS),
+        },
+        patience: request.patience,
+        from: began_with,
+        units: request.units,
+        commit: request.commit.clone(),
+        libtorch: LIBTORCH_VERSION.to_owned(),
+        device: device.name().to_owned(),
+    }
+}
+
+/// Early stopping needs something to measure epochs on.
+fn ensure_patience(
+    request: &TrainingRequest,
+    fold: &Fold<'_>,
+    rule: WindowRule,
+) -> Result<(), DdlError> {
+    let (validation, Some(patience)) = (request.validation, request.patience) else {
+        return Ok(());
+    };
+    let measured = validation > 0.0 || !request.validation_recordings.is_empty();
+    if patience == 0 || !measured {
+        return Err(DdlError::Patience {
+            patience,
+            validation,
+        });
+    }
+    if fold.training_split(rule, validation).validation.is_empty() {
+        return Err(DdlError::NothingToValidateOn {
+            recordings: fold.training_recordings().len() + fold.recordings_set_apart().len(),
+        });
+    }
+    Ok(())
+}
+
+/// Evaluation runs the published estimator too, which needs as many tracks as it retrieves.
+fn ensure_enough_tracks(goals: &GoalRecipe, windows: &[Window]) -> Result<(), DdlError> {
+    let published = goals.retrieval.clone().into_published().check()?;
+    let retrieval = goals.retrieval.clone().check()?;
+    let (tracks, experts) = (
+        windows.iter().map(Window::len).sum::<usize>(),
+        match retrieval.frame() {
+            RetrievalFrame::World => published.experts().max(retrieval.experts()),
+            // a smaller library is used whole
+            RetrievalFrame::Heading => published.experts(),
+        },
+    );
+    if tracks < experts {
+        return Err(DdlError::TooFewTracks { tracks, experts });
+    }
+    Ok(())
+}
+
+/// The training of the forecasting network: on single steps, or on walks to goals that those of the run estimate.
+fn trainer(
+    config: &RunConfig,
+    windows: Vec<Window>,
+    goals: &GoalModel,
+    network: TorchNetwork,
+) -> Result<Trainer, DdlError> {
+    let training = config.training.clone();
+    Ok(match training.objective {
+        Objective::NextStep => Trainer::new(network, windows, training)?,
+        Objective::Walk => {
+            let with_future: Vec<Window> = windows.into_iter().filter(Window::has_future).collect();
+            let lessons = goals.lessons(&with_future)?;
+            Trainer::towards(network, with_future, lessons, training)?
+        }
+    })
+}
+
+/// The model is chosen by the record: with a hole in it, it would be chosen among some of the epochs.
+fn ensure_every_epoch_is_recorded(
+    epochs: &[EpochReport],
+    mut measured: RangeInclusive<usize>,
+    run: &RunDirectory,
+) -> Result<(), DdlError> {
+    let recorded = |epoch: usize| {
+        let mut reports = epochs.iter();
+        reports.any(|report| report.epoch == epoch && report.validation.is_some())
+    };
+    match measured.find(|&epoch| !recorded(epoch)) {
+        None => Ok(()),
+        Some(epoch) => Err(DdlError::run(
+            run.path(),
+            format!(
+                "has no record of epoch {epoch} in metrics.jsonl, by which the best epoch is chosen; put the file back, or remove the directory and \
+                 train anew"
+            ),
+        )),
+    }
+}
+
+/// Trains to the end, saving what a later call needs to go on.
+fn run_epochs(
+    trainer: &mut Trainer,
+    (run, origin): (&RunDirectory, &Origin),
+    ((keep_every, early_stopping), min_ade): (
+        (usize, Option<&EarlyStopping>),
+        impl Fn(&Trainer, &EarlyStopping) -> Result<f64, DdlError>,
+    ),
+    mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
+) -> Result<(), DdlError> {
+    let mut epochs = run.metrics()?;
+    epochs.retain(|report| report.epoch <= trainer.completed_epochs());
+    if let Some(stopping) = early_stopping
+        && stopping.first_epoch() == 0
+        && trainer.steps().0 == 0
+    {
+        // Before the first step the network is the one that it began with.
+        save_weights(&trainer.weights()?, origin, &run.epoch(0))?;
+        epochs = vec![EpochReport {
+            epoch: 0,
+            loss: 0.0,
+            batches: 0,
+            seconds: 0.0,
+            validation: Some(min_ade(trainer, stopping)?),
+        }];
+        run.write_metrics(&epochs)?;
+    }
+    if let Some(stopping) = early_stopping {
+        let measured = stopping.first_epoch()..=trainer.completed_epochs();
+        ensure_every_epoch_is_recorded(&epochs, measured, run)?;
+    }
+    let mut saved = Instant::now();
+    let is_over =
+        |epochs: &[EpochReport]| early_stopping.is_some_and(|stopping| stopping.is_over(epochs));
+    while !trainer.is_finished() && !is_over(&epochs) {
+        let mut step = trainer.step()?;
+        if let Some(epoch) = &mut step.finished_epoch {
+            if let Some(stopping) = early_stopping {
+                epoch.validation = Some(min_ade(trainer, stopping)?);
+            }
+            epochs.push(epoch.clone());
+            if epoch.epoch % keep_every == 0 || trainer.is_finished() {
+                save_weights(&trainer.weights()?, origin, &run.epoch(epoch.epoch))?;
+            }
+            run.write_metrics(&epochs)?;
+        }
+        let due = step.finished_epoch.is_some() || saved.elapsed() > SAVE_EVERY;
+        let stop = observe(&TrainingProgress {
+            steps: trainer.steps(),
+            step: TrainingStep::Network(step),
+        })
+        .is_break();
+        if due || stop {
+            trainer.save(origin, &run.optimizer())?;
+            saved = Instant::now();
+        }
+        if stop && !trainer.is_finished() && !is_over(&epochs) {
+            return Err(DdlError::Interrupted);
+        }
+    }
+    let mut weights = trainer.weights()?;
+    if let Some(best) = best_epoch(&epochs) {
+        // Read as any weights are, so that a file that was damaged since is named, before others are removed.
+        weights = load_weights(weights.layout(), origin, &run.best_epoch(best.epoch)?)?;
+        run.remove_epochs_but(best.epoch)?;
+    }
+    // Last: with a model the run is finished, and nothing of this is done again.
+    Ok(save_weights(&weights, origin, &run.model())?)
+}

@@ -1,0 +1,66 @@
+//! The weights that a training begins with, in place of random ones.
+
+use crate::run_config::leaves;
+use crate::{Ddl, DdlError, GoalRecipe, ModelSource, StartingModel, sha256};
+use ddl_network::weights::Weights;
+use ddl_network::{DeviceChoice, StarConfig};
+use sha2::{Digest as _, Sha256};
+
+/// The weights of both networks of that model.
+#[derive(Debug)]
+pub(crate) struct StartingWeights {
+    pub(crate) network: Weights,
+    /// None where goals are retrieved alone.
+    pub(crate) proposal: Option<Weights>,
+    pub(crate) record: StartingModel,
+}
+
+impl StartingWeights {
+    /// The weights of a model, for networks of these sizes.
+    ///
+    /// # Errors
+    /// When the model cannot be loaded, or its networks are of other sizes than those to be trained.
+    pub(crate) fn of(
+        source: &ModelSource,
+        (star, goals): (&StarConfig, &GoalRecipe),
+        device: DeviceChoice,
+    ) -> Result<Self, DdlError> {
+        let model = Ddl::open(source, device)?;
+        let config = model.config();
+        let wanted = goals.proposal.is_some();
+        let of_proposal = |recipe: &GoalRecipe| {
+            let proposal = recipe.proposal.as_ref().filter(|_| wanted);
+            leaves("goals.proposal.network", &proposal.map(|p| &p.network))
+        };
+        let of_network = leaves("star", &config.star).difference(&leaves("star", star));
+        let of_goals = || of_proposal(&config.goals).difference(&of_proposal(goals));
+        if let Some(difference) = of_network.or_else(of_goals) {
+            return Err(source.wrong(format!(
+                "cannot be trained further here: its {difference} as asked for; leave out the options that ask for another network, or train from \
+                 random weights (--from none)"
+            )));
+        }
+        let (network, proposal) = model.weights()?;
+        let proposal = proposal.filter(|_| wanted);
+        let mut hasher = Sha256::new();
+        hash(&network, &mut hasher);
+        if let Some(proposal) = &proposal {
+            hash(proposal, &mut hasher);
+        }
+        let record = StartingModel {
+            model: source.to_string(),
+            sha256: sha256::in_hex(hasher),
+        };
+        Ok(Self {
+            network,
+            proposal,
+            record,
+        })
+    }
+}
+
+fn hash(weights: &Weights, hasher: &mut Sha256) {
+    for weight in weights.numbers() {
+        hasher.update(weight.to_le_bytes());
+    }
+}

@@ -1,0 +1,87 @@
+//! Forecasts of another program, in the three formats.
+
+use std::sync::OnceLock;
+
+use ddl_data::{PedestrianId, Window};
+use ddl_eval::external::{self, Coverage, ExternalFormat};
+
+/// Two windows of one recording: walker 7 alone, then walkers 7 and 8.
+fn windows() -> &'static [Window] {
+    static WINDOWS: OnceLock<[Window; 2]> = OnceLock::new();
+    let walk = |from: i32, y: f64| (from..from + 20).map(|t| [0.5 * f64::from(t), y]).collect();
+    WINDOWS.get_or_init(|| {
+        let window = |start: i32, ids: Vec<i64>| {
+            let tracks = ids.iter().map(|&id| walk(start / 10, id as f64)).collect();
+            let ids = ids.into_iter().map(PedestrianId).collect();
+            Window::new("yard", start.into(), 10, ids, tracks).expect("a sound window")
+        };
+        [window(0, vec![7]), window(10, vec![7, 8])]
+    })
+}
+
+/// Reads JSON lines of forecasts.
+///
+/// # Panics
+/// When what is read breaks its law.
+pub fn read_json_lines(bytes: &[u8]) {
+    check(bytes, ExternalFormat::JsonLines);
+}
+
+/// Reads a table of forecasts.
+///
+/// # Panics
+/// When what is read breaks its law.
+pub fn read_table(bytes: &[u8]) {
+    check(bytes, ExternalFormat::Table);
+}
+
+/// Reads TrajNet++ ndjson of forecasts.
+///
+/// # Panics
+/// When what is read breaks its law.
+pub fn read_trajnet(bytes: &[u8]) {
+    check(bytes, ExternalFormat::TrajNet);
+}
+
+/// The first byte says whether part of the walkers will do; the others are the file. What is read, written as JSON lines, reads the
+/// same.
+///
+/// # Panics
+/// When it does not, or a position is out of bounds.
+fn check(bytes: &[u8], format: ExternalFormat) {
+    let Some((&part, file)) = bytes.split_first() else {
+        return;
+    };
+    let coverage = if part & 1 == 0 {
+        Coverage::Intersection
+    } else {
+        Coverage::Whole
+    };
+    let read =
+        |file: &[u8], format| external::read_from(file, "fuzzed", format, windows(), coverage);
+    let matched = match read(file, format) {
+        Ok(matched) => matched,
+        Err(error) => {
+            assert!(error.to_string().contains("fuzzed"), "{error}");
+            return;
+        }
+    };
+    for forecast in &matched.forecasts {
+        for (i, k) in (0..forecast.pedestrians())
+            .flat_map(|i| (0..forecast.hypotheses()).map(move |k| (i, k)))
+        {
+            let path = forecast.hypothesis(i, k).as_flattened();
+            assert!(
+                path.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT),
+                "{path:?}"
+            );
+        }
+    }
+    let mut written = Vec::new();
+    external::write_forecasts(&matched.windows, &matched.forecasts, &mut written)
+        .expect("what was read can be written");
+    let again = read(&written, ExternalFormat::JsonLines).unwrap_or_else(|error| {
+        panic!("what was read is refused when written: {error}");
+    });
+    assert_eq!(again, matched);
+}
