@@ -36,7 +36,8 @@ pub struct Conditions {
     pub fold: String,
     /// Name of the forecaster.
     pub forecaster: String,
-    /// Ablation variant: `full`, `no-goal-shift`, `no-dynamics` or `star`; `None` when it has none.
+    /// Ablation variant (`full`, `no-goal-shift`, `no-dynamics` or `star`) and a backbone other than STAR (`perceptron`); `None`
+    /// when it has none.
     pub variant: Option<String>,
     /// Seed of the training and of the samples; `None` when nothing is random.
     pub seed: Option<u64>,

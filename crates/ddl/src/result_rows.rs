@@ -138,7 +138,7 @@ impl ResultRows<'_> {
         let config = self.model.config();
         let training = &config.training;
         Conditions {
-            variant: Some(config.star.variant.name().to_owned()),
+            variant: Some(config.star.name()),
             seed: Some(training.seed),
             epochs: Some(training.epochs),
             selection: Some(self.selection.to_owned()),

@@ -70,12 +70,12 @@ impl Results {
             });
             results.curves.push(TrainingCurve {
                 fold: config.data.fold.clone(),
-                variant: config.star.variant.name().to_owned(),
+                variant: config.star.name(),
                 seed: config.training.seed,
                 loss: LOSS.to_owned(),
                 epochs: epochs.collect(),
             });
-            if config.star.variant == ddl_network::Variant::Full {
+            if config.star.name() == ddl_network::Variant::Full.name() {
                 headline.push((config.training.seed, run.read_moments()?));
             }
         }

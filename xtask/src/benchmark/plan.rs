@@ -12,8 +12,11 @@ use crate::whole_file;
 use super::cost::Cost;
 use super::recipe::Recipe;
 
-/// The published method and what is left of it without each of its two ideas.
-pub(crate) const VARIANTS: [&str; 4] = ["full", "no-goal-shift", "no-dynamics", "star"];
+/// The published method, what is left of it without each of its two ideas, and the method with another network.
+pub(crate) const VARIANTS: [&str; 5] = ["full", "no-goal-shift", "no-dynamics", "star", PERCEPTRON];
+
+/// The published method with the perceptron in the place of STAR.
+const PERCEPTRON: &str = "perceptron";
 
 /// How results are scored; each is reported beside the others.
 pub(crate) const PROTOCOLS: [&str; 3] = [PUBLISHED_PROTOCOL, "fair", "single"];
@@ -162,7 +165,11 @@ impl Plan {
             push("--data", data.display().to_string());
         }
         push("--fold", task.fold.clone());
-        push("--variant", task.variant.clone());
+        if task.variant == PERCEPTRON {
+            push("--backbone", PERCEPTRON.to_owned());
+        } else {
+            push("--variant", task.variant.clone());
+        }
         push("--seed", task.seed.to_string());
         push("--epochs", self.settings.epochs.to_string());
         if let Some(walkers) = self.settings.train_walkers {

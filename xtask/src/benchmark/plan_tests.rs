@@ -63,6 +63,16 @@ fn nothing_and_twice_the_same_are_refused() {
 }
 
 #[test]
+fn the_perceptron_is_the_full_method_with_another_backbone() {
+    let plan = plan(&["eth"], &["perceptron"], &[7]).unwrap();
+    let arguments = plan.train_arguments(&plan.tasks[0], Path::new("runs/x"), 1);
+    let words = arguments.join(" ");
+    assert!(words.contains("--backbone perceptron"), "{words}");
+    assert!(words.contains("runs/x/eth-perceptron-7/run"), "{words}");
+    assert!(!words.contains("--variant"), "{words}");
+}
+
+#[test]
 fn the_arguments_are_those_the_program_knows() {
     let mut plan = plan(&["eth"], &["full"], &[7]).unwrap();
     let out = Path::new("runs/x");

@@ -44,7 +44,8 @@ pub(crate) struct Arguments {
     /// Folds to test on, as in `eth,hotel` [default: the profile's]
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     folds: Vec<String>,
-    /// Variants to train: full, no-goal-shift, no-dynamics, star, or all
+    /// Variants to train: full, no-goal-shift, no-dynamics, star, perceptron (the full method with a network without attention), or
+    /// all
     #[arg(
         long,
         value_delimiter = ',',

@@ -61,6 +61,17 @@ const MOST_LAYER_NUMBERS: i64 = 1 << 24;
 const MOST_LAYERS: usize = 64;
 
 impl StarConfig {
+    /// What reports call a network of this configuration: its variant, and its backbone where that is not STAR. The full
+    /// method goes without saying beside another backbone.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match (self.variant, self.backbone) {
+            (variant, BackboneKind::Star) => variant.name().to_owned(),
+            (Variant::Full, backbone) => backbone.name().to_owned(),
+            (variant, backbone) => format!("{variant}, {backbone}"),
+        }
+    }
+
     /// Weights of an encoder layer, without biases and normalisation.
     fn layer_numbers(&self) -> i64 {
         self.model_width * (4 * self.model_width + 2 * self.feed_forward_width)
@@ -216,6 +227,24 @@ impl StarConfig {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn reports_name_the_variant_and_the_backbone() {
+        let name = |variant, backbone| {
+            StarConfig {
+                backbone,
+                ..StarConfig::recommended(variant)
+            }
+            .name()
+        };
+        assert_eq!(name(Variant::Full, BackboneKind::Star), "full");
+        assert_eq!(name(Variant::Star, BackboneKind::Star), "star");
+        assert_eq!(name(Variant::Full, BackboneKind::Perceptron), "perceptron");
+        assert_eq!(
+            name(Variant::NoGoalShift, BackboneKind::Perceptron),
+            "no-goal-shift, perceptron"
+        );
+    }
 
     #[test]
     fn published_sizes_are_accepted_and_broken_ones_named() {

@@ -60,7 +60,7 @@ pub(super) fn publish(
     Ok(())
 }
 
-/// Whether the README may show it: the whole method on all folds and windows, under the protocols that do not look ahead.
+/// Whether the README may show it: the whole method, alone or beside another network, on all folds and windows, under the protocols that do not look ahead.
 fn is_whole(plan: &Plan, folds: &[String]) -> bool {
     let settings = &plan.settings;
     let full = |fold: &String| {
@@ -71,7 +71,10 @@ fn is_whole(plan: &Plan, folds: &[String]) -> bool {
         && settings.train_walkers.is_none()
         && settings.test_walkers.is_none()
         && folds.iter().all(full)
-        && plan.tasks.iter().all(|task| task.variant == "full")
+        && plan
+            .tasks
+            .iter()
+            .all(|task| ["full", "perceptron"].contains(&task.variant.as_str()))
 }
 
 /// What made the tables of the README, in words.
@@ -264,6 +267,8 @@ mod tests {
             ..settings()
         };
         assert!(whole(all(), &["eth", "hotel"], &["full"]));
+        assert!(whole(all(), &["eth", "hotel"], &["full", "perceptron"]));
+        assert!(!whole(all(), &["eth", "hotel"], &["perceptron"]));
         assert!(!whole(all(), &["eth"], &["full"]));
         assert!(!whole(all(), &["eth", "hotel"], &["full", "star"]));
         assert!(!whole(settings(), &["eth", "hotel"], &["full"]));
