@@ -85,6 +85,7 @@ pub use model_source::ModelSource;
 pub use results::Results;
 pub use run_config::{FORMAT, RunConfig, TrainingData};
 pub use run_directory::{RunDirectory, write_atomically};
+pub use run_lock::RunLock;
 pub use starting_model::{StartingModel, goals_trained_further, training_further};
 pub use test_set::name_of;
 pub use track_units::TrackUnits;
