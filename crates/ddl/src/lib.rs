@@ -47,6 +47,7 @@ pub use model::ddl::Ddl;
 pub use model::source::ModelSource;
 pub use run::config::{FORMAT, RunConfig, TrainingData};
 pub use run::directory::{RunDirectory, write_atomically};
+pub use run::lock::RunLock;
 pub use run::starting_model::{StartingModel, goals_trained_further, training_further};
 pub use run::track_units::TrackUnits;
 pub use run::training_data::fold_of;

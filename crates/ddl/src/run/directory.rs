@@ -22,7 +22,7 @@ use crate::goals::recipe::GoalRecipe;
 use crate::model::builtin::BuiltinModel;
 use crate::run::config::{FORMAT, RunConfig};
 use crate::run::lock::RunLock;
-use ddl_data::{WRITING, write_whole};
+use ddl_data::{remove_half_written, write_whole};
 use ddl_network::EpochReport;
 use ddl_report::Moment;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -289,14 +289,6 @@ impl RunDirectory {
             text.push('\n');
         }
         write_atomically(&self.metrics_file(), text.as_bytes())
-    }
-}
-
-/// Removes what a killed process was writing. Only for who has claimed the folder; what cannot be removed does no harm.
-fn remove_half_written(folder: &Path) {
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    for entry in entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(WRITING)) {
-        let _ = std::fs::remove_file(entry.path());
     }
 }
 

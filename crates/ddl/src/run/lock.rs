@@ -13,14 +13,14 @@ const FILE: &str = ".lock";
 /// The system holds the lock for the process: it does not outlive it, however that ends. `None` inside is a directory in which
 /// nothing can be written anyway, or a file system that knows no locks.
 #[derive(Debug)]
-pub(crate) struct RunLock(#[expect(dead_code, reason = "held, never read")] Option<File>);
+pub struct RunLock(#[expect(dead_code, reason = "held, never read")] Option<File>);
 
 impl RunLock {
     /// Takes the directory, at once or not at all.
     ///
     /// # Errors
     /// [`DdlError::Run`] when another process has it.
-    pub(crate) fn take(folder: &Path) -> Result<Self, DdlError> {
+    pub fn take(folder: &Path) -> Result<Self, DdlError> {
         let Some(file) = open(folder)? else {
             return Ok(Self(None));
         };
