@@ -10,7 +10,7 @@ const ARROWS: [(&str, &[&str]); 13] = [
     ("ddl-simd", &[]),
     ("ddl-softdtw", &["ddl-simd"]),
     ("ddl-dynamics", &[]),
-    ("ddl-goal", &["ddl-softdtw"]),
+    ("ddl-goal", &["ddl-softdtw", "ddl-simd"]),
     ("ddl-network", &["ddl-data", "ddl-dynamics", "ddl-simd"]),
     ("ddl-star", &["ddl-data", "ddl-dynamics", "ddl-network"]),
     ("ddl-eval", &["ddl-data"]),
