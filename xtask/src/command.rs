@@ -9,6 +9,7 @@ mod docs;
 mod faults;
 mod fuzz;
 mod models;
+mod mutants;
 mod package;
 mod page;
 mod setup;
@@ -46,9 +47,11 @@ pub(crate) enum Command {
     Test(test::Arguments),
     /// Fuzz the readers of outside bytes
     Fuzz(fuzz::Arguments),
+    /// Put faults into the numeric code, one at a time, and count how many the tests find
+    Mutants(mutants::Arguments),
     /// Run the micro-benchmarks of the crates
     Bench(bench::Arguments),
-    /// Check the invariants of docs/architecture.md
+    /// Check house rules that no other tool checks
     Tidy,
     /// Check what comes in from outside, by deny.toml
     Deny,
@@ -80,6 +83,7 @@ impl Command {
             Self::Docs(arguments) => arguments.run(workspace),
             Self::Test(arguments) => arguments.run(workspace),
             Self::Fuzz(arguments) => arguments.run(workspace),
+            Self::Mutants(arguments) => arguments.run(workspace),
             Self::Bench(arguments) => arguments.run(workspace),
             Self::Tidy => tidy::run(workspace),
             Self::Deny => deny::run(workspace),
