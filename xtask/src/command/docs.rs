@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::Args;
 
-use super::set_up;
 use crate::browser::Browser;
 use crate::site;
 use crate::workspace::{Workspace, absolute};
@@ -24,7 +23,6 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
-        set_up(workspace)?;
         let first = site::build(workspace)?;
         println!("{}", first.display());
         if let Some(folder) = self.screenshots {

@@ -50,13 +50,15 @@ pub(super) fn build(
         fs::create_dir_all(&folder)
             .with_context(|| format!("{} cannot be made", folder.display()))?;
     }
+    // All of the interface, and no libtorch on the machine.
+    let features = "ddl-cli/torch,ddl-cli/doc-only";
     let arguments = [
         "doc",
         "--workspace",
-        "--features",
-        "ddl-cli/torch",
         "--no-deps",
         "--quiet",
+        "--features",
+        features,
     ];
     step("`cargo doc`", &workspace.cargo(arguments))?;
     fs::rename(made, out)
