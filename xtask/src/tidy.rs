@@ -10,7 +10,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
-use crate::data::{Convention, Manifest};
+use crate::data::{Manifest, RECORDED};
 use crate::digest::measure;
 use crate::workspace::Workspace;
 
@@ -43,9 +43,9 @@ pub(crate) struct Findings {
 /// Every check, over everything that git tracks or would track.
 pub(crate) fn check(workspace: &Workspace) -> Result<Findings> {
     let manifest = Manifest::load(workspace)?;
-    let recordings: Vec<(&str, &str)> = Convention::RECORDED
+    let recordings: Vec<(&str, &str)> = RECORDED
         .into_iter()
-        .filter_map(|convention| manifest.entry(convention))
+        .flat_map(|convention| manifest.entry(convention))
         .flat_map(|entry| &entry.files)
         .map(|file| (file.name.as_str(), file.sha256.as_str()))
         .collect();

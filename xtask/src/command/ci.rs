@@ -3,9 +3,9 @@
 use std::time::Instant;
 
 use anyhow::{Context, Result};
+use ddl_data::Convention;
 
 use super::{benchmark, data, deny, docs, package, page, set_up, test, tidy};
-use crate::data::Convention;
 use crate::workspace::{Workspace, step};
 
 /// A named check of `ci`.
@@ -20,7 +20,7 @@ const CHECKS: [Check; 11] = [
     ("set-up", set_up),
     ("lints", lints),
     ("documentation site", docs::check),
-    ("benchmark", smoke),
+    ("benchmark", benchmark::smoke),
     ("report page in a browser", page::check),
     // Last, and the last to print: what a reader of the log looks for is the test results.
     ("tests", test::run_all),
@@ -71,8 +71,4 @@ fn recordings(workspace: &Workspace) -> Result<()> {
         data::fetch_one(workspace, Convention::SocialGan, None)?
     );
     Ok(())
-}
-
-fn smoke(workspace: &Workspace) -> Result<()> {
-    benchmark::smoke(workspace)
 }

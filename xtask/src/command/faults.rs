@@ -1,6 +1,5 @@
 //! `cargo xtask faults`: everything that can go wrong outside, tried often, as a table.
 
-use std::env;
 use std::fs;
 use std::time::{Duration, Instant};
 
@@ -13,8 +12,6 @@ use crate::workspace::{Workspace, step};
 
 /// Names the file that the tests add their figures to; with it they try every fault the full number of times.
 const FIGURES: &str = "DDL_FAULTS_FIGURES";
-/// Names this program, for the tests that run the benchmark.
-pub(super) const PROGRAM: &str = "DDL_XTASK";
 
 const PAGE: &str = "docs/reliability.md";
 const BEGIN: &str =
@@ -46,8 +43,7 @@ impl Arguments {
             .args(["--test-threads", "1", "--nocapture"])
             .args(&self.rest)
             .env("OMP_NUM_THREADS", "1")
-            .env(FIGURES, &file)
-            .env(PROGRAM, this_program()?);
+            .env(FIGURES, &file);
         step("the tests of faults", &command)?;
         let rows = fs::read_to_string(&file).context("the figures cannot be read")?;
         ensure!(
@@ -67,11 +63,6 @@ impl Arguments {
         }
         Ok(())
     }
-}
-
-/// Where this program lies, for tests that run it.
-pub(super) fn this_program() -> Result<std::path::PathBuf> {
-    env::current_exe().context("this program does not know where it lies")
 }
 
 /// The rows under their heading, in an order that does not depend on that of the tests.
