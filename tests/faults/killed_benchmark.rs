@@ -1,46 +1,32 @@
 //! `kill -9` at any moment of a benchmark: the same command goes on to the same results.
-//!
-//! The benchmark is run by `cargo xtask`, which names itself to the tests that it runs.
 
 use super::{Chance, half_written};
 use ddl_tests::folder_contents::{self, Contents};
 use ddl_tests::{figures, processes, program};
 use serde_json::Value;
 use std::os::unix::process::ExitStatusExt as _;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Names the program.
-const PROGRAM: &str = "DDL_XTASK";
-
 /// A benchmark of two models, each of which takes some seconds.
-fn benchmark(folder: &Path) -> Option<Command> {
-    let Some(xtask) = std::env::var_os(PROGRAM) else {
-        eprintln!(
-            "skipped: {PROGRAM} does not name the program of `cargo xtask`, as it does under `cargo xtask test`"
-        );
-        return None;
-    };
-    let workspace = [env!("CARGO_MANIFEST_DIR"), ".."]
-        .iter()
-        .collect::<PathBuf>();
-    let mut command = Command::new(xtask);
+const BENCHMARK: &str = "benchmark --convention simulated --profile smoke --folds corridor --seeds 1,2 --train-walkers 64 --test-walkers 20 \
+                         --protocol fair --jobs 2 --out out";
+
+fn benchmark(folder: &Path) -> Command {
+    let mut command = program::command(folder, BENCHMARK);
+    command.stdout(Stdio::null()).stderr(Stdio::null());
     command
-        .args(
-            "benchmark --convention simulated --profile smoke --folds corridor --seeds 1,2"
-                .split(' '),
-        )
-        .args("--train-walkers 64 --test-walkers 20 --protocol fair --jobs 2 --program".split(' '))
-        .arg(program::path())
-        .arg("--out")
-        .arg(folder.join("out"))
-        .current_dir(workspace)
-        .env_remove("DDL_COMMIT")
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null());
-    Some(command)
+}
+
+/// One that has claimed its folder.
+fn begun(folder: &Path) -> Child {
+    let mut child = benchmark(folder).spawn().unwrap();
+    while !folder.join("out/plan.json").exists() {
+        assert!(child.try_wait().unwrap().is_none());
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child
 }
 
 /// Files of a finished benchmark without what differs from time to time: seconds, and logs.
@@ -88,8 +74,8 @@ fn forget_seconds(value: &mut Value) {
     }
 }
 
-fn finish(folder: &Path) -> Option<Contents> {
-    let status = benchmark(folder)?.status().unwrap();
+fn finish(folder: &Path) -> Contents {
+    let status = benchmark(folder).status().unwrap();
     if !status.success() {
         let logs = folder_contents::read(&folder.join("out"));
         let logs = logs.iter().filter(|(name, _)| name.ends_with("log.txt"));
@@ -98,12 +84,12 @@ fn finish(folder: &Path) -> Option<Contents> {
             .collect();
         panic!("{status}: {}", logs.join("\n"));
     }
-    Some(results(folder))
+    results(folder)
 }
 
 /// Whether a benchmark was killed so long after its start, rather than done by then: with all its processes, or alone.
 fn killed_after(moment: Duration, folder: &Path, with_processes: bool) -> bool {
-    let mut child = benchmark(folder).unwrap().spawn().unwrap();
+    let mut child = benchmark(folder).spawn().unwrap();
     std::thread::sleep(moment);
     if with_processes {
         // the benchmark first, so that it begins nothing new
@@ -121,9 +107,7 @@ fn killed_after(moment: Duration, folder: &Path, with_processes: bool) -> bool {
 fn a_killed_benchmark_ends_in_the_same_results() {
     let whole = tempfile::tempdir().unwrap();
     let begun = Instant::now();
-    let Some(expected) = finish(whole.path()) else {
-        return;
-    };
+    let expected = finish(whole.path());
     let takes = begun.elapsed();
     assert!(expected.contains_key(Path::new("report.json")));
     let rounds = figures::rounds(2, 50);
@@ -138,7 +122,7 @@ fn a_killed_benchmark_ends_in_the_same_results() {
             let _ = std::fs::remove_dir_all(folder.path().join("out"));
         }
         alone += round % 2;
-        let found = finish(folder.path()).unwrap();
+        let found = finish(folder.path());
         assert_eq!(
             folder_contents::differences(&expected, &found),
             Vec::<String>::new(),
@@ -160,30 +144,54 @@ fn a_killed_benchmark_ends_in_the_same_results() {
 #[test]
 fn a_second_benchmark_in_the_same_folder_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let Some(mut command) = benchmark(folder.path()) else {
-        return;
-    };
-    let mut first = command.spawn().unwrap();
-    while !folder.path().join("out/plan.json").exists() {
-        assert!(first.try_wait().unwrap().is_none());
-        std::thread::sleep(std::time::Duration::from_millis(2));
-    }
-    let mut second = benchmark(folder.path()).unwrap();
+    let mut first = begun(folder.path());
+    let mut second = benchmark(folder.path());
     let output = second.stderr(Stdio::piped()).output().unwrap();
     let told = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{told}");
     assert!(
-        told.contains("another benchmark") && told.contains("choose another --out"),
+        told.contains("another process is at work") && told.contains("choose another"),
         "{told}"
     );
     for id in processes::with_descendants(first.id()) {
         processes::signal(id, "KILL");
     }
     first.wait().unwrap();
-    assert!(finish(folder.path()).is_some());
+    let _ = finish(folder.path());
     figures::tell(
         "two benchmarks in one folder",
         "the second, then again after a `kill -9` of the first",
         "refused, naming the folder; free after the kill",
     );
+}
+
+/// Ctrl-C, and what stops a container: processes save and leave, the exit code says so, and the same command goes on.
+#[test]
+fn an_interrupted_benchmark_stops_cleanly_and_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("out/corridor-full-1/log.txt");
+    let trainings = || {
+        let log = std::fs::read_to_string(&log).unwrap_or_default();
+        log.matches("$ ddl train").count()
+    };
+    for signal in ["INT", "TERM"] {
+        let before = trainings();
+        let mut child = begun(folder.path());
+        while trainings() == before {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        let processes = processes::with_descendants(child.id());
+        processes::signal(child.id(), signal);
+        let status = child.wait().unwrap();
+        assert_eq!(status.code(), Some(130), "{signal}");
+        for id in processes {
+            let line = std::fs::read_to_string(format!("/proc/{id}/cmdline"));
+            assert!(
+                !line.is_ok_and(|line| line.contains("corridor")),
+                "{id} is left"
+            );
+        }
+    }
+    let contents = finish(folder.path());
+    assert!(contents.contains_key(Path::new("report.json")));
 }

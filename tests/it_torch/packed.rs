@@ -1,11 +1,13 @@
 //! `ddl pack`: a packed model forecasts as its run does without the expert library.
 
-use ddl::eval::ResultRow;
+use ddl::data::{Convention, WindowRule};
+use ddl::eval::{Conditions, ResultRow};
 use ddl::report::Report;
 use ddl::{Ddl, DdlError, DeviceChoice, Forecaster as _, ModelSource, Protocol, Variant};
 use ddl_tests::{bits, crowd, folder_contents, own_tracks, program, tiny_model};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
+use serde_json::json;
 use std::path::Path;
 
 const PACKED: &str = "DDL without an expert library";
@@ -135,6 +137,137 @@ fn what_a_packed_model_cannot_do_is_said() {
     let message = fails(&format!("pack --model {run} --out new"));
     assert!(message.contains("--goals proposed"), "{message}");
     assert!(!here.join("new").exists());
+}
+
+/// A finished benchmark of these folds: the tiny model as the run of each, and what it is said to have reached.
+fn benchmark(profile: &str, convention: &str, folds: &[&str]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder_contents::read(tiny_model::folder(Variant::Full).path());
+    let measured = ddl::measure_baselines(
+        &crowd::dataset(),
+        &[crowd::FOLD.to_owned()],
+        &[Protocol::Fair],
+        Some(8),
+        "0123abc",
+    );
+    let measured = measured.unwrap().remove(0);
+    let mut tasks = Vec::new();
+    for (fold, seed) in folds.iter().flat_map(|fold| [(fold, 2), (fold, 1)]) {
+        let id = format!("{fold}-full-{seed}");
+        let row = |forecaster: &str| {
+            let mut row = measured.clone();
+            row.conditions = Conditions {
+                seed: Some(seed),
+                commit: "0123abc".to_owned(),
+                ..Conditions::new(
+                    Convention::Star,
+                    WindowRule::Published,
+                    Protocol::Fair,
+                    *fold,
+                    forecaster,
+                )
+            };
+            row.scores.min_ade = if forecaster == PACKED {
+                seed as f64
+            } else {
+                9.0
+            };
+            row
+        };
+        let report = Report::new(&id, [row("DDL"), row(PACKED)]).unwrap();
+        let at = folder.path().join(&id).join("run");
+        folder_contents::write(&run, &at);
+        std::fs::write(at.join("report.json"), report.to_json().unwrap()).unwrap();
+        tasks.push(json!({
+            "id": id, "fold": fold, "variant": "full", "seed": seed, "train_cost": 1.0, "evaluate_cost": 1.0,
+        }));
+    }
+    let plan = json!({
+        "format": 3,
+        "settings": {
+            "profile": profile, "convention": convention, "data": null, "device": "cpu", "cargo_profile": "release", "epochs": 4,
+            "train_walkers": null, "proposal_steps": null, "test_walkers": 2500, "protocols": ["fair", "single"],
+            "recipe": {"name": "recommended", "optimiser": null},
+        },
+        "tasks": tasks,
+    });
+    std::fs::write(folder.path().join("plan.json"), plan.to_string()).unwrap();
+    folder
+}
+
+const FOLDS: [&str; 5] = ["eth", "hotel", "univ", "zara1", "zara2"];
+
+#[test]
+fn a_benchmark_becomes_the_models_that_come_with_the_program() {
+    let folder = benchmark("paper", "star", &FOLDS);
+    let here = folder.path();
+    for (option, seed) in [("", 1), (" --seed 2", 2)] {
+        let said =
+            program::run(here, &format!("pack --benchmark . --out models{option}")).succeeds();
+        assert_eq!(said.matches(" weights\n").count(), 5, "{said}");
+        let text = std::fs::read(here.join("models/reported.json")).unwrap();
+        let reported: serde_json::Value = serde_json::from_slice(&text).unwrap();
+        assert_eq!(reported.as_object().unwrap().len(), 5);
+        for fold in FOLDS {
+            let packed = here.join("models").join(format!("{fold}.safetensors"));
+            assert!(Ddl::load(&packed, DeviceChoice::Cpu).is_ok());
+            let one = &reported[fold];
+            assert_eq!(
+                (&one["min_ade"], &one["seed"]),
+                (&json!(seed as f64), &json!(seed))
+            );
+            assert_eq!(
+                (&one["window_rule"], &one["protocol"]),
+                (&json!("published"), &json!("fair"))
+            );
+            assert_eq!(
+                (&one["test_walkers"], &one["commit"]),
+                (&json!(2500), &json!("0123abc"))
+            );
+            assert!(one["walkers"].as_u64().unwrap() > 0 && one["min_fde"].is_f64());
+        }
+    }
+}
+
+#[test]
+fn half_a_benchmark_is_refused_and_nothing_replaced() {
+    let error = |folder: &Path| {
+        let said = program::run(folder, "pack --benchmark . --out models").fails();
+        assert!(!folder.join("models").exists());
+        said
+    };
+    for (profile, convention, folds, pieces) in [
+        ("paper", "star", &FOLDS[..4], ["zara2", "all folds"]),
+        ("paper", "social-gan", &FOLDS[..1], ["social-gan", "star"]),
+        ("quick", "star", &FOLDS[..1], ["of profile quick", "paper"]),
+    ] {
+        let said = error(benchmark(profile, convention, folds).path());
+        assert!(pieces.iter().all(|piece| said.contains(piece)), "{said}");
+    }
+    let folder = benchmark("paper", "star", &FOLDS);
+    let run = folder.path().join("univ-full-1/run");
+    // Every other fold can be packed.
+    std::fs::write(run.join("model.safetensors"), "damaged").unwrap();
+    let damaged = error(folder.path());
+    assert!(damaged.contains("univ-full-1"), "{damaged}");
+    std::fs::write(
+        run.join("report.json"),
+        Report::new("older", []).unwrap().to_json().unwrap(),
+    )
+    .unwrap();
+    let older = error(folder.path());
+    assert!(
+        older.contains("univ-full-1") && older.contains(PACKED),
+        "{older}"
+    );
+    std::fs::remove_file(run.join("report.json")).unwrap();
+    let unfinished = error(folder.path());
+    assert!(
+        unfinished.contains("is the benchmark finished?"),
+        "{unfinished}"
+    );
+    std::fs::remove_file(folder.path().join("plan.json")).unwrap();
+    assert!(error(folder.path()).contains("`ddl benchmark` makes"));
 }
 
 #[test]

@@ -5,7 +5,6 @@ use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::Path;
 
-use crate::whole_file::readable_by_all;
 use anyhow::{Context, Result, bail};
 use sha2::{Digest, Sha256};
 
@@ -26,22 +25,17 @@ impl Pin<'_> {
     ///
     /// Reading stops as soon as more bytes arrive than are pinned.
     pub(crate) fn copy(&self, from: &mut impl Read, to: &mut impl Write) -> Result<()> {
-        let mut hasher = Sha256::new();
         let mut bytes = 0_u64;
-        let mut block = vec![0_u8; BLOCK];
-        loop {
-            let read = from.read(&mut block).context("reading stopped")?;
-            if read == 0 {
-                break;
-            }
-            bytes += read as u64;
+        let mut hasher = Sha256::new();
+        each_block(from, |block| {
+            bytes += block.len() as u64;
             if bytes > self.bytes {
                 bail!("longer than the pinned {} bytes", self.bytes);
             }
-            hasher.update(&block[..read]);
-            to.write_all(&block[..read])
-                .context("writing stopped: is the disk full?")?;
-        }
+            hasher.update(block);
+            to.write_all(block)
+                .context("writing stopped: is the disk full?")
+        })?;
         if bytes < self.bytes {
             bail!("ended after {bytes} of {} bytes", self.bytes);
         }
@@ -71,8 +65,12 @@ impl Pin<'_> {
         let folder = path.parent().context("a file needs a folder to lie in")?;
         fs::create_dir_all(folder)
             .with_context(|| format!("{} cannot be created", folder.display()))?;
-        let mut temporary = tempfile::Builder::new()
-            .prefix(".incoming-")
+        let mut builder = tempfile::Builder::new();
+        let builder = builder.prefix(".incoming-");
+        // Temporary files are private by default.
+        #[cfg(unix)]
+        let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
+        let mut temporary = builder
             .tempfile_in(folder)
             .with_context(|| format!("{} cannot be written to", folder.display()))?;
         self.copy(from, &mut temporary)?;
@@ -80,10 +78,10 @@ impl Pin<'_> {
             .as_file()
             .sync_all()
             .context("writing stopped: is the disk full?")?;
-        let file = temporary
+        temporary
             .persist(path)
             .with_context(|| format!("{} cannot be written", path.display()))?;
-        readable_by_all(&file)
+        Ok(())
     }
 }
 
@@ -92,29 +90,34 @@ pub(crate) fn measure(path: &Path) -> Result<(String, u64)> {
     let mut file =
         File::open(path).with_context(|| format!("{} cannot be opened", path.display()))?;
     let mut hasher = Sha256::new();
-    let mut bytes = 0_u64;
+    let mut bytes = 0;
+    each_block(&mut file, |block| {
+        bytes += block.len() as u64;
+        hasher.update(block);
+        Ok(())
+    })
+    .with_context(|| path.display().to_string())?;
+    Ok((hexadecimal(hasher), bytes))
+}
+
+/// Reads to the end.
+fn each_block(from: &mut impl Read, mut take: impl FnMut(&[u8]) -> Result<()>) -> Result<()> {
     let mut block = vec![0_u8; BLOCK];
     loop {
-        let read = file
-            .read(&mut block)
-            .with_context(|| format!("reading {} stopped", path.display()))?;
-        if read == 0 {
-            return Ok((hexadecimal(hasher), bytes));
+        match from.read(&mut block).context("reading stopped")? {
+            0 => return Ok(()),
+            read => take(&block[..read])?,
         }
-        bytes += read as u64;
-        hasher.update(&block[..read]);
     }
 }
 
 fn hexadecimal(hasher: Sha256) -> String {
-    hasher
-        .finalize()
-        .iter()
-        .fold(String::with_capacity(64), |mut text, byte| {
-            // Writing to a string cannot fail.
-            let _ = write!(text, "{byte:02x}");
-            text
-        })
+    let digest = hasher.finalize();
+    digest.iter().fold(String::new(), |mut text, byte| {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ pub use completion::{Completion, CompletionError, MadeUp};
 pub use convention::Convention;
 pub use dataset::Dataset;
 pub use doubt::{Doubt, Fastest};
-pub use error::{DataError, FormatError, FormatProblem, RecordingError, WindowError};
+pub use error::{DataError, FormatError, RecordingError, WindowError};
 pub use fold::{Fold, SocialGanSplit, TrainingSplit};
 pub use format::{Format, Frame, FrameReader, parse_recording, read_recording};
 pub use homography::{Homography, HomographyError};
@@ -45,5 +45,5 @@ pub use track::{
     COORDINATE_LIMIT, HORIZON, OBSERVED, Observation, PedestrianId, Position, TIME_STEP, WINDOW,
 };
 pub use unknown_name::UnknownName;
-pub use whole_file::{WRITING, write_whole};
+pub use whole_file::{remove_half_written, write_whole};
 pub use window::Window;

@@ -1,6 +1,9 @@
 //! Lloyd's iteration: each point to its nearest centre, each centre to the mean of its points.
 
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+
 use crate::points::{Points, squared_distance};
+use ddl_simd::{Dispatch, Register, RegisterKernel};
 
 /// One run of Lloyd's iteration.
 #[derive(Debug)]
@@ -40,20 +43,12 @@ impl Lloyd {
 
     /// Gives each point to its nearest centre, the first of equally near ones.
     fn assign(&mut self, points: &Points) {
-        // The loop over the points is the inner one: it has no branches and becomes vector instructions.
-        self.labels.fill(0);
-        self.nearest.fill(f64::INFINITY);
-        for (k, &centre) in self.centres.iter().enumerate() {
-            let k = k as u64;
-            let positions = points.x.iter().zip(&points.y);
-            let cells = self.nearest.iter_mut().zip(&mut self.labels);
-            for ((nearest, label), (&x, &y)) in cells.zip(positions) {
-                let distance = squared_distance([x, y], centre);
-                let nearer = distance < *nearest;
-                *nearest = if nearer { distance } else { *nearest };
-                *label = if nearer { k } else { *label };
-            }
-        }
+        Dispatch::detect().run_on_registers(Assign {
+            points,
+            centres: &self.centres,
+            labels: &mut self.labels,
+            nearest: &mut self.nearest,
+        });
         self.inertia = self
             .nearest
             .iter()
@@ -96,6 +91,37 @@ impl Lloyd {
             if let Some(index) = farthest {
                 self.labels[index] = empty as u64;
                 self.nearest[index] = 0.0;
+            }
+        }
+    }
+}
+
+/// The nearest centre of each point.
+struct Assign<'a> {
+    points: &'a Points,
+    centres: &'a [[f64; 2]],
+    labels: &'a mut [u64],
+    nearest: &'a mut [f64],
+}
+
+impl RegisterKernel for Assign<'_> {
+    type Output = ();
+
+    /// Plain loops, compiled for the instruction set: the same bits with each.
+    #[inline(always)]
+    fn run<R: Register>(self, _: R) {
+        self.labels.fill(0);
+        self.nearest.fill(f64::INFINITY);
+        for (k, &centre) in self.centres.iter().enumerate() {
+            let k = k as u64;
+            let positions = self.points.x.iter().zip(&self.points.y);
+            let cells = self.nearest.iter_mut().zip(self.labels.iter_mut());
+            // The inner loop has no branches and becomes vector instructions.
+            for ((nearest, label), (&x, &y)) in cells.zip(positions) {
+                let distance = squared_distance([x, y], centre);
+                let nearer = distance < *nearest;
+                *nearest = if nearer { distance } else { *nearest };
+                *label = if nearer { k } else { *label };
             }
         }
     }

@@ -1,4 +1,8 @@
 #![doc = include_str!("../README.md")]
+#![cfg_attr(
+    not(feature = "training"),
+    allow(dead_code, reason = "kernels backwards are for training alone")
+)]
 
 mod arithmetic;
 pub mod backbone;
@@ -8,6 +12,7 @@ mod device_choice;
 mod error;
 mod forecast;
 mod kernel;
+mod names;
 mod precision;
 pub mod proposal;
 pub mod seed;
