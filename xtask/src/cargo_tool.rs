@@ -26,6 +26,8 @@ pub(crate) struct CargoTool {
     pub(crate) version: &'static str,
     /// Further options of `cargo install`.
     pub(crate) options: &'static [&'static str],
+    /// How it is asked for its version.
+    pub(crate) version_call: &'static [&'static str],
 }
 
 impl CargoTool {
@@ -59,7 +61,7 @@ impl CargoTool {
     /// Whether a program says of itself that it is the pinned version.
     fn is_pinned(&self, program: &Path) -> bool {
         let output = Command::new(program)
-            .arg("--version")
+            .args(self.version_call)
             .stdin(Stdio::null())
             .stderr(Stdio::null())
             .output();
@@ -120,6 +122,7 @@ mod tests {
         name: "hammer",
         version: "1.2.3",
         options: &[],
+        version_call: &["--version"],
     };
 
     #[cfg(unix)]

@@ -146,25 +146,3 @@ fn require_compiler() -> Result<()> {
     }
     Ok(())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_cache_is_below_the_users_cache_folder() {
-        let cache = user_cache().unwrap();
-        assert!(cache.is_absolute());
-        assert!(cache.ends_with("ddl"));
-    }
-
-    #[test]
-    fn a_stale_configuration_is_not_trusted() {
-        let folder = tempfile::tempdir().unwrap();
-        let generated = folder.path().join("config.generated.toml");
-        let gone = folder.path().join("gone");
-        config::write(&generated, &gone).unwrap();
-        assert_eq!(config::read(&generated), Some(gone.clone()));
-        assert!(locate::validate(&gone).is_err());
-    }
-}

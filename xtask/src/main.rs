@@ -11,7 +11,7 @@
 //! | `site` | the documentation site: what it is made of, and that its links lead somewhere |
 //! | `browser` | where a browser is or how to get one, and what drives it |
 //! | `cargo_tool` | programs of other people that checks run, one pinned version each |
-//! | `tidy` | the invariants of `docs/architecture.md`, as checks |
+//! | `tidy` | house rules that no other tool checks |
 #![allow(
     clippy::print_stdout,
     reason = "a command-line program answers on standard output"

@@ -7,7 +7,7 @@ use ddl_simd::{Dispatch, Register, RegisterKernel};
 
 /// One run of Lloyd's iteration.
 #[derive(Debug)]
-pub(crate) struct Run {
+pub(crate) struct Lloyd {
     pub(crate) centres: Vec<[f64; 2]>,
     pub(crate) labels: Vec<u64>,
     /// Squared distance of each point to its centre.
@@ -15,7 +15,7 @@ pub(crate) struct Run {
     pub(crate) inertia: f64,
 }
 
-impl Run {
+impl Lloyd {
     /// Each point with the nearest of the given centres.
     pub(crate) fn from_centres(points: &Points, centres: Vec<[f64; 2]>) -> Self {
         let count = points.len();
@@ -129,7 +129,7 @@ impl RegisterKernel for Assign<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::Run;
+    use super::Lloyd;
     use crate::points::Points;
 
     /// By hand: nobody is near the second centre, so it takes the point at 10, the farthest from its own centre; the first is left with 0
@@ -140,7 +140,7 @@ mod tests {
         for (x, weight) in [(0.0, 1.0), (1.0, 3.0), (10.0, 1.0)] {
             points.push([x, 0.0], weight);
         }
-        let mut run = Run::from_centres(&points, vec![[0.5, 0.0], [100.0, 0.0]]);
+        let mut run = Lloyd::from_centres(&points, vec![[0.5, 0.0], [100.0, 0.0]]);
         assert_eq!(run.labels, [0, 0, 0]);
         run.iterate(&points, 1, 0.0);
         assert_eq!(run.centres, [[0.75, 0.0], [10.0, 0.0]]);

@@ -6,18 +6,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
-use std::time::Duration;
 
 use anyhow::{Context, Result};
 
-use super::patience::run_within;
+use super::{LIMIT, run_within};
 use crate::libtorch::user_cache;
 use crate::python::{self, Python};
 
 /// The version the check was written with.
 const REQUIREMENT: &str = "playwright==1.65.2";
-/// Some 50 MB.
-const LIMIT: Duration = Duration::from_mins(10);
 
 /// The folder for Python's search path; the package is fetched when it is not there.
 pub(super) fn ensure(python: &Python) -> Result<PathBuf> {
@@ -69,20 +66,5 @@ fn fetch(folder: &Path, cache: &Path) -> Result<()> {
         // Somebody else was faster.
         Err(_) if folder.is_dir() => Ok(()),
         outcome => outcome.with_context(|| format!("{} cannot be created", folder.display())),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_folder_names_package_and_interpreter() {
-        let name = folder_name(&Python::find().unwrap()).unwrap();
-        assert!(name.starts_with("playwright-1."), "{name}");
-        assert!(
-            name.contains("-cpython-3.") || name.contains("-pypy-3."),
-            "{name}"
-        );
     }
 }
