@@ -56,7 +56,7 @@ fn forecast(
         weights.extend_from_slice(set.weights());
         goals.extend_from_slice(set.goals());
     }
-    let hypotheses = estimator.params().clusters();
+    let hypotheses = estimator.params().clusters;
     let forecast =
         Forecast::new(window.len(), hypotheses, positions, weights, Some(goals)).unwrap();
     (forecast, certified)

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Crate, example, arguments, and what its output must hold; or, of one that draws, the file that must be a picture.
-const EXAMPLES: [(&str, &str, &str, Promise); 10] = [
+const EXAMPLES: [(&str, &str, &str, Promise); 8] = [
     (
         "ddl-data",
         "tracks_to_windows",
@@ -65,18 +65,6 @@ const EXAMPLES: [(&str, &str, &str, Promise); 10] = [
         "score_forecasts",
         "",
         Promise::Says(&["2284 walkers of the simulated plaza", "protocol `single`"]),
-    ),
-    (
-        "ddl-report",
-        "draw_scene",
-        "simulated plaza 6 scene.svg",
-        Promise::Draws("scene.svg"),
-    ),
-    (
-        "ddl-report",
-        "draw_goals",
-        "simulated plaza goals.svg",
-        Promise::Draws("goals.svg"),
     ),
 ];
 

@@ -5,7 +5,7 @@ use crate::Position;
 /// Half the side of the box in which STAR and DDL look for neighbours (m).
 pub const NEIGHBOUR_HALF_WIDTH: f64 = 10.0;
 
-/// Which of N pedestrians are neighbours of which: a symmetric N x N relation without the diagonal.
+/// Which of N pedestrians are neighbours of which: a symmetric N x N relation without the diagonal. Indices out of range panic.
 ///
 /// ```
 /// use ddl_data::NeighbourMask;
@@ -48,17 +48,11 @@ impl NeighbourMask {
     }
 
     /// Whether j is a neighbour of i.
-    ///
-    /// # Panics
-    /// If `i` or `j` is not below [`len`](Self::len).
     pub fn is_neighbour(&self, i: usize, j: usize) -> bool {
         self.row(i)[j]
     }
 
     /// The relation of i to everybody, N values.
-    ///
-    /// # Panics
-    /// If `i >= len()`.
     pub fn row(&self, i: usize) -> &[bool] {
         &self.near[i * self.count..(i + 1) * self.count]
     }

@@ -29,14 +29,6 @@ pub struct InSteps {
     pub resampled: bool,
 }
 
-impl InSteps {
-    /// Seconds of a step: 0.4 within 0.5 %.
-    #[must_use]
-    pub fn step_seconds(&self, frame_time: f64) -> f64 {
-        self.recording.frame_step() as f64 * frame_time / self.parts as f64
-    }
-}
-
 /// Frames in a step of 0.4 s, where a frame takes so many seconds and these are a whole number within 0.5 %.
 ///
 /// ```
@@ -169,32 +161,22 @@ fn fits(found: f64, wanted: f64, tolerance: f64) -> bool {
 /// Why a recording cannot be had in steps of 0.4 s.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum RateError {
     /// The time of a frame is no time.
     #[error(
         "a frame must take more than 0 s, and 0.4 s be no more than 2^31 frames; found {found} s a frame"
     )]
-    FrameTime {
-        /// Seconds.
-        found: f64,
-    },
+    FrameTime { found: f64 },
     /// Observations too far apart.
     #[error(
         "observations are {apart:.2} s apart, more than 1.2 s: too few to see how somebody walks; is the rate right, and are the frame \
          numbers those of this rate?"
     )]
-    TooSlow {
-        /// Seconds between two observations.
-        apart: f64,
-    },
+    TooSlow { apart: f64 },
     /// Frame numbers too large to be divided.
     #[error("frame {last} is too large to be counted in {parts} parts; count frames from 0")]
-    Frames {
-        /// The last frame.
-        last: i64,
-        /// Parts of a frame.
-        parts: i64,
-    },
+    Frames { last: i64, parts: i64 },
     /// What came out is no recording.
     #[error(transparent)]
     Recording(#[from] RecordingError),

@@ -168,10 +168,7 @@ mod tests {
             let (distance, direction) = attractor.potential_and_gradient(&Vector2::new(0.0, -size));
             assert_eq!((distance, direction), (size, Vector2::new(0.0, -1.0)));
         }
-    }
-
-    #[test]
-    fn an_offset_that_overflows_still_has_a_direction() {
+        // An offset that overflows still has a direction.
         let attractor = Attractor::new(Vector1::new(-f64::MAX)).unwrap();
         let (distance, direction) = attractor.potential_and_gradient(&Vector1::new(f64::MAX));
         assert_eq!((distance, direction), (f64::INFINITY, Vector1::new(1.0)));

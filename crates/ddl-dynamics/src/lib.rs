@@ -17,9 +17,7 @@ mod spectrum;
 mod state;
 
 pub use attractor::Attractor;
-pub use diffeomorphism::{
-    AffineCoupling, Chain, CouplingBump, Diffeomorphism, Layer, LocalTranslation, Straightening,
-};
+pub use diffeomorphism::{Chain, Diffeomorphism, LocalTranslation, Straightening};
 pub use error::DynamicsError;
 pub use flow::{AvoidingFlow, DiffeomorphicFlow, Flow, GradientFlow, NaturalGradientFlow};
 pub use integrate::{DormandPrince, Euler, Integrator, StableEuler, StableStep, StepLimit};

@@ -118,7 +118,7 @@ impl<T: Real> LyapunovCertificate<T> {
     /// `n + 1` positions (metres) and `n` metrics: `metrics[k]` is the one at `positions[k]`.
     ///
     /// # Errors
-    /// [`DynamicsError::LengthMismatch`], [`DynamicsError::InvalidTimeStep`], and, inside
+    /// [`DynamicsError::LengthMismatch`], [`DynamicsError::NotPositive`], and, inside
     /// [`DynamicsError::Step`] with the index of the position, [`DynamicsError::NonFinite`] or
     /// [`DynamicsError::DistanceTooLarge`]. A rollout that breaks the guarantee is no error.
     pub fn new<const D: usize>(

@@ -16,7 +16,7 @@ use crate::{
 /// `steps + 1` positions in metres, `start` first.
 ///
 /// # Errors
-/// [`DynamicsError::InvalidTimeStep`], [`DynamicsError::NonFinite`] for the start, and
+/// [`DynamicsError::NotPositive`], [`DynamicsError::NonFinite`] for the start, and
 /// [`DynamicsError::Step`] naming the step in which the flow or the integrator failed.
 ///
 /// # Examples

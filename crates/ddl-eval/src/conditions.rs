@@ -11,19 +11,6 @@ use crate::{
 
 /// How a result came about. Two results are comparable when their convention, window rule, protocol
 /// and test subset are the same; a report never puts others into one table.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{Convention, Window, WindowRule};
-/// use ddl_eval::{Conditions, Protocol};
-/// let conditions = Conditions {
-///     seed: Some(1),
-///     epochs: Some(30),
-///     device: "cpu".to_owned(),
-///     ..Conditions::new(Convention::Star, WindowRule::Published, Protocol::Fair, "eth", "DDL")
-/// };
-/// assert_eq!(conditions.label(), "DDL");
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
     /// Data convention of the recordings.

@@ -83,15 +83,15 @@ impl GoalEstimator {
         params: ValidGoalEstimatorParams,
         library: ExpertLibrary,
     ) -> Result<Self, GoalError> {
-        let method = match params.frame() {
+        let method = match params.frame {
             RetrievalFrame::Heading => Method::Heading(Analogues::new(&library)?),
             RetrievalFrame::World => {
-                if library.len() < params.experts() {
-                    let (tracks, experts) = (library.len(), params.experts());
+                if library.len() < params.experts {
+                    let (tracks, experts) = (library.len(), params.experts);
                     return Err(GoalError::TooFewTracks { tracks, experts });
                 }
-                let retriever = Retriever::new(&library, params.gamma(), params.query())?;
-                let kmeans = KMeans::new(params.clusters()).restarts(params.restarts());
+                let retriever = Retriever::new(&library, params.gamma, params.query)?;
+                let kmeans = KMeans::new(params.clusters, params.restarts);
                 Method::World(Box::new(retriever), kmeans)
             }
         };
@@ -121,7 +121,7 @@ impl GoalEstimator {
     /// # Errors
     /// A track that is too short, not finite, or so far out that distances leave the range of `f64`.
     pub fn estimate(&self, track: &[[f64; 2]]) -> Result<GoalSet, GoalError> {
-        let (experts, clusters) = (self.params.experts(), self.params.clusters());
+        let (experts, clusters) = (self.params.experts, self.params.clusters);
         match &self.method {
             Method::Heading(analogues) => analogues.goals(track, experts, clusters),
             Method::World(retriever, kmeans) => {
@@ -130,9 +130,9 @@ impl GoalEstimator {
                     .iter()
                     .map(|expert| self.library.end(expert.index))
                     .collect();
-                let clustering = kmeans.fit(&ends, self.params.seed())?;
+                let clustering = kmeans.fit(&ends, self.params.seed)?;
                 let place = |[x, y]: &[f64; 2]| [track[0][0] + x, track[0][1] + y];
-                let goals = clustering.centres().iter().map(place).collect();
+                let goals = clustering.centres.iter().map(place).collect();
                 let share = |size: usize| size as f64 / ends.len() as f64;
                 let weights = clustering.sizes().into_iter().map(share).collect();
                 let experts = experts.iter().map(Expert::from).collect();

@@ -24,15 +24,12 @@ mod seeding;
 mod span;
 mod split;
 
-pub use ddl_softdtw::Neighbour;
-pub use error::{GoalError, KMeansError, LibraryError, ParamsError, TrackError};
+pub use error::{GoalError, LibraryError, ParamsError, TrackError};
 pub use estimator::GoalEstimator;
 pub use expert::Expert;
 pub use frame::RetrievalFrame;
 pub use goal_set::GoalSet;
 pub use heading::HeadingFrame;
-pub use kmeans::{Clustering, KMeans};
 pub use library::{ExpertLibrary, TRACK_LENGTH};
 pub use params::{GoalEstimatorParams, ValidGoalEstimatorParams};
-pub use retrieve::Retriever;
 pub use span::QuerySpan;

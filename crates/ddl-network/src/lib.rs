@@ -12,6 +12,7 @@ mod device_choice;
 mod error;
 mod forecast;
 mod kernel;
+mod names;
 mod precision;
 pub mod proposal;
 pub mod seed;

@@ -11,9 +11,9 @@
 //! works, and nothing about how well real walkers are forecast.
 //!
 //! ```
-//! use ddl_data::simulate::Scene;
+//! use ddl_data::simulate::CrowdScene;
 //!
-//! let crowd = Scene::Plaza.simulate(7);
+//! let crowd = CrowdScene::Plaza.simulate(7);
 //! assert!(crowd.recording().pedestrians().len() > 50);
 //! assert!(!crowd.groups().is_empty());
 //! ```
@@ -32,16 +32,16 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 pub use obstacle::{Pillar, Wall};
-pub use scene::Scene;
+pub use scene::CrowdScene;
 
 use crate::{PedestrianId, Recording};
 use clock::FRAME_STEP;
-use layout::Layout;
+use layout::SceneLayout;
 
 /// Recorded steps of a scene: three minutes.
 const STEPS: i64 = 450;
 
-impl Scene {
+impl CrowdScene {
     /// Simulates three minutes of the scene; the same seed gives the same bytes.
     #[must_use]
     #[expect(
@@ -51,13 +51,13 @@ impl Scene {
     pub fn simulate(self, seed: u64) -> Crowd {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(self as u64);
-        let layout = Layout::of(self);
+        let layout = SceneLayout::of(self);
         let trace = engine::run(&layout, STEPS, &mut rng);
         // Walkers have unique ids and are seen once a frame; speeds are capped, so that positions
         // stay finite; and three minutes of arrivals every two seconds leave observations.
         let recording = Recording::new(self.name(), FRAME_STEP, trace.observations)
             .expect("a simulation yields unique, finite observations");
-        let Layout { walls, pillars, .. } = layout;
+        let SceneLayout { walls, pillars, .. } = layout;
         Crowd {
             scene: self,
             recording,
@@ -71,7 +71,7 @@ impl Scene {
 /// A simulated recording, and what a real one does not tell: walls and groups.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crowd {
-    scene: Scene,
+    scene: CrowdScene,
     recording: Recording,
     walls: Vec<Wall>,
     pillars: Vec<Pillar>,
@@ -80,7 +80,7 @@ pub struct Crowd {
 
 impl Crowd {
     /// Where it was simulated.
-    pub fn scene(&self) -> Scene {
+    pub fn scene(&self) -> CrowdScene {
         self.scene
     }
 

@@ -31,15 +31,12 @@ use crate::{
 /// [straightening](crate::Chain::straightening).
 ///
 /// # What is guaranteed
-/// `dV/dt = -(J^T u)^T P (J^T u) <= -lambda_min(P) s_min(J)^2 < 0` away from the goal, as `J` is
-/// invertible. `V` has no other minimum and no saddle, and grows without bound since `psi` is onto; so
-/// the flow converges to `p*` from everywhere, after at most `V(p(0)) / (lambda_min(P) s_min(J)^2)`
-/// seconds, both taken at their least along the path.
+/// `dV/dt <= -lambda_min(P) s_min(J)^2 < 0` away from the goal, which is the only minimum of `V`: the flow converges to
+/// it from everywhere (Theorem 5 of `docs/stability.md`).
 ///
 /// In the coordinates `y = psi(p)`, the [`chart`](Flow::chart), the flow is a
-/// [`NaturalGradientFlow`](crate::NaturalGradientFlow) with the metric `J P J^T`:
-/// `dy/dt = J v = -(J P J^T) u`. [`StableEuler`](crate::StableEuler) takes its steps there, and so keeps
-/// its guarantee word for word: `V` falls in every step, for every `dt`.
+/// [`NaturalGradientFlow`](crate::NaturalGradientFlow) with the metric `J P J^T`. [`StableEuler`](crate::StableEuler) takes
+/// its steps there, and so keeps its guarantee: `V` falls in every step, for every `dt`.
 ///
 /// # References
 /// The paper names diffeomorphisms as future work (section V). Rana et al., "Euclideanizing flows"

@@ -7,7 +7,7 @@ use ddl_dynamics::{
 use nalgebra::Vector2;
 use proptest::{prelude::*, test_runner::TestCaseResult};
 
-use crate::draw::{METRICS, SceneDraw, any_scene, formed};
+use crate::draw::{METRICS, SceneDraw, any_scene, deviation_sine, formed};
 
 /// Top speed relative to what the goal asks for, share of the metric, seconds a step, own velocity in top speeds, and whether metrics are in
 /// m/s.
@@ -91,7 +91,7 @@ fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCa
         let (d, after) = ((goal - from).norm(), (goal - to).norm());
         // the angle of Kantorovich, and never past the goal
         let range = bounds.eigenvalues(T::rounded(d), METRICS - k, T::rounded(dt));
-        let sine = range.largest_deviation_sine().as_f64();
+        let sine = deviation_sine(range).as_f64();
         let [slow, fast] = [range.smallest, range.largest].map(Real::as_f64);
         let near = |x: f64| 1e-5 * x + off / dt;
         prop_assert!(

@@ -12,41 +12,13 @@ fn curve<const D: usize>(point: impl Fn(f64) -> SVector<f64, D>) -> Vec<SVector<
     (0..=80).map(|i| point(f64::from(i) / 80.0)).collect()
 }
 
-fn corner() -> Vec<Vector2<f64>> {
-    [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]]
-        .map(Vector2::from)
-        .to_vec()
+fn polygon<const N: usize>(corners: [[f64; 2]; N]) -> Vec<Vector2<f64>> {
+    corners.map(Vector2::from).to_vec()
 }
 
-/// Out along a wall, around its end, and back on the other side.
-fn hairpin() -> Vec<Vector2<f64>> {
-    [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]]
-        .map(Vector2::from)
-        .to_vec()
-}
-
-/// The same with legs 0.4 m apart.
-fn narrow_hairpin() -> Vec<Vector2<f64>> {
-    [[0.0, 0.0], [3.0, 0.0], [3.0, 0.4], [0.0, 0.4]]
-        .map(Vector2::from)
-        .to_vec()
-}
-
-fn s_curve() -> Vec<Vector2<f64>> {
-    curve(|t| Vector2::new(6.0 * t, 1.5 * (std::f64::consts::TAU * t).sin()))
-}
-
-/// An S that swings out further than it advances.
-fn wide_s_curve() -> Vec<Vector2<f64>> {
-    curve(|t| Vector2::new(3.0 * (std::f64::consts::TAU * t).sin(), 4.0 * t))
-}
-
-/// Three quarters of a turn of a helix.
-fn rising_arc() -> Vec<Vector3<f64>> {
-    curve(|t| {
-        let angle = 1.5 * std::f64::consts::PI * t;
-        Vector3::new(2.0 * angle.cos(), 2.0 * angle.sin(), 1.5 * t)
-    })
+/// Out along a wall, around its end, and back on the other side, with legs so far apart (m).
+fn hairpin(apart: f64) -> Vec<Vector2<f64>> {
+    polygon([[0.0, 0.0], [3.0, 0.0], [3.0, apart], [0.0, apart]])
 }
 
 fn length<const D: usize>(path: &[SVector<f64, D>]) -> f64 {
@@ -64,7 +36,7 @@ fn distance<const D: usize>(point: &SVector<f64, D>, path: &[SVector<f64, D>]) -
 }
 
 /// A walk along `v = -(J^T J)^-1 J^T u`: straight to the goal as the map sees it.
-struct Walk<const D: usize> {
+struct Descent<const D: usize> {
     positions: Vec<SVector<f64, D>>,
     /// Largest angle between the velocity and the straight direction to the goal (degrees).
     widest: f64,
@@ -78,7 +50,7 @@ fn walk<const D: usize>(
     psi: &Chain<f64, D>,
     start: SVector<f64, D>,
     goal: SVector<f64, D>,
-) -> Walk<D> {
+) -> Descent<D> {
     let target = psi.apply(&goal);
     let field = |position: &SVector<f64, D>| -> (f64, SVector<f64, D>) {
         let (image, jacobian) = psi.apply_with_jacobian(position);
@@ -92,7 +64,7 @@ fn walk<const D: usize>(
     let step = 0.01;
     let mut position = start;
     let (mut potential, mut velocity) = field(&position);
-    let mut walk = Walk {
+    let mut walk = Descent {
         positions: vec![start],
         widest: 0.0_f64,
         falling: true,
@@ -119,7 +91,7 @@ fn walk<const D: usize>(
 
 /// The figures of a path: straightened to less than 0.3 % of its length on the mean and 1.5 % at
 /// the most; departed from along the path; and walked within 1 % of its length to the goal.
-fn straightened_and_walked<const D: usize>(path: &[SVector<f64, D>]) -> Walk<D> {
+fn straightened_and_walked<const D: usize>(path: &[SVector<f64, D>]) -> Descent<D> {
     let Straightening {
         chain,
         mean_residual,
@@ -161,11 +133,16 @@ fn straightened_and_walked<const D: usize>(path: &[SVector<f64, D>]) -> Walk<D> 
 
 #[test]
 fn corner_hairpin_curves_and_arc_become_straight_and_are_walked() {
-    straightened_and_walked(&corner());
-    straightened_and_walked(&narrow_hairpin());
-    straightened_and_walked(&s_curve());
-    straightened_and_walked(&wide_s_curve());
-    straightened_and_walked(&rising_arc());
+    use std::f64::consts::{PI, TAU};
+    straightened_and_walked(&polygon([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]]));
+    straightened_and_walked(&hairpin(0.4));
+    straightened_and_walked(&curve(|t| Vector2::new(6.0 * t, 1.5 * (TAU * t).sin())));
+    // An S that swings out further than it advances, and three quarters of a turn of a helix.
+    straightened_and_walked(&curve(|t| Vector2::new(3.0 * (TAU * t).sin(), 4.0 * t)));
+    straightened_and_walked(&curve(|t| {
+        let (sin, cos) = (1.5 * PI * t).sin_cos();
+        Vector3::new(2.0 * cos, 2.0 * sin, 1.5 * t)
+    }));
 }
 
 /// The goal is 0.3 m short of the first leg: continued straight, the path would cross itself.
@@ -186,7 +163,7 @@ fn a_path_that_closes_in_on_itself() {
 /// No positive-definite matrix alone turns a velocity by more than 90 degrees.
 #[test]
 fn around_the_end_of_a_wall_and_back() {
-    let path = hairpin();
+    let path = hairpin(1.0);
     let walk = straightened_and_walked(&path);
     assert!(walk.widest > 120.0, "{}", walk.widest);
     // Never through the wall, which is at y = 0.5 from far left to x = 2.8.
@@ -201,7 +178,7 @@ fn around_the_end_of_a_wall_and_back() {
 
 #[test]
 fn from_beside_the_path_too_the_goal_is_reached() {
-    let path = hairpin();
+    let path = hairpin(1.0);
     let chain = Chain::straightening(&path, LAYERS).unwrap().chain;
     for start in [[0.0, -0.4], [1.5, 0.2], [3.6, 0.5], [-1.0, 0.0], [1.0, 2.0]] {
         let walk = walk(&chain, Vector2::from(start), path[3]);
@@ -212,7 +189,7 @@ fn from_beside_the_path_too_the_goal_is_reached() {
 
 #[test]
 fn the_same_path_gives_the_same_chain_in_any_unit_and_place() {
-    let path = hairpin();
+    let path = hairpin(1.0);
     let first = Chain::straightening(&path, 60).unwrap();
     assert_eq!(first, Chain::straightening(&path, 60).unwrap());
     let elsewhere: Vec<_> = path
@@ -225,7 +202,7 @@ fn the_same_path_gives_the_same_chain_in_any_unit_and_place() {
 
 #[test]
 fn in_single_precision_as_well() {
-    let path: Vec<_> = hairpin().iter().map(|p| p.cast::<f32>()).collect();
+    let path: Vec<_> = hairpin(1.0).iter().map(|p| p.cast::<f32>()).collect();
     let straightening = Chain::straightening(&path, LAYERS).unwrap();
     assert!(straightening.mean_residual < 0.07);
 }
@@ -255,14 +232,11 @@ fn what_is_no_path_is_refused() {
         length(2, f64::INFINITY)
     );
     assert_eq!(refused(&[[0.0, 0.0], [5e-324, 0.0]]), length(2, 5e-324));
-    assert!(matches!(
-        refused(&[[0.0, 0.0], [0.0, f64::INFINITY]]),
-        DynamicsError::NonFinitePath {
-            point: 1,
-            component: 1,
-            ..
-        }
-    ));
+    let infinite = refused(&[[0.0, 0.0], [0.0, f64::INFINITY]]).to_string();
+    assert!(
+        infinite.starts_with("component 1 of point 1 of the path is inf"),
+        "{infinite}"
+    );
     let DynamicsError::PathTurnsBack { along } =
         refused(&[[0.0, 0.0], [0.0, 2.0], [0.0, 1.0], [3.0, 1.0]])
     else {

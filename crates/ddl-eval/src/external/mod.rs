@@ -52,7 +52,7 @@ use std::str::FromStr;
 
 use ddl_data::{UnknownName, Window};
 
-pub use error::{ExternalError, ExternalProblem};
+pub use error::ExternalError;
 pub use matched::{Coverage, Matched};
 pub use measure::measure;
 pub use write::{write_forecasts, write_windows};
@@ -118,7 +118,7 @@ impl FromStr for ExternalFormat {
 /// Reads a file of forecasts and matches it with windows.
 ///
 /// # Errors
-/// The file cannot be read; a line is wrong ([`ExternalProblem`] says what, the error says where); or, unless
+/// The file cannot be read; a line is wrong (the error says where, and what); or, unless
 /// [`Coverage::Intersection`] is asked for, a pedestrian has no forecast, or a forecast belongs to no pedestrian of the windows.
 pub fn read(
     path: &Path,

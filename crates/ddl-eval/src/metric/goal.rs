@@ -34,26 +34,3 @@ pub fn goal_fde(scene: &Scene<'_>, i: usize) -> Option<f64> {
         .map(|k| scene.forecast().goal(i, k).map(|goal| distance(goal, end)))
         .try_fold(f64::INFINITY, |least, d| d.map(|d| least.min(d)))
 }
-
-#[cfg(test)]
-mod tests {
-    use approx::assert_relative_eq;
-
-    use super::*;
-    use crate::{
-        Forecast,
-        fixture::{walk, window},
-    };
-
-    #[test]
-    fn the_nearest_goal_counts_whatever_its_weight() {
-        let window = window(&[[0.0, 0.0]], &[[0.5, 0.0]]);
-        let walks = [walk([0.0; 2], [0.5, 0.0]), walk([0.0; 2], [0.5, 0.0])].concat();
-        let goals = Some(vec![[0.0, 0.0], [6.0, 0.25]]);
-        let forecast = Forecast::new(1, 2, walks.clone(), vec![0.9, 0.1], goals).unwrap();
-        let fde = goal_fde(&Scene::new(&window, &forecast).unwrap(), 0);
-        assert_relative_eq!(fde.unwrap(), 0.25, epsilon = 1e-12);
-        let without = Forecast::equally_likely(1, 2, walks).unwrap();
-        assert_eq!(goal_fde(&Scene::new(&window, &without).unwrap(), 0), None);
-    }
-}

@@ -54,29 +54,3 @@ fn least_scene_mean(
         .map(|k| (0..n).map(|i| of(errors, i)[k]).sum::<f64>() / n as f64)
         .fold(f64::INFINITY, f64::min)
 }
-
-#[cfg(test)]
-mod tests {
-    use approx::assert_relative_eq;
-
-    use super::*;
-    use crate::{
-        Scene,
-        fixture::{forecast, walk, window},
-    };
-
-    /// Hypothesis 0 is right about the first pedestrian and 2 m off about the second, hypothesis 1 is 1 m
-    /// off about the first and right about the second: each pedestrian's own minimum is 0, the scene's
-    /// best is hypothesis 1 with (1 + 0) / 2.
-    #[test]
-    fn one_index_serves_the_whole_scene() {
-        let step = [0.5, 0.0];
-        let window = window(&[[0.0, 0.0], [0.0, 9.0]], &[step, step]);
-        let walks = [[0.0, 0.0], [0.0, 1.0], [0.0, 11.0], [0.0, 9.0]].map(|at| walk(at, step));
-        let forecast = forecast(2, &walks);
-        let errors = DisplacementErrors::of(&Scene::new(&window, &forecast).unwrap());
-        assert_relative_eq!(errors.min_ade(0) + errors.min_ade(1), 0.0);
-        assert_relative_eq!(joint_ade(&errors), 0.5);
-        assert_relative_eq!(joint_fde(&errors), 0.5);
-    }
-}

@@ -211,47 +211,13 @@ fn a_rounding_error_moves_goals_by_as_much() {
     }
 }
 
-/// Everybody walks on at 1 m/s, but one in four stops after 4 s: the weights say so.
-#[test]
-fn weights_are_shares_of_how_alike_walkers_went_on() {
-    let track = |i: u32| -> Track {
-        let (stops, heading) = (i.is_multiple_of(4), 0.3_f64);
-        let (sin, cos) = heading.sin_cos();
-        let steps = (0..20).map(|s| {
-            if stops {
-                f64::from(s.min(10))
-            } else {
-                f64::from(s)
-            }
-        });
-        steps.map(|s| [0.4 * s * cos, 0.4 * s * sin]).collect()
-    };
-    let params = GoalEstimatorParams::default().clusters(2);
-    let estimator = tracks::estimator(params, (0..400).map(track).collect());
-    let goals = estimator.estimate(&track(1)).unwrap();
-    assert!(
-        (goals.weights()[0] - 0.75).abs() < 1e-3,
-        "{:?}",
-        goals.weights()
-    );
-    let (sin, cos) = 0.3_f64.sin_cos();
-    for (goal, far) in goals.goals().iter().zip([7.6, 4.0]) {
-        assert!(distance(*goal, [far * cos, far * sin]) < 1e-4, "{goal:?}");
-    }
-}
-
 #[test]
 fn bad_input_is_refused_by_name() {
     let params = GoalEstimatorParams::published().experts(401);
     let library_of = ExpertLibrary::new(library(), 0.4).unwrap();
     let error = GoalEstimator::new(params.check().unwrap(), library_of).unwrap_err();
-    assert_eq!(
-        error,
-        GoalError::TooFewTracks {
-            tracks: 400,
-            experts: 401
-        }
-    );
+    let (tracks, experts) = (400, 401);
+    assert_eq!(error, GoalError::TooFewTracks { tracks, experts });
 
     let estimator = estimator(GoalEstimatorParams::default());
     let track = walk(1.0, 0.0, 0.0);
@@ -259,27 +225,20 @@ fn bad_input_is_refused_by_name() {
     let all = GoalEstimatorParams::default().experts(1_000);
     let goals = tracks::estimator(all, library()).estimate(&track);
     assert_eq!(goals.unwrap().goals().len(), 20);
-    let short = TrackError::TooShort {
-        found: 7,
-        needed: 8,
-    };
-    assert_eq!(
-        estimator.estimate(&track[..7]),
-        Err(GoalError::Track(short.clone()))
-    );
-    let source = Box::new(GoalError::Track(short));
+    let (found, needed) = (7, 8);
+    let short = GoalError::Track(TrackError::TooShort { found, needed });
+    assert_eq!(estimator.estimate(&track[..7]), Err(short.clone()));
+    let source = Box::new(short);
     let batch = estimator.estimate_batch(&[&track, &track[..7]]);
     assert_eq!(batch, Err(GoalError::BatchTrack { index: 1, source }));
     let far = [[0.0, 0.0], [1e308, 0.0]].repeat(4);
-    assert!(matches!(
-        estimator.estimate(&far),
-        Err(GoalError::Track(TrackError::VelocityOverflow { .. }))
-    ));
+    let error = estimator.estimate(&far).unwrap_err().to_string();
+    assert!(error.contains("too long for a velocity"), "{error}");
     let mut broken = track;
     broken[3][1] = f64::NAN;
     assert_eq!(
         estimator.estimate(&broken).unwrap_err().to_string(),
         "the observed track: position 3 is (1.2000000000000002, NaN): must be finite"
     );
-    assert_eq!(estimator.params().query(), QuerySpan::Observed);
+    assert_eq!(estimator.params().query, QuerySpan::Observed);
 }

@@ -1,7 +1,7 @@
 //! Size and constants of the forecasting network.
 
 use super::backbone_kind::BackboneKind;
-use super::range::require;
+use super::range::{positive, require};
 use super::variant::Variant;
 use crate::NetworkError;
 use serde::{Deserialize, Serialize};
@@ -155,46 +155,29 @@ impl StarConfig {
     /// # Errors
     /// [`NetworkError::Config`] naming the first field that is out of range.
     pub fn check(&self) -> Result<(), NetworkError> {
-        let positive = [
+        let counts = [
             ("model_width", self.model_width),
             ("heads", self.heads),
             ("feed_forward_width", self.feed_forward_width),
             ("spatial_layers", self.spatial_layers as i64),
             ("noise_width", self.noise_width),
         ];
-        for (field, value) in positive {
-            require(
-                value > 0 && value <= 65_536,
-                field,
-                &value,
-                "a whole number in 1..=65536",
-            )?;
+        for (field, value) in counts {
+            let holds = (1..=65_536).contains(&value);
+            require(holds, field, &value, "a whole number in 1..=65536")?;
         }
+        let (heads, layers) = (self.heads, self.spatial_layers);
+        require(heads <= MOST_HEADS, "heads", &heads, "at most 256")?;
         require(
-            self.heads <= MOST_HEADS,
-            "heads",
-            &self.heads,
-            "at most 256",
-        )?;
-        let numbers = self.layer_numbers();
-        require(
-            numbers <= MOST_LAYER_NUMBERS,
+            self.layer_numbers() <= MOST_LAYER_NUMBERS,
             "feed_forward_width",
             &self.feed_forward_width,
             "so that a layer has at most 2^24 weights",
         )?;
-        require(
-            self.spatial_layers <= MOST_LAYERS,
-            "spatial_layers",
-            &self.spatial_layers,
-            "at most 64",
-        )?;
-        require(
-            self.model_width % self.heads == 0,
-            "heads",
-            &self.heads,
-            "must divide model_width",
-        )?;
+        let few = layers <= MOST_LAYERS;
+        require(few, "spatial_layers", &layers, "at most 64")?;
+        let divides = self.model_width % heads == 0;
+        require(divides, "heads", &heads, "must divide model_width")?;
         require(
             self.frame == Frame::World || self.variant.goal_shift(),
             "frame",
@@ -202,25 +185,11 @@ impl StarConfig {
             "world for the variants without goal shift",
         )?;
         let dropout = self.spatial_dropout;
-        require(
-            (0.0..1.0).contains(&dropout),
-            "spatial_dropout",
-            &dropout,
-            "in [0, 1)",
-        )?;
-        for (field, value) in [
-            ("neighbour_box", self.neighbour_box),
-            ("sigma", self.sigma),
-            ("time_step", self.time_step),
-        ] {
-            require(
-                value.is_finite() && value > 0.0,
-                field,
-                &value,
-                "finite and positive",
-            )?;
-        }
-        Ok(())
+        let holds = (0.0..1.0).contains(&dropout);
+        require(holds, "spatial_dropout", &dropout, "in [0, 1)")?;
+        positive("neighbour_box", self.neighbour_box)?;
+        positive("sigma", self.sigma)?;
+        positive("time_step", self.time_step)
     }
 }
 
@@ -248,26 +217,24 @@ mod tests {
 
     #[test]
     fn published_sizes_are_accepted_and_broken_ones_named() {
-        let good = StarConfig::published(Variant::Full);
-        good.check().unwrap();
-        let bad = StarConfig {
-            heads: 5,
-            ..good.clone()
+        let refused = |change: &dyn Fn(&mut StarConfig), said: &str| {
+            let mut config = StarConfig::published(Variant::Full);
+            config.check().unwrap();
+            change(&mut config);
+            let error = config.check().unwrap_err().to_string();
+            assert!(error.contains(said), "{error}");
         };
-        assert!(bad.check().unwrap_err().to_string().contains("heads = 5"));
-        let too_many = StarConfig {
-            model_width: 512,
-            heads: 512,
-            ..good.clone()
-        };
-        assert!(too_many.check().unwrap_err().to_string().contains("heads"));
-        let too_wide = StarConfig {
-            model_width: 65_536,
-            feed_forward_width: 65_536,
-            ..good.clone()
-        };
-        assert!(too_wide.check().is_err());
-        let bad = StarConfig { sigma: 0.0, ..good };
-        assert!(bad.check().unwrap_err().to_string().contains("sigma"));
+        refused(&|config| config.heads = 5, "heads = 5");
+        refused(
+            &|config| (config.model_width, config.heads) = (512, 512),
+            "heads = 512",
+        );
+        refused(
+            &|config| config.model_width = 65_536,
+            "at most 2^24 weights",
+        );
+        refused(&|config| config.spatial_layers = 65, "at most 64");
+        refused(&|config| config.spatial_dropout = 1.0, "in [0, 1)");
+        refused(&|config| config.sigma = 0.0, "sigma");
     }
 }

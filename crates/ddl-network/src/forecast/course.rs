@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 /// Everybody in every hypothesis, metres.
 #[derive(Debug)]
-pub(super) struct Course {
+pub(super) struct BatchCourse {
     /// `[8, P]`.
     observed: Vec<[f32; 2]>,
     scenes: Arc<Scenes>,
@@ -46,7 +46,7 @@ pub(super) struct Course {
     dynamics: bool,
 }
 
-impl Course {
+impl BatchCourse {
     /// Everybody at the last observed time step.
     pub(super) fn new(batch: &ForecastBatch<'_>, config: &StarConfig) -> Self {
         let (pedestrians, hypotheses) = (batch.pedestrians(), batch.hypotheses());

@@ -2,10 +2,10 @@
 
 use super::backend::TorchBackend;
 use super::batch::SceneBatch;
-use super::course::Course;
 use super::emission::NoiseInput;
 use super::flow::{FlowConstants, StepBounds};
 use super::goal_frame::GoalFrame;
+use super::guidance::Guidance;
 use super::network::TorchNetwork;
 use super::own_motion;
 use super::tensor_backend::{Pass, TensorBackend};
@@ -205,7 +205,7 @@ impl TorchNetwork {
     /// # Shapes
     /// `batch` of at least 8 frames, unless the network reads positions relative to the goal in the world's frame; `goals`
     /// `[.., P, 2]`.
-    fn course(&self, batch: &SceneBatch, goals: &Tensor, rule: StepRule) -> Course {
+    fn course(&self, batch: &SceneBatch, goals: &Tensor, rule: StepRule) -> Guidance {
         let config = self.config();
         let time_step = config.time_step;
         let observed = || batch.positions.narrow(0, 0, OBSERVED as i64);
@@ -219,7 +219,7 @@ impl TorchNetwork {
             Frame::World => None,
             Frame::Goal => Some(GoalFrame::new(&observed(), &goals, time_step)),
         };
-        Course {
+        Guidance {
             reference: if config.variant.goal_shift() {
                 goals
             } else {

@@ -7,7 +7,7 @@ use tch::Tensor;
 
 /// What the walkers of a batch are told of where they go, and what their output means there.
 #[derive(Debug)]
-pub(super) struct Course {
+pub(super) struct Guidance {
     /// What temporal positions are relative to, `[G or 1, P, 2]`: the goal, or the last observed position.
     pub(super) reference: Tensor,
     /// The frame they are read in; `None` for that of the world.
@@ -18,7 +18,7 @@ pub(super) struct Course {
     pub(super) bounds: Option<StepBounds>,
 }
 
-impl Course {
+impl Guidance {
     /// Positions as the temporal encoder reads them, with the velocity since the positions `before` where there is a frame.
     ///
     /// # Shapes
