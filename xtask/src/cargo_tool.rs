@@ -110,19 +110,13 @@ mod tests {
         version_call: &["--version"],
     };
 
-    #[test]
-    fn only_the_pinned_version_is_trusted() {
-        let folder = tempfile::tempdir().unwrap();
-        assert!(!TOOL.is_pinned(&TOOL.program_in(folder.path())));
-        assert!(!TOOL.is_pinned(Path::new("sh")));
-    }
-
     #[cfg(unix)]
     #[test]
     fn a_program_is_known_by_what_it_says() {
         use std::fs;
         use std::os::unix::fs::PermissionsExt as _;
         let folder = tempfile::tempdir().unwrap();
+        assert!(!TOOL.is_pinned(&TOOL.program_in(folder.path())));
         for (says, pinned) in [
             ("hammer 1.2.3", true),
             ("hammer v1.2.3", true),
