@@ -9,14 +9,14 @@ use crate::exp2::{Lanes, STRIP};
 use crate::grid::{Grid, Strip};
 use crate::log_domain::Gradients;
 use crate::scalar::Scalar;
-use crate::wavefront::Record;
+use crate::wavefront::StepRecord;
 
 /// For each step of each strip, in order, the shares that the three ways into its cells have in them.
 struct Shares {
     steps: Vec<[Lanes; 3]>,
 }
 
-impl Record for Shares {
+impl StepRecord for Shares {
     #[inline(always)]
     fn step(&mut self, addends: &[Lanes; 3], sums: &Lanes) {
         let mut shares = *addends;

@@ -47,7 +47,7 @@ const SHORT: usize = 32;
 const STRETCH: usize = 128;
 
 /// Receives what the backward recursion needs of each step of each strip.
-pub(crate) trait Record {
+pub(crate) trait StepRecord {
     /// The addends of each cell, from (i−1, j−1), (i−1, j) and (i, j−1), and their sums.
     fn step(&mut self, addends: &[Lanes; 3], sums: &Lanes);
 
@@ -58,7 +58,7 @@ pub(crate) trait Record {
 /// Keeps nothing.
 pub(crate) struct Forget;
 
-impl Record for Forget {
+impl StepRecord for Forget {
     #[inline(always)]
     fn step(&mut self, _: &[Lanes; 3], _: &Lanes) {}
 
@@ -67,7 +67,7 @@ impl Record for Forget {
 
 impl<T: Scalar, const D: usize> Grid<'_, T, D> {
     /// The soft-DTW value, or `None` where costs are so large against γ that the log domain must be used.
-    pub(crate) fn value(&self, record: &mut impl Record) -> Option<f64> {
+    pub(crate) fn value(&self, record: &mut impl StepRecord) -> Option<f64> {
         let scale = std::f64::consts::LOG2_E / self.gamma;
         if !scale.is_finite() {
             return None;
@@ -105,7 +105,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         scale: f64,
         limit: f64,
         row: &mut [W::One],
-        record: &mut impl Record,
+        record: &mut impl StepRecord,
     ) -> Option<(f64, f64)> {
         let mut largest = [0.0; STRIP];
         for index in 0..self.strips() {
@@ -146,7 +146,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         scale: f64,
         row: &mut [W::One],
         largest: &mut Lanes,
-        record: &mut impl Record,
+        record: &mut impl StepRecord,
     ) {
         let (start, end) = (strip.start, strip.end);
         let row = &mut row[..end + STRIP];

@@ -18,7 +18,7 @@ use ddl_simd::InstructionSet;
 use ddl_simd::{Dispatch, Lanes};
 use dropout::WeightDecisions;
 use forward::SceneForward;
-use queries::{SceneBuffers, Task};
+use queries::{SceneBuffers, SceneTask};
 
 /// Multiplications that take as long as a pair of a query and a key.
 const WORK_OF_A_PAIR: usize = 50;
@@ -184,7 +184,7 @@ impl AmongPedestrians {
         frames.pairs(entries) * self.heads.groups() * self.heads.quads() * WORK_OF_A_PAIR
     }
 
-    /// [`Task::normalisers`] of all scenes of an entry.
+    /// [`SceneTask::normalisers`] of all scenes of an entry.
     fn normalisers(&self, frames: Frames<'_>) -> usize {
         let ranges = frames.scenes().ranges().iter();
         self.heads.groups() * ranges.map(|range| range.len().div_ceil(2)).sum::<usize>()
@@ -212,13 +212,13 @@ impl AmongPedestrians {
         qkv: &'a [f32],
         frames: Frames<'a>,
         dropout: Option<Dropout>,
-    ) -> impl Iterator<Item = (&'a [f32], Task<'a>)> {
+    ) -> impl Iterator<Item = (&'a [f32], SceneTask<'a>)> {
         let (heads, decisions) = (self.heads, dropout.and_then(WeightDecisions::new));
         let row = 3 * heads.row();
         let entries = qkv.chunks_exact(frames.scenes().pedestrians() * row);
         entries.enumerate().flat_map(move |(entry, qkv)| {
             frames.of_entry(entry).map(move |scene| {
-                let task = Task {
+                let task = SceneTask {
                     scene,
                     entry,
                     decisions,

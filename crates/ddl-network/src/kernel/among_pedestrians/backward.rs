@@ -7,7 +7,7 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use super::queries::{SceneBuffers, Task, UNSEEN, dot};
+use super::queries::{SceneBuffers, SceneTask, UNSEEN, dot};
 use crate::kernel::heads::HeadPart;
 use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, Lanes, Simd, Vectors, ZERO_QUAD};
@@ -15,7 +15,7 @@ use ddl_simd::{DEPTH, Kernel, Lanes, Simd, Vectors, ZERO_QUAD};
 /// The rows of one scene.
 #[derive(Debug)]
 pub(super) struct SceneBackward<'a> {
-    pub(super) task: Task<'a>,
+    pub(super) task: SceneTask<'a>,
     pub(super) qkv: &'a [f32],
     pub(super) mixed: &'a [f32],
     /// By group of heads and two queries.
@@ -118,7 +118,7 @@ impl Buffered<'_, SceneBackward<'_>, SceneBuffers> {
 fn weigh<S: Simd, const DROP: bool>(
     simd: S,
     buffers: &mut SceneBuffers,
-    task: &Task<'_>,
+    task: &SceneTask<'_>,
     key: usize,
     quads: usize,
 ) {

@@ -2,7 +2,7 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use super::queries::{LARGE, SceneBuffers, Task, UNSEEN, dot};
+use super::queries::{LARGE, SceneBuffers, SceneTask, UNSEEN, dot};
 use crate::kernel::heads::HeadPart;
 use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, Lanes, Quad, Simd};
@@ -10,7 +10,7 @@ use ddl_simd::{DEPTH, Kernel, Lanes, Quad, Simd};
 /// The rows of one scene.
 #[derive(Debug)]
 pub(super) struct SceneForward<'a> {
-    pub(super) task: Task<'a>,
+    pub(super) task: SceneTask<'a>,
     pub(super) qkv: &'a [f32],
     pub(super) mixed: &'a mut [f32],
     /// By group of heads and two queries.

@@ -9,14 +9,14 @@ use ddl_simd::{LANES, Lanes, Quad, Simd, ZERO_QUAD};
 
 /// One scene in one batch entry.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Task<'a> {
+pub(super) struct SceneTask<'a> {
     pub(super) scene: SceneCodes<'a>,
     pub(super) entry: usize,
     pub(super) decisions: Option<WeightDecisions>,
     pub(super) heads: Heads,
 }
 
-impl Task<'_> {
+impl SceneTask<'_> {
     /// Groups of heads times pairs of queries.
     pub(super) fn normalisers(&self) -> usize {
         self.heads.groups() * self.scene.pedestrians.div_ceil(2)
@@ -100,7 +100,7 @@ impl SceneBuffers {
     pub(super) fn load<S: Simd>(
         &mut self,
         simd: S,
-        task: &Task<'_>,
+        task: &SceneTask<'_>,
         qkv: &[f32],
         group: usize,
         quads: usize,
