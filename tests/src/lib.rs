@@ -6,7 +6,6 @@
 
 pub mod answer;
 pub mod bits;
-#[path = "../../xtask/src/site/console.rs"]
 pub mod console;
 pub mod crowd;
 pub mod example;

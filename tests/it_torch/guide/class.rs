@@ -7,35 +7,20 @@ use ddl_tests::recordings;
 /// Commands that take minutes, by page and how they begin: they are begun.
 pub(super) const LONG: &[(&str, &str)] = &[
     (
-        "docs/guide/src/training.md",
+        "docs/training.md",
         "ddl train --data recordings --out runs/own",
     ),
-    ("docs/guide/src/training.md", "ddl train --fold zara1"),
-    (
-        "docs/guide/src/training.md",
-        "ddl evaluate --model runs/zara1",
-    ),
-    ("crates/ddl-cli/README.md", "ddl evaluate --fold zara1"),
-    ("crates/ddl-cli/README.md", "ddl train --data recordings"),
-    ("crates/ddl-cli/README.md", "ddl evaluate --model runs/own"),
-    ("crates/ddl-cli/README.md", "ddl forecast --model runs/own"),
-    (
-        "crates/ddl-cli/README.md",
-        "ddl evaluate --model runs/without-lobby",
-    ),
-    ("crates/ddl-cli/README.md", "ddl train --fold zara1"),
-    (
-        "crates/ddl-cli/README.md",
-        "ddl train --convention simulated",
-    ),
-    (
-        "crates/ddl-cli/README.md",
-        "ddl train --fold eth --only-goals",
-    ),
-    (
-        "crates/ddl-cli/README.md",
-        "ddl goals --model runs/eth --measure",
-    ),
+    ("docs/training.md", "ddl train --fold zara1"),
+    ("docs/training.md", "ddl evaluate --model runs/zara1"),
+    ("docs/program.md", "ddl evaluate --fold zara1"),
+    ("docs/program.md", "ddl train --data recordings"),
+    ("docs/program.md", "ddl evaluate --model runs/own"),
+    ("docs/program.md", "ddl forecast --model runs/own"),
+    ("docs/program.md", "ddl evaluate --model runs/without-lobby"),
+    ("docs/program.md", "ddl train --fold zara1"),
+    ("docs/program.md", "ddl train --convention simulated"),
+    ("docs/program.md", "ddl train --fold eth --only-goals"),
+    ("docs/program.md", "ddl goals --model runs/eth --measure"),
 ];
 
 /// Commands that another machine or another tool is needed for, by page and how they begin.
@@ -67,7 +52,7 @@ pub(super) const ELSEWHERE: &[(&str, &str, &str)] = &[
         "reads what the line before wrote",
     ),
     (
-        "docs/guide/src/rust.md",
+        "docs/rust.md",
         "eval \"$(cargo xtask env)\"",
         "sets up a shell for a program elsewhere",
     ),

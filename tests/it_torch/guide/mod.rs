@@ -1,7 +1,7 @@
 //! Every command that the documentation shows is run, as far as a test can run it.
 //!
 //! Whatever is not named below runs to its end and must answer as its page says. Calls of `cargo xtask` are held to its own
-//! arguments by a test of xtask (`xtask/src/site/console_tests.rs`).
+//! arguments by a test of xtask (`xtask/src/command/docs.rs`).
 
 mod class;
 mod python;
@@ -25,20 +25,20 @@ macro_rules! pages {
 }
 
 pages! {
-    the_first_page: "docs/guide/src/index.md",
-    start: "docs/guide/src/start.md",
-    own_data: "docs/guide/src/own-data.md",
-    python_page: "docs/guide/src/python.md",
-    rust: "docs/guide/src/rust.md",
-    robots: "docs/guide/src/robots.md",
-    troubleshooting: "docs/guide/src/troubleshooting.md",
-    training: "docs/guide/src/training.md",
-    extending: "docs/guide/src/extending.md",
+    the_first_page: "docs/index.md",
+    start: "docs/start.md",
+    own_data: "docs/own-data.md",
+    python_page: "docs/python.md",
+    rust: "docs/rust.md",
+    robots: "docs/robots.md",
+    troubleshooting: "docs/troubleshooting.md",
+    training: "docs/training.md",
+    extending: "docs/extending.md",
     your_model: "docs/your-model.md",
     readme: "README.md",
-    readme_of_the_program: "crates/ddl-cli/README.md",
+    the_program: "docs/program.md",
     readme_of_the_facade: "crates/ddl/README.md",
-    readme_of_the_recordings: "datasets/README.md",
+    recordings_page: "docs/recordings.md",
 }
 
 fn checkout() -> PathBuf {
@@ -112,7 +112,7 @@ fn check_cargo(page: &str, command: &Command) {
     }
 }
 
-/// Pages of `docs/` that the guide brings in, and the READMEs of crates that show no program.
+/// The other pages of `docs/`, and the READMEs of crates that show no program.
 fn pages_of_measurements() -> Vec<String> {
     let root = checkout();
     let files = |folder: &Path| {
@@ -122,7 +122,6 @@ fn pages_of_measurements() -> Vec<String> {
             .collect::<Vec<_>>()
     };
     let mut pages: Vec<PathBuf> = files(&root.join("docs"));
-    pages.extend(files(&root.join("docs/guide/src")));
     pages.extend(
         files(&root.join("crates"))
             .into_iter()

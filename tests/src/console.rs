@@ -1,6 +1,6 @@
 //! Commands on the pages of the documentation: what a reader types, and what the page says is answered.
 //!
-//! `ddl-tests`, which runs them, includes this very file (`tests/src/lib.rs`), because it may not depend on this program.
+//! `xtask`, which depends on no crate of the workspace, includes this very file to check the calls of `cargo xtask`.
 
 #![allow(
     unreachable_pub,
