@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 use crate::{
     error::{DynamicsError, ensure_finite},
-    polar::polar,
+    polar::polar_way,
     real::Real,
 };
 
@@ -133,14 +133,7 @@ impl<T: Real, const D: usize> Attractor<T, D> {
     /// either kind of potential.
     #[inline]
     pub fn distance_and_direction(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
-        let (distance, direction) = polar(&self.offset(position));
-        if distance.is_finite() {
-            return (distance, direction);
-        }
-        // The offset of two finite points can overflow; half of it cannot.
-        let half = T::rounded(0.5);
-        let (half_distance, direction) = polar(&(position * half - self.goal * half));
-        (half_distance + half_distance, direction)
+        polar_way(&self.goal, position)
     }
 }
 

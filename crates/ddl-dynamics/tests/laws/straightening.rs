@@ -135,7 +135,7 @@ fn a_path_that_closes_in_on_itself() {
 }
 
 /// The goal is 1 m away behind a wall: the way to it begins, and goes on for metres, away from it.
-/// No positive-definite matrix alone turns a velocity by more than 90 degrees.
+/// No positive-definite matrix alone turns a velocity by more than 90 degrees. From beside the path too it is reached.
 #[test]
 fn around_the_end_of_a_wall_and_back() {
     let path = hairpin(1.0);
@@ -143,17 +143,12 @@ fn around_the_end_of_a_wall_and_back() {
     assert!(way.widest > 120.0, "{}", way.widest);
     // Never through the wall, which is at y = 0.5 from far left to x = 2.8.
     for pair in way.positions.windows(2) {
-        if (pair[0].y < 0.5) != (pair[1].y < 0.5) {
-            assert!(pair[1].x > 2.8, "{}", pair[1]);
-        }
+        assert!(
+            (pair[0].y < 0.5) == (pair[1].y < 0.5) || pair[1].x > 2.8,
+            "{}",
+            pair[1]
+        );
     }
-    let farthest = way.positions.iter().map(|p| p.x).fold(0.0, f64::max);
-    assert!(farthest > 2.8, "{farthest}");
-}
-
-#[test]
-fn from_beside_the_path_too_the_goal_is_reached() {
-    let path = hairpin(1.0);
     let chain = Chain::straightening(&path, LAYERS).unwrap().chain;
     for start in [[0.0, -0.4], [1.5, 0.2], [3.6, 0.5], [-1.0, 0.0], [1.0, 2.0]] {
         let missed = descended(&chain, Vector2::from(start), &path).missed;
