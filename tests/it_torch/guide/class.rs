@@ -11,31 +11,16 @@ pub(super) const LONG: &[(&str, &str)] = &[
         "ddl train --data recordings --out runs/own",
     ),
     ("docs/training.md", "ddl train --fold zara1"),
-    (
-        "docs/training.md",
-        "ddl evaluate --model runs/zara1",
-    ),
+    ("docs/training.md", "ddl evaluate --model runs/zara1"),
     ("docs/program.md", "ddl evaluate --fold zara1"),
     ("docs/program.md", "ddl train --data recordings"),
     ("docs/program.md", "ddl evaluate --model runs/own"),
     ("docs/program.md", "ddl forecast --model runs/own"),
-    (
-        "docs/program.md",
-        "ddl evaluate --model runs/without-lobby",
-    ),
+    ("docs/program.md", "ddl evaluate --model runs/without-lobby"),
     ("docs/program.md", "ddl train --fold zara1"),
-    (
-        "docs/program.md",
-        "ddl train --convention simulated",
-    ),
-    (
-        "docs/program.md",
-        "ddl train --fold eth --only-goals",
-    ),
-    (
-        "docs/program.md",
-        "ddl goals --model runs/eth --measure",
-    ),
+    ("docs/program.md", "ddl train --convention simulated"),
+    ("docs/program.md", "ddl train --fold eth --only-goals"),
+    ("docs/program.md", "ddl goals --model runs/eth --measure"),
 ];
 
 /// Commands that another machine or another tool is needed for, by page and how they begin.
