@@ -1,6 +1,6 @@
 //! `ddl train --recipe`: which network is made and how it is trained, as `config.json` says it.
 
-use ddl::network::{Frame, Objective, StarConfig, TrainingConfig};
+use ddl::network::{NetworkFrame, Objective, StarConfig, TrainingConfig};
 use ddl::{RunConfig, RunDirectory, Variant};
 use ddl_tests::program;
 
@@ -28,7 +28,7 @@ fn the_recommended_recipe_is_the_default() {
     assert_eq!(full, begun_with(""));
     assert_eq!(
         (full.star.frame, full.star.feed_forward_width),
-        (Frame::Goal, 128)
+        (NetworkFrame::Goal, 128)
     );
     assert_eq!(full.training.objective, Objective::Walk);
 }
@@ -41,7 +41,7 @@ fn the_published_recipe_is_the_papers() {
     // the numbers of the paper, whatever the constructors say
     assert_eq!(
         (config.star.frame, config.star.feed_forward_width),
-        (Frame::World, 2048)
+        (NetworkFrame::World, 2048)
     );
     assert_eq!(config.training.objective, Objective::NextStep);
     assert_eq!(

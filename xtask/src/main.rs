@@ -9,6 +9,7 @@
 //! | `libtorch` | which libtorch is pinned, where it lies, how to get it, how cargo is told |
 //! | `data` | which recordings are pinned, where they lie, how to get them |
 //! | `site` | the documentation site: what it is made of, and that its links lead somewhere |
+//! | `cache` | what is kept from one call to the next |
 //! | `browser` | where a browser is or how to get one, and what drives it |
 //! | `cargo_tool` | programs of other people that checks run, one pinned version each |
 //! | `tidy` | house rules that no other tool checks |
@@ -18,6 +19,7 @@
 )]
 
 mod browser;
+mod cache;
 mod cargo_tool;
 mod command;
 mod data;

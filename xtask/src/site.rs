@@ -5,6 +5,7 @@
 
 mod api;
 mod check;
+mod page;
 
 use std::fmt::Write as _;
 use std::fs;

@@ -51,7 +51,7 @@ impl Dataset {
     pub fn simulated(seed: u64) -> Self {
         let recordings = simulate::CrowdScene::ALL
             .into_iter()
-            .map(|scene| scene.simulate(seed).into_recording())
+            .map(|scene| scene.simulate(seed).recording)
             .collect();
         Self {
             convention: Convention::Simulated,

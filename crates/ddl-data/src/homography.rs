@@ -15,14 +15,6 @@ const SIZE: usize = 3;
 ///
 /// With H the matrix, a pixel (u, v), column and row, is the place (X / W, Y / W) where (X, Y, W) = H (u, v, 1): what
 /// `findHomography(pixels, metres)` of `OpenCV` returns. The `H.txt` of the ETH recordings counts (row, column): swap its first two columns.
-///
-/// ```
-/// use ddl_data::Homography;
-///
-/// let ground: Homography = "0.02 0 -6.4\n0 -0.02 4.8\n0 0 1".parse()?;
-/// assert_eq!(ground.apply([320.0, 240.0]), Some([0.0, 0.0]));
-/// # Ok::<(), ddl_data::HomographyError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "[[f64; SIZE]; SIZE]")]
 pub struct Homography([[f64; SIZE]; SIZE]);

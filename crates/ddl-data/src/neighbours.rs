@@ -6,13 +6,6 @@ use crate::Position;
 pub const NEIGHBOUR_HALF_WIDTH: f64 = 10.0;
 
 /// Which of N pedestrians are neighbours of which: a symmetric N x N relation without the diagonal. Indices out of range panic.
-///
-/// ```
-/// use ddl_data::NeighbourMask;
-/// let mask = NeighbourMask::within_box(&[[0.0, 0.0], [3.0, -4.0], [0.0, 10.5]], 10.0);
-/// assert!(mask.is_neighbour(0, 1) && !mask.is_neighbour(0, 2) && !mask.is_neighbour(1, 1));
-/// assert_eq!(mask.pairs().collect::<Vec<_>>(), [(0, 1), (1, 0)]);
-/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NeighbourMask {
     count: usize,

@@ -56,21 +56,6 @@ impl Recording {
     ///
     /// # Errors
     /// [`RateError`] where the time is not positive, observations are more than 1.2 s apart, or frames leave their range.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_data::{Observation, PedestrianId, Recording};
-    ///
-    /// let at = |frame: i64| Observation::new(frame, PedestrianId(1), [0.06 * frame as f64, 0.0]);
-    /// let film = Recording::new("film", 1, (0..=48).map(at).collect())?;
-    /// let steps = film.in_steps(1.0 / 24.0)?; // 9.6 frames a step
-    /// assert_eq!((steps.parts, steps.recording.frame_step()), (5, 48));
-    /// assert_eq!(steps.recording.frames(), [0, 48, 96, 144, 192, 240]);
-    /// let before_last = steps.recording.at(192)[0].position;
-    /// assert!((before_last[0] - 0.06 * 38.4).abs() < 1e-12);
-    /// assert_eq!(film.in_steps(1.0 / 25.0)?.recording.frame_step(), 10);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn in_steps(&self, frame_time: f64) -> Result<InSteps, RateError> {
         let frames = TIME_STEP / frame_time;
         if !(frames > 0.0 && frames <= FRAME_STEP_LIMIT as f64) {

@@ -20,16 +20,6 @@ pub(crate) const SOCIAL_GAN_FEWEST: usize = 2;
 ///
 /// Under every rule a pedestrian belongs to a window if present at each of its 20 steps; who
 /// arrives or leaves meanwhile is left out.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{Observation, PedestrianId, Recording, WindowRule};
-///
-/// let seen = |t: i64| Observation::new(10 * t, PedestrianId(3), [0.5 * t as f64, 1.0]);
-/// let recording = Recording::new("yard", 10, (0..23).map(seen).collect())?;
-/// assert_eq!(recording.windows(WindowRule::Complete).len(), 4); // they begin at steps 0 to 3
-/// # Ok::<(), ddl_data::RecordingError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]

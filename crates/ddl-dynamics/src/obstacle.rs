@@ -117,11 +117,20 @@ impl<T: Real, const D: usize> ObstacleSchedule<T, D> {
     pub fn new(steps: Vec<Vec<Ball<T, D>>>) -> Self {
         Self { steps }
     }
+    fn in_step(&self, step: usize) -> &[Ball<T, D>] {
+        let of_step = self.steps.get(step).or(self.steps.last());
+        of_step.map_or(&[], Vec::as_slice)
+    }
 }
 
 impl<T: Real, const D: usize> ObstacleSource<T, D> for ObstacleSchedule<T, D> {
     fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>] {
-        let of_step = self.steps.get(state.step).or(self.steps.last());
-        of_step.map_or(&[], Vec::as_slice)
+        self.in_step(state.step)
+    }
+}
+
+impl<T: Real, const D: usize> ObstacleSource<T, D> for &ObstacleSchedule<T, D> {
+    fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>] {
+        self.in_step(state.step)
     }
 }

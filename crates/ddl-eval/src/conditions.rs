@@ -115,10 +115,7 @@ impl ResultRow {
 
     /// The same for windows that are reduced to a part of their pedestrians: the forecaster is shown everybody of the whole
     /// windows, one each, and what it forecasts of that part is scored among everybody.
-    ///
-    /// # Errors
-    /// As [`ResultRow::measure`]; or a whole window is not that of the reduced one.
-    pub fn measure_among(
+    pub(crate) fn measure_among(
         conditions: Conditions,
         forecaster: &(impl Forecaster + ?Sized),
         windows: &[Window],
@@ -154,10 +151,7 @@ impl ResultRow {
     }
 
     /// The same for windows that are reduced to a part of their pedestrians.
-    ///
-    /// # Errors
-    /// As [`Scores::evaluate_among`].
-    pub fn score_among(
+    pub(crate) fn score_among(
         conditions: Conditions,
         windows: &[Window],
         everybody: &[Window],

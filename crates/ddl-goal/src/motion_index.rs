@@ -52,7 +52,7 @@ impl MotionIndex {
         if wanted == 0 {
             return Vec::new();
         }
-        let mut kept = Dispatch::detect().run_on_registers(Search {
+        let mut kept = Dispatch::detect().run_on_registers(NearestMotions {
             blocks: &self.blocks,
             query,
             wanted,
@@ -64,13 +64,13 @@ impl MotionIndex {
 }
 
 /// The keys of the nearest, and of some others.
-struct Search<'a> {
+struct NearestMotions<'a> {
     blocks: &'a [Block],
     query: &'a [f32; COMPONENTS],
     wanted: usize,
 }
 
-impl RegisterKernel for Search<'_> {
+impl RegisterKernel for NearestMotions<'_> {
     type Output = Vec<u64>;
 
     /// Plain loops, compiled for the instruction set: the same bits with each.

@@ -20,7 +20,7 @@ mod training_report;
 pub mod weights;
 
 pub use config::{
-    BackboneKind, Frame, LearningRateSchedule, Objective, ProposalConfig, ProposalTraining,
+    BackboneKind, LearningRateSchedule, NetworkFrame, Objective, ProposalConfig, ProposalTraining,
     StarConfig, TrainingConfig, Variant,
 };
 pub use device_choice::DeviceChoice;

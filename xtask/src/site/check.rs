@@ -1,11 +1,15 @@
 //! Every link inside the site leads to a page that is there, and to a place on it; nothing is loaded from elsewhere.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use html5gum::{DefaultEmitter, Token, Tokenizer};
+
+use super::page::{Page, Reference};
+
+/// Addresses that are no places.
+const OTHER_SCHEMES: [&str; 3] = ["data:", "javascript:", "mailto:"];
 
 /// What the check found.
 #[derive(Debug, Default)]
@@ -44,7 +48,10 @@ pub(super) fn check(site: &Path) -> Result<Checked> {
         for Reference { target, loaded } in &page.references {
             let what = if is_foreign(target) {
                 loaded.then_some("is loaded from elsewhere")
-            } else if target.starts_with("data:") || target.starts_with("javascript:") {
+            } else if OTHER_SCHEMES
+                .iter()
+                .any(|scheme| target.starts_with(scheme))
+            {
                 None
             } else {
                 checked.links += 1;
@@ -58,66 +65,6 @@ pub(super) fn check(site: &Path) -> Result<Checked> {
     checked.pages = pages.len();
     checked.faults.dedup();
     Ok(checked)
-}
-
-/// A reference of a page.
-#[derive(Debug)]
-struct Reference {
-    target: String,
-    /// The browser fetches it by itself, as a picture or a style.
-    loaded: bool,
-}
-
-/// What a page refers to, and what can be referred to on it.
-#[derive(Debug, Default)]
-struct Page {
-    references: Vec<Reference>,
-    anchors: BTreeSet<String>,
-    /// The page that a browser goes on to at once.
-    redirect: Option<String>,
-}
-
-impl Page {
-    fn read(html: &str) -> Self {
-        let mut page = Self::default();
-        let mut emitter = DefaultEmitter::default();
-        emitter.naively_switch_states(true); // what is in scripts and styles is no HTML
-        for Ok(token) in Tokenizer::new_with_emitter(html, emitter) {
-            let Token::StartTag(tag) = token else {
-                continue;
-            };
-            for (name, value) in &tag.attributes {
-                let value = String::from_utf8_lossy(value).into_owned();
-                page.note(&tag.name, name, value);
-            }
-        }
-        page
-    }
-
-    fn note(&mut self, element: &[u8], attribute: &[u8], value: String) {
-        match (element, attribute) {
-            (_, b"id") | (b"a", b"name") => {
-                self.anchors.insert(value);
-            }
-            (b"meta", b"content") => {
-                let target = value
-                    .split_once(";URL=")
-                    .map(|(_, target)| target.to_owned());
-                self.redirect = self.redirect.take().or(target);
-            }
-            (b"link", b"href") | (_, b"src" | b"poster" | b"data") => {
-                self.references.push(Reference {
-                    target: value,
-                    loaded: true,
-                });
-            }
-            (_, b"href") => self.references.push(Reference {
-                target: value,
-                loaded: false,
-            }),
-            _ => {}
-        }
-    }
 }
 
 /// What is wrong with a link of the page `file` to somewhere on the site.

@@ -62,14 +62,6 @@ impl Format {
     ///   fields, else [`Table`](Self::Table).
     ///
     /// Extensions count in capital letters too. It is a guess for those who did not say: reading with the format guessed still checks everything.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_data::Format;
-    /// let obsmat = b"7.8e+02 1.0e+00 8.45 0.0 3.59 1.67 0.0 0.19\n";
-    /// assert_eq!(Format::guess("obsmat.txt".as_ref(), obsmat), Format::Obsmat);
-    /// assert_eq!(Format::guess("tracks.csv".as_ref(), b"frame,pedestrian,x,y\n"), Format::Table);
-    /// ```
     #[must_use]
     pub fn guess(path: &Path, bytes: &[u8]) -> Self {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");

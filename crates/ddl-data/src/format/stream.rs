@@ -41,18 +41,6 @@ pub struct Frame {
 ///
 /// Pedestrians may be words; a number stays one, also beside words. Memory is bounded by the people of a frame, of whom there may be 100,000, and the last
 /// 200,000 words: whose word was forgotten meanwhile is somebody new. A last line that was cut off is read as far as it goes.
-///
-/// ```
-/// use ddl_data::FrameReader;
-///
-/// let text = b"frame,pedestrian,x,y\n0,1,0.0,2.0\n0,2,8.0,2.5\n1,1,0.5,2.0\n";
-/// let mut frames = FrameReader::new(&text[..], "tracker");
-/// let first = frames.next_frame()?.expect("two frames");
-/// assert_eq!((first.number, first.people.len()), (0, 2));
-/// assert_eq!(frames.next_frame()?.map(|frame| frame.number), Some(1));
-/// assert_eq!(frames.next_frame()?, None);
-/// # Ok::<(), ddl_data::DataError>(())
-/// ```
 #[derive(Debug)]
 pub struct FrameReader<R> {
     reader: R,

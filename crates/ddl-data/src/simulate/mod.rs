@@ -14,8 +14,8 @@
 //! use ddl_data::simulate::CrowdScene;
 //!
 //! let crowd = CrowdScene::Plaza.simulate(7);
-//! assert!(crowd.recording().pedestrians().len() > 50);
-//! assert!(!crowd.groups().is_empty());
+//! assert!(crowd.recording.pedestrians().len() > 50);
+//! assert!(!crowd.groups.is_empty());
 //! ```
 
 mod clock;
@@ -59,7 +59,6 @@ impl CrowdScene {
             .expect("a simulation yields unique, finite observations");
         let SceneLayout { walls, pillars, .. } = layout;
         Crowd {
-            scene: self,
             recording,
             walls,
             pillars,
@@ -71,42 +70,12 @@ impl CrowdScene {
 /// A simulated recording, and what a real one does not tell: walls and groups.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crowd {
-    scene: CrowdScene,
-    recording: Recording,
-    walls: Vec<Wall>,
-    pillars: Vec<Pillar>,
-    groups: Vec<Vec<PedestrianId>>,
-}
-
-impl Crowd {
-    /// Where it was simulated.
-    pub fn scene(&self) -> CrowdScene {
-        self.scene
-    }
-
     /// Everybody's positions.
-    pub fn recording(&self) -> &Recording {
-        &self.recording
-    }
-
-    /// Everybody's positions, without the rest.
-    #[must_use]
-    pub fn into_recording(self) -> Recording {
-        self.recording
-    }
-
+    pub recording: Recording,
     /// The scene's walls.
-    pub fn walls(&self) -> &[Wall] {
-        &self.walls
-    }
-
+    pub walls: Vec<Wall>,
     /// The scene's pillars.
-    pub fn pillars(&self) -> &[Pillar] {
-        &self.pillars
-    }
-
+    pub pillars: Vec<Pillar>,
     /// Groups of two and more who entered together and stay together.
-    pub fn groups(&self) -> &[Vec<PedestrianId>] {
-        &self.groups
-    }
+    pub groups: Vec<Vec<PedestrianId>>,
 }

@@ -126,8 +126,7 @@ proptest! {
         prop_assert!(windows.next().is_none());
     }
 
-    /// Without completion the windows are those that are cut from whole observations; with one these are there too, and what was seen is not
-    /// touched.
+    /// Windows of whole observations are there with completion too, and what was seen is not touched.
     #[test]
     fn whole_observations_are_left_as_they_are(
         tracks in prop::collection::vec(frames(), 1..4),
@@ -139,7 +138,6 @@ proptest! {
             .collect();
         let recording = recording(&tracks);
         let whole = recording.observed_windows();
-        prop_assert_eq!(&recording.completed_windows(Completion::NONE), &whole);
         let completed = recording.completed_windows(completion);
         for window in whole {
             let same = completed.iter().find(|other| other.frames() == window.frames()).unwrap();

@@ -13,7 +13,7 @@ fn distance(a: Position, b: Position) -> f64 {
 
 /// Everybody's successive positions (m), 0.4 s apart.
 fn tracks(crowd: &Crowd) -> Vec<Vec<Position>> {
-    let recording = crowd.recording();
+    let recording = &crowd.recording;
     let positions = |id| recording.track(id).iter().map(|o| o.position).collect();
     recording.pedestrians().into_iter().map(positions).collect()
 }
@@ -35,7 +35,7 @@ fn share(count: usize, of: usize) -> f64 {
 
 /// Positions at one frame, frame by frame.
 fn scenes(crowd: &Crowd) -> impl Iterator<Item = Vec<(PedestrianId, Position)>> + '_ {
-    let recording = crowd.recording();
+    let recording = &crowd.recording;
     let at = |&frame| {
         recording
             .at(frame)
@@ -51,10 +51,7 @@ fn a_seed_gives_the_same_bytes_and_another_seed_others() {
     assert_eq!(Dataset::simulated(SEED), Dataset::simulated(SEED));
     for scene in CrowdScene::ALL {
         let (one, other) = (scene.simulate(SEED), scene.simulate(SEED + 1));
-        assert_ne!(
-            one.recording().observations(),
-            other.recording().observations()
-        );
+        assert_ne!(one.recording.observations(), other.recording.observations());
     }
 }
 
@@ -67,7 +64,7 @@ fn the_recordings_are_those_of_the_convention() {
         Convention::Simulated.recording_names().collect::<Vec<_>>()
     );
     for (scene, planned) in CrowdScene::ALL.into_iter().zip(dataset.recordings()) {
-        assert_eq!(scene.simulate(SEED).recording(), planned);
+        assert_eq!(&scene.simulate(SEED).recording, planned);
         assert_eq!(scene.name(), planned.name());
     }
 }
@@ -78,13 +75,13 @@ fn windows_are_plentiful_and_a_fold_is_not_huge() {
     for seed in 1..4 {
         for scene in CrowdScene::ALL {
             let crowd = scene.simulate(seed);
-            let windows = crowd.recording().windows(WindowRule::Complete);
+            let windows = crowd.recording.windows(WindowRule::Complete);
             let walkers: usize = windows.iter().map(Window::len).sum();
             assert!(
                 (1500..=5000).contains(&walkers),
                 "{scene}, seed {seed}: {walkers}"
             );
-            everybody += crowd.recording().pedestrians().len();
+            everybody += crowd.recording.pedestrians().len();
         }
     }
     assert!((3 * 400..3 * 800).contains(&everybody), "{everybody}");
@@ -116,14 +113,11 @@ fn nobody_walks_through_a_wall_or_a_pillar() {
         let crowd = scene.simulate(SEED);
         for track in tracks(&crowd) {
             for pair in track.windows(2) {
-                let blocked = crowd
-                    .walls()
-                    .iter()
-                    .any(|wall| wall.blocks(pair[0], pair[1]));
+                let blocked = crowd.walls.iter().any(|wall| wall.blocks(pair[0], pair[1]));
                 assert!(!blocked, "{scene}: {pair:?}");
             }
             for &place in &track {
-                let mut pillars = crowd.pillars().iter();
+                let mut pillars = crowd.pillars.iter();
                 let inside = pillars.any(|p| distance(p.centre, place) < p.radius);
                 assert!(!inside, "{scene}: {place:?}");
             }
@@ -157,10 +151,10 @@ fn bodies_hardly_overlap() {
 fn groups_stay_together() {
     for scene in CrowdScene::ALL {
         let crowd = scene.simulate(SEED);
-        assert!(crowd.groups().len() > 10, "{scene}");
+        assert!(crowd.groups.len() > 10, "{scene}");
         let mut gaps = Vec::new();
         for people in scenes(&crowd) {
-            for group in crowd.groups() {
+            for group in &crowd.groups {
                 let members: Vec<_> = people
                     .iter()
                     .filter(|(id, _)| group.contains(id))

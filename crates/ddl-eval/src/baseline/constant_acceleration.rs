@@ -16,18 +16,6 @@ use crate::{Forecast, Forecaster, error::ForecastError, vector::minus};
 /// # References
 /// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion prediction",
 /// RA-L 2020 (baseline of the last three positions).
-///
-/// # Examples
-/// ```
-/// use ddl_data::{PedestrianId, Window};
-/// use ddl_eval::{Forecaster, baseline::ConstantAcceleration};
-/// // Steps of 0.1, 0.2, ... 0.7 m: the next are 0.8 and 0.9 m.
-/// let speeds_up = (0..8).map(|t| [0.05 * f64::from(t * (t + 1)), 1.0]).collect();
-/// let window = Window::new("corridor", 0, 10, vec![PedestrianId(7)], vec![speeds_up])?;
-/// let forecast = ConstantAcceleration::unbounded().forecast(&window)?;
-/// assert!((forecast.hypothesis(0, 0)[1][0] - 4.5).abs() < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ConstantAcceleration {
     bounded: bool,

@@ -19,17 +19,6 @@ const NOISE_DEG: f64 = 25.0;
 /// # References
 /// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion
 /// prediction", RA-L 2020.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{PedestrianId, Window};
-/// use ddl_eval::{Forecaster, baseline::ConstantVelocity};
-/// let walks = (0..8).map(|t| [0.5 * f64::from(t), 1.0]).collect();
-/// let window = Window::new("corridor", 0, 10, vec![PedestrianId(7)], vec![walks])?;
-/// let forecast = ConstantVelocity::last_step().forecast(&window)?;
-/// assert_eq!(forecast.hypothesis(0, 0)[0], [4.0, 1.0]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ConstantVelocity(VelocityRule);
 

@@ -35,10 +35,7 @@ pub fn measure(
 
 /// The same for windows that are reduced to a part of their pedestrians: the baselines see everybody of the whole windows, one
 /// each, and are scored on that part.
-///
-/// # Errors
-/// As [`measure`]; or a whole window is not that of the reduced one.
-pub fn measure_among(
+pub(crate) fn measure_among(
     conditions: &Conditions,
     windows: &[Window],
     everybody: &[Window],

@@ -64,9 +64,6 @@ pub enum ExternalError {
         metres: f64,
         hint: &'static str,
     },
-    /// Windows and forecasts to be written differ in number.
-    #[error("{windows} windows but {forecasts} forecasts; there must be one forecast a window")]
-    Count { windows: usize, forecasts: usize },
     /// Two windows end their observation at the same frame of the same recording.
     #[error(
         "two windows of `{recording}` are observed until frame {observed_until}: give the windows of one rule"

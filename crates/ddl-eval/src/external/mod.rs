@@ -104,14 +104,14 @@ impl FromStr for ExternalFormat {
     type Err = UnknownName;
 
     fn from_str(word: &str) -> Result<Self, UnknownName> {
-        Self::ALL
-            .into_iter()
-            .find(|format| format.name() == word)
-            .ok_or_else(|| UnknownName {
-                kind: "format of forecasts",
-                found: word.to_owned(),
-                expected: "jsonl, csv, ndjson",
-            })
+        let expected = "jsonl, csv, ndjson";
+        UnknownName::find(
+            word,
+            &Self::ALL,
+            Self::name,
+            "format of forecasts",
+            expected,
+        )
     }
 }
 

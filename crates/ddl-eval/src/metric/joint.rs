@@ -16,24 +16,6 @@
 use super::displacement::DisplacementErrors;
 
 /// JADE of a scene, metres.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{PedestrianId, Window};
-/// use ddl_eval::metric::{displacement::DisplacementErrors, joint::joint_ade};
-/// use ddl_eval::{Forecast, Scene};
-///
-/// let still = vec![[0.0, 0.0]; 20];
-/// let ids = vec![PedestrianId(1), PedestrianId(2)];
-/// let window = Window::new("yard", 0, 10, ids, vec![still.clone(), still])?;
-/// // The first pedestrian's hypotheses are off by 0 m and 1 m, the second's by 1 m and 0.5 m.
-/// let off = [0.0, 1.0, 1.0, 0.5].into_iter().flat_map(|off| [[off, 0.0]; 12]).collect();
-/// let forecast = Forecast::equally_likely(2, 2, off)?;
-/// let errors = DisplacementErrors::of(&Scene::new(&window, &forecast)?);
-/// assert_eq!(joint_ade(&errors), 0.5); // the first for both: (0 + 1) / 2; the second: (1 + 0.5) / 2
-/// assert_eq!((errors.min_ade(0) + errors.min_ade(1)) / 2.0, 0.25);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[must_use]
 pub fn joint_ade(errors: &DisplacementErrors) -> f64 {
     least_scene_mean(errors, DisplacementErrors::ade)

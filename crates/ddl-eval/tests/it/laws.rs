@@ -158,16 +158,6 @@ proptest! {
     }
 
     #[test]
-    fn joint_choice_is_never_better((window, forecast) in any_scene()) {
-        let scores = scores(&window, &forecast);
-        prop_assert!(scores.joint_ade >= scores.min_ade - 1e-12);
-        prop_assert!(scores.joint_fde >= scores.min_fde - 1e-12);
-        if forecast.pedestrians() == 1 || forecast.hypotheses() == 1 {
-            prop_assert!(all_agree(&[scores.joint_ade], &[scores.min_ade]));
-        }
-    }
-
-    #[test]
     fn no_metric_depends_on_where_the_world_begins(
         (window, forecast) in any_scene(),
         angle in 0.0..std::f64::consts::TAU,

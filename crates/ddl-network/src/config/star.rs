@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// The frame in which the network reads where a pedestrian is, and says how it goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Frame {
+pub enum NetworkFrame {
     /// That of the recording, as published.
     World,
     /// The pedestrian's own, whose first axis points from where it was last observed to its goal. Velocities are read beside
@@ -27,7 +27,7 @@ pub struct StarConfig {
     /// What the network reads and what its output means.
     pub variant: Variant,
     /// The frame of what it reads of a pedestrian and of what it emits.
-    pub frame: Frame,
+    pub frame: NetworkFrame,
     /// Width of a token.
     pub model_width: i64,
     /// Attention heads; must divide the width.
@@ -97,7 +97,7 @@ impl StarConfig {
         Self {
             backbone: BackboneKind::Star,
             variant,
-            frame: Frame::World,
+            frame: NetworkFrame::World,
             model_width: 32,
             heads: 8,
             feed_forward_width: 2048,
@@ -116,9 +116,9 @@ impl StarConfig {
     pub fn recommended(variant: Variant) -> Self {
         Self {
             frame: if variant.goal_shift() {
-                Frame::Goal
+                NetworkFrame::Goal
             } else {
-                Frame::World
+                NetworkFrame::World
             },
             feed_forward_width: 128,
             ..Self::published(variant)
@@ -129,8 +129,8 @@ impl StarConfig {
     #[must_use]
     pub fn temporal_inputs(&self) -> i64 {
         match self.frame {
-            Frame::World => 2,
-            Frame::Goal => 4,
+            NetworkFrame::World => 2,
+            NetworkFrame::Goal => 4,
         }
     }
 
@@ -139,8 +139,8 @@ impl StarConfig {
     #[must_use]
     pub fn output_inputs(&self) -> i64 {
         match self.frame {
-            Frame::World => self.model_width,
-            Frame::Goal => self.model_width + self.temporal_inputs(),
+            NetworkFrame::World => self.model_width,
+            NetworkFrame::Goal => self.model_width + self.temporal_inputs(),
         }
     }
 
@@ -179,7 +179,7 @@ impl StarConfig {
         let divides = self.model_width % heads == 0;
         require(divides, "heads", &heads, "must divide model_width")?;
         require(
-            self.frame == Frame::World || self.variant.goal_shift(),
+            self.frame == NetworkFrame::World || self.variant.goal_shift(),
             "frame",
             &"goal",
             "world for the variants without goal shift",

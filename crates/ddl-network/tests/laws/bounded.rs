@@ -6,7 +6,8 @@ use ddl_dynamics::{
     Attractor, CholeskyMetric, Euler, NaturalGradientFlow, StableEuler, StepTime, rollout,
 };
 use ddl_network::{
-    ForecastWindows as _, Frame, MotionNetwork, Noise, StarConfig, StepRule, Variant, motion_bounds,
+    ForecastWindows as _, MotionNetwork, NetworkFrame, Noise, StarConfig, StepRule, Variant,
+    motion_bounds,
 };
 use nalgebra::Vector2;
 use proptest::prelude::*;
@@ -80,8 +81,8 @@ fn step(
         StepRule::Bounded => {
             let bounds = motion_bounds(observed, dt, 1.0);
             let bounds = match config.frame {
-                Frame::World => bounds.absolute(),
-                Frame::Goal => bounds,
+                NetworkFrame::World => bounds.absolute(),
+                NetworkFrame::Goal => bounds,
             };
             let left = HORIZON - done;
             let time = StepTime { done, left, dt };

@@ -3,7 +3,7 @@
 use super::scenes::{WINDOWS, goals};
 use ddl_data::{Position, Window};
 use ddl_network::{
-    ForecastWindows as _, Frame, MotionNetwork, NetworkError, Noise, ProposalConfig,
+    ForecastWindows as _, MotionNetwork, NetworkError, NetworkFrame, Noise, ProposalConfig,
     ProposalNetwork, StarConfig, StepRule, Variant,
 };
 
@@ -68,7 +68,7 @@ fn goals_noise_and_shares_that_do_not_fit_the_windows() {
 #[test]
 fn configurations_out_of_range() {
     let own = StarConfig {
-        frame: Frame::Goal,
+        frame: NetworkFrame::Goal,
         ..StarConfig::published(Variant::NoGoalShift)
     };
     let error = MotionNetwork::new(own, 1).unwrap_err();

@@ -12,7 +12,7 @@ use super::tensor_backend::{Pass, TensorBackend};
 use ddl_data::OBSERVED;
 use ddl_network::backbone::Backbone;
 use ddl_network::backend::{Memory, Mode};
-use ddl_network::{Frame, StepRule};
+use ddl_network::{NetworkFrame, StepRule};
 use std::slice::from_ref;
 use tch::{Kind, Tensor};
 
@@ -216,8 +216,8 @@ impl TorchNetwork {
             goals.shallow_clone()
         };
         let frame = match config.frame {
-            Frame::World => None,
-            Frame::Goal => Some(GoalFrame::new(&observed(), &goals, time_step)),
+            NetworkFrame::World => None,
+            NetworkFrame::Goal => Some(GoalFrame::new(&observed(), &goals, time_step)),
         };
         Guidance {
             reference: if config.variant.goal_shift() {
@@ -237,7 +237,7 @@ impl TorchNetwork {
                     top_speed: own_motion::top_speeds(&observed(), time_step),
                     velocity: own_motion::velocities(&observed(), time_step),
                     share: batch.share.shallow_clone(),
-                    absolute: config.frame == Frame::World,
+                    absolute: config.frame == NetworkFrame::World,
                 }),
             },
         }
