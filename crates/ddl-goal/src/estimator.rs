@@ -50,12 +50,12 @@ use crate::retrieve::Retriever;
 pub struct GoalEstimator {
     params: ValidGoalEstimatorParams,
     library: ExpertLibrary,
-    method: Method,
+    method: Preparation,
 }
 
 /// What the frame of the retrieval calls for.
 #[derive(Clone, Debug)]
-enum Method {
+enum Preparation {
     World(Box<Retriever>, KMeans),
     Heading(Analogues),
 }
@@ -71,7 +71,7 @@ impl GoalEstimator {
         library: ExpertLibrary,
     ) -> Result<Self, GoalError> {
         let method = match params.frame {
-            RetrievalFrame::Heading => Method::Heading(Analogues::new(&library)?),
+            RetrievalFrame::Heading => Preparation::Heading(Analogues::new(&library)?),
             RetrievalFrame::World => {
                 if library.len() < params.experts {
                     let (tracks, experts) = (library.len(), params.experts);
@@ -79,7 +79,7 @@ impl GoalEstimator {
                 }
                 let retriever = Retriever::new(&library, params.gamma, params.query)?;
                 let kmeans = KMeans::new(params.clusters, params.restarts);
-                Method::World(Box::new(retriever), kmeans)
+                Preparation::World(Box::new(retriever), kmeans)
             }
         };
         Ok(Self {
@@ -110,8 +110,8 @@ impl GoalEstimator {
     pub fn estimate(&self, track: &[[f64; 2]]) -> Result<GoalSet, GoalError> {
         let (experts, clusters) = (self.params.experts, self.params.clusters);
         match &self.method {
-            Method::Heading(analogues) => analogues.goals(track, experts, clusters),
-            Method::World(retriever, kmeans) => {
+            Preparation::Heading(analogues) => analogues.goals(track, experts, clusters),
+            Preparation::World(retriever, kmeans) => {
                 let experts = retriever.nearest(track, experts)?;
                 let ends: Vec<[f64; 2]> = experts
                     .iter()

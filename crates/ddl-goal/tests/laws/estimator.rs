@@ -5,10 +5,10 @@ use ddl_goal::{
 };
 use proptest::prelude::*;
 
-use crate::tracks::{self, Track, distance, walk};
+use crate::tracks::{self, Positions, distance, walk};
 
 /// Walkers of several speeds, headings and turns, and people who stand.
-fn library() -> Vec<Track> {
+fn library() -> Vec<Positions> {
     let track = |i: u32| {
         let speed = f64::from(i % 20) * 0.08;
         let heading = f64::from(i / 20) * 0.31;
@@ -82,9 +82,9 @@ proptest! {
     ) {
         // Whole steps of 1/8 m move coordinates on a grid of 1/1024 m without rounding: the velocities keep every bit.
         let grid = |v: f64| (v * 1024.0).round() / 1024.0;
-        let track: Track = walk(speed, heading, 0.0).iter().map(|p| p.map(grid)).collect();
+        let track: Positions = walk(speed, heading, 0.0).iter().map(|p| p.map(grid)).collect();
         let by = by.map(|v| f64::from(v) / 8.0);
-        let moved: Track = track.iter().map(|p| [p[0] + by[0], p[1] + by[1]]).collect();
+        let moved: Positions = track.iter().map(|p| [p[0] + by[0], p[1] + by[1]]).collect();
         for params in both_frames() {
             let estimator = estimator(params);
             let (here, there) = (estimator.estimate(&track)?, estimator.estimate(&moved)?);
@@ -131,10 +131,10 @@ fn a_walker_finds_itself_and_goals_near_where_it_goes() {
 #[test]
 fn alone_or_in_a_batch_on_any_number_of_threads() {
     let track = |i: u32| walk(0.05 * f64::from(i), 0.2 * f64::from(i), 0.01);
-    let tracks: Vec<Track> = (0..30).map(track).collect();
+    let tracks: Vec<Positions> = (0..30).map(track).collect();
     for params in both_frames() {
         let estimator = estimator(params);
-        let alone = |track: &Track| bits(&estimator.estimate(track).unwrap());
+        let alone = |track: &Positions| bits(&estimator.estimate(track).unwrap());
         let alone: Vec<_> = tracks.iter().map(alone).collect();
         for threads in [1, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
@@ -182,7 +182,7 @@ fn a_rounding_error_moves_goals_by_as_much() {
             let track = walk(0.2 + 0.023 * t, 0.11 * t, 0.0007 * t);
             let error = |step: usize| if step.is_multiple_of(2) { 1e-9 } else { -1e-9 };
             let nudged = |s: usize| [track[s][0] + error(s), track[s][1] - error(s)];
-            let nudged: Track = (0..8).map(nudged).collect();
+            let nudged: Positions = (0..8).map(nudged).collect();
             let [a, b] = [&track, &nudged].map(|track| estimator.estimate(track).unwrap());
             let goals = b.goals().iter();
             let furthest = goals.map(|&goal| distance(a.goals()[a.nearest(goal)], goal));
