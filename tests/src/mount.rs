@@ -9,10 +9,6 @@ pub struct Mount(PathBuf);
 
 impl Mount {
     /// A file system in memory that holds so many kibibytes; `None`, with the reason printed, where this user may mount nothing.
-    ///
-    /// # Panics
-    /// If root may not either and the variable `CI` is set.
-    #[must_use]
     pub fn small(folder: &Path, kibibytes: u64) -> Option<Self> {
         let size = format!("size={kibibytes}k");
         mount(&["-t", "tmpfs", "-o", &size, "none"], folder)?;
@@ -20,10 +16,6 @@ impl Mount {
     }
 
     /// The folder as it is, but not to be written to; otherwise as [`small`](Self::small).
-    ///
-    /// # Panics
-    /// As [`small`](Self::small).
-    #[must_use]
     pub fn read_only(folder: &Path) -> Option<Self> {
         let name = folder.to_str().expect("temporary folders have plain names");
         mount(&["--bind", name], folder)?;
@@ -33,9 +25,6 @@ impl Mount {
     }
 
     /// Gives a small file system another size.
-    ///
-    /// # Panics
-    /// If it cannot have that.
     pub fn resize(&self, kibibytes: u64) {
         let size = format!("remount,size={kibibytes}k");
         mount(&["-o", &size], &self.0).expect("what was mounted can be resized");

@@ -37,10 +37,6 @@ struct Answered {
 
 impl PageFolder {
     /// The files of [`page_inputs`], `ddl` and `tracker` on the search path, `target/release/ddl`, and the checkout's `crates`.
-    ///
-    /// # Panics
-    /// If it cannot be made, or the program was not built.
-    #[must_use]
     pub fn new(checkout: &Path, datasets: Option<PathBuf>) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let bin = tempfile::tempdir().expect("a temporary folder can be made");
@@ -62,16 +58,11 @@ impl PageFolder {
     }
 
     /// Where the commands run.
-    #[must_use]
     pub fn path(&self) -> &Path {
         self.folder.path()
     }
 
     /// Runs commands in one shell; what is wrong is returned, a text for each command.
-    ///
-    /// # Panics
-    /// If there is no shell.
-    #[must_use]
     pub fn run(&self, commands: &[(&Command, Depth)]) -> Vec<String> {
         let notes = tempfile::tempdir().expect("a temporary folder can be made");
         let empty = tempfile::tempdir().expect("a temporary folder can be made");
@@ -204,46 +195,25 @@ mod tests {
 
     #[test]
     fn a_page_that_says_something_else_is_caught() {
-        let problem = |shown: &[&str], code, stdout: &str, stderr: &str| {
-            answered(code, stdout, stderr).problem(&command("x", shown), Depth::Whole)
-        };
-        assert_eq!(problem(&["a", "note: ..."], 0, "a\nb\n", "note: c\n"), None);
-        assert_eq!(
-            problem(&["warning: c", "a"], 0, "a\n", "warning: c\n"),
-            None
-        );
-        assert_eq!(problem(&["error: e"], 1, "", "error: e\n"), None);
-        assert_eq!(
-            problem(
-                &["error: e", "For more information, try '--help'."],
-                2,
-                "",
-                "error: e\n\nFor more information, try '--help'.\n"
-            ),
-            None
-        );
-        assert!(
-            problem(&[], 1, "", "error: e\n")
-                .unwrap()
-                .contains("exit code 1, not 0")
-        );
-        assert!(
-            problem(&["error: e"], 0, "", "")
-                .unwrap()
-                .contains("exit code 0, not 1")
-        );
-        assert!(
-            problem(&["b"], 0, "a\n", "")
-                .unwrap()
-                .contains("no line `b`")
-        );
-    }
-
-    #[test]
-    fn what_is_only_begun_must_have_right_arguments() {
-        let begun =
-            |code| answered(code, "", "").problem(&command("x", &["not looked at"]), Depth::Begun);
-        assert!([0, 1, 130].iter().all(|&code| begun(code).is_none()));
-        assert!([2, 101, 127].iter().all(|&code| begun(code).is_some()));
+        let refused = ["error: e", "For more information, try '--help'."];
+        for (shown, code, stdout, stderr, wrong) in [
+            (&["a", "note: ..."][..], 0, "a\nb\n", "note: c\n", ""),
+            (&["warning: c", "a"], 0, "a\n", "warning: c\n", ""),
+            (&["error: e"], 1, "", "error: e\n", ""),
+            (&refused, 2, "", &refused.join("\n\n"), ""),
+            (&[], 1, "", "error: e\n", "exit code 1, not 0"),
+            (&["error: e"], 0, "", "", "exit code 0, not 1"),
+            (&["b"], 0, "a\n", "", "no line `b`"),
+        ] {
+            let problem =
+                answered(code, stdout, stderr).problem(&command("x", shown), Depth::Whole);
+            assert_eq!(problem.is_some(), !wrong.is_empty(), "{shown:?}");
+            assert!(problem.unwrap_or_default().contains(wrong), "{shown:?}");
+        }
+        // What is only begun must have right arguments.
+        for (code, right) in [(0, true), (1, true), (130, true), (2, false), (101, false)] {
+            let problem = answered(code, "", "").problem(&command("x", &["y"]), Depth::Begun);
+            assert_eq!(problem.is_none(), right, "{code}");
+        }
     }
 }

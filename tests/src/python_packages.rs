@@ -7,10 +7,6 @@ use std::process::Command;
 const REQUIREMENTS: [&str; 2] = ["pandas==2.3.3", "matplotlib==3.10.7"];
 
 /// The folder for Python's search path; fetched with pip when it is not there. `None`, with the reason printed, where that cannot be.
-///
-/// # Panics
-/// If it cannot be had and the variable `CI` is set: there, nothing may be skipped silently.
-#[must_use]
 pub fn ensure() -> Option<PathBuf> {
     match find_or_fetch() {
         Ok(folder) => Some(folder),
@@ -47,25 +43,11 @@ fn fetch(parent: &Path, folder: &Path) -> Result<(), String> {
         .tempdir_in(parent)
         .map_err(|error| format!("{}: {error}", parent.display()))?;
     let target = work.path().join("packages");
+    let arguments = "-m pip install --quiet --only-binary=:all: --no-cache-dir --disable-pip-version-check --timeout 60 --retries 3 --target";
     let mut pip = Command::new("python3");
-    pip.args([
-        "-m",
-        "pip",
-        "install",
-        "--quiet",
-        "--only-binary=:all:",
-        "--no-cache-dir",
-    ])
-    .args([
-        "--disable-pip-version-check",
-        "--timeout",
-        "60",
-        "--retries",
-        "3",
-        "--target",
-    ])
-    .arg(&target)
-    .args(REQUIREMENTS);
+    pip.args(arguments.split(' '))
+        .arg(&target)
+        .args(REQUIREMENTS);
     answer(&mut pip)?;
     match std::fs::rename(&target, folder) {
         Err(_) if folder.is_dir() => Ok(()), // somebody else was faster

@@ -48,17 +48,21 @@ impl Arguments {
                 Err(error) => eprintln!("{error:#}"),
             }
         }
+        let packages = WITHOUT_TORCH.iter().flat_map(|package| ["-p", package]);
+        let arguments: Vec<&str> = packages.collect();
+        cargo_test(workspace, &arguments, &self.rest)?;
+        let arguments = ["-p", "ddl-tests", "--no-default-features"];
+        cargo_test(workspace, &arguments, &self.rest)?;
         if self.no_torch {
-            let packages = WITHOUT_TORCH.iter().flat_map(|package| ["-p", package]);
-            let arguments: Vec<&str> = packages.collect();
-            cargo_test(workspace, &arguments, &self.rest)?;
-            return cargo_test(
-                workspace,
-                &["-p", "ddl-tests", "--no-default-features"],
-                &self.rest,
-            );
+            return Ok(());
         }
-        cargo_test(workspace, &["--workspace"], &self.rest)
+        // The other side: what libtorch adds.
+        let packages = ["-p", "ddl-star", "-p", "ddl", "-p", "ddl-cli"];
+        let arguments = [&packages[..], &["--features", "ddl-cli/torch"]].concat();
+        cargo_test(workspace, &arguments, &self.rest)?;
+        let tests = ["--test", "it_torch", "--test", "faults_torch"];
+        let arguments = [&["-p", "ddl-tests"][..], &tests].concat();
+        cargo_test(workspace, &arguments, &self.rest)
     }
 }
 
