@@ -49,13 +49,13 @@ fn assert_whole(place: &Place) {
 #[test]
 fn a_killed_training_ends_in_the_same_bytes() {
     let begun = Instant::now();
-    let expected = finish(&Place::new());
+    let expected = finish(&Place::empty());
     let takes = begun.elapsed();
     let rounds = figures::rounds(4, 50);
     let mut chance = Chance::new("killed training");
     let (mut while_writing, mut unfinished) = (0, 0);
     for round in 0..rounds {
-        let place = Place::new();
+        let place = Place::empty();
         let mut moment = chance.moment((round, rounds), takes);
         // one that is done before it is killed is begun anew, and killed earlier
         loop {
@@ -93,9 +93,9 @@ fn a_killed_training_ends_in_the_same_bytes() {
 #[test]
 fn a_training_that_is_killed_again_and_again_ends_in_the_same_bytes() {
     let begun = Instant::now();
-    let expected = finish(&Place::new());
+    let expected = finish(&Place::empty());
     let takes = begun.elapsed();
-    let place = Place::new();
+    let place = Place::empty();
     let mut chance = Chance::new("training killed again and again");
     let most = figures::rounds(3, 20);
     let mut killed = 0;

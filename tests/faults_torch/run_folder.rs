@@ -12,7 +12,7 @@ const MOST_KIBIBYTES: u64 = 10 << 10;
 
 #[test]
 fn training_goes_on_when_there_is_room() {
-    let (whole, place) = (Place::new(), Place::new());
+    let (whole, place) = (Place::empty(), Place::empty());
     let expected = finish(&whole);
     let Some(disk) = Mount::small(place.path(), 4) else {
         return;
@@ -58,7 +58,7 @@ fn training_goes_on_when_there_is_room() {
 
 #[test]
 fn where_nothing_may_be_written_is_named() {
-    let place = Place::new();
+    let place = Place::empty();
     place.write("file", "");
     let train = "train --convention simulated --fold plaza --threads 1 --out";
     place.fails(&format!("{train} file/new"), &["file/new"]);
@@ -71,7 +71,7 @@ fn where_nothing_may_be_written_is_named() {
 
 #[test]
 fn a_second_training_in_the_same_directory_is_refused() {
-    let place = Place::new();
+    let place = Place::empty();
     let mut first = place.start(&format!("{TRAIN} --progress json"));
     let mut lines = BufReader::new(first.stdout.take().unwrap()).lines();
     lines.next().unwrap().unwrap();
@@ -95,7 +95,7 @@ fn a_second_training_in_the_same_directory_is_refused() {
 #[test]
 fn training_needs_no_network() {
     let Some(way) = offline::way() else { return };
-    let (place, elsewhere) = (Place::new(), Place::new());
+    let (place, elsewhere) = (Place::empty(), Place::empty());
     let _ = offline::run(way, &place, TRAIN).succeeds();
     assert_same(&finish(&elsewhere), &training_result::of(&place.at("run")));
     figures::tell(

@@ -20,7 +20,7 @@ const TIME_STEP: f64 = 0.4;
 /// The built-in models, and two with drawn weights.
 static MODELS: LazyLock<Vec<Ddl>> = LazyLock::new(|| {
     let builtin = BuiltinModel::ALL.map(|model| Ddl::builtin(model, DeviceChoice::Cpu).unwrap());
-    let drawn = [Variant::Full, Variant::NoGoalShift].map(|variant| drawn_model::of(variant).model);
+    let drawn = [Variant::Full, Variant::NoGoalShift].map(|variant| drawn_model::of(variant));
     builtin.into_iter().chain(drawn).collect()
 });
 
@@ -180,7 +180,7 @@ fn strange_observations_are_forecast_as_stably() {
 fn the_certified_forecast_is_the_forecast() {
     let windows = crowd::windows(3, 10);
     for variant in [Variant::Full, Variant::NoGoalShift] {
-        let model = drawn_model::of(variant).model;
+        let model = drawn_model::of(variant);
         let model = model.in_precision(Precision::Bf16).unwrap();
         let goals = model.goal_model().goals(&windows).unwrap();
         let many = model.forecast_certified(&windows).unwrap();

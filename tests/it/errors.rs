@@ -47,11 +47,10 @@ fn half_a_file_is_named() {
 /// Weights of another variant, and weights of the same shapes and goals of another fold, copied over those of the run.
 #[test]
 fn files_of_another_run_are_refused() {
-    let other = drawn_model::folder(Variant::NoDynamics);
-    let elsewhere = tempfile::tempdir().unwrap();
+    let [other, elsewhere] = [Place::with_variant(Variant::NoDynamics), Place::empty()];
     let mut config = drawn_model::config(Variant::Full);
     config.data.fold = "plaza".to_owned();
-    drawn_model::write(config, &crowd::windows(20, 10), elsewhere.path());
+    drawn_model::write(config, &crowd::windows(20, 10), &elsewhere.at("run"));
     let fold = "data.fold is plaza, not corridor";
     let place = Place::with_model();
     for (from, file, difference) in [
@@ -63,7 +62,7 @@ fn files_of_another_run_are_refused() {
         let file = format!("{file}.safetensors");
         let name = format!("run/{file}");
         let whole = place.read(&name);
-        place.write(&name, std::fs::read(from.path().join(&file)).unwrap());
+        place.write(&name, from.read(&name));
         place.fails(FORECAST, &[&file, "another run", difference]);
         place.write(&name, whole);
     }
@@ -125,7 +124,7 @@ fn what_needs_libtorch_says_how_to_get_it() {
 /// Recordings are read before anything is trained.
 #[test]
 fn recordings_that_cannot_be_trained_on_are_refused() {
-    let place = Place::new();
+    let place = Place::empty();
     let train = "train --fold hotel --data data --out new";
     std::fs::create_dir(place.at("data")).unwrap();
     place.fails(train, &["star", "eth.csv", "--convention simulated"]);
@@ -167,6 +166,8 @@ fn a_bad_line_of_tracks_is_named() {
 #[test]
 fn tracks_that_cannot_be_forecast_are_refused() {
     let place = Place::with_model();
+    let nowhere = "view tracks.csv --output nowhere/page.html";
+    place.fails(nowhere, &["there is no folder nowhere"]);
     let missing = "cannot read nowhere.csv: No such file or directory (os error 2)";
     assert_eq!(place.run("forecast nowhere.csv").fails(), missing);
     place.write_tracks("tracks.csv", &own_tracks::three_people(7));
@@ -181,7 +182,6 @@ fn tracks_that_cannot_be_forecast_are_refused() {
         "data - => name a file",
         "view - => a file of tracks",
         "view nowhere.csv => cannot read nowhere.csv",
-        "view tracks.csv --output nowhere/page.html => there is no folder nowhere",
     ]);
     place.all_refused(&["view => <TRACKS>"]);
 }

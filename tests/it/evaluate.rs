@@ -120,7 +120,7 @@ fn of_protocol(rows: &[ResultRow], protocol: Protocol) -> Vec<&ResultRow> {
 
 #[test]
 fn a_number_goes_from_the_model_to_the_page() {
-    let place = Place::new();
+    let place = Place::empty();
     drawn_model::write(config(), &crowd::windows(200, 20), &place.at("run"));
     std::fs::copy(
         place.at("run/epochs/001.safetensors"),
@@ -208,7 +208,7 @@ fn a_model_of_the_hotel_fold_is_measured() {
     ] {
         assert_eq!(counts(fold.test_windows(rule)), expected, "{rule}");
     }
-    let place = Place::new();
+    let place = Place::empty();
     let mut config = drawn_model::config(Variant::Full);
     config.data.convention = Convention::Star;
     config.data.fold = "hotel".to_owned();
@@ -265,14 +265,16 @@ fn goals_are_measured_and_drawn() {
 fn what_cannot_be_measured_is_said() {
     let place = Place::with_model();
     place.all_refused(&[
-        "goals --model run => TRACKS",
         "goals --model run tracks.csv --measure test => cannot be used with",
-        "goals --model run tracks.csv --svg goals.svg => --measure",
         "goals --model run --measure test --last => cannot be used with",
         "goals --model run --last => TRACKS",
     ]);
     let test = "goals --model run --measure test";
-    place.all_fail(&["goals --model run --measure validation => --validation-recordings"]);
+    place.all_fail(&[
+        "goals --model run => TRACKS",
+        "goals --model run tracks.csv --svg goals.svg => --measure",
+        "goals --model run --measure validation => --validation-recordings",
+    ]);
     place.remove("run/proposal.safetensors");
     place.fails(test, &["has no goals yet"]);
     place.write("run/config.json", r#"{"format": 1, "star": {}}"#);

@@ -86,7 +86,7 @@ fn parts(line: &str) -> (&str, &str, &str) {
 
 #[test]
 fn every_example_runs_and_keeps_its_promise() {
-    let place = Place::new();
+    let place = Place::empty();
     place.write_tracks("mine.csv", &own_tracks::three_people(9));
     let model = include_bytes!("../../crates/ddl/models/hotel.safetensors");
     place.write("hotel.safetensors", model);

@@ -1,8 +1,8 @@
 //! `ddl forecast` and `ddl goals`: a user's own tracks in, hypotheses out, with the evidence that each goes to its goal.
 
-use ddl::Variant;
 use ddl::data::Position;
 use ddl::dynamics::LyapunovCertificate;
+use ddl::{BuiltinModel, Variant};
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json_lines};
 use serde::Deserialize;
@@ -177,28 +177,36 @@ fn every_format_holds_the_same_futures_and_certificates_speak_of_them() {
     assert_eq!(plain, lines);
 }
 
-/// In any order of rows, among other moments or alone, from a longer recording or a shorter one, on one thread or two: the same bits.
+/// Of every model that comes with the program, which is used without any option: in any order of rows, among other moments or alone, from a longer recording or a shorter one, on one thread or two: the same bits.
 #[test]
 fn a_forecast_has_the_same_bits_in_any_company() {
-    let place = Place::new();
+    let place = Place::empty();
     let rows = own_tracks::three_people(12);
-    let shuffled = own_tracks::shuffled(&rows);
-    assert_ne!(rows, shuffled);
+    let mut from_west_to_east = rows.clone();
+    from_west_to_east.sort_by(|one, other| one.2.total_cmp(&other.2));
+    assert_ne!(rows, from_west_to_east);
     let end: Vec<Row> = rows.iter().filter(|row| row.0 >= 40).copied().collect();
     place.write_tracks("rows.csv", &rows);
-    place.write_tracks("shuffled.csv", &shuffled);
+    place.write_tracks("shuffled.csv", &from_west_to_east);
     place.write_tracks("end.csv", &end);
-    for model in ddl::BuiltinModel::ALL {
+    let unnamed = place.ok("forecast rows.csv --whole");
+    assert_eq!(unnamed.lines().count(), 1 + 5 * 3 * HYPOTHESES * FRAMES);
+    for model in BuiltinModel::ALL {
         let forecast = |rest: &str| place.ok(&format!("forecast --model {model} --whole {rest}"));
-        for format in ["csv", "jsonl"] {
+        let [table, lines] = ["csv", "jsonl"].map(|format| {
             let all = forecast(&format!("rows.csv --format {format} --threads 1"));
-            let others = ["shuffled.csv --threads 1", "rows.csv --threads 2"];
-            for other in others.map(|rest| forecast(&format!("{rest} --format {format}"))) {
+            for other in ["shuffled.csv --threads 1", "rows.csv --threads 2"] {
+                let other = forecast(&format!("{other} --format {format}"));
                 assert!(all == other, "{model}");
             }
-        }
-        let all = forecast("rows.csv --format jsonl --threads 1");
-        let last: Vec<&str> = all.lines().skip(4 * 3).collect();
+            all
+        });
+        assert_eq!(
+            table == unnamed,
+            model == BuiltinModel::default(),
+            "{model}"
+        );
+        let last: Vec<&str> = lines.lines().skip(4 * 3).collect();
         for alone in ["rows.csv --last --threads 1", "end.csv --threads 2"] {
             let alone = forecast(&format!("{alone} --format jsonl"));
             assert_eq!(alone.lines().collect::<Vec<_>>(), last, "{model}");
@@ -354,31 +362,4 @@ fn goals_of_own_tracks_are_those_of_the_forecasts() {
         }
         assert_eq!(longest, 4);
     }
-}
-
-/// With the program alone: no run, no recordings, no option.
-#[test]
-fn built_in_models_forecast_at_once() {
-    let place = Place::new();
-    place.write_tracks("tracks.csv", &own_tracks::three_people(8));
-    let forecasts = place.ok("forecast tracks.csv --whole");
-    assert_eq!(forecasts.lines().count(), 1 + 3 * HYPOTHESES * FRAMES);
-    let by_name = |model| place.ok(&format!("forecast --model {model} tracks.csv --whole"));
-    let default = ddl::BuiltinModel::default();
-    for model in ddl::BuiltinModel::ALL {
-        assert_eq!(by_name(model) == forecasts, model == default, "{model}");
-    }
-    let goals = place.ok("goals tracks.csv --whole");
-    assert_eq!(goals.lines().count(), 1 + 3 * HYPOTHESES);
-}
-
-/// What holds no tracks, or no forecasts, is said before a file is written.
-#[test]
-fn a_file_from_before_stays_until_there_is_a_forecast() {
-    let place = Place::with_model();
-    place.write("out.csv", "from before");
-    place.fails(
-        "forecast - --model run --output out.csv",
-        &["holds no tracks"],
-    );
 }

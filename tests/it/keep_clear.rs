@@ -31,7 +31,7 @@ fn near_pairs(windows: &[Window], forecasts: &[Forecast], distance: f64) -> usiz
 
 fn free_and_careful() -> [Ddl; 2] {
     let clearance = Clearance::new(0.5).unwrap();
-    let [free, careful] = [0, 1].map(|_| drawn_model::of(Variant::Full).model);
+    let [free, careful] = [0, 1].map(|_| drawn_model::of(Variant::Full));
     [free, careful.keeping_clear(clearance).unwrap()]
 }
 
@@ -128,7 +128,7 @@ fn what_has_no_flow_is_refused() {
             &format!("{forecast} --keep-clear 0.4"),
             &[&name, "has no flow"],
         );
-        let model = drawn_model::of(variant).model;
+        let model = drawn_model::of(variant);
         let no_flow = |error: ForecastError| {
             let ForecastError::Model { source, .. } = error else {
                 panic!("{error}")

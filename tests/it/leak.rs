@@ -110,16 +110,16 @@ fn baselines_never_see_the_future() {
 #[test]
 fn no_variant_of_the_model_sees_the_future() {
     for variant in Variant::ALL {
-        let drawn = drawn_model::of(variant);
-        never_sees_the_future(&drawn.model);
-        never_sees_the_future(&One(&drawn.model));
+        let model = drawn_model::of(variant);
+        never_sees_the_future(&model);
+        never_sees_the_future(&One(&model));
     }
 }
 
 /// The observation does change it: the tests compare more than constants.
 #[test]
 fn the_last_observed_position_changes_a_forecast() {
-    let drawn = drawn_model::of(Variant::Full);
+    let model = drawn_model::of(Variant::Full);
     let window = &crowd::windows(1, 3)[0];
     let nudged = window.map_positions(|i, t, p| {
         if (i, t) == (0, 7) {
@@ -128,7 +128,7 @@ fn the_last_observed_position_changes_a_forecast() {
             p
         }
     });
-    for forecaster in [&drawn.model as &dyn Forecaster, &One(&drawn.model)] {
+    for forecaster in [&model as &dyn Forecaster, &One(&model)] {
         let [reference, changed] = [window, &nudged].map(|w| forecaster.forecast(w).unwrap());
         assert_ne!(bits::of(&reference), bits::of(&changed));
     }
@@ -163,14 +163,14 @@ fn the_published_goal_query_is_caught() {
     };
     let windows = crowd::windows(1, 4);
     assert!(leak::find(&forecaster, &windows[0]).unwrap().is_some());
-    let bits = |forecast| bits::of_all(&forecast);
+    let bits = |forecasts: Vec<Forecast>| bits::of_all(&forecasts);
     let reference = bits(forecaster.forecast_all(&windows).unwrap());
     for (future, changed) in wild(&windows[0]) {
-        // a NaN that is read makes a forecast that cannot even be built
+        // a NaN that is read makes no forecast, and rounding no difference between experts
         let changed = [changed];
         let seen = forecaster.forecast_all(&changed).map(bits);
         assert!(
-            seen.is_ok_and(|seen| seen != reference) || future == "NaN",
+            seen.is_ok_and(|seen| seen != reference) || ["NaN", "a hair off"].contains(&future),
             "{future}"
         );
         // the protocols cut the future off before it can be read: even this one is honest under them

@@ -44,7 +44,7 @@ fn every_frame_is_forecast_as_its_window_is() {
         (Variant::Star, coming_and_going(), 11),
         (Variant::Full, beginning_of_a_crowd(), 14),
     ] {
-        let model = drawn_model::of(variant).model;
+        let model = drawn_model::of(variant);
         let step = recording.frame_step();
         let mut live = LiveForecaster::with_frame_step(&model, step).unwrap();
         let mut certified = variant.dynamics().then(|| live.clone());
@@ -82,7 +82,7 @@ fn every_frame_is_forecast_as_its_window_is() {
 #[test]
 fn an_error_changes_nothing() {
     let recording = coming_and_going();
-    let model = drawn_model::of(Variant::Full).model;
+    let model = drawn_model::of(Variant::Full);
     let step = recording.frame_step();
     let mut live = LiveForecaster::with_frame_step(&model, step).unwrap();
     live.push(0, people(&recording, 0)).unwrap();
@@ -262,13 +262,15 @@ fn what_cannot_be_live_is_refused() {
         "goals - --model run => ddl forecast -",
         // standard input is empty
         "forecast - --model run => holds no tracks",
+        // and a file from before stays as it was
+        "forecast - --model run --output tracks.csv => holds no tracks",
     ]);
 }
 
 /// Pixels are seen in the speeds as soon as somebody was seen whole, and an unfamiliar motion whenever it comes: each is told of once.
 #[test]
 fn what_looks_wrong_is_told_once() {
-    let place = Place::new();
+    let place = Place::empty();
     let mut pixels = own_tracks::three_people(12);
     pixels.iter_mut().for_each(|row| row.2 *= 100.0);
     let line = "forecast - --threads 1 --frame-step 10";

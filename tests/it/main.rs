@@ -19,6 +19,7 @@ mod manners;
 mod other_program;
 mod own_recordings;
 mod packed;
+mod packed_benchmark;
 mod tracks_as_they_come;
 
 #[test]

@@ -120,14 +120,13 @@ fn what_a_packed_model_cannot_do_is_said() {
 fn the_network_comes_back_in_every_variant() {
     let windows = crowd::windows(3, 6);
     for variant in Variant::ALL {
-        let drawn = drawn_model::of(variant);
-        let file = drawn.folder().join("packed");
-        drawn.model.pack(&file).unwrap();
-        let packed = Ddl::load(&file, DeviceChoice::Cpu).unwrap();
-        assert_eq!(packed.config(), drawn.model.config());
-        assert_eq!(packed.source(), &ModelSource::Packed(file));
-        let [of_run, of_packed] =
-            [&drawn.model, &packed].map(|m| m.forecast_all(&windows).unwrap());
+        let place = Place::with_variant(variant);
+        let _ = place.ok("pack --model run --out packed");
+        let [run, packed] =
+            ["run", "packed"].map(|name| Ddl::load(&place.at(name), DeviceChoice::Cpu).unwrap());
+        assert_eq!(packed.config(), run.config());
+        assert_eq!(packed.source(), &ModelSource::Packed(place.at("packed")));
+        let [of_run, of_packed] = [run, packed].map(|m| m.forecast_all(&windows).unwrap());
         if variant == Variant::Star {
             // It reads no goals: only the rounding of its weights is left.
             for (one, other) in of_run.iter().zip(&of_packed) {
@@ -181,7 +180,7 @@ fn the_reported_number_comes_out_again() {
         return;
     };
     let expected = &reported()["hotel"];
-    let place = Place::new();
+    let place = Place::empty();
     let walkers = expected
         .test_walkers
         .map_or(String::new(), |n| format!("--test-walkers {n}"));

@@ -9,7 +9,7 @@ use ddl_tests::{crowd, drawn_model, folder_contents, trained_model};
 
 #[test]
 fn a_training_tells_its_steps_and_leaves_a_run() {
-    let place = Place::new();
+    let place = Place::empty();
     // 200 walkers in batches of 64: 4 steps an epoch
     let train = "train --convention simulated --fold plaza --recipe published --seed 5 --epochs 2 --train-walkers 200 --batch-walkers 64 \
                  --proposal-steps 10 --commit 0123abc --threads 1 --out run";
@@ -58,7 +58,7 @@ fn a_training_tells_its_steps_and_leaves_a_run() {
 
 #[test]
 fn goals_are_measured_before_the_network_is_trained() {
-    let place = Place::new();
+    let place = Place::empty();
     let train = "train --convention simulated --fold plaza --epochs 1 --train-walkers 40 --batch-walkers 20 --proposal-steps 8 \
                  --validation 0.25 --validation-recordings crossing --threads 1 --out run";
     let _ = place.ok(&format!("{train} --only-goals"));
@@ -95,7 +95,7 @@ fn goals_are_measured_before_the_network_is_trained() {
 
 /// The configuration that a run is begun with; its network is not trained.
 fn begun_with(options: &str) -> RunConfig {
-    let place = Place::new();
+    let place = Place::empty();
     let train = "train --convention simulated --fold corridor --only-goals --proposal-steps 1 --threads 1 --out run";
     let _ = place.ok(&format!("{train} {options}"));
     RunDirectory::new(place.at("run")).config().unwrap()
@@ -148,7 +148,7 @@ fn the_published_recipe_is_the_papers() {
 /// Neither over another run, nor from half a file of its own, and not silently anew either.
 #[test]
 fn a_folder_that_holds_something_else_is_not_trained_over() {
-    let place = Place::new();
+    let place = Place::empty();
     folder_contents::write(trained_model::contents(), &place.at("run"));
     let recipe = serde_json::to_string(&drawn_model::goal_recipe(1)).unwrap();
     place.write("recipe.json", recipe);
@@ -198,7 +198,9 @@ fn a_folder_that_holds_something_else_is_not_trained_over() {
 /// A number out of range must not leave a folder behind that the corrected command then refuses.
 #[test]
 fn numbers_out_of_range_are_refused_before_anything_is_written() {
-    let place = Place::new();
+    let place = Place::empty();
+    let eth = "train --convention simulated --fold eth --out new";
+    place.fails(eth, &["eth", "corridor", "plaza"]);
     // should one be taken after all, it must not train for long
     let short = [
         ("--epochs", "1"),

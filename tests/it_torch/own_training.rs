@@ -10,13 +10,13 @@ const SMALL: &str = "--train-walkers 64 --batch-walkers 16 --proposal-steps 5 --
 const ALONE: &str = "--from none --epochs 3";
 
 fn with_recordings() -> Place {
-    let place = Place::new();
+    let place = Place::empty();
     own_tracks::write_recordings(&place);
     place
 }
 
 fn with_clips(frames: i64, count: i64) -> Place {
-    let place = Place::new();
+    let place = Place::empty();
     own_tracks::write_clips(&place, frames, count);
     place
 }
@@ -264,7 +264,7 @@ fn an_empty_validation_part_is_no_result() {
 /// Cameras of 23.98 frames a second that count pixels: what was said is remembered with the run.
 #[test]
 fn a_run_remembers_rate_and_homography() {
-    let place = Place::new();
+    let place = Place::empty();
     own_tracks::write_film(&place);
     let units = "--fps 23.98 --homography film/H.txt";
     let train = format!("train --data film --validation 0.3 {units} --epochs 1 --out run {SMALL}");

@@ -29,7 +29,7 @@ fn interrupted(place: &Place, steps: usize, signal: &str) -> Finished {
 /// Ctrl-C, and a supervisor's polite request to end: the step under way is finished, everything saved, exit code 130.
 #[test]
 fn an_interrupted_run_goes_on_to_the_same_bytes() {
-    let place = Place::new();
+    let place = Place::empty();
     let in_the_first_stage = GOAL_STEPS / 2;
     for (steps, signal, state) in [
         (in_the_first_stage, "INT", "proposal-state"),
@@ -48,5 +48,5 @@ fn an_interrupted_run_goes_on_to_the_same_bytes() {
         );
     }
     // nothing is left of what was being written
-    assert_same(&finish(&Place::new()), &finish(&place));
+    assert_same(&finish(&Place::empty()), &finish(&place));
 }

@@ -12,38 +12,15 @@ use safetensors::tensor::{Dtype, TensorView};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::OnceLock;
-use tempfile::TempDir;
 
 /// One training window in so many is learned from: a small library is searched at once.
 const STRIDE: usize = 10;
 
-/// A model in a folder of its own, which a test may damage.
-#[derive(Debug)]
-pub struct DrawnModel {
-    /// The model, loaded from the folder.
-    pub model: Ddl,
-    folder: TempDir,
-}
-
-impl DrawnModel {
-    /// The folder of the run.
-    pub fn folder(&self) -> &Path {
-        self.folder.path()
-    }
-}
-
-/// A model of a variant.
-pub fn of(variant: Variant) -> DrawnModel {
-    let folder = folder(variant);
-    let model = Ddl::load(folder.path(), DeviceChoice::Cpu).expect("the drawn model loads");
-    DrawnModel { model, folder }
-}
-
-/// The folder of a model's run alone.
-pub fn folder(variant: Variant) -> TempDir {
+/// A model of a variant, loaded from its run.
+pub fn of(variant: Variant) -> Ddl {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     folder_contents::write(contents(variant), folder.path());
-    folder
+    Ddl::load(folder.path(), DeviceChoice::Cpu).expect("the drawn model loads")
 }
 
 /// The files of a model's run, which are the same at every call.

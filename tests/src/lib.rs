@@ -36,6 +36,7 @@ pub mod progress;
 pub mod python_packages;
 pub mod recordings;
 pub mod safetensors_file;
+pub mod skip;
 #[cfg(feature = "torch")]
 pub mod trained_model;
 pub mod training_result;

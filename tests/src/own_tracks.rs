@@ -99,15 +99,3 @@ pub fn ndjson(rows: &[Row]) -> String {
     };
     rows.iter().map(line).collect()
 }
-
-/// The rows in another order, which is the same at every call.
-pub fn shuffled(rows: &[Row]) -> Vec<Row> {
-    let mut rows = rows.to_vec();
-    // multiplication by an odd number permutes the numbers below 2^64, and scatters the first few
-    let mut place = 0_u64;
-    rows.sort_by_cached_key(|_| {
-        place += 1;
-        place.wrapping_mul(0x9e37_79b9_7f4a_7c15)
-    });
-    rows
-}

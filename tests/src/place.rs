@@ -14,15 +14,9 @@ use tempfile::TempDir;
 #[derive(Debug)]
 pub struct Place(TempDir);
 
-impl Default for Place {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Place {
     /// Empty.
-    pub fn new() -> Self {
+    pub fn empty() -> Self {
         Self(tempfile::tempdir().expect("a temporary folder can be made"))
     }
 
@@ -33,7 +27,7 @@ impl Place {
 
     /// The same with a model of another variant.
     pub fn with_variant(variant: Variant) -> Self {
-        let place = Self::new();
+        let place = Self::empty();
         folder_contents::write(drawn_model::contents(variant), &place.at("run"));
         place.write_tracks("tracks.csv", &own_tracks::three_people(9));
         place

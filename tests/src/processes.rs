@@ -113,23 +113,3 @@ pub fn alone(test: &str, measure: impl FnOnce() -> Option<Vec<f64>>) -> Option<V
     }
     numbers
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{processor_time, resident_bytes};
-
-    #[test]
-    #[cfg(target_os = "linux")]
-    fn this_process_is_told_of() {
-        let before = processor_time(std::process::id()).expect("Linux tells");
-        let mut sum = 0_u64;
-        while processor_time(std::process::id()).expect("Linux tells") <= before {
-            sum = std::hint::black_box(sum + 1);
-        }
-        let small = resident_bytes().expect("Linux tells");
-        let ballast = vec![1_u8; 32 << 20];
-        let large = resident_bytes().expect("Linux tells");
-        assert!(large > small + (16 << 20), "{small}, then {large}");
-        drop(std::hint::black_box(ballast));
-    }
-}

@@ -101,22 +101,26 @@ pub fn path() -> &'static Path {
     } else {
         &["-p", "ddl-cli"]
     };
-    PATH.get_or_init(|| built(Path::new("ddl"), target))
+    PATH.get_or_init(|| {
+        let path = built(Path::new("ddl"), target);
+        if is_with_torch(&path) != cfg!(feature = "torch") {
+            build(target);
+        }
+        path
+    })
 }
 
-/// A program of the profile of this test, by its place among what cargo builds, such as `examples/live`. What is missing, older than
-/// its sources, or built for other tests is built first; `target` is what cargo is told to make it.
+/// A program of the profile of this test, by its place among what cargo builds, such as `examples/live`. What is missing, or older than
+/// its sources, is built first; `target` is what cargo is told to make it.
 pub(crate) fn built(place: &Path, target: &[&str]) -> PathBuf {
     let mut path = profile_folder().join(place).into_os_string();
     path.push(std::env::consts::EXE_SUFFIX);
     let path = PathBuf::from(path);
-    if !is_current(&path) {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
+    let others = ["tests", "benches", "examples"];
+    let others = &others[..if place.starts_with("examples") { 2 } else { 3 }];
+    if modified(&path).is_none_or(|time| newest(&crates, others) > Some(time)) {
         build(target);
-        assert!(
-            is_current(&path),
-            "{} is not what cargo built",
-            path.display()
-        );
     }
     path
 }
@@ -132,41 +136,44 @@ fn profile_folder() -> PathBuf {
 fn build(target: &[&str]) {
     let folder = profile_folder();
     let profile = folder.file_name().unwrap_or_default();
+    let is_debug = profile == "debug";
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     cargo
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .arg("build")
         .args(target)
         .arg("--profile")
-        .arg(if profile == "debug" {
-            OsStr::new("dev")
-        } else {
-            profile
-        })
+        .arg(if is_debug { OsStr::new("dev") } else { profile })
         .arg("--target-dir")
         .arg(folder.parent().unwrap_or(&folder));
     let status = cargo.status().expect("cargo can be started");
     assert!(status.success(), "{cargo:?}: {status}");
 }
 
-/// Whether the program is there, no source of those that cargo lists beside it was changed since, and libtorch is among them exactly
-/// where it is to be. Pages included as documentation do not count: they change nothing that the program does.
-fn is_current(program: &Path) -> bool {
-    let Ok(list) = std::fs::read_to_string(program.with_extension("d")) else {
-        return false;
-    };
-    let (Some(built), Some((_, sources))) = (modified(program), list.split_once(": ")) else {
-        return false;
-    };
-    let sources = sources.trim_end().replace("\\ ", "\0");
-    let mut sources = sources
-        .split(' ')
-        .map(|source| PathBuf::from(source.replace('\0', " ")))
-        .filter(|source| source.extension() != Some(OsStr::new("md")));
-    let with_torch = list.contains("ddl-star");
-    let is_ddl = program.file_stem() == Some(OsStr::new("ddl"));
-    (with_torch == cfg!(feature = "torch") || !is_ddl)
-        && sources.all(|source| modified(&source).is_some_and(|time| time <= built))
+fn is_with_torch(program: &Path) -> bool {
+    let info = Command::new(program).args(["info", "--json"]).output();
+    let info = info.expect("the program can be started").stdout;
+    !String::from_utf8_lossy(&info).contains("libtorch, which this program is built without")
+}
+
+/// When a source was last changed, but for folders of these names. Pages included as documentation change nothing that a program does.
+fn newest(folder: &Path, others: &[&str]) -> Option<SystemTime> {
+    let entries = std::fs::read_dir(folder).ok()?.flatten();
+    let times = entries.filter_map(|entry| {
+        let (path, name) = (entry.path(), entry.file_name());
+        if path.is_dir() {
+            let is_other = others.iter().any(|other| name == *other)
+                || name == "ddl-star" && !cfg!(feature = "torch");
+            return if is_other {
+                None
+            } else {
+                newest(&path, others)
+            };
+        }
+        let is_page = path.extension() == Some(OsStr::new("md"));
+        if is_page { None } else { modified(&path) }
+    });
+    times.max()
 }
 
 fn modified(path: &Path) -> Option<SystemTime> {

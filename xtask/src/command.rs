@@ -1,6 +1,5 @@
 //! The commands, one a file.
 
-mod bench;
 mod benchmark;
 mod ci;
 mod data;
@@ -8,14 +7,11 @@ mod deny;
 mod docs;
 mod faults;
 mod fuzz;
-mod models;
 mod package;
 mod page;
 mod setup;
 mod test;
 mod tidy;
-
-use std::process::ExitCode;
 
 use anyhow::Result;
 use clap::Subcommand;
@@ -32,10 +28,8 @@ pub(crate) enum Command {
     Env,
     /// Find, fetch and verify the ETH/UCY recordings
     Data(data::Arguments),
-    /// Train and score every fold, and write the report
-    Benchmark(Box<benchmark::Arguments>),
-    /// Make the models that come with the program out of a finished benchmark
-    Models(models::Arguments),
+    /// Train and score every fold, and write the report: set-up and recordings, then `ddl benchmark`
+    Benchmark(benchmark::Arguments),
     /// Make the report page of the simulated crowds and check it in a browser
     Page(page::Arguments),
     /// Kill, fill, damage and flood the program many times, and print what was found
@@ -46,8 +40,6 @@ pub(crate) enum Command {
     Test(test::Arguments),
     /// Fuzz the readers of outside bytes
     Fuzz(fuzz::Arguments),
-    /// Run the micro-benchmarks of the crates
-    Bench(bench::Arguments),
     /// Check the invariants of docs/architecture.md
     Tidy,
     /// Check what comes in from outside, by deny.toml
@@ -59,34 +51,22 @@ pub(crate) enum Command {
 }
 
 impl Command {
-    /// Where to work: this program's workspace, but for a benchmark of a given program the current folder, if it
-    /// has what is needed there. So it runs on a machine without the workspace.
-    pub(crate) fn workspace(&self) -> Result<Workspace> {
-        match self {
-            Self::Benchmark(arguments) if arguments.has_program() => Workspace::here_or_find(),
-            _ => Workspace::find(),
-        }
-    }
-
-    pub(crate) fn run(self, workspace: &Workspace) -> Result<ExitCode> {
+    pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         match self {
             Self::Setup(arguments) => arguments.run(workspace),
             Self::Env => setup::print_environment(workspace),
             Self::Data(arguments) => arguments.run(workspace),
-            Self::Benchmark(arguments) => return arguments.run(workspace),
-            Self::Models(arguments) => arguments.run(workspace),
+            Self::Benchmark(arguments) => arguments.run(workspace),
             Self::Faults(arguments) => arguments.run(workspace),
             Self::Page(arguments) => arguments.run(workspace),
             Self::Docs(arguments) => arguments.run(workspace),
             Self::Test(arguments) => arguments.run(workspace),
             Self::Fuzz(arguments) => arguments.run(workspace),
-            Self::Bench(arguments) => arguments.run(workspace),
             Self::Tidy => tidy::run(workspace),
             Self::Deny => deny::run(workspace),
             Self::Package(arguments) => arguments.run(workspace),
             Self::Ci => ci::run(workspace),
         }
-        .map(|()| ExitCode::SUCCESS)
     }
 }
 

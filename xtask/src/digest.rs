@@ -1,11 +1,9 @@
 //! Pinned contents: a length and a SHA-256, checked while the bytes pass by.
 
-use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::Path;
 
-use crate::whole_file::readable_by_all;
 use anyhow::{Context, Result, bail};
 use sha2::{Digest, Sha256};
 
@@ -71,8 +69,12 @@ impl Pin<'_> {
         let folder = path.parent().context("a file needs a folder to lie in")?;
         fs::create_dir_all(folder)
             .with_context(|| format!("{} cannot be created", folder.display()))?;
-        let mut temporary = tempfile::Builder::new()
-            .prefix(".incoming-")
+        let mut builder = tempfile::Builder::new();
+        let builder = builder.prefix(".incoming-");
+        // Temporary files are private by default.
+        #[cfg(unix)]
+        let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
+        let mut temporary = builder
             .tempfile_in(folder)
             .with_context(|| format!("{} cannot be written to", folder.display()))?;
         self.copy(from, &mut temporary)?;
@@ -80,10 +82,10 @@ impl Pin<'_> {
             .as_file()
             .sync_all()
             .context("writing stopped: is the disk full?")?;
-        let file = temporary
+        temporary
             .persist(path)
             .with_context(|| format!("{} cannot be written", path.display()))?;
-        readable_by_all(&file)
+        Ok(())
     }
 }
 
@@ -92,29 +94,14 @@ pub(crate) fn measure(path: &Path) -> Result<(String, u64)> {
     let mut file =
         File::open(path).with_context(|| format!("{} cannot be opened", path.display()))?;
     let mut hasher = Sha256::new();
-    let mut bytes = 0_u64;
-    let mut block = vec![0_u8; BLOCK];
-    loop {
-        let read = file
-            .read(&mut block)
-            .with_context(|| format!("reading {} stopped", path.display()))?;
-        if read == 0 {
-            return Ok((hexadecimal(hasher), bytes));
-        }
-        bytes += read as u64;
-        hasher.update(&block[..read]);
-    }
+    let bytes = std::io::copy(&mut file, &mut hasher)
+        .with_context(|| format!("reading {} stopped", path.display()))?;
+    Ok((hexadecimal(hasher), bytes))
 }
 
 fn hexadecimal(hasher: Sha256) -> String {
-    hasher
-        .finalize()
-        .iter()
-        .fold(String::with_capacity(64), |mut text, byte| {
-            // Writing to a string cannot fail.
-            let _ = write!(text, "{byte:02x}");
-            text
-        })
+    let bytes = hasher.finalize();
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

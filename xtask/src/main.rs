@@ -1,6 +1,6 @@
 //! `cargo xtask`: set-up, recordings, benchmark, tests and tidy checks of this workspace.
 //!
-//! The program depends on no `ddl` crate and not on libtorch, so it builds on a bare machine
+//! Of the `ddl` crates the program depends on `ddl-data` alone, and not on libtorch, so it builds on a bare machine
 //! within seconds and can bring in the rest. One command, one file under `command/`; what the
 //! commands share lies in the rooms beside it:
 //!
@@ -8,7 +8,6 @@
 //! |---|---|
 //! | `libtorch` | which libtorch is pinned, where it lies, how to get it, how cargo is told |
 //! | `data` | which recordings are pinned, where they lie, how to get them |
-//! | `benchmark` | profiles, the plan, the executor that works it off, progress |
 //! | `site` | the documentation site: what it is made of, and that its links lead somewhere |
 //! | `browser` | where a browser is or how to get one, and what drives it |
 //! | `cargo_tool` | programs of other people that checks run, one pinned version each |
@@ -18,7 +17,6 @@
     reason = "a command-line program answers on standard output"
 )]
 
-mod benchmark;
 mod browser;
 mod cargo_tool;
 mod command;
@@ -36,6 +34,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use crate::command::Command;
+use crate::workspace::Workspace;
 
 /// Set-up, recordings, benchmark, tests and tidy checks of the DDL workspace.
 #[derive(Debug, Parser)]
@@ -52,10 +51,9 @@ struct Arguments {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    let workspace = arguments.command.workspace();
-    let outcome = workspace.and_then(|workspace| arguments.command.run(&workspace));
+    let outcome = Workspace::find().and_then(|workspace| arguments.command.run(&workspace));
     match outcome {
-        Ok(code) => code,
+        Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error:#}");
             ExitCode::FAILURE

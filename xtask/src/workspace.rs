@@ -56,24 +56,6 @@ impl Workspace {
         Self::at(root)
     }
 
-    /// The current folder, if it has a workspace's list of recordings; otherwise as [`Workspace::find`].
-    pub(crate) fn here_or_find() -> Result<Self> {
-        let here = env::current_dir().context("the current folder cannot be read")?;
-        Self::at_or_find(&here)
-    }
-
-    fn at_or_find(here: &Path) -> Result<Self> {
-        if here.join("datasets/manifest.toml").is_file() {
-            return Self::at(here);
-        }
-        Self::find().with_context(|| {
-            format!(
-                "{} has no datasets/manifest.toml: copy the folder datasets of the checkout there",
-                here.display()
-            )
-        })
-    }
-
     /// The workspace at a known root.
     pub(crate) fn at(root: &Path) -> Result<Self> {
         let shell = Shell::new().context("the current folder cannot be read")?;
@@ -256,17 +238,6 @@ mod tests {
         let workspace = Workspace::find().unwrap();
         assert!(workspace.path("Cargo.toml").is_file());
         assert!(workspace.path("xtask/src/workspace.rs").is_file());
-    }
-
-    #[test]
-    fn a_folder_with_a_list_of_recordings_stands_for_the_workspace() {
-        let folder = tempfile::tempdir().unwrap();
-        let found = Workspace::at_or_find(folder.path()).unwrap();
-        assert_eq!(found.root(), Workspace::find().unwrap().root());
-        std::fs::create_dir(folder.path().join("datasets")).unwrap();
-        std::fs::write(folder.path().join("datasets/manifest.toml"), "").unwrap();
-        let here = Workspace::at_or_find(folder.path()).unwrap();
-        assert_eq!(here.root(), folder.path());
     }
 
     #[test]

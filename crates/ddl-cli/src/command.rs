@@ -1,6 +1,7 @@
 //! The commands, one a file, and the options they share.
 
 pub(crate) mod baselines;
+pub(crate) mod benchmark;
 pub(crate) mod completions;
 pub(crate) mod data;
 pub(crate) mod evaluate;
@@ -10,6 +11,7 @@ pub(crate) mod info;
 pub(crate) mod man;
 mod model;
 pub(crate) mod pack;
+mod recipe;
 pub(crate) mod report;
 mod test_windows;
 pub(crate) mod train;
@@ -231,10 +233,13 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
     if convention == Convention::Simulated {
         return Ok(Dataset::simulated(SIMULATION_SEED));
     }
-    let folder = locate(convention, data).context(
-        "no recordings; `cargo xtask data fetch` gets them, or use --convention simulated",
-    )?;
-    Ok(Dataset::load(convention, &folder)?)
+    Ok(Dataset::load(convention, &folder(convention, data)?)?)
+}
+
+/// The folder of a convention's recordings.
+fn folder(convention: Convention, data: Option<&Path>) -> anyhow::Result<PathBuf> {
+    locate(convention, data)
+        .context("no recordings; `cargo xtask data fetch` gets them, or use --convention simulated")
 }
 
 /// A number that must not be 0.

@@ -1,29 +1,48 @@
-//! Ctrl-C as a flag that the work looks at between two steps.
+//! Ctrl-C as a wish to stop that the work looks at between two steps.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Set once the user has asked to stop.
-#[derive(Debug, Clone)]
-pub(crate) struct Interrupt(Arc<AtomicBool>);
+/// How often the user has asked to stop.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Interrupt(Arc<AtomicUsize>);
 
 impl Interrupt {
     /// Catches Ctrl-C (SIGINT) and SIGTERM from now on; a second one ends the program at once.
     pub(crate) fn catch() -> anyhow::Result<Self> {
-        let flag = Arc::new(AtomicBool::new(false));
-        let seen = Arc::clone(&flag);
+        Self::catch_until(2, |_| {})
+    }
+
+    /// Catches Ctrl-C (SIGINT) and SIGTERM from now on, and hears the number of each; the `last` ends the program at once.
+    pub(crate) fn catch_until(
+        last: usize,
+        hear: impl Fn(usize) + Send + 'static,
+    ) -> anyhow::Result<Self> {
+        let interrupt = Self::default();
+        let seen = interrupt.clone();
         ctrlc::set_handler(move || {
-            if seen.swap(true, Ordering::SeqCst) {
+            let wishes = seen.wish();
+            if wishes >= last {
                 std::process::exit(130);
             }
+            hear(wishes);
         })?;
-        Ok(Self(flag))
+        Ok(interrupt)
+    }
+
+    /// One more wish to stop; how many there are.
+    pub(crate) fn wish(&self) -> usize {
+        self.0.fetch_add(1, Ordering::SeqCst) + 1
+    }
+
+    pub(crate) fn wishes(&self) -> usize {
+        self.0.load(Ordering::SeqCst)
     }
 
     /// Whether to go on.
     pub(crate) fn flow(&self) -> ControlFlow<()> {
-        if self.0.load(Ordering::SeqCst) {
+        if self.wishes() > 0 {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())

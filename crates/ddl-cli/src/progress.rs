@@ -3,13 +3,14 @@
 use crate::telling::tell;
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::io::{IsTerminal as _, Write as _};
 use std::time::{Duration, Instant};
 
 /// How often somebody who reads a log is told how far the work has come: what takes less time is quiet.
-const LINE_EVERY: Duration = Duration::from_secs(30);
+pub(crate) const LINE_EVERY: Duration = Duration::from_secs(30);
 
 /// How progress is told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -32,12 +33,22 @@ pub(crate) struct Progress {
     told: Cell<Instant>,
 }
 
-#[derive(Serialize)]
-struct Line<'a> {
-    stage: &'a str,
-    done: u64,
-    total: u64,
-    message: &'a str,
+/// A line of progress for programs.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct ProgressLine<'a> {
+    pub(crate) stage: Cow<'a, str>,
+    pub(crate) done: u64,
+    pub(crate) total: u64,
+    pub(crate) message: Cow<'a, str>,
+}
+
+impl ProgressLine<'_> {
+    pub(crate) fn print(&self) {
+        if let Ok(line) = serde_json::to_string(self) {
+            // a reader that went away must not stop the work
+            let _ = writeln!(std::io::stdout(), "{line}");
+        }
+    }
 }
 
 impl Progress {
@@ -77,16 +88,14 @@ impl Progress {
             self.told.set(Instant::now());
             tell(format_args!("{}: {done} of {total} {message}", self.stage));
         }
-        if self.mode == ProgressMode::Json
-            && let Ok(line) = serde_json::to_string(&Line {
-                stage: self.stage,
+        if self.mode == ProgressMode::Json {
+            ProgressLine {
+                stage: self.stage.into(),
                 done,
                 total,
-                message,
-            })
-        {
-            // a reader that went away must not stop the work
-            let _ = writeln!(std::io::stdout(), "{line}");
+                message: message.into(),
+            }
+            .print();
         }
     }
 }

@@ -2,10 +2,21 @@
 
 use std::fmt::Arguments;
 use std::io::{Error, ErrorKind, Write as _, stderr};
+use std::time::Duration;
 
 /// Writes a line to standard error. Where nobody reads it, the work goes on: `eprintln!` would panic.
 pub(crate) fn tell(line: Arguments<'_>) {
     let _ = writeln!(stderr(), "{line}");
+}
+
+/// A duration as a person says it.
+pub(crate) fn human(duration: Duration) -> String {
+    let seconds = duration.as_secs();
+    match (seconds / 3600, seconds / 60 % 60, seconds % 60) {
+        (0, 0, seconds) => format!("{seconds} s"),
+        (0, minutes, seconds) => format!("{minutes} min {seconds} s"),
+        (hours, minutes, _) => format!("{hours} h {minutes} min"),
+    }
 }
 
 /// Whether a write failed because its reader has gone, as in `ddl info | head -1`.
@@ -62,5 +73,11 @@ mod tests {
             advice(&error(ErrorKind::StorageFull)).is_some_and(|told| told.contains("make room"))
         );
         assert_eq!(advice(&error(ErrorKind::InvalidData)), None);
+    }
+
+    #[test]
+    fn durations_read_well() {
+        let said = [7, 67, 3_725].map(|seconds| human(Duration::from_secs(seconds)));
+        assert_eq!(said, ["7 s", "1 min 7 s", "1 h 2 min"]);
     }
 }

@@ -45,5 +45,5 @@ pub use track::{
     COORDINATE_LIMIT, HORIZON, OBSERVED, Observation, PedestrianId, Position, TIME_STEP, WINDOW,
 };
 pub use unknown_name::UnknownName;
-pub use whole_file::{WRITING, write_whole};
+pub use whole_file::{remove_half_written, write_whole};
 pub use window::Window;

@@ -15,6 +15,16 @@ pub enum DeviceChoice {
     Cuda,
 }
 
+impl std::fmt::Display for DeviceChoice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Auto => "auto",
+            Self::Cpu => "cpu",
+            Self::Cuda => "cuda",
+        })
+    }
+}
+
 impl std::str::FromStr for DeviceChoice {
     type Err = NetworkError;
 

@@ -1,4 +1,8 @@
 #![doc = include_str!("../README.md")]
+#![cfg_attr(
+    not(feature = "training"),
+    allow(dead_code, reason = "kernels backwards are for training alone")
+)]
 
 mod arithmetic;
 pub mod backbone;

@@ -1,7 +1,7 @@
 //! Fits what tells how far a model is trusted, on recordings of places that no model was trained on:
 //! `calibrate FOLDER=FPS ...` prints, for each folder and each built-in model, the log loss of the weights, AMD and likelihood, and the coverage
 //! of regions that were calibrated on the other folders; then it writes the table of regions of all folders to
-//! `crates/ddl/src/calibration.json`.
+//! `crates/ddl/src/trust/calibration.json`.
 //!
 //! Of each folder every other file is used, of a folder with one file the first half of its windows: the rest is for the last look.
 
@@ -94,7 +94,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         regions: table,
         ..Calibration::fitted().clone()
     };
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/calibration.json");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/trust/calibration.json");
     std::fs::write(&file, serde_json::to_string_pretty(&fitted)? + "\n")?;
     println!("{}", file.display());
     Ok(())

@@ -4,49 +4,15 @@
     allow(dead_code, reason = "training alone needs it")
 )]
 
-mod baselines;
-mod builtin_model;
-mod calibration;
-mod certified_forecast;
-mod clearance;
-mod comparison;
 mod device;
-mod early_stopping;
-mod enough_weights;
 mod error;
 mod evaluation;
-mod evaluation_record;
-mod experts;
-mod familiarity;
-mod goal_evaluation;
-mod goal_model;
-mod goal_picture;
-mod goal_recipe;
+mod forecast;
 mod goals;
-mod live;
-mod machine;
-mod manner;
 mod model;
-mod model_source;
-mod network_forecast;
-mod packed_model;
-mod published;
-mod reach;
-mod result_rows;
-mod results;
-mod run_config;
-mod run_directory;
-mod run_lock;
-mod sha256;
-mod starting_model;
-mod straight_lines;
-mod test_set;
-mod track_units;
+mod run;
 mod training;
-mod training_words;
-mod validation_part;
-mod views;
-mod walk;
+mod trust;
 
 pub use ddl_data as data;
 pub use ddl_dynamics as dynamics;
@@ -58,40 +24,38 @@ pub use ddl_softdtw as softdtw;
 #[cfg(feature = "torch")]
 pub use ddl_star as star;
 
-pub use baselines::measure_baselines;
-pub use builtin_model::BuiltinModel;
-pub use calibration::Calibration;
-pub use certified_forecast::{CertificateError, CertifiedForecast};
-pub use clearance::Clearance;
-pub use comparison::{BestOfTwenty, Comparison, compare_on_validation};
 pub use ddl_eval::{Forecast, Forecaster, Protocol};
 pub use ddl_network::{DeviceChoice, Precision, Variant};
-pub use device::Device;
-pub use early_stopping::best_epoch;
+pub use device::{Device, cuda_status, prepare};
 pub use error::DdlError;
-pub use evaluation::{
-    Evaluation, EvaluationProgress, EvaluationRequest, EvaluationSplit, evaluate,
-};
-pub use evaluation_record::{is_evaluated, save_evaluation};
-pub use familiarity::UNFAMILIAR;
-pub use goal_evaluation::{GoalErrors, GoalEvaluation, MeasuredGoals, evaluate_goals};
-pub use goal_model::GoalModel;
-pub use goal_picture::goal_picture;
-pub use goal_recipe::{GoalRecipe, ProposalRecipe};
-pub use live::{LiveForecast, LiveForecaster};
-pub use machine::{cuda_status, prepare};
-pub use model::Ddl;
-pub use model_source::ModelSource;
-pub use results::Results;
-pub use run_config::{FORMAT, RunConfig, TrainingData};
-pub use run_directory::{RunDirectory, write_atomically};
-pub use starting_model::{StartingModel, goals_trained_further, training_further};
-pub use test_set::name_of;
-pub use track_units::TrackUnits;
-pub use training::{
-    TrainingProgress, TrainingRequest, TrainingStage, TrainingStep, fold_of, train,
-};
-pub use validation_part::ValidationPart;
+pub use evaluation::baselines::measure_baselines;
+pub use evaluation::comparison::{BestOfTwenty, Comparison, compare_on_validation};
+pub use evaluation::evaluate::{Evaluation, EvaluationProgress, EvaluationRequest, evaluate};
+pub use evaluation::goal_picture::goal_picture;
+pub use evaluation::goals::{GoalErrors, GoalEvaluation, MeasuredGoals, evaluate_goals};
+pub use evaluation::record::{is_evaluated, save_evaluation};
+pub use evaluation::results::Results;
+pub use evaluation::split::EvaluationSplit;
+pub use evaluation::test_set::name_of;
+pub use forecast::certified::{CertificateError, CertifiedForecast};
+pub use forecast::clearance::Clearance;
+pub use forecast::live::{LiveForecast, LiveForecaster};
+pub use goals::model::GoalModel;
+pub use goals::recipe::{GoalRecipe, ProposalRecipe};
+pub use model::builtin::BuiltinModel;
+pub use model::ddl::Ddl;
+pub use model::source::ModelSource;
+pub use run::config::{FORMAT, RunConfig, TrainingData};
+pub use run::directory::{RunDirectory, write_atomically};
+pub use run::lock::RunLock;
+pub use run::starting_model::{StartingModel, goals_trained_further, training_further};
+pub use run::track_units::TrackUnits;
+pub use run::training_data::fold_of;
+pub use run::validation_part::ValidationPart;
+pub use training::best_epoch::best_epoch;
+pub use training::{TrainingProgress, TrainingRequest, TrainingStage, TrainingStep, train};
+pub use trust::calibration::Calibration;
+pub use trust::familiarity::UNFAMILIAR;
 
 /// The examples of the guide, run as those of this documentation are.
 #[cfg(doctest)]

@@ -4,9 +4,9 @@ use std::io::Write as _;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
+use ddl_data::Convention;
 
 use super::{benchmark, data, deny, docs, package, page, set_up, test, tidy};
-use crate::data::Convention;
 use crate::site;
 use crate::workspace::{Workspace, step};
 
@@ -23,7 +23,7 @@ const CHECKS: [Check; 12] = [
     ("lints", lints),
     ("documentation", documentation),
     ("documentation site", docs::check),
-    ("benchmark", smoke),
+    ("benchmark", benchmark::smoke),
     ("report page in a browser", page::check),
     // Last, and the last to print: what a reader of the log looks for is the test results.
     ("tests", test::run_all),
@@ -118,10 +118,6 @@ fn recordings(workspace: &Workspace) -> Result<()> {
         data::fetch_one(workspace, Convention::SocialGan, None)?
     );
     Ok(())
-}
-
-fn smoke(workspace: &Workspace) -> Result<()> {
-    benchmark::smoke(workspace)
 }
 
 #[cfg(test)]

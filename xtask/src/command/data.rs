@@ -1,12 +1,13 @@
 //! `cargo xtask data`: find, fetch and verify the recordings.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
+use ddl_data::{Convention, locate};
 
-use crate::data::{self, Convention, FETCHED, Manifest, Places};
-use crate::workspace::{Workspace, absolute};
+use crate::data::{self, Manifest, RECORDED};
+use crate::workspace::Workspace;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -71,29 +72,25 @@ impl Arguments {
 
     fn verify(&self, workspace: &Workspace) -> Result<()> {
         let manifest = Manifest::load(workspace)?;
-        let places = Places::new(workspace, self.data.as_deref())?;
-        let mut seen = 0;
+        let mut absent = Vec::new();
         for convention in self.conventions() {
-            let Some(entry) = manifest.entry(convention) else {
-                continue;
+            let folder = match locate(convention, self.data.as_deref()) {
+                Ok(folder) => folder,
+                Err(error) => {
+                    absent.push(error.to_string());
+                    continue;
+                }
             };
-            let Some(folder) = data::lookup(&places, convention, entry) else {
-                continue;
-            };
+            let entry = manifest.entry(convention)?;
             data::check(&folder, entry)
                 .with_context(|| format!("{convention} in {}", folder.display()))?;
-            println!(
-                "{convention}: {} files right, in {}",
-                entry.files.len(),
-                folder.display()
-            );
-            seen += 1;
+            let files = entry.files.len();
+            println!("{convention}: {files} files right, in {}", folder.display());
         }
-        if seen == 0 {
+        if absent.len() == self.conventions().len() {
             bail!(
-                "there is nothing to verify in {}: get the recordings with `cargo xtask data \
-                 fetch`",
-                places.list()
+                "there is nothing to verify: get the recordings with `cargo xtask data fetch` ({})",
+                absent.join("; ")
             );
         }
         Ok(())
@@ -101,15 +98,12 @@ impl Arguments {
 
     fn locate(&self, workspace: &Workspace) -> Result<()> {
         let manifest = Manifest::load(workspace)?;
-        let places = Places::new(workspace, self.data.as_deref())?;
         for convention in self.conventions() {
-            let Some(entry) = manifest.entry(convention) else {
-                continue;
-            };
-            match data::lookup(&places, convention, entry) {
-                Some(folder) => println!("{convention}: {}", folder.display()),
-                None => println!("{convention}: not in {}", places.list()),
+            match locate(convention, self.data.as_deref()) {
+                Ok(folder) => println!("{convention}: {}", folder.display()),
+                Err(error) => println!("{convention}: {error}"),
             }
+            let entry = manifest.entry(convention)?;
             println!("  {}", entry.description);
             println!("  terms: {}", entry.terms);
             for citation in manifest.citations(entry) {
@@ -121,7 +115,7 @@ impl Arguments {
 
     fn conventions(&self) -> Vec<Convention> {
         self.convention
-            .map_or_else(|| Convention::RECORDED.to_vec(), |one| vec![one])
+            .map_or_else(|| RECORDED.to_vec(), |one| vec![one])
     }
 }
 
@@ -129,29 +123,18 @@ impl Arguments {
 pub(super) fn fetch_one(
     workspace: &Workspace,
     convention: Convention,
-    folder: Option<&std::path::Path>,
+    folder: Option<&Path>,
 ) -> Result<String> {
-    let manifest = Manifest::load(workspace)?;
-    let entry = manifest
-        .entry(convention)
-        .context("the simulated crowd has no files")?;
-    let count = entry.files.len();
-    let places = Places::new(workspace, folder)?;
-    if let Some(there) = data::lookup(&places, convention, entry)
-        && data::check(&there, entry).is_ok()
-    {
+    if let Ok(Some(there)) = data::find_right(workspace, convention, folder) {
         return Ok(format!(
-            "{convention}: {count} files are there already, in {}",
+            "{convention}: its files are there already, in {}",
             there.display()
         ));
     }
-    let folder = folder
-        .map_or_else(|| Ok(workspace.path(FETCHED)), absolute)?
-        .join(convention.name());
-    let source = data::fetch(convention, entry, &folder, &mut |text| eprintln!("{text}"))?;
-    let source = source.unwrap_or("an earlier run");
+    let say = &mut |text: &str| eprintln!("{text}");
+    let (folder, source) = data::fetch_to(workspace, convention, folder, say)?;
     Ok(format!(
-        "{convention}: {count} files, hashes right, from {source}, in {}",
+        "{convention}: hashes right, from {source}, in {}",
         folder.display()
     ))
 }

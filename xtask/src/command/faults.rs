@@ -1,6 +1,5 @@
 //! `cargo xtask faults`: everything that can go wrong outside, tried often, as a table.
 
-use std::env;
 use std::fs;
 use std::time::{Duration, Instant};
 
@@ -8,14 +7,11 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 
 use super::set_up;
-use crate::benchmark::human;
 use crate::whole_file;
 use crate::workspace::{Workspace, step};
 
 /// Names the file that the tests add their figures to; with it they try every fault the full number of times.
 const FIGURES: &str = "DDL_FAULTS_FIGURES";
-/// Names this program, for the tests that run the benchmark.
-pub(super) const PROGRAM: &str = "DDL_XTASK";
 
 const PAGE: &str = "docs/reliability.md";
 const BEGIN: &str =
@@ -55,8 +51,7 @@ impl Arguments {
             .args(["--test-threads", "1", "--nocapture"])
             .args(&self.rest)
             .env("OMP_NUM_THREADS", "1")
-            .env(FIGURES, &file)
-            .env(PROGRAM, this_program()?);
+            .env(FIGURES, &file);
         step("the tests of faults", &command)?;
         let rows = fs::read_to_string(&file).context("the figures cannot be read")?;
         ensure!(
@@ -78,11 +73,6 @@ impl Arguments {
     }
 }
 
-/// Where this program lies, for tests that run it.
-pub(super) fn this_program() -> Result<std::path::PathBuf> {
-    env::current_exe().context("this program does not know where it lies")
-}
-
 /// The rows under their heading, in an order that does not depend on that of the tests.
 fn table(rows: &str) -> String {
     let mut rows: Vec<&str> = rows.lines().collect();
@@ -96,8 +86,8 @@ fn table(rows: &str) -> String {
 fn made_by(commit: &str, time: &str, took: Duration) -> String {
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     format!(
-        "`cargo xtask faults --publish` made this table: development profile, {cores} cores, CPU; commit {commit}, {time}, in {}.",
-        human(took)
+        "`cargo xtask faults --publish` made this table: development profile, {cores} cores, CPU; commit {commit}, {time}, in {:.0} min.",
+        took.as_secs_f64() / 60.0
     )
 }
 

@@ -7,8 +7,8 @@ use anyhow::Result;
 use clap::Args;
 
 use super::data::fetch_one;
-use super::{faults, set_up};
-use crate::data::{Convention, FETCHED};
+use super::set_up;
+use crate::data::{FETCHED, RECORDED};
 use crate::workspace::{Workspace, absolute, step};
 
 /// Packages that must build and pass with no libtorch on the machine.
@@ -42,7 +42,7 @@ impl Arguments {
             set_up(workspace)?;
         }
         // Best effort: a test that needs recordings says itself what it lacks, and fails in CI.
-        for convention in Convention::RECORDED {
+        for convention in RECORDED {
             match fetch_one(workspace, convention, None) {
                 Ok(message) => eprintln!("{message}"),
                 Err(error) => eprintln!("{error:#}"),
@@ -82,8 +82,7 @@ fn cargo_test(workspace: &Workspace, selection: &[&str], rest: &[String]) -> Res
         .args(rest)
         // Tests run side by side already: a thread each keeps them from fighting for cores, and
         // libtorch's sums in one order.
-        .env("OMP_NUM_THREADS", "1")
-        .env(faults::PROGRAM, faults::this_program()?);
+        .env("OMP_NUM_THREADS", "1");
     if let Some(folder) = recordings(workspace)? {
         command = command.env("DDL_DATASETS", folder);
     }

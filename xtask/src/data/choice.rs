@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
+use ddl_data::{Convention, locate};
 
-use super::locate::find_right;
-use super::{Convention, FETCHED, Manifest, Places, fetch};
+use super::fetch::{check, fetch};
+use super::{FETCHED, Manifest, RECORDED};
 use crate::workspace::{Workspace, absolute};
 
 /// A convention that can be had.
@@ -31,10 +32,8 @@ pub(crate) fn choose(
     data: Option<&Path>,
     say: &mut dyn FnMut(&str),
 ) -> Result<Chosen> {
-    let manifest = Manifest::load(workspace)?;
-    let places = Places::new(workspace, data)?;
     if let Some(convention) = asked {
-        let (folder, found) = obtain(workspace, &manifest, &places, convention, data, say)?;
+        let (folder, found) = obtain(workspace, convention, data, say)?;
         return Ok(Chosen {
             convention,
             folder,
@@ -44,10 +43,8 @@ pub(crate) fn choose(
     if let Some(folder) = data {
         // A folder that was named is meant: nothing is fetched into a mistyped one.
         let mut found = false;
-        for convention in Convention::RECORDED {
-            if let Some(entry) = manifest.entry(convention) {
-                found |= find_right(&places, convention, entry)?.is_some();
-            }
+        for convention in RECORDED {
+            found |= find_right(workspace, convention, data)?.is_some();
         }
         ensure!(
             found,
@@ -55,48 +52,20 @@ pub(crate) fn choose(
             folder.display()
         );
     }
-    first_that_can_be_had(workspace, &manifest, &places, data, say)
-}
-
-/// The folder of a convention's recordings if they are on this machine: in the usual places, or beside the recordings of
-/// another convention. Nothing is fetched.
-///
-/// # Errors
-/// If recordings are there that are not the pinned ones.
-pub(crate) fn at_hand(
-    workspace: &Workspace,
-    convention: Convention,
-    another: Option<&Path>,
-) -> Result<Option<PathBuf>> {
-    let manifest = Manifest::load(workspace)?;
-    let Some(entry) = manifest.entry(convention) else {
-        return Ok(None);
-    };
-    let beside = another.and_then(Path::parent);
-    for folder in [None, beside] {
-        let places = Places::new(workspace, folder)?;
-        if let Some(found) = find_right(&places, convention, entry)? {
-            return Ok(Some(found));
-        }
-    }
-    Ok(None)
+    first_that_can_be_had(workspace, data, say)
 }
 
 /// The recorded conventions in turn, then the simulated crowd.
 fn first_that_can_be_had(
     workspace: &Workspace,
-    manifest: &Manifest,
-    places: &Places,
     data: Option<&Path>,
     say: &mut dyn FnMut(&str),
 ) -> Result<Chosen> {
     let mut reasons = Vec::new();
-    for convention in Convention::RECORDED {
-        if let Some(entry) = manifest.entry(convention) {
-            // Recordings that are there and not the pinned ones are an error, not a reason to go on.
-            find_right(places, convention, entry)?;
-        }
-        match obtain(workspace, manifest, places, convention, data, say) {
+    for convention in RECORDED {
+        // Recordings that are there and not the pinned ones are an error, not a reason to go on.
+        find_right(workspace, convention, data)?;
+        match obtain(workspace, convention, data, say) {
             Ok((folder, found)) => {
                 reasons.push(found);
                 let reason = reasons.join("; ");
@@ -120,34 +89,62 @@ fn first_that_can_be_had(
 /// The folder of a convention's recordings, found or fetched, and a clause that says which.
 fn obtain(
     workspace: &Workspace,
-    manifest: &Manifest,
-    places: &Places,
     convention: Convention,
     data: Option<&Path>,
     say: &mut dyn FnMut(&str),
 ) -> Result<(Option<PathBuf>, String)> {
-    let Some(entry) = manifest.entry(convention) else {
-        return Ok((None, "it needs no files".to_owned()));
-    };
-    let count = entry.files.len();
-    if let Some(folder) = find_right(places, convention, entry)? {
-        let found = format!(
-            "its {count} files are in {}, hashes right",
-            folder.display()
-        );
+    match convention {
+        Convention::Simulated => return Ok((None, "it needs no files".to_owned())),
+        Convention::Own => {
+            bail!("nobody but you has your own recordings: choose star, social-gan or simulated")
+        }
+        Convention::Star | Convention::SocialGan => {}
+    }
+    if let Some(folder) = find_right(workspace, convention, data)? {
+        let found = format!("its files are in {}, hashes right", folder.display());
         return Ok((Some(folder), found));
     }
+    let absent = locate(convention, data).err();
+    let absent = absent.map_or(String::new(), |error| error.to_string());
+    let (folder, source) = fetch_to(workspace, convention, data, say).context(absent)?;
+    let found = format!("its files are in {}, from {source}", folder.display());
+    Ok((Some(folder), found))
+}
+
+/// The folder whose files of a convention are all there and right, or none; files that are there and wrong are an
+/// error, for nothing may stand in for them in silence.
+pub(crate) fn find_right(
+    workspace: &Workspace,
+    convention: Convention,
+    data: Option<&Path>,
+) -> Result<Option<PathBuf>> {
+    let Ok(folder) = locate(convention, data) else {
+        return Ok(None);
+    };
+    let manifest = Manifest::load(workspace)?;
+    check(&folder, manifest.entry(convention)?).with_context(|| {
+        format!(
+            "{} does not hold the pinned {convention} recordings: delete the wrong files, then \
+             `cargo xtask data fetch --convention {convention}`",
+            folder.display()
+        )
+    })?;
+    absolute(&folder).map(Some)
+}
+
+/// Brings in what is missing or wrong of a convention; the folder, and where it came from.
+pub(crate) fn fetch_to(
+    workspace: &Workspace,
+    convention: Convention,
+    data: Option<&Path>,
+    say: &mut dyn FnMut(&str),
+) -> Result<(PathBuf, String)> {
+    let manifest = Manifest::load(workspace)?;
     let folder = data
         .map_or_else(|| Ok(workspace.path(FETCHED)), absolute)?
         .join(convention.name());
-    let source = fetch(convention, entry, &folder, say)
-        .with_context(|| format!("{convention} is not in {}", places.list()))?
-        .unwrap_or("an earlier run");
-    let found = format!(
-        "its {count} files are in {}, from {source}",
-        folder.display()
-    );
-    Ok((Some(folder), found))
+    let source = fetch(convention, manifest.entry(convention)?, &folder, say)?;
+    Ok((folder, source.unwrap_or("an earlier run").to_owned()))
 }
 
 #[cfg(test)]
@@ -183,14 +180,14 @@ mod tests {
     fn without_recordings_and_network_the_crowd_is_simulated_and_says_why() {
         let (folder, workspace) = workspace();
         let data = folder.path().join("empty");
-        let manifest = Manifest::load(&workspace).unwrap();
-        let places = Places::new(&workspace, Some(&data)).unwrap();
-        let chosen =
-            first_that_can_be_had(&workspace, &manifest, &places, Some(&data), &mut |_| {})
-                .unwrap();
+        let chosen = first_that_can_be_had(&workspace, Some(&data), &mut |_| {}).unwrap();
         assert_eq!(chosen.convention, Convention::Simulated);
         assert_eq!(chosen.folder, None);
-        for word in ["star is not in", "social-gan is not in", "simulated"] {
+        for word in [
+            "the star recordings",
+            "the social-gan recordings",
+            "simulated",
+        ] {
             assert!(chosen.reason.contains(word), "{}", chosen.reason);
         }
         let error = choose(&workspace, Some(Convention::Star), Some(&data), &mut |_| {});
@@ -204,45 +201,34 @@ mod tests {
     fn files_that_are_there_but_wrong_are_never_used_nor_replaced_in_silence() {
         let (folder, workspace) = workspace();
         let manifest = Manifest::load(&workspace).unwrap();
-        let data = folder.path().join("data");
+        let data = folder.path().join("star");
         fs::create_dir(&data).unwrap();
         for file in &manifest.entry(Convention::Star).unwrap().files {
             fs::write(data.join(&file.name), "1,2\n1,1\n0,0\n0,0\n").unwrap();
         }
-        let error = choose(&workspace, Some(Convention::Star), Some(&data), &mut |_| {});
-        let message = format!("{:#}", error.unwrap_err());
-        assert!(message.contains("8 of 8 files are wrong"), "{message}");
-        let error = choose(&workspace, None, Some(&data), &mut |_| {});
-        let message = format!("{:#}", error.unwrap_err());
-        assert!(message.contains("8 of 8 files are wrong"), "{message}");
-    }
-
-    #[test]
-    fn another_convention_is_found_beside_the_one_at_hand_and_never_fetched() {
-        let (folder, workspace) = workspace();
-        let star = folder.path().join("data/star");
-        let found = || at_hand(&workspace, Convention::SocialGan, Some(&star));
-        fs::create_dir_all(&star).unwrap();
-        assert_eq!(found().unwrap(), None);
-        let manifest = Manifest::load(&workspace).unwrap();
-        let beside = folder.path().join("data/social-gan");
+        // Also where they lie beside what was named.
+        let beside = folder.path().join("social-gan");
         fs::create_dir(&beside).unwrap();
-        for file in &manifest.entry(Convention::SocialGan).unwrap().files {
-            fs::write(beside.join(&file.name), "0\t1\t0\t0\n").unwrap();
+        for (asked, place) in [
+            (Some(Convention::Star), &data),
+            (None, &data),
+            (Some(Convention::Star), &beside),
+        ] {
+            let error = choose(&workspace, asked, Some(place), &mut |_| {}).unwrap_err();
+            let message = format!("{error:#}");
+            assert!(message.contains("8 of 8 files are wrong"), "{message}");
         }
-        let message = format!("{:#}", found().unwrap_err());
-        assert!(message.contains("8 of 8 files are wrong"), "{message}");
-        let none = at_hand(&workspace, Convention::Simulated, Some(&star));
-        assert_eq!(none.unwrap(), None);
     }
 
     #[test]
     fn the_simulated_convention_is_had_at_once() {
         let (_folder, workspace) = workspace();
-        let chosen = choose(&workspace, Some(Convention::Simulated), None, &mut |_| {}).unwrap();
+        let mut choose = |convention| choose(&workspace, Some(convention), None, &mut |_| {});
+        let chosen = choose(Convention::Simulated).unwrap();
         assert_eq!(
             (chosen.convention, chosen.folder),
             (Convention::Simulated, None)
         );
+        assert!(choose(Convention::Own).is_err());
     }
 }

@@ -4,9 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Result, bail};
+use ddl_data::Convention;
 
 use super::manifest::{Entry, PinnedFile};
-use super::{Convention, source};
+use super::source;
 use crate::python::Python;
 
 /// Puts every file of a convention that is missing or wrong into `folder`.
@@ -40,6 +41,24 @@ pub(crate) fn fetch<'a>(
         "the {convention} recordings cannot be fetched ({}); check the network, or copy them by \
          hand (datasets/README.md)",
         reasons.join("; ")
+    )
+}
+
+/// Hashes every file of a convention in a folder; the error names every wrong file.
+pub(crate) fn check(folder: &Path, entry: &Entry) -> Result<()> {
+    let complaint = |file: &PinnedFile| {
+        let error = file.pin().check(&folder.join(&file.name)).err()?;
+        Some(format!("{}: {}", file.name, error.root_cause()))
+    };
+    let complaints: Vec<String> = entry.files.iter().filter_map(complaint).collect();
+    if complaints.is_empty() {
+        return Ok(());
+    }
+    bail!(
+        "{} of {} files are wrong ({})",
+        complaints.len(),
+        entry.files.len(),
+        complaints.join("; ")
     )
 }
 

@@ -128,6 +128,12 @@ fn bad(answer: Answer) -> String {
     serve(answers)
 }
 
+/// An address where nobody listens: its port was just given back.
+fn gone() -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    format!("http://{}", listener.local_addr().unwrap())
+}
+
 #[test]
 fn everything_arrives_and_a_second_fetch_asks_nobody() {
     let folder = tempfile::tempdir().unwrap();
@@ -176,14 +182,9 @@ fn a_bad_answer_is_told_apart_and_leaves_only_right_files() {
 
 #[test]
 fn the_next_source_gives_what_the_first_does_not() {
-    // Nobody listens on a port that was just given back.
-    let gone = {
-        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-        format!("http://{}", listener.local_addr().unwrap())
-    };
     let folder = tempfile::tempdir().unwrap();
     let half = bad(Answer::whole(b"half"));
-    let entry = entry(&[&gone, &half, &serve(good())]);
+    let entry = entry(&[&gone(), &half, &serve(good())]);
     let mut said = Vec::new();
     let source = fetch(Convention::Star, &entry, folder.path(), &mut |text| {
         said.push(text.to_owned());
@@ -196,19 +197,12 @@ fn the_next_source_gives_what_the_first_does_not() {
 #[test]
 fn no_network_names_every_source_in_one_line() {
     let folder = tempfile::tempdir().unwrap();
-    let gone = {
-        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-        format!("http://{}", listener.local_addr().unwrap())
-    };
-    let message = format!(
-        "{:#}",
-        try_fetch(&entry(&[&gone, &gone]), folder.path()).unwrap_err()
-    );
-    assert!(
-        message.contains("source 0") && message.contains("source 1"),
-        "{message}"
-    );
-    assert!(message.contains("refused"), "{message}");
+    let gone = gone();
+    let error = try_fetch(&entry(&[&gone, &gone]), folder.path()).unwrap_err();
+    let message = format!("{error:#}");
+    for part in ["source 0", "source 1", "refused"] {
+        assert!(message.contains(part), "{message}");
+    }
     // Not even an empty folder.
     assert!(!folder.path().exists());
 }
@@ -219,15 +213,13 @@ fn a_damaged_file_is_fetched_again() {
     let entry = entry(&[&serve(good())]);
     try_fetch(&entry, folder.path()).unwrap();
     fs::write(folder.path().join("one.csv"), &ONE[..5]).unwrap();
-    let message = crate::data::check(folder.path(), &entry)
-        .unwrap_err()
-        .to_string();
+    let message = check(folder.path(), &entry).unwrap_err().to_string();
     assert!(
         message.contains("1 of 2 files") && message.contains("ended after 5"),
         "{message}"
     );
     try_fetch(&entry, folder.path()).unwrap();
-    crate::data::check(folder.path(), &entry).unwrap();
+    check(folder.path(), &entry).unwrap();
 }
 
 #[test]

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
+use ddl_data::Convention;
 use serde::Deserialize;
 
-use super::Convention;
+use super::RECORDED;
 use crate::digest::Pin;
 use crate::workspace::Workspace;
 
@@ -92,22 +93,22 @@ impl Manifest {
 
     pub(crate) fn parse(text: &str) -> Result<Self> {
         let manifest: Self = toml::from_str(text)?;
-        for convention in Convention::RECORDED {
-            if let Some(entry) = manifest.entry(convention) {
-                manifest
-                    .check(entry)
-                    .with_context(|| format!("in the convention {convention}"))?;
-            }
+        for convention in RECORDED {
+            manifest
+                .check(manifest.entry(convention)?)
+                .with_context(|| format!("in the convention {convention}"))?;
         }
         Ok(manifest)
     }
 
-    /// The entry of a convention; none for the simulated one, which has no files.
-    pub(crate) fn entry(&self, convention: Convention) -> Option<&Entry> {
+    /// The entry of a convention; there is none of those without pinned files.
+    pub(crate) fn entry(&self, convention: Convention) -> Result<&Entry> {
         match convention {
-            Convention::Star => Some(&self.star),
-            Convention::SocialGan => Some(&self.social_gan),
-            Convention::Simulated => None,
+            Convention::Star => Ok(&self.star),
+            Convention::SocialGan => Ok(&self.social_gan),
+            Convention::Simulated | Convention::Own => {
+                bail!("no file of the {convention} convention is pinned")
+            }
         }
     }
 
@@ -175,18 +176,10 @@ mod tests {
 
     #[test]
     fn the_manifest_pins_what_the_folds_use() {
-        let workspace = Workspace::find().unwrap();
-        let manifest = Manifest::load(&workspace).unwrap();
-        let folds = fs::read_to_string(workspace.path("datasets/folds.toml")).unwrap();
-        let folds: toml::Table = folds.parse().unwrap();
-        for convention in Convention::RECORDED {
-            let mut used: Vec<&str> = folds[convention.name()]["recordings"]
-                .as_array()
-                .unwrap()
-                .iter()
-                .map(|recording| recording["file"].as_str().unwrap())
-                .collect();
+        let manifest = Manifest::parse(&text()).unwrap();
+        for convention in RECORDED {
             let entry = manifest.entry(convention).unwrap();
+            let mut used: Vec<&str> = convention.file_names().collect();
             let mut pinned: Vec<&str> = entry.files.iter().map(|file| file.name.as_str()).collect();
             used.sort_unstable();
             pinned.sort_unstable();

@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn sockets_are_found_in_crates_and_not_where_things_are_fetched() {
         let line = format!("use {}::{};\n", RUST[0], RUST[2]);
-        assert_eq!(faults("crates/ddl/src/live.rs", &line).len(), 1);
+        assert_eq!(faults("crates/ddl/src/forecast/live.rs", &line).len(), 1);
         assert_eq!(faults("xtask/src/digest.rs", &line).len(), 1);
         assert_eq!(faults(PLAYS_SERVER, &line), [] as [&str; 0]);
         assert_eq!(faults("docs/page.md", &line), [] as [&str; 0]);

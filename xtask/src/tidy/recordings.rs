@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 
 use super::Findings;
-use crate::data::{Convention, Manifest};
+use crate::data::{Manifest, RECORDED};
 use crate::digest::measure;
 use crate::workspace::Workspace;
 
@@ -25,9 +25,9 @@ pub(super) fn check(
     findings: &mut Findings,
 ) -> Result<()> {
     let manifest = Manifest::load(workspace)?;
-    let pinned = Convention::RECORDED
+    let pinned = RECORDED
         .into_iter()
-        .filter_map(|convention| manifest.entry(convention))
+        .flat_map(|convention| manifest.entry(convention))
         .flat_map(|entry| &entry.files)
         .map(|file| (file.name.clone(), file.sha256.clone()));
     let recordings = Recordings(pinned.collect());

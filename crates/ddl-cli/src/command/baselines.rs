@@ -2,9 +2,9 @@
 
 use super::{RecordingsAt, Reporting, at_least_one};
 use clap::Args;
-use ddl::Protocol;
-use ddl::data::Convention;
+use ddl::data::{Convention, Dataset};
 use ddl::report::Report;
+use ddl::{Protocol, Results};
 use std::path::PathBuf;
 
 /// Measure constant velocity and other baselines on test scenes
@@ -43,17 +43,27 @@ impl Baselines {
         } else {
             self.folds
         };
-        let (protocols, walkers) = (&self.protocols, self.test_walkers);
-        let commit = &self.reporting.commit;
-        let rows = ddl::measure_baselines(&dataset, &folds, protocols, walkers, commit)?;
-        let report = Report::new(format!("Baselines: {}", self.convention), rows)?;
+        let part = (self.protocols.as_slice(), self.test_walkers);
+        let report = measure(&dataset, &folds, part, &self.reporting.commit)?;
         let rest = match &self.out {
             Some(folder) => {
-                ddl::Results::new(report.clone(), Vec::new()).save(folder)?;
+                Results::new(report.clone(), Vec::new()).save(folder)?;
                 format!("all metrics: {}", folder.join("report.html").display())
             }
             None => "all metrics, as a page and as files: with --out FOLDER".to_owned(),
         };
         self.reporting.print(&report, &rest)
     }
+}
+
+/// Measures the baselines under some protocols on about so many walkers of each fold.
+pub(super) fn measure(
+    dataset: &Dataset,
+    folds: &[String],
+    (protocols, walkers): (&[Protocol], Option<usize>),
+    commit: &str,
+) -> anyhow::Result<Report> {
+    let rows = ddl::measure_baselines(dataset, folds, protocols, walkers, commit)?;
+    let title = format!("Baselines: {}", dataset.convention());
+    Ok(Report::new(title, rows)?)
 }

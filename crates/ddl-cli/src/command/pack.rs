@@ -1,11 +1,13 @@
 //! `ddl pack`.
 
+mod finished_benchmark;
+
 use super::Telling;
 use crate::output;
 use clap::Args;
 use ddl::{Ddl, DeviceChoice, ModelSource};
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Pack a trained model into one small file, without its tracks
 ///
@@ -17,9 +19,16 @@ use std::path::PathBuf;
 #[command(after_help = "Example:\n  ddl pack --model runs/zara1 --out zara1.safetensors")]
 pub(crate) struct Pack {
     /// Directory of a finished run
-    #[arg(long)]
-    model: PathBuf,
-    /// File to write
+    #[arg(long, required_unless_present = "benchmark")]
+    model: Option<PathBuf>,
+    /// Folder of a finished benchmark of the star recordings instead: one file for each fold, and what each reached. So the models that come
+    /// with the program are made
+    #[arg(long, value_name = "DIR", conflicts_with = "model")]
+    benchmark: Option<PathBuf>,
+    /// Seed of the runs to pack [default: the lowest of the benchmark]
+    #[arg(long, requires = "benchmark")]
+    seed: Option<u64>,
+    /// File to write; of a benchmark the folder to write to
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     #[command(flatten)]
@@ -28,12 +37,25 @@ pub(crate) struct Pack {
 
 impl Pack {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        let model = Ddl::open(&ModelSource::named(&self.model), DeviceChoice::Cpu)?;
-        model.pack(&self.out)?;
-        let numbers = model.parameter_count() + model.goal_model().parameter_count();
-        if self.telling.json {
-            return output::print_json(&json!({"file": self.out, "weights": numbers}));
+        let packed = match (&self.benchmark, &self.model) {
+            (Some(benchmark), _) => finished_benchmark::pack(benchmark, self.seed, &self.out)?,
+            (None, Some(model)) => vec![(self.out.clone(), pack(model, &self.out)?)],
+            (None, None) => Vec::new(),
+        };
+        for (file, numbers) in packed {
+            if self.telling.json {
+                output::print_json(&json!({"file": file, "weights": numbers}))?;
+            } else {
+                output::print(&format!("{}: {numbers} weights\n", file.display()))?;
+            }
         }
-        output::print(&format!("{}: {numbers} weights\n", self.out.display()))
+        Ok(())
     }
+}
+
+/// Packs a run, or whatever else a model is; how many weights it has.
+fn pack(model: &Path, out: &Path) -> anyhow::Result<usize> {
+    let model = Ddl::open(&ModelSource::named(model), DeviceChoice::Cpu)?;
+    model.pack(out)?;
+    Ok(model.parameter_count() + model.goal_model().parameter_count())
 }

@@ -4,6 +4,7 @@ mod bars;
 mod compared;
 mod finished;
 
+use super::recipe::Recipe;
 use super::test_windows::ensure_scene_of_star;
 use super::{Machine, RecordingsAt, Reporting};
 use crate::interrupt::Interrupt;
@@ -115,12 +116,6 @@ pub(crate) struct Train {
     machine: Machine,
     #[command(flatten)]
     reporting: Reporting,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Recipe {
-    Recommended,
-    Published,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -62,7 +62,7 @@ impl Kernels {
     }
 }
 
-/// One pass of kernels through a network: forwards, and backwards where it was begun by [`training`](Self::training).
+/// One pass of kernels through a network: forwards, and, with the feature `training`, backwards where it was begun so.
 #[derive(Debug)]
 pub struct KernelBackend {
     kernels: Arc<Kernels>,
@@ -102,6 +102,7 @@ impl KernelBackend {
     }
 
     /// A pass whose gradient [`backward`](Self::backward) gives, with dropout by this seed in [`Mode::Train`].
+    #[cfg(feature = "training")]
     #[must_use]
     pub fn training(kernels: Arc<Kernels>, mode: Mode, seed: u64) -> Self {
         Self {
@@ -115,13 +116,18 @@ impl KernelBackend {
     /// Runs `step` on the way back, when the gradients of all that comes later are known. It may add to the gradients of all
     /// learned numbers.
     pub fn on_the_way_back(&self, step: impl FnOnce(&mut [f32]) + 'static) {
+        #[cfg(feature = "training")]
         if let Some(tape) = &self.tape {
             tape.push(step);
         }
+        // Without the feature no kernel backwards is named anywhere, and none is compiled.
+        #[cfg(not(feature = "training"))]
+        drop(step);
     }
 
     /// Adds the gradients of all learned numbers to `of_weights`, from those that were added to tokens. The second call adds
     /// nothing.
+    #[cfg(feature = "training")]
     pub fn backward(&self, of_weights: &mut [f32]) {
         if let Some(tape) = &self.tape {
             tape.backward(of_weights);

@@ -1,12 +1,18 @@
 //! A model from the files of a run, a packed file or the program, and into a packed file.
 
-use super::Ddl;
-use crate::enough_weights;
-use crate::model_source::ModelSource;
-use crate::packed_model;
-use crate::run_config::RunConfig;
-use crate::run_directory::{RunDirectory, write_atomically};
-use crate::{BuiltinModel, DdlError, Device, GoalModel};
+use crate::device::Device;
+use crate::error::DdlError;
+use crate::goals::model::GoalModel;
+use crate::model::builtin::BuiltinModel;
+use crate::model::ddl::Ddl;
+use crate::model::packed;
+use crate::model::packing;
+use crate::model::source::ModelSource;
+use crate::run::config::RunConfig;
+use crate::run::directory::{RunDirectory, write_atomically};
+use crate::run::enough_weights;
+use crate::trust::familiarity::TrainingMotions;
+use ddl_data::Window;
 use ddl_network::weights::load_weights;
 use ddl_network::{DeviceChoice, ForecastWindows};
 use std::path::Path;
@@ -57,9 +63,9 @@ impl Ddl {
     }
 
     fn of_packed(source: &ModelSource, device: DeviceChoice) -> Result<Self, DdlError> {
-        let bytes = packed_model::bytes(source)?;
+        let bytes = packed::bytes(source)?;
         let device = Device::open(device)?;
-        let unpacked = packed_model::unpack(&bytes, source, device)?;
+        let unpacked = packed::unpack(&bytes, source, device)?;
         let (goals, network) = GoalModel::of_packed(source, unpacked)?;
         Self::with(goals, device, network)
     }
@@ -90,7 +96,7 @@ impl Ddl {
             };
             return Err(DdlError::run(run.path(), problem));
         }
-        config.check(&ModelSource::Run(run.clone()))?;
+        ModelSource::Run(run.clone()).check(&config)?;
         let device = Device::open(device)?;
         let network = load_network(&config, device, &run.model())?;
         Self::with(GoalModel::of_run(run, config, device)?, device, network)
@@ -111,7 +117,7 @@ impl Ddl {
     /// # Errors
     /// When all goals come from the expert library, a weight is out of the range of half precision, or the file cannot be written.
     pub fn pack(&self, file: &Path) -> Result<(), DdlError> {
-        write_atomically(file, &packed_model::pack(&*self.network, &self.goals)?)
+        write_atomically(file, &packing::pack(&*self.network, &self.goals)?)
     }
 }
 
@@ -124,4 +130,48 @@ fn load_network(
     device.forecasting(&config.star, |layout| {
         load_weights(layout, &config.network_origin(), weights)
     })
+}
+
+impl ModelSource {
+    /// What the model was made with, without making its networks: cheap, also for a file that may be no model at all.
+    ///
+    /// # Errors
+    /// When there is no run, or the file is no whole packed model.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl::{BuiltinModel, ModelSource};
+    /// let config = ModelSource::Builtin(BuiltinModel::Zara1).config()?;
+    /// assert_eq!(config.data.fold, "zara1");
+    /// # Ok::<(), ddl::DdlError>(())
+    /// ```
+    pub fn config(&self) -> Result<RunConfig, DdlError> {
+        match self {
+            Self::Run(run) => run.config(),
+            Self::Packed(_) | Self::Builtin(_) => packed::config(&packed::bytes(self)?, self),
+        }
+    }
+}
+
+impl BuiltinModel {
+    /// What decided it.
+    ///
+    /// # Errors
+    /// Never, as long as the program was built from files that belong together; a test holds that.
+    pub fn config(self) -> Result<RunConfig, DdlError> {
+        ModelSource::Builtin(self).config()
+    }
+
+    /// How much the observed motions of these windows are like those that the model was trained on, one list a window: as
+    /// [`GoalModel::familiarity`](crate::GoalModel::familiarity), without loading the networks.
+    ///
+    /// # Errors
+    /// Never, as long as the program was built from files that belong together; a test holds that.
+    pub fn familiarity(self, windows: &[Window]) -> Result<Vec<Vec<f64>>, DdlError> {
+        let source = ModelSource::Builtin(self);
+        let (config, motions) = packed::motions(self.bytes(), &source)?;
+        let time_step = config.star.time_step;
+        let of = |window: &Window| TrainingMotions::of_window(motions.as_ref(), window, time_step);
+        Ok(windows.iter().map(of).collect())
+    }
 }

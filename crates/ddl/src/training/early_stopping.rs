@@ -1,10 +1,15 @@
 //! The validation windows of a training under way: how good each epoch is.
 
 use super::starting_weights::StartingWeights;
-use crate::early_stopping::is_over;
-use crate::test_set::TestSet;
-use crate::walk::Gait;
-use crate::{DdlError, Device, GoalModel, RunConfig, RunDirectory, network_forecast};
+use crate::device::Device;
+use crate::error::DdlError;
+use crate::evaluation::test_set::TestSet;
+use crate::forecast::shaped;
+use crate::forecast::walk::Gait;
+use crate::goals::model::GoalModel;
+use crate::run::config::RunConfig;
+use crate::run::directory::RunDirectory;
+use crate::training::best_epoch::is_over;
 use ddl_data::{Fold, Window};
 use ddl_eval::{Scene, metric::displacement::DisplacementErrors};
 use ddl_goal::GoalSet;
@@ -56,8 +61,7 @@ impl EarlyStopping {
             &self.windows,
             (self.goals.clone(), self.familiarity.clone()),
         );
-        let forecasts =
-            network_forecast::towards(network, self.seed, windows, led, Gait::Stable(None))?;
+        let forecasts = shaped::towards(network, self.seed, windows, led, Gait::Stable(None))?;
         let (mut sum, mut walkers) = (0.0, 0);
         for (window, forecast) in windows.iter().zip(&forecasts) {
             let errors = DisplacementErrors::of(&Scene::new(window, forecast)?);

@@ -1,7 +1,10 @@
 //! The first stage of a training: what the goals come from.
 
-use crate::run_directory::{RunDirectory, SAVE_EVERY};
-use crate::{DdlError, ProposalRecipe, experts, views};
+use crate::error::DdlError;
+use crate::goals::experts;
+use crate::goals::recipe::ProposalRecipe;
+use crate::goals::views;
+use crate::run::directory::{RunDirectory, SAVE_EVERY};
 use ddl_data::Window;
 use ddl_goal::GoalError;
 use ddl_network::ProposalStep;

@@ -2,13 +2,19 @@
 
 use super::early_stopping::{EarlyStopping, better_goals};
 use super::starting_weights::StartingWeights;
-use super::{
-    TrainingProgress, TrainingRequest, TrainingStage, TrainingStep, digest, digest_of_recording,
-    fold_of, goals, learned_from, training_rule,
+use super::{TrainingProgress, TrainingRequest, TrainingStage, TrainingStep, goals};
+use crate::device::Device;
+use crate::error::DdlError;
+use crate::goals::model::GoalModel;
+use crate::goals::recipe::GoalRecipe;
+use crate::model::ddl::Ddl;
+use crate::run::config::{FORMAT, RunConfig, TrainingData};
+use crate::run::directory::{RunDirectory, SAVE_EVERY};
+use crate::run::starting_model::StartingModel;
+use crate::run::training_data::{
+    digest, digest_of_recording, fold_of, learned_from, training_rule,
 };
-use crate::run_config::{FORMAT, RunConfig, TrainingData};
-use crate::run_directory::{RunDirectory, SAVE_EVERY};
-use crate::{Ddl, DdlError, Device, GoalModel, GoalRecipe, StartingModel, best_epoch};
+use crate::training::best_epoch::best_epoch;
 use ddl_data::{Convention, Dataset, Fold, Window, WindowRule};
 use ddl_goal::RetrievalFrame;
 use ddl_network::weights::{Origin, load_weights, save_weights};

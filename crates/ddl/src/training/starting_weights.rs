@@ -1,7 +1,12 @@
 //! The weights that a training begins with, in place of random ones.
 
-use crate::run_config::leaves;
-use crate::{Ddl, DdlError, GoalRecipe, ModelSource, StartingModel, sha256};
+use crate::error::DdlError;
+use crate::goals::recipe::GoalRecipe;
+use crate::model::ddl::Ddl;
+use crate::model::source::ModelSource;
+use crate::run::config::leaves;
+use crate::run::sha256;
+use crate::run::starting_model::StartingModel;
 use ddl_network::weights::Weights;
 use ddl_network::{DeviceChoice, StarConfig};
 use sha2::{Digest as _, Sha256};

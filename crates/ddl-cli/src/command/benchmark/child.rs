@@ -1,0 +1,83 @@
+//! A process that can be asked to stop while its output is read.
+
+use crate::interrupt::Interrupt;
+use crate::telling::tell;
+use anyhow::Context as _;
+use std::io::{BufRead as _, BufReader};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+/// How often a wish to stop and the end of a process are looked for.
+pub(super) const BEAT: Duration = Duration::from_millis(20);
+
+/// Runs a process to its end, and hears each line of its standard output.
+///
+/// It runs in a process group of its own: in a terminal Ctrl-C reaches the whole foreground group, and it would hear of that twice. The
+/// first wish to stop reaches it as an interrupt, which lets it save, any further one as a kill.
+pub(super) fn run(
+    command: &mut Command,
+    interrupt: &Interrupt,
+    mut hear: impl FnMut(&str),
+) -> anyhow::Result<ExitStatus> {
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(command, 0);
+    let mut child = command
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .spawn()
+        .with_context(|| format!("{} cannot be started", command.get_program().display()))?;
+    let output = child.stdout.take().context("a process has no output")?;
+    let (sender, lines) = mpsc::channel();
+    thread::spawn(move || {
+        let lines = BufReader::new(output).lines().map_while(Result::ok);
+        // whoever no longer hears it ends it
+        for line in lines {
+            if sender.send(line).is_err() {
+                break;
+            }
+        }
+    });
+    let mut told = 0;
+    loop {
+        let has_closed = match lines.recv_timeout(BEAT) {
+            Ok(line) => {
+                hear(&line);
+                false
+            }
+            Err(RecvTimeoutError::Timeout) => false,
+            Err(RecvTimeoutError::Disconnected) => true,
+        };
+        if (has_closed || told > 1)
+            && let Some(status) = child.try_wait()?
+        {
+            return Ok(status);
+        }
+        if has_closed {
+            thread::sleep(BEAT);
+        }
+        let wishes = interrupt.wishes();
+        if wishes > told {
+            told = wishes;
+            stop(&mut child, wishes > 1);
+        }
+    }
+}
+
+/// Asks a process to stop, or kills it. It may have ended this moment, which is as good.
+fn stop(child: &mut Child, at_once: bool) {
+    #[cfg(unix)]
+    if !at_once {
+        use rustix::process::{Pid, Signal, kill_process};
+        if kill_process(Pid::from_child(child), Signal::INT).is_err() {
+            tell(format_args!(
+                "warning: process {} could not be asked to stop",
+                child.id()
+            ));
+        }
+        return;
+    }
+    let _ = at_once;
+    let _ = child.kill();
+}

@@ -1,0 +1,77 @@
+//! What a task is likely to take, so that the longest starts first and the time left is known.
+//!
+//! Only proportions matter. They are those of two cores.
+
+use super::super::recipe::Recipe;
+
+/// Walkers of the `star` test windows under the published rule, per fold.
+const TEST_WALKERS: [(&str, usize); 5] = [
+    ("eth", 2_511),
+    ("hotel", 1_026),
+    ("univ", 24_254),
+    ("zara1", 2_324),
+    ("zara2", 5_900),
+];
+
+/// A fold this table does not know.
+const TYPICAL_TEST_WALKERS: usize = 5_000;
+
+/// Walkers of all recordings together, of which a fold trains on what it does not test on.
+const ALL_WALKERS: usize = 39_398;
+
+/// Walkers an epoch of the recommended recipe where nobody says how many.
+const RECOMMENDED_WALKERS: usize = 5_000;
+
+/// Expected seconds of training and of scoring: so many epochs on so many walkers each, then so many walkers; none is as many as there are.
+pub(super) fn expected(
+    fold: &str,
+    recipe: Recipe,
+    epochs: usize,
+    train_walkers: Option<usize>,
+    test_walkers: Option<usize>,
+) -> (f64, f64) {
+    let known = TEST_WALKERS.iter().find(|(name, _)| *name == fold);
+    let test = known.map_or(TYPICAL_TEST_WALKERS, |(_, walkers)| *walkers);
+    let train = ALL_WALKERS - test;
+    // Of a walker in one epoch, the training of the goals spread over all of them, and of a walker scored: by the full-size network
+    // under all protocols, and by the narrow one of the recommended recipe under those without the truth.
+    let (train_seconds, evaluate_seconds, usual) = match recipe {
+        Recipe::Published => (0.007, 0.03, train),
+        Recipe::Recommended => (0.000_7, 0.02, RECOMMENDED_WALKERS),
+    };
+    let trained = train.min(train_walkers.unwrap_or(usual));
+    let scored = test.min(test_walkers.unwrap_or(test));
+    (
+        (epochs * trained) as f64 * train_seconds,
+        scored as f64 * evaluate_seconds,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Recipe::{Published, Recommended};
+
+    #[test]
+    fn scoring_everything_is_longest_on_the_crowded_scene_and_caps_shorten() {
+        let total = |fold, recipe, train, test| {
+            let (train, test) = expected(fold, recipe, 20, train, test);
+            train + test
+        };
+        for recipe in [Published, Recommended] {
+            let cost = |fold| total(fold, recipe, Some(100), None);
+            assert!(cost("univ") > cost("zara2") && cost("zara2") > cost("hotel"));
+            assert!(cost("somewhere else") > 0.0);
+            let capped = total("eth", recipe, Some(10), Some(10));
+            assert!(capped < total("eth", recipe, None, None));
+        }
+        let beyond = expected("eth", Published, 2, Some(1_000_000), None);
+        assert_eq!(beyond, expected("eth", Published, 2, None, None));
+        // The recommended recipe takes the same walkers in every fold unless told.
+        let trained = |fold, walkers| expected(fold, Recommended, 20, walkers, None).0;
+        assert_eq!(
+            trained("eth", None).to_bits(),
+            trained("univ", Some(RECOMMENDED_WALKERS)).to_bits()
+        );
+    }
+}

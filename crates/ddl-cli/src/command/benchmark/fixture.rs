@@ -1,0 +1,40 @@
+//! Plans for tests.
+
+use super::super::recipe::Recipe;
+use super::method::Method;
+use super::plan::{Plan, Settings, Training};
+use super::profile::Profile;
+use ddl::data::Convention;
+use ddl::{DeviceChoice, Protocol};
+
+pub(super) fn settings(name: Recipe) -> Settings {
+    Settings {
+        profile: Profile::Quick,
+        convention: Convention::Star,
+        data: Some("/recordings".into()),
+        device: DeviceChoice::Cpu,
+        cargo_profile: "release".to_owned(),
+        epochs: 4,
+        train_walkers: Some(800),
+        proposal_steps: Some(30),
+        test_walkers: None,
+        protocols: match name {
+            Recipe::Recommended => vec![Protocol::Fair, Protocol::Single],
+            Recipe::Published => Protocol::ALL.to_vec(),
+        },
+        recipe: Training {
+            name,
+            optimiser: Profile::Paper.work(name).optimiser,
+        },
+    }
+}
+
+pub(super) fn plan(
+    settings: Settings,
+    folds: &[&str],
+    methods: &[Method],
+    seeds: &[u64],
+) -> anyhow::Result<Plan> {
+    let folds: Vec<String> = folds.iter().map(|&fold| fold.to_owned()).collect();
+    Plan::new(settings, &folds, methods, seeds)
+}

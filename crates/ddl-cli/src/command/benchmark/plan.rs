@@ -1,0 +1,303 @@
+//! The plan: which models are trained and scored, as data.
+
+use super::super::recipe::Recipe;
+use super::cost;
+use super::method::Method;
+use super::profile::{Optimiser, Profile};
+use anyhow::{Context as _, bail, ensure};
+use ddl::data::{Convention, write_whole};
+use ddl::{DeviceChoice, Protocol};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// Layout of `plan.json`; 3: `single` scores another hypothesis than before, and plans name their protocols and recipe.
+const FORMAT: u32 = 3;
+
+/// Everything to do, independent of who does it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Plan {
+    format: u32,
+    pub(crate) settings: Settings,
+    /// Longest first.
+    pub(crate) tasks: Vec<Task>,
+}
+
+/// What can be read of the plan of any version.
+#[derive(Deserialize)]
+struct Layout {
+    format: u32,
+}
+
+/// What all tasks of a plan share.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Settings {
+    pub(crate) profile: Profile,
+    pub(crate) convention: Convention,
+    /// Folder of the recordings, for a convention that has some.
+    pub(crate) data: Option<PathBuf>,
+    pub(crate) device: DeviceChoice,
+    /// How the program is built.
+    pub(super) cargo_profile: String,
+    pub(super) epochs: usize,
+    /// Walkers trained on in each epoch; none is as many as the recipe says.
+    pub(crate) train_walkers: Option<usize>,
+    /// Batches that the proposal network is trained on; none is the program's default.
+    pub(super) proposal_steps: Option<u64>,
+    /// Test walkers scored; none is all.
+    pub(crate) test_walkers: Option<usize>,
+    /// Protocols scored under, each once, in the usual order.
+    pub(super) protocols: Vec<Protocol>,
+    pub(crate) recipe: Training,
+}
+
+/// What every model is trained by: a recipe, and what is changed of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Training {
+    pub(crate) name: Recipe,
+    pub(super) optimiser: Option<Optimiser>,
+}
+
+/// One model: trained on all folds but one, scored on that one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Task {
+    /// Unique, and the name of the task's folder.
+    pub(crate) id: String,
+    pub(crate) fold: String,
+    pub(crate) variant: Method,
+    pub(crate) seed: u64,
+    /// Share of a plan's expected time, in arbitrary units, for training and for scoring.
+    pub(super) train_cost: f64,
+    evaluate_cost: f64,
+}
+
+impl Task {
+    pub(super) fn cost(&self) -> f64 {
+        self.train_cost + self.evaluate_cost
+    }
+
+    /// Where the program keeps the model and its scores.
+    pub(crate) fn run_folder(&self, out: &Path) -> PathBuf {
+        self.folder(out).join("run")
+    }
+
+    /// Where everything about the task lies.
+    pub(super) fn folder(&self, out: &Path) -> PathBuf {
+        out.join(&self.id)
+    }
+}
+
+/// Words of a command line.
+struct Words(Vec<String>);
+
+impl Words {
+    fn of(command: &str) -> Self {
+        Self(vec![command.to_owned()])
+    }
+
+    /// An option, where it has a value.
+    fn option(mut self, name: &str, value: Option<impl ToString>) -> Self {
+        if let Some(value) = value {
+            self.0.extend([name.to_owned(), value.to_string()]);
+        }
+        self
+    }
+
+    fn path(self, name: &str, path: &Path) -> Self {
+        self.option(name, Some(path.display()))
+    }
+
+    fn flag(mut self, name: &str, given: bool) -> Self {
+        self.0.extend(given.then(|| name.to_owned()));
+        self
+    }
+}
+
+impl Plan {
+    /// Every fold with every method and seed, each combination once.
+    pub(crate) fn new(
+        settings: Settings,
+        folds: &[String],
+        methods: &[Method],
+        seeds: &[u64],
+    ) -> anyhow::Result<Self> {
+        ensure!(settings.epochs > 0, "training needs at least one epoch");
+        let mut tasks: Vec<Task> = Vec::new();
+        for fold in folds {
+            let (train_cost, evaluate_cost) = cost::expected(
+                fold,
+                settings.recipe.name,
+                settings.epochs,
+                settings.train_walkers,
+                settings.test_walkers,
+            );
+            for (&variant, &seed) in methods
+                .iter()
+                .flat_map(|variant| seeds.iter().map(move |seed| (variant, seed)))
+            {
+                let id = format!("{fold}-{}-{seed}", variant.name());
+                ensure!(
+                    tasks.iter().all(|task| task.id != id),
+                    "{id} is asked for twice"
+                );
+                tasks.push(Task {
+                    id,
+                    fold: fold.clone(),
+                    variant,
+                    seed,
+                    train_cost,
+                    evaluate_cost,
+                });
+            }
+        }
+        // The sort is stable: equal tasks stay in the order they were asked for.
+        tasks.sort_by(|one, other| other.cost().total_cmp(&one.cost()));
+        Ok(Self {
+            format: FORMAT,
+            settings,
+            tasks,
+        })
+    }
+
+    /// Arguments with which the program trains the task's model.
+    pub(super) fn train_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
+        let settings = &self.settings;
+        let optimiser = settings.recipe.optimiser.as_ref();
+        let words = Words::of("train")
+            .option("--convention", Some(settings.convention))
+            .option("--data", settings.data.as_ref().map(|data| data.display()))
+            .option("--fold", Some(&task.fold))
+            .option(task.variant.option(), Some(task.variant.name()))
+            .option("--seed", Some(task.seed))
+            .option("--epochs", Some(settings.epochs))
+            .option("--train-walkers", settings.train_walkers)
+            .option("--proposal-steps", settings.proposal_steps)
+            .option("--recipe", Some(settings.recipe.name))
+            .option("--batch-walkers", optimiser.map(|of| of.batch_walkers))
+            .option("--learning-rate", optimiser.map(|of| of.learning_rate))
+            .option("--learning-rate-schedule", optimiser.map(|of| of.schedule))
+            .path("--out", &task.run_folder(out));
+        // Epochs are chosen, with the truth, under `published` alone.
+        let last_alone = !settings.protocols.contains(&Protocol::Published);
+        self.on_machine(words, threads)
+            .option("--progress", Some("json"))
+            .flag("--last-epoch-only", last_alone)
+            .0
+    }
+
+    /// Arguments with which the program scores it.
+    pub(super) fn evaluate_arguments(
+        &self,
+        task: &Task,
+        out: &Path,
+        threads: usize,
+    ) -> Vec<String> {
+        let data = self.settings.data.as_ref().map(|data| data.display());
+        let words = Words::of("evaluate")
+            .path("--model", &task.run_folder(out))
+            .option("--data", data);
+        let protocols = self.settings.protocols.iter();
+        let words = protocols.fold(words, |words, protocol| {
+            words.option("--protocol", Some(protocol))
+        });
+        let words = words.option("--test-walkers", self.settings.test_walkers);
+        self.on_machine(words, threads)
+            .option("--progress", Some("json"))
+            .0
+    }
+
+    /// Arguments with which the program measures and draws the goals it forecasts towards.
+    pub(super) fn goals_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
+        let data = self.settings.data.as_ref().map(|data| data.display());
+        let words = Words::of("goals")
+            .flag("--json", true)
+            .path("--model", &task.run_folder(out))
+            .option("--measure", Some("test"))
+            .option("--data", data)
+            .path("--svg", &task.folder(out).join("goals.svg"))
+            .path("--output", &task.folder(out).join("goals.json"));
+        self.on_machine(words, threads).0
+    }
+
+    fn on_machine(&self, words: Words, threads: usize) -> Words {
+        words
+            .option("--device", Some(self.settings.device))
+            .option("--threads", Some(threads))
+    }
+
+    /// Writes `plan.json`, after making sure that what lies in `out` belongs to the same settings.
+    ///
+    /// Folds, variants and seeds may be added or left out from one call to the next; results made
+    /// under other settings are never mixed in.
+    pub(crate) fn write(&self, out: &Path) -> anyhow::Result<()> {
+        let file = out.join("plan.json");
+        match fs::read(&file) {
+            Ok(text) => {
+                let damaged = || {
+                    format!(
+                        "{} is damaged: delete it or choose another --out",
+                        file.display()
+                    )
+                };
+                let Layout { format } = serde_json::from_slice(&text).with_context(damaged)?;
+                ensure!(
+                    format == FORMAT,
+                    "{} holds results that another version of the benchmark made (its plan has layout \
+                     {format}, this one {FORMAT}): choose another --out, or delete it",
+                    out.display()
+                );
+                let before: Self = serde_json::from_slice(&text).with_context(damaged)?;
+                self.check_same_settings(&before, out)?;
+            }
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            Err(error) => {
+                return Err(error).with_context(|| format!("cannot read {}", file.display()));
+            }
+        }
+        let text = serde_json::to_vec_pretty(self)?;
+        write_whole(&file, &text).with_context(|| format!("cannot write {}", file.display()))
+    }
+
+    /// Reads the plan of a benchmark folder.
+    pub(crate) fn read(folder: &Path) -> anyhow::Result<Self> {
+        let file = folder.join("plan.json");
+        let text = fs::read(&file).with_context(|| {
+            format!(
+                "cannot read {}: `ddl benchmark` makes such a folder",
+                file.display()
+            )
+        })?;
+        serde_json::from_slice(&text).with_context(|| format!("{} is damaged", file.display()))
+    }
+
+    fn check_same_settings(&self, before: &Self, out: &Path) -> anyhow::Result<()> {
+        // The recordings are pinned by hash: where they lie makes no difference.
+        let comparable = |settings: &Settings| {
+            serde_json::to_value(Settings {
+                data: None,
+                ..settings.clone()
+            })
+        };
+        let (now, then) = (comparable(&self.settings)?, comparable(&before.settings)?);
+        let differences: Vec<String> = now
+            .as_object()
+            .into_iter()
+            .flatten()
+            .filter(|(key, value)| then.get(key) != Some(value))
+            .map(|(key, value)| format!("{key} {value} instead of {}", then[key]))
+            .collect();
+        if differences.is_empty() {
+            return Ok(());
+        }
+        bail!(
+            "{} holds results made under other settings ({}): choose another --out, or delete it",
+            out.display(),
+            differences.join(", ")
+        )
+    }
+}
+
+#[cfg(test)]
+#[path = "plan_tests.rs"]
+mod tests;

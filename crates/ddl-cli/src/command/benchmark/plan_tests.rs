@@ -1,0 +1,131 @@
+//! What a plan holds, says to the program, and refuses.
+
+use super::super::fixture::{plan, settings};
+use super::*;
+
+/// A plan of the paper's recipe.
+fn published(folds: &[&str], methods: &[Method], seeds: &[u64]) -> anyhow::Result<Plan> {
+    plan(settings(Recipe::Published), folds, methods, seeds)
+}
+
+fn of_eth() -> Plan {
+    published(&["eth"], &[Method::FULL], &[7]).unwrap()
+}
+
+#[test]
+fn every_combination_is_there_once_and_the_longest_comes_first() {
+    let methods = [Method::FULL, Method::ALL[3]];
+    let plan = published(&["eth", "univ", "zara2"], &methods, &[1, 2]).unwrap();
+    assert_eq!(plan.tasks.len(), 12);
+    assert!(
+        plan.tasks
+            .windows(2)
+            .all(|pair| pair[0].cost() >= pair[1].cost())
+    );
+    let ids: Vec<&str> = plan.tasks[..4]
+        .iter()
+        .map(|task| task.id.as_str())
+        .collect();
+    assert_eq!(
+        ids,
+        ["univ-full-1", "univ-full-2", "univ-star-1", "univ-star-2"]
+    );
+    let twice = published(&["eth", "eth"], &[Method::FULL], &[1]);
+    let message = twice.unwrap_err().to_string();
+    assert_eq!(message, "eth-full-1 is asked for twice");
+}
+
+#[test]
+fn the_arguments_are_those_the_program_knows() {
+    let out = Path::new("runs/x");
+    let train = |plan: &Plan| plan.train_arguments(&plan.tasks[0], out, 1).join(" ");
+    let mut plan = of_eth();
+    assert_eq!(
+        train(&plan),
+        "train --convention star --data /recordings --fold eth --variant full --seed 7 \
+         --epochs 4 --train-walkers 800 --proposal-steps 30 --recipe published --batch-walkers 256 \
+         --learning-rate 0.0015 --learning-rate-schedule constant --out runs/x/eth-full-7/run --device cpu --threads 1 \
+         --progress json"
+    );
+    // Of the recommended recipe nothing is changed that nobody asked to have changed; without `published` no epoch but the last is kept.
+    let recommended = Settings {
+        train_walkers: None,
+        proposal_steps: None,
+        ..settings(Recipe::Recommended)
+    };
+    let recommended =
+        super::super::fixture::plan(recommended, &["eth"], &[Method::FULL], &[7]).unwrap();
+    assert_eq!(
+        train(&recommended),
+        "train --convention star --data /recordings --fold eth --variant full --seed 7 --epochs 4 \
+         --recipe recommended --out runs/x/eth-full-7/run --device cpu --threads 1 --progress json \
+         --last-epoch-only"
+    );
+    plan.settings.data = None;
+    plan.settings.test_walkers = Some(9);
+    assert_eq!(
+        plan.evaluate_arguments(&plan.tasks[0], out, 2).join(" "),
+        "evaluate --model runs/x/eth-full-7/run --protocol published --protocol fair \
+         --protocol single --test-walkers 9 --device cpu --threads 2 --progress json"
+    );
+    assert_eq!(
+        plan.goals_arguments(&plan.tasks[0], out, 2).join(" "),
+        "goals --json --model runs/x/eth-full-7/run --measure test --svg runs/x/eth-full-7/goals.svg \
+         --output runs/x/eth-full-7/goals.json --device cpu --threads 2"
+    );
+    // The perceptron is the full method with another backbone.
+    let words = train(&published(&["eth"], &[Method::PERCEPTRON], &[7]).unwrap());
+    assert!(words.contains("--backbone perceptron --seed"), "{words}");
+    assert!(words.contains("runs/x/eth-perceptron-7/run"), "{words}");
+    assert!(!words.contains("--variant"), "{words}");
+}
+
+#[test]
+fn a_plan_survives_its_file_and_may_gain_tasks() {
+    let folder = tempfile::tempdir().unwrap();
+    let one = published(&["eth"], &Method::ALL, &[1]).unwrap();
+    one.write(folder.path()).unwrap();
+    assert_eq!(Plan::read(folder.path()).unwrap(), one);
+    let mut two = published(&["eth", "hotel"], &[Method::FULL], &[1]).unwrap();
+    two.settings.data = Some(PathBuf::from("/moved"));
+    two.write(folder.path()).unwrap();
+    let message = Plan::read(&folder.path().join("none"))
+        .unwrap_err()
+        .to_string();
+    assert!(message.contains("`ddl benchmark` makes"), "{message}");
+}
+
+#[test]
+fn results_of_other_settings_or_of_another_version_do_not_mix() {
+    let folder = tempfile::tempdir().unwrap();
+    let before = of_eth();
+    before.write(folder.path()).unwrap();
+    let refused = |plan: &Plan| plan.write(folder.path()).unwrap_err().to_string();
+    let mut other = before.clone();
+    other.settings.protocols = vec![Protocol::Fair];
+    other.settings.epochs = 200;
+    other.settings.test_walkers = Some(5);
+    let message = refused(&other);
+    for difference in [
+        r#"protocols ["fair"] instead of ["published","fair","single"]"#,
+        "epochs 200 instead of 4",
+        "test_walkers 5 instead of null",
+    ] {
+        assert!(message.contains(difference), "{message}");
+    }
+    // As the version before wrote it: it knew no protocols.
+    let file = folder.path().join("plan.json");
+    let mut old = serde_json::to_value(&before).unwrap();
+    old["format"] = 2.into();
+    old["settings"].as_object_mut().unwrap().remove("protocols");
+    fs::write(&file, old.to_string()).unwrap();
+    let message = refused(&before);
+    assert!(
+        message.contains("its plan has layout 2, this one 3"),
+        "{message}"
+    );
+    assert_eq!(fs::read_to_string(&file).unwrap(), old.to_string());
+    fs::write(&file, "{").unwrap();
+    let message = refused(&before);
+    assert!(message.contains("damaged"), "{message}");
+}

@@ -1,0 +1,117 @@
+//! How much work a benchmark is: a table.
+
+use super::super::recipe::Recipe;
+use clap::ValueEnum;
+use ddl::network::{LearningRateSchedule, TrainingConfig};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// A named amount of work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Profile {
+    /// Shows that everything works, in a minute; its numbers mean nothing
+    Smoke,
+    /// Numbers worth reading, in minutes
+    Quick,
+    /// Every window, trained until little more is learned: with the protocol published 60 epochs, an hour or two
+    Evening,
+    /// As much training as the recipe says, on every window: a quarter of an hour on two cores, with the protocol published (200
+    /// epochs) some hours, or one GPU
+    Paper,
+}
+
+impl fmt::Display for Profile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Smoke => "smoke",
+            Self::Quick => "quick",
+            Self::Evening => "evening",
+            Self::Paper => "paper",
+        })
+    }
+}
+
+/// What a profile makes of a recipe.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Work {
+    /// The first so many folds of a convention.
+    pub(super) folds: usize,
+    /// Batches that the proposal network is trained on; none is the program's default.
+    pub(super) proposal_steps: Option<u64>,
+    /// Test walkers scored; none is all.
+    pub(super) test_walkers: Option<usize>,
+    pub(super) epochs: usize,
+    /// Walkers trained on in each epoch; none is as many as the recipe says.
+    pub(super) train_walkers: Option<usize>,
+    /// Instead of the recipe's.
+    pub(super) optimiser: Option<Optimiser>,
+}
+
+/// How the optimiser goes about it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Optimiser {
+    /// Walkers a batch.
+    pub(super) batch_walkers: usize,
+    /// Largest step size of Adam.
+    pub(super) learning_rate: f64,
+    pub(super) schedule: LearningRateSchedule,
+}
+
+impl Optimiser {
+    /// The paper's.
+    fn published() -> Self {
+        let training = TrainingConfig::published();
+        Self {
+            batch_walkers: training.batch_walkers,
+            learning_rate: training.learning_rate,
+            schedule: training.learning_rate_schedule,
+        }
+    }
+
+    /// The paper's batches, and step sizes that fade out, so that fewer epochs do.
+    fn fading() -> Self {
+        Self {
+            schedule: LearningRateSchedule::Cosine,
+            ..Self::published()
+        }
+    }
+
+    /// Small batches, and step sizes that fade out: what learns most of single steps in a few thousand. Chosen on validation splits of
+    /// training recordings (docs/method.md, "The short recipe").
+    fn short() -> Self {
+        Self {
+            batch_walkers: 16,
+            learning_rate: 1e-3,
+            schedule: LearningRateSchedule::Cosine,
+        }
+    }
+}
+
+impl Profile {
+    pub(super) fn work(self, recipe: Recipe) -> Work {
+        let (folds, proposal_steps, test_walkers) = match self {
+            Self::Smoke => (2, Some(40), Some(150)),
+            Self::Quick => (5, None, Some(2500)),
+            Self::Evening | Self::Paper => (5, None, None),
+        };
+        let (epochs, train_walkers, optimiser) = match (recipe, self) {
+            (Recipe::Recommended, Self::Smoke) => (1, Some(600), None),
+            (Recipe::Recommended, Self::Quick) => (10, None, None),
+            // the recommended recipe has reached its end by then
+            (Recipe::Recommended, Self::Evening | Self::Paper) => (20, None, None),
+            (Recipe::Published, Self::Smoke) => (1, Some(600), Some(Optimiser::published())),
+            (Recipe::Published, Self::Quick) => (10, Some(4000), Some(Optimiser::short())),
+            (Recipe::Published, Self::Evening) => (60, None, Some(Optimiser::fading())),
+            (Recipe::Published, Self::Paper) => (200, None, Some(Optimiser::published())),
+        };
+        Work {
+            folds,
+            proposal_steps,
+            test_walkers,
+            epochs,
+            train_walkers,
+            optimiser,
+        }
+    }
+}

@@ -1,0 +1,387 @@
+//! Copies a report into the documentation, with what made it, and its headline tables into the README.
+
+use super::super::recipe::Recipe;
+use super::method::Method;
+use super::plan::{Plan, Settings};
+use super::profile::Profile;
+use super::readme;
+use crate::telling::human;
+use anyhow::Context as _;
+use ddl::Protocol;
+use ddl::data::{Convention, write_whole};
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+use time::OffsetDateTime;
+
+/// The page whose tables the README shows too.
+const HEADLINE: &str = "docs/benchmark.md";
+const README: &str = "README.md";
+
+/// What made a report, beside its plan.
+pub(super) struct Making<'a> {
+    pub(super) commit: &'a str,
+    pub(super) took: Duration,
+    /// When it was done.
+    pub(super) at: OffsetDateTime,
+}
+
+/// Writes a report into the page of its plan in the `checkout`, and into the README there where the plan is of all folds and windows.
+pub(super) fn publish(
+    checkout: &Path,
+    plan: &Plan,
+    report: &str,
+    making: &Making<'_>,
+) -> anyhow::Result<Vec<String>> {
+    let file = file(&plan.settings);
+    let mut pages = vec![(file.clone(), page(report, plan, making))];
+    if file == HEADLINE && is_whole(plan) {
+        let old = fs::read_to_string(checkout.join(README))
+            .with_context(|| format!("cannot read {README}"))?;
+        let protocols = &plan.settings.protocols;
+        let new = readme::with_results(&old, report, protocols, &made_by(plan, making))?;
+        pages.push((README.to_owned(), new));
+    }
+    for (file, text) in &pages {
+        write_whole(&checkout.join(file), text.as_bytes())
+            .with_context(|| format!("cannot write {file}"))?;
+    }
+    Ok(pages.into_iter().map(|(file, _)| file).collect())
+}
+
+/// What the names of pages and folders say of a recipe: nothing of the recommended one.
+pub(super) const fn suffix(recipe: Recipe) -> &'static str {
+    match recipe {
+        Recipe::Recommended => "",
+        Recipe::Published => "-published",
+    }
+}
+
+/// Where results are shown: every data convention, recipe and profile has a page of its own, and the headline is the one whose
+/// name says nothing of them.
+fn file(settings: &Settings) -> String {
+    let convention = match settings.convention {
+        Convention::Star => String::new(),
+        other => format!("-{other}"),
+    };
+    let profile = match settings.profile {
+        Profile::Paper => String::new(),
+        other => format!("-{other}"),
+    };
+    let recipe = suffix(settings.recipe.name);
+    format!("docs/benchmark{convention}{recipe}{profile}.md")
+}
+
+/// Whether the README may show it: the whole method, alone or beside another network, on all folds and windows, under the protocols that do not
+/// look ahead.
+fn is_whole(plan: &Plan) -> bool {
+    let settings = &plan.settings;
+    let full = |fold: &str| {
+        let mut tasks = plan.tasks.iter();
+        tasks.any(|task| task.fold == fold && task.variant == Method::FULL)
+    };
+    settings.protocols == [Protocol::Fair, Protocol::Single]
+        && settings.train_walkers.is_none()
+        && settings.test_walkers.is_none()
+        && settings.convention.fold_names().all(full)
+        && plan
+            .tasks
+            .iter()
+            .all(|task| [Method::FULL, Method::PERCEPTRON].contains(&task.variant))
+}
+
+/// When it was made.
+fn time(making: &Making<'_>) -> String {
+    let at = making.at;
+    format!("{} {:02}:{:02} UTC", at.date(), at.hour(), at.minute())
+}
+
+/// What made the tables of the README, in words.
+fn made_by(plan: &Plan, making: &Making<'_>) -> String {
+    let settings = &plan.settings;
+    format!(
+        "`{}` made these tables: recipe `{}`, {} epochs, the last one; seeds {}; data convention `{}`, window rule \
+         `published`, {} test windows; device {}; commit {}, {}, in {}. All of it: [{HEADLINE}]({HEADLINE}).",
+        command(plan),
+        settings.recipe.name,
+        settings.epochs,
+        seeds(plan).join(", "),
+        settings.convention,
+        match settings.test_walkers {
+            None => "all".to_owned(),
+            Some(walkers) => format!("{walkers} walkers of the"),
+        },
+        settings.device,
+        making.commit,
+        time(making),
+        human(making.took),
+    )
+}
+
+/// The seeds of the tasks, each once, in order.
+fn seeds(plan: &Plan) -> Vec<String> {
+    let mut seeds: Vec<u64> = plan.tasks.iter().map(|task| task.seed).collect();
+    seeds.sort_unstable();
+    seeds.dedup();
+    seeds.iter().map(u64::to_string).collect()
+}
+
+/// The report with its origin below the title.
+fn page(report: &str, plan: &Plan, making: &Making<'_>) -> String {
+    // The report opens with its data convention, then comes its title: the origin goes below both.
+    let before: usize = report
+        .split_inclusive('\n')
+        .take_while(|line| !line.starts_with("# "))
+        .map(str::len)
+        .sum();
+    let rest = &report[before..];
+    let (title, body) = report.split_at(before + rest.find('\n').unwrap_or(0));
+    let settings = &plan.settings;
+    let of_the_recipe = "the recipe's";
+    let or = |walkers: Option<usize>, otherwise: &str| {
+        walkers.map_or(otherwise.to_owned(), |walkers| walkers.to_string())
+    };
+    let trained_on = match settings.recipe.name {
+        Recipe::Recommended => or(settings.train_walkers, of_the_recipe),
+        Recipe::Published => or(settings.train_walkers, "all"),
+    };
+    let optimiser = settings.recipe.optimiser.as_ref();
+    let optimiser = optimiser.map_or(of_the_recipe.to_owned(), |of| {
+        let (batch, step, schedule) = (of.batch_walkers, of.learning_rate, of.schedule);
+        format!("{batch} / {step} ({schedule})")
+    });
+    let rows = [
+        ("command", format!("`{}`", command(plan))),
+        ("data convention", settings.convention.to_string()),
+        ("seeds", seeds(plan).join(", ")),
+        ("recipe", settings.recipe.name.to_string()),
+        ("epochs", settings.epochs.to_string()),
+        (
+            "walkers trained on in an epoch / scored",
+            format!("{trained_on} / {}", or(settings.test_walkers, "all")),
+        ),
+        ("walkers a batch / largest step of Adam", optimiser),
+        ("device", settings.device.to_string()),
+        ("commit", making.commit.to_owned()),
+        (
+            "time",
+            format!("{}, took {}", time(making), human(making.took)),
+        ),
+    ];
+    let rows = rows.map(|(name, value)| format!("| {name} | {value} |\n"));
+    format!(
+        "{}\n\n<!-- Generated. Do not edit: run the command below. -->\n| made by | |\n|---|---|\n{}\n{}\n",
+        title.trim(),
+        rows.concat(),
+        body.trim()
+    )
+}
+
+/// A command line that does the same on another machine: no folder of this one is in it.
+fn command(plan: &Plan) -> String {
+    let settings = &plan.settings;
+    let unique = |mut names: Vec<&str>| {
+        names.sort_unstable();
+        names.dedup();
+        names.join(",")
+    };
+    let folds = plan.tasks.iter().map(|task| task.fold.as_str()).collect();
+    let methods = plan.tasks.iter().map(|task| task.variant.name()).collect();
+    let protocols = settings.protocols.iter().map(ToString::to_string);
+    let walkers = [
+        ("train", settings.train_walkers),
+        ("test", settings.test_walkers),
+    ]
+    .map(|(which, walkers)| {
+        walkers.map_or(String::new(), |walkers| {
+            format!(" --{which}-walkers {walkers}")
+        })
+    });
+    format!(
+        "cargo xtask benchmark --profile {} --convention {} --folds {} --variants {} --protocol {} --seeds {} --epochs {} --device {} \
+         --cargo-profile {}{} --publish",
+        settings.profile,
+        settings.convention,
+        unique(folds),
+        unique(methods),
+        protocols.collect::<Vec<_>>().join(","),
+        seeds(plan).join(","),
+        settings.epochs,
+        settings.device,
+        settings.cargo_profile,
+        walkers.concat()
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixture::{plan, settings};
+    use super::*;
+
+    fn of(recipe: Recipe) -> Settings {
+        let mut settings = settings(recipe);
+        settings.proposal_steps = None;
+        settings
+    }
+
+    #[test]
+    fn a_convention_a_recipe_and_a_profile_have_a_page_of_their_own() {
+        use Convention::{Simulated, SocialGan, Star};
+        use Profile::{Paper, Quick, Smoke};
+        use Recipe::{Published, Recommended};
+        for (convention, recipe, profile, expected) in [
+            (Star, Recommended, Paper, ""),
+            (Star, Recommended, Quick, "-quick"),
+            (Star, Published, Paper, "-published"),
+            (Star, Published, Quick, "-published-quick"),
+            (SocialGan, Recommended, Paper, "-social-gan"),
+            (Simulated, Published, Smoke, "-simulated-published-smoke"),
+        ] {
+            let settings = Settings {
+                convention,
+                profile,
+                ..of(recipe)
+            };
+            assert_eq!(file(&settings), format!("docs/benchmark{expected}.md"));
+        }
+    }
+
+    /// The README shows the headline, and no part of it.
+    #[test]
+    fn a_part_of_the_benchmark_does_not_reach_the_readme() {
+        let all = || Settings {
+            train_walkers: None,
+            test_walkers: None,
+            ..of(Recipe::Recommended)
+        };
+        let folds: Vec<&str> = Convention::Star.fold_names().collect();
+        let whole = |settings, folds: &[&str], methods: &[Method]| {
+            is_whole(&plan(settings, folds, methods, &[0]).unwrap())
+        };
+        let (full, perceptron) = (Method::FULL, Method::PERCEPTRON);
+        assert!(whole(all(), &folds, &[full]));
+        assert!(whole(all(), &folds, &[full, perceptron]));
+        assert!(!whole(all(), &folds, &[perceptron]));
+        assert!(!whole(all(), &folds[1..], &[full]));
+        assert!(!whole(all(), &folds, &[full, Method::ALL[3]]));
+        let with = |change: fn(&mut Settings)| {
+            let mut settings = all();
+            change(&mut settings);
+            whole(settings, &folds, &[full])
+        };
+        assert!(!with(|settings| settings.train_walkers = Some(800)));
+        assert!(!with(|settings| settings.test_walkers = Some(50)));
+        assert!(!with(|settings| settings.protocols.truncate(1)));
+    }
+
+    const REPORT: &str = "convention\n\n# Title\n\n| a | table |\n";
+
+    fn making() -> Making<'static> {
+        Making {
+            commit: "0123456789ab",
+            took: Duration::from_secs(61),
+            at: OffsetDateTime::UNIX_EPOCH,
+        }
+    }
+
+    fn made(settings: Settings) -> String {
+        let plan = plan(settings, &["hotel", "eth"], &[Method::FULL], &[2, 1]).unwrap();
+        page(REPORT, &plan, &making())
+    }
+
+    #[test]
+    fn the_page_says_what_made_it_and_names_no_folder() {
+        let short = Settings {
+            train_walkers: Some(800),
+            ..of(Recipe::Recommended)
+        };
+        let text = made(short);
+        assert!(
+            text.starts_with("convention\n\n# Title\n\n<!-- Gen"),
+            "{text}"
+        );
+        assert!(text.ends_with("\n\n| a | table |\n"), "{text}");
+        let whole_epochs = Settings {
+            train_walkers: None,
+            ..of(Recipe::Recommended)
+        };
+        let published = Settings {
+            train_walkers: None,
+            test_walkers: Some(50),
+            ..of(Recipe::Published)
+        };
+        let walkers = "| walkers trained on in an epoch / scored |";
+        for (text, pieces) in [
+            (
+                text,
+                [
+                    "`cargo xtask benchmark --profile quick --convention star --folds eth,hotel --variants full --protocol \
+                     fair,single --seeds 1,2 --epochs 4 --device cpu --cargo-profile release --train-walkers 800 --publish`",
+                    "| commit | 0123456789ab |",
+                    "| time | 1970-01-01 00:00 UTC, took 1 min 1 s |",
+                    "| recipe | recommended |",
+                    &format!("{walkers} 800 / all |"),
+                ],
+            ),
+            (
+                made(whole_epochs),
+                [
+                    "--cargo-profile release --publish`",
+                    &format!("{walkers} the recipe's / all |"),
+                    "| walkers a batch / largest step of Adam | the recipe's |",
+                    "| epochs | 4 |",
+                    "| seeds | 1, 2 |",
+                ],
+            ),
+            (
+                // The paper's epochs are of all walkers.
+                made(published),
+                [
+                    "| recipe | published |",
+                    &format!("{walkers} all / 50 |"),
+                    "| walkers a batch / largest step of Adam | 256 / 0.0015 (constant) |",
+                    "--protocol published,fair,single",
+                    "--test-walkers 50 --publish`",
+                ],
+            ),
+        ] {
+            for piece in pieces {
+                assert!(text.contains(piece), "{piece} is not in {text}");
+            }
+            assert!(!text.contains("recordings"), "{text}");
+        }
+    }
+
+    #[test]
+    fn the_headline_reaches_the_page_and_the_readme() {
+        let checkout = tempfile::tempdir().unwrap();
+        fs::create_dir(checkout.path().join("docs")).unwrap();
+        let marks = "<!-- Results: generated by `cargo xtask benchmark --publish`. -->\n<!-- End of the results. -->\n";
+        fs::write(checkout.path().join(README), marks).unwrap();
+        let report =
+            "# Title\n\n## Protocol `fair`, x\n\n| f |\n\n## Protocol `single`, x\n\n| s |\n";
+        let headline = || Settings {
+            profile: Profile::Paper,
+            train_walkers: None,
+            ..of(Recipe::Recommended)
+        };
+        let folds: Vec<&str> = Convention::Star.fold_names().collect();
+        let publish = |folds: &[&str]| {
+            let plan = plan(headline(), folds, &[Method::FULL], &[0]).unwrap();
+            publish(checkout.path(), &plan, report, &making()).unwrap()
+        };
+        assert_eq!(publish(&folds[..1]), [HEADLINE]);
+        assert_eq!(
+            fs::read_to_string(checkout.path().join(README)).unwrap(),
+            marks
+        );
+        assert_eq!(publish(&folds), [HEADLINE, README]);
+        let readme = fs::read_to_string(checkout.path().join(README)).unwrap();
+        assert!(
+            readme.contains("| s |") && readme.contains("in 1 min 1 s. All of it"),
+            "{readme}"
+        );
+        let page = fs::read_to_string(checkout.path().join(HEADLINE)).unwrap();
+        assert!(page.contains("| commit | 0123456789ab |"), "{page}");
+    }
+}

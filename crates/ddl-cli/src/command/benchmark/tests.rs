@@ -1,0 +1,110 @@
+//! What a command line trains, where the results go, and which names are refused.
+
+use super::*;
+use clap::Parser;
+
+#[derive(Debug, Parser)]
+struct Line {
+    #[command(flatten)]
+    benchmark: Benchmark,
+}
+
+fn parsed(words: &str) -> Benchmark {
+    let words = std::iter::once("benchmark").chain(words.split_whitespace());
+    Line::try_parse_from(words).unwrap().benchmark
+}
+
+fn plan_of(words: &str) -> anyhow::Result<Plan> {
+    parsed(words).plan(Convention::Star, None)
+}
+
+#[test]
+fn the_recipe_and_the_folder_follow_the_protocols() {
+    let planned = |words: &str| {
+        let benchmark = parsed(words);
+        let plan = plan_of(words).unwrap();
+        let out = benchmark.out_folder(&plan);
+        let out = out.strip_prefix("runs").unwrap();
+        let train = plan.train_arguments(&plan.tasks[0], Path::new(""), 1);
+        let (_, train) = train.split_at(9); // convention, fold, variant and seed
+        let end = train.iter().position(|word| word == "--out").unwrap();
+        let scored = plan.settings.test_walkers;
+        let scored = scored.map_or("all".to_owned(), |n| n.to_string());
+        format!(
+            "{} {} {scored}: {}",
+            out.display(),
+            plan.tasks.len(),
+            train[..end].join(" ")
+        )
+    };
+    let all = "--protocol published,fair,single --profile";
+    for (words, expected) in [
+        ("", "star-quick 5 2500: --epochs 10 --recipe recommended"),
+        (
+            "--profile smoke",
+            "star-smoke 2 150: --epochs 1 --train-walkers 600 --proposal-steps 40 --recipe recommended",
+        ),
+        (
+            "--profile evening",
+            "star-evening 5 all: --epochs 20 --recipe recommended",
+        ),
+        (
+            "--profile paper --protocol single --variants all --seeds 1,2",
+            "star-paper 50 all: --epochs 20 --recipe recommended",
+        ),
+        (
+            "--epochs 3 --train-walkers 70 --test-walkers 80",
+            "star-quick 5 80: --epochs 3 --train-walkers 70 --recipe recommended",
+        ),
+        (
+            &format!("{all} smoke"),
+            "star-smoke-published 2 150: --epochs 1 --train-walkers 600 --proposal-steps 40 --recipe published \
+             --batch-walkers 256 --learning-rate 0.0015 --learning-rate-schedule constant",
+        ),
+        (
+            &format!("{all} quick"),
+            "star-quick-published 5 2500: --epochs 10 --train-walkers 4000 --recipe published --batch-walkers 16 \
+             --learning-rate 0.001 --learning-rate-schedule cosine",
+        ),
+        (
+            &format!("{all} evening"),
+            "star-evening-published 5 all: --epochs 60 --recipe published --batch-walkers 256 --learning-rate 0.0015 \
+             --learning-rate-schedule cosine",
+        ),
+        (
+            "--profile paper --protocol published",
+            "star-paper-published 5 all: --epochs 200 --recipe published --batch-walkers 256 --learning-rate 0.0015 \
+             --learning-rate-schedule constant",
+        ),
+    ] {
+        assert_eq!(planned(words), expected, "{words}");
+    }
+}
+
+#[test]
+fn protocols_are_taken_once_in_the_usual_order() {
+    let chosen = |words: &str| plan_of(words).unwrap().settings.protocols;
+    let usual = [Protocol::Fair, Protocol::Single];
+    assert_eq!(chosen(""), usual);
+    assert_eq!(chosen("--protocol single,fair --protocol fair"), usual);
+    assert_eq!(chosen("--protocol single,fair,published"), Protocol::ALL);
+}
+
+#[test]
+fn unknown_names_are_refused_with_the_known_ones() {
+    let error = |words: &str| plan_of(words).unwrap_err().to_string();
+    assert_eq!(
+        error("--variants star,ful"),
+        "there is no variant \"ful\": choose from full, no-goal-shift, no-dynamics, star, perceptron"
+    );
+    assert_eq!(
+        error("--folds plaza"),
+        "there is no fold \"plaza\": choose from eth, hotel, univ, zara1, zara2"
+    );
+    assert_eq!(error("--epochs 0"), "training needs at least one epoch");
+    let own = parsed("--convention own").recordings().unwrap_err();
+    assert!(own.to_string().contains("`ddl train`"), "{own}");
+    // A folder that was named and holds nothing is a mistake, not a reason to simulate.
+    let empty = parsed("--data /nowhere").recordings().unwrap_err();
+    assert!(format!("{empty:#}").contains("/nowhere"), "{empty:#}");
+}

@@ -1,0 +1,236 @@
+//! The workers against a stand-in for `ddl`: a shell script that obeys the same protocol.
+#![cfg(unix)]
+
+use super::super::fixture;
+use super::super::method::Method;
+use super::*;
+use crate::command::recipe::Recipe;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Trains in twenty short epochs, each saved; resumes; exits 130 on an interrupt; scores in one
+/// step, measures goals in none. Fold `broken` fails to train, fold `stubborn` ignores the first interrupt, fold `patient` waits for one
+/// halfway, however slow the machine that sends it.
+const STAND_IN: &str = r#"#!/bin/sh
+verb=$1; shift
+while [ $# -gt 0 ]; do
+  case "$1" in
+    --out|--model) run=$2;;
+    --fold) fold=$2;;
+    --json|--last-epoch-only) shift; continue;;
+  esac
+  shift 2
+done
+echo "pid $$ $verb" >&2
+if [ "$verb" = train ]; then
+  mkdir -p "$run"
+  [ "$fold" = broken ] && { echo "error: the loss is not a number" >&2; exit 1; }
+  stopped=
+  [ "$fold" = stubborn ] && trap '' INT || trap 'stopped=1' INT
+  epoch=$(cat "$run/epoch" 2>/dev/null || echo 0)
+  begun=$epoch
+  echo "from epoch $epoch" >&2
+  while [ "$epoch" -lt 20 ]; do
+    sleep 0.05
+    epoch=$((epoch + 1)); echo "$epoch" > "$run/epoch"
+    echo "{\"stage\":\"train\",\"done\":$epoch,\"total\":20,\"message\":\"epoch $epoch\"}"
+    [ "$fold" = stubborn ] && sleep 5
+    while [ "$fold" = patient ] && [ "$begun" = 0 ] && [ "$epoch" -ge 10 ] && [ -z "$stopped" ]; do sleep 0.05; done
+    [ -n "$stopped" ] && exit 130
+  done
+  exit 0
+fi
+[ "$verb" = goals ] && exit 0
+echo "not json"
+echo '{"stage":"score","done":1,"total":1,"message":""}'
+echo '{}' > "$run/report.json"
+"#;
+
+struct Bench {
+    folder: tempfile::TempDir,
+    workers: Workers,
+}
+
+impl Bench {
+    fn new(jobs: usize) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let script = folder.path().join("ddl");
+        fs::write(&script, STAND_IN).unwrap();
+        // The shell reads the script, nothing executes it: a process that another test starts at
+        // this moment may still hold it open for writing, and such a file cannot be executed.
+        let workers = Workers {
+            program: vec!["sh".into(), script.into()],
+            jobs,
+            threads: 1,
+            commit: "of a test".to_owned(),
+        };
+        Self { folder, workers }
+    }
+
+    fn out(&self) -> PathBuf {
+        self.folder.path().join("out")
+    }
+
+    fn log(&self, task: &str) -> String {
+        fs::read_to_string(self.out().join(task).join("log.txt")).unwrap()
+    }
+
+    /// How the tasks end, undisturbed and unwatched.
+    fn run(&self, plan: &Plan) -> Vec<End> {
+        let nobody = |_: &Task, _: Event<'_>| {};
+        self.workers
+            .run(plan, &self.out(), &nobody, &Interrupt::default())
+    }
+}
+
+fn plan(folds: &[&str]) -> Plan {
+    let settings = fixture::settings(Recipe::Recommended);
+    fixture::plan(settings, folds, &[Method::FULL], &[1]).unwrap()
+}
+
+fn finished(ends: &[End]) -> usize {
+    let mut ends = ends.to_vec();
+    ends.retain(|end| matches!(end, End::Finished { .. }));
+    ends.len()
+}
+
+#[test]
+fn every_task_is_trained_scored_and_kept_the_second_time() {
+    let bench = Bench::new(2);
+    let plan = plan(&["a", "b", "c"]);
+    let of_a = Mutex::new(Vec::new());
+    let ended = AtomicUsize::new(0);
+    let watch = |task: &Task, event: Event<'_>| match event {
+        Event::Advanced(fraction, _) if task.fold == "a" => of_a.lock().unwrap().push(fraction),
+        Event::Ended(_) => drop(ended.fetch_add(1, Ordering::SeqCst)),
+        _ => {}
+    };
+    let ends = bench
+        .workers
+        .run(&plan, &bench.out(), &watch, &Interrupt::default());
+    assert_eq!((finished(&ends), ended.into_inner()), (3, 3), "{ends:?}");
+    let of_a = of_a.into_inner().unwrap();
+    assert_eq!(of_a.len(), 21);
+    assert!(
+        of_a.is_sorted() && (of_a[20] - 1.0).abs() < 1e-12,
+        "{of_a:?}"
+    );
+    assert!(bench.log("a-full-1").contains("not json"));
+    assert_eq!(bench.run(&plan), [End::Kept, End::Kept, End::Kept]);
+    // Scores that were deleted are made again, from the model that is there.
+    fs::remove_file(bench.out().join("b-full-1/run/report.json")).unwrap();
+    assert_eq!(finished(&bench.run(&plan)), 1);
+}
+
+#[test]
+fn a_failed_task_shows_its_log_and_lets_the_others_run() {
+    let mut bench = Bench::new(1);
+    let ends = bench.run(&plan(&["broken", "fine"]));
+    let [End::Failed { reason }, End::Finished { .. }] = &ends[..] else {
+        panic!("{ends:?}")
+    };
+    for part in [
+        "`ddl train` ended with exit status: 1",
+        "the loss is not a number",
+        "broken-full-1/log.txt",
+    ] {
+        assert!(reason.contains(part), "{reason}");
+    }
+    bench.workers.program = vec!["/no/such/program".into()];
+    let ends = bench.run(&plan(&["a"]));
+    let [End::Failed { reason }] = &ends[..] else {
+        panic!("{ends:?}")
+    };
+    assert!(
+        reason.contains("/no/such/program cannot be started"),
+        "{reason}"
+    );
+}
+
+#[test]
+fn an_interrupt_lets_tasks_save_and_a_second_run_goes_on() {
+    let bench = Bench::new(2);
+    let plan = plan(&["patient", "b", "c"]);
+    let interrupt = Interrupt::default();
+    let watch = |_: &Task, event: Event<'_>| {
+        if let Event::Advanced(fraction, _) = event
+            && fraction >= 0.1
+            && interrupt.wishes() == 0
+        {
+            interrupt.wish();
+        }
+    };
+    let ends = bench.workers.run(&plan, &bench.out(), &watch, &interrupt);
+    assert_eq!(ends, [End::Interrupted, End::Interrupted, End::Interrupted]);
+    // The third was not begun.
+    assert!(!bench.out().join("c-full-1").exists());
+    let saved = fs::read_to_string(bench.out().join("patient-full-1/run/epoch")).unwrap();
+    let saved: u32 = saved.trim().parse().unwrap();
+    assert!((1..20).contains(&saved), "{saved}");
+    // What was being written when a process was killed is removed.
+    let half = bench.out().join("b-full-1/.writing-x");
+    fs::write(&half, "half").unwrap();
+    assert_eq!(finished(&bench.run(&plan)), 3);
+    assert!(!half.exists());
+    let resumed = format!("from epoch {saved}");
+    assert!(bench.log("patient-full-1").contains(&resumed));
+}
+
+#[test]
+fn a_second_wish_ends_a_task_that_does_not_listen() {
+    let bench = Bench::new(1);
+    let interrupt = Interrupt::default();
+    let watch = |_: &Task, event: Event<'_>| {
+        if let Event::Advanced(..) = event {
+            interrupt.wish();
+            thread::spawn({
+                let interrupt = interrupt.clone();
+                move || {
+                    thread::sleep(Duration::from_millis(200));
+                    interrupt.wish();
+                }
+            });
+        }
+    };
+    let start = Instant::now();
+    let ends = bench
+        .workers
+        .run(&plan(&["stubborn"]), &bench.out(), &watch, &interrupt);
+    assert_eq!(ends, [End::Interrupted]);
+    // Left alone, it would have slept a hundred seconds.
+    assert!(start.elapsed() < Duration::from_secs(20));
+}
+
+#[test]
+fn who_writes_into_a_log_holds_it_until_it_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = open_log(folder.path()).unwrap();
+    assert!(!is_held(&log));
+    let mut left = Command::new("sleep")
+        .arg("0.3")
+        .stderr(Stdio::from(log.try_clone().unwrap()))
+        .spawn()
+        .unwrap();
+    // As when a benchmark is killed: its files are closed, its process goes on.
+    drop(log);
+    let next = open_log(folder.path()).unwrap();
+    assert!(is_held(&next));
+    left.wait().unwrap();
+    assert!(!is_held(&next));
+}
+
+#[test]
+fn a_card_takes_all_folds_at_once_and_they_share_the_cores() {
+    use DeviceChoice::{Auto, Cpu, Cuda};
+    for (asked, device, cores, tasks, expected) in [
+        (None, Cuda, 16, 5, (5, 3)),
+        (None, Cuda, 16, 2, (2, 8)),
+        (None, Cuda, 2, 20, (5, 1)),
+        (Some(3), Cuda, 16, 20, (3, 5)),
+        (None, Cpu, 16, 5, (16, 1)),
+        (Some(2), Cpu, 16, 5, (2, 8)),
+        (None, Auto, 2, 5, (2, 1)),
+    ] {
+        assert_eq!(side_by_side(asked, device, cores, tasks), expected);
+    }
+}

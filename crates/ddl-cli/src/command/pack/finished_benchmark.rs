@@ -1,0 +1,149 @@
+//! The models of a finished benchmark, packed, with what each reached: those that come with the program.
+
+use super::super::benchmark::{Method, Plan, Profile, Task};
+use super::super::recipe::Recipe;
+use anyhow::{Context as _, ensure};
+use ddl::Protocol;
+use ddl::data::{Convention, WindowRule, write_whole};
+use ddl::report::Report;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// What a model without its tracks is called in results.
+const FORECASTER: &str = "DDL without an expert library";
+/// What a repository can bear for each.
+const MOST_BYTES: usize = 2_000_000;
+
+/// What a model reached on the scene that it was trained without.
+#[derive(Debug, PartialEq, Serialize)]
+struct Reported {
+    convention: Convention,
+    window_rule: WindowRule,
+    protocol: Protocol,
+    min_ade: f64,
+    min_fde: f64,
+    /// Walkers scored.
+    walkers: usize,
+    /// `--test-walkers` of that evaluation; none is all.
+    test_walkers: Option<usize>,
+    seed: u64,
+    /// Commit that measured it.
+    commit: String,
+}
+
+/// Packs the run of each fold, of the whole method and of one seed; the files, each with its number of weights.
+pub(super) fn pack(
+    benchmark: &Path,
+    seed: Option<u64>,
+    out: &Path,
+) -> anyhow::Result<Vec<(PathBuf, usize)>> {
+    let plan = Plan::read(benchmark)?;
+    let tasks = tasks(&plan, seed)?;
+    let mut reached = BTreeMap::new();
+    for task in &tasks {
+        let file = task.run_folder(benchmark).join("report.json");
+        let result = Report::load(&file)
+            .context("is the benchmark finished?")
+            .and_then(|report| reported(&report, task, plan.settings.test_walkers))
+            .with_context(|| format!("in {}", file.display()))?;
+        reached.insert(task.fold.as_str(), result);
+    }
+    // Nothing is replaced before everything is there.
+    let work = tempfile::tempdir().context("no temporary folder can be made")?;
+    let mut packed = Vec::new();
+    for task in &tasks {
+        let name = format!("{}.safetensors", task.fold);
+        let run = task.run_folder(benchmark);
+        let numbers = super::pack(&run, &work.path().join(&name))?;
+        let bytes = std::fs::read(work.path().join(&name))?;
+        ensure!(
+            bytes.len() <= MOST_BYTES,
+            "{}, packed, is {} bytes long, and what comes with the program has at most {MOST_BYTES}; train a narrower network \
+             (`--feed-forward-width`)",
+            run.display(),
+            bytes.len()
+        );
+        packed.push((out.join(name), bytes, numbers));
+    }
+    std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
+    let write = |file: &Path, bytes: &[u8]| {
+        write_whole(file, bytes).with_context(|| format!("cannot write {}", file.display()))
+    };
+    for (file, bytes, _) in &packed {
+        write(file, bytes)?;
+    }
+    let text = serde_json::to_string_pretty(&reached)? + "\n";
+    write(&out.join("reported.json"), text.as_bytes())?;
+    let files = packed.into_iter();
+    Ok(files.map(|(file, _, numbers)| (file, numbers)).collect())
+}
+
+/// The task of each fold.
+fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
+    let settings = &plan.settings;
+    ensure!(
+        settings.convention == Convention::Star,
+        "the models that come with the program are trained on star data, and that benchmark is of {} data",
+        settings.convention
+    );
+    ensure!(
+        settings.recipe.name == Recipe::Recommended
+            && settings.profile == Profile::Paper
+            && settings.train_walkers.is_none(),
+        "the models that come with the program are of the whole recommended recipe (--profile paper), and that benchmark is of profile \
+         {}, recipe {}{}",
+        settings.profile,
+        settings.recipe.name,
+        settings
+            .train_walkers
+            .map_or(String::new(), |walkers| format!(
+                ", {walkers} walkers an epoch"
+            )),
+    );
+    let full = || {
+        let tasks = plan.tasks.iter();
+        tasks.filter(|task| task.variant == Method::FULL)
+    };
+    let seed = seed.or_else(|| full().map(|task| task.seed).min());
+    let folds = settings.convention.fold_names();
+    folds
+        .map(|fold| {
+            full()
+                .find(|task| task.fold == fold && Some(task.seed) == seed)
+                .with_context(|| {
+                    format!("the benchmark has no run of the fold {fold}, variant full; run it with all folds")
+                })
+        })
+        .collect()
+}
+
+/// The headline number of the run without its expert library.
+fn reported(report: &Report, task: &Task, test_walkers: Option<usize>) -> anyhow::Result<Reported> {
+    let (convention, protocol) = (Convention::Star, Protocol::Fair);
+    let window_rule = convention.headline_rule();
+    let row = report.rows().iter().find(|row| {
+        let of = &row.conditions;
+        of.forecaster == FORECASTER
+            && (of.convention, of.window_rule, of.protocol) == (convention, window_rule, protocol)
+            && of.fold == task.fold
+            && of.seed == Some(task.seed)
+    });
+    let row = row.with_context(|| {
+        format!(
+            "there is no row `{FORECASTER}` under {convention}, {window_rule}, {protocol}; run the benchmark again, which measures anew what is \
+             older than this row"
+        )
+    })?;
+    Ok(Reported {
+        convention,
+        window_rule,
+        protocol,
+        min_ade: row.scores.min_ade,
+        min_fde: row.scores.min_fde,
+        walkers: row.scores.pedestrians,
+        test_walkers,
+        seed: task.seed,
+        commit: row.conditions.commit.clone(),
+    })
+}

@@ -1,0 +1,47 @@
+//! The baselines alone, on any convention's test windows: what every model is read against.
+
+use crate::error::DdlError;
+use crate::evaluation::test_set::TestSet;
+use ddl_data::{Dataset, Window};
+use ddl_eval::{Conditions, Protocol, ResultRow, baseline};
+
+/// Measures the baselines on the test windows of some folds, under every window rule that the convention's tables have.
+///
+/// With `test_walkers`, on a seeded part of at least so many walkers a fold: the part that [`evaluate`](crate::evaluate) takes.
+///
+/// # Errors
+/// When there is no fold of that name, or its windows cannot be scored.
+pub fn measure_baselines(
+    dataset: &Dataset,
+    folds: &[String],
+    protocols: &[Protocol],
+    test_walkers: Option<usize>,
+    commit: &str,
+) -> Result<Vec<ResultRow>, DdlError> {
+    let mut rows = Vec::new();
+    for name in folds {
+        let convention = dataset.convention();
+        let test = TestSet::new(&dataset.fold(name)?, convention, test_walkers);
+        for (rule, indices) in &test.rules {
+            // a small part may hold no window of one of the rules
+            if indices.is_empty() {
+                continue;
+            }
+            let windows: Vec<Window> = indices.iter().map(|&i| test.windows[i].clone()).collect();
+            for &protocol in protocols {
+                let conditions = Conditions {
+                    device: "cpu".to_owned(),
+                    commit: commit.to_owned(),
+                    test_subset: test.subset.clone(),
+                    ..Conditions::new(convention, *rule, protocol, name, "")
+                };
+                rows.extend(baseline::measure(
+                    &conditions,
+                    &windows,
+                    baseline::NOISE_SEED,
+                )?);
+            }
+        }
+    }
+    Ok(rows)
+}

@@ -1,0 +1,85 @@
+//! A trained run beside another model, on what the run kept for validation.
+
+use crate::error::DdlError;
+use crate::evaluation::test_set::TestSet;
+use crate::model::ddl::Ddl;
+use ddl_data::{Dataset, Window};
+use ddl_eval::Protocol;
+use ddl_eval::significance::{
+    BlockErrors, BlockMetric, PairedDifference, block_errors, paired_difference,
+};
+use serde::Serialize;
+use std::ops::ControlFlow;
+
+/// Windows forecast between two questions whether to stop.
+const WINDOWS_AT_ONCE: usize = 64;
+
+/// Errors of the best of 20 hypotheses, means over pedestrians, metres.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BestOfTwenty {
+    /// minADE.
+    pub min_ade: f64,
+    /// minFDE.
+    pub min_fde: f64,
+}
+
+impl BestOfTwenty {
+    fn of(blocks: &[BlockErrors]) -> Self {
+        let pedestrians: usize = blocks.iter().map(|block| block.pedestrians).sum();
+        let mean = |metric| {
+            blocks.iter().map(|block| block.sum(metric)).sum::<f64>() / pedestrians.max(1) as f64
+        };
+        Self {
+            min_ade: mean(BlockMetric::MinAde),
+            min_fde: mean(BlockMetric::MinFde),
+        }
+    }
+}
+
+/// A run and another model on the same windows, under the protocol `fair`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// Pedestrians in the windows, each counted once a window.
+    pub pedestrians: usize,
+    /// The run.
+    pub run: BestOfTwenty,
+    /// The other model.
+    pub other: BestOfTwenty,
+    /// How much greater the minADE of the run is, with its interval; `None` where they start in fewer than 10 stretches of 20 s.
+    pub difference: Option<PairedDifference>,
+}
+
+/// Measures a run and another model on all windows that the run kept for validation, as [`evaluate`](crate::evaluate) does under the protocol `fair`.
+///
+/// # Errors
+/// When the run kept nothing for validation, or the data is not what it was trained on; [`DdlError::Interrupted`] when the observer asks to stop.
+pub fn compare_on_validation(
+    run: &Ddl,
+    other: &Ddl,
+    dataset: &Dataset,
+    mut observe: impl FnMut(usize, usize) -> ControlFlow<()>,
+) -> Result<Comparison, DdlError> {
+    let windows = TestSet::kept_by(run.goal_model(), dataset, None)?.windows;
+    let total = 2 * windows.len();
+    let mut done = 0;
+    let mut measured = |model: &Ddl| -> Result<Vec<BlockErrors>, DdlError> {
+        let mut forecasts = Vec::new();
+        for some in windows.chunks(WINDOWS_AT_ONCE) {
+            forecasts.extend(Protocol::Fair.forecast(model, some)?);
+            done += some.len();
+            if observe(done, total).is_break() {
+                return Err(DdlError::Interrupted);
+            }
+        }
+        Ok(block_errors(&windows, &forecasts)?)
+    };
+    let (of_run, of_other) = (measured(run)?, measured(other)?);
+    // of the same windows, so that there is no such error
+    let difference = paired_difference(&[&of_run], &[&of_other], BlockMetric::MinAde).ok();
+    Ok(Comparison {
+        pedestrians: windows.iter().map(Window::len).sum(),
+        run: BestOfTwenty::of(&of_run),
+        other: BestOfTwenty::of(&of_other),
+        difference: difference.flatten(),
+    })
+}

@@ -1,0 +1,107 @@
+//! A picture of estimated goals: for each kind of motion the walker with the median error.
+
+use crate::error::DdlError;
+use crate::evaluation::goals::MeasuredGoals;
+use crate::goals::model::GoalModel;
+use ddl_data::Window;
+use ddl_eval::baseline::WeightedGoals;
+use ddl_eval::{ForecastError, MotionKind};
+use ddl_goal::GoalSet;
+use ddl_report::figure::{self, GoalCase};
+
+/// Retrieved walkers that are drawn, the most similar ones.
+const EXPERTS: usize = 60;
+
+/// An SVG of typical walkers: what was observed, the retrieved walkers where there are some, the goals, and how it went on.
+///
+/// # Errors
+/// When a picture cannot be drawn of such goals.
+pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<String, DdlError> {
+    let walkers: Vec<Walker<'_>> = measured
+        .windows
+        .iter()
+        .zip(&measured.sets)
+        .flat_map(|(window, sets)| {
+            (0..)
+                .zip(sets)
+                .filter_map(|(i, set)| Walker::new(window, i, set))
+        })
+        .collect();
+    let mut shown: Vec<&Walker<'_>> = Vec::new();
+    for kind in MotionKind::ALL {
+        // one pedestrian once
+        let candidates: Vec<&Walker<'_>> = walkers
+            .iter()
+            .filter(|walker| walker.kind == kind && !shown.iter().any(|other| other.is(walker)))
+            .collect();
+        let errors: Vec<_> = candidates.iter().map(|w| (kind, w.error)).collect();
+        shown.extend(
+            figure::typical_pedestrians(&errors)
+                .into_iter()
+                .map(|i| candidates[i]),
+        );
+    }
+    let cases = shown
+        .into_iter()
+        .map(|walker| walker.case(model))
+        .collect::<Result<Vec<_>, _>>()?;
+    let evaluation = &measured.evaluation;
+    let title = format!(
+        "Goals of walkers with the median error of their kind of motion: fold {}, {}",
+        evaluation.fold, evaluation.windows
+    );
+    Ok(figure::goals(&title, &cases)?)
+}
+
+/// A walker whose future is known.
+struct Walker<'a> {
+    window: &'a Window,
+    index: usize,
+    set: &'a GoalSet,
+    kind: MotionKind,
+    error: f64,
+}
+
+impl<'a> Walker<'a> {
+    fn new(window: &'a Window, index: usize, set: &'a GoalSet) -> Option<Self> {
+        let end = window.end(index)?;
+        let [x, y] = set.goals()[set.nearest(end)];
+        Some(Self {
+            window,
+            index,
+            set,
+            kind: MotionKind::of(window.track(index))?,
+            error: (x - end[0]).hypot(y - end[1]),
+        })
+    }
+
+    fn is(&self, other: &Self) -> bool {
+        self.window.recording() == other.window.recording()
+            && self.window.pedestrians()[self.index] == other.window.pedestrians()[other.index]
+    }
+
+    fn case(&self, model: &GoalModel) -> Result<GoalCase, DdlError> {
+        let title = format!(
+            "{}, frame {}, no. {}: {}",
+            self.window.recording(),
+            self.window.start_frame(),
+            self.window.pedestrians()[self.index],
+            self.kind
+        );
+        let observed = self.window.observed(self.index);
+        let experts = match model.estimator() {
+            None => Vec::new(),
+            Some(estimator) => estimator
+                .estimate(observed)?
+                .experts()
+                .iter()
+                .take(EXPERTS)
+                .map(|expert| estimator.carry_over(expert, observed))
+                .collect::<Result<Vec<_>, _>>()?,
+        };
+        let goals = WeightedGoals::new(self.set.goals().to_vec(), self.set.weights().to_vec())
+            .map_err(ForecastError::from)?;
+        let track = self.window.track(self.index);
+        Ok(GoalCase::new(title, track, goals)?.with_experts(experts)?)
+    }
+}

@@ -1,0 +1,141 @@
+//! How good the goals of a run are, before any walker follows them.
+
+use crate::error::DdlError;
+use crate::evaluation::split::EvaluationSplit;
+use crate::evaluation::test_set::TestSet;
+use crate::goals::model::GoalModel;
+use ddl_data::{Dataset, Position, Window};
+use ddl_eval::metric::calibration::Calibration;
+use ddl_goal::GoalSet;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// Quality of the goals on the windows they were measured on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct GoalEvaluation {
+    /// The fold.
+    pub fold: String,
+    /// Where the goals come from, in words.
+    pub goals: String,
+    /// Which windows, in words.
+    pub windows: String,
+    /// Goals a walker.
+    pub clusters: usize,
+    /// Errors over all walkers.
+    pub all: GoalErrors,
+    /// Errors by recording.
+    pub recordings: BTreeMap<String, GoalErrors>,
+    /// Whether the goals' probabilities mean what they say.
+    pub calibration: Option<Calibration>,
+    /// Wall-clock seconds that the estimation took.
+    pub seconds: f64,
+}
+
+/// Figures, with the windows and goals they were measured on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredGoals {
+    /// The figures.
+    pub evaluation: GoalEvaluation,
+    /// Windows with their futures.
+    pub windows: Vec<Window>,
+    /// The goals of every pedestrian of every window.
+    pub sets: Vec<Vec<GoalSet>>,
+}
+
+/// Distances between goals and true ends, means over walkers (metres).
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct GoalErrors {
+    /// Walkers.
+    pub walkers: usize,
+    /// Of the goal nearest the TRUE end: what no forecast that ends at a goal can beat.
+    pub oracle_fde: f64,
+    /// Of the likeliest goal.
+    pub likeliest_fde: f64,
+}
+
+impl GoalErrors {
+    fn of<'a>(sets: impl Iterator<Item = (&'a GoalSet, Position)>) -> Self {
+        let mut sum = Self::default();
+        for (set, end) in sets {
+            let off = |goal: usize| {
+                let [x, y] = set.goals()[goal];
+                (x - end[0]).hypot(y - end[1])
+            };
+            sum.walkers += 1;
+            sum.oracle_fde += off(set.nearest(end));
+            sum.likeliest_fde += off(set.most_likely());
+        }
+        let walkers = sum.walkers.max(1) as f64;
+        Self {
+            walkers: sum.walkers,
+            oracle_fde: sum.oracle_fde / walkers,
+            likeliest_fde: sum.likeliest_fde / walkers,
+        }
+    }
+}
+
+/// Measures the goals of a run on the test windows of its fold (headline rule, all walkers) or on its
+/// validation windows.
+///
+/// The goals see the 8 observed frames alone.
+///
+/// # Errors
+/// When the data is not what the run was trained on, or goals cannot be estimated.
+pub fn evaluate_goals(
+    model: &GoalModel,
+    dataset: &Dataset,
+    on: EvaluationSplit,
+) -> Result<MeasuredGoals, DdlError> {
+    let test = TestSet::of_run(model, dataset, on, None)?;
+    let rule = test.rules.first().map(|(rule, _)| *rule);
+    let windows: Vec<Window> = test.headline().cloned().collect();
+    let observed: Vec<Window> = windows.iter().map(Window::without_future).collect();
+    let started = Instant::now();
+    let sets = model.goals(&observed)?;
+    let seconds = started.elapsed().as_secs_f64();
+    let pairs: Vec<(&Window, &GoalSet, Position)> = windows
+        .iter()
+        .zip(&sets)
+        .flat_map(|(window, sets)| {
+            let ends = (0..window.len()).map(|i| window.end(i));
+            let known = sets.iter().zip(ends);
+            known.filter_map(move |(set, end)| Some((window, set, end?)))
+        })
+        .collect();
+    let errors = |name: Option<&str>| {
+        let of = |window: &Window| name.is_none_or(|name| window.recording() == name);
+        let of_name = pairs.iter().filter(|(window, ..)| of(window));
+        GoalErrors::of(of_name.map(|(_, set, end)| (*set, *end)))
+    };
+    let mut recordings = BTreeMap::new();
+    for window in &windows {
+        let name = window.recording();
+        if !recordings.contains_key(name) {
+            recordings.insert(name.to_owned(), errors(Some(name)));
+        }
+    }
+    let likelihoods = pairs
+        .iter()
+        .map(|(_, set, end)| (set.weights(), set.nearest(*end)));
+    let rule = rule.map_or(String::new(), |rule| format!("{rule} rule"));
+    let words = test.subset.map_or_else(
+        || format!("all test windows, {rule}"),
+        |subset| format!("{subset}, {rule}"),
+    );
+    let evaluation = GoalEvaluation {
+        fold: test.fold,
+        goals: model.words(),
+        windows: words,
+        clusters: model.clusters(),
+        all: errors(None),
+        calibration: Calibration::of(likelihoods),
+        recordings,
+        seconds,
+    };
+    Ok(MeasuredGoals {
+        evaluation,
+        windows,
+        sets,
+    })
+}

@@ -1,0 +1,124 @@
+//! The model as the published protocol runs it, kept apart because it is chosen with the truth.
+
+use crate::error::DdlError;
+use crate::forecast::certified::Walked;
+use crate::forecast::name;
+use crate::forecast::shaped;
+use crate::forecast::walk::Gait;
+use crate::goals::sets;
+use crate::model::ddl::Ddl;
+use ddl_data::{Position, Window};
+use ddl_eval::{Forecast, ForecastError, Scores};
+use ddl_goal::GoalEstimator;
+use ddl_network::{ForecastWindows, Frame, Noise};
+
+/// Noise samples on the one goal.
+const SAMPLES: usize = 20;
+
+/// The model as the published code measures it: the estimated goal nearest the TRUE end, then 20
+/// noise samples on that goal, plain Euler steps.
+#[derive(Debug)]
+pub(crate) struct Published {
+    network: Box<dyn ForecastWindows>,
+    seed: u64,
+}
+
+impl Published {
+    /// The epoch that is best on the given TEST windows, of those kept: as the published code
+    /// chooses, and as no honest evaluation may.
+    pub(crate) fn best_on_test(
+        model: &Ddl,
+        estimator: &GoalEstimator,
+        windows: &[Window],
+        mut tick: impl FnMut() -> Result<(), DdlError>,
+    ) -> Result<Self, DdlError> {
+        let Some(run) = model.run() else {
+            return Err(model.source().wrong(
+                "keeps one set of weights, and the protocol `published` chooses among epochs; measure it under `fair` and \
+                 `single`",
+            ));
+        };
+        let config = model.config();
+        // One epoch is no choice: a number that says "best kept epoch" must have had several to choose from.
+        if config.training.epochs > 1 && config.keep_every >= config.training.epochs {
+            return Err(DdlError::run(
+                run.path(),
+                "keeps the weights of its last epoch alone, and `published` chooses among several; train it \
+                 anew without --last-epoch-only",
+            ));
+        }
+        if config.patience.is_some() {
+            return Err(DdlError::run(
+                run.path(),
+                "keeps the weights of its best epoch alone, chosen on its validation part, and `published` chooses among several; train it anew with \
+                 --patience 0",
+            ));
+        }
+        let goals = sets::nearest_true_end(estimator, windows)?;
+        let mut best: Option<(f64, Self)> = None;
+        for epoch in run.kept_epochs()? {
+            tick()?;
+            let network = model.network_of_epoch(run, epoch)?;
+            let candidate = Self {
+                network,
+                seed: model.config().training.seed,
+            };
+            let forecasts = candidate.forecast_towards(windows, &goals)?;
+            let error = Scores::evaluate(windows, &forecasts)?.min_ade;
+            if best.as_ref().is_none_or(|(least, _)| error < *least) {
+                best = Some((error, candidate));
+            }
+        }
+        let (_, best) = best.ok_or_else(|| {
+            DdlError::run(run.path(), "keeps the weights of no epoch; train it anew")
+        })?;
+        Ok(best)
+    }
+
+    /// Twenty noise samples on the one goal of every pedestrian: plain Euler steps, or bounded ones of a network that has learned these, whose
+    /// output has no unit.
+    pub(crate) fn forecast_towards(
+        &self,
+        windows: &[Window],
+        goals: &[Vec<Position>],
+    ) -> Result<Vec<Forecast>, ForecastError> {
+        let config = self.network.config();
+        let single: Vec<Vec<Vec<Position>>> = goals
+            .iter()
+            .map(|goals| goals.iter().map(|&goal| vec![goal]).collect())
+            .collect();
+        let noise = Noise::Draws {
+            count: SAMPLES,
+            seed: self.seed,
+        };
+        let gait = match config.frame {
+            Frame::World => Gait::PlainEuler,
+            Frame::Goal => Gait::Stable(None),
+        };
+        let rollouts = self
+            .network
+            .forecast_windows(windows, &single, noise, gait.rule(), None)
+            .map_err(|error| ForecastError::model(name::NAME, error))?;
+        let rolled = rollouts.into_iter().zip(windows).zip(goals);
+        rolled
+            .map(|((rollout, window), goals)| {
+                if !config.variant.uses_goal() {
+                    return shaped::equally_likely(rollout);
+                }
+                let walked = Walked {
+                    shares: vec![1.0; window.len()],
+                    familiarity: None,
+                    config,
+                    gait,
+                    window,
+                    hypotheses: rollout.hypotheses,
+                    rolled_out: rollout.positions,
+                    factors: rollout.factors,
+                    weights: vec![1.0 / SAMPLES as f64; goals.len() * SAMPLES],
+                    goals: goals.iter().flat_map(|&goal| [goal; SAMPLES]).collect(),
+                };
+                walked.forecast()
+            })
+            .collect()
+    }
+}

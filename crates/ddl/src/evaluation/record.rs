@@ -1,0 +1,99 @@
+//! Which evaluation a run's `report.json` holds, so that a repeated one can be skipped.
+
+use crate::error::DdlError;
+use crate::evaluation::evaluate::EvaluationRequest;
+use crate::forecast::clearance::Clearance;
+use crate::model::ddl::Ddl;
+use crate::run::directory::RunDirectory;
+use crate::run::directory::{read_json, write_json};
+use crate::run::lock::RunLock;
+use crate::trust::calibration::Calibration;
+use ddl_data::Convention;
+use ddl_report::{Moment, Report};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// What the results depend on besides the run itself and the recordings, which are pinned by hash
+/// wherever the benchmark gets them.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Record {
+    request: EvaluationRequest,
+    device: String,
+    #[serde(default)]
+    clearance: Option<Clearance>,
+    /// Which rows there are; results with fewer are measured anew.
+    #[serde(default)]
+    rows: u32,
+    /// SHA-256 of the constants that forecasts depend on besides the run.
+    #[serde(default)]
+    calibration: String,
+}
+
+/// 1: with the row without an expert library. 2: the central goal is drawn towards where the last step leads.
+/// 3: the one forecast walks straight. 4: motion is bounded.
+const ROWS: u32 = 4;
+
+impl Record {
+    fn new(model: &Ddl, request: &EvaluationRequest) -> Self {
+        Self {
+            request: request.clone(),
+            device: model.computed_on(),
+            clearance: model.clearance(),
+            rows: ROWS,
+            calibration: Calibration::digest(),
+        }
+    }
+}
+
+/// Whether the model's run already holds the results of exactly this evaluation, on the recordings of its convention; a packed model holds none.
+///
+/// Own recordings may be others than last time: of those it is never known.
+#[must_use]
+pub fn is_evaluated(model: &Ddl, request: &EvaluationRequest) -> bool {
+    let Some(run) = model.run() else {
+        return false;
+    };
+    if model.config().data.convention == Convention::Own {
+        return false;
+    }
+    let record = record_file(run);
+    if ![&record, &run.report(), &run.moments()]
+        .iter()
+        .all(|file| file.is_file())
+    {
+        return false;
+    }
+    // a record that cannot be read, of another version perhaps, vouches for nothing
+    read_json::<Record>(&record).is_ok_and(|done| done == Record::new(model, request))
+}
+
+/// Writes `report.json` and `moments.json` of the model's run, on recordings of the run's convention, then the record of what was asked for.
+///
+/// # Errors
+/// When a file cannot be written, or the model is packed and has no run.
+pub fn save_evaluation(
+    model: &Ddl,
+    request: &EvaluationRequest,
+    report: &Report,
+    moments: &[Moment],
+) -> Result<(), DdlError> {
+    let Some(run) = model.run() else {
+        return Err(model.source().wrong(
+            "has no directory of a run to keep results in; write them elsewhere (`Results::save`)",
+        ));
+    };
+    let _claimed = RunLock::wait(run.path())?;
+    let record = record_file(run);
+    if record.is_file() {
+        // while the report is replaced, no record may vouch for it
+        std::fs::remove_file(&record).map_err(|error| DdlError::io(&record, error))?;
+    }
+    let json = report.to_json()?;
+    crate::write_atomically(&run.report(), json.as_bytes())?;
+    run.write_moments(moments)?;
+    write_json(&record, &Record::new(model, request))
+}
+
+fn record_file(run: &RunDirectory) -> PathBuf {
+    run.path().join("evaluation.json")
+}

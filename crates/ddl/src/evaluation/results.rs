@@ -1,0 +1,130 @@
+//! Results of several evaluations put together: tables, figures and the page to look at them.
+
+use crate::error::DdlError;
+use crate::run::directory::RunDirectory;
+use crate::run::directory::write_atomically;
+use ddl_report::page::Page;
+use ddl_report::{EpochPoint, Moment, Report, TrainingCurve};
+use std::path::Path;
+
+/// What the curve of a training shows.
+const LOSS: &str = "training loss: mean squared error of the next position (m²)";
+
+/// Results of any number of evaluated runs, with what there is to look at.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Results {
+    /// All rows.
+    pub report: Report,
+    /// Moments of the runs of the whole method and of the lowest seed, the model that the headline is about, and those of other
+    /// programs' forecasts.
+    pub moments: Vec<Moment>,
+    /// How each training went.
+    pub curves: Vec<TrainingCurve>,
+}
+
+impl Results {
+    /// Results that were not gathered from runs: those of another program's forecasts.
+    #[must_use]
+    pub fn new(report: Report, moments: Vec<Moment>) -> Self {
+        Self {
+            report,
+            moments,
+            curves: Vec::new(),
+        }
+    }
+
+    /// Gathers what lies in folders that hold a `report.json`: evaluated runs, or results of other programs' forecasts.
+    ///
+    /// # Errors
+    /// When a folder holds no results, one of its files is damaged, or two folders hold different numbers for the same conditions.
+    pub fn of(title: impl Into<String>, folders: &[impl AsRef<Path>]) -> Result<Self, DdlError> {
+        let mut results = Self {
+            report: Report::new(title, [])?,
+            moments: Vec::new(),
+            curves: Vec::new(),
+        };
+        let mut headline: Vec<(u64, Vec<Moment>)> = Vec::new();
+        let mut elsewhere = Vec::new();
+        for folder in folders {
+            let run = RunDirectory::new(folder.as_ref());
+            if !run.report().is_file() {
+                return Err(DdlError::run(
+                    run.path(),
+                    "holds no results (report.json); run `ddl evaluate` on it first",
+                ));
+            }
+            let report = Report::load(&run.report())?;
+            results.report.extend(report.rows().iter().cloned())?;
+            // Results of another program's forecasts come without a run.
+            if !run.has_config() {
+                elsewhere.extend(run.read_moments()?);
+                continue;
+            }
+            let config = run.config()?;
+            // epoch 0, the weights that a training began with, has no loss
+            let trained = run.metrics()?.into_iter().filter(|epoch| epoch.epoch > 0);
+            let epochs = trained.map(|epoch| EpochPoint {
+                epoch: epoch.epoch,
+                loss: epoch.loss,
+                validation: epoch.validation,
+                seconds: epoch.seconds,
+            });
+            results.curves.push(TrainingCurve {
+                fold: config.data.fold.clone(),
+                variant: config.star.name(),
+                seed: config.training.seed,
+                loss: LOSS.to_owned(),
+                epochs: epochs.collect(),
+            });
+            if config.star.name() == ddl_network::Variant::Full.name() {
+                headline.push((config.training.seed, run.read_moments()?));
+            }
+        }
+        let lowest = headline.iter().map(|(seed, _)| *seed).min();
+        results.moments = headline
+            .into_iter()
+            .filter(|(seed, _)| Some(*seed) == lowest)
+            .flat_map(|(_, moments)| moments)
+            .chain(elsewhere)
+            .collect();
+        Ok(results)
+    }
+
+    /// Writes `report.md`, `report.tex`, `report.json`, `moments.json`, the page `report.html` and each of its figures as `figures/NAME.svg` into
+    /// `folder`, which is made if need be. A file that is there is replaced as a whole; other `.svg` files in `figures` are removed.
+    ///
+    /// # Errors
+    /// When the folder or a file cannot be written, or a figure cannot be drawn.
+    pub fn save(&self, folder: &Path) -> Result<(), DdlError> {
+        let figures = folder.join("figures");
+        std::fs::create_dir_all(&figures).map_err(|error| DdlError::io(&figures, error))?;
+        for (name, text) in self.report.files()? {
+            write_atomically(&folder.join(name), text.as_bytes())?;
+        }
+        RunDirectory::new(folder).write_moments(&self.moments)?;
+        let page = Page::new(&self.report)
+            .moments(self.moments.clone())
+            .curves(self.curves.clone());
+        let drawn = page.figures()?;
+        for (name, svg) in &drawn {
+            write_atomically(&figures.join(name), svg.as_bytes())?;
+        }
+        // Figures of an earlier report would be taken for this one's.
+        remove_others(&figures, &drawn)?;
+        write_atomically(&folder.join("report.html"), page.to_html()?.as_bytes())
+    }
+}
+
+/// Removes the `.svg` files of a folder that are not among these.
+fn remove_others(folder: &Path, kept: &[(String, String)]) -> Result<(), DdlError> {
+    let failed = |error| DdlError::io(folder, error);
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let is_kept = kept.iter().any(|(name, _)| path.ends_with(name));
+        if path.extension().is_some_and(|e| e == "svg") && !is_kept {
+            std::fs::remove_file(&path).map_err(|error| DdlError::io(&path, error))?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,152 @@
+//! From forecasts of a test set to rows of a report, each with the conditions of its numbers.
+
+use crate::error::DdlError;
+use crate::evaluation::test_set::TestSet;
+use crate::forecast::name;
+use crate::model::ddl::Ddl;
+use crate::training::words::{recipe, subset};
+use ddl_data::{Convention, Window, WindowRule};
+use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, baseline};
+
+/// Forecasts of one forecaster, one a window of the test set.
+#[derive(Debug)]
+pub(crate) struct Forecasted {
+    forecaster: String,
+    made_by: MadeBy,
+    forecasts: Vec<Forecast>,
+}
+
+impl Forecasted {
+    /// What the model of that name forecast, with something changed or as it is, to goals that come from where `goals` says.
+    pub(crate) fn model(
+        name: &str,
+        forecasts: Vec<Forecast>,
+        change: Option<&str>,
+        goals: String,
+    ) -> Self {
+        Self {
+            forecaster: match change {
+                None => name.to_owned(),
+                // "DDL with plain Euler steps"
+                Some(change) if name == name::NAME => format!("{name} {change}"),
+                Some(change) => format!("{name}, {change}"),
+            },
+            made_by: MadeBy::Model { goals },
+            forecasts,
+        }
+    }
+
+    /// Straight lines to the goals of that name, which were made as `recipe` says.
+    pub(crate) fn lines_to(goal: &str, recipe: String, forecasts: Vec<Forecast>) -> Self {
+        Self {
+            forecaster: format!("straight line to {goal}"),
+            made_by: MadeBy::Goals { recipe },
+            forecasts,
+        }
+    }
+}
+
+/// What decided the forecasts, and so what their conditions must name.
+#[derive(Debug)]
+enum MadeBy {
+    /// The trained model, and where its goals come from.
+    Model { goals: String },
+    /// The run's goals alone, which depend on its seed.
+    Goals { recipe: String },
+}
+
+/// What the conditions of all rows of a protocol have in common.
+#[derive(Debug)]
+pub(crate) struct ResultRows<'a> {
+    pub(crate) model: &'a Ddl,
+    pub(crate) test: &'a TestSet,
+    pub(crate) protocol: Protocol,
+    /// How the epoch of the model was chosen.
+    pub(crate) selection: &'a str,
+    pub(crate) commit: &'a str,
+}
+
+impl ResultRows<'_> {
+    /// Rows of the forecasts, in their order, then of the baselines, under each window rule.
+    pub(crate) fn of(&self, forecasted: &[Forecasted]) -> Result<Vec<ResultRow>, DdlError> {
+        let mut rows = Vec::new();
+        for (rule, indices) in &self.test.rules {
+            // a small part may hold no window of one of the rules
+            if indices.is_empty() {
+                continue;
+            }
+            let windows: Vec<Window> = indices
+                .iter()
+                .map(|&index| self.test.windows[index].clone())
+                .collect();
+            let plain = self.conditions(*rule);
+            for one in forecasted {
+                let of_rule: Vec<Forecast> =
+                    indices.iter().map(|&i| one.forecasts[i].clone()).collect();
+                let mut conditions = plain.clone();
+                match &one.made_by {
+                    MadeBy::Model { goals } => conditions = self.of_the_model(conditions, goals),
+                    MadeBy::Goals { recipe } => {
+                        conditions.seed = Some(self.model.config().training.seed);
+                        conditions.recipe = Some(recipe.clone());
+                    }
+                }
+                conditions.forecaster.clone_from(&one.forecaster);
+                rows.push(ResultRow::score(conditions, &windows, &of_rule)?);
+            }
+            rows.extend(baseline::measure(&plain, &windows, baseline::NOISE_SEED)?);
+        }
+        Ok(rows)
+    }
+
+    /// Conditions of what is not trained.
+    fn conditions(&self, rule: WindowRule) -> Conditions {
+        Conditions {
+            device: "cpu".to_owned(),
+            commit: self.commit.to_owned(),
+            test_subset: self.test.subset.clone(),
+            ..Conditions::new(
+                self.test.convention,
+                rule,
+                self.protocol,
+                &*self.test.fold,
+                "",
+            )
+        }
+    }
+
+    /// What else decides the model's forecasts.
+    fn besides(&self) -> String {
+        let rounded = match self.model.run() {
+            Some(_) => "",
+            None => "; weights rounded to 16 bits",
+        };
+        let data = &self.model.config().data;
+        let (convention, fold) = (data.convention, &data.fold);
+        if convention == Convention::Own {
+            // Models of different recordings are told apart.
+            let (count, sha256) = (data.recordings.len(), data.sha256.get(..12));
+            let sha256 = sha256.unwrap_or_default();
+            return format!("{rounded}; trained on {count} own recordings ({sha256})");
+        }
+        if convention == self.test.convention {
+            return rounded.to_owned();
+        }
+        format!("{rounded}; trained on `{convention}` without {fold}")
+    }
+
+    fn of_the_model(&self, plain: Conditions, goals: &str) -> Conditions {
+        let config = self.model.config();
+        let training = &config.training;
+        Conditions {
+            variant: Some(config.star.name()),
+            seed: Some(training.seed),
+            epochs: Some(training.epochs),
+            selection: Some(self.selection.to_owned()),
+            device: self.model.computed_on(),
+            training_subset: subset(training),
+            recipe: Some(recipe(training, goals) + &self.besides()),
+            ..plain
+        }
+    }
+}

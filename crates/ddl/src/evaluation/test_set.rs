@@ -1,0 +1,387 @@
+//! The windows a model is measured on: the test windows of its fold under the headline rule and the
+//! one printed beside it, or the validation part of its training recordings.
+
+use crate::error::DdlError;
+use crate::error::more_for_validation;
+use crate::evaluation::split::EvaluationSplit;
+use crate::goals::model::GoalModel;
+use crate::run::training_data::{digest, digest_of_recording, fold_of};
+use crate::run::validation_part::ValidationPart;
+use ddl_data::{Convention, Dataset, Fold, PedestrianId, Recording, Window, WindowRule};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Seed of the test subset: one for all runs, so that all are tested on the same windows.
+const SUBSET_SEED: u64 = 0;
+
+/// Test windows with the rules they belong to. A window that both rules have is forecast once.
+#[derive(Debug)]
+pub(crate) struct TestSet {
+    pub(crate) convention: Convention,
+    /// Of which fold these are, as results name it.
+    pub(crate) fold: String,
+    pub(crate) windows: Vec<Window>,
+    /// Each rule with the indices of its windows; the headline rule first.
+    pub(crate) rules: Vec<(WindowRule, Vec<usize>)>,
+    /// How the subset was chosen; `None` when these are all windows.
+    pub(crate) subset: Option<String>,
+}
+
+impl TestSet {
+    /// The windows that the run may be measured on.
+    ///
+    /// # Errors
+    /// When the data is not what the run was trained on, or it kept no window for validation.
+    pub(crate) fn of_run(
+        goals: &GoalModel,
+        dataset: &Dataset,
+        on: EvaluationSplit,
+        walkers: Option<usize>,
+    ) -> Result<Self, DdlError> {
+        Self::of_run_with(goals, dataset, (on, &[]), walkers)
+    }
+
+    /// The same, where other recordings than the usual ones may be taken for the validation part of own recordings.
+    ///
+    /// # Errors
+    /// As [`of_run`](Self::of_run).
+    pub(crate) fn of_run_with(
+        goals: &GoalModel,
+        dataset: &Dataset,
+        (on, whole): (EvaluationSplit, &[String]),
+        walkers: Option<usize>,
+    ) -> Result<Self, DdlError> {
+        let data = &goals.config().data;
+        let wrong = |problem: String| Err(goals.source().wrong(problem));
+        let own = dataset.convention() == Convention::Own;
+        match on {
+            EvaluationSplit::Test if own => return Self::of_own(goals, dataset, walkers),
+            EvaluationSplit::Validation if own && !knows_some(goals, dataset) => {
+                return Self::own_validation(goals, dataset, whole, walkers);
+            }
+            _ => {}
+        }
+        if data.convention != dataset.convention() {
+            return wrong(format!(
+                "was trained on `{}` data and cannot be measured on `{}` data",
+                data.convention,
+                dataset.convention()
+            ));
+        }
+        if !whole.is_empty() && whole != data.validation_recordings {
+            return wrong(
+                "kept a validation part of its own when it was trained, and is measured on that: leave --validation-recordings out".to_owned(),
+            );
+        }
+        if on == EvaluationSplit::Test {
+            let fold = fold_of(dataset, &data.fold)?;
+            return Ok(Self::new(&fold, data.convention, walkers));
+        }
+        let set = Self::kept_by(goals, dataset, walkers)?;
+        if set.windows.is_empty() {
+            return wrong(format!(
+                "cannot be measured on what it kept for validation: nobody in it was seen at 20 steps in a row; train a model that keeps {}",
+                more_for_validation(data.recordings.len())
+            ));
+        }
+        Ok(set)
+    }
+
+    /// What the run kept for validation, which may hold no window.
+    ///
+    /// # Errors
+    /// When it kept nothing, or these are other recordings than it was trained on.
+    pub(crate) fn kept_by(
+        goals: &GoalModel,
+        dataset: &Dataset,
+        walkers: Option<usize>,
+    ) -> Result<Self, DdlError> {
+        let data = &goals.config().data;
+        if data.validation <= 0.0 && data.validation_recordings.is_empty() {
+            return Err(goals.source().wrong(
+                "kept nothing for validation; train it with --validation 0.2 or --validation-recordings",
+            ));
+        }
+        let fold = fold_of(dataset, &data.fold)?.set_apart(&data.validation_recordings)?;
+        let (rule, fraction) = (data.window_rule, data.validation);
+        if digest(&fold.training_split(rule, fraction).training) != data.sha256 {
+            return Err(goals.source().wrong(
+                "was trained on other recordings than these, whose last part it may have seen; give the --data it was trained on",
+            ));
+        }
+        let kept = (rule, fraction);
+        Ok(Self::validation(&fold, data.convention, kept, walkers))
+    }
+
+    /// The part of own recordings that a model trained on them would be validated on, for a model that knows none of them.
+    fn own_validation(
+        goals: &GoalModel,
+        dataset: &Dataset,
+        whole: &[String],
+        walkers: Option<usize>,
+    ) -> Result<Self, DdlError> {
+        let part = if whole.is_empty() {
+            ValidationPart::of_own(&dataset.whole())
+        } else {
+            ValidationPart {
+                share: 0.0,
+                recordings: whole.to_vec(),
+            }
+        };
+        let fold = dataset.whole().set_apart(&part.recordings)?;
+        let kept = (dataset.convention().headline_rule(), part.share);
+        let set = Self::validation(&fold, dataset.convention(), kept, walkers);
+        if set.windows.is_empty() {
+            return Err(goals.source().wrong(
+                "cannot be measured on the validation part of these recordings: nobody in it was seen at 20 steps in a row; name whole \
+                 recordings (--validation-recordings), or measure it on all of them, without --validation",
+            ));
+        }
+        Ok(set)
+    }
+
+    /// Somebody's own recordings: the one that the model was trained without, where it is there, else all of them.
+    ///
+    /// # Errors
+    /// When the model has learned from one of them, or nobody in them was seen for 20 steps.
+    fn of_own(
+        goals: &GoalModel,
+        dataset: &Dataset,
+        walkers: Option<usize>,
+    ) -> Result<Self, DdlError> {
+        let data = &goals.config().data;
+        let all = dataset.recordings();
+        let left_out = all
+            .iter()
+            .filter(|r| data.convention == Convention::Own && r.name() == data.fold);
+        let mut tested: Vec<&Recording> = left_out.collect();
+        if tested.is_empty() {
+            tested = all.iter().collect();
+        }
+        let learned: BTreeSet<&String> = data.recordings.values().collect();
+        let known = tested
+            .iter()
+            .filter(|recording| learned.contains(&digest_of_recording(recording)));
+        let known: Vec<&str> = known.map(|recording| recording.name()).collect();
+        let namesake = tested
+            .iter()
+            .find(|recording| data.recordings.contains_key(recording.name()));
+        if let (true, Some(namesake)) = (known.is_empty(), namesake) {
+            return Err(goals.source().wrong(format!(
+                "was trained on a recording that is called {0:?} as well, of other frames or positions: cut, resampled or rounded it would be no test; give the \
+                 file another name if {0:?} shows another time or place",
+                namesake.name()
+            )));
+        }
+        if !known.is_empty() {
+            return Err(goals.source().wrong(format!(
+                "was trained on {}; measure it on what it kept for validation, on other recordings, or on one that it is trained without (`ddl \
+                 train --convention own --fold NAME`)",
+                known.join(", ")
+            )));
+        }
+        let rule = dataset.convention().headline_rule();
+        let windows: Vec<Window> = tested.iter().flat_map(|r| r.windows(rule)).collect();
+        if windows.is_empty() {
+            return Err(goals.source().wrong(
+                "cannot be measured on these recordings: nobody in them was seen at 20 steps in a row",
+            ));
+        }
+        let set = Self {
+            convention: dataset.convention(),
+            fold: name_of(&tested),
+            rules: vec![(rule, (0..windows.len()).collect())],
+            windows,
+            subset: None,
+        };
+        Ok(set.at_most(walkers))
+    }
+
+    /// The fold's test windows, or a seeded part of them with about `walkers` walkers.
+    pub(crate) fn new(fold: &Fold<'_>, convention: Convention, walkers: Option<usize>) -> Self {
+        let by_rule: Vec<(WindowRule, Vec<Window>)> = rules(convention)
+            .into_iter()
+            .map(|rule| (rule, fold.test_windows(rule)))
+            .collect();
+        let mut index_of: BTreeMap<(String, i64, Vec<PedestrianId>), usize> = BTreeMap::new();
+        let mut windows: Vec<Window> = Vec::new();
+        let mut rules = Vec::new();
+        // the widest rule last in `rules`, first here: subsets are drawn from all its windows
+        for (rule, of_rule) in by_rule.into_iter().rev() {
+            let mut indices = Vec::with_capacity(of_rule.len());
+            for window in of_rule {
+                let key = (
+                    window.recording().to_owned(),
+                    window.start_frame(),
+                    window.pedestrians().to_vec(),
+                );
+                let index = *index_of.entry(key).or_insert_with(|| {
+                    windows.push(window);
+                    windows.len() - 1
+                });
+                indices.push(index);
+            }
+            rules.push((rule, indices));
+        }
+        rules.reverse();
+        Self {
+            convention,
+            fold: fold.name().to_owned(),
+            windows,
+            rules,
+            subset: None,
+        }
+        .at_most(walkers)
+    }
+
+    /// The last part of the fold's training recordings, on which choices may be made.
+    pub(crate) fn validation(
+        fold: &Fold<'_>,
+        convention: Convention,
+        (rule, fraction): (WindowRule, f64),
+        walkers: Option<usize>,
+    ) -> Self {
+        let windows = fold.training_split(rule, fraction).validation;
+        let rules = vec![(rule, (0..windows.len()).collect())];
+        let fold_name = match fold.name() {
+            Fold::WHOLE => convention.name(),
+            left_out => left_out,
+        };
+        let part = Self {
+            convention,
+            fold: fold_name.to_owned(),
+            windows,
+            rules,
+            subset: None,
+        }
+        .at_most(walkers);
+        let mut parts = Vec::new();
+        if fraction > 0.0 {
+            parts.push(format!("the last {fraction} of the TRAINING recordings"));
+        }
+        let apart = fold.recordings_set_apart();
+        if !apart.is_empty() {
+            let names: Vec<&str> = apart.iter().map(|r| r.name()).collect();
+            parts.push(format!("{} whole", names.join(", ")));
+        }
+        let name = format!("validation: {}", parts.join(", and "));
+        let subset = part
+            .subset
+            .map_or(name.clone(), |subset| format!("{name}; {subset}"));
+        Self {
+            subset: Some(subset),
+            ..part
+        }
+    }
+
+    fn at_most(self, walkers: Option<usize>) -> Self {
+        let Some(walkers) = walkers else { return self };
+        // The same words for every fold, cut or not: the folds of one benchmark share a table.
+        let subset =
+            format!("where a fold has more than {walkers} walkers, a seeded part of its windows");
+        let part = if self.walkers() > walkers {
+            self.part(walkers)
+        } else {
+            self
+        };
+        Self {
+            subset: Some(subset),
+            ..part
+        }
+    }
+
+    pub(crate) fn walkers(&self) -> usize {
+        self.windows.iter().map(Window::len).sum()
+    }
+
+    /// Windows of the headline rule.
+    pub(crate) fn headline(&self) -> impl Iterator<Item = &Window> {
+        self.headline_indices().map(|i| &self.windows[i])
+    }
+
+    /// Indices of the windows of the headline rule.
+    pub(crate) fn headline_indices(&self) -> impl Iterator<Item = usize> {
+        let headline = self.rules.iter().take(1);
+        headline.flat_map(|(_, indices)| indices).copied()
+    }
+
+    /// A seeded part of the windows, in their order, with at least `walkers` walkers.
+    fn part(mut self, walkers: usize) -> Self {
+        let mut order: Vec<usize> = (0..self.windows.len()).collect();
+        let mut rng = ChaCha8Rng::seed_from_u64(SUBSET_SEED);
+        for last in (1..order.len()).rev() {
+            order.swap(last, rng.random_range(0..=last));
+        }
+        let mut taken = vec![false; self.windows.len()];
+        let mut count = 0;
+        for index in order {
+            if count >= walkers {
+                break;
+            }
+            taken[index] = true;
+            count += self.windows[index].len();
+        }
+        let mut new_index = vec![None; taken.len()];
+        let mut windows = Vec::new();
+        for (index, window) in std::mem::take(&mut self.windows).into_iter().enumerate() {
+            if taken[index] {
+                new_index[index] = Some(windows.len());
+                windows.push(window);
+            }
+        }
+        let rules = std::mem::take(&mut self.rules)
+            .into_iter()
+            .map(|(rule, indices)| {
+                (
+                    rule,
+                    indices
+                        .into_iter()
+                        .filter_map(|index| new_index[index])
+                        .collect(),
+                )
+            })
+            .collect();
+        Self {
+            windows,
+            rules,
+            subset: None,
+            ..self
+        }
+    }
+}
+
+/// Whether the model has learned from, or was validated on, one of these recordings, or one of the same name.
+fn knows_some(goals: &GoalModel, dataset: &Dataset) -> bool {
+    let learned = &goals.config().data.recordings;
+    let digests: BTreeSet<&String> = learned.values().collect();
+    dataset.recordings().iter().any(|recording| {
+        learned.contains_key(recording.name()) || digests.contains(&digest_of_recording(recording))
+    })
+}
+
+/// What results call recordings that are tested on together: as short for a hundred as for two.
+#[must_use]
+pub fn name_of(tested: &[&Recording]) -> String {
+    match tested {
+        [] => String::new(),
+        [only] => only.name().to_owned(),
+        [first, .., last] => format!(
+            "{} recordings, {} to {}",
+            tested.len(),
+            first.name(),
+            last.name()
+        ),
+    }
+}
+
+/// The rule of the headline tables, then the one printed beside it.
+fn rules(convention: Convention) -> Vec<WindowRule> {
+    let beside = match convention {
+        Convention::Star => Some(WindowRule::Complete),
+        Convention::SocialGan => Some(WindowRule::SocialGan { min_pedestrians: 1 }),
+        Convention::Simulated | Convention::Own => None,
+    };
+    let headline = convention.headline_rule();
+    [headline].into_iter().chain(beside).collect()
+}

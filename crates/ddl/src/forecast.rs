@@ -1,0 +1,8 @@
+//! From goals to forecasts: the walks that the network shapes, and their certificates.
+
+pub(crate) mod certified;
+pub(crate) mod clearance;
+pub(crate) mod live;
+pub(crate) mod name;
+pub(crate) mod shaped;
+pub(crate) mod walk;

@@ -1,0 +1,293 @@
+//! A forecast with the evidence, for each of its hypotheses, that it goes to its goal.
+
+use crate::forecast::clearance::Clearance;
+use crate::forecast::walk::{Course, Gait, Walk};
+use crate::trust::calibration::Calibration;
+use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
+use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds, Violation};
+use ddl_eval::{Forecast, ForecastError};
+use ddl_network::{Frame, StarConfig, Variant, motion_bounds};
+
+/// A forecast whose every hypothesis carries a Lyapunov certificate.
+///
+/// The certificate of a hypothesis speaks of exactly the positions that the forecast holds, from the
+/// last observed position on: the distance to the goal before each step and after the last, the
+/// smallest eigenvalue of the metric P, how far the time step is below the bound of a plain Euler
+/// step, and by how much the step turns from the goal. [`LyapunovCertificate::holds`] judges it anew
+/// from these numbers.
+///
+/// # Shapes
+/// One certificate for each pedestrian and hypothesis, `[N][K]`, of 12 steps each.
+///
+/// # Examples
+/// ```
+/// use ddl::data::{PedestrianId, Window};
+/// use ddl::{BuiltinModel, Ddl, DeviceChoice};
+///
+/// let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
+/// let walk = (0..8).map(|t| [0.5 * f64::from(t), 0.0]).collect(); // metres, 0.4 s apart
+/// let window = Window::new("yard", 0, 1, vec![PedestrianId(1)], vec![walk])?;
+/// let certified = model.forecast_certified(&[window])?.remove(0);
+/// assert_eq!(certified.certificates.len(), 20);
+/// let certificate = certified.certificate(0, 0); // the first pedestrian, the likeliest goal
+/// certificate.holds()?;
+/// let distances: Vec<f64> = certificate.potentials().collect(); // metres, 13 of them
+/// assert!(distances.is_sorted_by(|before, after| after <= before));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct CertifiedForecast {
+    /// The forecast; its [`certified`](Forecast::certified) repeats the verdicts.
+    pub forecast: Forecast,
+    /// `[N][K]`.
+    pub certificates: Vec<LyapunovCertificate<f64>>,
+}
+
+impl CertifiedForecast {
+    /// The certificate of hypothesis `k` of pedestrian `i`.
+    ///
+    /// # Panics
+    /// When `i` or `k` is out of range.
+    #[must_use]
+    pub fn certificate(&self, i: usize, k: usize) -> &LyapunovCertificate<f64> {
+        assert!(
+            k < self.forecast.hypotheses(),
+            "hypothesis {k} asked of {}",
+            self.forecast.hypotheses()
+        );
+        &self.certificates[i * self.forecast.hypotheses() + k]
+    }
+
+    /// Pedestrian, hypothesis and violation of the first certificate that does not hold; `None` when
+    /// all hold.
+    #[must_use]
+    pub fn first_violation(&self) -> Option<(usize, usize, Violation)> {
+        let hypotheses = self.forecast.hypotheses();
+        self.certificates
+            .iter()
+            .enumerate()
+            .find_map(|(pair, certificate)| {
+                let violation = certificate.holds().err()?;
+                Some((pair / hypotheses, pair % hypotheses, violation))
+            })
+    }
+}
+
+/// Why a forecast carries no certificates.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CertificateError {
+    /// The model has no dynamics, so that no theory speaks of where its walkers go.
+    #[error(
+        "the variant `{variant}` has no flow to certify: its network emits positions; use a model of the \
+         variant `full` or `no-goal-shift`, or forecast without certificates"
+    )]
+    NoFlow {
+        /// The variant of the model.
+        variant: Variant,
+    },
+    /// What the network emitted shapes no flow, or the walk leaves the range of the numbers.
+    #[error(
+        "window of `{recording}` starting at frame {start_frame}, pedestrian {pedestrian}, hypothesis \
+         {hypothesis}: {cause}; has the model diverged, or are the positions no metres?"
+    )]
+    Walk {
+        /// Name of the recording.
+        recording: String,
+        /// First frame of the window.
+        start_frame: i64,
+        /// The pedestrian, as the recording names it.
+        pedestrian: PedestrianName,
+        /// Index of the hypothesis.
+        hypothesis: usize,
+        /// What is wrong, and in which step.
+        cause: DynamicsError,
+    },
+}
+
+/// Where the walkers of a window are led, how likely, and how they walk.
+#[derive(Debug)]
+pub(crate) struct Walked<'a> {
+    pub(crate) config: &'a StarConfig,
+    pub(crate) gait: Gait,
+    pub(crate) window: &'a Window,
+    /// K
+    pub(crate) hypotheses: usize,
+    /// `[N][K][12]`: what the network itself walked, metres; empty where it had no part in it.
+    pub(crate) rolled_out: Vec<Position>,
+    /// `[N][K][12]`: (a, b, c) of the factor of P; `None` where there is no flow.
+    pub(crate) factors: Option<Vec<[f64; 3]>>,
+    /// N: share of the network's metric in what shapes a pedestrian's steps.
+    pub(crate) shares: Vec<f64>,
+    /// N: how familiar the observed motions are; `None` where that is not asked.
+    pub(crate) familiarity: Option<Vec<f64>>,
+    /// `[N][K]`
+    pub(crate) weights: Vec<f64>,
+    /// `[N][K]`
+    pub(crate) goals: Vec<Position>,
+}
+
+impl Walked<'_> {
+    /// The forecast alone, with the verdicts where there is a flow to certify.
+    pub(crate) fn forecast(self) -> Result<Forecast, ForecastError> {
+        if self.factors.is_some() {
+            return Ok(self.certified()?.forecast);
+        }
+        let positions = self.rolled_out.clone();
+        self.at(positions)
+    }
+
+    /// The forecast of these positions, with its spread where there are several hypotheses.
+    fn at(&self, positions: Vec<Position>) -> Result<Forecast, ForecastError> {
+        let (pedestrians, hypotheses) = (self.window.len(), self.hypotheses);
+        let (weights, goals) = (self.weights.clone(), Some(self.goals.clone()));
+        let forecast = Forecast::new(pedestrians, hypotheses, positions, weights, goals)?;
+        let Some(familiarity) = &self.familiarity else {
+            return Ok(forecast);
+        };
+        let forecast = forecast.with_familiarity(familiarity.clone())?;
+        if hypotheses == 1 {
+            return Ok(forecast);
+        }
+        let calibration = Calibration::fitted();
+        let goals = self.goals.chunks_exact(hypotheses);
+        let pairs = goals.zip(self.weights.chunks_exact(hypotheses)).enumerate();
+        let spread = pairs
+            .flat_map(|(i, goals)| {
+                calibration.spread(self.window.observed(i), goals, self.config.time_step)
+            })
+            .collect();
+        Ok(forecast.with_spread(spread, Calibration::shared_regions())?)
+    }
+
+    /// The forecast with a certificate for each hypothesis.
+    ///
+    /// Stable steps: P is shaped by its factors, `ddl-dynamics` walks. Plain Euler steps: the positions of the
+    /// network's own rollout, as they are.
+    pub(crate) fn certified(self) -> Result<CertifiedForecast, ForecastError> {
+        let Some(factors) = &self.factors else {
+            return Err(no_flow(self.config.variant));
+        };
+        let (positions, certificates) = match self.gait {
+            Gait::PlainEuler => self.as_rolled_out(factors)?,
+            Gait::Stable(None) => flat(self.alone(factors)?),
+            Gait::Stable(Some(clearance)) => flat(self.among_others(factors, clearance)?),
+        };
+        let held = certificates
+            .iter()
+            .map(|certificate| certificate.holds().is_ok())
+            .collect();
+        let forecast = self.at(positions)?.with_certified(held)?;
+        Ok(CertifiedForecast {
+            forecast,
+            certificates,
+        })
+    }
+
+    fn as_rolled_out(
+        &self,
+        factors: &[[f64; 3]],
+    ) -> Result<(Vec<Position>, Vec<LyapunovCertificate<f64>>), ForecastError> {
+        let mut paths = self.rolled_out.chunks_exact(HORIZON);
+        let certificates = self.each(factors, |_, course, factors| {
+            course.certify(paths.next().unwrap_or_default(), factors)
+        })?;
+        Ok((self.rolled_out.clone(), certificates))
+    }
+
+    /// Every hypothesis walked as if nobody else were there.
+    fn alone(&self, factors: &[[f64; 3]]) -> Result<Vec<Walk>, ForecastError> {
+        self.each(factors, |_, course, factors| course.walk(factors))
+    }
+
+    /// Every hypothesis walked again, keeping clear of where the others most likely go alone.
+    fn among_others(
+        &self,
+        factors: &[[f64; 3]],
+        clearance: Clearance,
+    ) -> Result<Vec<Walk>, ForecastError> {
+        let alone = self.alone(factors)?;
+        let hypotheses = self.hypotheses;
+        let likeliest: Vec<[Position; HORIZON]> = alone
+            .chunks_exact(hypotheses)
+            .zip(self.weights.chunks_exact(hypotheses))
+            .map(|(walks, weights)| {
+                let heaviest = weights.iter().copied().fold(0.0, f64::max);
+                let first = weights.iter().position(|weight| *weight >= heaviest);
+                walks[first.unwrap_or(0)].positions
+            })
+            .collect();
+        let others = (0..self.window.len())
+            .map(|i| clearance.others(i, &likeliest))
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(|error| ForecastError::model(crate::forecast::name::NAME, error))?;
+        self.each(factors, |i, course, factors| {
+            course.walk_among(&others[i], factors)
+        })
+    }
+
+    fn bounds(&self, i: usize) -> MotionBounds<f64> {
+        let observed = self.window.observed(i);
+        let bounds = motion_bounds(observed, self.config.time_step, self.shares[i]);
+        match self.config.frame {
+            Frame::World => bounds.absolute(),
+            Frame::Goal => bounds,
+        }
+    }
+
+    /// What is made of each walker, hypothesis by hypothesis, in order; a failure is told with its place.
+    fn each<R>(
+        &self,
+        factors: &[[f64; 3]],
+        mut of: impl FnMut(usize, &Course, &[[f64; 3]]) -> Result<R, DynamicsError>,
+    ) -> Result<Vec<R>, ForecastError> {
+        let hypotheses = self.hypotheses;
+        let pairs = factors.chunks_exact(HORIZON).zip(&self.goals).enumerate();
+        pairs
+            .map(|(pair, (factors, &goal))| {
+                let (i, hypothesis) = (pair / hypotheses, pair % hypotheses);
+                let course = Course {
+                    start: self.window.observed(i)[OBSERVED - 1],
+                    goal,
+                    sigma: self.config.sigma,
+                    time_step: self.config.time_step,
+                    bounds: self.bounds(i),
+                };
+                of(i, &course, factors).map_err(|cause| {
+                    failed(CertificateError::Walk {
+                        recording: self.window.recording().to_owned(),
+                        start_frame: self.window.start_frame(),
+                        pedestrian: self.window.name(i),
+                        hypothesis,
+                        cause,
+                    })
+                })
+            })
+            .collect()
+    }
+}
+
+/// Positions and certificates of walks, each in one list.
+fn flat(walks: Vec<Walk>) -> (Vec<Position>, Vec<LyapunovCertificate<f64>>) {
+    let positions = walks.iter().flat_map(|walk| walk.positions).collect();
+    let certificates = walks.into_iter().map(|walk| walk.certificate).collect();
+    (positions, certificates)
+}
+
+/// Whether forecasts of the variant can be certified.
+pub(crate) fn ensure_flow(variant: Variant) -> Result<(), ForecastError> {
+    if variant.dynamics() {
+        Ok(())
+    } else {
+        Err(no_flow(variant))
+    }
+}
+
+fn no_flow(variant: Variant) -> ForecastError {
+    failed(CertificateError::NoFlow { variant })
+}
+
+fn failed(error: CertificateError) -> ForecastError {
+    ForecastError::model(crate::forecast::name::NAME, error)
+}

@@ -1,0 +1,108 @@
+//! Forecasts that keep clear of each other, without losing their goals.
+
+use crate::error::DdlError;
+use ddl_data::{HORIZON, Position};
+use ddl_dynamics::{Ball, DynamicsError, ObstacleSchedule};
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
+
+/// Within which distance of others, from centre to centre, walkers mind them (metres).
+///
+/// Every hypothesis of a walker is walked again among the others, each of whom is a disc that follows
+/// the path it would most likely take alone: within [`MARGIN`](Self::MARGIN) of a disc the approach to it is slowed and
+/// the walker slides along ([`AvoidingFlow`](ddl_dynamics::AvoidingFlow)).
+///
+/// # What is guaranteed
+/// The distance to the goal still falls at every step, and the certificates say so. Keeping clear is not
+/// guaranteed: the others move, and a walker is not moved aside where one of them walks into it. Who is
+/// clear of everybody's next position at the start of a step is clear of them at its end.
+///
+/// # Examples
+/// ```
+/// use ddl::data::{PedestrianId, Window};
+/// use ddl::{BuiltinModel, Clearance, Ddl, DeviceChoice};
+///
+/// let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
+/// let careful = model.keeping_clear(Clearance::new(0.4)?)?;
+/// let east = (0..8).map(|t| [0.5 * f64::from(t), 0.0]).collect();
+/// let west = (0..8).map(|t| [9.0 - 0.5 * f64::from(t), 0.1]).collect();
+/// let people = vec![PedestrianId(1), PedestrianId(2)];
+/// let window = Window::new("corridor", 0, 1, people, vec![east, west])?;
+/// let certified = careful.forecast_certified(&[window])?.remove(0);
+/// assert_eq!(certified.first_violation(), None); // still nearer to their goals at every step
+/// assert!(Clearance::new(-1.0).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Clearance(f64);
+
+/// Nobody keeps farther from others than this (metres): more is a slip of the hand.
+const MOST: f64 = 10.0;
+
+impl Clearance {
+    /// Within this distance of another's disc walkers mind it (metres). Chosen on validation recordings,
+    /// see docs/stability.md.
+    pub const MARGIN: f64 = 0.4;
+
+    /// Keep `distance` metres from centre to centre; two walkers touch at 0.4 m.
+    ///
+    /// # Errors
+    /// [`DdlError::Clearance`] unless the distance is positive and at most 10 m.
+    pub fn new(distance: f64) -> Result<Self, DdlError> {
+        if distance > 0.0 && distance <= MOST {
+            Ok(Self(distance))
+        } else {
+            Err(DdlError::Clearance(distance))
+        }
+    }
+
+    /// The distance from centre to centre (metres).
+    #[must_use]
+    pub fn distance(self) -> f64 {
+        self.0
+    }
+
+    /// What walker `i` keeps clear of in each step: all others where they will be at its end.
+    ///
+    /// `likeliest` holds a path for each walker.
+    pub(crate) fn others(
+        self,
+        i: usize,
+        likeliest: &[[Position; HORIZON]],
+    ) -> Result<ObstacleSchedule<f64, 2>, DynamicsError> {
+        let others = || likeliest.iter().enumerate().filter(|(j, _)| *j != i);
+        let disc = |position: Position| Ball::new(Vector2::from(position), self.0);
+        let steps = (0..HORIZON)
+            .map(|t| others().map(|(_, path)| disc(path[t])).collect())
+            .collect::<Result<_, _>>()?;
+        Ok(ObstacleSchedule::new(steps))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ddl_dynamics::{ObstacleSource as _, State};
+
+    #[test]
+    fn the_others_are_where_they_will_be_at_the_end_of_the_step() {
+        let path = |x: f64| std::array::from_fn(|t| [x, t as f64]);
+        let likeliest = [path(0.0), path(1.0), path(2.0)];
+        let others = Clearance::new(0.4).unwrap().others(1, &likeliest).unwrap();
+        for step in 0..HORIZON {
+            let state = State::new(Vector2::new(9.0, 9.0), step, 0.0, &[]);
+            let centres: Vec<_> = others.obstacles(&state).iter().map(Ball::centre).collect();
+            let now = step as f64;
+            assert_eq!(centres, [&Vector2::new(0.0, now), &Vector2::new(2.0, now)]);
+        }
+    }
+
+    #[test]
+    fn a_clearance_has_to_be_one() {
+        for distance in [0.0, -1.0, 11.0, f64::NAN, f64::INFINITY] {
+            let error = Clearance::new(distance).unwrap_err();
+            assert!(error.to_string().contains("metres"), "{error}");
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! Forecasts frame by frame, as people are seen.
+
+use crate::error::DdlError;
+use crate::forecast::certified::{self, CertifiedForecast};
+use crate::model::ddl::Ddl;
+use ddl_data::{Completion, LiveTracks, OBSERVED, PedestrianId, Position, Window};
+use ddl_eval::{Forecast, ForecastError, Forecaster};
+use std::borrow::Borrow;
+
+/// A forecaster that is fed one frame at a time, 0.4 s apart or faster, and remembers what it has to.
+///
+/// Once somebody has been seen for 8 steps in a row (or as often as a [`Completion`] asks for), every [`push`](Self::push) forecasts
+/// everybody of whom that is true, and says who they are. The numbers are those of [`Forecaster::forecast`] on the window that
+/// [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far, bit for bit. What counts as
+/// a frame in a row, and what a gap or a walker who leaves does, is that of [`LiveTracks`].
+///
+/// The forecaster is owned, or borrowed: `LiveForecaster::new(&model)` watches several places with one model.
+///
+/// # What is kept from frame to frame
+/// What was seen of those who are there during the last 8 steps, and the model as it was loaded: its networks, its expert library and the index that
+/// is searched for similar walkers. A walker who leaves is forgotten after a step (or the longest hole that is filled), so that memory is bounded by the
+/// people present.
+///
+/// The network's *tokens* of past frames, with their keys and values, are not kept, because they are not the same numbers one
+/// frame later. A token is made of the walker's position relative to its goal (the goal shift), and the goals are estimated
+/// anew at every frame; without goal shift, it is relative to the last observed position, which moves on. It is also made of the
+/// position relative to the mean of the scene, which runs over the frames and the walkers of the window, both others one frame
+/// later. Whoever carried tokens over would compute another function than the one that was trained. Within a
+/// forecast, where goals and window stand still, they are kept. Nor is who was near whom: it is judged
+/// relative to a point that moves with the scene, and finding it anew takes less than a thousandth of a forecast.
+///
+/// # Errors
+/// After an error of [`push`](Self::push) or [`push_certified`](LiveForecaster::push_certified) nothing has changed: the same
+/// frame may be pushed again, without whatever was wrong with it. A frame never pushed is a gap.
+///
+/// # Examples
+/// ```no_run
+/// use ddl::data::PedestrianId;
+/// use ddl::{Ddl, DeviceChoice, LiveForecaster};
+///
+/// # fn tracker() -> Vec<Vec<(PedestrianId, [f64; 2])>> { Vec::new() }
+/// ddl::prepare(DeviceChoice::Cpu, None)?;
+/// let mut live = LiveForecaster::new(Ddl::load("runs/zara1".as_ref(), DeviceChoice::Cpu)?);
+/// for (frame, people) in (0..).zip(tracker()) {
+///     // every 0.4 s: who is where, in metres
+///     let Some(now) = live.push(frame, people)? else { continue };
+///     for (i, pedestrian) in now.window.pedestrians().iter().enumerate() {
+///         let k = now.forecast.representative(i);
+///         let [x, y] = now.forecast.hypothesis(i, k)[11]; // in 4.8 s
+///         println!("{pedestrian}: ({x:.1}, {y:.1}) m");
+///     }
+/// }
+/// # Ok::<(), ddl::DdlError>(())
+/// ```
+///
+/// Any [`Forecaster`] can be fed so, such as constant velocity, which needs no model:
+/// ```
+/// use ddl::LiveForecaster;
+/// use ddl::data::PedestrianId;
+/// use ddl::eval::baseline::ConstantVelocity;
+///
+/// let mut live = LiveForecaster::new(ConstantVelocity::last_step());
+/// for frame in 0..7 {
+///     assert!(live.push(frame, [(PedestrianId(1), [0.5 * frame as f64, 0.0])])?.is_none());
+/// }
+/// let now = live.push(7, [(PedestrianId(1), [3.5, 0.0]), (PedestrianId(2), [9.0, 0.0])])?;
+/// let now = now.expect("walker 1 has 8 frames");
+/// assert_eq!((now.frame(), now.window.pedestrians()), (7, &[PedestrianId(1)][..]));
+/// assert_eq!(now.forecast.hypothesis(0, 0)[11], [9.5, 0.0]);
+/// # Ok::<(), ddl::DdlError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct LiveForecaster<M = Ddl> {
+    model: M,
+    tracks: LiveTracks,
+}
+
+/// What is forecast from one frame on.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct LiveForecast<F = Forecast> {
+    /// Who is forecast, in the order of the forecast, and their last 8 positions.
+    pub window: Window,
+    /// A [`Forecast`], or a [`CertifiedForecast`].
+    pub forecast: F,
+}
+
+impl<F> LiveForecast<F> {
+    /// The last frame observed, from which is forecast.
+    pub fn frame(&self) -> i64 {
+        self.window.frames()[OBSERVED - 1]
+    }
+}
+
+impl<M> LiveForecaster<M> {
+    /// Nobody seen yet; frames are counted, so that one step of 0.4 s is from one number to the next.
+    #[must_use]
+    pub fn new(model: M) -> Self {
+        Self {
+            model,
+            tracks: LiveTracks::new(),
+        }
+    }
+
+    /// Nobody seen yet, with another number of raw frames in a step of 0.4 s, such as 10 of a camera at 25 frames a second.
+    ///
+    /// # Errors
+    /// [`DdlError::Live`] if the step does not lie in 1..=2^31.
+    pub fn with_frame_step(model: M, frame_step: i64) -> Result<Self, DdlError> {
+        let tracks = LiveTracks::with_frame_step(frame_step)?;
+        Ok(Self { model, tracks })
+    }
+
+    /// The same, with incomplete observations filled in as the completion allows; [`Window::made_up`] counts the filled-in
+    /// positions.
+    #[must_use]
+    pub fn completing(self, completion: Completion) -> Self {
+        let tracks = self.tracks.completing(completion);
+        Self { tracks, ..self }
+    }
+
+    /// What forecasts.
+    pub fn model(&self) -> &M {
+        &self.model
+    }
+
+    /// Ends watching and hands over what forecasts.
+    #[must_use]
+    pub fn into_model(self) -> M {
+        self.model
+    }
+
+    /// Forgets everybody and the last frame: any frame may come next, as when a tracker starts anew.
+    pub fn clear(&mut self) {
+        self.tracks.clear();
+    }
+
+    /// What is remembered of the frames so far.
+    pub fn tracks(&self) -> &LiveTracks {
+        &self.tracks
+    }
+
+    /// Adds a frame, and forecasts from it by `forecast` where there is somebody to forecast; all or nothing.
+    fn push_with<F>(
+        &mut self,
+        frame: i64,
+        people: impl IntoIterator<Item = (PedestrianId, Position)>,
+        forecast: impl FnOnce(&M, &Window) -> Result<F, ForecastError>,
+    ) -> Result<Option<LiveForecast<F>>, DdlError> {
+        let tracks = self.tracks.after(frame, people)?;
+        let now = match tracks.window() {
+            None => None,
+            Some(window) => {
+                let forecast = forecast(&self.model, &window)?;
+                Some(LiveForecast { window, forecast })
+            }
+        };
+        self.tracks = tracks;
+        Ok(now)
+    }
+}
+
+impl<M: Forecaster> LiveForecaster<M> {
+    /// Adds a frame, everybody's positions (m) in any order, and forecasts everybody seen for 8 steps in a row; `None` while
+    /// that is nobody.
+    ///
+    /// # Errors
+    /// [`DdlError::Live`] for a frame that is out of order, a position that is not finite or somebody twice;
+    /// [`DdlError::Forecast`] when the forecast fails, for positions out of this world for instance.
+    pub fn push(
+        &mut self,
+        frame: i64,
+        people: impl IntoIterator<Item = (PedestrianId, Position)>,
+    ) -> Result<Option<LiveForecast>, DdlError> {
+        self.push_with(frame, people, M::forecast)
+    }
+}
+
+impl<M: Borrow<Ddl>> LiveForecaster<M> {
+    /// The same, with the evidence for every hypothesis that it goes to its goal: what [`Ddl::forecast_certified`] says of the
+    /// window.
+    ///
+    /// # Errors
+    /// As [`push`](Self::push); for the variants without dynamics
+    /// [`CertificateError::NoFlow`](crate::CertificateError::NoFlow) from the first frame on.
+    pub fn push_certified(
+        &mut self,
+        frame: i64,
+        people: impl IntoIterator<Item = (PedestrianId, Position)>,
+    ) -> Result<Option<LiveForecast<CertifiedForecast>>, DdlError> {
+        certified::ensure_flow(self.model.borrow().config().star.variant)?;
+        self.push_with(frame, people, |model, window| {
+            let windows = std::slice::from_ref(window);
+            // one window in, one forecast out
+            Ok(model.borrow().forecast_certified(windows)?.remove(0))
+        })
+    }
+}

@@ -1,0 +1,109 @@
+//! What a forecasting network makes of windows and their goals, trained or still in training.
+
+use crate::forecast::certified::Walked;
+use crate::forecast::name::NAME;
+use crate::forecast::walk::Gait;
+use crate::trust::calibration::Calibration;
+use ddl_data::{Position, Window};
+use ddl_eval::{Forecast, ForecastError};
+use ddl_goal::GoalSet;
+use ddl_network::{ForecastWindows, Noise, StepRule, WindowRollout};
+
+/// Hypotheses of the variant without goals: as many noise vectors.
+const NOISE_HYPOTHESES: usize = 20;
+
+/// One hypothesis a goal for every pedestrian, with the goal's weight, shaped by the network as far as the pedestrian's motion is
+/// familiar; for the variant without goals, one a noise vector of that seed, all equally likely.
+pub(crate) fn towards(
+    network: &dyn ForecastWindows,
+    seed: u64,
+    windows: &[Window],
+    (sets, familiarity): (Vec<Vec<GoalSet>>, Vec<Vec<f64>>),
+    gait: Gait,
+) -> Result<Vec<Forecast>, ForecastError> {
+    if !network.config().variant.uses_goal() {
+        return without_goals(network, seed, windows);
+    }
+    walked(network, windows, (sets, familiarity), gait)?
+        .map(Walked::forecast)
+        .collect()
+}
+
+/// The network's rollouts to all goals; each becomes a forecast when it is its turn, so that the
+/// certificates of many windows need not be kept.
+pub(crate) fn walked<'a>(
+    network: &'a dyn ForecastWindows,
+    windows: &'a [Window],
+    (sets, familiarity): (Vec<Vec<GoalSet>>, Vec<Vec<f64>>),
+    gait: Gait,
+) -> Result<impl Iterator<Item = Walked<'a>>, ForecastError> {
+    let goals: Vec<Vec<Vec<Position>>> = sets
+        .iter()
+        .map(|sets| sets.iter().map(|set| set.goals().to_vec()).collect())
+        .collect();
+    let share = |&familiarity: &f64| Calibration::fitted().share(familiarity);
+    let shares: Vec<Vec<f64>> = familiarity
+        .iter()
+        .map(|window| window.iter().map(share).collect())
+        .collect();
+    let rollouts = network
+        .forecast_windows(windows, &goals, Noise::Expected, gait.rule(), Some(&shares))
+        .map_err(|error| ForecastError::model(NAME, error))?;
+    let shaped = rollouts.into_iter().zip(windows).zip(sets);
+    let trusted = shares.into_iter().zip(familiarity);
+    Ok(shaped.zip(trusted).map(
+        move |(((rollout, window), sets), (shares, familiarity))| Walked {
+            shares,
+            familiarity: Some(familiarity),
+            config: network.config(),
+            gait,
+            window,
+            hypotheses: rollout.hypotheses,
+            rolled_out: rollout.positions,
+            factors: rollout.factors,
+            weights: sets.iter().flat_map(GoalSet::weights).copied().collect(),
+            goals: sets.iter().flat_map(GoalSet::goals).copied().collect(),
+        },
+    ))
+}
+
+/// Plain STAR: noise samples, all equally likely.
+pub(crate) fn without_goals(
+    network: &dyn ForecastWindows,
+    seed: u64,
+    windows: &[Window],
+) -> Result<Vec<Forecast>, ForecastError> {
+    let noise = Noise::Draws {
+        count: NOISE_HYPOTHESES,
+        seed,
+    };
+    network
+        .forecast_windows(
+            windows,
+            &unused_goals(windows),
+            noise,
+            StepRule::Bounded,
+            None,
+        )
+        .map_err(|error| ForecastError::model(NAME, error))?
+        .into_iter()
+        .map(equally_likely)
+        .collect()
+}
+
+/// A rollout without goals as a forecast.
+pub(crate) fn equally_likely(rollout: WindowRollout) -> Result<Forecast, ForecastError> {
+    Ok(Forecast::equally_likely(
+        rollout.pedestrians,
+        rollout.hypotheses,
+        rollout.positions,
+    )?)
+}
+
+/// A goal for everybody, for the variant that reads none.
+pub(crate) fn unused_goals(windows: &[Window]) -> Vec<Vec<Vec<Position>>> {
+    windows
+        .iter()
+        .map(|window| vec![vec![[0.0; 2]]; window.len()])
+        .collect()
+}

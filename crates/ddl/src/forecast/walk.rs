@@ -1,0 +1,212 @@
+//! One hypothesis of one walker: walked by the reference implementation, or certified as it was walked.
+//!
+//! The network emits the factors of P; `ddl-dynamics` turns them into positions in `f64`, by the
+//! integrator whose guarantee holds for the computed numbers.
+
+use crate::forecast::clearance::Clearance;
+use ddl_data::{HORIZON, Position};
+use ddl_dynamics::{
+    ArrivingSchedule, Attractor, AvoidingFlow, CholeskyMetric, DynamicsError, Flow,
+    LyapunovCertificate, MotionBounds, NaturalGradientFlow, ObstacleSchedule, StableEuler,
+    rollout_into,
+};
+use ddl_network::StepRule;
+use nalgebra::Vector2;
+
+/// How walkers walk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Gait {
+    /// The published steps, which may pass the goal.
+    PlainEuler,
+    /// `StableEuler` within bounds, everybody alone or keeping clear of the others.
+    Stable(Option<Clearance>),
+}
+
+impl Gait {
+    /// The steps of the network's own rollout.
+    pub(crate) fn rule(self) -> StepRule {
+        match self {
+            Self::PlainEuler => StepRule::Euler,
+            Self::Stable(_) => StepRule::Bounded,
+        }
+    }
+}
+
+/// What a walk needs besides its shape.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Course {
+    /// Last observed position, metres.
+    pub(crate) start: Position,
+    /// Metres.
+    pub(crate) goal: Position,
+    /// sigma of P = L L^T + sigma I, m/s.
+    pub(crate) sigma: f64,
+    /// Seconds a step.
+    pub(crate) time_step: f64,
+    /// Of the motion.
+    pub(crate) bounds: MotionBounds<f64>,
+}
+
+/// A walk with the evidence that it goes to its goal.
+#[derive(Debug)]
+pub(crate) struct Walk {
+    /// One a step, the start left out; metres.
+    pub(crate) positions: [Position; HORIZON],
+    pub(crate) certificate: LyapunovCertificate<f64>,
+}
+
+/// The flow to a goal, shaped by a metric a step.
+type ShapedFlow = NaturalGradientFlow<f64, 2, ArrivingSchedule<f64>>;
+
+impl Course {
+    /// Walks the course with `StableEuler` steps in `f64`, shaped by one factor (a, b, c) a step.
+    pub(crate) fn walk(&self, factors: &[[f64; 3]]) -> Result<Walk, DynamicsError> {
+        self.follow(&self.flow(factors)?, true)
+    }
+
+    /// The same, keeping clear of others.
+    pub(crate) fn walk_among(
+        &self,
+        others: &ObstacleSchedule<f64, 2>,
+        factors: &[[f64; 3]],
+    ) -> Result<Walk, DynamicsError> {
+        let flow = AvoidingFlow::new(self.flow(factors)?, others, Clearance::MARGIN)?;
+        self.follow(&flow, false)
+    }
+
+    fn flow(&self, factors: &[[f64; 3]]) -> Result<ShapedFlow, DynamicsError> {
+        let attractor = Attractor::new(Vector2::from(self.goal))?;
+        let metrics = self.metrics(factors)?;
+        let metrics = ArrivingSchedule::new(metrics, attractor, self.bounds, self.time_step)?;
+        Ok(NaturalGradientFlow::new(attractor, metrics))
+    }
+
+    fn follow(&self, flow: &impl Flow<f64, 2>, alone: bool) -> Result<Walk, DynamicsError> {
+        let mut path = [Vector2::zeros(); HORIZON + 1];
+        let start = Vector2::from(self.start);
+        rollout_into(flow, &StableEuler, start, self.time_step, &mut path)?;
+        let certificate = LyapunovCertificate::of_rollout(flow, &path, self.time_step)?;
+        Ok(Walk {
+            certificate: certificate.within(&path, flow.attractor(), &self.bounds, alone)?,
+            positions: std::array::from_fn(|t| path[t + 1].into()),
+        })
+    }
+
+    /// The evidence for positions that were walked elsewhere, with one factor (a, b, c) a step.
+    pub(crate) fn certify(
+        &self,
+        positions: &[Position],
+        factors: &[[f64; 3]],
+    ) -> Result<LyapunovCertificate<f64>, DynamicsError> {
+        let attractor = Attractor::new(Vector2::from(self.goal))?;
+        let path: Vec<Vector2<f64>> = std::iter::once(&self.start)
+            .chain(positions)
+            .map(|&position| position.into())
+            .collect();
+        let metrics = self.metrics(factors)?;
+        LyapunovCertificate::new(&path, &metrics, &attractor, self.time_step)
+    }
+
+    /// The metrics of all steps; one that is none is named with its step.
+    fn metrics(&self, factors: &[[f64; 3]]) -> Result<Vec<CholeskyMetric<f64, 2>>, DynamicsError> {
+        let metric = |(step, &[a, b, c]): (usize, &[f64; 3])| {
+            CholeskyMetric::planar(a, b, c, self.sigma).map_err(|cause| DynamicsError::Step {
+                step,
+                cause: Box::new(cause),
+            })
+        };
+        factors.iter().enumerate().map(metric).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+    use super::*;
+
+    fn course() -> Course {
+        Course {
+            start: [0.0, 0.0],
+            goal: [3.0, 0.0],
+            sigma: 1e-8,
+            time_step: 0.5,
+            bounds: MotionBounds::new(2.15, Vector2::new(0.5, 0.0), 1.0).unwrap(),
+        }
+    }
+
+    /// 3 m in 12 steps of 0.5 s at the velocity that arrives, and L = I, which asks for no departure: straight on.
+    #[test]
+    fn straight_on_at_half_a_metre_a_second() {
+        let course = course();
+        let walk = course.walk(&[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
+        for (t, position) in (1..).zip(walk.positions) {
+            let x = 0.25 * f64::from(t);
+            assert!((position[0] - x).abs() < 1e-7 && position[1].abs() < 1e-12);
+        }
+        assert_eq!(walk.certificate.holds(), Ok(()));
+        let motion = walk.certificate.motion().unwrap();
+        assert!(
+            (motion.speed.largest - 0.5).abs() < 1e-6 && (motion.speed.bound - 2.15).abs() < 1e-6
+        );
+        assert!(motion.distance_left.unwrap().largest < 1e-9);
+        let certified = course
+            .certify(&walk.positions, &[[1.0, 0.0, 1.0]; HORIZON])
+            .unwrap();
+        assert_eq!(certified.holds(), Ok(()));
+        assert_eq!(certified.motion(), None);
+    }
+
+    /// Somebody stands in the way: passed at the distance asked for, and the goal is still neared at every
+    /// step.
+    #[test]
+    fn somebody_in_the_way_is_passed() {
+        let (course, factors) = (course(), [[1.0, 0.0, 1.0]; HORIZON]);
+        let clearance = Clearance::new(0.5).unwrap();
+        let stands = [[1.5, 0.1]; HORIZON];
+        let others = clearance
+            .others(0, &[[[9.0, 9.0]; HORIZON], stands])
+            .unwrap();
+        let apart = |walk: &Walk| {
+            let distances = walk.positions.map(|[x, y]| (x - 1.5).hypot(y - 0.1));
+            distances.into_iter().fold(f64::INFINITY, f64::min)
+        };
+        assert!(apart(&course.walk(&factors).unwrap()) < 0.15);
+        let walk = course.walk_among(&others, &factors).unwrap();
+        assert!(apart(&walk) > 0.5);
+        assert_eq!(walk.certificate.holds(), Ok(()));
+        assert_eq!(walk.certificate.motion().unwrap().distance_left, None);
+        let nobody = clearance.others(0, &[stands]).unwrap();
+        let alone = course.walk_among(&nobody, &factors).unwrap();
+        assert_eq!(alone.positions, course.walk(&factors).unwrap().positions);
+    }
+
+    #[test]
+    fn a_walk_past_the_goal_is_certified_as_it_is() {
+        let overshoots: Vec<Position> = (1..=12).map(|t| [2.0 * f64::from(t), 0.0]).collect();
+        let certificate = course()
+            .certify(&overshoots, &[[2.0, 0.0, 2.0]; HORIZON])
+            .unwrap();
+        // 3 m, 1 m, 1 m behind it: the second step is the first that comes no nearer
+        let violation = certificate.holds().unwrap_err();
+        assert!(violation.to_string().starts_with("step 1 "), "{violation}");
+    }
+
+    #[test]
+    fn a_factor_that_is_no_number_is_named_with_its_step() {
+        let mut factors = [[1.0, 0.0, 1.0]; HORIZON];
+        factors[7][1] = f64::NAN;
+        for error in [
+            course().walk(&factors).unwrap_err(),
+            course()
+                .certify(&[[0.0, 0.0]; HORIZON], &factors)
+                .unwrap_err(),
+        ] {
+            assert!(
+                matches!(error, DynamicsError::Step { step: 7, .. }),
+                "{error}"
+            );
+            assert!(error.to_string().contains("(1, 0)"), "{error}");
+        }
+    }
+}

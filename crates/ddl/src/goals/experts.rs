@@ -1,0 +1,155 @@
+//! The expert library as a file of a run.
+
+use crate::error::DdlError;
+use crate::run::directory::write_atomically;
+use ddl_data::{Position, TIME_STEP, WINDOW, Window};
+use ddl_goal::ExpertLibrary;
+use ddl_network::weights::{Origin, check_numbers, numbers_digest};
+use safetensors::SafeTensors;
+use safetensors::tensor::{Dtype, TensorView};
+use std::io::Read as _;
+use std::path::Path;
+
+const TRACKS: &str = "tracks";
+/// Bytes of a track: 20 positions of two f64.
+const TRACK_BYTES: usize = WINDOW * 2 * 8;
+/// What to do about a file that is not what was written.
+const MEND: &str = "copy it again, or delete it and run the same training again";
+/// Room for the header of the file.
+const HEADER_BYTES: u64 = 1 << 20;
+
+/// The library of all walkers of the training windows.
+///
+/// # Errors
+/// When there is no walker.
+pub(crate) fn library(windows: &[Window]) -> Result<ExpertLibrary, DdlError> {
+    let tracks: Vec<Vec<Position>> = windows
+        .iter()
+        .flat_map(|window| (0..window.len()).map(|i| window.track(i).to_vec()))
+        .collect();
+    Ok(ExpertLibrary::new(tracks, TIME_STEP)?)
+}
+
+pub(crate) fn save(library: &ExpertLibrary, origin: &Origin, path: &Path) -> Result<(), DdlError> {
+    let bytes: Vec<u8> = library
+        .tracks()
+        .iter()
+        .flatten()
+        .flatten()
+        .flat_map(|coordinate| coordinate.to_le_bytes())
+        .collect();
+    let shape = vec![library.len(), WINDOW, 2];
+    let broken = |error: safetensors::SafeTensorError| DdlError::run(path, error.to_string());
+    let view = TensorView::new(Dtype::F64, shape, &bytes).map_err(broken)?;
+    let header = origin.to_header(&numbers_digest([(TRACKS, view.clone())]));
+    let file = safetensors::serialize([(TRACKS, view)], Some(header)).map_err(broken)?;
+    write_atomically(path, &file)
+}
+
+/// The library of a run of this origin, with as many tracks as its configuration says.
+///
+/// # Errors
+/// When the file is broken, or belongs to another run.
+pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<ExpertLibrary, DdlError> {
+    // Nothing more is read, and no room made, than the library of the run takes.
+    let most = (tracks as u64)
+        .saturating_mul(TRACK_BYTES as u64)
+        .saturating_add(HEADER_BYTES);
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(|error| DdlError::io(path, error))?;
+    file.take(most.saturating_add(1))
+        .read_to_end(&mut bytes)
+        .map_err(|error| DdlError::io(path, error))?;
+    if bytes.len() as u64 > most {
+        let problem =
+            format!("is longer than {most} bytes, which is all that {tracks} tracks take");
+        return Err(DdlError::run(path, problem));
+    }
+    let broken = |error: safetensors::SafeTensorError| {
+        let problem = format!(
+            "is not a whole safetensors file ({error}); delete it and run the same training again"
+        );
+        DdlError::run(path, problem)
+    };
+    let (_, header) = SafeTensors::read_metadata(&bytes).map_err(broken)?;
+    let (of_file, digest) = Origin::of_header(header.metadata().as_ref());
+    if let Some(difference) = of_file.difference(origin) {
+        return Err(DdlError::run(
+            path,
+            format!(
+                "belongs to another run than the config.json beside it: its {difference}; put back the file, or \
+             the config.json, that it was made with"
+            ),
+        ));
+    }
+    let file = SafeTensors::deserialize(&bytes).map_err(broken)?;
+    check_numbers(&file, digest.as_deref())
+        .map_err(|error| DdlError::run(path, error.to_string()))?;
+    let view = file
+        .tensor(TRACKS)
+        .map_err(|error| DdlError::run(path, format!("has no tracks ({error}); {MEND}")))?;
+    if view.dtype() != Dtype::F64 || view.shape() != [tracks, WINDOW, 2] {
+        let problem = format!(
+            "has {:?} {:?} for `{TRACKS}`, expected {tracks} f64 tracks of {WINDOW} positions; {MEND}",
+            view.dtype(),
+            view.shape()
+        );
+        return Err(DdlError::run(path, problem));
+    }
+    let tracks: Vec<Vec<Position>> = view
+        .data()
+        .chunks_exact(TRACK_BYTES)
+        .map(|track| {
+            track
+                .chunks_exact(16)
+                .map(|bytes| [number(bytes), number(&bytes[8..])])
+                .collect()
+        })
+        .collect();
+    ExpertLibrary::new(tracks, TIME_STEP).map_err(|error| unusable(&error, path))
+}
+
+/// The error about a library of the right shape that goals cannot be retrieved from: tracks that nobody can have walked, or too few.
+pub(crate) fn unusable(error: &dyn std::error::Error, path: &Path) -> DdlError {
+    DdlError::run(path, format!("cannot be used: {error}; {MEND}"))
+}
+
+fn number(bytes: &[u8]) -> f64 {
+    let mut eight = [0; 8];
+    eight.copy_from_slice(&bytes[..8]);
+    f64::from_le_bytes(eight)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A library of two walkers, read from a file without the SHA-256 that would tell of any change.
+    fn read(change: impl FnOnce(&mut [f64])) -> Result<ExpertLibrary, DdlError> {
+        let mut numbers: Vec<f64> = (0..2 * WINDOW * 2).map(|i| 0.25 * i as f64).collect();
+        change(&mut numbers);
+        let bytes: Vec<u8> = numbers.iter().flat_map(|n| n.to_le_bytes()).collect();
+        let view = TensorView::new(Dtype::F64, vec![2, WINDOW, 2], &bytes).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("experts.safetensors");
+        std::fs::write(
+            &path,
+            safetensors::serialize([(TRACKS, view)], None).unwrap(),
+        )
+        .unwrap();
+        load(&Origin::default(), 2, &path)
+    }
+
+    #[test]
+    fn a_library_that_nobody_can_have_walked_is_named() {
+        assert_eq!(read(|_| ()).unwrap().len(), 2);
+        for (number, part) in [
+            (f64::NAN, "position 3 is (NaN"),
+            (f64::INFINITY, "must be finite"),
+        ] {
+            let error = read(|numbers| numbers[6] = number).unwrap_err().to_string();
+            assert!(error.contains("experts.safetensors"), "{error}");
+            assert!(error.contains(part) && error.contains(MEND), "{error}");
+        }
+    }
+}

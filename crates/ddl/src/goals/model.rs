@@ -1,0 +1,382 @@
+//! Where the goals of a model come from: the expert library of its run, its proposal network, or both.
+
+use crate::device::Device;
+use crate::error::DdlError;
+use crate::goals::experts;
+use crate::goals::reach;
+use crate::goals::recipe::GoalRecipe;
+use crate::goals::sets;
+use crate::goals::views;
+use crate::model::packed::{self, Unpacked};
+use crate::model::source::ModelSource;
+use crate::run::config::RunConfig;
+use crate::run::directory::RunDirectory;
+use crate::run::enough_weights;
+use crate::trust::calibration::Calibration;
+use crate::trust::familiarity::TrainingMotions;
+use ddl_data::{Position, WINDOW, Window};
+use ddl_eval::ForecastError;
+use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
+use ddl_network::weights::load_weights;
+use ddl_network::{DeviceChoice, ForecastWindows, ProposeEnds, ProposedEnds};
+use rayon::prelude::*;
+use std::path::Path;
+
+/// Estimates where the walkers of a window are going, from the 8 observed frames and nothing else.
+///
+/// # Examples
+/// ```
+/// use ddl::data::{PedestrianId, Window};
+/// use ddl::{BuiltinModel, DeviceChoice, GoalModel, ModelSource};
+///
+/// let source = ModelSource::Builtin(BuiltinModel::default());
+/// let model = GoalModel::open(&source, DeviceChoice::Cpu)?;
+/// let walk = (0..8).map(|t| [0.5 * f64::from(t), 0.0]).collect(); // metres, 0.4 s apart
+/// let window = Window::new("yard", 0, 1, vec![PedestrianId(1)], vec![walk])?;
+/// let goals = model.goals(&[window])?.remove(0).remove(0);
+/// assert_eq!(goals.goals().len(), 20);
+/// assert!((goals.weights().iter().sum::<f64>() - 1.0).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct GoalModel {
+    source: ModelSource,
+    config: RunConfig,
+    origin: GoalOrigin,
+    /// Goals a walker.
+    clusters: usize,
+    /// What it was trained on, by which motions are familiar; `None` where too little is known of them.
+    motions: Option<TrainingMotions>,
+}
+
+/// What goals are made of.
+#[derive(Debug)]
+enum GoalOrigin {
+    /// Similar walkers.
+    Retrieved(GoalEstimator),
+    /// The network's ends.
+    Proposed(Box<dyn ProposeEnds>),
+    /// Both, the retrieved goals with this share of the probability.
+    Both(Box<dyn ProposeEnds>, GoalEstimator, f64),
+}
+
+impl GoalModel {
+    /// Loads the goals' part of the run at `path`, whose forecasting network need not be trained yet, or of a packed model.
+    ///
+    /// # Errors
+    /// As [`GoalModel::open`].
+    pub fn load(path: &Path, device: DeviceChoice) -> Result<Self, DdlError> {
+        Self::open(&ModelSource::at(path), device)
+    }
+
+    /// The same from any source of models.
+    ///
+    /// # Errors
+    /// When there is no run, its goals are not trained, one of the files is broken, or the device
+    /// cannot be had.
+    pub fn open(source: &ModelSource, device: DeviceChoice) -> Result<Self, DdlError> {
+        let Some(run) = source.run() else {
+            let bytes = packed::bytes(source)?;
+            let device = Device::open(device)?;
+            let unpacked = packed::unpack(&bytes, source, device)?;
+            return Ok(Self::of_packed(source, unpacked)?.0);
+        };
+        let config = run.config()?;
+        if !run.has_goals(&config.goals) {
+            let problem = "has no goals yet; run the same `ddl train` command again to go on";
+            return Err(source.wrong(problem));
+        }
+        source.check(&config)?;
+        Self::of_run(run.clone(), config, Device::open(device)?)
+    }
+
+    pub(crate) fn of_run(
+        run: RunDirectory,
+        config: RunConfig,
+        device: Device,
+    ) -> Result<Self, DdlError> {
+        let network = match &config.goals.proposal {
+            None => None,
+            Some(recipe) => {
+                recipe.network.check()?;
+                enough_weights::require(&run.proposal(), recipe.network.least_numbers())?;
+                let origin = config.goals_origin();
+                let read = |layout: &_| load_weights(layout, &origin, &run.proposal());
+                let network = device.proposing(&recipe.network, read)?;
+                Some(network)
+            }
+        };
+        Self::with_network(run, config, network)
+    }
+
+    /// The goals of a run with this proposal network, which need not be the one that is in its file.
+    pub(crate) fn with_network(
+        run: RunDirectory,
+        config: RunConfig,
+        network: Option<Box<dyn ProposeEnds>>,
+    ) -> Result<Self, DdlError> {
+        let library = experts::load(&config.goals_origin(), config.data.walkers, &run.experts())?;
+        let clusters = config.goals.retrieval.clone().check()?.clusters();
+        let params = config.goals.retrieval.clone().query(QuerySpan::Observed);
+        let estimator = GoalEstimator::new(params.check()?, library)
+            .map_err(|error| experts::unusable(&error, &run.experts()))?;
+        let motions = TrainingMotions::learn(estimator.library().tracks(), config.star.time_step);
+        let origin = match (&config.goals.proposal, network) {
+            (Some(recipe), Some(network)) => {
+                GoalOrigin::Both(network, estimator, recipe.retrieved_share)
+            }
+            _ => GoalOrigin::Retrieved(estimator),
+        };
+        Ok(Self {
+            source: ModelSource::Run(run),
+            config,
+            origin,
+            clusters,
+            motions,
+        })
+    }
+
+    /// The goals of a packed model, and what else it holds.
+    pub(crate) fn of_packed(
+        source: &ModelSource,
+        unpacked: Unpacked,
+    ) -> Result<(Self, Box<dyn ForecastWindows>), DdlError> {
+        let Unpacked {
+            config,
+            network,
+            proposal,
+            motions,
+        } = unpacked;
+        let clusters = config.goals.retrieval.clone().check()?.clusters();
+        let goals = Self {
+            source: source.clone(),
+            config,
+            origin: GoalOrigin::Proposed(proposal),
+            clusters,
+            motions,
+        };
+        Ok((goals, network))
+    }
+
+    /// What decided the run.
+    pub fn config(&self) -> &RunConfig {
+        &self.config
+    }
+
+    /// Where the model was taken from.
+    pub fn source(&self) -> &ModelSource {
+        &self.source
+    }
+
+    /// How the goals were trained; whether all of it is at hand, [`words`](Self::words) says.
+    pub fn recipe(&self) -> &GoalRecipe {
+        &self.config.goals
+    }
+
+    /// Where the goals come from, in words.
+    pub fn words(&self) -> String {
+        match &self.origin {
+            GoalOrigin::Proposed(_) => self.recipe().words_without_library(),
+            GoalOrigin::Retrieved(_) | GoalOrigin::Both(..) => self.recipe().words(),
+        }
+    }
+
+    /// Goals a walker, at most.
+    pub fn clusters(&self) -> usize {
+        self.clusters
+    }
+
+    /// The retrieval of similar walkers, which sees the observed positions alone; `None` where there is no expert library.
+    pub fn estimator(&self) -> Option<&GoalEstimator> {
+        match &self.origin {
+            GoalOrigin::Proposed(_) => None,
+            GoalOrigin::Retrieved(estimator) | GoalOrigin::Both(_, estimator, _) => Some(estimator),
+        }
+    }
+
+    /// The network that proposes ends, where there is one.
+    pub(crate) fn proposal_network(&self) -> Option<&dyn ProposeEnds> {
+        match &self.origin {
+            GoalOrigin::Retrieved(_) => None,
+            GoalOrigin::Proposed(network) | GoalOrigin::Both(network, ..) => Some(&**network),
+        }
+    }
+
+    /// Whether the goals would be others without the expert library, and there would be some.
+    pub(crate) fn has_library_beside_network(&self) -> bool {
+        matches!(self.origin, GoalOrigin::Both(..))
+    }
+
+    /// Numbers learned by the proposal network; 0 without one.
+    pub fn parameter_count(&self) -> usize {
+        self.recipe()
+            .proposal
+            .as_ref()
+            .map_or(0, |recipe| recipe.network.parameter_count())
+    }
+
+    /// The goals of every pedestrian of every window, from the observed frames alone.
+    ///
+    /// On the CPU a pedestrian's goals have the same bits alone and among others.
+    ///
+    /// # Errors
+    /// When positions are so far apart that distances leave the range of `f64`, or libtorch fails.
+    pub fn goals(&self, windows: &[Window]) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
+        let sets = match &self.origin {
+            GoalOrigin::Retrieved(estimator) => sets::retrieved(estimator, windows)?,
+            GoalOrigin::Proposed(network) => self.standing_for_ends(&**network, None, windows)?,
+            GoalOrigin::Both(network, estimator, share) => {
+                self.standing_for_ends(&**network, Some((estimator, *share)), windows)?
+            }
+        };
+        Ok(self.plausible(windows, sets))
+    }
+
+    /// The sets with goals beyond reach drawn in, and weights as flat as the trust in the motion asks for.
+    fn plausible(&self, windows: &[Window], sets: Vec<Vec<GoalSet>>) -> Vec<Vec<GoalSet>> {
+        let time_step = self.config.star.time_step;
+        let of_window = |(window, sets)| {
+            let sets = reach::within(window, sets, time_step).into_iter();
+            let familiarity = self.familiarity(window);
+            let tempered = |(set, familiarity)| Calibration::fitted().tempered(set, familiarity);
+            sets.zip(familiarity).map(tempered).collect()
+        };
+        windows.iter().zip(sets).map(of_window).collect()
+    }
+
+    /// How much the observed motion of each pedestrian of a window is like those that the model was trained on: the share of training
+    /// motions kept apart that are at least as unusual, in (0, 1]. 1 where nothing is known of these.
+    #[must_use]
+    pub fn familiarity(&self, window: &Window) -> Vec<f64> {
+        TrainingMotions::of_window(self.motions(), window, self.config.star.time_step)
+    }
+
+    /// The training motions, as a packed model holds them.
+    pub(crate) fn motions(&self) -> Option<&TrainingMotions> {
+        self.motions.as_ref()
+    }
+
+    /// The goals that the model would have without its expert library; its own where none of them are proposed.
+    ///
+    /// # Errors
+    /// As [`GoalModel::goals`].
+    pub(crate) fn goals_without_library(
+        &self,
+        windows: &[Window],
+    ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
+        match self.proposal_network() {
+            None => self.goals(windows),
+            Some(network) => {
+                let sets = self.standing_for_ends(network, None, windows)?;
+                Ok(self.plausible(windows, sets))
+            }
+        }
+    }
+
+    /// Goals that stand for the network's ends, and for retrieved goals where they have a share.
+    fn standing_for_ends(
+        &self,
+        network: &dyn ProposeEnds,
+        retrieval: Option<(&GoalEstimator, f64)>,
+        windows: &[Window],
+    ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
+        let mut seen = Vec::new();
+        for window in windows {
+            let walkers = views::of_window(
+                window,
+                network.config().neighbours,
+                network.config().time_step,
+            )
+            .map_err(failed)?;
+            seen.extend(walkers);
+        }
+        let mut views = Vec::with_capacity(seen.len());
+        let mut frames = Vec::with_capacity(seen.len());
+        for seen in seen {
+            frames.push((seen.frame, seen.unit));
+            views.push(seen.view);
+        }
+        let mut proposed = network.propose(&views).map_err(failed)?;
+        for (proposed, (_, unit)) in proposed.iter_mut().zip(&frames) {
+            for end in &mut proposed.ends {
+                *end = end.map(|coordinate| coordinate * unit);
+            }
+        }
+        if let Some((estimator, share)) = retrieval {
+            let retrieved = sets::retrieved(estimator, windows)?;
+            let retrieved = retrieved.into_iter().flatten();
+            for ((proposed, (frame, _)), set) in proposed.iter_mut().zip(&frames).zip(retrieved) {
+                for weight in &mut proposed.weights {
+                    *weight *= 1.0 - share;
+                }
+                let ends = set.goals().iter().map(|&goal| frame.to_frame(goal));
+                proposed.ends.extend(ends);
+                proposed
+                    .weights
+                    .extend(set.weights().iter().map(|weight| weight * share));
+            }
+        }
+        let clusters = self.clusters;
+        let sets: Vec<GoalSet> = (frames, proposed)
+            .into_par_iter()
+            .map(|((frame, _), ProposedEnds { ends, weights })| {
+                GoalSet::of_ends(&frame, &ends, &weights, clusters)
+            })
+            .collect::<Result<_, _>>()
+            .map_err(failed)?;
+        let mut sets = sets.into_iter();
+        Ok(windows
+            .iter()
+            .map(|window| sets.by_ref().take(window.len()).collect())
+            .collect())
+    }
+
+    /// Where walkers whose future is known are led in training: to the proposed goal nearest the true end, or to the true
+    /// end where nothing is proposed. What is retrieved is left out: the library holds the very walkers that are learned from. The
+    /// proposals have learned from them too, which costs less: they know nobody by heart (`docs/goals.md`, training).
+    ///
+    /// # Errors
+    /// When libtorch fails.
+    pub(crate) fn lessons(&self, windows: &[Window]) -> Result<Vec<Vec<Position>>, ForecastError> {
+        let end = |window: &Window, i: usize| window.track(i)[WINDOW - 1];
+        if self.proposal_network().is_none() {
+            let ends = |window: &Window| (0..window.len()).map(|i| end(window, i)).collect();
+            return Ok(windows.iter().map(ends).collect());
+        }
+        let sets = self.goals_without_library(windows)?;
+        let nearest = |(i, set): (usize, GoalSet), window: &Window| {
+            let end = end(window, i);
+            let goal = set.goals().get(set.nearest(end));
+            goal.copied().unwrap_or(end)
+        };
+        Ok(sets
+            .into_iter()
+            .zip(windows)
+            .map(|(sets, window)| {
+                let walkers = sets.into_iter().enumerate();
+                walkers.map(|walker| nearest(walker, window)).collect()
+            })
+            .collect())
+    }
+
+    /// The published estimator: under the protocol `published` its query reads the first future frame.
+    ///
+    /// # Errors
+    /// When there is no expert library.
+    pub(crate) fn published_estimator(&self, query: QuerySpan) -> Result<GoalEstimator, DdlError> {
+        let Some(estimator) = self.estimator() else {
+            return Err(self.source.wrong(
+                "has no expert library, from which the protocol `published` takes its goals; measure it under `fair` and \
+                 `single`, or measure the run that it was packed from",
+            ));
+        };
+        let library: ExpertLibrary = estimator.library().clone();
+        let retrieval = self.recipe().retrieval.clone();
+        let params: GoalEstimatorParams = retrieval.into_published().query(query);
+        Ok(GoalEstimator::new(params.check()?, library)?)
+    }
+}
+
+fn failed(error: impl std::error::Error + Send + Sync + 'static) -> ForecastError {
+    ForecastError::model("goals", error)
+}

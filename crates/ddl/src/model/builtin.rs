@@ -1,0 +1,126 @@
+//! The models that come with the program.
+
+use crate::error::DdlError;
+use std::fmt;
+use std::str::FromStr;
+
+/// A model that comes with the program, named by the scene of ETH/UCY that it was trained without.
+///
+/// The five are those of the benchmark, in the `star` convention, packed: goals are proposed, there is no expert library. What each
+/// reached on the scene that it has not seen stands in `models/reported.json` of this crate.
+///
+/// # Examples
+/// ```
+/// use ddl::BuiltinModel;
+///
+/// let default = BuiltinModel::default();
+/// assert_eq!(default, "hotel".parse()?);
+/// assert_eq!(default.config()?.data.fold, "hotel"); // never seen in training
+/// # Ok::<(), ddl::DdlError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum BuiltinModel {
+    /// Trained without the scene `eth`.
+    Eth,
+    /// Trained without the scene `hotel`, the smallest: the model that has seen the most walkers, and so the one for new places.
+    #[default]
+    Hotel,
+    /// Trained without the scenes `univ`.
+    Univ,
+    /// Trained without the scene `zara1`.
+    Zara1,
+    /// Trained without the scene `zara2`.
+    Zara2,
+}
+
+impl BuiltinModel {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Eth, Self::Hotel, Self::Univ, Self::Zara1, Self::Zara2];
+
+    /// The scene that it was trained without.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Eth => "eth",
+            Self::Hotel => "hotel",
+            Self::Univ => "univ",
+            Self::Zara1 => "zara1",
+            Self::Zara2 => "zara2",
+        }
+    }
+
+    /// The packed model.
+    pub(crate) fn bytes(self) -> &'static [u8] {
+        BYTES[self as usize]
+    }
+}
+
+/// The packed models, in the order of the variants. A static, so that the program holds each once.
+static BYTES: [&[u8]; 5] = [
+    include_bytes!("../../models/eth.safetensors"),
+    include_bytes!("../../models/hotel.safetensors"),
+    include_bytes!("../../models/univ.safetensors"),
+    include_bytes!("../../models/zara1.safetensors"),
+    include_bytes!("../../models/zara2.safetensors"),
+];
+
+impl fmt::Display for BuiltinModel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for BuiltinModel {
+    type Err = DdlError;
+
+    fn from_str(text: &str) -> Result<Self, DdlError> {
+        let named = Self::ALL.into_iter().find(|model| model.name() == text);
+        named.ok_or_else(|| DdlError::Model {
+            model: text.to_owned(),
+            problem: format!(
+                "does not come with the program; those that do are {}",
+                Self::ALL.map(Self::name).join(", ")
+            ),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Ddl, DeviceChoice, Variant};
+    use ddl_data::Convention;
+
+    /// What a repository can bear, and a reader of a page wait for.
+    const MOST_BYTES: usize = 2_000_000;
+
+    #[test]
+    fn each_is_of_the_fold_it_is_named_after_small_and_without_tracks() {
+        for model in BuiltinModel::ALL {
+            let config = model.config().unwrap();
+            assert_eq!(config.data.fold, model.name());
+            assert_eq!(config.data.convention, Convention::Star);
+            assert_eq!(config.star.variant, Variant::Full);
+            assert!(model.bytes().len() <= MOST_BYTES, "{model}");
+            let loaded = Ddl::builtin(model, DeviceChoice::Cpu).unwrap();
+            assert_eq!(loaded.config(), &config);
+            assert!(loaded.goal_model().estimator().is_none());
+            // Two bytes a number, names, configuration: there is no room for anything else.
+            let numbers = loaded.parameter_count() + loaded.goal_model().parameter_count();
+            assert!(model.bytes().len() < 2 * numbers + 20_000, "{model}");
+            assert_eq!(model.name().parse::<BuiltinModel>().unwrap(), model);
+        }
+        let error = "corridor".parse::<BuiltinModel>().unwrap_err().to_string();
+        assert!(
+            error.contains("corridor") && error.contains("zara2"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn the_default_has_seen_the_most_walkers() {
+        let seen = |model: &BuiltinModel| model.config().unwrap().data.walkers;
+        let most = BuiltinModel::ALL.into_iter().max_by_key(seen);
+        assert_eq!(most, Some(BuiltinModel::default()));
+    }
+}

@@ -1,0 +1,295 @@
+//! A trained model: the network, its goal estimator, and how the two make a forecast.
+
+use crate::device::Device;
+use crate::error::DdlError;
+use crate::forecast::certified::{self, CertifiedForecast, Walked};
+use crate::forecast::clearance::Clearance;
+use crate::forecast::name::{NAME, WITHOUT_LIBRARY};
+use crate::forecast::shaped;
+use crate::forecast::walk::Gait;
+use crate::goals::model::GoalModel;
+use crate::goals::sets;
+use crate::model::source::ModelSource;
+use crate::run::config::RunConfig;
+use crate::run::directory::RunDirectory;
+use ddl_data::{HORIZON, Position, Window};
+use ddl_eval::{Forecast, ForecastError, Forecaster};
+use ddl_goal::GoalSet;
+use ddl_network::weights::Weights;
+use ddl_network::{ForecastWindows, MotionNetwork, NetworkError, Precision};
+
+/// A trained model, ready to forecast.
+///
+/// As a [`Forecaster`] it is the model of the protocol `fair`: one hypothesis for each
+/// of the K = 20 goals, weighted as the goals are, each rolled out along a flow whose distance to the
+/// goal falls at every step. Under `single` it is asked for [one forecast](Self::forecast_one) alone. It reads the 8 observed frames and nothing else.
+///
+/// # Numerics
+/// The network computes in `f32` and shapes the metric P of each step; the variants with dynamics then
+/// walk in `f64`, by [`StableEuler`](ddl_dynamics::StableEuler), whose guarantee holds for the computed
+/// numbers: what is forecast comes nearer to its goal at every step, exactly.
+/// [`forecast_certified`](Self::forecast_certified) hands out the evidence.
+///
+/// # Examples
+/// ```
+/// use ddl::data::{PedestrianId, Window};
+/// use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _};
+///
+/// // Or `Ddl::load`, of a run of your own.
+/// let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
+/// let walk = (0..8).map(|t| [0.5 * f64::from(t), 0.0]).collect(); // metres, 0.4 s apart
+/// let window = Window::new("yard", 0, 1, vec![PedestrianId(1)], vec![walk])?;
+/// let forecast = model.forecast(&window)?;
+/// let one = forecast.hypothesis(0, forecast.representative(0)); // 12 positions, metres
+/// assert!(one[11][0] > 3.5, "further on");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Ddl {
+    pub(super) goals: GoalModel,
+    pub(super) device: Device,
+    pub(super) network: Box<dyn ForecastWindows>,
+    /// Numbers learned by the network.
+    pub(super) parameters: usize,
+    pub(super) clearance: Option<Clearance>,
+}
+
+impl Ddl {
+    /// The same model, whose walkers keep clear of each other.
+    ///
+    /// # Errors
+    /// [`DdlError::NoFlow`] for the variants without dynamics.
+    pub fn keeping_clear(self, clearance: Clearance) -> Result<Self, DdlError> {
+        let variant = self.config().star.variant;
+        if !variant.dynamics() {
+            return Err(DdlError::NoFlow { variant });
+        }
+        Ok(Self {
+            clearance: Some(clearance),
+            ..self
+        })
+    }
+
+    /// The same model, whose network has its feed-forward blocks computed in that precision. Where the walkers go from what
+    /// it emits is computed in `f64` as ever: the guarantee does not depend on it.
+    ///
+    /// # Errors
+    /// For `bf16` elsewhere than on the CPU.
+    pub fn in_precision(self, precision: Precision) -> Result<Self, DdlError> {
+        if precision != Precision::F32 && self.device != Device::CPU {
+            return Err(DdlError::Network(NetworkError::Config {
+                field: "precision",
+                value: precision.name().to_owned(),
+                rule: "f32, unless the network computes on the CPU",
+            }));
+        }
+        if precision == self.network.precision() {
+            return Ok(self);
+        }
+        let config = self.network.config().clone();
+        let network = MotionNetwork::reading(config, |_| self.network.copy_weights())?;
+        Ok(Self {
+            network: Box::new(network.in_precision(precision)),
+            ..self
+        })
+    }
+
+    /// What decided the model.
+    pub fn config(&self) -> &RunConfig {
+        self.goals.config()
+    }
+
+    /// Where the model was taken from.
+    pub fn source(&self) -> &ModelSource {
+        self.goals.source()
+    }
+
+    /// The directory of its run; `None` for a packed model, which keeps nothing but what it takes to forecast.
+    pub fn run(&self) -> Option<&RunDirectory> {
+        self.source().run()
+    }
+
+    /// Where it computes.
+    pub fn device(&self) -> Device {
+        self.device
+    }
+
+    /// Device and precision, as reports name them.
+    pub(crate) fn computed_on(&self) -> String {
+        let device = self.device.name();
+        match self.network.precision() {
+            Precision::F32 => device.to_owned(),
+            Precision::Bf16 => format!("{device}, bf16"),
+        }
+    }
+
+    /// How far its walkers keep from each other; `None` where each walks as if alone.
+    pub fn clearance(&self) -> Option<Clearance> {
+        self.clearance
+    }
+
+    /// Numbers learned by the forecasting network.
+    pub fn parameter_count(&self) -> usize {
+        self.parameters
+    }
+
+    /// Where its goals come from.
+    pub fn goal_model(&self) -> &GoalModel {
+        &self.goals
+    }
+
+    /// The weights of the network that forecasts and of the one that proposes goals, where there is one.
+    ///
+    /// # Errors
+    /// When they cannot be fetched from their device.
+    pub(crate) fn weights(&self) -> Result<(Weights, Option<Weights>), DdlError> {
+        let proposal = self.goals.proposal_network();
+        let proposal = proposal.map(ddl_network::ProposeEnds::copy_weights);
+        let proposal = proposal.transpose()?;
+        Ok((self.network.copy_weights()?, proposal))
+    }
+
+    /// Forecasts the windows, with the evidence for every hypothesis that it goes to its goal.
+    ///
+    /// # Errors
+    /// As [`forecast_all`](Forecaster::forecast_all); for the variants without dynamics, `star` and
+    /// `no-dynamics`, [`CertificateError::NoFlow`](crate::CertificateError::NoFlow), and
+    /// [`CertificateError::Walk`](crate::CertificateError::Walk) where what the network emitted shapes
+    /// no flow, both inside [`ForecastError::Model`].
+    ///
+    /// # Examples
+    /// ```no_run
+    /// use ddl::{Ddl, DeviceChoice};
+    /// # fn example(window: ddl::data::Window) -> Result<(), Box<dyn std::error::Error>> {
+    /// let model = Ddl::load("runs/eth".as_ref(), DeviceChoice::Cpu)?;
+    /// let certified = model.forecast_certified(&[window])?.remove(0);
+    /// let certificate = certified.certificate(0, 0); // the first pedestrian to its likeliest goal
+    /// assert!(certificate.holds().is_ok());
+    /// let left: Vec<f64> = certificate.potentials().collect(); // 13 distances to the goal, metres
+    /// # Ok(()) }
+    /// ```
+    pub fn forecast_certified(
+        &self,
+        windows: &[Window],
+    ) -> Result<Vec<CertifiedForecast>, ForecastError> {
+        certified::ensure_flow(self.config().star.variant)?;
+        let goals = self.goals.goals(windows)?;
+        let led = (goals, self.familiarities(windows));
+        shaped::walked(&*self.network, windows, led, Gait::Stable(self.clearance))?
+            .map(Walked::certified)
+            .collect()
+    }
+
+    /// One forecast a pedestrian: the neutral motion to the central goal of its goal set
+    /// ([`GoalSet::central`]). The forecasting network has no part in it: what it knows is how people go to a goal that is sure
+    /// (`docs/accuracy.md`). So all variants with goals go the same way; that without makes its noise samples. The flow is as stable as those to the
+    /// goals, and `Forecast::certified` holds the verdict of each walk.
+    ///
+    /// # Shapes
+    /// A forecast a window: one hypothesis of 12 positions (m) a pedestrian.
+    ///
+    /// # Errors
+    /// As [`forecast_all`](Forecaster::forecast_all).
+    pub fn forecast_one(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
+        let goals = sets::only_central(windows, &self.goals.goals(windows)?);
+        self.forecast_neutral(windows, goals, self.clearance)
+    }
+
+    /// [`forecast_one`](Self::forecast_one) with the evidence for every walk that it goes to its goal.
+    ///
+    /// # Errors
+    /// As [`forecast_one`](Self::forecast_one); for the variant without goals
+    /// [`CertificateError::NoFlow`](crate::CertificateError::NoFlow).
+    pub fn forecast_one_certified(
+        &self,
+        windows: &[Window],
+    ) -> Result<Vec<CertifiedForecast>, ForecastError> {
+        let variant = self.config().star.variant;
+        if !variant.uses_goal() {
+            certified::ensure_flow(variant)?;
+        }
+        let goals = sets::only_central(windows, &self.goals.goals(windows)?);
+        self.neutral(windows, goals, self.clearance)
+            .map(Walked::certified)
+            .collect()
+    }
+
+    /// One neutral walk for every pedestrian, to the one goal of its set; for the variant without goals, noise samples.
+    pub(crate) fn forecast_neutral(
+        &self,
+        windows: &[Window],
+        sets: Vec<Vec<GoalSet>>,
+        clearance: Option<Clearance>,
+    ) -> Result<Vec<Forecast>, ForecastError> {
+        if !self.config().star.variant.uses_goal() {
+            let seed = self.config().training.seed;
+            return shaped::without_goals(&*self.network, seed, windows);
+        }
+        self.neutral(windows, sets, clearance)
+            .map(Walked::forecast)
+            .collect()
+    }
+
+    /// The neutral walks, of which each becomes a forecast when it is its turn.
+    fn neutral<'a>(
+        &'a self,
+        windows: &'a [Window],
+        sets: Vec<Vec<GoalSet>>,
+        clearance: Option<Clearance>,
+    ) -> impl Iterator<Item = Walked<'a>> {
+        let config = &self.config().star;
+        windows.iter().zip(sets).map(move |(window, sets)| {
+            let goals: Vec<Position> = sets.iter().flat_map(GoalSet::goals).copied().collect();
+            Walked {
+                config,
+                gait: Gait::Stable(clearance),
+                window,
+                hypotheses: 1,
+                rolled_out: Vec::new(),
+                shares: vec![0.0; window.len()],
+                familiarity: Some(self.goals.familiarity(window)),
+                factors: Some(vec![[1.0, 0.0, 1.0]; goals.len() * HORIZON]),
+                weights: vec![1.0; goals.len()],
+                goals,
+            }
+        })
+    }
+
+    /// One hypothesis a goal for every pedestrian, with the goal's weight; for the variant without
+    /// goals, one a noise vector, all equally likely.
+    pub(crate) fn forecast_towards(
+        &self,
+        windows: &[Window],
+        sets: Vec<Vec<GoalSet>>,
+        gait: Gait,
+    ) -> Result<Vec<Forecast>, ForecastError> {
+        let seed = self.config().training.seed;
+        let led = (sets, self.familiarities(windows));
+        shaped::towards(&*self.network, seed, windows, led, gait)
+    }
+
+    fn familiarities(&self, windows: &[Window]) -> Vec<Vec<f64>> {
+        let of = |window| self.goals.familiarity(window);
+        windows.iter().map(of).collect()
+    }
+}
+
+impl Forecaster for Ddl {
+    fn name(&self) -> String {
+        match self.run() {
+            Some(_) => NAME.into(),
+            None => format!("{NAME} {WITHOUT_LIBRARY}"),
+        }
+    }
+
+    fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
+        let mut forecasts = self.forecast_all(std::slice::from_ref(window))?;
+        // one window in, one forecast out
+        Ok(forecasts.remove(0))
+    }
+
+    fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
+        let goals = self.goals.goals(windows)?;
+        self.forecast_towards(windows, goals, Gait::Stable(self.clearance))
+    }
+}

@@ -1,0 +1,263 @@
+//! A model in one small file: what it takes to forecast, without the tracks it was trained on.
+//!
+//! The file is a safetensors file. It holds the learned tensors of both networks in half precision, each under the name of its
+//! network, and in its header, as one entry, the whole `config.json` of the run with a SHA-256 of configuration and tensors.
+//! The expert library is trajectory data and stays where it is.
+
+use crate::device::Device;
+use crate::error::DdlError;
+use crate::model::source::ModelSource;
+use crate::run::config::{FORMAT, RunConfig};
+use crate::run::sha256;
+use crate::trust::familiarity::TrainingMotions;
+use ddl_network::weights::{HalfTensor, Weights};
+use ddl_network::{ForecastWindows, NetworkError, ProposeEnds};
+use safetensors::SafeTensors;
+use safetensors::tensor::Dtype;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
+use std::borrow::Cow;
+use std::io::Read as _;
+use std::path::Path;
+
+/// Version of the file's layout.
+pub(super) const LAYOUT: u32 = 2;
+/// Name of the header's entry.
+pub(super) const ENTRY: &str = "ddl";
+/// Heads the names of the forecasting network's tensors.
+pub(super) const NETWORK: &str = "network.";
+/// Heads the names of the proposal network's tensors.
+pub(super) const PROPOSAL: &str = "proposal.";
+/// More than any network takes whose configuration is allowed and that anybody would want to hand on.
+const MOST_BYTES: u64 = 1 << 28;
+
+/// The entry of the file's header.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Header {
+    pub(super) layout: u32,
+    /// The run's `config.json`, as a text, so that its digest does not depend on how JSON is written.
+    pub(super) config: String,
+    /// The training motions, as JSON, by which motions are familiar.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) motions: Option<String>,
+    pub(super) sha256: String,
+}
+
+/// The part of `config.json` that every layout of a run has.
+#[derive(Deserialize)]
+struct Layout {
+    format: u32,
+}
+
+/// What a packed model holds.
+pub(crate) struct Unpacked {
+    pub(crate) config: RunConfig,
+    pub(crate) network: Box<dyn ForecastWindows>,
+    pub(crate) proposal: Box<dyn ProposeEnds>,
+    pub(crate) motions: Option<TrainingMotions>,
+}
+
+/// The bytes of a packed model.
+///
+/// # Errors
+/// When its file cannot be read, or is longer than any packed model.
+pub(crate) fn bytes(source: &ModelSource) -> Result<Cow<'static, [u8]>, DdlError> {
+    match source {
+        ModelSource::Builtin(model) => Ok(Cow::Borrowed(model.bytes())),
+        ModelSource::Packed(path) => read(path).map(Cow::Owned),
+        ModelSource::Run(_) => Err(source.wrong("is the directory of a run, not a packed model")),
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, DdlError> {
+    let io = |error| DdlError::io(path, error);
+    let file = std::fs::File::open(path).map_err(io)?;
+    let mut bytes = Vec::new();
+    file.take(MOST_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(io)?;
+    if bytes.len() as u64 > MOST_BYTES {
+        let problem = format!("is longer than {MOST_BYTES} bytes, and no packed model is");
+        return Err(ModelSource::Packed(path.to_owned()).wrong(problem));
+    }
+    Ok(bytes)
+}
+
+/// What a packed model holds, as far as it is read without making networks.
+type Contents = (RunConfig, Option<TrainingMotions>, Vec<HalfTensor>);
+
+/// The configuration of a packed model, its training motions and its tensors, which belong together.
+fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
+    let damaged = |error: &dyn std::fmt::Display| {
+        source.wrong(format!(
+            "is no whole packed model ({error}); copy it again, or make it anew with `ddl pack`"
+        ))
+    };
+    let file = SafeTensors::deserialize(bytes).map_err(|error| damaged(&error))?;
+    let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(|error| damaged(&error))?;
+    let entry = metadata.metadata().as_ref().and_then(|m| m.get(ENTRY));
+    let Some(entry) = entry else {
+        return Err(source.wrong(
+            "is a file of weights, but no packed model: its header has no configuration; name the directory of the run, or \
+             pack that with `ddl pack`",
+        ));
+    };
+    let Header {
+        layout,
+        config,
+        motions,
+        sha256,
+    } = serde_json::from_str(entry).map_err(|error| damaged(&error))?;
+    if layout != LAYOUT {
+        return Err(source.wrong(format!(
+            "has layout {layout}, this program reads {LAYOUT}; pack its run anew"
+        )));
+    }
+    let mut tensors = Vec::new();
+    for (name, view) in file.iter() {
+        if view.dtype() != Dtype::F16 {
+            let problem = format!("{name} holds {:?}, expected 16-bit floats", view.dtype());
+            return Err(damaged(&problem));
+        }
+        tensors.push(HalfTensor {
+            name: name.to_owned(),
+            shape: view.shape().to_vec(),
+            bytes: view.data().to_vec(),
+        });
+    }
+    // Before anything is made by what the configuration says.
+    let parts = [config.as_str(), motions.as_deref().unwrap_or_default()];
+    if digest(parts, &tensors) != sha256 {
+        return Err(damaged(
+            &"its SHA-256 is not that of its configuration and weights",
+        ));
+    }
+    let other = |error: &dyn std::fmt::Display| {
+        source.wrong(format!(
+            "was packed by another version of this program ({error}); pack its run anew"
+        ))
+    };
+    let Layout { format } = serde_json::from_str(&config).map_err(|error| other(&error))?;
+    if format != FORMAT {
+        return Err(other(&format!(
+            "it is of a run of layout {format}, this program reads {FORMAT}"
+        )));
+    }
+    let config = serde_json::from_str(&config).map_err(|error| other(&error))?;
+    let motions = motions
+        .map(|motions| serde_json::from_str(&motions))
+        .transpose();
+    let motions: Option<TrainingMotions> = motions.map_err(|error| other(&error))?;
+    if motions.as_ref().is_some_and(|motions| !motions.is_valid()) {
+        return Err(
+            source.wrong("has training motions with numbers that cannot be; pack its run anew")
+        );
+    }
+    Ok((config, motions, tensors))
+}
+
+/// The configuration alone.
+pub(crate) fn config(bytes: &[u8], source: &ModelSource) -> Result<RunConfig, DdlError> {
+    contents(bytes, source).map(|(config, ..)| config)
+}
+
+/// The configuration and the training motions, without making networks.
+pub(crate) fn motions(
+    bytes: &[u8],
+    source: &ModelSource,
+) -> Result<(RunConfig, Option<TrainingMotions>), DdlError> {
+    contents(bytes, source).map(|(config, motions, _)| (config, motions))
+}
+
+/// The networks of a packed model.
+///
+/// # Errors
+/// When the file is damaged, of another version, or its tensors are not those of the networks it describes.
+pub(crate) fn unpack(
+    bytes: &[u8],
+    source: &ModelSource,
+    device: Device,
+) -> Result<Unpacked, DdlError> {
+    let (config, motions, tensors) = contents(bytes, source)?;
+    source.check(&config)?;
+    let Some(recipe) = &config.goals.proposal else {
+        return Err(source.wrong("has no proposal network for its goals; pack another run"));
+    };
+    let mut of_network = Vec::new();
+    let mut of_proposal = Vec::new();
+    for tensor in tensors {
+        let (list, name) = if let Some(name) = tensor.name.strip_prefix(NETWORK) {
+            (&mut of_network, name.to_owned())
+        } else if let Some(name) = tensor.name.strip_prefix(PROPOSAL) {
+            (&mut of_proposal, name.to_owned())
+        } else {
+            return Err(source.wrong(format!(
+                "holds {}, which belongs to neither network; make it anew with `ddl pack`",
+                tensor.name
+            )));
+        };
+        list.push(HalfTensor { name, ..tensor });
+    }
+    let unfit = |error: DdlError| match error {
+        DdlError::Network(error @ NetworkError::Weights { .. }) => source.wrong(format!(
+            "does not fit the networks it describes ({error}); pack its run anew"
+        )),
+        other => other,
+    };
+    // Networks are made only of sizes that the file itself has weights for.
+    for (tensors, least) in [
+        (&of_network, config.star.least_numbers()),
+        (&of_proposal, recipe.network.least_numbers()),
+    ] {
+        let bytes: usize = tensors.iter().map(|tensor| tensor.bytes.len()).sum();
+        let numbers = bytes as u64 / 2;
+        if numbers < least {
+            return Err(source.wrong(format!(
+                "does not fit the networks it describes ({numbers} weights where they have more than {least}); pack its run anew"
+            )));
+        }
+    }
+    let network = device
+        .forecasting(&config.star, |layout| {
+            Weights::from_half(layout, &of_network)
+        })
+        .map_err(unfit)?;
+    let proposal = device
+        .proposing(&recipe.network, |layout| {
+            Weights::from_half(layout, &of_proposal)
+        })
+        .map_err(unfit)?;
+    Ok(Unpacked {
+        config,
+        network,
+        proposal,
+        motions,
+    })
+}
+
+/// SHA-256 of the header's texts and of every tensor's name, shape and bytes, the tensors by name.
+pub(super) fn digest(texts: [&str; 2], tensors: &[HalfTensor]) -> String {
+    let mut by_name: Vec<&HalfTensor> = tensors.iter().collect();
+    by_name.sort_by(|one, other| one.name.cmp(&other.name));
+    let mut hasher = Sha256::new();
+    let mut part = |bytes: &[u8]| {
+        // with its length, so that no part can pass for the beginning of the next
+        hasher.update((bytes.len() as u64).to_le_bytes());
+        hasher.update(bytes);
+    };
+    for text in texts {
+        part(text.as_bytes());
+    }
+    for tensor in by_name {
+        part(tensor.name.as_bytes());
+        let shape: Vec<u8> = tensor
+            .shape
+            .iter()
+            .flat_map(|&size| (size as u64).to_le_bytes())
+            .collect();
+        part(&shape);
+        part(&tensor.bytes);
+    }
+    sha256::in_hex(hasher)
+}

@@ -1,0 +1,54 @@
+//! A model made into one small file.
+
+use crate::error::DdlError;
+use crate::goals::model::GoalModel;
+use crate::model::packed::{ENTRY, Header, LAYOUT, NETWORK, PROPOSAL, digest};
+use ddl_network::ForecastWindows;
+use ddl_network::weights::HalfTensor;
+use safetensors::tensor::{Dtype, TensorView};
+use std::collections::HashMap;
+
+/// The bytes of the file.
+///
+/// # Errors
+/// When the goals come from the expert library alone, or a weight is out of the range of half precision.
+pub(crate) fn pack(network: &dyn ForecastWindows, goals: &GoalModel) -> Result<Vec<u8>, DdlError> {
+    let source = goals.source();
+    let Some(proposal) = goals.proposal_network() else {
+        return Err(source.wrong(
+            "cannot be packed: its goals come from its expert library alone, which is trajectory data and stays behind; \
+             train one with --goals proposed",
+        ));
+    };
+    let mut tensors = Vec::new();
+    for (prefix, weights) in [
+        (NETWORK, network.copy_weights()?),
+        (PROPOSAL, proposal.copy_weights()?),
+    ] {
+        for tensor in weights.to_half()? {
+            let name = format!("{prefix}{}", tensor.name);
+            tensors.push(HalfTensor { name, ..tensor });
+        }
+    }
+    let failed = |error: &dyn std::fmt::Display| source.wrong(format!("cannot be packed: {error}"));
+    let config = serde_json::to_string(goals.config()).map_err(|error| failed(&error))?;
+    let motions = goals.motions().map(serde_json::to_string).transpose();
+    let motions = motions.map_err(|error| failed(&error))?;
+    let header = Header {
+        layout: LAYOUT,
+        sha256: digest([&config, motions.as_deref().unwrap_or_default()], &tensors),
+        config,
+        motions,
+    };
+    let header = serde_json::to_string(&header).map_err(|error| failed(&error))?;
+    let views = tensors
+        .iter()
+        .map(|tensor| {
+            let view = TensorView::new(Dtype::F16, tensor.shape.clone(), &tensor.bytes)?;
+            Ok((&tensor.name, view))
+        })
+        .collect::<Result<Vec<_>, safetensors::SafeTensorError>>()
+        .map_err(|error| failed(&error))?;
+    let header = HashMap::from([(ENTRY.to_owned(), header)]);
+    safetensors::serialize(views, Some(header)).map_err(|error| failed(&error))
+}

@@ -1,0 +1,92 @@
+//! Where a model is taken from: the directory of a run, a packed file, or the program itself.
+
+use crate::error::DdlError;
+use crate::model::builtin::BuiltinModel;
+use crate::run::config::RunConfig;
+use crate::run::directory::RunDirectory;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Where a model is taken from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ModelSource {
+    /// The directory of a run.
+    Run(RunDirectory),
+    /// A packed model ([`Ddl::pack`](crate::Ddl::pack)).
+    Packed(PathBuf),
+    /// A model that comes with the program.
+    Builtin(BuiltinModel),
+}
+
+impl ModelSource {
+    /// What lies at `path`: a packed model if it is a file, else the directory of a run.
+    #[must_use]
+    pub fn at(path: &Path) -> Self {
+        if path.is_file() {
+            Self::Packed(path.to_owned())
+        } else {
+            Self::Run(RunDirectory::new(path))
+        }
+    }
+
+    /// What a user calls so: what lies at that path or, where nothing does, the built-in model of that name.
+    ///
+    /// # Examples
+    /// ```
+    /// use ddl::{BuiltinModel, ModelSource};
+    /// let zara1 = ModelSource::named("zara1".as_ref());
+    /// assert_eq!(zara1, ModelSource::Builtin(BuiltinModel::Zara1));
+    /// ```
+    #[must_use]
+    pub fn named(name: &Path) -> Self {
+        let builtin = name.to_str().and_then(|name| name.parse().ok());
+        match builtin {
+            Some(builtin) if !name.exists() => Self::Builtin(builtin),
+            _ => Self::at(name),
+        }
+    }
+
+    /// Checks what the networks and goals of the model are made by.
+    ///
+    /// # Errors
+    /// Naming the model, and the first field that is out of range.
+    pub(crate) fn check(&self, config: &RunConfig) -> Result<(), DdlError> {
+        let star = config.star.check().map_err(DdlError::from);
+        star.and_then(|()| config.goals.check()).map_err(|error| {
+            self.wrong(format!(
+                "has a configuration that no model can be made by ({error}); put back the file as it was written"
+            ))
+        })
+    }
+
+    /// The directory of the run, if it is one.
+    #[must_use]
+    pub fn run(&self) -> Option<&RunDirectory> {
+        match self {
+            Self::Run(run) => Some(run),
+            Self::Packed(_) | Self::Builtin(_) => None,
+        }
+    }
+
+    /// An error about the model.
+    pub(crate) fn wrong(&self, problem: impl Into<String>) -> DdlError {
+        match self {
+            Self::Run(run) => DdlError::run(run.path(), problem),
+            Self::Packed(_) | Self::Builtin(_) => DdlError::Model {
+                model: self.to_string(),
+                problem: problem.into(),
+            },
+        }
+    }
+}
+
+impl fmt::Display for ModelSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Run(run) => write!(f, "{}", run.path().display()),
+            Self::Packed(file) => write!(f, "{}", file.display()),
+            Self::Builtin(model) => write!(f, "{model} (built in)"),
+        }
+    }
+}

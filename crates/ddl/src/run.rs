@@ -1,0 +1,11 @@
+//! The directory of a run, and what is written there.
+
+pub(crate) mod config;
+pub(crate) mod directory;
+pub(crate) mod enough_weights;
+pub(crate) mod lock;
+pub(crate) mod sha256;
+pub(crate) mod starting_model;
+pub(crate) mod track_units;
+pub(crate) mod training_data;
+pub(crate) mod validation_part;

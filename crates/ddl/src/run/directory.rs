@@ -1,0 +1,343 @@
+//! The directory of one run: which file is where, and how each is written.
+//!
+//! | file | content |
+//! |---|---|
+//! | `config.json` | everything that decides the result ([`RunConfig`]) |
+//! | `metrics.jsonl` | one line an epoch |
+//! | `optimizer.safetensors` | weights, Adam's state and progress of a run under way |
+//! | `epochs/NNN.safetensors` | weights after some of the epochs |
+//! | `experts.safetensors` | tracks of the expert library |
+//! | `proposal.safetensors` | weights of the proposal network; there only when it is trained |
+//! | `proposal-state.safetensors` | weights, Adam's state and progress of its training under way |
+//! | `model.safetensors` | the final weights; there only when training is finished |
+//! | `report.json` | results of the evaluation |
+//! | `moments.json` | moments of the evaluation, to look at |
+//! | `evaluation.json` | which evaluation that was |
+//! | `.lock` | empty; held by the process that trains, or writes results |
+//!
+//! Every file is written under a temporary name and renamed.
+
+use crate::error::DdlError;
+use crate::goals::recipe::GoalRecipe;
+use crate::model::builtin::BuiltinModel;
+use crate::run::config::{FORMAT, RunConfig};
+use crate::run::lock::RunLock;
+use ddl_data::{remove_half_written, write_whole};
+use ddl_network::EpochReport;
+use ddl_report::Moment;
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// No JSON file of a run is as long: a moment takes some kilobytes, a configuration two.
+const MOST_JSON_BYTES: u64 = 1 << 28;
+
+/// A run under way is saved at least this often.
+pub(crate) const SAVE_EVERY: Duration = Duration::from_secs(30);
+
+/// The part of `config.json` that every layout has.
+#[derive(Deserialize)]
+struct Layout {
+    format: u32,
+}
+
+/// Path of a run, and of the files in it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RunDirectory(PathBuf);
+
+impl RunDirectory {
+    /// The run at `path`, which need not exist.
+    pub fn new(path: impl Into<PathBuf>) -> Self {
+        Self(path.into())
+    }
+
+    /// The directory.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Final weights.
+    pub fn model(&self) -> PathBuf {
+        self.0.join("model.safetensors")
+    }
+
+    /// State of a run under way.
+    pub fn optimizer(&self) -> PathBuf {
+        self.0.join("optimizer.safetensors")
+    }
+
+    /// Tracks of the expert library.
+    pub fn experts(&self) -> PathBuf {
+        self.0.join("experts.safetensors")
+    }
+
+    /// Weights of the proposal network.
+    pub fn proposal(&self) -> PathBuf {
+        self.0.join("proposal.safetensors")
+    }
+
+    /// State of the proposal network's training under way.
+    pub(crate) fn proposal_state(&self) -> PathBuf {
+        self.0.join("proposal-state.safetensors")
+    }
+
+    /// Results.
+    pub fn report(&self) -> PathBuf {
+        self.0.join("report.json")
+    }
+
+    /// Moments of the evaluation, to look at.
+    pub fn moments(&self) -> PathBuf {
+        self.0.join("moments.json")
+    }
+
+    /// Weights after an epoch.
+    pub fn epoch(&self, epoch: usize) -> PathBuf {
+        self.0
+            .join("epochs")
+            .join(format!("{epoch:03}.safetensors"))
+    }
+
+    fn config_file(&self) -> PathBuf {
+        self.0.join("config.json")
+    }
+
+    fn metrics_file(&self) -> PathBuf {
+        self.0.join("metrics.jsonl")
+    }
+
+    /// Whether there is a run at all.
+    pub(crate) fn has_config(&self) -> bool {
+        self.config_file().is_file()
+    }
+
+    /// Reads `moments.json`; empty when there is none.
+    ///
+    /// # Errors
+    /// When the file is damaged.
+    pub(crate) fn read_moments(&self) -> Result<Vec<Moment>, DdlError> {
+        let path = self.moments();
+        if path.is_file() {
+            read_json(&path)
+        } else {
+            Ok(Vec::new())
+        }
+    }
+
+    /// Writes `moments.json`: positions by the thousand, not for people to read.
+    pub(crate) fn write_moments(&self, moments: &[Moment]) -> Result<(), DdlError> {
+        let path = self.moments();
+        write_atomically(&path, serialise(&path, &moments, false)?.as_bytes())
+    }
+
+    /// Whether training is finished.
+    pub fn is_trained(&self) -> bool {
+        self.model().is_file()
+    }
+
+    /// Whether everything that goals come from is there.
+    pub(crate) fn has_goals(&self, recipe: &GoalRecipe) -> bool {
+        self.experts().is_file() && (recipe.proposal.is_none() || self.proposal().is_file())
+    }
+
+    /// Epochs whose weights are kept, ascending.
+    ///
+    /// # Errors
+    /// When the folder cannot be listed.
+    pub fn kept_epochs(&self) -> Result<Vec<usize>, DdlError> {
+        let folder = self.0.join("epochs");
+        if !folder.is_dir() {
+            return Ok(Vec::new());
+        }
+        let entries = std::fs::read_dir(&folder).map_err(|error| DdlError::io(&folder, error))?;
+        let mut epochs = Vec::new();
+        for entry in entries {
+            let entry = entry.map_err(|error| DdlError::io(&folder, error))?;
+            let name = entry.file_name();
+            let number = name
+                .to_str()
+                .and_then(|name| name.strip_suffix(".safetensors"));
+            epochs.extend(number.and_then(|number| number.parse::<usize>().ok()));
+        }
+        epochs.sort_unstable();
+        Ok(epochs)
+    }
+
+    /// The weights of the epoch that metrics.jsonl says is the best.
+    ///
+    /// # Errors
+    /// When they are not there.
+    pub(crate) fn best_epoch(&self, epoch: usize) -> Result<PathBuf, DdlError> {
+        let best = self.epoch(epoch);
+        if best.is_file() {
+            return Ok(best);
+        }
+        let problem = "is not there, but it is the best epoch by metrics.jsonl; put the file back, or remove the directory and train anew";
+        Err(DdlError::run(&best, problem))
+    }
+
+    /// Removes the weights of all epochs but one.
+    ///
+    /// # Errors
+    /// When a file cannot be removed.
+    pub(crate) fn remove_epochs_but(&self, epoch: usize) -> Result<(), DdlError> {
+        let others = self.kept_epochs()?;
+        for other in others.into_iter().filter(|&other| other != epoch) {
+            let file = self.epoch(other);
+            std::fs::remove_file(&file).map_err(|error| DdlError::io(&file, error))?;
+        }
+        Ok(())
+    }
+
+    /// Claims the directory for a run: makes it, or checks that what it holds is the same run. It is claimed until what is
+    /// returned is dropped, or the process ends.
+    ///
+    /// # Errors
+    /// [`DdlError::Run`] when another run lives there, or another process works there.
+    pub(crate) fn claim(&self, config: &RunConfig) -> Result<RunLock, DdlError> {
+        let epochs = self.0.join("epochs");
+        std::fs::create_dir_all(&epochs).map_err(|error| DdlError::io(&epochs, error))?;
+        let lock = RunLock::take(&self.0)?;
+        let has_config = self.config_file().exists();
+        if has_config && let Some(difference) = self.config()?.origin().difference(&config.origin())
+        {
+            let hint = if difference.starts_with("data.") {
+                " (other recordings, or the same read otherwise: rate, homography)"
+            } else {
+                ""
+            };
+            let problem = format!(
+                "holds another run: its {difference} as asked for{hint}; choose another directory, or remove this one"
+            );
+            return Err(DdlError::run(&self.0, problem));
+        }
+        for folder in [&self.0, &epochs] {
+            remove_half_written(folder);
+        }
+        if !has_config {
+            write_json(&self.config_file(), config)?;
+        }
+        Ok(lock)
+    }
+
+    /// Reads `config.json`.
+    ///
+    /// # Errors
+    /// [`DdlError::Run`] when it is missing or not understood.
+    pub fn config(&self) -> Result<RunConfig, DdlError> {
+        let path = self.config_file();
+        if !path.is_file() {
+            let inside = self.0.join("run");
+            let problem = if !self.0.exists() {
+                format!(
+                    "is not there: there is neither a run (`ddl train --out` makes one) nor a packed file nor a built-in model of that name (those are {})",
+                    BuiltinModel::ALL.map(BuiltinModel::name).join(", ")
+                )
+            } else if inside.join("config.json").is_file() {
+                format!(
+                    "has no config.json, but {} has one: name that",
+                    inside.display()
+                )
+            } else {
+                "has no config.json; it is not the directory of a run (`ddl train --out` makes one)"
+                    .to_owned()
+            };
+            return Err(DdlError::run(&self.0, problem));
+        }
+        let damaged = |error: serde_json::Error| {
+            let problem = format!(
+                "is damaged ({error}); put the file back as it was, or remove the directory and train anew"
+            );
+            DdlError::run(&path, problem)
+        };
+        // The layout first: what another one holds may not be understood.
+        let text = read_text(&path)?;
+        let Layout { format } = serde_json::from_str(&text).map_err(damaged)?;
+        if format != FORMAT {
+            let problem =
+                format!("has layout {format}, this program reads {FORMAT}; train it anew");
+            return Err(DdlError::run(&self.0, problem));
+        }
+        serde_json::from_str(&text).map_err(damaged)
+    }
+
+    /// Reads `metrics.jsonl`; empty when no epoch is done.
+    ///
+    /// # Errors
+    /// [`DdlError::Run`] naming the line that is not understood.
+    pub fn metrics(&self) -> Result<Vec<EpochReport>, DdlError> {
+        let path = self.metrics_file();
+        if !path.is_file() {
+            return Ok(Vec::new());
+        }
+        read_text(&path)?
+            .lines()
+            .enumerate()
+            .map(|(index, line)| {
+                serde_json::from_str(line)
+                    .map_err(|error| DdlError::run(&path, format!("line {} is damaged ({error}); put the file back as it was; without it a run whose best epoch is chosen has to be trained anew, others go on", index + 1)))
+            })
+            .collect()
+    }
+
+    /// Writes `metrics.jsonl`.
+    pub(crate) fn write_metrics(&self, epochs: &[EpochReport]) -> Result<(), DdlError> {
+        let mut text = String::new();
+        for epoch in epochs {
+            text += &serialise(&self.metrics_file(), epoch, false)?;
+            text.push('\n');
+        }
+        write_atomically(&self.metrics_file(), text.as_bytes())
+    }
+}
+
+/// Reads a text file of a run, which must not be endless.
+fn read_text(path: &Path) -> Result<String, DdlError> {
+    let io = |error| DdlError::io(path, error);
+    let file = std::fs::File::open(path).map_err(io)?;
+    let mut text = String::new();
+    file.take(MOST_JSON_BYTES + 1)
+        .read_to_string(&mut text)
+        .map_err(io)?;
+    if text.len() as u64 > MOST_JSON_BYTES {
+        let problem =
+            format!("is longer than {MOST_JSON_BYTES} bytes, and no such file of a run is");
+        return Err(DdlError::run(path, problem));
+    }
+    Ok(text)
+}
+
+/// Reads a JSON file.
+pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, DdlError> {
+    let text = read_text(path)?;
+    serde_json::from_str(&text).map_err(|error| {
+        DdlError::run(
+            path,
+            format!("is damaged ({error}); delete it and run the command again"),
+        )
+    })
+}
+
+/// Writes a JSON file under a temporary name and renames it.
+pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), DdlError> {
+    let text = serialise(path, value, true)?;
+    write_atomically(path, text.as_bytes())
+}
+
+fn serialise(path: &Path, value: &impl Serialize, pretty: bool) -> Result<String, DdlError> {
+    let text = if pretty {
+        serde_json::to_string_pretty(value)
+    } else {
+        serde_json::to_string(value)
+    };
+    text.map_err(|error| DdlError::run(path, error.to_string()))
+}
+
+/// Writes a file under a temporary name in its folder and renames it.
+///
+/// # Errors
+/// When the file cannot be written; an earlier one is then left as it was.
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), DdlError> {
+    write_whole(path, bytes).map_err(|error| DdlError::io(path, error))
+}

@@ -1,0 +1,27 @@
+//! Whether a file can hold the weights of a network, before the network is made: what a damaged configuration asks for may be larger
+//! than the memory.
+
+use crate::error::DdlError;
+use std::path::Path;
+
+/// Bytes of a weight in the files of a run.
+const BYTES: u64 = 4;
+
+/// Refuses a file that is too short for so many weights. Whether one is there at all is for its reader to say.
+///
+/// # Errors
+/// [`DdlError::Run`] with both sizes.
+pub(crate) fn require(path: &Path, least_numbers: u64) -> Result<(), DdlError> {
+    let Ok(file) = std::fs::metadata(path) else {
+        return Ok(());
+    };
+    if !file.is_file() || file.len() / BYTES >= least_numbers {
+        return Ok(());
+    }
+    let problem = format!(
+        "is {} bytes long, too short for the network of the config.json beside it, which has more than {least_numbers} weights; put back \
+         the file, or the config.json, that it was made with, or delete it and run the same `ddl train` command again",
+        file.len()
+    );
+    Err(DdlError::run(path, problem))
+}

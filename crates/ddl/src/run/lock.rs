@@ -1,0 +1,92 @@
+//! One process works in a run at a time.
+
+use crate::error::DdlError;
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// Name of the file that is locked. It stays, empty: whoever removed it would take it from under one who waits.
+const FILE: &str = ".lock";
+
+/// The right to write into the directory of a run, given back when dropped.
+///
+/// The system holds the lock for the process: it does not outlive it, however that ends. `None` inside is a directory in which
+/// nothing can be written anyway, or a file system that knows no locks.
+#[derive(Debug)]
+pub struct RunLock(#[expect(dead_code, reason = "held, never read")] Option<File>);
+
+impl RunLock {
+    /// Takes the directory, at once or not at all.
+    ///
+    /// # Errors
+    /// [`DdlError::Run`] when another process has it.
+    pub fn take(folder: &Path) -> Result<Self, DdlError> {
+        let Some(file) = open(folder)? else {
+            return Ok(Self(None));
+        };
+        match file.try_lock() {
+            Ok(()) => Ok(Self(Some(file))),
+            Err(TryLockError::WouldBlock) => Err(DdlError::run(
+                folder,
+                "another process is at work in this directory; wait until it is done, or choose another one",
+            )),
+            Err(TryLockError::Error(_)) => Ok(Self(None)),
+        }
+    }
+
+    /// Takes the directory as soon as nobody else has it, to write results of work that is done.
+    ///
+    /// # Errors
+    /// When the directory cannot be written to.
+    pub(crate) fn wait(folder: &Path) -> Result<Self, DdlError> {
+        let file = open(folder)?;
+        Ok(Self(file.filter(|file| file.lock().is_ok())))
+    }
+}
+
+/// Opens the file, which is made if need be.
+fn open(folder: &Path) -> Result<Option<File>, DdlError> {
+    let path = folder.join(FILE);
+    let file = OpenOptions::new()
+        .create(true)
+        .truncate(false)
+        .write(true)
+        .open(&path);
+    match file {
+        Ok(file) => Ok(Some(file)),
+        // a finished run may lie where nothing can be written, and is still finished
+        Err(error)
+            if matches!(
+                error.kind(),
+                ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem
+            ) =>
+        {
+            Ok(None)
+        }
+        Err(error) => Err(DdlError::io(&path, error)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+    use super::*;
+
+    #[test]
+    fn the_second_is_refused_until_the_first_is_done() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = RunLock::take(folder.path()).unwrap();
+        let message = RunLock::take(folder.path()).unwrap_err().to_string();
+        let name = folder.path().display().to_string();
+        assert!(
+            message.contains(&name) && message.contains("choose another"),
+            "{message}"
+        );
+        drop(first);
+        let waited = RunLock::wait(folder.path()).unwrap();
+        assert!(RunLock::take(folder.path()).is_err());
+        drop(waited);
+        RunLock::take(folder.path()).unwrap();
+    }
+}

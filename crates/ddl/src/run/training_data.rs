@@ -1,0 +1,59 @@
+//! What a run is trained on, and how it is recognised.
+
+use crate::run::sha256;
+use ddl_data::{Convention, DataError, Dataset, Fold, Recording, Window, WindowRule};
+use sha2::{Digest as _, Sha256};
+
+/// Training uses every complete window of the convention.
+pub(crate) fn training_rule(convention: Convention) -> WindowRule {
+    match convention {
+        Convention::SocialGan => WindowRule::SocialGan { min_pedestrians: 1 },
+        _ => WindowRule::Complete,
+    }
+}
+
+/// The fold of that name; of own recordings also the one that leaves none out ([`Fold::WHOLE`]).
+///
+/// # Errors
+/// When there is none; the message lists those there are.
+pub fn fold_of<'a>(dataset: &'a Dataset, name: &str) -> Result<Fold<'a>, DataError> {
+    if dataset.convention() == Convention::Own && name == Fold::WHOLE {
+        Ok(dataset.whole())
+    } else {
+        dataset.fold(name)
+    }
+}
+
+/// The recordings that a fold trains or validates on.
+pub(crate) fn learned_from<'a>(fold: &'a Fold<'_>) -> impl Iterator<Item = &'a Recording> {
+    let learned = fold.training_recordings().iter();
+    learned.chain(fold.recordings_set_apart()).copied()
+}
+
+/// SHA-256 of a recording's frames, people and positions; its name does not matter.
+pub(crate) fn digest_of_recording(recording: &Recording) -> String {
+    let mut hasher = Sha256::new();
+    for seen in recording.observations() {
+        hasher.update(seen.frame.to_le_bytes());
+        hasher.update(seen.pedestrian.0.to_le_bytes());
+        for coordinate in seen.position {
+            hasher.update(coordinate.to_le_bytes());
+        }
+    }
+    sha256::in_hex(hasher)
+}
+
+/// SHA-256 of the windows' positions.
+pub(crate) fn digest(windows: &[Window]) -> String {
+    let mut hasher = Sha256::new();
+    for window in windows {
+        hasher.update(window.recording().as_bytes());
+        hasher.update(window.start_frame().to_le_bytes());
+        for i in 0..window.len() {
+            for coordinate in window.track(i).iter().flatten() {
+                hasher.update(coordinate.to_le_bytes());
+            }
+        }
+    }
+    sha256::in_hex(hasher)
+}

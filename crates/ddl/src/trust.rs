@@ -1,0 +1,4 @@
+//! How far a model is trusted, and on which motions.
+
+pub(crate) mod calibration;
+pub(crate) mod familiarity;

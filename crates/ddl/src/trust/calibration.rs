@@ -1,0 +1,149 @@
+//! How far a model is trusted: constants that are the same for all models.
+//!
+//! The regions in `calibration.json` are written by the example `calibrate`, from places that no model was trained on; `docs/accuracy.md` tells
+//! on which recordings the other constants were chosen.
+
+use crate::run::sha256;
+use ddl_data::{HORIZON, Position};
+use ddl_eval::RegionTable;
+use ddl_goal::GoalSet;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
+use std::sync::{Arc, LazyLock};
+
+/// The constants of all models.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Calibration {
+    /// Familiarity at which a model is half trusted.
+    pub half_trust: f64,
+    /// Share of the network's metric in what shapes a step, of a motion that is fully trusted.
+    pub share: f64,
+    /// Power of the goals' weights without and with full trust.
+    pub weight_power: [f64; 2],
+    /// Share of the probability that is divided equally among the goals.
+    pub uniform_share: f64,
+    /// Least spread about a hypothesis, metres.
+    pub least_spread: f64,
+    /// Spread at the horizon for each m/s of the mean observed speed, seconds.
+    pub spread_of_speed: f64,
+    /// Spread at the horizon for each metre of the goals' standard deviation (no unit).
+    pub spread_of_goals: f64,
+    /// Power of the share of the horizon by which the spread grows.
+    pub spread_growth: f64,
+    /// Quantiles of the regions' scores.
+    pub regions: RegionTable,
+}
+
+const FILE: &str = include_str!("calibration.json");
+static FITTED: LazyLock<Option<Calibration>> = LazyLock::new(|| serde_json::from_str(FILE).ok());
+/// The table of the fitted constants, as forecasts share it.
+static REGIONS: LazyLock<Arc<RegionTable>> =
+    LazyLock::new(|| Arc::new(Calibration::fitted().regions.clone()));
+
+impl Calibration {
+    /// The constants that come with the program.
+    ///
+    /// # Panics
+    /// Never: that they can be read is tested.
+    #[must_use]
+    pub fn fitted() -> &'static Self {
+        #[expect(
+            clippy::expect_used,
+            reason = "the file is part of the program, and a test reads it"
+        )]
+        FITTED
+            .as_ref()
+            .expect("calibration.json holds the constants")
+    }
+
+    /// SHA-256 of the constants that come with the program.
+    pub(crate) fn digest() -> String {
+        let mut hasher = Sha256::new();
+        hasher.update(FILE);
+        sha256::in_hex(hasher)
+    }
+
+    /// The table of the regions that come with the program.
+    pub(crate) fn shared_regions() -> Arc<RegionTable> {
+        Arc::clone(&REGIONS)
+    }
+
+    /// How far a motion of this familiarity is trusted, 0 to 1.
+    fn trust(&self, familiarity: f64) -> f64 {
+        familiarity / (familiarity + self.half_trust)
+    }
+
+    /// The share of the network's metric in what shapes the steps of a motion of this familiarity.
+    pub(crate) fn share(&self, familiarity: f64) -> f64 {
+        self.share * self.trust(familiarity)
+    }
+
+    /// The goals with weights as flat as the trust in a motion of this familiarity asks for.
+    pub(crate) fn tempered(&self, goals: GoalSet, familiarity: f64) -> GoalSet {
+        let [without, with] = self.weight_power;
+        let power = without + (with - without) * self.trust(familiarity);
+        goals.tempered(power, self.uniform_share)
+    }
+
+    /// Standard deviations about the positions of the hypotheses, one a step (m), of a pedestrian observed at these positions (m),
+    /// `time_step` seconds apart, with these goals.
+    pub(crate) fn spread(
+        &self,
+        observed: &[Position],
+        goals: (&[Position], &[f64]),
+        time_step: f64,
+    ) -> [f64; HORIZON] {
+        let steps = observed
+            .array_windows()
+            .map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1]));
+        let speed = steps.clone().sum::<f64>() / (steps.len().max(1) as f64 * time_step);
+        let at_end = self.spread_of_speed * speed + self.spread_of_goals * deviation(goals);
+        std::array::from_fn(|t| {
+            let share = (t + 1) as f64 / HORIZON as f64;
+            self.least_spread
+                .hypot(at_end * share.powf(self.spread_growth))
+        })
+    }
+}
+
+/// Standard deviation of weighted positions along one axis, mean of all directions, metres.
+fn deviation((positions, weights): (&[Position], &[f64])) -> f64 {
+    let weighted = || positions.iter().zip(weights);
+    let mean = weighted().fold([0.0; 2], |m, (p, w)| [m[0] + w * p[0], m[1] + w * p[1]]);
+    let off = |p: &Position| (p[0] - mean[0]).hypot(p[1] - mean[1]);
+    let variance: f64 = weighted().map(|(p, w)| w * off(p) * off(p)).sum();
+    (0.5 * variance).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_constants_can_be_read_and_are_in_range() {
+        let fitted = Calibration::fitted();
+        let [low, high] = fitted.regions.range();
+        assert!(low <= 0.05 && high >= 0.99);
+        assert!(fitted.half_trust > 0.0 && (0.0..=1.0).contains(&fitted.share));
+        assert!((0.0..1.0).contains(&fitted.uniform_share));
+        assert!(fitted.weight_power.iter().all(|power| *power > 0.0));
+    }
+
+    /// Ends 3 m to either side: a deviation of 3 m along one axis and none along the other, so sqrt(9 / 2).
+    #[test]
+    fn spread_by_hand() {
+        let calibration = Calibration {
+            least_spread: 0.0,
+            spread_of_speed: 0.1,
+            spread_of_goals: 0.2,
+            spread_growth: 1.0,
+            ..Calibration::fitted().clone()
+        };
+        let observed: Vec<Position> = (0..8).map(|t| [0.8 * f64::from(t), 0.0]).collect();
+        let goals = [[5.0, 3.0], [5.0, -3.0]];
+        let spread = calibration.spread(&observed, (&goals, &[0.5, 0.5]), 0.4);
+        let at_end = 0.1 * 2.0 + 0.2 * 4.5_f64.sqrt();
+        assert!((spread[11] - at_end).abs() < 1e-12 && (spread[5] - at_end / 2.0).abs() < 1e-12);
+    }
+}
