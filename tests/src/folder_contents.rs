@@ -7,10 +7,6 @@ use std::path::{Path, PathBuf};
 pub type Contents = BTreeMap<PathBuf, Option<Vec<u8>>>;
 
 /// Reads everything below `folder`.
-///
-/// # Panics
-/// If it cannot be read.
-#[must_use]
 pub fn read(folder: &Path) -> Contents {
     let mut contents = Contents::new();
     let mut waiting = vec![folder.to_owned()];
@@ -32,9 +28,6 @@ pub fn read(folder: &Path) -> Contents {
 }
 
 /// Writes contents that were read before into `folder`, which is made if need be.
-///
-/// # Panics
-/// If a file cannot be written.
 pub fn write(contents: &Contents, folder: &Path) {
     std::fs::create_dir_all(folder).expect("the folder can be made");
     for (relative, bytes) in contents {
@@ -47,7 +40,6 @@ pub fn write(contents: &Contents, folder: &Path) {
 }
 
 /// Names of the files and folders that differ, for a message that does not print megabytes.
-#[must_use]
 pub fn differences(before: &Contents, after: &Contents) -> Vec<String> {
     let names: std::collections::BTreeSet<&PathBuf> = before.keys().chain(after.keys()).collect();
     names
@@ -61,5 +53,21 @@ pub fn differences(before: &Contents, after: &Contents) -> Vec<String> {
             };
             Some(format!("{} {what}", name.display()))
         })
+        .collect()
+}
+
+/// Asserts that nothing differs.
+pub fn assert_same(before: &Contents, after: &Contents) {
+    assert_eq!(differences(before, after), Vec::<String>::new());
+}
+
+/// Files under temporary names anywhere below a folder: what was being written.
+pub fn half_written(folder: &Path) -> Vec<String> {
+    let marks = [".writing-", ".report-", ".tmp"];
+    let names = read(folder)
+        .into_keys()
+        .map(|name| name.display().to_string());
+    names
+        .filter(|name| marks.iter().any(|mark| name.contains(mark)))
         .collect()
 }
