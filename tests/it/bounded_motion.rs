@@ -20,7 +20,7 @@ const TIME_STEP: f64 = 0.4;
 /// The built-in models, and two with drawn weights.
 static MODELS: LazyLock<Vec<Ddl>> = LazyLock::new(|| {
     let builtin = BuiltinModel::ALL.map(|model| Ddl::builtin(model, DeviceChoice::Cpu).unwrap());
-    let drawn = [Variant::Full, Variant::NoGoalShift].map(|variant| drawn_model::of(variant));
+    let drawn = [Variant::Full, Variant::NoGoalShift].map(drawn_model::of);
     builtin.into_iter().chain(drawn).collect()
 });
 

@@ -55,8 +55,7 @@ fn check_certificates(protocol: Protocol, rows: &[&ResultRow]) {
     };
     let stability = |row: &&ResultRow| row.scores.stability.unwrap();
     let model = stability(
-        &rows
-            .iter()
+        rows.iter()
             .find(|row| row.conditions.forecaster == "DDL")
             .unwrap(),
     );

@@ -97,7 +97,11 @@ fn every_example_runs_and_keeps_its_promise() {
                 "{line}: no {promise:?} in\n{output}"
             );
         }
-        if let Some(picture) = arguments.split(' ').find(|word| word.ends_with(".svg")) {
+        if let Some(picture) = arguments.split(' ').find(|word| {
+            Path::new(word)
+                .extension()
+                .is_some_and(|extension| extension == "svg")
+        }) {
             let svg = place.text(picture);
             assert!(
                 svg.contains("<svg") && svg.trim_end().ends_with("</svg>"),

@@ -147,9 +147,10 @@ impl Forecaster for PublishedWhenItCan {
     }
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
-        let source = match window.has_future() {
-            true => &self.published,
-            false => &self.fair,
+        let source = if window.has_future() {
+            &self.published
+        } else {
+            &self.fair
         };
         StraightLine::to(source).forecast(window)
     }

@@ -272,7 +272,9 @@ fn what_cannot_be_live_is_refused() {
 fn what_looks_wrong_is_told_once() {
     let place = Place::empty();
     let mut pixels = own_tracks::three_people(12);
-    pixels.iter_mut().for_each(|row| row.2 *= 100.0);
+    for row in &mut pixels {
+        row.2 *= 100.0;
+    }
     let line = "forecast - --threads 1 --frame-step 10";
     let finished = place.run_on(&own_tracks::csv(&pixels), &format!("{line} --one"));
     let told = "warning: half of the steps";
