@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Crate, example and arguments, and what its output must hold. One that is given a name of a picture draws it.
-const EXAMPLES: [(&str, &[&str]); 13] = [
+const EXAMPLES: [(&str, &[&str]); 11] = [
     (
         "ddl forecast_csv",
         &[
@@ -62,8 +62,6 @@ const EXAMPLES: [(&str, &[&str]); 13] = [
         "ddl-report score_forecasts",
         &["2284 walkers of the simulated plaza", "protocol `single`"],
     ),
-    ("ddl-report draw_scene simulated plaza 6 scene.svg", &[]),
-    ("ddl-report draw_goals simulated plaza goals.svg", &[]),
 ];
 
 /// Those that are not run here: `cargo xtask page` runs `report_page`; the others measure recordings for

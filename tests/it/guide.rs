@@ -13,24 +13,24 @@ macro_rules! pages {
             guide::check($path);
         })*
         /// And the page whose commands train (`tests/it_torch/main.rs`).
-        const PAGES: &[&str] = &[$($path,)* "docs/guide/src/training.md"];
+        const PAGES: &[&str] = &[$($path,)* "docs/training.md"];
     };
 }
 
 pages! {
-    the_first_page: "docs/guide/src/index.md",
-    start: "docs/guide/src/start.md",
-    own_data: "docs/guide/src/own-data.md",
-    python_page: "docs/guide/src/python.md",
-    rust: "docs/guide/src/rust.md",
-    robots: "docs/guide/src/robots.md",
-    troubleshooting: "docs/guide/src/troubleshooting.md",
-    extending: "docs/guide/src/extending.md",
+    the_first_page: "docs/index.md",
+    start: "docs/start.md",
+    own_data: "docs/own-data.md",
+    python_page: "docs/python.md",
+    rust: "docs/rust.md",
+    robots: "docs/robots.md",
+    troubleshooting: "docs/troubleshooting.md",
+    extending: "docs/extending.md",
     your_model: "docs/your-model.md",
     readme: "README.md",
-    readme_of_the_program: "crates/ddl-cli/README.md",
+    the_program: "docs/program.md",
     readme_of_the_facade: "crates/ddl/README.md",
-    readme_of_the_recordings: "datasets/README.md",
+    recordings_page: "docs/recordings.md",
 }
 
 /// Pages of `docs/` that the guide brings in, and the READMEs of crates that show no program.
@@ -43,7 +43,6 @@ fn pages_of_measurements() -> Vec<String> {
             .collect::<Vec<_>>()
     };
     let mut pages: Vec<PathBuf> = files(&root.join("docs"));
-    pages.extend(files(&root.join("docs/guide/src")));
     pages.extend(
         files(&root.join("crates"))
             .into_iter()

@@ -1,7 +1,7 @@
 //! `ddl train`: what it tells, what it leaves, and that its goals can be measured before the network is trained.
 
 use ddl::data::{Convention, Window, WindowRule};
-use ddl::network::{EpochReport, Frame, Objective, StarConfig, TrainingConfig};
+use ddl::network::{EpochReport, NetworkFrame, Objective, StarConfig, TrainingConfig};
 use ddl::{GoalEvaluation, RunConfig, RunDirectory, Variant};
 use ddl_tests::place::{Place, json, json_lines};
 use ddl_tests::progress::{returns_at_once, told};
@@ -111,7 +111,7 @@ fn the_recommended_recipe_is_the_default() {
     let full = begun_with("--recipe recommended");
     assert_eq!(full, begun_with(""));
     let star = (full.star.frame, full.star.feed_forward_width);
-    assert_eq!(star, (Frame::Goal, 128));
+    assert_eq!(star, (NetworkFrame::Goal, 128));
     assert_eq!(full.training.objective, Objective::Walk);
 }
 
@@ -126,7 +126,7 @@ fn the_published_recipe_is_the_papers() {
     );
     // the numbers of the paper, whatever the constructors say
     let star = (config.star.frame, config.star.feed_forward_width);
-    assert_eq!(star, (Frame::World, 2048));
+    assert_eq!(star, (NetworkFrame::World, 2048));
     let training = (config.training.epochs, config.training.batch_walkers);
     assert_eq!(
         (config.training.objective, training),

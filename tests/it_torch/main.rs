@@ -10,7 +10,7 @@ mod training_memory;
 #[cfg(unix)]
 #[test]
 fn the_page_about_training() {
-    ddl_tests::guide::check("docs/guide/src/training.md");
+    ddl_tests::guide::check("docs/training.md");
 }
 
 #[test]

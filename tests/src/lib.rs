@@ -12,7 +12,6 @@
 pub mod answer;
 pub mod bits;
 pub mod chance;
-#[path = "../../xtask/src/site/console.rs"]
 pub mod console;
 pub mod crowd;
 pub mod drawn_model;

@@ -1,13 +1,12 @@
 //! Programs of other people that checks run: one pinned version each, built by cargo once for a machine.
 
 use std::ffi::OsStr;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
 
-use crate::libtorch::user_cache;
+use crate::cache;
 use crate::workspace::{Workspace, find_on_path};
 
 /// The tools run for a second each: their build is what takes time, and is made short.
@@ -26,6 +25,8 @@ pub(crate) struct CargoTool {
     pub(crate) version: &'static str,
     /// Further options of `cargo install`.
     pub(crate) options: &'static [&'static str],
+    /// How it is asked for its version.
+    pub(crate) version_call: &'static [&'static str],
 }
 
 impl CargoTool {
@@ -35,11 +36,11 @@ impl CargoTool {
         if let Some(program) = installed.filter(|program| self.is_pinned(program)) {
             return Ok(program);
         }
-        let cache = user_cache()?;
-        let folder = cache.join(format!("{}-{}", self.name, self.version));
+        let folder = cache::folder()?.join(format!("{}-{}", self.name, self.version));
         let program = self.program_in(&folder);
         if !self.is_pinned(&program) {
-            self.build(workspace, &cache, &folder)?;
+            let is_whole = |folder: &Path| self.is_pinned(&self.program_in(folder));
+            cache::fill(&folder, is_whole, |work| self.build(workspace, work))?;
         }
         if !self.is_pinned(&program) {
             bail!(
@@ -59,7 +60,7 @@ impl CargoTool {
     /// Whether a program says of itself that it is the pinned version.
     fn is_pinned(&self, program: &Path) -> bool {
         let output = Command::new(program)
-            .arg("--version")
+            .args(self.version_call)
             .stdin(Stdio::null())
             .stderr(Stdio::null())
             .output();
@@ -71,15 +72,9 @@ impl CargoTool {
         })
     }
 
-    /// Everything happens in a temporary folder of the cache; the finished one takes its name at the very end.
-    fn build(&self, workspace: &Workspace, cache: &Path, folder: &Path) -> Result<()> {
+    fn build(&self, workspace: &Workspace, work: &Path) -> Result<PathBuf> {
         let Self { name, version, .. } = self;
-        fs::create_dir_all(cache)
-            .with_context(|| format!("{} cannot be created", cache.display()))?;
-        let work = tempfile::Builder::new()
-            .prefix(&format!(".{name}-incoming-"))
-            .tempdir_in(cache)
-            .with_context(|| format!("{} cannot be written to", cache.display()))?;
+        let tool = work.join("tool");
         eprintln!("{name} {version}: building it, once, for two to three minutes");
         let mut cargo = workspace.cargo_process();
         cargo
@@ -87,28 +82,20 @@ impl CargoTool {
             .arg(format!("={version}"))
             .args(self.options)
             .arg("--root")
-            .arg(work.path().join("tool"))
+            .arg(&tool)
             .arg("--target-dir")
-            .arg(work.path().join("build"))
+            .arg(work.join("build"))
             .envs(BUILD)
             .stdin(Stdio::null())
             // The workspace's own configuration, with the path to libtorch, is not for tools.
-            .current_dir(work.path());
+            .current_dir(work);
         let status = cargo.status().context("cargo cannot be started")?;
         if !status.success() {
             bail!(
                 "{name} {version} cannot be built (above): connect to the package index, or put a {name} {version} on the search path"
             );
         }
-        if folder.exists() {
-            fs::rename(folder, work.path().join("replaced"))
-                .with_context(|| format!("the damaged {} cannot be replaced", folder.display()))?;
-        }
-        match fs::rename(work.path().join("tool"), folder) {
-            // Somebody else was faster.
-            Err(_) if self.is_pinned(&self.program_in(folder)) => Ok(()),
-            outcome => outcome.with_context(|| format!("{} cannot be created", folder.display())),
-        }
+        Ok(tool)
     }
 }
 
@@ -120,20 +107,16 @@ mod tests {
         name: "hammer",
         version: "1.2.3",
         options: &[],
+        version_call: &["--version"],
     };
-
-    #[test]
-    fn only_the_pinned_version_is_trusted() {
-        let folder = tempfile::tempdir().unwrap();
-        assert!(!TOOL.is_pinned(&TOOL.program_in(folder.path())));
-        assert!(!TOOL.is_pinned(Path::new("sh")));
-    }
 
     #[cfg(unix)]
     #[test]
     fn a_program_is_known_by_what_it_says() {
+        use std::fs;
         use std::os::unix::fs::PermissionsExt as _;
         let folder = tempfile::tempdir().unwrap();
+        assert!(!TOOL.is_pinned(&TOOL.program_in(folder.path())));
         for (says, pinned) in [
             ("hammer 1.2.3", true),
             ("hammer v1.2.3", true),

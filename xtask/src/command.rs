@@ -7,6 +7,7 @@ mod deny;
 mod docs;
 mod faults;
 mod fuzz;
+mod mutants;
 mod package;
 mod page;
 mod setup;
@@ -40,7 +41,9 @@ pub(crate) enum Command {
     Test(test::Arguments),
     /// Fuzz the readers of outside bytes
     Fuzz(fuzz::Arguments),
-    /// Check the invariants of docs/architecture.md
+    /// Put faults into the numeric code, one at a time, and count how many the tests find
+    Mutants(mutants::Arguments),
+    /// Check house rules that no other tool checks
     Tidy,
     /// Check what comes in from outside, by deny.toml
     Deny,
@@ -62,6 +65,7 @@ impl Command {
             Self::Docs(arguments) => arguments.run(workspace),
             Self::Test(arguments) => arguments.run(workspace),
             Self::Fuzz(arguments) => arguments.run(workspace),
+            Self::Mutants(arguments) => arguments.run(workspace),
             Self::Tidy => tidy::run(workspace),
             Self::Deny => deny::run(workspace),
             Self::Package(arguments) => arguments.run(workspace),

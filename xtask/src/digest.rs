@@ -1,5 +1,6 @@
 //! Pinned contents: a length and a SHA-256, checked while the bytes pass by.
 
+use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::Path;
@@ -24,22 +25,17 @@ impl Pin<'_> {
     ///
     /// Reading stops as soon as more bytes arrive than are pinned.
     pub(crate) fn copy(&self, from: &mut impl Read, to: &mut impl Write) -> Result<()> {
-        let mut hasher = Sha256::new();
         let mut bytes = 0_u64;
-        let mut block = vec![0_u8; BLOCK];
-        loop {
-            let read = from.read(&mut block).context("reading stopped")?;
-            if read == 0 {
-                break;
-            }
-            bytes += read as u64;
+        let mut hasher = Sha256::new();
+        each_block(from, |block| {
+            bytes += block.len() as u64;
             if bytes > self.bytes {
                 bail!("longer than the pinned {} bytes", self.bytes);
             }
-            hasher.update(&block[..read]);
-            to.write_all(&block[..read])
-                .context("writing stopped: is the disk full?")?;
-        }
+            hasher.update(block);
+            to.write_all(block)
+                .context("writing stopped: is the disk full?")
+        })?;
         if bytes < self.bytes {
             bail!("ended after {bytes} of {} bytes", self.bytes);
         }
@@ -94,14 +90,34 @@ pub(crate) fn measure(path: &Path) -> Result<(String, u64)> {
     let mut file =
         File::open(path).with_context(|| format!("{} cannot be opened", path.display()))?;
     let mut hasher = Sha256::new();
-    let bytes = std::io::copy(&mut file, &mut hasher)
-        .with_context(|| format!("reading {} stopped", path.display()))?;
+    let mut bytes = 0;
+    each_block(&mut file, |block| {
+        bytes += block.len() as u64;
+        hasher.update(block);
+        Ok(())
+    })
+    .with_context(|| path.display().to_string())?;
     Ok((hexadecimal(hasher), bytes))
 }
 
+/// Reads to the end.
+fn each_block(from: &mut impl Read, mut take: impl FnMut(&[u8]) -> Result<()>) -> Result<()> {
+    let mut block = vec![0_u8; BLOCK];
+    loop {
+        match from.read(&mut block).context("reading stopped")? {
+            0 => return Ok(()),
+            read => take(&block[..read])?,
+        }
+    }
+}
+
 fn hexadecimal(hasher: Sha256) -> String {
-    let bytes = hasher.finalize();
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    let digest = hasher.finalize();
+    digest.iter().fold(String::new(), |mut text, byte| {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ use anyhow::{Context, Result, bail};
 
 pub(crate) use pin::VERSION;
 
+use crate::cache;
 use crate::workspace::{Workspace, absolute, program_on_path};
 
 /// Where set-up may look and put things, beyond its defaults.
@@ -105,27 +106,17 @@ fn choose(generated: &Path, request: &Request) -> Result<(PathBuf, Origin)> {
     if let Some(folder) = configured.filter(|folder| !asked && locate::validate(folder).is_ok()) {
         return Ok((folder, Origin::Configured));
     }
-    let cache = match &request.cache {
+    let kept = match &request.cache {
         Some(folder) => absolute(folder)?,
-        None => user_cache()?,
+        None => cache::folder()?,
     };
-    let folder = cache.join(pin::folder_name());
+    let folder = kept.join(pin::folder_name());
     if fetch::is_complete(&folder) && locate::validate(&folder).is_ok() {
         return Ok((folder, Origin::Cache));
     }
     fetch::fetch(&folder, request.wheel_dir.as_deref())
         .with_context(|| format!("libtorch {VERSION} could not be set up"))?;
     Ok((folder, Origin::Fetched))
-}
-
-/// `$XDG_CACHE_HOME/ddl`, or `~/.cache/ddl`.
-pub(crate) fn user_cache() -> Result<PathBuf> {
-    let base = env::var_os("XDG_CACHE_HOME")
-        .map(PathBuf::from)
-        .filter(|path| path.is_absolute())
-        .or_else(|| env::home_dir().map(|home| home.join(".cache")))
-        .context("no home folder: set XDG_CACHE_HOME, or give a folder for libtorch with `cargo xtask setup --cache`")?;
-    Ok(base.join("ddl"))
 }
 
 /// The binding of libtorch is a C++ file: without a compiler the build fails minutes later.
@@ -145,26 +136,4 @@ fn require_compiler() -> Result<()> {
         );
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_cache_is_below_the_users_cache_folder() {
-        let cache = user_cache().unwrap();
-        assert!(cache.is_absolute());
-        assert!(cache.ends_with("ddl"));
-    }
-
-    #[test]
-    fn a_stale_configuration_is_not_trusted() {
-        let folder = tempfile::tempdir().unwrap();
-        let generated = folder.path().join("config.generated.toml");
-        let gone = folder.path().join("gone");
-        config::write(&generated, &gone).unwrap();
-        assert_eq!(config::read(&generated), Some(gone.clone()));
-        assert!(locate::validate(&gone).is_err());
-    }
 }

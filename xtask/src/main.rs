@@ -9,15 +9,17 @@
 //! | `libtorch` | which libtorch is pinned, where it lies, how to get it, how cargo is told |
 //! | `data` | which recordings are pinned, where they lie, how to get them |
 //! | `site` | the documentation site: what it is made of, and that its links lead somewhere |
+//! | `cache` | what is kept from one call to the next |
 //! | `browser` | where a browser is or how to get one, and what drives it |
 //! | `cargo_tool` | programs of other people that checks run, one pinned version each |
-//! | `tidy` | the invariants of `docs/architecture.md`, as checks |
+//! | `tidy` | house rules that no other tool checks |
 #![allow(
     clippy::print_stdout,
     reason = "a command-line program answers on standard output"
 )]
 
 mod browser;
+mod cache;
 mod cargo_tool;
 mod command;
 mod data;

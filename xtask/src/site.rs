@@ -1,69 +1,170 @@
-//! The documentation site: the guide, made by mdBook, and the interface of every crate, made by rustdoc.
+//! The documentation site: the guide (`docs/`, by mdBook) and the interface of every crate (by rustdoc).
 //!
 //! Everything lies in one folder that can be opened from the file system or served as it is; nothing in it is loaded
-//! from a network. The guide brings in the pages of `docs/` whole, so that no sentence is kept twice.
+//! from a network.
 
 mod api;
 mod check;
-#[cfg(test)]
-mod console;
-#[cfg(test)]
-mod console_tests;
-mod guide;
-mod html;
-mod landing;
-mod links;
-mod mdbook;
+mod page;
 
-pub(crate) use api::make_room;
-
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
 
+use crate::cargo_tool::CargoTool;
+use crate::whole_file;
 use crate::workspace::Workspace;
+use api::Library;
 
-/// Where the site goes.
-const SITE: &str = "target/site";
-/// Where the guide is put together for the renderer.
-const STAGE: &str = "target/site-stage";
+/// The version that the theme was written for.
+const MDBOOK: CargoTool = CargoTool {
+    name: "mdbook",
+    version: "0.5.4",
+    options: &["--no-default-features", "--features", "search"],
+    version_call: &["--version"],
+};
+/// The book; its `src` is this folder.
+const BOOK: &str = "docs";
+const LANDING: &str = include_str!("site/landing.html");
+/// Where the list of crates goes on the first page.
+const CRATES: &str = "<!-- crates -->";
+/// rustdoc's pages lead to a list of crates, which is on the first page of the site.
+const ONWARD: &str = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>Crates</title>\n\
+    <meta http-equiv=\"refresh\" content=\"0;URL=../index.html\">\n<a href=\"../index.html#crates\">Crates</a>\n</html>\n";
 
 /// Makes the whole site and checks every link in it; returns its first page.
 pub(crate) fn build(workspace: &Workspace) -> Result<PathBuf> {
-    let mdbook = mdbook::TOOL.ensure(workspace)?;
-    let site = workspace.path(SITE);
-    empty(&site)?;
-    let libraries = api::libraries(workspace)?;
-    let interface = site.join("api");
-    api::build(workspace, &interface)?;
-    let stage = workspace.path(STAGE);
-    empty(&stage)?;
-    let shown = guide::stage(workspace, &stage, &libraries)?;
-    api::lead_to_guide(&interface, &libraries, &shown)?;
-    mdbook::render(&mdbook, &stage, &site.join("guide"))?;
-    landing::write(workspace, &site, &libraries)?;
-    let counts = check::check(&site)?;
-    if !counts.faults.is_empty() {
-        let shown: Vec<&str> = counts.faults.iter().take(40).map(String::as_str).collect();
+    let mdbook = MDBOOK.ensure(workspace)?;
+    let metadata = workspace.metadata()?;
+    let target = metadata["target_directory"].as_str();
+    let target = Path::new(target.context("`cargo metadata` names no target folder")?);
+    let site = target.join("site");
+    remove(&site)?;
+    let libraries = api::libraries(&metadata);
+    render(&mdbook, &workspace.path(BOOK), &site.join("guide"))?;
+    api::build(
+        workspace,
+        &libraries,
+        &target.join("doc"),
+        &site.join("api"),
+    )?;
+    whole_file::write(&site.join("index.html"), landing(&libraries).as_bytes())?;
+    whole_file::write(&site.join("api/index.html"), ONWARD.as_bytes())?;
+    let mut checked = check::check(&site)?;
+    checked
+        .faults
+        .extend(unlisted(&workspace.path(BOOK), &site.join("guide"))?);
+    if !checked.faults.is_empty() {
+        let shown: Vec<&str> = checked.faults.iter().take(40).map(String::as_str).collect();
         bail!(
-            "{} links of the site lead nowhere:\n{}",
-            counts.faults.len(),
+            "{} faults of the site:\n{}",
+            checked.faults.len(),
             shown.join("\n")
         );
     }
     println!(
         "{} pages, {} links inside the site, all of which lead somewhere",
-        counts.pages, counts.links
+        checked.pages, checked.links
     );
     Ok(site.join("index.html"))
 }
 
-/// An empty folder, whatever was there.
-fn empty(folder: &Path) -> Result<()> {
+fn remove(folder: &Path) -> Result<()> {
     if folder.exists() {
         fs::remove_dir_all(folder)
-            .with_context(|| format!("{} cannot be emptied", folder.display()))?;
+            .with_context(|| format!("{} cannot be removed", folder.display()))?;
     }
-    fs::create_dir_all(folder).with_context(|| format!("{} cannot be made", folder.display()))
+    Ok(())
+}
+
+/// Renders the book; whatever mdBook complains of is an error.
+fn render(mdbook: &Path, book: &Path, out: &Path) -> Result<()> {
+    let output = Command::new(mdbook)
+        .arg("build")
+        .arg("--dest-dir")
+        .arg(out)
+        .arg(book)
+        .stdin(Stdio::null())
+        .output()
+        .with_context(|| format!("{} cannot be started", mdbook.display()))?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    // mdBook goes on after most faults, and says so in its log.
+    if !output.status.success() || said.contains("WARN") || said.contains("ERROR") {
+        bail!("mdbook does not accept {BOOK}:\n{}", said.trim());
+    }
+    Ok(())
+}
+
+/// Pages of the book that `SUMMARY.md` does not list, which mdBook leaves out without a word.
+fn unlisted(book: &Path, rendered: &Path) -> Result<Vec<String>> {
+    let mut found = Vec::new();
+    for file in check::files_below(book)? {
+        let page = file.strip_prefix(book).unwrap_or(&file);
+        if page.extension().is_some_and(|extension| extension == "md")
+            && page != Path::new("SUMMARY.md")
+            && !rendered.join(page).with_extension("html").is_file()
+        {
+            found.push(format!(
+                "{BOOK}/SUMMARY.md does not list {}",
+                page.display()
+            ));
+        }
+    }
+    Ok(found)
+}
+
+/// The first page, with a row for each library crate.
+fn landing(libraries: &[Library]) -> String {
+    let mut rows = String::new();
+    for Library {
+        module,
+        package,
+        description,
+    } in libraries
+    {
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            rows,
+            "<dt><a href=\"api/{module}/index.html\">{package}</a></dt><dd>{description}</dd>"
+        );
+    }
+    LANDING.replace(CRATES, rows.trim_end())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_page_names_every_library_crate() {
+        let libraries = api::libraries(&Workspace::find().unwrap().metadata().unwrap());
+        let page = landing(&libraries);
+        assert!(!page.contains(CRATES));
+        assert!(
+            libraries
+                .iter()
+                .all(|library| page.contains(&format!("api/{}/", library.module)))
+        );
+    }
+
+    #[test]
+    fn a_page_that_nobody_would_find_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let (book, out) = (folder.path().join("docs"), folder.path().join("out"));
+        for file in [
+            book.join("SUMMARY.md"),
+            book.join("a.md"),
+            book.join("lost.md"),
+            out.join("a.html"),
+        ] {
+            whole_file::write(&file, b"").unwrap();
+        }
+        assert_eq!(
+            unlisted(&book, &out).unwrap(),
+            ["docs/SUMMARY.md does not list lost.md"]
+        );
+    }
 }

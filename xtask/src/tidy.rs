@@ -1,63 +1,222 @@
-//! The invariants of `docs/architecture.md`, as checks.
+//! House rules that no other tool checks: names and lengths of files, links between files, inherited lints, and that
+//! no recording and nobody's home folder is tracked.
 //!
-//! Each check is a function of what it is given (a list of files, cargo's metadata), so that its
-//! tests can hand it a bad workspace.
+//! cargo-deny holds the arrows between crates, licences and banned crates (`deny.toml`); clippy and rustdoc hold the rest
+//! (`[workspace.lints]`, `clippy.toml`).
 
-mod arrows;
-mod names;
-mod network;
-mod packages;
-mod readmes;
-mod recordings;
-mod text;
+mod links;
 
-use anyhow::Result;
+use std::path::Path;
 
+use anyhow::{Context, Result};
+
+use crate::data::{Manifest, RECORDED};
+use crate::digest::measure;
 use crate::workspace::Workspace;
 
+/// A file beyond this has probably outgrown its name.
+const SOFT_LIMIT: usize = 300;
+/// No file may be longer.
+const HARD_LIMIT: usize = 500;
+/// Names that say nothing about what is inside.
+const EMPTY_NAMES: [&str; 9] = [
+    "utils", "util", "common", "helpers", "helper", "misc", "stuff", "tools", "shared",
+];
+/// What may lie in `datasets/`.
+const DESCRIPTIONS: [&str; 3] = ["README.md", "manifest.toml", "folds.toml"];
+// Spelled in pieces, so that this file does not find itself.
+const HOME_FOLDERS: [&str; 3] = [
+    concat!("/ho", "me/"),
+    concat!("/ro", "ot/"),
+    concat!("/Use", "rs/"),
+];
+
 /// What the checks found.
-#[derive(Debug, Default, PartialEq, Eq)]
+#[derive(Debug, Default)]
 pub(crate) struct Findings {
-    /// Broken invariants.
+    /// Broken rules.
     pub(crate) faults: Vec<String>,
     /// Things to keep an eye on.
     pub(crate) notes: Vec<String>,
 }
 
-impl Findings {
-    fn fault(&mut self, text: impl Into<String>) {
-        self.faults.push(text.into());
+/// Every check, over everything that git tracks or would track.
+pub(crate) fn check(workspace: &Workspace) -> Result<Findings> {
+    let manifest = Manifest::load(workspace)?;
+    let recordings: Vec<(&str, &str)> = RECORDED
+        .into_iter()
+        .flat_map(|convention| manifest.entry(convention))
+        .flat_map(|entry| &entry.files)
+        .map(|file| (file.name.as_str(), file.sha256.as_str()))
+        .collect();
+    let files = workspace.files()?;
+    let mut findings = Findings::default();
+    for file in &files {
+        let path = workspace.path(&file.to_string_lossy());
+        if !path.is_file() {
+            continue; // a link to a folder
+        }
+        let (sha256, _) = measure(&path)?;
+        let named = name_fault(file).or_else(|| recording_fault(file, &sha256, &recordings));
+        let bytes =
+            std::fs::read(&path).with_context(|| format!("{} cannot be read", file.display()))?;
+        let said = named
+            .into_iter()
+            .map(|what| format!("{}: {what}", file.display()));
+        findings.faults.extend(said);
+        // What is not text has no lines to check.
+        if let Ok(text) = std::str::from_utf8(&bytes) {
+            check_text(file, text, &mut findings);
+            findings.faults.extend(links::faults(file, text, &files));
+        }
     }
+    Ok(findings)
+}
 
-    fn note(&mut self, text: impl Into<String>) {
-        self.notes.push(text.into());
+fn name_fault(file: &Path) -> Option<String> {
+    let folders = file.parent().into_iter().flat_map(Path::iter);
+    let mut names = folders
+        .chain(file.file_stem())
+        .filter_map(|name| name.to_str());
+    let name = names.find(|name| EMPTY_NAMES.contains(name))?;
+    Some(format!(
+        "{name:?} says nothing: name it after its one concept"
+    ))
+}
+
+/// The terms of the recordings do not clearly allow passing them on: none is tracked, whatever its name.
+fn recording_fault(file: &Path, sha256: &str, recordings: &[(&str, &str)]) -> Option<String> {
+    let name = file.file_name()?.to_str()?;
+    let is_recording =
+        |&&(recording, pinned): &&(&str, &str)| recording == name || pinned == sha256;
+    if let Some((recording, _)) = recordings.iter().find(is_recording) {
+        return Some(format!("the recording {recording}; none may be committed"));
+    }
+    let is_data = file.starts_with("datasets") && !DESCRIPTIONS.contains(&name);
+    is_data.then(|| "datasets/ holds descriptions only, no data".to_owned())
+}
+
+fn check_text(file: &Path, text: &str, findings: &mut Findings) {
+    let name = file.display();
+    let lines = text.lines().count();
+    if file.extension().is_some_and(|extension| extension == "rs") && lines > SOFT_LIMIT {
+        if lines > HARD_LIMIT {
+            findings.faults.push(format!(
+                "{name}: {lines} lines; no file may exceed {HARD_LIMIT}"
+            ));
+        } else {
+            findings.notes.push(format!(
+                "{name}: {lines} lines; beyond {SOFT_LIMIT}, think of splitting"
+            ));
+        }
+    }
+    if file.file_name() == Some("Cargo.toml".as_ref())
+        && text.contains(".workspace = true")
+        && !text.contains("[lints]\nworkspace = true")
+    {
+        findings
+            .faults
+            .push(format!("{name} must say `[lints] workspace = true`"));
+    }
+    for (number, line) in (1..).zip(text.lines()) {
+        if HOME_FOLDERS.iter().any(|folder| names_home(line, folder)) {
+            findings
+                .faults
+                .push(format!("{name}:{number}: a folder of somebody's machine"));
+        }
     }
 }
 
-/// Every check, over everything that git tracks or would track.
-pub(crate) fn check(workspace: &Workspace) -> Result<Findings> {
-    let mut findings = Findings::default();
-    let metadata = workspace.metadata()?;
-    let files = workspace.files()?;
-    arrows::check(&metadata, &mut findings);
-    packages::check(&metadata, workspace.root(), &mut findings);
-    names::check(&files, &mut findings);
-    text::check(&files, workspace.root(), &mut findings)?;
-    network::check(&metadata, &files, workspace.root(), &mut findings)?;
-    readmes::check(&metadata, &files, workspace.root(), &mut findings)?;
-    recordings::check(&files, workspace, &mut findings)?;
-    Ok(findings)
+/// Whether a line names a folder below a home folder, as opposed to a longer path that merely
+/// contains the same word, or an address.
+fn names_home(line: &str, folder: &str) -> bool {
+    line.match_indices(folder).any(|(at, _)| {
+        let before = line[..at].chars().next_back();
+        let after = line[at + folder.len()..].chars().next();
+        let begins = before.is_none_or(|c| !c.is_alphanumeric() && !"/.-_}~*".contains(c));
+        begins && after.is_some_and(|c| c.is_alphanumeric() || c == '.')
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn findings_keep_faults_and_notes_apart() {
+    fn found(file: &str, text: &str) -> Findings {
         let mut findings = Findings::default();
-        findings.fault("one");
-        findings.note("two");
-        assert_eq!((findings.faults.len(), findings.notes.len()), (1, 1));
+        check_text(Path::new(file), text, &mut findings);
+        findings
+    }
+
+    #[test]
+    fn names_that_say_nothing_are_found_in_files_and_folders() {
+        for file in ["crates/a/src/utils.rs", "helpers.py", "docs/misc/page.md"] {
+            assert!(name_fault(Path::new(file)).is_some(), "{file}");
+        }
+        for file in [
+            "crates/a/src/window.rs",
+            "src/utilisation.rs",
+            "common_law.rs",
+        ] {
+            assert!(name_fault(Path::new(file)).is_none(), "{file}");
+        }
+    }
+
+    #[test]
+    fn a_recording_is_found_by_place_by_name_and_by_contents() {
+        let fault =
+            |file: &str, sha256| recording_fault(Path::new(file), sha256, &[("eth.csv", "abc")]);
+        assert_eq!(fault("datasets/folds.toml", "x"), None);
+        assert!(
+            fault("datasets/new.csv", "x")
+                .unwrap()
+                .contains("descriptions only")
+        );
+        for (file, sha256) in [("eth.csv", "x"), ("renamed.txt", "abc")] {
+            assert!(
+                fault(file, sha256)
+                    .unwrap()
+                    .contains("the recording eth.csv")
+            );
+        }
+    }
+
+    #[test]
+    fn length_is_a_note_and_then_a_fault() {
+        let counts = |file, lines| {
+            let findings = found(file, &"//\n".repeat(lines));
+            (findings.notes.len(), findings.faults.len())
+        };
+        assert_eq!(counts("a.rs", SOFT_LIMIT), (0, 0));
+        assert_eq!(counts("a.rs", SOFT_LIMIT + 1), (1, 0));
+        assert_eq!(counts("a.rs", HARD_LIMIT + 1), (0, 1));
+        assert_eq!(counts("table.md", 9999), (0, 0));
+    }
+
+    #[test]
+    fn lints_are_inherited() {
+        let manifest = "[package]\nversion.workspace = true\n";
+        assert_eq!(found("crates/a/Cargo.toml", manifest).faults.len(), 1);
+        let whole = format!("{manifest}\n[lints]\nworkspace = true\n");
+        assert!(found("crates/a/Cargo.toml", &whole).faults.is_empty());
+    }
+
+    #[test]
+    fn home_folders_are_found_and_addresses_are_not() {
+        for folder in HOME_FOLDERS {
+            assert_eq!(
+                found("a.md", &format!("\nsee {folder}someone/x"))
+                    .faults
+                    .len(),
+                1,
+                "{folder}"
+            );
+            for text in ["https://host{}page", "a{}b", "{} alone"] {
+                assert!(
+                    found("a.md", &text.replace("{}", folder)).faults.is_empty(),
+                    "{text}"
+                );
+            }
+        }
     }
 }

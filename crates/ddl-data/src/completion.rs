@@ -16,17 +16,6 @@ const LEAST_SEEN: usize = 2;
 /// - An observation that *begins late* is padded at its start, as if the walker had come with the mean velocity at which it was seen.
 ///
 /// The last position is always one that was seen. How much was made up stands in [`Window::made_up`](crate::Window::made_up).
-///
-/// ```
-/// use ddl_data::{Completion, LiveTracks, MadeUp, PedestrianId};
-///
-/// let mut tracks = LiveTracks::new().completing(Completion::USUAL);
-/// assert!(tracks.push(0, [(PedestrianId(7), [0.0, 0.0])])?.is_none());
-/// let window = tracks.push(1, [(PedestrianId(7), [0.5, 0.0])])?.expect("two positions are enough");
-/// assert_eq!(window.observed(0)[0], [-3.0, 0.0]);
-/// assert_eq!(window.made_up(0), MadeUp { padded: 6, filled: 0 });
-/// # Ok::<(), ddl_data::LiveError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Completion {
     least_seen: usize,
@@ -143,17 +132,12 @@ impl MadeUp {
 /// Why a [`Completion`] is not allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum CompletionError {
     /// Too few positions, or more than there are.
     #[error("a forecast needs 2 to 8 positions that were seen, not {found}")]
-    LeastSeen {
-        /// The number given.
-        found: usize,
-    },
+    LeastSeen { found: usize },
     /// A hole in which anything may have happened.
     #[error("holes of up to 2 frames can be filled, not of {found}")]
-    LongestGap {
-        /// The number given.
-        found: usize,
-    },
+    LongestGap { found: usize },
 }

@@ -10,16 +10,6 @@ use crate::recording::Recording;
 use crate::simulate;
 
 /// All recordings of one data convention, in the order of `folds.toml`.
-///
-/// ```
-/// use ddl_data::{Dataset, WindowRule};
-///
-/// let dataset = Dataset::simulated(1);
-/// let fold = dataset.fold("corridor")?;
-/// assert_eq!(fold.training_recordings().len(), 4);
-/// assert!(fold.test_windows(WindowRule::Published).len() > 100);
-/// # Ok::<(), ddl_data::DataError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dataset {
     convention: Convention,
@@ -59,9 +49,9 @@ impl Dataset {
     /// Simulates the five scenes of [`simulate`]; the same seed gives the same bytes.
     #[must_use]
     pub fn simulated(seed: u64) -> Self {
-        let recordings = simulate::Scene::ALL
+        let recordings = simulate::CrowdScene::ALL
             .into_iter()
-            .map(|scene| scene.simulate(seed).into_recording())
+            .map(|scene| scene.simulate(seed).recording)
             .collect();
         Self {
             convention: Convention::Simulated,

@@ -16,191 +16,90 @@ pub struct FormatError {
     pub line: usize,
     /// Field within the line, counted from 1; `None` when the whole line is meant.
     pub field: Option<usize>,
-    /// What is wrong there.
-    pub problem: FormatProblem,
+    /// What is wrong there, in words.
+    pub problem: String,
 }
 
 /// What can be wrong at one place of a file of tracks.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum FormatProblem {
-    /// The file holds no observation.
+#[derive(Debug, PartialEq, Eq, Error)]
+pub(crate) enum FormatProblem {
     #[error("the file holds no observation; is it empty or cut off?")]
     Empty,
-    /// The bytes are not UTF-8 text.
     #[error("the text is not UTF-8; export the file as plain UTF-8 or ASCII text")]
     NotUtf8,
-    /// The bytes are those of a compressed file, or of a spreadsheet, which is one.
     #[error("the file is compressed; unpack it, or export the spreadsheet as csv")]
     Compressed,
-    /// A line is absent.
     #[error("line missing: the format has exactly {expected} lines ({names}), the file ends here")]
     MissingLine {
-        /// Lines that the format has.
         expected: usize,
-        /// What they hold.
         names: &'static str,
     },
-    /// A line too many.
     #[error("unexpected line: the format has exactly {expected} lines")]
-    ExtraLine {
-        /// Lines that the format has.
-        expected: usize,
-    },
-    /// Two lines that run in parallel differ in length.
+    ExtraLine { expected: usize },
     #[error("{found} fields, but line 1 has {expected}; all lines must be of one length")]
-    UnequalLines {
-        /// Fields of line 1.
-        expected: usize,
-        /// Fields of this line.
-        found: usize,
-    },
-    /// A row has too few or too many fields.
+    UnequalLines { expected: usize, found: usize },
     #[error("{found} fields where {expected} are expected ({names})")]
     FieldCount {
-        /// Fields that a row has.
         expected: usize,
-        /// Fields of this row.
         found: usize,
-        /// What they hold.
         names: &'static str,
     },
-    /// The header of a table lacks a column, or has one that is unknown or double.
     #[error("the header must name the columns frame, pedestrian, x and y, each once: {detail}")]
-    Header {
-        /// Which column is the trouble.
-        detail: String,
-    },
-    /// A field that must be a whole number is none.
+    Header { detail: String },
     #[error("{name} must be {}, found {found:?}{}", wanted(.name), advice_on_integer(.name, .found))]
-    NotInteger {
-        /// What the field holds: `frame` or `pedestrian`.
-        name: &'static str,
-        /// The field's text, shortened.
-        found: String,
-    },
-    /// A field that must be a number is none, or is infinite or NaN.
+    NotInteger { name: &'static str, found: String },
     #[error("{name} must be a finite number in metres, found {found:?}{}", advice_on_number(.found))]
-    NotFinite {
-        /// What the field holds: `x` or `y`.
-        name: &'static str,
-        /// The field's text, shortened.
-        found: String,
-    },
-    /// A coordinate farther from the origin than [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT).
+    NotFinite { name: &'static str, found: String },
     #[error(
         "{name} must lie within {limit} m of the origin, found {found:?}; count from an origin near by",
         limit = crate::COORDINATE_LIMIT
     )]
-    TooFar {
-        /// What the field holds: `x` or `y`.
-        name: &'static str,
-        /// The field's text, shortened.
-        found: String,
-    },
-    /// A field that must be a number, whatever its value, is none.
+    TooFar { name: &'static str, found: String },
     #[error("{name} must be a number, found {found:?}")]
-    NotNumber {
-        /// What the field holds, such as `v_x`.
-        name: &'static str,
-        /// The field's text, shortened.
-        found: String,
-    },
-    /// A line is no JSON object.
+    NotNumber { name: &'static str, found: String },
     #[error("the line must be one JSON object (which has no NaN and no Infinity): {detail}")]
-    Json {
-        /// The reader's own words.
-        detail: String,
-    },
-    /// A part of a JSON line that must be an object is something else.
+    Json { detail: String },
     #[error("{name} must be a JSON object, found {found}")]
-    NotObject {
-        /// The part: `track` or `scene`.
-        name: &'static str,
-        /// What it is, shortened.
-        found: String,
-    },
-    /// A JSON object lacks a field.
+    NotObject { name: &'static str, found: String },
     #[error("{name} is missing")]
-    MissingField {
-        /// The field, such as `track.f`.
-        name: &'static str,
-    },
-    /// The rate of a scene is no rate.
+    MissingField { name: &'static str },
     #[error("scene.fps must be a number above 0, the frames in a second, found {found}")]
-    Rate {
-        /// What it is, shortened.
-        found: String,
-    },
-    /// Scenes of one file name different rates.
+    Rate { found: String },
     #[error(
         "scene.fps is {found}, but {first} on line {first_line}; a file is of one recording, whose frames have one rate"
     )]
     RateChanges {
-        /// Line of the first rate.
         first_line: usize,
-        /// The first rate.
         first: String,
-        /// The rate of this line.
         found: String,
     },
-    /// Overlapping scenes repeat a track with another position.
     #[error(
         "pedestrian {pedestrian} is in frame {frame} at {found}, but on line {first_line} at {first}; \
          scenes that overlap must agree"
     )]
     Disagreement {
-        /// The pedestrian.
         pedestrian: Box<PedestrianName>,
-        /// The raw frame number.
         frame: i64,
-        /// Line of the first occurrence.
         first_line: usize,
-        /// Where the pedestrian was there (m).
         first: String,
-        /// Where the pedestrian is here (m).
         found: String,
     },
-    /// One pedestrian twice in one frame.
     #[error("pedestrian {pedestrian} is in frame {frame} already (line {first_line}); keep one")]
     Duplicate {
-        /// The pedestrian.
         pedestrian: Box<PedestrianName>,
-        /// The raw frame number.
         frame: i64,
-        /// Line of the first occurrence.
         first_line: usize,
     },
-    /// A frame that is over comes again, or an earlier one.
     #[error(
         "frame {frame} comes after frame {last}; tracks that are read as they arrive must be in order of time"
     )]
-    OutOfOrder {
-        /// The raw frame number.
-        frame: i64,
-        /// That of the frame before.
-        last: i64,
-    },
-    /// More people in one frame than any place holds.
+    OutOfOrder { frame: i64, last: i64 },
     #[error("more than {limit} people in frame {frame}; does the frame number count on?")]
-    Crowd {
-        /// The raw frame number.
-        frame: i64,
-        /// People that a frame may have.
-        limit: usize,
-    },
-    /// A line without an end.
+    Crowd { frame: i64, limit: usize },
     #[error("the line is longer than {limit} bytes; is it a file of tracks?")]
-    LongLine {
-        /// Bytes that a line may have.
-        limit: usize,
-    },
-    /// The text is no well-formed comma-separated table.
+    LongLine { limit: usize },
     #[error("not a well-formed table: {detail}")]
-    Table {
-        /// The reader's own words.
-        detail: String,
-    },
+    Table { detail: String },
 }
 
 /// What a field of whole numbers may hold.
@@ -236,40 +135,31 @@ fn advice_on_number(found: &str) -> &'static str {
 /// Why observations do not make a [`Recording`](crate::Recording).
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum RecordingError {
     /// No observation.
     #[error("a recording needs at least one observation")]
     Empty,
     /// The frame step is not positive, or absurdly large.
     #[error("the frame step must lie in 1..=2^31 raw frames, found {found}")]
-    FrameStep {
-        /// The step given.
-        found: i64,
-    },
+    FrameStep { found: i64 },
     /// A frame number too large to count on from.
     #[error("pedestrian {pedestrian}: frame {frame} is not below 2^53 in size")]
     FrameOutOfRange {
-        /// The pedestrian.
         pedestrian: PedestrianId,
-        /// The raw frame number.
         frame: i64,
     },
     /// A coordinate is infinite or NaN.
     #[error("pedestrian {pedestrian}, frame {frame}: position {position:?} is not finite")]
     NotFinite {
-        /// The pedestrian.
         pedestrian: PedestrianId,
-        /// The raw frame number.
         frame: i64,
-        /// The position (m).
         position: crate::Position,
     },
     /// One pedestrian twice in one frame.
     #[error("pedestrian {pedestrian} is in frame {frame} twice")]
     Duplicate {
-        /// The pedestrian.
         pedestrian: PedestrianId,
-        /// The raw frame number.
         frame: i64,
     },
 }
@@ -277,18 +167,14 @@ pub enum RecordingError {
 /// Why tracks do not make a [`Window`](crate::Window).
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum WindowError {
     /// No pedestrian.
     #[error("a window needs at least one pedestrian")]
     Empty,
     /// Ids and tracks differ in number.
     #[error("{pedestrians} pedestrian ids but {tracks} tracks; give one track for each id")]
-    Count {
-        /// Number of ids.
-        pedestrians: usize,
-        /// Number of tracks.
-        tracks: usize,
-    },
+    Count { pedestrians: usize, tracks: usize },
     /// A track is of a wrong length.
     #[error(
         "pedestrian {pedestrian}: a track of {found} positions; every track of a window must have \
@@ -297,49 +183,35 @@ pub enum WindowError {
         whole = crate::WINDOW
     )]
     Length {
-        /// The pedestrian.
         pedestrian: PedestrianId,
-        /// Positions of the track.
         found: usize,
     },
     /// A coordinate is infinite or NaN.
     #[error("pedestrian {pedestrian}, position {index} of the track: {position:?} is not finite")]
     NotFinite {
-        /// The pedestrian.
         pedestrian: PedestrianId,
-        /// Index within the track, from 0.
         index: usize,
-        /// The position (m).
         position: crate::Position,
     },
     /// One id twice.
     #[error("pedestrian {pedestrian} is in the window twice")]
-    Duplicate {
-        /// The pedestrian.
-        pedestrian: PedestrianId,
-    },
+    Duplicate { pedestrian: PedestrianId },
     /// The frame step or the frame numbers are out of range.
     #[error(
         "start frame {start_frame} with a step of {frame_step}: the step must lie in 1..=2^31 and frames below 2^53"
     )]
-    Frames {
-        /// First raw frame.
-        start_frame: i64,
-        /// Raw frames a step.
-        frame_step: i64,
-    },
+    Frames { start_frame: i64, frame_step: i64 },
 }
 
 /// Why a data set, or one file of it, cannot be had.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum DataError {
     /// A file cannot be read from the disk.
     #[error("cannot read {}: {source}", .path.display())]
     Read {
-        /// The file.
         path: PathBuf,
-        /// The system's reason.
         source: std::io::Error,
     },
     /// A file's content is wrong.
@@ -348,9 +220,7 @@ pub enum DataError {
     /// Observations that do not make a recording.
     #[error("recording {name}: {source}")]
     Recording {
-        /// The recording.
         name: String,
-        /// What is wrong with it.
         source: RecordingError,
     },
     /// The convention's files were not found.
@@ -361,9 +231,7 @@ pub enum DataError {
         variable = crate::DATASETS_VARIABLE
     )]
     NotFound {
-        /// The convention whose files were looked for.
         convention: Convention,
-        /// Each folder that was tried, with the first file it lacks.
         searched: Vec<String>,
     },
     /// A convention without files of fixed names was asked for them.
@@ -373,38 +241,26 @@ pub enum DataError {
     NoFiles(Convention),
     /// Own recordings that do not make a data set.
     #[error("{problem}")]
-    Own {
-        /// What is wrong with them, and what to do.
-        problem: String,
-    },
+    Own { problem: String },
     /// No recording of this name.
     #[error("no recording {name:?} in the {convention} convention; it has {}", .known.join(", "))]
     UnknownRecording {
-        /// The convention.
         convention: Convention,
-        /// The name asked for.
         name: String,
-        /// The names there are.
         known: Vec<String>,
     },
     /// A recording to set apart that the fold does not train on.
     #[error("{name:?} is not one of these recordings: {}", .known.join(", "))]
     NotATrainingRecording {
-        /// The fold.
         fold: String,
-        /// The name asked for.
         name: String,
-        /// The training recordings.
         known: Vec<String>,
     },
     /// No fold of this name.
     #[error("no fold {name:?} in the {convention} convention; it has {}", .known.join(", "))]
     UnknownFold {
-        /// The convention.
         convention: Convention,
-        /// The name asked for.
         name: String,
-        /// The names there are.
         known: Vec<String>,
     },
 }

@@ -5,21 +5,6 @@ use crate::recording::Recording;
 use crate::{Window, WindowRule};
 
 /// One leave-one-out fold: some recordings to test on, all others to train on.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{Dataset, WindowRule};
-///
-/// let dataset = Dataset::simulated(1); // `Dataset::load` reads the recordings
-/// let fold = dataset.fold("corridor")?;
-/// let tested = fold.test_windows(WindowRule::Complete);
-/// assert!(tested.iter().all(|window| window.recording() == "corridor"));
-/// // The last fifth of each training recording validates, and shares no frame with the rest.
-/// let split = fold.training_split(WindowRule::Complete, 0.2);
-/// assert!(split.training.iter().all(|window| window.recording() != "corridor"));
-/// assert!(!split.validation.is_empty());
-/// # Ok::<(), ddl_data::DataError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Fold<'a> {
     name: &'a str,

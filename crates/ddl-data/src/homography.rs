@@ -15,14 +15,6 @@ const SIZE: usize = 3;
 ///
 /// With H the matrix, a pixel (u, v), column and row, is the place (X / W, Y / W) where (X, Y, W) = H (u, v, 1): what
 /// `findHomography(pixels, metres)` of `OpenCV` returns. The `H.txt` of the ETH recordings counts (row, column): swap its first two columns.
-///
-/// ```
-/// use ddl_data::Homography;
-///
-/// let ground: Homography = "0.02 0 -6.4\n0 -0.02 4.8\n0 0 1".parse()?;
-/// assert_eq!(ground.apply([320.0, 240.0]), Some([0.0, 0.0]));
-/// # Ok::<(), ddl_data::HomographyError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "[[f64; SIZE]; SIZE]")]
 pub struct Homography([[f64; SIZE]; SIZE]);
@@ -140,15 +132,11 @@ impl std::str::FromStr for Homography {
 /// Why there is no [`Homography`], or no place on the ground.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum HomographyError {
     /// An entry is infinite or NaN.
     #[error("row {}, column {} of the homography is not finite", .row + 1, .column + 1)]
-    NotFinite {
-        /// From 0.
-        row: usize,
-        /// From 0.
-        column: usize,
-    },
+    NotFinite { row: usize, column: usize },
     /// All pixels would lie on a line.
     #[error("the homography is singular: it squeezes the plane into a line; is a row there twice?")]
     Singular,
@@ -156,29 +144,18 @@ pub enum HomographyError {
     #[error(
         "line {line} of the homography must hold three numbers, and be one of three such lines, found {found:?}"
     )]
-    Line {
-        /// From 1.
-        line: usize,
-        /// The line, shortened.
-        found: String,
-    },
+    Line { line: usize, found: String },
     /// Too few rows.
     #[error("a homography has three rows of three numbers, found {found}")]
-    Rows {
-        /// Rows found.
-        found: usize,
-    },
+    Rows { found: usize },
     /// A pixel at which the camera sees no ground.
     #[error(
         "pedestrian {pedestrian}, frame {frame}: pixel {pixel:?} lies on the horizon of the homography; is it of this \
          camera, and from pixels to metres?"
     )]
     Horizon {
-        /// Who.
         pedestrian: PedestrianName,
-        /// When.
         frame: i64,
-        /// Where in the image.
         pixel: [f64; 2],
     },
     /// What came out is no recording.

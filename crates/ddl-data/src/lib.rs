@@ -29,7 +29,7 @@ pub use completion::{Completion, CompletionError, MadeUp};
 pub use convention::Convention;
 pub use dataset::Dataset;
 pub use doubt::{Doubt, Fastest};
-pub use error::{DataError, FormatError, FormatProblem, RecordingError, WindowError};
+pub use error::{DataError, FormatError, RecordingError, WindowError};
 pub use fold::{Fold, SocialGanSplit, TrainingSplit};
 pub use format::{Format, Frame, FrameReader, parse_recording, read_recording};
 pub use homography::{Homography, HomographyError};

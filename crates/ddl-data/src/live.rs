@@ -48,12 +48,12 @@ pub struct LiveTracks {
     completion: Completion,
     last_frame: Option<i64>,
     /// By id.
-    walkers: Vec<Walker>,
+    walkers: Vec<LivePedestrian>,
 }
 
 /// Somebody who is in the last frame, or may be in a window again.
 #[derive(Debug, Clone, PartialEq)]
-struct Walker {
+struct LivePedestrian {
     id: PedestrianId,
     /// Raw frames and positions, oldest first; never empty.
     seen: VecDeque<(i64, Position)>,
@@ -194,7 +194,7 @@ impl LiveTracks {
             let known = earlier.next_if(|walker| walker.id == id);
             let mut walker = known
                 .and_then(|walker| self.remembered_before(walker, frame))
-                .unwrap_or_else(|| Walker::unseen(id));
+                .unwrap_or_else(|| LivePedestrian::unseen(id));
             walker.seen.push_back((frame, position));
             walkers.push(walker);
         }
@@ -210,12 +210,12 @@ impl LiveTracks {
     }
 
     /// What is remembered of somebody who is not in the frame; `None` where the hole is too long already for what was seen to be in a window again.
-    fn remembered(&self, absent: &Walker, frame: i64) -> Option<Walker> {
+    fn remembered(&self, absent: &LivePedestrian, frame: i64) -> Option<LivePedestrian> {
         self.remembered_before(absent, frame + 1)
     }
 
     /// What may be in the same window as an observation at the frame; `None` for nothing.
-    fn remembered_before(&self, walker: &Walker, frame: i64) -> Option<Walker> {
+    fn remembered_before(&self, walker: &LivePedestrian, frame: i64) -> Option<LivePedestrian> {
         let (last, _) = *walker.seen.back()?;
         let gap = self.completion.longest_gap() as i64;
         if frame - last > (gap + 1) * self.frame_step {
@@ -226,7 +226,7 @@ impl LiveTracks {
         let forgotten = walker.seen.partition_point(|(seen, _)| *seen <= oldest);
         let seen = walker.seen.range(forgotten..).copied().collect();
         let id = walker.id;
-        Some(Walker { id, seen })
+        Some(LivePedestrian { id, seen })
     }
 
     /// The window that ends at the last frame, of everybody in it who was seen, or completed, at each of the last 8 steps; `None` when that is
@@ -255,6 +255,15 @@ impl LiveTracks {
 }
 
 impl Recording {
+    /// What can be forecast from: windows of [`OBSERVED`] frames without a future, one for every frame up to which somebody was seen
+    /// that many steps in a row.
+    ///
+    /// Unlike [`Recording::windows`] this asks nothing of the frames that follow.
+    #[must_use]
+    pub fn observed_windows(&self) -> Vec<Window> {
+        self.completed_windows(Completion::NONE)
+    }
+
     /// The [`observed_windows`](Self::observed_windows) with incomplete observations filled in as the completion allows: a
     /// pedestrian belongs to the window of a frame when it is seen there and often enough before. [`Window::made_up`] counts
     /// the filled-in positions.
@@ -283,7 +292,7 @@ impl Recording {
     }
 }
 
-impl Walker {
+impl LivePedestrian {
     fn unseen(id: PedestrianId) -> Self {
         let seen = VecDeque::new();
         Self { id, seen }
@@ -297,46 +306,31 @@ impl Walker {
 /// Why a frame cannot be added to [`LiveTracks`], which are then as they were.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum LiveError {
     /// The frame step is not positive, or absurdly large.
     #[error("the frame step must lie in 1..=2^31 raw frames, found {found}")]
-    FrameStep {
-        /// The step given.
-        found: i64,
-    },
+    FrameStep { found: i64 },
     /// A frame number too large to count on from.
     #[error("frame {frame} is not below 2^53 in size")]
-    FrameOutOfRange {
-        /// The raw frame number.
-        frame: i64,
-    },
+    FrameOutOfRange { frame: i64 },
     /// A frame that goes back in time.
     #[error(
         "frame {frame} comes after frame {last}; push frames in order of time, each once, and clear the tracks when the tracker \
          starts anew"
     )]
-    TooEarly {
-        /// The raw frame number.
-        frame: i64,
-        /// That of the frame before.
-        last: i64,
-    },
+    TooEarly { frame: i64, last: i64 },
     /// A coordinate is infinite or NaN.
     #[error("frame {frame}, pedestrian {pedestrian}: {position:?} is not finite")]
     NotFinite {
-        /// The pedestrian.
         pedestrian: PedestrianId,
-        /// The raw frame number.
         frame: i64,
-        /// The position (m).
         position: Position,
     },
     /// One pedestrian twice in one frame.
     #[error("pedestrian {pedestrian} is in frame {frame} twice; keep one")]
     Duplicate {
-        /// The pedestrian.
         pedestrian: PedestrianId,
-        /// The raw frame number.
         frame: i64,
     },
 }

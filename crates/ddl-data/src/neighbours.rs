@@ -5,14 +5,7 @@ use crate::Position;
 /// Half the side of the box in which STAR and DDL look for neighbours (m).
 pub const NEIGHBOUR_HALF_WIDTH: f64 = 10.0;
 
-/// Which of N pedestrians are neighbours of which: a symmetric N x N relation without the diagonal.
-///
-/// ```
-/// use ddl_data::NeighbourMask;
-/// let mask = NeighbourMask::within_box(&[[0.0, 0.0], [3.0, -4.0], [0.0, 10.5]], 10.0);
-/// assert!(mask.is_neighbour(0, 1) && !mask.is_neighbour(0, 2) && !mask.is_neighbour(1, 1));
-/// assert_eq!(mask.pairs().collect::<Vec<_>>(), [(0, 1), (1, 0)]);
-/// ```
+/// Which of N pedestrians are neighbours of which: a symmetric N x N relation without the diagonal. Indices out of range panic.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NeighbourMask {
     count: usize,
@@ -48,17 +41,11 @@ impl NeighbourMask {
     }
 
     /// Whether j is a neighbour of i.
-    ///
-    /// # Panics
-    /// If `i` or `j` is not below [`len`](Self::len).
     pub fn is_neighbour(&self, i: usize, j: usize) -> bool {
         self.row(i)[j]
     }
 
     /// The relation of i to everybody, N values.
-    ///
-    /// # Panics
-    /// If `i >= len()`.
     pub fn row(&self, i: usize) -> &[bool] {
         &self.near[i * self.count..(i + 1) * self.count]
     }

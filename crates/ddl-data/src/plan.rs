@@ -47,7 +47,7 @@ impl Convention {
         self.plan().folds.iter().map(|f| f.name.as_str())
     }
 
-    pub(crate) fn plan(self) -> &'static Plan {
+    pub(crate) fn plan(self) -> &'static ConventionPlan {
         match self {
             Self::Star => &PLANS.star,
             Self::SocialGan => &PLANS.social_gan,
@@ -60,7 +60,7 @@ impl Convention {
 /// One convention of `folds.toml`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Plan {
+pub(crate) struct ConventionPlan {
     pub(crate) recordings: Vec<RecordingPlan>,
     pub(crate) folds: Vec<FoldPlan>,
 }
@@ -85,12 +85,12 @@ pub(crate) struct FoldPlan {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Plans {
-    star: Plan,
-    social_gan: Plan,
-    simulated: Plan,
+    star: ConventionPlan,
+    social_gan: ConventionPlan,
+    simulated: ConventionPlan,
 }
 
-static NOTHING_PLANNED: Plan = Plan {
+static NOTHING_PLANNED: ConventionPlan = ConventionPlan {
     recordings: Vec::new(),
     folds: Vec::new(),
 };

@@ -29,14 +29,6 @@ pub struct InSteps {
     pub resampled: bool,
 }
 
-impl InSteps {
-    /// Seconds of a step: 0.4 within 0.5 %.
-    #[must_use]
-    pub fn step_seconds(&self, frame_time: f64) -> f64 {
-        self.recording.frame_step() as f64 * frame_time / self.parts as f64
-    }
-}
-
 /// Frames in a step of 0.4 s, where a frame takes so many seconds and these are a whole number within 0.5 %.
 ///
 /// ```
@@ -64,21 +56,6 @@ impl Recording {
     ///
     /// # Errors
     /// [`RateError`] where the time is not positive, observations are more than 1.2 s apart, or frames leave their range.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_data::{Observation, PedestrianId, Recording};
-    ///
-    /// let at = |frame: i64| Observation::new(frame, PedestrianId(1), [0.06 * frame as f64, 0.0]);
-    /// let film = Recording::new("film", 1, (0..=48).map(at).collect())?;
-    /// let steps = film.in_steps(1.0 / 24.0)?; // 9.6 frames a step
-    /// assert_eq!((steps.parts, steps.recording.frame_step()), (5, 48));
-    /// assert_eq!(steps.recording.frames(), [0, 48, 96, 144, 192, 240]);
-    /// let before_last = steps.recording.at(192)[0].position;
-    /// assert!((before_last[0] - 0.06 * 38.4).abs() < 1e-12);
-    /// assert_eq!(film.in_steps(1.0 / 25.0)?.recording.frame_step(), 10);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn in_steps(&self, frame_time: f64) -> Result<InSteps, RateError> {
         let frames = TIME_STEP / frame_time;
         if !(frames > 0.0 && frames <= FRAME_STEP_LIMIT as f64) {
@@ -169,32 +146,22 @@ fn fits(found: f64, wanted: f64, tolerance: f64) -> bool {
 /// Why a recording cannot be had in steps of 0.4 s.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum RateError {
     /// The time of a frame is no time.
     #[error(
         "a frame must take more than 0 s, and 0.4 s be no more than 2^31 frames; found {found} s a frame"
     )]
-    FrameTime {
-        /// Seconds.
-        found: f64,
-    },
+    FrameTime { found: f64 },
     /// Observations too far apart.
     #[error(
         "observations are {apart:.2} s apart, more than 1.2 s: too few to see how somebody walks; is the rate right, and are the frame \
          numbers those of this rate?"
     )]
-    TooSlow {
-        /// Seconds between two observations.
-        apart: f64,
-    },
+    TooSlow { apart: f64 },
     /// Frame numbers too large to be divided.
     #[error("frame {last} is too large to be counted in {parts} parts; count frames from 0")]
-    Frames {
-        /// The last frame.
-        last: i64,
-        /// Parts of a frame.
-        parts: i64,
-    },
+    Frames { last: i64, parts: i64 },
     /// What came out is no recording.
     #[error(transparent)]
     Recording(#[from] RecordingError),

@@ -12,17 +12,6 @@ use crate::{HORIZON, OBSERVED, Observation, PedestrianId, PedestrianNames, Posit
 ///
 /// Invariants, held from construction on: at least one observation, every position finite, no
 /// pedestrian twice in a frame, a positive frame step.
-///
-/// ```
-/// use ddl_data::{Observation, PedestrianId, Recording};
-///
-/// let at = |frame, id, x| Observation::new(frame, PedestrianId(id), [x, 0.0]);
-/// let recording = Recording::new("yard", 10, vec![at(10, 1, 0.5), at(0, 2, 3.0), at(0, 1, 0.0)])?;
-/// assert_eq!(recording.frames(), [0, 10]);
-/// assert_eq!(recording.at(0)[1].pedestrian, PedestrianId(2));
-/// assert!(recording.at(5).is_empty());
-/// # Ok::<(), ddl_data::RecordingError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     name: Arc<str>,
@@ -226,16 +215,6 @@ impl Recording {
     ///
     /// `fraction` is the share f of the second part, clamped to [0, 1], NaN taken as 0. With f = 0.2 the parts are
     /// the files `_train` and `_val` that the Social-GAN convention keeps of a training recording.
-    ///
-    /// ```
-    /// use ddl_data::{Observation, PedestrianId, Recording};
-    ///
-    /// let walk = (0..10).map(|t| Observation::new(10 * t, PedestrianId(1), [0.0, 0.0])).collect();
-    /// let (first, rest) = Recording::new("yard", 10, walk)?.parts(0.2);
-    /// assert_eq!(first.map(|r| r.frames().len()), Some(8));
-    /// assert_eq!(rest.map(|r| r.frames().to_vec()), Some(vec![80, 90]));
-    /// # Ok::<(), ddl_data::RecordingError>(())
-    /// ```
     #[must_use]
     pub fn parts(&self, fraction: f64) -> (Option<Self>, Option<Self>) {
         let cut = self.cut_index(fraction);

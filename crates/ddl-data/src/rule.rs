@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::recording::Recording;
 use crate::unknown_name::UnknownName;
-use crate::{OBSERVED, PedestrianId, Position, WINDOW, Window};
+use crate::{PedestrianId, Position, WINDOW, Window};
 
 /// Steps after which the published loader wants to see somebody again: one beyond the window.
 const STEPS_AHEAD: i64 = 20;
@@ -20,16 +20,6 @@ pub(crate) const SOCIAL_GAN_FEWEST: usize = 2;
 ///
 /// Under every rule a pedestrian belongs to a window if present at each of its 20 steps; who
 /// arrives or leaves meanwhile is left out.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{Observation, PedestrianId, Recording, WindowRule};
-///
-/// let seen = |t: i64| Observation::new(10 * t, PedestrianId(3), [0.5 * t as f64, 1.0]);
-/// let recording = Recording::new("yard", 10, (0..23).map(seen).collect())?;
-/// assert_eq!(recording.windows(WindowRule::Complete).len(), 4); // they begin at steps 0 to 3
-/// # Ok::<(), ddl_data::RecordingError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -101,26 +91,10 @@ impl Recording {
     /// first frame of a *fold*) is still here; [`Fold::test_windows`](crate::Fold::test_windows) drops it.
     #[must_use]
     pub fn windows(&self, rule: WindowRule) -> Vec<Window> {
-        cut(self, rule, WINDOW)
+        let links = Links::new(self, rule);
+        let starts = 0..self.frames().len();
+        starts.filter_map(|index| links.window(index)).collect()
     }
-
-    /// What can be forecast from: windows of [`OBSERVED`](crate::OBSERVED) frames without a future,
-    /// one for every frame up to which somebody was seen that many steps in a row.
-    ///
-    /// Unlike [`Recording::windows`] this asks nothing of the frames that follow, so that it also
-    /// works on live tracks.
-    #[must_use]
-    pub fn observed_windows(&self) -> Vec<Window> {
-        cut(self, WindowRule::Complete, OBSERVED)
-    }
-}
-
-fn cut(recording: &Recording, rule: WindowRule, steps: usize) -> Vec<Window> {
-    let links = Links::new(recording, rule);
-    let starts = 0..recording.frames().len();
-    starts
-        .filter_map(|index| links.window(index, steps))
-        .collect()
 }
 
 /// For each observation, where the same pedestrian is one step later.
@@ -206,12 +180,12 @@ impl<'a> Links<'a> {
         !self.pairs(here, beyond).is_empty()
     }
 
-    /// The window of `steps` frames that the `index`-th annotated frame starts, if it does.
-    fn window(&self, index: usize, steps: usize) -> Option<Window> {
+    /// The window that the `index`-th annotated frame starts, if it does.
+    fn window(&self, index: usize) -> Option<Window> {
         let first: Vec<usize> = self
             .recording
             .range_of(index)
-            .filter(|&i| self.run[i] >= steps)
+            .filter(|&i| self.run[i] >= WINDOW)
             .collect();
         let fewest = match self.rule {
             WindowRule::SocialGan { min_pedestrians } => min_pedestrians.max(1),
@@ -223,7 +197,7 @@ impl<'a> Links<'a> {
         let observations = self.recording.observations();
         let follow = |start: usize| {
             std::iter::successors(Some(start), |&i| self.next[i])
-                .take(steps)
+                .take(WINDOW)
                 .map(|i| &observations[i])
         };
         let frames = follow(first[0]).map(|o| o.frame).collect();

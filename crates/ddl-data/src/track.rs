@@ -42,16 +42,6 @@ impl fmt::Display for PedestrianId {
 }
 
 /// Where one pedestrian was at one frame.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{Observation, PedestrianId, Recording};
-///
-/// let seen = |frame: i64| Observation::new(frame, PedestrianId(3), [0.05 * frame as f64, 1.0]);
-/// let recording = Recording::new("yard", 10, vec![seen(10), seen(0)])?;
-/// assert_eq!(recording.track(PedestrianId(3)), [seen(0), seen(10)]);
-/// # Ok::<(), ddl_data::RecordingError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Observation {
     /// Raw frame number of the recording; steps of 0.4 s are a fixed number of raw frames apart.

@@ -16,7 +16,10 @@ pub struct UnknownName {
 
 impl UnknownName {
     /// The one of `all` that is called `word`.
-    pub(crate) fn find<T: Copy>(
+    ///
+    /// # Errors
+    /// None is.
+    pub fn find<T: Copy>(
         word: &str,
         all: &[T],
         name: fn(T) -> &'static str,

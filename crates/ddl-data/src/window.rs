@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::augment::Rotation;
 use crate::error::WindowError;
 use crate::neighbours::NeighbourMask;
 use crate::track::{is_finite, is_frame, is_frame_step};
@@ -12,7 +11,8 @@ use crate::{MadeUp, OBSERVED, PedestrianId, PedestrianName, PedestrianNames, Pos
 ///
 /// # Shapes
 /// N pedestrians, each with a track of T = 20 positions ([`WINDOW`]), or of T = 8 ([`OBSERVED`]) when
-/// the future is unknown. Positions are `[x, y]` in metres, one step is 0.4 s.
+/// the future is unknown. Positions are `[x, y]` in metres, one step is 0.4 s. Pedestrians and steps are counted from 0; an index
+/// out of range panics, as that of a slice does.
 ///
 /// ```
 /// use ddl_data::{PedestrianId, Window};
@@ -132,9 +132,6 @@ impl Window {
     }
 
     /// How the file or stream names the i-th pedestrian: by the number, unless it has words.
-    ///
-    /// # Panics
-    /// If `i >= len()`.
     pub fn name(&self, i: usize) -> PedestrianName {
         self.names.of(self.pedestrians[i])
     }
@@ -206,25 +203,16 @@ impl Window {
     }
 
     /// The i-th pedestrian's positions (m), 20, or 8 without a future.
-    ///
-    /// # Panics
-    /// If `i >= len()`.
     pub fn track(&self, i: usize) -> &[Position] {
         &self.positions[i * self.steps()..(i + 1) * self.steps()]
     }
 
     /// The i-th pedestrian's 8 observed positions (m).
-    ///
-    /// # Panics
-    /// If `i >= len()`.
     pub fn observed(&self, i: usize) -> &[Position] {
         &self.track(i)[..OBSERVED]
     }
 
     /// The i-th pedestrian's 12 positions to forecast (m); empty without a future.
-    ///
-    /// # Panics
-    /// If `i >= len()`.
     pub fn future(&self, i: usize) -> &[Position] {
         &self.track(i)[OBSERVED..]
     }
@@ -235,26 +223,17 @@ impl Window {
     }
 
     /// Where the i-th pedestrian ends (m), if the future is known.
-    ///
-    /// # Panics
-    /// If `i >= len()`.
     pub fn end(&self, i: usize) -> Option<Position> {
         self.future(i).last().copied()
     }
 
     /// Where everybody is at one step, counted from 0 (m).
-    ///
-    /// # Panics
-    /// If `step >= steps()`.
     #[must_use]
     pub fn positions_at(&self, step: usize) -> Vec<Position> {
         (0..self.len()).map(|i| self.track(i)[step]).collect()
     }
 
     /// Who is near whom at one step, counted from 0: see [`NeighbourMask::within_box`].
-    ///
-    /// # Panics
-    /// If `step >= steps()`.
     #[must_use]
     pub fn neighbours(&self, step: usize, half_width_m: f64) -> NeighbourMask {
         NeighbourMask::within_box(&self.positions_at(step), half_width_m)
@@ -340,11 +319,5 @@ impl Window {
             track.reverse();
         }
         reversed
-    }
-
-    /// The window turned about the world's origin.
-    #[must_use]
-    pub fn rotated(&self, rotation: Rotation) -> Window {
-        self.map_positions(|_, _, position| rotation.apply(position))
     }
 }

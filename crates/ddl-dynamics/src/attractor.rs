@@ -112,10 +112,8 @@ impl<T: Real, const D: usize> Attractor<T, D> {
     /// or the offset `e` when quadratic; 0 at the goal.
     ///
     /// # Numerics
-    /// The norm of a gradient is not differentiable at the goal; 0 is the one choice among its
-    /// subgradients that keeps a walker there at rest. The published program divides by
-    /// `max(|e|, 1e-12)` instead, which shortens the gradient within 1e-12 m of the goal; here `u`
-    /// has length 1 for every offset but zero, subnormal and huge ones included.
+    /// `u` has length 1 for every offset but zero, subnormal and huge ones included. (The published program divides by
+    /// `max(|e|, 1e-12)`, which shortens it within 1e-12 m of the goal.)
     #[inline]
     pub fn gradient(&self, position: &SVector<T, D>) -> SVector<T, D> {
         self.potential_and_gradient(position).1
@@ -168,10 +166,7 @@ mod tests {
             let (distance, direction) = attractor.potential_and_gradient(&Vector2::new(0.0, -size));
             assert_eq!((distance, direction), (size, Vector2::new(0.0, -1.0)));
         }
-    }
-
-    #[test]
-    fn an_offset_that_overflows_still_has_a_direction() {
+        // An offset that overflows still has a direction.
         let attractor = Attractor::new(Vector1::new(-f64::MAX)).unwrap();
         let (distance, direction) = attractor.potential_and_gradient(&Vector1::new(f64::MAX));
         assert_eq!((distance, direction), (f64::INFINITY, Vector1::new(1.0)));

@@ -1,9 +1,6 @@
 //! Diffeomorphisms: smooth, invertible maps of space, in closed form.
 
-mod affine_coupling;
 mod chain;
-mod components;
-mod gaussian;
 mod local_translation;
 mod straightening;
 
@@ -11,8 +8,7 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::real::Real;
 
-pub use affine_coupling::{AffineCoupling, CouplingBump};
-pub use chain::{Chain, Layer};
+pub use chain::Chain;
 pub use local_translation::LocalTranslation;
 pub use straightening::Straightening;
 
@@ -36,23 +32,6 @@ pub use straightening::Straightening;
 /// - A Jacobian with an entry too large for `T` is not finite. That takes a coordinate that is
 ///   close to the largest number of `T` itself, or hundreds of maps at their limit one after the
 ///   other.
-///
-/// # Examples
-/// The trait is object-safe:
-/// ```
-/// use ddl_dynamics::{Chain, Diffeomorphism, LocalTranslation};
-/// use nalgebra::Vector2;
-///
-/// let push = LocalTranslation::new(Vector2::zeros(), 1.0, Vector2::new(0.0, 0.5))?;
-/// let twice = Chain::new(vec![push.into(), push.into()]);
-/// let maps: [&dyn Diffeomorphism<f64, 2>; 2] = [&push, &twice];
-/// for map in maps {
-///     let x = Vector2::new(0.25, -1.0);
-///     assert!((map.inverse(&map.apply(&x)) - x).norm() < 1e-14);
-///     assert!(map.jacobian(&x).determinant() > 0.0);
-/// }
-/// # Ok::<(), ddl_dynamics::DynamicsError>(())
-/// ```
 pub trait Diffeomorphism<T: Real, const D: usize> {
     /// The image `psi(x)` of `position` (metres).
     fn apply(&self, position: &SVector<T, D>) -> SVector<T, D>;
@@ -60,30 +39,12 @@ pub trait Diffeomorphism<T: Real, const D: usize> {
     /// The position `psi^-1(y)` whose image is `image` (metres).
     fn inverse(&self, image: &SVector<T, D>) -> SVector<T, D>;
 
+    /// [`apply`](Self::apply) and [`jacobian`](Self::jacobian) at the cost of one.
+    fn apply_with_jacobian(&self, position: &SVector<T, D>) -> (SVector<T, D>, SMatrix<T, D, D>);
+
     /// The Jacobian `J = d psi / d x` at `position`: row `i`, column `j` is `d y_i / d x_j` (no
     /// unit).
-    fn jacobian(&self, position: &SVector<T, D>) -> SMatrix<T, D, D>;
-
-    /// [`apply`](Self::apply) and [`jacobian`](Self::jacobian), where possible at the cost of one.
-    fn apply_with_jacobian(&self, position: &SVector<T, D>) -> (SVector<T, D>, SMatrix<T, D, D>) {
-        (self.apply(position), self.jacobian(position))
-    }
-}
-
-impl<T: Real, const D: usize, Psi: Diffeomorphism<T, D> + ?Sized> Diffeomorphism<T, D> for &Psi {
-    fn apply(&self, position: &SVector<T, D>) -> SVector<T, D> {
-        (**self).apply(position)
-    }
-
-    fn inverse(&self, image: &SVector<T, D>) -> SVector<T, D> {
-        (**self).inverse(image)
-    }
-
     fn jacobian(&self, position: &SVector<T, D>) -> SMatrix<T, D, D> {
-        (**self).jacobian(position)
-    }
-
-    fn apply_with_jacobian(&self, position: &SVector<T, D>) -> (SVector<T, D>, SMatrix<T, D, D>) {
-        (**self).apply_with_jacobian(position)
+        self.apply_with_jacobian(position).1
     }
 }

@@ -8,26 +8,22 @@ use crate::real::Real;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DynamicsError {
-    /// A component of a vector is NaN or infinite.
-    #[error("component {component} of the {quantity} is {value}: it must be a finite number")]
+    /// A number is NaN or infinite.
+    #[error("{entry} is {value}: it must be a finite number")]
     NonFinite {
-        /// Which vector: goal, position, velocity ...
-        quantity: &'static str,
-        /// Index of the component, from 0.
-        component: usize,
+        /// Which number: component 1 of the goal, say.
+        entry: String,
         /// The offending value.
         value: f64,
     },
 
-    /// An entry of a Cholesky factor is NaN or infinite.
-    #[error(
-        "entry ({row}, {column}) of the Cholesky factor is {value}: it must be a finite number"
-    )]
-    NonFiniteFactor {
-        /// Row, from 0.
-        row: usize,
-        /// Column, from 0.
-        column: usize,
+    /// A number that has to be positive and finite is not.
+    #[error("{quantity} is {value}{unit}: it must be positive and finite")]
+    NotPositive {
+        /// Which number.
+        quantity: &'static str,
+        /// Its unit, after a space.
+        unit: &'static str,
         /// The offending value.
         value: f64,
     },
@@ -49,10 +45,6 @@ pub enum DynamicsError {
     #[error("the Cholesky factor is too large: L L^T overflows; scale the factor down or use f64")]
     FactorTooLarge,
 
-    /// `sigma` is not a positive, finite number.
-    #[error("sigma is {0}: it must be positive and finite, or P is not positive definite")]
-    InvalidSigma(f64),
-
     /// A linear map cannot be inverted.
     #[error("the map is not finite or has no inverse: P seen through it is not positive definite")]
     SingularMap,
@@ -64,22 +56,6 @@ pub enum DynamicsError {
     /// A direction is the zero vector.
     #[error("the direction is the zero vector: it must have a length")]
     NoDirection,
-
-    /// The radius of an obstacle is not a positive, finite number.
-    #[error("the radius of the obstacle is {0} m: it must be positive and finite")]
-    InvalidRadius(f64),
-
-    /// The distance within which obstacles are minded is not a positive, finite number.
-    #[error("the margin around obstacles is {0} m: it must be positive and finite")]
-    InvalidMargin(f64),
-
-    /// The time step is not a positive, finite number of seconds.
-    #[error("the time step is {0} s: it must be positive and finite")]
-    InvalidTimeStep(f64),
-
-    /// The tolerance of an adaptive integrator is not a positive, finite number of metres.
-    #[error("the tolerance is {0} m: it must be positive and finite")]
-    InvalidTolerance(f64),
 
     /// An adaptive integrator needs too many inner steps.
     #[error(
@@ -97,10 +73,6 @@ pub enum DynamicsError {
     #[error("the distance from the position to the goal overflows; use smaller units or f64")]
     DistanceTooLarge,
 
-    /// The rate `rho` of a Gaussian bump is not a positive, finite number.
-    #[error("the rate of a Gaussian bump is {0} per metre: it must be positive and finite")]
-    InvalidRate(f64),
-
     /// A local translation moves points further than its bump is wide.
     #[error(
         "the local translation is not invertible: sqrt(2/e) rho |v| is {contraction}, and must be at most {largest}; shorten the translation v or lower the rate rho"
@@ -110,43 +82,6 @@ pub enum DynamicsError {
         contraction: f64,
         /// The largest value accepted.
         largest: f64,
-    },
-
-    /// The largest log scale of an affine coupling is out of range.
-    #[error("the largest log scale is {value}: it must be between 0 and {largest}")]
-    InvalidLogScale {
-        /// The offending value.
-        value: f64,
-        /// The largest value accepted.
-        largest: f64,
-    },
-
-    /// An affine coupling is to move a coordinate that space does not have.
-    #[error("coordinate {coordinate} cannot be moved: there are {dimension}, counted from 0")]
-    NoSuchCoordinate {
-        /// The coordinate asked for, from 0.
-        coordinate: usize,
-        /// Number of dimensions.
-        dimension: usize,
-    },
-
-    /// The bumps of an affine coupling do not fit into the number type.
-    #[error(
-        "the bumps of the affine coupling are too large: the sum of their weights, or of weights times rates, overflows; scale them down or use f64"
-    )]
-    BumpsTooLarge,
-
-    /// A path to be straightened has a point that is NaN or infinite.
-    #[error(
-        "component {component} of point {point} of the path is {value}: it must be a finite number"
-    )]
-    NonFinitePath {
-        /// Index of the point, from 0.
-        point: usize,
-        /// Index of the component, from 0.
-        component: usize,
-        /// The offending value.
-        value: f64,
     },
 
     /// A path to be straightened leads nowhere.
@@ -213,19 +148,32 @@ pub(crate) fn ensure_finite<'a, T: Real, const D: usize>(
     match vector.iter().position(|x| !x.is_finite()) {
         None => Ok(vector),
         Some(component) => Err(DynamicsError::NonFinite {
-            quantity,
-            component,
+            entry: format!("component {component} of the {quantity}"),
             value: vector[component].as_f64(),
         }),
+    }
+}
+
+/// `value` itself if it is positive and finite.
+#[inline]
+pub(crate) fn ensure_positive<T: Real>(
+    quantity: &'static str,
+    unit: &'static str,
+    value: T,
+) -> Result<T, DynamicsError> {
+    if value > T::zero() && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(DynamicsError::NotPositive {
+            quantity,
+            unit,
+            value: value.as_f64(),
+        })
     }
 }
 
 /// `dt` itself if it is a time step: positive and finite.
 #[inline]
 pub(crate) fn ensure_time_step<T: Real>(dt: T) -> Result<T, DynamicsError> {
-    if dt > T::zero() && dt.is_finite() {
-        Ok(dt)
-    } else {
-        Err(DynamicsError::InvalidTimeStep(dt.as_f64()))
-    }
+    ensure_positive("the time step", " s", dt)
 }

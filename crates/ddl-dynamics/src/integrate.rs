@@ -17,7 +17,7 @@ pub trait Integrator<T: Real, const D: usize> {
     /// The position `dt` seconds after `state` (metres).
     ///
     /// # Errors
-    /// Those of the flow; [`DynamicsError::InvalidTimeStep`] unless `dt` is positive and finite;
+    /// Those of the flow; [`DynamicsError::NotPositive`] unless `dt` is positive and finite;
     /// [`DynamicsError::NonFinite`] when the position, the velocity or the result is not finite.
     fn step<F: Flow<T, D> + ?Sized>(
         &self,

@@ -17,11 +17,9 @@ mod spectrum;
 mod state;
 
 pub use attractor::Attractor;
-pub use diffeomorphism::{
-    AffineCoupling, Chain, CouplingBump, Diffeomorphism, Layer, LocalTranslation, Straightening,
-};
+pub use diffeomorphism::{Chain, Diffeomorphism, LocalTranslation, Straightening};
 pub use error::DynamicsError;
-pub use flow::{AvoidingFlow, DiffeomorphicFlow, Flow, GradientFlow, NaturalGradientFlow};
+pub use flow::{AvoidingFlow, DiffeomorphicFlow, Flow, NaturalGradientFlow};
 pub use integrate::{DormandPrince, Euler, Integrator, StableEuler, StableStep, StepLimit};
 pub use lyapunov::{Bounded, CertifiedStep, LyapunovCertificate, MotionEvidence, Violation};
 pub use metric::{CholeskyMetric, PUBLISHED_SIGMA};

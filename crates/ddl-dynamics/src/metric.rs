@@ -5,7 +5,7 @@ mod transform;
 use nalgebra::{SMatrix, SVector};
 
 use crate::{
-    error::DynamicsError,
+    error::{DynamicsError, ensure_positive},
     real::Real,
     spectrum::{EigenvalueRange, factor_singular_values},
 };
@@ -73,20 +73,23 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// every `L`, and `sigma` does the rest.
     ///
     /// # Errors
-    /// - [`DynamicsError::InvalidSigma`]: `sigma` is zero, negative, NaN or infinite.
-    /// - [`DynamicsError::NonFiniteFactor`], [`DynamicsError::NotLowerTriangular`]: which entry.
+    /// - [`DynamicsError::NotPositive`]: `sigma` is zero, negative, NaN or infinite.
+    /// - [`DynamicsError::NonFinite`], [`DynamicsError::NotLowerTriangular`]: which entry.
     /// - [`DynamicsError::FactorTooLarge`]: `|L|^2 + sigma` exceeds a quarter of the largest number
     ///   of `T`. Below that, `P u` and `u^T P u` of a unit vector `u` are finite.
     pub fn new(factor: SMatrix<T, D, D>, sigma: T) -> Result<Self, DynamicsError> {
-        if !(sigma.is_finite() && sigma > T::zero()) {
-            return Err(DynamicsError::InvalidSigma(sigma.as_f64()));
-        }
+        ensure_positive(
+            "sigma, without which P is not positive definite,",
+            "",
+            sigma,
+        )?;
         for row in 0..D {
             for column in 0..D {
                 let entry = factor[(row, column)];
                 let value = entry.as_f64();
                 if !entry.is_finite() {
-                    return Err(DynamicsError::NonFiniteFactor { row, column, value });
+                    let entry = format!("entry ({row}, {column}) of the Cholesky factor");
+                    return Err(DynamicsError::NonFinite { entry, value });
                 }
                 if column > row && !entry.is_zero() {
                     return Err(DynamicsError::NotLowerTriangular { row, column, value });
@@ -199,30 +202,19 @@ mod tests {
 
     #[test]
     fn what_cannot_be_a_metric_is_refused() {
-        let sigma = |sigma| CholeskyMetric::planar(1.0, 0.0, 1.0, sigma).unwrap_err();
-        assert_eq!(sigma(0.0), DynamicsError::InvalidSigma(0.0));
-        assert_eq!(sigma(-1.0), DynamicsError::InvalidSigma(-1.0));
-        assert!(matches!(sigma(f64::NAN), DynamicsError::InvalidSigma(_)));
-        assert!(matches!(
-            CholeskyMetric::planar(1.0, f64::INFINITY, 1.0, 1.0).unwrap_err(),
-            DynamicsError::NonFiniteFactor {
-                row: 1,
-                column: 0,
-                ..
-            }
-        ));
-        assert_eq!(
-            CholeskyMetric::new(Matrix2::new(1.0, 0.5, 0.0, 1.0), 1.0).unwrap_err(),
-            DynamicsError::NotLowerTriangular {
-                row: 0,
-                column: 1,
-                value: 0.5
-            }
-        );
-        assert_eq!(
-            CholeskyMetric::planar(1e19_f32, 0.0, 0.0, 1.0).unwrap_err(),
-            DynamicsError::FactorTooLarge
-        );
+        let message = |b: f64, above: f64, sigma: f64| {
+            let metric = CholeskyMetric::new(Matrix2::new(1.0, above, b, 1.0), sigma);
+            metric.unwrap_err().to_string()
+        };
+        for sigma in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(message(0.0, 0.0, sigma).starts_with("sigma, without which P is not"));
+        }
+        let infinite = message(f64::INFINITY, 0.0, 1.0);
+        assert!(infinite.starts_with("entry (1, 0) of the Cholesky factor is inf"));
+        let above = message(0.0, 0.5, 1.0);
+        assert!(above.starts_with("entry (0, 1) of the Cholesky factor is 0.5: entries above"));
+        let too_large = CholeskyMetric::planar(1e19_f32, 0.0, 0.0, 1.0).unwrap_err();
+        assert_eq!(too_large, DynamicsError::FactorTooLarge);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use crate::{
-    error::{DynamicsError, ensure_finite},
+    error::{DynamicsError, ensure_finite, ensure_positive},
     polar::polar,
     real::Real,
     state::State,
@@ -35,15 +35,12 @@ impl<T: Real, const D: usize> Ball<T, D> {
     /// The ball around `centre` with `radius` (metres).
     ///
     /// # Errors
-    /// [`DynamicsError::NonFinite`] for the centre, [`DynamicsError::InvalidRadius`] unless the radius is
+    /// [`DynamicsError::NonFinite`] for the centre, [`DynamicsError::NotPositive`] unless the radius is
     /// positive and finite.
     pub fn new(centre: SVector<T, D>, radius: T) -> Result<Self, DynamicsError> {
         ensure_finite("centre of the obstacle", &centre)?;
-        if radius > T::zero() && radius.is_finite() {
-            Ok(Self { centre, radius })
-        } else {
-            Err(DynamicsError::InvalidRadius(radius.as_f64()))
-        }
+        let radius = ensure_positive("the radius of the obstacle", " m", radius)?;
+        Ok(Self { centre, radius })
     }
 
     /// The centre (metres).
@@ -73,34 +70,16 @@ impl<T: Real, const D: usize> Ball<T, D> {
 
 /// Which obstacles there are at a state.
 ///
-/// Implemented by slices and vectors of balls (the same all the time) and by [`ObstacleSchedule`] (others
+/// Implemented by arrays and vectors of balls (the same all the time) and by [`ObstacleSchedule`] (others
 /// in each step).
 pub trait ObstacleSource<T: Real, const D: usize> {
     /// The obstacles at `state`.
     fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>];
 }
 
-impl<T: Real, const D: usize> ObstacleSource<T, D> for [Ball<T, D>] {
+impl<T: Real, const D: usize, O: AsRef<[Ball<T, D>]>> ObstacleSource<T, D> for O {
     fn obstacles(&self, _state: &State<'_, T, D>) -> &[Ball<T, D>] {
-        self
-    }
-}
-
-impl<T: Real, const D: usize> ObstacleSource<T, D> for Vec<Ball<T, D>> {
-    fn obstacles(&self, _state: &State<'_, T, D>) -> &[Ball<T, D>] {
-        self
-    }
-}
-
-impl<T: Real, const D: usize, const N: usize> ObstacleSource<T, D> for [Ball<T, D>; N] {
-    fn obstacles(&self, _state: &State<'_, T, D>) -> &[Ball<T, D>] {
-        self
-    }
-}
-
-impl<T: Real, const D: usize, O: ObstacleSource<T, D> + ?Sized> ObstacleSource<T, D> for &O {
-    fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>] {
-        (**self).obstacles(state)
+        self.as_ref()
     }
 }
 
@@ -138,11 +117,20 @@ impl<T: Real, const D: usize> ObstacleSchedule<T, D> {
     pub fn new(steps: Vec<Vec<Ball<T, D>>>) -> Self {
         Self { steps }
     }
+    fn in_step(&self, step: usize) -> &[Ball<T, D>] {
+        let of_step = self.steps.get(step).or(self.steps.last());
+        of_step.map_or(&[], Vec::as_slice)
+    }
 }
 
 impl<T: Real, const D: usize> ObstacleSource<T, D> for ObstacleSchedule<T, D> {
     fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>] {
-        let of_step = self.steps.get(state.step).or(self.steps.last());
-        of_step.map_or(&[], Vec::as_slice)
+        self.in_step(state.step)
+    }
+}
+
+impl<T: Real, const D: usize> ObstacleSource<T, D> for &ObstacleSchedule<T, D> {
+    fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>] {
+        self.in_step(state.step)
     }
 }

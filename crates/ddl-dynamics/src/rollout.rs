@@ -16,15 +16,15 @@ use crate::{
 /// `steps + 1` positions in metres, `start` first.
 ///
 /// # Errors
-/// [`DynamicsError::InvalidTimeStep`], [`DynamicsError::NonFinite`] for the start, and
+/// [`DynamicsError::NotPositive`], [`DynamicsError::NonFinite`] for the start, and
 /// [`DynamicsError::Step`] naming the step in which the flow or the integrator failed.
 ///
 /// # Examples
 /// ```
-/// use ddl_dynamics::{Attractor, Euler, GradientFlow, rollout};
+/// use ddl_dynamics::{Attractor, Euler, NaturalGradientFlow, rollout};
 /// use nalgebra::Vector2;
 ///
-/// let flow = GradientFlow::new(Attractor::new(Vector2::new(0.0, 8.0))?);
+/// let flow = NaturalGradientFlow::straight(Attractor::new(Vector2::new(0.0, 8.0))?);
 /// let path = rollout(&flow, &Euler, Vector2::zeros(), 0.5, 12)?;
 /// assert_eq!(path.len(), 13);
 /// assert_eq!(path[12], Vector2::new(0.0, 6.0));

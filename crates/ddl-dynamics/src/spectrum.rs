@@ -15,7 +15,6 @@ const ITERATIONS_PER_DIMENSION: usize = 1000;
 ///
 /// let range = CholeskyMetric::planar(1.5_f64, 0.0, 0.5, 1.75)?.eigenvalue_range(); // P = diag(4, 2)
 /// assert!((range.largest - 4.0).abs() < 1e-12 && (range.smallest - 2.0).abs() < 1e-12);
-/// assert!((range.condition_number() - 2.0).abs() < 1e-12);
 /// # Ok::<(), ddl_dynamics::DynamicsError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,23 +23,6 @@ pub struct EigenvalueRange<T> {
     pub smallest: T,
     /// The largest: the flow is at most this fast (m/s).
     pub largest: T,
-}
-
-impl<T: Real> EigenvalueRange<T> {
-    /// `largest / smallest`, at least 1 (no unit). The velocity deviates from the direction to the
-    /// goal by less than 90 degrees; the larger this number, the closer it can come to it.
-    pub fn condition_number(&self) -> T {
-        self.largest / self.smallest
-    }
-
-    /// Sine of the largest angle between the flow and the direction to the goal:
-    /// `(k - 1) / (k + 1)` with `k` the [condition number](Self::condition_number) (no unit).
-    ///
-    /// This is Wielandt's form of the Kantorovich inequality. It is also the factor by which a step
-    /// to the closest point on the line of motion shrinks the distance to the goal, at the least.
-    pub fn largest_deviation_sine(&self) -> T {
-        (self.largest - self.smallest) / (self.largest + self.smallest)
-    }
 }
 
 /// Smallest and largest singular value of a lower-triangular matrix.

@@ -11,19 +11,6 @@ use crate::{
 
 /// How a result came about. Two results are comparable when their convention, window rule, protocol
 /// and test subset are the same; a report never puts others into one table.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{Convention, Window, WindowRule};
-/// use ddl_eval::{Conditions, Protocol};
-/// let conditions = Conditions {
-///     seed: Some(1),
-///     epochs: Some(30),
-///     device: "cpu".to_owned(),
-///     ..Conditions::new(Convention::Star, WindowRule::Published, Protocol::Fair, "eth", "DDL")
-/// };
-/// assert_eq!(conditions.label(), "DDL");
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
     /// Data convention of the recordings.
@@ -128,10 +115,7 @@ impl ResultRow {
 
     /// The same for windows that are reduced to a part of their pedestrians: the forecaster is shown everybody of the whole
     /// windows, one each, and what it forecasts of that part is scored among everybody.
-    ///
-    /// # Errors
-    /// As [`ResultRow::measure`]; or a whole window is not that of the reduced one.
-    pub fn measure_among(
+    pub(crate) fn measure_among(
         conditions: Conditions,
         forecaster: &(impl Forecaster + ?Sized),
         windows: &[Window],
@@ -167,10 +151,7 @@ impl ResultRow {
     }
 
     /// The same for windows that are reduced to a part of their pedestrians.
-    ///
-    /// # Errors
-    /// As [`Scores::evaluate_among`].
-    pub fn score_among(
+    pub(crate) fn score_among(
         conditions: Conditions,
         windows: &[Window],
         everybody: &[Window],

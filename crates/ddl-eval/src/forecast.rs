@@ -110,16 +110,6 @@ impl Forecast {
     ///
     /// # Errors
     /// The array has the wrong length.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_eval::Forecast;
-    /// let forecast = Forecast::equally_likely(1, 2, vec![[0.0, 0.0]; 2 * 12])?;
-    /// assert_eq!(forecast.certified(0, 1), None);
-    /// let forecast = forecast.with_certified(vec![true, false])?;
-    /// assert_eq!(forecast.certified(0, 1), Some(false));
-    /// # Ok::<(), ddl_eval::ForecastShapeError>(())
-    /// ```
     pub fn with_certified(self, certified: Vec<bool>) -> Result<Self, ForecastShapeError> {
         check_length(
             "certified",
@@ -141,17 +131,6 @@ impl Forecast {
     ///
     /// # Errors
     /// The array has the wrong length, or a deviation is not finite and positive.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_eval::{Forecast, RegionTable};
-    /// let forecast = Forecast::equally_likely(1, 2, vec![[0.0, 0.0]; 2 * 12])?;
-    /// assert_eq!(forecast.spread(0, 11), None);
-    /// let regions = RegionTable::of(&[[1.0; 12]; 9], &[0.9]).expect("scores and a level");
-    /// let forecast = forecast.with_spread(vec![0.3; 12], regions.into())?;
-    /// assert_eq!(forecast.spread(0, 11), Some(0.3));
-    /// # Ok::<(), ddl_eval::ForecastShapeError>(())
-    /// ```
     pub fn with_spread(
         self,
         spread: Vec<f64>,

@@ -27,7 +27,7 @@ pub use error::{EvaluationError, ForecastError, ForecastShapeError, MeasureError
 pub use forecast::Forecast;
 pub use forecaster::Forecaster;
 pub use metric::stability::StabilityScores;
-pub use protocol::{Protocol, UnknownProtocol};
+pub use protocol::Protocol;
 pub use recording_errors::RecordingErrors;
 pub use region::{Disc, RegionTable};
 pub use scene::Scene;

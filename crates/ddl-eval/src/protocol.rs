@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, fmt, str::FromStr};
 
-use ddl_data::Window;
+use ddl_data::{UnknownName, Window};
 use serde::{Deserialize, Serialize};
 
 use crate::{Forecast, Forecaster, error::ForecastError};
@@ -16,7 +16,7 @@ use crate::{Forecast, Forecaster, error::ForecastError};
 /// assert_eq!(protocol, Protocol::Fair);
 /// assert_eq!(protocol.warning(), None);
 /// assert!(Protocol::Published.warning().is_some());
-/// # Ok::<(), ddl_eval::UnknownProtocol>(())
+/// # Ok::<(), ddl_data::UnknownName>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -159,18 +159,11 @@ impl fmt::Display for Protocol {
     }
 }
 
-/// The text names no protocol.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` is no protocol; choose published, fair or single")]
-pub struct UnknownProtocol(String);
-
 impl FromStr for Protocol {
-    type Err = UnknownProtocol;
+    type Err = UnknownName;
 
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Self::ALL
-            .into_iter()
-            .find(|protocol| protocol.name() == text)
-            .ok_or_else(|| UnknownProtocol(text.to_owned()))
+    fn from_str(word: &str) -> Result<Self, UnknownName> {
+        let expected = "published, fair, single";
+        UnknownName::find(word, &Self::ALL, Self::name, "protocol", expected)
     }
 }

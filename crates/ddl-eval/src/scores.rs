@@ -24,21 +24,6 @@ use crate::{
 /// the five folds is the plain mean of their `Scores`.
 ///
 /// Fields that earlier versions did not write are `None` when their files are read.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{PedestrianId, Window};
-/// use ddl_eval::{Forecaster, Scores, baseline::ConstantVelocity};
-///
-/// let walk = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect(); // ends at (9.5, 0) m
-/// let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![walk])?;
-/// let windows = [window];
-/// let forecasts = ConstantVelocity::last_step().forecast_all(&windows)?;
-/// let scores = Scores::evaluate(&windows, &forecasts)?;
-/// assert_eq!((scores.pedestrians, scores.hypotheses), (1, 1));
-/// assert!(scores.min_ade < 1e-12); // metres: straight on, as fast as before
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Scores {
     /// Pedestrians scored, over all windows.

@@ -1,9 +1,9 @@
-//! Speed of the goal estimate of one walker and of its k-means, on synthetic walkers.
+//! Speed of the goal estimate of one walker, on synthetic walkers.
 
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, KMeans, QuerySpan};
+use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, QuerySpan};
 
 /// Numbers in [0, 1).
 fn numbers(seed: u64) -> impl FnMut() -> f64 {
@@ -66,13 +66,5 @@ fn estimate(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn kmeans(criterion: &mut Criterion) {
-    let mut next = numbers(4);
-    let points: Vec<[f64; 2]> = (0..100).map(|_| [8.0 * next(), 3.0 * next()]).collect();
-    criterion.bench_function("k-means, 100 points, 20 clusters, 10 restarts", |b| {
-        b.iter(|| KMeans::new(20).fit(black_box(&points), 1));
-    });
-}
-
-criterion_group!(benches, estimate, kmeans);
+criterion_group!(benches, estimate);
 criterion_main!(benches);

@@ -11,9 +11,9 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
-use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
+use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, QuerySpan};
 
-use crate::star_files::{RECORDINGS, Tracks, Windows};
+use crate::star_files::{RECORDINGS, StarTracks};
 
 #[path = "../tests/laws/star_files.rs"]
 mod star_files;
@@ -28,127 +28,76 @@ const FOLDS: [(&str, &[&str]); 5] = [
 ];
 /// Share of a recording's time that the library may hold.
 const LIBRARY_SHARE: f64 = 0.75;
-const BINS: usize = 10;
 
-type Track = Vec<[f64; 2]>;
-
-/// The windows of one recording: all 20 steps of one pedestrian from every start.
-struct Recording {
+/// The complete windows of one recording: all 20 steps of one pedestrian from every start.
+struct ValidationRecording {
     name: &'static str,
-    step: i64,
-    /// First and last frame.
+    /// First frame, and how many frames later the last one is.
     span: (i64, i64),
-    windows: Windows,
+    /// First and last frame of a window, and its positions (m).
+    windows: Vec<(i64, i64, Positions)>,
 }
 
-impl Recording {
+type Positions = Vec<[f64; 2]>;
+
+impl ValidationRecording {
     fn read(folder: &Path, name: &'static str) -> Result<Self, Box<dyn Error>> {
-        let tracks = Tracks::read(folder, name)?;
+        let tracks = StarTracks::read(folder, name)?;
         let frames = || tracks.by_pedestrian.values().flat_map(BTreeMap::keys);
         let span = frames().min().zip(frames().max());
-        let (first, last) = span.ok_or_else(|| format!("{name}.csv is empty"))?;
+        let (&first, &last) = span.ok_or_else(|| format!("{name}.csv is empty"))?;
+        let windows = tracks.complete_windows().into_iter();
+        let windows = windows.map(|((start, _), track)| (start, start + 19 * tracks.step, track));
         Ok(Self {
             name,
-            step: tracks.step,
-            span: (*first, *last),
-            windows: tracks.complete_windows(),
+            span: (first, last - first),
+            windows: windows.collect(),
         })
     }
 
-    /// The windows that start in a part of the recording's time, by start and end.
-    fn within(&self, part: impl Fn(f64, f64) -> bool) -> impl Iterator<Item = &Track> {
-        let (first, last) = self.span;
-        let share = move |frame: i64| (frame - first) as f64 / (last - first) as f64;
+    /// The windows that lie in a part of the recording's time, by start and end.
+    fn within(&self, part: impl Fn(f64, f64) -> bool) -> impl Iterator<Item = &Positions> {
+        let (first, length) = self.span;
+        let share = move |frame: i64| (frame - first) as f64 / length as f64;
         let windows = self.windows.iter();
-        let within = windows
-            .filter(move |((start, _), _)| part(share(*start), share(*start + 19 * self.step)));
-        within.map(|(_, track)| track)
+        windows
+            .filter(move |(start, end, _)| part(share(*start), share(*end)))
+            .map(|(.., track)| track)
     }
 }
 
-/// What a fold may learn from, and the walkers it is judged by: recording, its windows.
-struct Split<'a> {
-    library: Vec<Track>,
-    unseen: Vec<Vec<&'a Track>>,
-    tails: Vec<Vec<&'a Track>>,
-}
-
-fn split<'a>(recordings: &'a [Recording], test: &[&str], stride: usize) -> Split<'a> {
-    let (mut library, mut unseen, mut tails) = (Vec::new(), Vec::new(), Vec::new());
-    for recording in recordings {
-        if UNSEEN.contains(&recording.name) {
-            unseen.push(recording.windows.values().step_by(stride).collect());
-        } else if !test.contains(&recording.name) {
-            library.extend(recording.within(|_, end| end <= LIBRARY_SHARE).cloned());
-            let late = recording.within(|start, _| start > LIBRARY_SHARE);
-            tails.push(late.step_by(stride).collect());
-        }
-    }
-    Split {
-        library,
-        unseen,
-        tails,
-    }
-}
-
-/// How often goals of a weight were the nearest ones.
+/// Sums over validation walkers.
 #[derive(Default)]
-struct Calibration {
-    /// Number of goals, sum of weights, number of hits; by weight.
-    bins: [[f64; 3]; BINS],
+struct Judged {
+    walkers: usize,
+    seconds: f64,
     log_loss: f64,
-    walkers: f64,
 }
 
-impl Calibration {
-    fn add(&mut self, goals: &GoalSet, nearest: usize) {
-        for (k, &weight) in goals.weights().iter().enumerate() {
-            // Bins of 0.02; few goals weigh more than the last begins with.
-            let bin = &mut self.bins[((weight * 50.0) as usize).min(BINS - 1)];
-            *bin = [
-                bin[0] + 1.0,
-                bin[1] + weight,
-                bin[2] + f64::from(u8::from(k == nearest)),
-            ];
+impl Judged {
+    /// Mean over recordings of the mean distance from the nearest goal to the true end (m).
+    fn mean_error(
+        &mut self,
+        estimator: &GoalEstimator,
+        recordings: &[Vec<&Positions>],
+    ) -> Result<f64, Box<dyn Error>> {
+        let start = Instant::now();
+        let mut sum = 0.0;
+        for walkers in recordings {
+            let observed: Vec<&[[f64; 2]]> = walkers.iter().map(|track| &track[..8]).collect();
+            let sets = estimator.estimate_batch(&observed)?;
+            for (goals, track) in sets.iter().zip(walkers) {
+                // A goal of no weight would cost infinitely much.
+                let weight = goals.weights()[goals.nearest(track[19])].max(1e-4);
+                self.log_loss -= weight.ln();
+                sum += star_files::goal_error(goals, track)
+                    / (walkers.len() * recordings.len()) as f64;
+            }
+            self.walkers += walkers.len();
         }
-        // A goal of no weight would cost infinitely much.
-        self.log_loss -= goals.weights()[nearest].max(1e-4).ln();
-        self.walkers += 1.0;
+        self.seconds += start.elapsed().as_secs_f64();
+        Ok(sum)
     }
-
-    fn print(&self) {
-        println!(
-            "log loss {:.3}, uniform {:.3}",
-            self.log_loss / self.walkers,
-            20_f64.ln()
-        );
-        for (i, [count, weights, hits]) in self.bins.iter().enumerate() {
-            let from = 0.02 * i as f64;
-            println!(
-                "weight from {from:.2}: {count:>7} goals, mean weight {:.4}, nearest {:.4}",
-                weights / count,
-                hits / count
-            );
-        }
-    }
-}
-
-/// Mean over recordings of the mean distance from the nearest goal to the true end (m).
-fn mean_error(
-    estimator: &GoalEstimator,
-    recordings: &[Vec<&Track>],
-    calibration: &mut Calibration,
-) -> Result<f64, Box<dyn Error>> {
-    let mut sum = 0.0;
-    for walkers in recordings {
-        let observed: Vec<&[[f64; 2]]> = walkers.iter().map(|track| &track[..8]).collect();
-        let sets = estimator.estimate_batch(&observed)?;
-        for (goals, track) in sets.iter().zip(walkers) {
-            calibration.add(goals, goals.nearest(track[19]));
-            sum += star_files::goal_error(goals, track) / (walkers.len() * recordings.len()) as f64;
-        }
-    }
-    Ok(sum)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -157,7 +106,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let stride: usize = std::env::args().nth(1).map_or(Ok(1), |n| n.parse())?;
     let recordings = RECORDINGS
         .iter()
-        .map(|name| Recording::read(Path::new(&folder), name))
+        .map(|name| ValidationRecording::read(Path::new(&folder), name))
         .collect::<Result<Vec<_>, _>>()?;
     let published = GoalEstimatorParams::published().query(QuerySpan::Observed);
     for (name, params) in [
@@ -165,22 +114,31 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("default", GoalEstimatorParams::default()),
     ] {
         println!("{name}\nfold    unseen  tails   mean");
-        let (mut total, mut calibration) = ([0.0; 2], Calibration::default());
-        let (mut seconds, mut walkers) = (0.0, 0);
+        let (mut total, mut judged) = ([0.0; 2], Judged::default());
         for (fold, test) in FOLDS {
-            let split = split(&recordings, test, stride.max(1));
-            let library = ExpertLibrary::new(split.library, 0.4)?;
-            let estimator = GoalEstimator::new(params.clone().check()?, library)?;
-            let start = Instant::now();
-            let unseen = mean_error(&estimator, &split.unseen, &mut calibration)?;
-            let tails = mean_error(&estimator, &split.tails, &mut calibration)?;
-            seconds += start.elapsed().as_secs_f64();
-            walkers += split
-                .unseen
+            let every =
+                |windows: &mut dyn Iterator<Item = _>| windows.step_by(stride.max(1)).collect();
+            let (unseen, others): (Vec<_>, Vec<_>) = recordings
                 .iter()
-                .chain(&split.tails)
-                .map(Vec::len)
-                .sum::<usize>();
+                .partition(|recording| UNSEEN.contains(&recording.name));
+            let unseen: Vec<Vec<_>> = unseen
+                .iter()
+                .map(|recording| every(&mut recording.within(|_, _| true)))
+                .collect();
+            let training = || {
+                others
+                    .iter()
+                    .filter(|recording| !test.contains(&recording.name))
+            };
+            let tails: Vec<Vec<_>> = training()
+                .map(|recording| every(&mut recording.within(|start, _| start > LIBRARY_SHARE)))
+                .collect();
+            let library =
+                training().flat_map(|recording| recording.within(|_, end| end <= LIBRARY_SHARE));
+            let library = ExpertLibrary::new(library.cloned().collect(), 0.4)?;
+            let estimator = GoalEstimator::new(params.clone().check()?, library)?;
+            let unseen = judged.mean_error(&estimator, &unseen)?;
+            let tails = judged.mean_error(&estimator, &tails)?;
             println!(
                 "{fold:<7} {unseen:.4}  {tails:.4}  {:.4}",
                 f64::midpoint(unseen, tails)
@@ -192,9 +150,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             "mean    {unseen:.4}  {tails:.4}  {:.4}",
             f64::midpoint(unseen, tails)
         );
-        println!("{walkers} walkers in {seconds:.1} s");
-        calibration.print();
-        println!();
+        println!("{} walkers in {:.1} s", judged.walkers, judged.seconds);
+        let log_loss = judged.log_loss / judged.walkers as f64;
+        println!("log loss {log_loss:.3}, uniform {:.3}\n", 20_f64.ln());
     }
     Ok(())
 }

@@ -60,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [x, y] = observed[7];
     println!(
         "seen for 3.2 s, now at ({x:.2}, {y:.2}) m; {} experts of {} walkers say where in 4.8 s:",
-        estimator.params().experts(),
+        estimator.params().experts,
         estimator.library().len()
     );
     println!("weight         goal (m)  from the true end");

@@ -3,9 +3,9 @@
 use crate::error::{GoalError, TrackError};
 use crate::estimator::GoalEstimator;
 use crate::expert::Expert;
-use crate::frame::RetrievalFrame;
 use crate::library::TRACK_LENGTH;
 use crate::motion::Motion;
+use crate::params::RetrievalFrame;
 use crate::span::QuerySpan;
 
 impl GoalEstimator {
@@ -33,7 +33,7 @@ impl GoalEstimator {
             let (found, needed) = (track.len(), observed);
             return Err(TrackError::TooShort { found, needed }.into());
         }
-        if self.params().frame() == RetrievalFrame::World {
+        if self.params().frame == RetrievalFrame::World {
             let moved = |p: &[f64; 2]| [0, 1].map(|d| track[0][d] + p[d] - other[0][d]);
             return Ok(other.iter().map(moved).collect());
         }

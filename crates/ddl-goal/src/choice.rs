@@ -1,6 +1,6 @@
 //! Few goals that stand for many weighted points.
 
-use crate::lloyd::Run;
+use crate::lloyd::Lloyd;
 use crate::points::Points;
 use crate::split::first_centres;
 
@@ -15,7 +15,7 @@ pub(crate) struct Choice {
 /// goals are repeated with weight 0.
 pub(crate) fn choose(points: &Points, clusters: usize, steps: usize) -> Choice {
     let centres = first_centres(points, clusters).into_iter().cycle();
-    let mut run = Run::from_centres(points, centres.take(clusters).collect());
+    let mut run = Lloyd::from_centres(points, centres.take(clusters).collect());
     run.iterate(points, steps, 0.0);
     let mut weights = vec![0.0; clusters];
     for (&label, weight) in run.labels.iter().zip(&points.weight) {

@@ -94,37 +94,6 @@ pub enum LibraryError {
     },
 }
 
-/// Why points could not be clustered.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[non_exhaustive]
-pub enum KMeansError {
-    /// No clusters are asked for.
-    #[error("k-means with 0 clusters: at least one is needed")]
-    NoClusters,
-    /// k-means is never run.
-    #[error("k-means with 0 restarts: at least one is needed")]
-    NoRestarts,
-    /// The tolerance is negative or not a number.
-    #[error("the tolerance of k-means is {tolerance}: it must be finite and not negative")]
-    InvalidTolerance {
-        /// The value that was given.
-        tolerance: f64,
-    },
-    /// There is nothing to cluster.
-    #[error("k-means of no points: at least one is needed")]
-    NoPoints,
-    /// A point is NaN, infinite, or too large to square.
-    #[error("point {index} is ({x}, {y}): coordinates must be finite and below 1e150")]
-    OutOfRange {
-        /// Position of the point in the list, from 0.
-        index: usize,
-        /// First coordinate (m).
-        x: f64,
-        /// Second coordinate (m).
-        y: f64,
-    },
-}
-
 /// Why goals could not be estimated.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
@@ -165,7 +134,16 @@ pub enum GoalError {
     /// The search for similar walkers failed.
     #[error("the search for similar walkers: {0}")]
     Search(#[from] SearchError),
-    /// The endpoints of the experts could not be clustered.
-    #[error("the clustering of the experts' endpoints: {0}")]
-    KMeans(#[from] KMeansError),
+    /// The end of an expert is NaN, infinite, or too large to square.
+    #[error(
+        "the clustering of the experts' endpoints: point {index} is ({x}, {y}): coordinates must be finite and below 1e150"
+    )]
+    EndOutOfRange {
+        /// Place of the expert, from 0.
+        index: usize,
+        /// First coordinate (m).
+        x: f64,
+        /// Second coordinate (m).
+        y: f64,
+    },
 }

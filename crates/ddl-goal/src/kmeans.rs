@@ -3,8 +3,8 @@
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::error::KMeansError;
-use crate::lloyd::Run;
+use crate::error::GoalError;
+use crate::lloyd::Lloyd;
 use crate::points::{Points, is_in_range};
 use crate::seeding::first_centres;
 
@@ -12,7 +12,7 @@ use crate::seeding::first_centres;
 ///
 /// Inertia is the sum of the squared distances of the points to their centres (m²). A run ends when no point changes its
 /// cluster, when the centres together move less than `tolerance` times the mean variance of the coordinates (squared
-/// distances), or after `max_iterations`: the rules and the defaults (1e-4, 300) of scikit-learn. A cluster that loses all
+/// distances), or after `max_iterations`: the rules and the defaults of scikit-learn. A cluster that loses all
 /// its points is moved to the point farthest from its own centre.
 ///
 /// Equal points count as one with a multiplicity. Where there are fewer distinct points than clusters, each is a centre
@@ -20,50 +20,29 @@ use crate::seeding::first_centres;
 ///
 /// The result depends on the set of points and the seed, not on the order of the points. Every call draws the same random
 /// numbers, so that points moved by a rounding error give centres moved by as much, short of ties.
-///
-/// # Examples
-/// ```
-/// use ddl_goal::KMeans;
-/// let points = [[0.0, 0.0], [0.0, 1.0], [9.0, 0.0], [9.0, 1.0]];
-/// let clustering = KMeans::new(2).fit(&points, 1)?;
-/// assert_eq!(clustering.inertia(), 1.0);
-/// assert_eq!(clustering.labels()[0], clustering.labels()[1]);
-/// # Ok::<(), ddl_goal::KMeansError>(())
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-pub struct KMeans {
-    clusters: usize,
-    restarts: usize,
-    max_iterations: usize,
-    tolerance: f64,
+#[derive(Clone, Debug)]
+pub(crate) struct KMeans {
+    pub(crate) clusters: usize,
+    pub(crate) restarts: usize,
+    pub(crate) max_iterations: usize,
+    pub(crate) tolerance: f64,
 }
 
 /// What [`KMeans::fit`] found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Clustering {
-    centres: Vec<[f64; 2]>,
-    labels: Vec<usize>,
-    inertia: f64,
+#[derive(Debug)]
+pub(crate) struct Clustering {
+    /// Exactly as many as clusters were asked for (m).
+    pub(crate) centres: Vec<[f64; 2]>,
+    /// For each point the index of its nearest centre (the first of equally near ones).
+    pub(crate) labels: Vec<usize>,
+    /// Of the best run (m²).
+    #[cfg_attr(not(test), expect(dead_code, reason = "what the tests judge it by"))]
+    pub(crate) inertia: f64,
 }
 
 impl Clustering {
-    /// The centres (m), exactly as many as clusters were asked for.
-    pub fn centres(&self) -> &[[f64; 2]] {
-        &self.centres
-    }
-
-    /// For each point the index of its nearest centre (the first of equally near ones).
-    pub fn labels(&self) -> &[usize] {
-        &self.labels
-    }
-
-    /// Sum of the squared distances of the points to their centres (m²).
-    pub fn inertia(&self) -> f64 {
-        self.inertia
-    }
-
     /// Number of points of each cluster; 0 for the second and later of equal centres.
-    pub fn sizes(&self) -> Vec<usize> {
+    pub(crate) fn sizes(&self) -> Vec<usize> {
         let mut sizes = vec![0; self.centres.len()];
         for &label in &self.labels {
             sizes[label] += 1;
@@ -73,96 +52,55 @@ impl Clustering {
 }
 
 impl KMeans {
-    /// k-means with `clusters` clusters, 10 restarts, at most 300 iterations, tolerance 1e-4.
-    #[must_use]
-    pub fn new(clusters: usize) -> Self {
+    /// k-means with so many clusters and restarts, at least one of each; at most 300 iterations, tolerance 1e-4.
+    pub(crate) fn new(clusters: usize, restarts: usize) -> Self {
         Self {
             clusters,
-            restarts: 10,
+            restarts,
             max_iterations: 300,
             tolerance: 1e-4,
         }
     }
 
-    /// Number of runs.
-    #[must_use]
-    pub fn restarts(mut self, restarts: usize) -> Self {
-        self.restarts = restarts;
-        self
-    }
-
-    /// Largest number of iterations of a run.
-    #[must_use]
-    pub fn max_iterations(mut self, max_iterations: usize) -> Self {
-        self.max_iterations = max_iterations;
-        self
-    }
-
-    /// Squared movement of all centres, relative to the mean variance of the coordinates, at which a run ends.
-    #[must_use]
-    pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.tolerance = tolerance;
-        self
-    }
-
-    /// Clusters `points` (m) with the random numbers of `seed`.
+    /// Clusters `points` (m), at least one, with the random numbers of `seed`.
     ///
     /// # Errors
-    /// No points, a point that is not finite or beyond 1e150, or a parameter that makes no sense.
-    pub fn fit(&self, points: &[[f64; 2]], seed: u64) -> Result<Clustering, KMeansError> {
-        self.check(points)?;
+    /// A point that is not finite or beyond 1e150.
+    pub(crate) fn fit(&self, points: &[[f64; 2]], seed: u64) -> Result<Clustering, GoalError> {
+        if let Some(index) = points.iter().position(|&point| !is_in_range(point)) {
+            let [x, y] = points[index];
+            return Err(GoalError::EndOutOfRange { index, x, y });
+        }
         let (distinct, place) = Points::distinct(points);
         let run = if distinct.len() <= self.clusters {
             let places = (0..distinct.len()).map(|index| distinct.get(index));
-            Run::from_centres(&distinct, places.cycle().take(self.clusters).collect())
+            Lloyd::from_centres(&distinct, places.cycle().take(self.clusters).collect())
         } else {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
-            let runs = (0..self.restarts).map(|_| self.run(&distinct, &mut rng));
-            runs.min_by(|a, b| a.inertia.total_cmp(&b.inertia))
-                .ok_or(KMeansError::NoRestarts)?
+            let mut best = self.run(&distinct, &mut rng);
+            for _ in 1..self.restarts {
+                let run = self.run(&distinct, &mut rng);
+                if run.inertia < best.inertia {
+                    best = run;
+                }
+            }
+            best
         };
-        let labels = place
-            .iter()
-            .map(|&place| run.labels[place] as usize)
-            .collect();
+        let labels = place.iter().map(|&place| run.labels[place] as usize);
         Ok(Clustering {
+            labels: labels.collect(),
             centres: run.centres,
-            labels,
             inertia: run.inertia,
         })
     }
 
-    fn check(&self, points: &[[f64; 2]]) -> Result<(), KMeansError> {
-        if self.clusters == 0 {
-            return Err(KMeansError::NoClusters);
-        }
-        if self.restarts == 0 {
-            return Err(KMeansError::NoRestarts);
-        }
-        if !(self.tolerance.is_finite() && self.tolerance >= 0.0) {
-            return Err(KMeansError::InvalidTolerance {
-                tolerance: self.tolerance,
-            });
-        }
-        if points.is_empty() {
-            return Err(KMeansError::NoPoints);
-        }
-        match points.iter().position(|&point| !is_in_range(point)) {
-            Some(index) => {
-                let [x, y] = points[index];
-                Err(KMeansError::OutOfRange { index, x, y })
-            }
-            None => Ok(()),
-        }
-    }
-
-    fn run(&self, points: &Points, rng: &mut ChaCha8Rng) -> Run {
-        let mut run = Run::from_centres(points, first_centres(points, self.clusters, rng));
-        run.iterate(
-            points,
-            self.max_iterations,
-            self.tolerance * points.mean_variance(),
-        );
+    fn run(&self, points: &Points, rng: &mut ChaCha8Rng) -> Lloyd {
+        let mut run = Lloyd::from_centres(points, first_centres(points, self.clusters, rng));
+        let enough = self.tolerance * points.mean_variance();
+        run.iterate(points, self.max_iterations, enough);
         run
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -20,7 +20,7 @@ pub const TRACK_LENGTH: usize = 20;
 /// # Ok::<(), ddl_goal::LibraryError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Unchecked")]
+#[serde(try_from = "UncheckedLibrary")]
 pub struct ExpertLibrary {
     time_step: f64,
     tracks: Vec<Vec<[f64; 2]>>,
@@ -29,15 +29,15 @@ pub struct ExpertLibrary {
 /// A library as it was read, before it is checked.
 #[derive(Deserialize)]
 #[serde(rename = "ExpertLibrary", deny_unknown_fields)]
-struct Unchecked {
+struct UncheckedLibrary {
     time_step: f64,
     tracks: Vec<Vec<[f64; 2]>>,
 }
 
-impl TryFrom<Unchecked> for ExpertLibrary {
+impl TryFrom<UncheckedLibrary> for ExpertLibrary {
     type Error = LibraryError;
 
-    fn try_from(unchecked: Unchecked) -> Result<Self, LibraryError> {
+    fn try_from(unchecked: UncheckedLibrary) -> Result<Self, LibraryError> {
         Self::new(unchecked.tracks, unchecked.time_step)
     }
 }
@@ -119,24 +119,24 @@ mod tests {
     #[test]
     fn what_cannot_be_used_is_named() {
         let track = vec![[0.0, 1.0]; 20];
-        assert_eq!(ExpertLibrary::new(vec![], 0.4), Err(LibraryError::Empty));
-        assert!(matches!(
-            ExpertLibrary::new(vec![track.clone()], f64::NAN),
-            Err(LibraryError::InvalidTimeStep { .. })
-        ));
-        let source = TrackError::WrongLength {
-            found: 8,
-            needed: 20,
+        let refused = |tracks: &[&[[f64; 2]]], time_step| {
+            let tracks = tracks.iter().map(|track| track.to_vec()).collect();
+            ExpertLibrary::new(tracks, time_step).unwrap_err()
         };
+        assert_eq!(refused(&[], 0.4), LibraryError::Empty);
+        let time_step = refused(&[&track], f64::NAN).to_string();
+        assert!(time_step.starts_with("the time step is NaN s"));
+        let (found, needed) = (8, 20);
+        let source = TrackError::WrongLength { found, needed };
         assert_eq!(
-            ExpertLibrary::new(vec![track.clone(), track[..8].to_vec()], 0.4),
-            Err(LibraryError::Track { index: 1, source })
+            refused(&[&track, &track[..8]], 0.4),
+            LibraryError::Track { index: 1, source }
         );
         let mut broken = track;
         broken[19][1] = f64::INFINITY;
-        let error = ExpertLibrary::new(vec![broken], 0.4).unwrap_err();
+        let error = refused(&[&broken], 0.4).to_string();
         assert_eq!(
-            error.to_string(),
+            error,
             "track 0 of the library: position 19 is (0, inf): must be finite"
         );
     }
@@ -147,11 +147,8 @@ mod tests {
         let library = ExpertLibrary::new(vec![track], 0.4).unwrap();
         assert!(!library.is_empty());
         let json = serde_json::to_string(&library).unwrap();
-        assert_eq!(
-            serde_json::from_str::<ExpertLibrary>(&json).unwrap(),
-            library
-        );
-        let broken = json.replace("0.4", "-0.4");
-        assert!(serde_json::from_str::<ExpertLibrary>(&broken).is_err());
+        let read = serde_json::from_str::<ExpertLibrary>;
+        assert_eq!(read(&json).unwrap(), library);
+        assert!(read(&json.replace("0.4", "-0.4")).is_err());
     }
 }

@@ -1,10 +1,13 @@
 //! Lloyd's iteration: each point to its nearest centre, each centre to the mean of its points.
 
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+
 use crate::points::{Points, squared_distance};
+use ddl_simd::{Dispatch, Register, RegisterKernel};
 
 /// One run of Lloyd's iteration.
 #[derive(Debug)]
-pub(crate) struct Run {
+pub(crate) struct Lloyd {
     pub(crate) centres: Vec<[f64; 2]>,
     pub(crate) labels: Vec<u64>,
     /// Squared distance of each point to its centre.
@@ -12,7 +15,7 @@ pub(crate) struct Run {
     pub(crate) inertia: f64,
 }
 
-impl Run {
+impl Lloyd {
     /// Each point with the nearest of the given centres.
     pub(crate) fn from_centres(points: &Points, centres: Vec<[f64; 2]>) -> Self {
         let count = points.len();
@@ -40,20 +43,12 @@ impl Run {
 
     /// Gives each point to its nearest centre, the first of equally near ones.
     fn assign(&mut self, points: &Points) {
-        // The loop over the points is the inner one: it has no branches and becomes vector instructions.
-        self.labels.fill(0);
-        self.nearest.fill(f64::INFINITY);
-        for (k, &centre) in self.centres.iter().enumerate() {
-            let k = k as u64;
-            let positions = points.x.iter().zip(&points.y);
-            let cells = self.nearest.iter_mut().zip(&mut self.labels);
-            for ((nearest, label), (&x, &y)) in cells.zip(positions) {
-                let distance = squared_distance([x, y], centre);
-                let nearer = distance < *nearest;
-                *nearest = if nearer { distance } else { *nearest };
-                *label = if nearer { k } else { *label };
-            }
-        }
+        Dispatch::detect().run_on_registers(Assign {
+            points,
+            centres: &self.centres,
+            labels: &mut self.labels,
+            nearest: &mut self.nearest,
+        });
         self.inertia = self
             .nearest
             .iter()
@@ -101,9 +96,40 @@ impl Run {
     }
 }
 
+/// The nearest centre of each point.
+struct Assign<'a> {
+    points: &'a Points,
+    centres: &'a [[f64; 2]],
+    labels: &'a mut [u64],
+    nearest: &'a mut [f64],
+}
+
+impl RegisterKernel for Assign<'_> {
+    type Output = ();
+
+    /// Plain loops, compiled for the instruction set: the same bits with each.
+    #[inline(always)]
+    fn run<R: Register>(self, _: R) {
+        self.labels.fill(0);
+        self.nearest.fill(f64::INFINITY);
+        for (k, &centre) in self.centres.iter().enumerate() {
+            let k = k as u64;
+            let positions = self.points.x.iter().zip(&self.points.y);
+            let cells = self.nearest.iter_mut().zip(self.labels.iter_mut());
+            // The inner loop has no branches and becomes vector instructions.
+            for ((nearest, label), (&x, &y)) in cells.zip(positions) {
+                let distance = squared_distance([x, y], centre);
+                let nearer = distance < *nearest;
+                *nearest = if nearer { distance } else { *nearest };
+                *label = if nearer { k } else { *label };
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Run;
+    use super::Lloyd;
     use crate::points::Points;
 
     /// By hand: nobody is near the second centre, so it takes the point at 10, the farthest from its own centre; the first is left with 0
@@ -114,7 +140,7 @@ mod tests {
         for (x, weight) in [(0.0, 1.0), (1.0, 3.0), (10.0, 1.0)] {
             points.push([x, 0.0], weight);
         }
-        let mut run = Run::from_centres(&points, vec![[0.5, 0.0], [100.0, 0.0]]);
+        let mut run = Lloyd::from_centres(&points, vec![[0.5, 0.0], [100.0, 0.0]]);
         assert_eq!(run.labels, [0, 0, 0]);
         run.iterate(&points, 1, 0.0);
         assert_eq!(run.centres, [[0.75, 0.0], [10.0, 0.0]]);

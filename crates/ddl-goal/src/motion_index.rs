@@ -1,6 +1,9 @@
 //! The tracks of a library that moved most like a walker, their mirror images among them.
 
+#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+
 use crate::motion::{COMPONENTS, SIGNED};
+use ddl_simd::{Dispatch, Register, RegisterKernel};
 
 /// Tracks compared at once: the loop over them becomes vector instructions.
 const LANES: usize = 16;
@@ -49,34 +52,60 @@ impl MotionIndex {
         if wanted == 0 {
             return Vec::new();
         }
-        let mut kept: Vec<u64> = Vec::new();
-        let mut bound = f32::INFINITY;
-        for (first, block) in (0..).step_by(LANES).zip(&self.blocks) {
-            let both = distances(query, block);
-            for (mirrored, distances) in both.iter().enumerate() {
-                // Without an early exit the minimum is a few vector instructions.
-                let least = |least, &d| if d < least { d } else { least };
-                if distances.iter().fold(f32::INFINITY, least) < bound {
-                    for (lane, &distance) in distances.iter().enumerate() {
-                        if distance < bound {
-                            kept.push(key(distance, 2 * (first + lane) + mirrored));
-                        }
-                    }
-                }
-            }
-            if kept.len() >= 2 * wanted {
-                let (_, &mut last, _) = kept.select_nth_unstable(wanted - 1);
-                kept.truncate(wanted);
-                bound = distance_of(last);
-            }
-        }
+        let mut kept = Dispatch::detect().run_on_registers(NearestMotions {
+            blocks: &self.blocks,
+            query,
+            wanted,
+        });
         kept.sort_unstable();
         kept.truncate(wanted);
         kept.iter().map(|&key| alike(key)).collect()
     }
 }
 
+/// The keys of the nearest, and of some others.
+struct NearestMotions<'a> {
+    blocks: &'a [Block],
+    query: &'a [f32; COMPONENTS],
+    wanted: usize,
+}
+
+impl RegisterKernel for NearestMotions<'_> {
+    type Output = Vec<u64>;
+
+    /// Plain loops, compiled for the instruction set: the same bits with each.
+    #[inline(always)]
+    fn run<R: Register>(self, _: R) -> Vec<u64> {
+        // Room for what a block adds before the nearest are selected.
+        let mut kept = vec![0; 2 * (self.wanted + LANES)];
+        let mut count = 0;
+        let mut bound = f32::INFINITY;
+        for (first, block) in (0..).step_by(LANES).zip(self.blocks) {
+            let both = distances(self.query, block);
+            for (mirrored, distances) in both.iter().enumerate() {
+                // Without an early exit the minimum is a few vector instructions.
+                let least = |least, &d| if d < least { d } else { least };
+                if distances.iter().fold(f32::INFINITY, least) < bound {
+                    // Each is written, and stays if it is near enough: there is no branch to mispredict.
+                    for (lane, &distance) in distances.iter().enumerate() {
+                        kept[count] = key(distance, 2 * (first + lane) + mirrored);
+                        count += usize::from(distance < bound);
+                    }
+                }
+            }
+            if count >= 2 * self.wanted {
+                let (_, &mut last, _) = kept[..count].select_nth_unstable(self.wanted - 1);
+                count = self.wanted;
+                bound = distance_of(last);
+            }
+        }
+        kept.truncate(count);
+        kept
+    }
+}
+
 /// Squared distances of a query to sixteen tracks, and to their mirror images.
+#[inline(always)]
 fn distances(query: &[f32; COMPONENTS], block: &Block) -> [[f32; LANES]; 2] {
     let (same, signed) = query.split_at(SIGNED);
     let (blocks_same, blocks_signed) = block.split_at(SIGNED);

@@ -3,8 +3,19 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::ParamsError;
-use crate::frame::RetrievalFrame;
 use crate::span::QuerySpan;
+
+/// In which coordinates walkers are compared and their ends are carried over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RetrievalFrame {
+    /// The coordinates of the recording: a walker is like another only if both head the same way. What the published
+    /// estimator does, with soft-DTW and k-means.
+    World,
+    /// The walker's own [`crate::HeadingFrame`], in which every track of the library also serves as its mirror image.
+    #[default]
+    Heading,
+}
 
 /// Parameters of a [`crate::GoalEstimator`], to be set one by one and then checked.
 ///
@@ -25,19 +36,26 @@ use crate::span::QuerySpan;
 /// ```
 /// use ddl_goal::GoalEstimatorParams;
 /// let params = GoalEstimatorParams::default().experts(50).seed(7).check()?;
-/// assert_eq!((params.experts(), params.clusters()), (50, 20));
+/// assert_eq!((params.experts, params.clusters), (50, 20));
 /// # Ok::<(), ddl_goal::ParamsError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GoalEstimatorParams {
-    frame: RetrievalFrame,
-    experts: usize,
-    clusters: usize,
-    gamma: f64,
-    restarts: usize,
-    seed: u64,
-    query: QuerySpan,
+    /// In which coordinates walkers are compared.
+    pub frame: RetrievalFrame,
+    /// Number of similar walkers to retrieve.
+    pub experts: usize,
+    /// Number of goals.
+    pub clusters: usize,
+    /// Smoothing of soft-DTW (m²/s²); 0 is hard DTW.
+    pub gamma: f64,
+    /// Number of runs of k-means.
+    pub restarts: usize,
+    /// Seed of k-means.
+    pub seed: u64,
+    /// What the retrieval may look at.
+    pub query: QuerySpan,
 }
 
 impl Default for GoalEstimatorParams {
@@ -76,49 +94,49 @@ impl GoalEstimatorParams {
         }
     }
 
-    /// In which coordinates walkers are compared.
+    /// Sets [`frame`](Self::frame).
     #[must_use]
     pub fn frame(mut self, frame: RetrievalFrame) -> Self {
         self.frame = frame;
         self
     }
 
-    /// Number of similar walkers to retrieve.
+    /// Sets [`experts`](Self::experts).
     #[must_use]
     pub fn experts(mut self, experts: usize) -> Self {
         self.experts = experts;
         self
     }
 
-    /// Number of goals.
+    /// Sets [`clusters`](Self::clusters).
     #[must_use]
     pub fn clusters(mut self, clusters: usize) -> Self {
         self.clusters = clusters;
         self
     }
 
-    /// Smoothing of soft-DTW (m²/s²); 0 is hard DTW.
+    /// Sets [`gamma`](Self::gamma).
     #[must_use]
     pub fn gamma(mut self, gamma: f64) -> Self {
         self.gamma = gamma;
         self
     }
 
-    /// Number of runs of k-means.
+    /// Sets [`restarts`](Self::restarts).
     #[must_use]
     pub fn restarts(mut self, restarts: usize) -> Self {
         self.restarts = restarts;
         self
     }
 
-    /// Seed of k-means.
+    /// Sets [`seed`](Self::seed).
     #[must_use]
     pub fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
     }
 
-    /// What the retrieval may look at.
+    /// Sets [`query`](Self::query).
     #[must_use]
     pub fn query(mut self, query: QuerySpan) -> Self {
         self.query = query;
@@ -149,114 +167,52 @@ impl GoalEstimatorParams {
     }
 }
 
-/// Parameters that passed [`GoalEstimatorParams::check`].
+/// Parameters that passed [`GoalEstimatorParams::check`], to be read field by field.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct ValidGoalEstimatorParams(GoalEstimatorParams);
 
-impl ValidGoalEstimatorParams {
-    /// In which coordinates walkers are compared.
-    pub fn frame(&self) -> RetrievalFrame {
-        self.0.frame
-    }
+impl std::ops::Deref for ValidGoalEstimatorParams {
+    type Target = GoalEstimatorParams;
 
-    /// Number of similar walkers to retrieve.
-    pub fn experts(&self) -> usize {
-        self.0.experts
-    }
-
-    /// Number of goals.
-    pub fn clusters(&self) -> usize {
-        self.0.clusters
-    }
-
-    /// Smoothing of soft-DTW (m²/s²).
-    pub fn gamma(&self) -> f64 {
-        self.0.gamma
-    }
-
-    /// Number of runs of k-means.
-    pub fn restarts(&self) -> usize {
-        self.0.restarts
-    }
-
-    /// Seed of k-means.
-    pub fn seed(&self) -> u64 {
-        self.0.seed
-    }
-
-    /// What the retrieval may look at.
-    pub fn query(&self) -> QuerySpan {
-        self.0.query
+    fn deref(&self) -> &GoalEstimatorParams {
+        &self.0
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::GoalEstimatorParams;
+    use super::{GoalEstimatorParams, RetrievalFrame};
     use crate::error::ParamsError;
-    use crate::frame::RetrievalFrame;
     use crate::span::QuerySpan;
 
     #[test]
     fn each_senseless_value_is_refused() {
+        let refused = |params: GoalEstimatorParams| params.check().unwrap_err();
         let params = GoalEstimatorParams::default;
-        assert_eq!(params().experts(0).check(), Err(ParamsError::NoExperts));
-        assert_eq!(params().clusters(0).check(), Err(ParamsError::NoClusters));
-        assert_eq!(params().restarts(0).check(), Err(ParamsError::NoRestarts));
+        assert_eq!(refused(params().experts(0)), ParamsError::NoExperts);
+        assert_eq!(refused(params().clusters(0)), ParamsError::NoClusters);
+        assert_eq!(refused(params().restarts(0)), ParamsError::NoRestarts);
         for gamma in [-1.0, f64::INFINITY, f64::NAN] {
-            assert!(matches!(
-                params().gamma(gamma).check(),
-                Err(ParamsError::InvalidGamma { .. })
-            ));
+            let error = refused(params().gamma(gamma)).to_string();
+            assert!(error.starts_with("gamma is"), "{error}");
         }
         assert!(params().gamma(0.0).check().is_ok());
         let future = params().query(QuerySpan::PublishedFuture);
-        assert_eq!(
-            future.clone().check(),
-            Err(ParamsError::FutureInHeadingFrame)
-        );
+        let error = refused(future.clone());
+        assert_eq!(error, ParamsError::FutureInHeadingFrame);
         assert!(future.frame(RetrievalFrame::World).check().is_ok());
-    }
-
-    #[test]
-    fn what_is_set_is_what_is_told() {
-        let params = GoalEstimatorParams::published().experts(3).clusters(4);
-        let valid = params.gamma(0.5).restarts(6).seed(7).check().unwrap();
-        let counts = (valid.experts(), valid.clusters(), valid.restarts());
-        assert_eq!((counts, valid.seed()), ((3, 4, 6), 7));
-        assert_eq!(valid.gamma().to_bits(), 0.5_f64.to_bits());
-        assert_eq!(valid.frame(), RetrievalFrame::World);
-        assert_eq!(valid.query(), QuerySpan::PublishedFuture);
-    }
-
-    #[test]
-    fn only_the_published_ones_read_the_future() {
         assert!(
-            !GoalEstimatorParams::default()
-                .check()
-                .unwrap()
-                .query()
-                .reads_future()
-        );
-        assert!(
-            GoalEstimatorParams::published()
-                .check()
-                .unwrap()
-                .query()
-                .reads_future()
+            !params().query.reads_future() && GoalEstimatorParams::published().query.reads_future()
         );
     }
 
     #[test]
     fn json_names_what_it_sets_and_nothing_else() {
-        let json = r#"{"frame": "world", "experts": 10, "query": "published-future"}"#;
+        let json = r#"{"frame": "world", "experts": 3, "clusters": 4, "gamma": 0.5, "restarts": 6, "seed": 7, "query": "published-future"}"#;
         let params: GoalEstimatorParams = serde_json::from_str(json).unwrap();
-        let expected = GoalEstimatorParams::default()
-            .frame(RetrievalFrame::World)
-            .experts(10)
-            .query(QuerySpan::PublishedFuture);
-        assert_eq!(params, expected);
+        let set = GoalEstimatorParams::published().experts(3).clusters(4);
+        assert_eq!(params, set.gamma(0.5).restarts(6).seed(7));
         assert!(serde_json::from_str::<GoalEstimatorParams>(r#"{"expert": 10}"#).is_err());
     }
 }

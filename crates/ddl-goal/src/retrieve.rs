@@ -11,20 +11,8 @@ use crate::span::{QuerySpan, velocities};
 /// # References
 /// DDL paper, equations 4 and 5. The cost is the squared Euclidean distance, as in the published code (the text of the
 /// paper says Euclidean).
-///
-/// # Examples
-/// ```
-/// use ddl_goal::{ExpertLibrary, QuerySpan, Retriever};
-///
-/// let walk = |speed: f64| -> Vec<[f64; 2]> { (0..20).map(|t| [0.4 * speed * f64::from(t), 0.0]).collect() };
-/// let library = ExpertLibrary::new((5..20).map(|i| walk(0.1 * f64::from(i))).collect(), 0.4)?;
-/// let retriever = Retriever::new(&library, 1.0, QuerySpan::Observed)?;
-/// let nearest = retriever.nearest(&walk(1.31)[..8], 2)?;
-/// assert_eq!((nearest[0].index, nearest[1].index), (8, 9)); // 1.3 and 1.4 m/s
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug)]
-pub struct Retriever {
+pub(crate) struct Retriever {
     index: SearchIndex<2>,
     time_step: f64,
     span: QuerySpan,
@@ -35,7 +23,11 @@ impl Retriever {
     ///
     /// # Errors
     /// A `gamma` that is negative or not finite, or a track whose velocities leave the range of `f64`.
-    pub fn new(library: &ExpertLibrary, gamma: f64, span: QuerySpan) -> Result<Self, GoalError> {
+    pub(crate) fn new(
+        library: &ExpertLibrary,
+        gamma: f64,
+        span: QuerySpan,
+    ) -> Result<Self, GoalError> {
         let dtw = SoftDtw::new(gamma, Cost::SquaredEuclidean)?;
         let time_step = library.time_step();
         let sequences = library.of_each(|track| velocities(track, time_step, span))?;
@@ -53,7 +45,11 @@ impl Retriever {
     ///
     /// # Errors
     /// A track that is too short or not finite.
-    pub fn nearest(&self, track: &[[f64; 2]], experts: usize) -> Result<Vec<Neighbour>, GoalError> {
+    pub(crate) fn nearest(
+        &self,
+        track: &[[f64; 2]],
+        experts: usize,
+    ) -> Result<Vec<Neighbour>, GoalError> {
         let velocities = velocities(track, self.time_step, self.span)?;
         Ok(self.index.nearest(&velocities, experts)?)
     }

@@ -104,52 +104,31 @@ mod tests {
     /// A layer: 2 (4 12 + 4 4 + 2 4 3) = 176, and 16 for every key. Embedding 16, fusion 64, remembering 2 64, output 24.
     ///
     /// One pedestrian, one goal: spatial tokens 19 (16 + 192); steps 19 (16 + 64 + 128 + 192) and, in the temporal layers,
-    /// 2 (19 176 + 16 (1 + .. + 19)); outputs 12 24.
+    /// 2 (19 176 + 16 (1 + .. + 19)); outputs 12 24. A second goal shares the spatial tokens of 8 observed frames and,
+    /// without goal shift, their steps; a second pedestrian is 16 more for each in each of two spatial layers and 19 frames.
     #[test]
-    fn one_pedestrian_by_hand() {
-        let by_hand = 19 * 208 + 19 * 400 + 2 * (19 * 176 + 16 * 190) + 12 * 24;
-        assert_eq!(by_hand, 24_608);
-        for variant in [Variant::Full, Variant::NoGoalShift] {
-            assert_eq!(small(variant).forecast_operations(1, 1), by_hand);
-        }
-    }
-
-    /// Two goals: the spatial tokens of 8 observed frames serve both, and without goal shift so do their steps.
-    #[test]
-    fn what_hypotheses_share_counts_once() {
-        let spatial = (8 + 2 * 11) * 208;
+    fn forecasts_by_hand() {
+        let one = 19 * 208 + 19 * 400 + 2 * (19 * 176 + 16 * 190) + 12 * 24;
+        assert_eq!(one, 24_608);
         let before = 8 * 400 + 2 * (8 * 176 + 16 * 36);
         let after = 11 * 400 + 2 * (11 * 176 + 16 * 154);
-        let outputs = 2 * 12 * 24;
-        let operations = |variant| small(variant).forecast_operations(1, 2);
-        assert_eq!(
-            operations(Variant::Full),
-            spatial + 2 * (before + after) + outputs
-        );
-        assert_eq!(
-            operations(Variant::NoGoalShift),
-            spatial + before + 2 * after + outputs
-        );
-    }
-
-    /// Two pedestrians see each other: 16 more for each in each of two spatial layers and 19 frames.
-    #[test]
-    fn pedestrians_of_a_scene_look_at_each_other() {
-        let one = small(Variant::Full).forecast_operations(1, 1);
-        let two = small(Variant::Full).forecast_operations(2, 1);
-        assert_eq!(two, 2 * (one + 19 * 2 * 16));
+        for (variant, observed) in [(Variant::Full, 2), (Variant::NoGoalShift, 1)] {
+            let operations =
+                |pedestrians, goals| small(variant).forecast_operations(pedestrians, goals);
+            assert_eq!(operations(1, 1), one);
+            assert_eq!(operations(2, 1), 2 * (one + 19 * 2 * 16));
+            let two_goals = (8 + 2 * 11) * 208 + observed * before + 2 * after + 2 * 12 * 24;
+            assert_eq!(operations(1, 2), two_goals);
+        }
     }
 
     /// The output reads two numbers of noise: 36 instead of 24, at 19 frames. Three times for the way back.
     #[test]
     fn a_training_step_by_hand() {
-        let config = small(Variant::Full);
+        let operations = |scenes: &[usize]| small(Variant::Full).training_operations(scenes);
         let one = 3 * (24_608 - 12 * 24 + 19 * 36);
-        assert_eq!(config.training_operations(&[1]), one);
-        assert_eq!(config.training_operations(&[1, 1]), 2 * one);
-        assert_eq!(
-            config.training_operations(&[2]),
-            2 * (one + 3 * 19 * 2 * 16)
-        );
+        assert_eq!(operations(&[1]), one);
+        assert_eq!(operations(&[1, 1]), 2 * one);
+        assert_eq!(operations(&[2]), 2 * (one + 3 * 19 * 2 * 16));
     }
 }

@@ -9,6 +9,6 @@ mod variant;
 
 pub use backbone_kind::BackboneKind;
 pub use proposal::{ProposalConfig, ProposalTraining};
-pub use star::{Frame, StarConfig};
+pub use star::{NetworkFrame, StarConfig};
 pub use training::{LearningRateSchedule, Objective, TrainingConfig};
 pub use variant::Variant;

@@ -12,6 +12,7 @@ mod device_choice;
 mod error;
 mod forecast;
 mod kernel;
+mod names;
 mod precision;
 pub mod proposal;
 pub mod seed;
@@ -19,7 +20,7 @@ mod training_report;
 pub mod weights;
 
 pub use config::{
-    BackboneKind, Frame, LearningRateSchedule, Objective, ProposalConfig, ProposalTraining,
+    BackboneKind, LearningRateSchedule, NetworkFrame, Objective, ProposalConfig, ProposalTraining,
     StarConfig, TrainingConfig, Variant,
 };
 pub use device_choice::DeviceChoice;

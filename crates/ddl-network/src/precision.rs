@@ -1,6 +1,6 @@
 //! How exactly the heavy products of the network are computed.
 
-use crate::NetworkError;
+use crate::names::named;
 
 /// Precision of the products in the feed-forward blocks of forecasts, on the CPU.
 ///
@@ -15,15 +15,6 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// "f32" or "bf16".
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::F32 => "f32",
-            Self::Bf16 => "bf16",
-        }
-    }
-
     /// Whether this machine has instructions for it.
     #[must_use]
     pub fn is_native(self) -> bool {
@@ -34,32 +25,4 @@ impl Precision {
     }
 }
 
-impl std::str::FromStr for Precision {
-    type Err = NetworkError;
-
-    fn from_str(text: &str) -> Result<Self, NetworkError> {
-        match text {
-            "f32" => Ok(Self::F32),
-            "bf16" => Ok(Self::Bf16),
-            _ => Err(NetworkError::Config {
-                field: "precision",
-                value: text.to_owned(),
-                rule: "one of f32, bf16",
-            }),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_read() {
-        for precision in [Precision::F32, Precision::Bf16] {
-            assert_eq!(precision.name().parse::<Precision>().unwrap(), precision);
-        }
-        let error = "f16".parse::<Precision>().unwrap_err().to_string();
-        assert!(error.contains("f16") && error.contains("bf16"), "{error}");
-    }
-}
+named!(Precision, "precision", F32 => "f32", Bf16 => "bf16");

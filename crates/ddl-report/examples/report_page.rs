@@ -160,9 +160,9 @@ fn rows(
     Ok(rows)
 }
 
-/// The player alone, as for tracks that are still going on: what then happened was seen of everybody at first, of some later, of nobody
-/// at the end.
-fn viewer(windows: &[Window]) -> Result<Viewer, Box<dyn Error>> {
+/// Moments of the player alone, as for tracks that are still going on: what then happened was seen of everybody at first, of some later,
+/// of nobody at the end.
+fn under_way(windows: &[Window]) -> Result<Vec<Moment>, Box<dyn Error>> {
     let spread = windows.iter().step_by((windows.len() / MOMENTS).max(1));
     let mut moments = Vec::new();
     for (at, window) in spread.enumerate() {
@@ -182,8 +182,7 @@ fn viewer(windows: &[Window]) -> Result<Viewer, Box<dyn Error>> {
             &seen,
         )?);
     }
-    Ok(Viewer::new("People who go out of sight", moments)
-        .lead("A simulated crowd, and a stand-in for a forecaster."))
+    Ok(moments)
 }
 
 /// Curves that look like a training's. Nothing was trained.
@@ -245,13 +244,22 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let report = Report::new("Stand-in forecasters on simulated crowds", results)?;
     let curves = made_up(&dataset.fold_names());
-    let page = Page::new(&report).moments(shown.clone()).curves(curves);
+    let page = Page {
+        report: &report,
+        moments: &shown,
+        curves: &curves,
+    };
 
     std::fs::create_dir_all(folder.join("figures"))?;
     std::fs::write(folder.join("page.html"), page.to_html()?)?;
     let crowd = dataset.folds()[0].test_windows(WindowRule::Published);
-    let viewer = viewer(&crowd)?.to_html()?;
-    std::fs::write(folder.join("viewer.html"), viewer)?;
+    let viewer = Viewer {
+        title: "People who go out of sight",
+        lead: "A simulated crowd, and a stand-in for a forecaster.",
+        notes: &[],
+        moments: &under_way(&crowd)?,
+    };
+    std::fs::write(folder.join("viewer.html"), viewer.to_html()?)?;
     for (name, svg) in page.figures()? {
         std::fs::write(folder.join("figures").join(name), svg)?;
     }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 /// A report cannot be put together or read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum ReportError {
     /// Two rows name the same conditions and hold different numbers.
     #[error(
@@ -12,32 +13,21 @@ pub enum ReportError {
          (minADE {first} and {second}); remove one of the runs, or give them different seeds"
     )]
     Conflict {
-        /// Forecaster and variant.
         row: String,
-        /// Name of the fold.
         fold: String,
-        /// minADE of the row that came first, metres.
         first: f64,
-        /// minADE of the other row, metres.
         second: f64,
     },
     /// The file format is newer than this crate.
     #[error("the report has format {found}; this version reads format {supported}")]
-    Format {
-        /// Format read.
-        found: u32,
-        /// Format known.
-        supported: u32,
-    },
+    Format { found: u32, supported: u32 },
     /// The text is not a report.
     #[error("not a report: {0}")]
     Json(#[from] serde_json::Error),
     /// A file cannot be read.
     #[error("{path}: {source}", path = path.display())]
     File {
-        /// The file.
         path: PathBuf,
-        /// The cause.
         source: std::io::Error,
     },
 }

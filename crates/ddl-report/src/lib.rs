@@ -11,7 +11,7 @@ mod report;
 mod training_curve;
 
 pub use error::ReportError;
-pub use figure::{FigureError, GoalCaseProblem};
+pub use figure::FigureError;
 pub use moment::{Moment, MomentHypothesis, MomentPedestrian};
 pub use report::Report;
 pub use training_curve::{EpochPoint, TrainingCurve};

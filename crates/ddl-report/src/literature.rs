@@ -189,7 +189,7 @@ mod tests {
         }
     }
 
-    /// Fixed rows, typed in anew from the papers, and the number of rows of each table.
+    /// The number of rows of each table, and of those in each convention; the sums of all cells, typed in anew from the papers.
     #[test]
     fn the_file_holds_the_rows_of_the_papers() {
         let Literature {
@@ -205,27 +205,6 @@ mod tests {
             measured.len(),
         ];
         assert_eq!(rows, [11, 5, 4, 12]);
-        let star = [
-            [0.36, 0.65],
-            [0.17, 0.36],
-            [0.31, 0.62],
-            [0.26, 0.55],
-            [0.22, 0.46],
-        ];
-        assert_eq!((&*table_one[3].method, table_one[3].folds), ("STAR", star));
-        assert_eq!((&*ablation[0].variant, ablation[0].folds), ("star", star));
-        let ddl = [
-            [0.26, 0.50],
-            [0.15, 0.35],
-            [0.29, 0.58],
-            [0.16, 0.29],
-            [0.13, 0.22],
-        ];
-        assert_eq!((&*table_one[10].method, table_one[10].folds), ("DDL", ddl));
-        assert_eq!(
-            (&*ablation[3].variant, ablation[3].mean),
-            ("full", table_one[10].mean)
-        );
         let conventions = |convention| {
             table_one
                 .iter()

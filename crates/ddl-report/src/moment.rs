@@ -97,20 +97,6 @@ impl Moment {
     ///
     /// # Errors
     /// The forecast is not of the window's pedestrians, or the window has no future.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_data::{PedestrianId, Window};
-    /// use ddl_eval::{Forecaster, baseline::ConstantVelocity};
-    /// use ddl_report::Moment;
-    /// let walk = (0..20).map(|t| [0.4 * f64::from(t), 0.0]).collect();
-    /// let window = Window::new("corridor", 0, 10, vec![PedestrianId(7)], vec![walk])?;
-    /// let forecast = ConstantVelocity::last_step().forecast(&window)?;
-    /// let moment = Moment::new("corridor", "constant velocity", &window, &forecast)?;
-    /// assert_eq!(moment.frame, 70);
-    /// assert_eq!(moment.pedestrians[0].hypotheses[0].positions[11], [7.6, 0.0]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn new(
         fold: impl Into<String>,
         forecaster: impl Into<String>,

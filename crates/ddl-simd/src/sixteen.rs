@@ -11,15 +11,19 @@ use crate::simd::{Simd, TiledKernel, Vectors};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sixteen<R, const P: usize>(pub(crate) R);
 
-/// Applies an expression to each part. A loop, not `map`: the call `map` makes is not always inlined.
-macro_rules! each_part {
-    ($a:ident, |$p:ident| $value:expr) => {{
-        let mut result = $a;
-        for $p in 0..P {
-            result[$p] = $value;
+/// Methods that do the same to each part of their first argument. A loop, not `map`: the call `map` makes is not always
+/// inlined.
+macro_rules! part_by_part {
+    ($(fn $name:ident$(<const $n:ident: $constant:ty>)?($a:ident: $kind:ident$(, $b:ident: $other:ident)*; $($c:ident: $scalar:ty),*);)*) => {$(
+        #[inline(always)]
+        fn $name$(<const $n: $constant>)?(self, $a: Self::$kind, $($b: Self::$other,)* $($c: $scalar),*) -> Self::$kind {
+            let mut result = $a;
+            for p in 0..P {
+                result[p] = self.0.$name$(::<$n>)?($a[p], $($b[p],)* $($c),*);
+            }
+            result
         }
-        result
-    }};
+    )*};
 }
 
 impl<R: Register, const P: usize> Simd for Sixteen<R, P> {
@@ -38,8 +42,11 @@ impl<R: Register, const P: usize> Simd for Sixteen<R, P> {
 
     #[inline(always)]
     fn load(self, from: &[f32; LANES]) -> Self::Floats {
-        let zero = self.splat(0.0);
-        each_part!(zero, |p| self.0.load(from, p))
+        let mut result = self.splat(0.0);
+        for (p, part) in result.iter_mut().enumerate() {
+            *part = self.0.load(from, p);
+        }
+        result
     }
 
     #[inline(always)]
@@ -49,44 +56,21 @@ impl<R: Register, const P: usize> Simd for Sixteen<R, P> {
         }
     }
 
-    #[inline(always)]
-    fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats {
-        each_part!(a, |p| self.0.add(a[p], b[p]))
-    }
-
-    #[inline(always)]
-    fn sub(self, a: Self::Floats, b: Self::Floats) -> Self::Floats {
-        each_part!(a, |p| self.0.sub(a[p], b[p]))
-    }
-
-    #[inline(always)]
-    fn mul(self, a: Self::Floats, b: Self::Floats) -> Self::Floats {
-        each_part!(a, |p| self.0.mul(a[p], b[p]))
-    }
-
-    #[inline(always)]
-    fn div(self, a: Self::Floats, b: Self::Floats) -> Self::Floats {
-        each_part!(a, |p| self.0.div(a[p], b[p]))
-    }
-
-    #[inline(always)]
-    fn sqrt(self, a: Self::Floats) -> Self::Floats {
-        each_part!(a, |p| self.0.sqrt(a[p]))
-    }
-
-    #[inline(always)]
-    fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats {
-        each_part!(a, |p| self.0.max(a[p], b[p]))
-    }
-
-    #[inline(always)]
-    fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats {
-        each_part!(a, |p| self.0.mul_add(a[p], b[p], c[p]))
-    }
-
-    #[inline(always)]
-    fn zero_unless_positive(self, condition: Self::Floats, a: Self::Floats) -> Self::Floats {
-        each_part!(a, |p| self.0.zero_unless_positive(condition[p], a[p]))
+    part_by_part! {
+        fn add(a: Floats, b: Floats;);
+        fn sub(a: Floats, b: Floats;);
+        fn mul(a: Floats, b: Floats;);
+        fn div(a: Floats, b: Floats;);
+        fn sqrt(a: Floats;);
+        fn max(a: Floats, b: Floats;);
+        fn mul_add(a: Floats, b: Floats, c: Floats;);
+        fn zero_unless_positive(condition: Floats, a: Floats;);
+        fn spread<const FROM: i32>(a: Floats;);
+        fn xor(a: Bits; b: u32);
+        fn xor_shift<const N: u32>(a: Bits;);
+        fn shift_left<const N: u32>(a: Bits;);
+        fn mul_low(a: Bits; b: u32);
+        fn keep(a: Floats, bits: Bits; least: u32);
     }
 
     #[inline(always)]
@@ -110,11 +94,6 @@ impl<R: Register, const P: usize> Simd for Sixteen<R, P> {
     }
 
     #[inline(always)]
-    fn spread<const FROM: i32>(self, a: Self::Floats) -> Self::Floats {
-        each_part!(a, |p| self.0.spread::<FROM>(a[p]))
-    }
-
-    #[inline(always)]
     fn sum_of_quarters(self, a: Self::Floats) -> Self::Floats {
         let mut sum = a;
         let mut parts = P;
@@ -134,30 +113,5 @@ impl<R: Register, const P: usize> Simd for Sixteen<R, P> {
             bits[p] = self.0.xor(bits[0], (p * R::WIDTH) as u32);
         }
         bits
-    }
-
-    #[inline(always)]
-    fn xor(self, a: Self::Bits, b: u32) -> Self::Bits {
-        each_part!(a, |p| self.0.xor(a[p], b))
-    }
-
-    #[inline(always)]
-    fn xor_shift<const N: u32>(self, a: Self::Bits) -> Self::Bits {
-        each_part!(a, |p| self.0.xor_shift::<N>(a[p]))
-    }
-
-    #[inline(always)]
-    fn shift_left<const N: u32>(self, a: Self::Bits) -> Self::Bits {
-        each_part!(a, |p| self.0.shift_left::<N>(a[p]))
-    }
-
-    #[inline(always)]
-    fn mul_low(self, a: Self::Bits, b: u32) -> Self::Bits {
-        each_part!(a, |p| self.0.mul_low(a[p], b))
-    }
-
-    #[inline(always)]
-    fn keep(self, a: Self::Floats, bits: Self::Bits, least: u32) -> Self::Floats {
-        each_part!(a, |p| self.0.keep(a[p], bits[p], least))
     }
 }

@@ -21,28 +21,13 @@ fn ways() -> Vec<PairDispatch> {
 }
 
 /// Everything that can be done with two vectors of numbers and two of pairs.
-struct All<'a> {
-    numbers: &'a [[f32; LANES]; 2],
-    words: &'a [[u32; LANES]; 2],
-    neighbours: &'a mut [u32; LANES],
-    across: &'a mut [u32; LANES],
-    dot: &'a mut [f32; LANES],
-    splat: &'a mut [u32; LANES],
-}
+struct All<'a>(
+    &'a [[f32; LANES]; 2],
+    &'a [[u32; LANES]; 2],
+    &'a mut Results,
+);
 
-impl PairKernel for All<'_> {
-    #[inline(always)]
-    fn run<P: Pairs>(self, pairs: P) {
-        let simd = pairs.simd();
-        let [a, b] = [simd.load(&self.numbers[0]), simd.load(&self.numbers[1])];
-        pairs.store(pairs.neighbours(a, b), self.neighbours);
-        pairs.store(pairs.across(a, b), self.across);
-        let [v, w] = [pairs.load(&self.words[0]), pairs.load(&self.words[1])];
-        simd.store(pairs.dot(v, w, a), self.dot);
-        pairs.store(pairs.splat(self.words[0][3]), self.splat);
-    }
-}
-
+#[derive(Default)]
 struct Results {
     neighbours: [u32; LANES],
     across: [u32; LANES],
@@ -50,21 +35,22 @@ struct Results {
     splat: [u32; LANES],
 }
 
+impl PairKernel for All<'_> {
+    #[inline(always)]
+    fn run<P: Pairs>(self, pairs: P) {
+        let (Self(numbers, words, results), simd) = (self, pairs.simd());
+        let [a, b] = [simd.load(&numbers[0]), simd.load(&numbers[1])];
+        pairs.store(pairs.neighbours(a, b), &mut results.neighbours);
+        pairs.store(pairs.across(a, b), &mut results.across);
+        let [v, w] = [pairs.load(&words[0]), pairs.load(&words[1])];
+        simd.store(pairs.dot(v, w, a), &mut results.dot);
+        pairs.store(pairs.splat(words[0][3]), &mut results.splat);
+    }
+}
+
 fn all(way: PairDispatch, numbers: &[[f32; LANES]; 2], words: &[[u32; LANES]; 2]) -> Results {
-    let mut results = Results {
-        neighbours: [0; LANES],
-        across: [0; LANES],
-        dot: [0.0; LANES],
-        splat: [0; LANES],
-    };
-    way.run(All {
-        numbers,
-        words,
-        neighbours: &mut results.neighbours,
-        across: &mut results.across,
-        dot: &mut results.dot,
-        splat: &mut results.splat,
-    });
+    let mut results = Results::default();
+    way.run(All(numbers, words, &mut results));
     results
 }
 

@@ -1,6 +1,6 @@
 //! Values and gradients of one sequence against many.
 
-use crate::blocks::{Blocks, FREE, Run};
+use crate::blocks::{BlockRun, Blocks, FREE};
 use crate::error::{SearchError, SequenceRole, SoftDtwError};
 use crate::range::{Range, floor};
 use crate::value::{SoftDtw, check};
@@ -280,7 +280,7 @@ impl Accurate {
     fn new(
         dispatch: Dispatch,
         n: usize,
-        run: &Run,
+        run: &BlockRun,
         largest: f64,
         dimension: usize,
     ) -> Option<Self> {

@@ -62,7 +62,7 @@ pub(crate) struct Blocks<const D: usize> {
     /// Steps of the longest sequence.
     pub(crate) longest: usize,
     /// Blocks of sequences of one length each, one after the other.
-    pub(crate) runs: Vec<Run>,
+    pub(crate) runs: Vec<BlockRun>,
     /// Which sequence is in a lane of a block, or [`FREE`].
     pub(crate) members: Vec<[usize; LANES]>,
     samples: Vec<Step<D>>,
@@ -70,7 +70,7 @@ pub(crate) struct Blocks<const D: usize> {
 
 /// Blocks of sequences of one length.
 #[derive(Clone, Debug)]
-pub(crate) struct Run {
+pub(crate) struct BlockRun {
     pub(crate) steps: usize,
     /// The blocks, as places in [`Blocks::members`].
     pub(crate) blocks: Range<usize>,
@@ -98,7 +98,7 @@ impl<const D: usize> Blocks<D> {
             for members in run.chunks(LANES) {
                 blocks.push(sequences, members);
             }
-            blocks.runs.push(Run {
+            blocks.runs.push(BlockRun {
                 steps: sequences[run[0]].len(),
                 blocks: first_block..blocks.members.len(),
                 first,
@@ -124,45 +124,8 @@ impl<const D: usize> Blocks<D> {
     }
 
     /// The steps of `blocks` (places in [`Blocks::members`]) of a run, one block after the other.
-    pub(crate) fn samples(&self, run: &Run, blocks: &Range<usize>) -> &[Step<D>] {
+    pub(crate) fn samples(&self, run: &BlockRun, blocks: &Range<usize>) -> &[Step<D>] {
         let step = |block: usize| run.first + (block - run.blocks.start) * run.steps;
         &self.samples[step(blocks.start)..step(blocks.end)]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Blocks, FREE};
-
-    #[test]
-    fn every_sequence_has_one_lane_and_lengths_do_not_mix() {
-        let sequences: Vec<Vec<[f64; 1]>> = (0..45)
-            .map(|i| vec![[f64::from(i)]; 1 + i as usize % 2])
-            .collect();
-        let slices: Vec<&[[f64; 1]]> = sequences.iter().map(Vec::as_slice).collect();
-        let gamma = std::f64::consts::LOG2_E; // costs are then log2 units as they are
-        let blocks = Blocks::new(gamma, &slices);
-        assert_eq!(
-            (blocks.longest, blocks.runs.len(), blocks.members.len()),
-            (2, 2, 4)
-        );
-        let mut seen = [false; 45];
-        let first = blocks.samples(&blocks.runs[0], &(0..1))[0][0].0[0];
-        for run in &blocks.runs {
-            for block in run.blocks.clone() {
-                let samples = blocks.samples(run, &(block..block + 1));
-                assert_eq!(samples.len(), run.steps);
-                for (lane, &member) in blocks.members[block].iter().enumerate() {
-                    if member == FREE {
-                        continue;
-                    }
-                    assert!(!std::mem::replace(&mut seen[member], true));
-                    assert_eq!(sequences[member].len(), run.steps);
-                    // Sequence 0 is in the first lane, and differences survive the shift.
-                    assert!((samples[0][0].0[lane] - first - member as f32).abs() < 1e-5);
-                }
-            }
-        }
-        assert!(seen.iter().all(|&seen| seen));
     }
 }

@@ -64,7 +64,7 @@ impl PairValues {
         if !pairs.is_sorted_by_key(lengths) {
             pairs.sort_by_key(lengths);
         }
-        let mut working = Working::default();
+        let mut working = WideWorking::default();
         for same in pairs.chunk_by(|a, b| lengths(a) == lengths(b)) {
             let (n, m) = lengths(&same[0]);
             let Some(range) = Range::wide(n, m) else {
@@ -100,7 +100,7 @@ impl PairValues {
         &self,
         range: Range,
         pairs: &[Pair<'_, D>],
-        working: &mut Working<D>,
+        working: &mut WideWorking<D>,
     ) -> WideLanes {
         let (_, x, y) = pairs[0];
         working.x.resize(x.len(), [[0.0; WIDE_LANES]; D]);
@@ -147,13 +147,13 @@ pub(crate) fn spread<const D: usize>(steps: &[[f64; D]], lane: usize, into: &mut
 }
 
 /// Memory of a block, kept from one to the next.
-struct Working<const D: usize> {
+struct WideWorking<const D: usize> {
     x: Vec<[WideLanes; D]>,
     y: Vec<[WideLanes; D]>,
     row: Vec<WideLanes>,
 }
 
-impl<const D: usize> Default for Working<D> {
+impl<const D: usize> Default for WideWorking<D> {
     fn default() -> Self {
         Self {
             x: Vec::new(),

@@ -1,9 +1,9 @@
 //! The numbers a sequence may consist of: `f32` and `f64`.
 
 mod sealed {
-    pub trait Sealed {}
-    impl Sealed for f32 {}
-    impl Sealed for f64 {}
+    pub trait SealedScalar {}
+    impl SealedScalar for f32 {}
+    impl SealedScalar for f64 {}
 }
 
 /// Component of a step: `f32` or `f64`, nothing else.
@@ -11,7 +11,7 @@ mod sealed {
 /// Everything is computed in `f64` and rounded once at the end, so an `f32` result is the `f64` result of the same
 /// (widened) sequences to within half a unit in its last place. The trait is sealed: that claim is proved for these two.
 pub trait Scalar:
-    sealed::Sealed + Copy + PartialEq + std::fmt::Debug + Send + Sync + 'static
+    sealed::SealedScalar + Copy + PartialEq + std::fmt::Debug + Send + Sync + 'static
 {
     /// The same number as `f64`, exactly.
     fn widened(self) -> f64;

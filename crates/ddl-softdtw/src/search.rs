@@ -6,7 +6,7 @@ use crate::decision::{Candidates, self_values};
 use crate::error::{SearchError, SequenceRole, SoftDtwError};
 use crate::neighbour::Neighbour;
 use crate::refine::PairValues;
-use crate::sieve::Sieve;
+use crate::sieve::CandidateSieve;
 use crate::value::{SoftDtw, check, finite};
 use ddl_simd::{Dispatch, InstructionSet};
 
@@ -35,7 +35,7 @@ pub struct SearchIndex<const D: usize> {
     offsets: Vec<usize>,
     /// D(y, y) of every candidate.
     self_values: Vec<f64>,
-    sieve: Option<Sieve<D>>,
+    sieve: Option<CandidateSieve<D>>,
     dispatch: Dispatch,
 }
 
@@ -79,7 +79,7 @@ impl<const D: usize> SearchIndex<D> {
         index.self_values = index.evaluate_self_values()?;
         if dtw.suits_lanes() {
             let candidates: Vec<_> = (0..index.len()).map(|i| index.candidate(i)).collect();
-            index.sieve = Sieve::build(dtw.gamma(), &candidates, &index.self_values);
+            index.sieve = CandidateSieve::build(dtw.gamma(), &candidates, &index.self_values);
         }
         Ok(index)
     }

@@ -6,7 +6,7 @@ use std::ops;
 
 use ddl_simd::{Dispatch, LANES, Lanes, Register, RegisterKernel};
 
-use crate::blocks::{Blocks, FREE, Run, Step};
+use crate::blocks::{BlockRun, Blocks, FREE, Step};
 use crate::range::{FLOOR, Range, floor};
 use crate::recursion::{GROUP, recursion};
 use crate::select::Selection;
@@ -16,7 +16,7 @@ const TILE: usize = 256;
 
 /// The candidates in blocks, with the weights that normalise their scores.
 #[derive(Clone, Debug)]
-pub(crate) struct Sieve<const D: usize> {
+pub(crate) struct CandidateSieve<const D: usize> {
     blocks: Blocks<D>,
     /// 2^(D(y, y) / 2) with D in log2 units, for each lane of each block; 0 in free lanes.
     weights: Vec<Lanes>,
@@ -32,7 +32,7 @@ struct Search<const D: usize> {
     selection: Selection,
 }
 
-impl<const D: usize> Sieve<D> {
+impl<const D: usize> CandidateSieve<D> {
     /// The sieve of candidates of known D(y, y), or `None` when `f32` cannot hold them whatever the query.
     pub(crate) fn build(
         gamma: f64,
@@ -113,11 +113,11 @@ impl<const D: usize> Sieve<D> {
     fn sweep(
         &self,
         dispatch: Dispatch,
-        run: &Run,
+        run: &BlockRun,
         blocks: ops::Range<usize>,
         search: &mut Search<D>,
     ) {
-        dispatch.run_on_registers(Sweep {
+        dispatch.run_on_registers(CandidateSweep {
             query: &search.steps,
             steps: run.steps,
             samples: self.blocks.samples(run, &blocks),
@@ -130,7 +130,7 @@ impl<const D: usize> Sieve<D> {
 }
 
 /// Scores of consecutive blocks, 2^(`start_log2` − D(x, y) + D(y, y) / 2) with D in log2 units, offered to a selection.
-struct Sweep<'a, const D: usize> {
+struct CandidateSweep<'a, const D: usize> {
     query: &'a [[f32; D]],
     /// Steps of each candidate.
     steps: usize,
@@ -141,7 +141,7 @@ struct Sweep<'a, const D: usize> {
     selection: &'a mut Selection,
 }
 
-impl<const D: usize> RegisterKernel for Sweep<'_, D> {
+impl<const D: usize> RegisterKernel for CandidateSweep<'_, D> {
     type Output = ();
 
     #[inline(always)]
@@ -163,7 +163,7 @@ impl<const D: usize> RegisterKernel for Sweep<'_, D> {
     }
 }
 
-impl<const D: usize> Sweep<'_, D> {
+impl<const D: usize> CandidateSweep<'_, D> {
     #[inline(always)]
     fn fixed<S: Register, const M: usize, const G: usize>(&mut self, simd: S) {
         let (blocks, _) = self.samples.as_chunks::<M>();

@@ -19,10 +19,10 @@ use crate::value::{SoftDtw, check, finite};
 use ddl_simd::{Dispatch, InstructionSet};
 
 pub use error::SlidingError;
-use layout::Layout;
-use sieve::Sieve;
+use layout::WindowLayout;
+use sieve::WindowSieve;
 pub use window::WindowNeighbour;
-use window::{Place, places_of, running_sums};
+use window::{WindowPlace, places_of, running_sums};
 
 /// Windows of a query that are searched for together; a longer query is cut.
 const QUERY_WINDOWS: usize = 64;
@@ -64,10 +64,10 @@ pub struct SlidingIndex<const D: usize> {
     /// Where track t begins in `steps`.
     first_steps: Vec<usize>,
     /// Where every window is, by track and offset.
-    places: Vec<Place>,
+    places: Vec<WindowPlace>,
     /// D(y, y) of every window.
     self_values: Vec<f64>,
-    sieve: Option<Sieve<D>>,
+    sieve: Option<WindowSieve<D>>,
     dispatch: Dispatch,
 }
 
@@ -123,8 +123,9 @@ impl<const D: usize> SlidingIndex<D> {
         };
         index.self_values = index.own_values()?;
         if dtw.suits_lanes() {
-            let layout = Layout::new(dtw.gamma(), &tracks, &windows, length, &index.self_values);
-            index.sieve = Sieve::new(layout);
+            let layout =
+                WindowLayout::new(dtw.gamma(), &tracks, &windows, length, &index.self_values);
+            index.sieve = WindowSieve::new(layout);
         }
         Ok(index)
     }
@@ -304,7 +305,7 @@ impl<const D: usize> SlidingIndex<D> {
 
     /// A window that was found, by track and offset: windows are numbered by these, so ties were broken by them.
     fn window_neighbour(&self, found: &Neighbour) -> WindowNeighbour {
-        let Place { track, offset } = self.places[found.index];
+        let WindowPlace { track, offset } = self.places[found.index];
         WindowNeighbour {
             track,
             offset,
@@ -313,7 +314,7 @@ impl<const D: usize> SlidingIndex<D> {
     }
 
     fn window(&self, window: usize) -> &[[f64; D]] {
-        let Place { track, offset } = self.places[window];
+        let WindowPlace { track, offset } = self.places[window];
         &self.steps[self.first_steps[track] + offset..][..self.length]
     }
 }

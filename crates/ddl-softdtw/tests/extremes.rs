@@ -46,36 +46,6 @@ proptest! {
 }
 
 #[test]
-fn costs_of_a_million_at_a_thousandth_are_finite() {
-    let x: Vec<[f64; 2]> = (0..8).map(|i| [1000.0 + f64::from(i), 0.0]).collect();
-    let y: Vec<[f64; 2]> = (0..8).map(|i| [0.0, f64::from(i)]).collect();
-    let sharp = dtw(1e-3, Cost::SquaredEuclidean);
-    let hard = dtw(0.0, Cost::SquaredEuclidean).value(&x, &y).unwrap();
-    assert!(hard > 8e6);
-    assert!((sharp.value(&x, &y).unwrap() - hard).abs() < 0.02);
-    let (_, gradient) = sharp.value_and_gradient(&x, &y).unwrap();
-    assert!(gradient.as_flattened().iter().all(|g| g.is_finite()));
-    assert!(
-        gradient.iter().all(|g| g[0] > 1999.0),
-        "every step pulls towards y"
-    );
-}
-
-#[test]
-fn long_sequences_and_other_dimensions() {
-    let wave = |phase: f64| -> Vec<[f64; 3]> {
-        (0..500)
-            .map(|i| 0.1 * f64::from(i) + phase)
-            .map(|t| [t.sin(), t.cos(), 0.01 * t])
-            .collect()
-    };
-    let dtw = dtw(0.1, Cost::SquaredEuclidean);
-    let near = dtw.normalised(&wave(0.0), &wave(0.1)).unwrap();
-    let far = dtw.normalised(&wave(0.0), &wave(2.0)).unwrap();
-    assert!(near.is_finite() && near < far);
-}
-
-#[test]
 fn the_number_of_paths_may_leave_the_range_of_f64() {
     // All costs 0: minus the logarithm of a Delannoy number, here about 2^3400.
     let smooth = dtw(1.0, Cost::SquaredEuclidean);

@@ -53,14 +53,6 @@ fn costs_of_paths(
     }
 }
 
-fn log_paths(n: usize, m: usize) -> f64 {
-    let zeros = |steps| vec![[0.0, 0.0]; steps];
-    let mut costs = Vec::new();
-    let metric = (Cost::SquaredEuclidean, None);
-    costs_of_paths(metric, (&zeros(n), &zeros(m)), (0, 0), 0.0, &mut costs);
-    (costs.len() as f64).ln()
-}
-
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -91,48 +83,6 @@ proptest! {
         let cheapest = costs.into_iter().fold(f64::INFINITY, f64::min);
         let hard = banded(0.0, cost, radius).value(&x, &y)?;
         prop_assert!((hard - cheapest).abs() < 1e-13 * (1.0 + cheapest));
-    }
-
-    #[test]
-    fn it_lies_below_hard_dtw_by_at_most_gamma_ln_paths(
-        x in prop::collection::vec(prop::array::uniform2(-3.0..3.0_f64), 1..7),
-        y in prop::collection::vec(prop::array::uniform2(-3.0..3.0_f64), 1..7),
-        gamma in 1e-6..5.0_f64, cost in cost(),
-    ) {
-        // The gap closes with gamma: this is the limit gamma -> 0 as well.
-        let hard = dtw(0.0, cost).value(&x, &y)?;
-        let soft = dtw(gamma, cost).value(&x, &y)?;
-        prop_assert!(soft <= hard + 1e-12 * hard);
-        prop_assert!(soft >= hard - gamma * log_paths(x.len(), y.len()) - 1e-9);
-    }
-
-    #[test]
-    fn more_smoothing_lowers_it(
-        x in sequence(), y in sequence(), gamma in 0.0..2.0_f64, more in 1e-3..2.0_f64, cost in cost(),
-    ) {
-        let less_smooth = dtw(gamma, cost).value(&x, &y)?;
-        let smoother = dtw(gamma + more, cost).value(&x, &y)?;
-        prop_assert!(smoother <= less_smooth + 1e-12 * less_smooth.abs());
-    }
-
-    #[test]
-    fn moving_both_sequences_changes_nothing(
-        x in sequence(), y in sequence(), gamma in 0.0..3.0_f64, cost in cost(),
-        by in prop::array::uniform2(-100.0..100.0_f64),
-    ) {
-        let moved = |s: &Sequence| s.iter().map(|p| [p[0] + by[0], p[1] + by[1]]).collect::<Vec<_>>();
-        let dtw = dtw(gamma, cost);
-        let difference = dtw.value(&moved(&x), &moved(&y))? - dtw.value(&x, &y)?;
-        prop_assert!(difference.abs() < 1e-9, "{}", difference);
-    }
-
-    #[test]
-    fn units_scale_out(x in sequence(), y in sequence(), gamma in 0.0..3.0_f64, scale in 0.1..10.0_f64) {
-        let scaled = |s: &Sequence| s.iter().map(|p| p.map(|v| v * scale)).collect::<Vec<_>>();
-        let one = dtw(gamma, Cost::SquaredEuclidean).value(&x, &y)? * scale * scale;
-        let other = dtw(gamma * scale * scale, Cost::SquaredEuclidean)
-            .value(&scaled(&x), &scaled(&y))?;
-        prop_assert!((one - other).abs() < 1e-9 * (1.0 + one.abs()));
     }
 
     #[test]

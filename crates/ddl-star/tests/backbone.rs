@@ -7,8 +7,8 @@ use ddl_network::backbone::{Backbone, output_layer};
 use ddl_network::backend::{Backend, Memory};
 use ddl_network::weights::{EncoderLayer, Layout, Linear, Sizes};
 use ddl_network::{
-    DeviceChoice, Frame, MotionNetwork, NetworkError, Noise, StarConfig, StepRule, TrainingConfig,
-    Variant,
+    DeviceChoice, MotionNetwork, NetworkError, NetworkFrame, Noise, StarConfig, StepRule,
+    TrainingConfig, Variant,
 };
 use ddl_network::{ForecastWindows, WindowRollout};
 use ddl_star::{ComputeDevice, TorchNetwork, Trainer};
@@ -25,7 +25,7 @@ struct Recurrent {
 
 impl Recurrent {
     fn new(layout: &mut Layout, config: &StarConfig) -> Self {
-        assert_eq!(config.frame, Frame::Goal);
+        assert_eq!(config.frame, NetworkFrame::Goal);
         let [inputs, width, hidden] = [
             config.temporal_inputs() + 2,
             config.model_width,

@@ -67,24 +67,16 @@ fn oracle(
     let metric = CholeskyMetric::planar(a, b, c, SIGMA).unwrap();
     let start = Vector2::from(p);
     let path = match bounds {
-        None => rollout(
-            &NaturalGradientFlow::new(attractor, metric),
-            &Euler,
-            start,
-            dt,
-            1,
-        ),
+        None => {
+            let flow = NaturalGradientFlow::new(attractor, metric);
+            rollout(&flow, &Euler, start, dt, 1)
+        }
         Some(((top, own, share, absolute), time)) => {
             let bounds = MotionBounds::new(top, own.into(), share).unwrap();
             let bounds = if absolute { bounds.absolute() } else { bounds };
             let metric = bounds.shape(&metric, &(attractor.goal() - start), time);
-            rollout(
-                &NaturalGradientFlow::new(attractor, metric),
-                &StableEuler,
-                start,
-                dt,
-                1,
-            )
+            let flow = NaturalGradientFlow::new(attractor, metric);
+            rollout(&flow, &StableEuler, start, dt, 1)
         }
     };
     path.unwrap()[1].into()
@@ -146,18 +138,9 @@ fn gradients_of_a_chain(
     let mut positions = starts.shallow_clone();
     let mut path = Vec::new();
     for t in 0..HORIZON {
-        let (done, left) = (t as usize, (HORIZON - t) as usize);
-        let bounds = bounds.map(|bounds| {
-            (
-                bounds,
-                StepTime {
-                    done,
-                    left,
-                    dt: 0.4,
-                },
-            )
-        });
-        positions = tensor_step(&positions, &goals, &factors.get(t), (0.4, bounds));
+        let (done, left, dt) = (t as usize, (HORIZON - t) as usize, 0.4);
+        let bounds = bounds.map(|bounds| (bounds, StepTime { done, left, dt }));
+        positions = tensor_step(&positions, &goals, &factors.get(t), (dt, bounds));
         path.push(positions.shallow_clone());
     }
     // off the goals, so that the loss has a slope there

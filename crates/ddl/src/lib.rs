@@ -60,8 +60,8 @@ pub use trust::familiarity::UNFAMILIAR;
 /// The examples of the guide, run as those of this documentation are.
 #[cfg(doctest)]
 mod guide {
-    #[doc = include_str!("../../../docs/guide/src/rust.md")]
+    #[doc = include_str!("../../../docs/rust.md")]
     mod rust {}
-    #[doc = include_str!("../../../docs/guide/src/extending.md")]
+    #[doc = include_str!("../../../docs/extending.md")]
     mod extending {}
 }

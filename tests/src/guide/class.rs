@@ -4,8 +4,8 @@ use crate::console::Command;
 use crate::page_run::Depth;
 use crate::recordings;
 
-const TRAINING: &str = "docs/guide/src/training.md";
-const PROGRAM: &str = "crates/ddl-cli/README.md";
+const TRAINING: &str = "docs/training.md";
+const PROGRAM: &str = "docs/program.md";
 const PERFORMANCE: &str = "docs/performance.md";
 
 /// Commands that take minutes, by page and how they begin: they are begun.
@@ -33,7 +33,7 @@ pub const ELSEWHERE: &[(&str, &str)] = &[
     (PERFORMANCE, "g++"),
     (PERFORMANCE, "for steps in"),
     (PERFORMANCE, "tail"),
-    ("docs/guide/src/rust.md", "eval \"$(cargo xtask env)\""),
+    ("docs/rust.md", "eval \"$(cargo xtask env)\""),
     ("crates/ddl/README.md", "eval \"$(cargo xtask env)\""),
 ];
 

@@ -29,7 +29,11 @@ pub fn read_moments(bytes: &[u8]) {
     let again: Vec<Moment> = serde_json::from_str(&text).expect("what was written can be read");
     assert_eq!(again, moments);
     let empty = EMPTY.get_or_init(|| Report::new("none", []).expect("no rows, no conflict"));
-    let page = Page::new(empty).moments(moments);
+    let moments = &moments;
+    let page = Page {
+        moments,
+        ..Page::new(empty)
+    };
     // Moments that are not whole are refused, and by both alike.
     assert_eq!(page.figures().is_ok(), page.to_html().is_ok());
 }

@@ -4,11 +4,10 @@ use std::env;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 
-use super::patience::run_within;
+use super::{LIMIT, run_within};
 use crate::workspace::find_on_path;
 
 /// Programs that are one, the plainest first.
@@ -21,8 +20,6 @@ const NAMES: [&str; 5] = [
 ];
 /// What is installed where a machine lets us: the browser, and letters for it to write with.
 const PACKAGES: [&str; 2] = ["chromium", "fonts-dejavu-core"];
-/// A slow mirror is given this time for each of its two steps.
-const LIMIT: Duration = Duration::from_mins(10);
 /// What to do where we cannot.
 const ADVICE: &str = "install Chromium, on Debian with `apt install chromium fonts-dejavu-core`, or name one with \
     DDL_BROWSER=/path/to/program";
@@ -32,14 +29,15 @@ pub(super) fn find_or_install() -> Result<PathBuf> {
     if let Some(named) = env::var_os("DDL_BROWSER").filter(|value| !value.is_empty()) {
         return named_one(&named);
     }
-    if let Some(found) = find(&NAMES) {
+    let find = || NAMES.iter().find_map(|name| find_on_path(OsStr::new(name)));
+    if let Some(found) = find() {
         return Ok(found);
     }
     if find_on_path(OsStr::new("apt-get")).is_none() || !is_root() {
-        bail!("no browser to check the report page with: {ADVICE}");
+        bail!("no browser to check pages with: {ADVICE}");
     }
     install()?;
-    find(&NAMES).with_context(|| {
+    find().with_context(|| {
         format!("apt-get installed no browser that is on the search path: {ADVICE}")
     })
 }
@@ -51,10 +49,6 @@ fn named_one(named: &OsStr) -> Result<PathBuf> {
             Path::new(named).display()
         )
     })
-}
-
-fn find(names: &[&str]) -> Option<PathBuf> {
-    names.iter().find_map(|name| find_on_path(OsStr::new(name)))
 }
 
 fn is_root() -> bool {
@@ -70,13 +64,8 @@ fn install() -> Result<()> {
     let apt = |arguments: &[&str]| {
         let mut command = Command::new("apt-get");
         command
-            .args([
-                "-q",
-                "-o",
-                "Acquire::Retries=3",
-                "-o",
-                "DPkg::Lock::Timeout=120",
-            ])
+            .args(["-q", "-o", "Acquire::Retries=3"])
+            .args(["-o", "DPkg::Lock::Timeout=120"])
             .args(arguments)
             .env("DEBIAN_FRONTEND", "noninteractive")
             .stdin(Stdio::null())
@@ -103,12 +92,5 @@ mod tests {
             error.contains("/nowhere/chromium") && error.contains("apt install"),
             "{error}"
         );
-    }
-
-    #[test]
-    fn the_first_name_that_is_there_is_taken() {
-        assert_eq!(find(&["no-such-browser"]), None);
-        let found = find(&["no-such-browser", "sh", "cat"]).unwrap();
-        assert_eq!(found.file_name(), Some(OsStr::new("sh")));
     }
 }

@@ -3,28 +3,23 @@
 //! It is put into a folder of its own (`pip --target`) and not into a virtual environment: Debian's Python makes none
 //! without a further package, and refuses to change what the system has installed.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
-use std::time::Duration;
 
 use anyhow::{Context, Result};
 
-use super::patience::run_within;
-use crate::libtorch::user_cache;
+use super::{LIMIT, run_within};
+use crate::cache;
 use crate::python::{self, Python};
 
 /// The version the check was written with.
 const REQUIREMENT: &str = "playwright==1.65.2";
-/// Some 50 MB.
-const LIMIT: Duration = Duration::from_mins(10);
 
 /// The folder for Python's search path; the package is fetched when it is not there.
 pub(super) fn ensure(python: &Python) -> Result<PathBuf> {
-    let cache = user_cache()?;
-    let folder = cache.join(folder_name(python)?);
+    let folder = cache::folder()?.join(folder_name(python)?);
     if !folder.is_dir() {
-        fetch(&folder, &cache)?;
+        cache::fill(&folder, Path::is_dir, fetch)?;
     }
     Ok(folder)
 }
@@ -40,15 +35,9 @@ fn folder_name(python: &Python) -> Result<String> {
     ))
 }
 
-/// Everything happens in a temporary folder beside it, which takes its name at the very end.
-fn fetch(folder: &Path, cache: &Path) -> Result<()> {
+fn fetch(work: &Path) -> Result<PathBuf> {
     let python = Python::with_pip()?;
-    fs::create_dir_all(cache).with_context(|| format!("{} cannot be created", cache.display()))?;
-    let work = tempfile::Builder::new()
-        .prefix(".playwright-incoming-")
-        .tempdir_in(cache)
-        .with_context(|| format!("{} cannot be written to", cache.display()))?;
-    let target = work.path().join("packages");
+    let target = work.join("packages");
     eprintln!("{REQUIREMENT}: fetching it with pip, once");
     let mut pip = python.module("pip");
     pip.args([
@@ -65,24 +54,5 @@ fn fetch(folder: &Path, cache: &Path) -> Result<()> {
     run_within(&mut pip, LIMIT).with_context(|| {
         format!("pip could not fetch {REQUIREMENT}: connect to a package index")
     })?;
-    match fs::rename(&target, folder) {
-        // Somebody else was faster.
-        Err(_) if folder.is_dir() => Ok(()),
-        outcome => outcome.with_context(|| format!("{} cannot be created", folder.display())),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_folder_names_package_and_interpreter() {
-        let name = folder_name(&Python::find().unwrap()).unwrap();
-        assert!(name.starts_with("playwright-1."), "{name}");
-        assert!(
-            name.contains("-cpython-3.") || name.contains("-pypy-3."),
-            "{name}"
-        );
-    }
+    Ok(target)
 }

@@ -65,7 +65,7 @@ impl Arguments {
             (Some(_), Some(error)) => Err(error),
             _ => bail!(
                 "no recordings could be had (reasons above); copy them by hand as \
-                 datasets/README.md says, or work with `--convention simulated`"
+                 docs/recordings.md says, or work with `--convention simulated`"
             ),
         }
     }

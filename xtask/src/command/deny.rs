@@ -12,6 +12,7 @@ const TOOL: CargoTool = CargoTool {
     name: "cargo-deny",
     version: "0.20.2",
     options: &[],
+    version_call: &["--version"],
 };
 /// What needs no network once the dependencies are there. Advisories do: their database changes by the day.
 const CHECKS: [&str; 3] = ["bans", "licenses", "sources"];

@@ -2,15 +2,13 @@
 
 use std::ffi::OsStr;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::Args;
 
-use super::set_up;
 use crate::browser::Browser;
 use crate::site;
-use crate::workspace::{Workspace, absolute, find_on_path};
+use crate::workspace::{Workspace, absolute};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -25,7 +23,6 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
-        set_up(workspace)?;
         let first = site::build(workspace)?;
         println!("{}", first.display());
         if let Some(folder) = self.screenshots {
@@ -36,7 +33,8 @@ impl Arguments {
             Browser::ready()?.run_check(&script, site, options)?;
         }
         if self.open {
-            open(&first)?;
+            open::that_detached(&first)
+                .with_context(|| format!("open {} yourself", first.display()))?;
         }
         Ok(())
     }
@@ -47,25 +45,43 @@ pub(super) fn check(workspace: &Workspace) -> Result<()> {
     site::build(workspace).map(drop)
 }
 
-/// Programs that show a file in the user's browser, by system.
-const OPENERS: [&str; 3] = ["xdg-open", "open", "explorer"];
+#[cfg(test)]
+#[path = "../../../tests/src/console.rs"]
+mod console;
 
-fn open(page: &std::path::Path) -> Result<()> {
-    let Some(program) = OPENERS
-        .iter()
-        .find_map(|name| find_on_path(OsStr::new(name)))
-    else {
-        bail!(
-            "no program here opens a browser: open {} yourself",
-            page.display()
-        );
-    };
-    Command::new(&program)
-        .arg(page)
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .with_context(|| format!("{} cannot be started", program.display()))?;
-    Ok(())
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser as _;
+
+    #[test]
+    fn every_call_of_this_program_in_the_documentation_is_one() {
+        let workspace = Workspace::find().unwrap();
+        let mut understood = 0;
+        for page in workspace.files().unwrap() {
+            if page.extension() != Some(OsStr::new("md")) {
+                continue;
+            }
+            let text = std::fs::read_to_string(workspace.root().join(&page)).unwrap();
+            for command in console::commands(&text) {
+                let words = command.words().unwrap_or_default();
+                if let ["cargo", "xtask", arguments @ ..] | ["./xtask", arguments @ ..] =
+                    words.as_slice()
+                {
+                    let call = ["cargo xtask"].iter().chain(arguments);
+                    if let Err(error) = crate::Arguments::try_parse_from(call) {
+                        panic!(
+                            "{}:{}: {}\n{error}",
+                            page.display(),
+                            command.line,
+                            command.typed
+                        );
+                    }
+                    understood += 1;
+                }
+            }
+        }
+        assert!(understood > 10, "only {understood} calls were found");
+        assert!(crate::Arguments::try_parse_from(["cargo xtask", "docs", "--none"]).is_err());
+    }
 }

@@ -86,8 +86,9 @@ fn table(rows: &str) -> String {
 fn made_by(commit: &str, time: &str, took: Duration) -> String {
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     format!(
-        "`cargo xtask faults --publish` made this table: development profile, {cores} cores, CPU; commit {commit}, {time}, in {:.0} min.",
-        took.as_secs_f64() / 60.0
+        "`cargo xtask faults --publish` made this table: development profile, {cores} cores, CPU; commit {commit}, {time}, in {} min {} s.",
+        took.as_secs() / 60,
+        took.as_secs() % 60
     )
 }
 
@@ -110,18 +111,9 @@ mod tests {
         let page = format!("# Title\n\n{BEGIN}\nold\n{END}\n\nMore.\n");
         let new = with_figures(&page, &table("| b | 2 | x |\n| a | 1 | y |\n")).unwrap();
         let expected = "| fault | tried | found |\n|---|---|---|\n| a | 1 | y |\n| b | 2 | x |";
-        assert_eq!(
-            new,
-            format!("# Title\n\n{BEGIN}\n{expected}\n{END}\n\nMore.\n")
-        );
-        assert_eq!(with_figures(&new, "old").unwrap(), page);
+        assert_eq!(new, page.replace("old", expected));
         assert!(with_figures("# Title\n", "").is_err());
-    }
-
-    #[test]
-    fn the_page_has_a_place_for_them() {
-        let workspace = Workspace::find().unwrap();
-        let page = fs::read_to_string(workspace.path(PAGE)).unwrap();
-        assert!(with_figures(&page, "").is_ok());
+        let real = Workspace::find().unwrap().path(PAGE);
+        assert!(with_figures(&fs::read_to_string(real).unwrap(), "").is_ok());
     }
 }

@@ -1,6 +1,5 @@
 //! `cargo xtask fuzz`: the fuzz targets of `tests/fuzz`, and a table of how far each came.
 
-use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -14,6 +13,8 @@ use crate::workspace::{Workspace, absolute, find_on_path};
 const FOLDER: &str = "tests/fuzz";
 /// Where memory is a folder, files of model readers are written and read without a disk.
 const MEMORY: &str = "/dev/shm";
+const HEADING: &str =
+    "| target | executions | a second | corpus | result |\n|---|---:|---:|---:|---|\n";
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -52,120 +53,99 @@ struct Target {
     needs_torch: bool,
 }
 
-/// How far a target came.
-#[derive(Debug, PartialEq, Eq)]
-struct Outcome {
-    name: String,
-    executions: u64,
-    per_second: u64,
-    corpus: usize,
-    passed: bool,
-}
-
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
-        require_tools()?;
-        let targets = self.chosen(workspace)?;
-        let torch = targets.iter().any(|target| target.needs_torch);
-        let library = if torch {
+        for tool in ["rustup", "cargo-fuzz"] {
+            if find_on_path(tool.as_ref()).is_none() {
+                bail!(
+                    "{tool} is missing; with rustup, get the rest by\n  rustup toolchain install nightly\n  cargo install cargo-fuzz"
+                );
+            }
+        }
+        let manifest = workspace.path(FOLDER).join("Cargo.toml");
+        let manifest = fs::read_to_string(&manifest)
+            .with_context(|| format!("{} cannot be read", manifest.display()))?;
+        let targets = self.chosen(targets(&manifest)?)?;
+        let library = if targets.iter().any(|target| target.needs_torch) {
             let ready = libtorch::ensure(workspace, &Request::default())?;
             Some(ready.folder.join("lib"))
         } else {
             None
         };
         let table = self.table.as_deref().map(absolute).transpose()?;
-        let mut outcomes = Vec::new();
-        for target in &targets {
-            outcomes.push(self.fuzz(workspace, target, torch, library.as_deref())?);
+        let mut rows = HEADING.to_owned();
+        let mut broken = Vec::new();
+        for Target { name, .. } in targets {
+            let found = workspace.path("target/fuzz-corpus").join(&name);
+            fs::create_dir_all(&found)
+                .with_context(|| format!("{} cannot be made", found.display()))?;
+            eprintln!("fuzz: {name}");
+            let (log, passed) =
+                run(&mut self.command(workspace, &name, &found, library.as_deref()))?;
+            let corpus = fs::read_dir(&found).map_or(0, Iterator::count);
+            let row = row(&name, &log, corpus, passed);
+            rows += &row.with_context(|| format!("{name} was not fuzzed (above)"))?;
             if let Some(table) = &table {
                 // After each target, so that an interrupted night is not lost.
-                fs::write(table, markdown(&outcomes))
+                fs::write(table, &rows)
                     .with_context(|| format!("{} cannot be written", table.display()))?;
             }
+            if !passed {
+                broken.push(name);
+            }
         }
-        println!("{}", markdown(&outcomes));
-        let failed: Vec<&str> = outcomes
-            .iter()
-            .filter(|outcome| !outcome.passed)
-            .map(|outcome| outcome.name.as_str())
-            .collect();
-        if !failed.is_empty() {
+        println!("{rows}");
+        if !broken.is_empty() {
             bail!(
                 "{} broke; the inputs are in {FOLDER}/artifacts: mend the reader, and put each into the corpus",
-                failed.join(", ")
+                broken.join(", ")
             );
         }
         Ok(())
     }
 
-    fn chosen(&self, workspace: &Workspace) -> Result<Vec<Target>> {
-        let manifest = workspace.path(FOLDER).join("Cargo.toml");
-        let text = fs::read_to_string(&manifest)
-            .with_context(|| format!("{} cannot be read", manifest.display()))?;
-        let all = targets(&text)?;
-        if let Some(unknown) = self
-            .targets
-            .iter()
-            .find(|name| all.iter().all(|target| target.name != **name))
-        {
-            let names: Vec<&str> = all.iter().map(|target| target.name.as_str()).collect();
-            bail!(
-                "there is no fuzz target {unknown}; there are {}",
-                names.join(", ")
-            );
+    fn chosen(&self, all: Vec<Target>) -> Result<Vec<Target>> {
+        for asked in &self.targets {
+            match all.iter().find(|target| target.name == *asked) {
+                None => {
+                    let names: Vec<&str> = all.iter().map(|target| target.name.as_str()).collect();
+                    bail!(
+                        "there is no fuzz target {asked}; there are {}",
+                        names.join(", ")
+                    );
+                }
+                Some(target) if target.needs_torch && self.no_torch => {
+                    bail!("the fuzz target {asked} needs libtorch: leave --no-torch out");
+                }
+                Some(_) => {}
+            }
         }
-        let needs_torch = |name: &&String| {
-            let mut targets = all.iter();
-            targets.any(|target| target.name == **name && target.needs_torch)
+        let is_asked = |target: &Target| {
+            let is_named = self.targets.is_empty() || self.targets.contains(&target.name);
+            is_named && !(self.no_torch && target.needs_torch)
         };
-        if let Some(name) = self
-            .targets
-            .iter()
-            .find(needs_torch)
-            .filter(|_| self.no_torch)
-        {
-            bail!("the fuzz target {name} needs libtorch: leave --no-torch out");
-        }
-        let asked = |target: &Target| {
-            (self.targets.is_empty() || self.targets.contains(&target.name))
-                && !(self.no_torch && target.needs_torch)
-        };
-        Ok(all.into_iter().filter(asked).collect())
+        Ok(all.into_iter().filter(is_asked).collect())
     }
 
-    fn fuzz(
+    fn command(
         &self,
         workspace: &Workspace,
-        target: &Target,
-        torch: bool,
+        name: &str,
+        found: &Path,
         library: Option<&Path>,
-    ) -> Result<Outcome> {
-        let name = &target.name;
-        let found = workspace.path("target/fuzz-corpus").join(name);
-        fs::create_dir_all(&found)
-            .with_context(|| format!("{} cannot be made", found.display()))?;
+    ) -> Command {
+        let sanitizer = match self.sanitizer {
+            Sanitizer::None => "none",
+            Sanitizer::Address => "address",
+        };
         let mut command = Command::new("rustup");
         command
             .args(["run", "nightly", "cargo", "fuzz", "run", name])
-            .args([
-                "--fuzz-dir",
-                FOLDER,
-                "--target-dir",
-                "target/fuzz",
-                "--sanitizer",
-            ])
-            .arg(match self.sanitizer {
-                Sanitizer::None => "none",
-                Sanitizer::Address => "address",
-            });
-        if torch {
-            command.args(["--features", "torch"]);
-        }
-        if self.no_trace_compares {
-            command.arg("--no-trace-compares");
-        }
-        command
-            .arg(&found)
+            .args(["--fuzz-dir", FOLDER, "--target-dir", "target/fuzz"])
+            .args(["--sanitizer", sanitizer])
+            .args(library.map_or(&[][..], |_| &["--features", "torch"]))
+            .args(self.no_trace_compares.then_some("--no-trace-compares"))
+            .arg(found)
             .arg(workspace.path(FOLDER).join("corpus").join(name))
             .args(["--", "-max_len=1024", "-timeout=5", "-rss_limit_mb=2048"])
             .args(["-malloc_limit_mb=64", "-print_final_stats=1"])
@@ -174,47 +154,24 @@ impl Arguments {
             .current_dir(workspace.root())
             .env_remove("RUSTFLAGS")
             .env_remove("RUSTUP_TOOLCHAIN")
+            .envs(library.map(|library| ("LD_LIBRARY_PATH", library)))
+            .envs(Path::new(MEMORY).is_dir().then_some(("TMPDIR", MEMORY)))
             .stdin(Stdio::null())
             .stderr(Stdio::piped());
-        if let Some(library) = library {
-            command.env("LD_LIBRARY_PATH", library);
-        }
-        if Path::new(MEMORY).is_dir() {
-            command.env("TMPDIR", MEMORY);
-        }
-        eprintln!("fuzz: {name}");
-        let output = command.output().context("rustup cannot be started")?;
-        let log = String::from_utf8_lossy(&output.stderr);
-        let passed = output.status.success();
-        if !passed {
-            let lines: Vec<&str> = log.lines().collect();
-            let end = lines.len().saturating_sub(60);
-            eprintln!("{}", lines[end..].join("\n"));
-            if number(&log, "stat::number_of_executed_units").is_none() {
-                bail!("{name} was not fuzzed (above)");
-            }
-        }
-        Ok(Outcome {
-            name: name.clone(),
-            executions: number(&log, "stat::number_of_executed_units").unwrap_or(0),
-            per_second: number(&log, "stat::average_exec_per_sec").unwrap_or(0),
-            corpus: fs::read_dir(&found).map_or(0, Iterator::count),
-            passed,
-        })
+        command
     }
 }
 
-/// Says how to get what is missing.
-fn require_tools() -> Result<()> {
-    if find_on_path("rustup".as_ref()).is_none() {
-        bail!("fuzzing needs a nightly toolchain by rustup, which is not on the path");
+/// What libFuzzer said, and whether no fault was found; the end of a log that tells of one is shown.
+fn run(command: &mut Command) -> Result<(String, bool)> {
+    let output = command.output().context("rustup cannot be started")?;
+    let log = String::from_utf8_lossy(&output.stderr).into_owned();
+    let passed = output.status.success();
+    if !passed {
+        let lines: Vec<&str> = log.lines().collect();
+        eprintln!("{}", lines[lines.len().saturating_sub(60)..].join("\n"));
     }
-    if find_on_path("cargo-fuzz".as_ref()).is_none() {
-        bail!(
-            "cargo-fuzz is missing; get it and a nightly toolchain by\n  rustup toolchain install nightly\n  cargo install cargo-fuzz"
-        );
-    }
-    Ok(())
+    Ok((log, passed))
 }
 
 /// The targets of a manifest, in its order.
@@ -230,28 +187,18 @@ fn targets(manifest: &str) -> Result<Vec<Target>> {
     Ok(bins.into_iter().flatten().filter_map(target).collect())
 }
 
-/// The number that libFuzzer gives on the line of that name.
-fn number(log: &str, name: &str) -> Option<u64> {
-    let line = log.lines().find(|line| line.starts_with(name))?;
-    line.split(':').next_back()?.trim().parse().ok()
-}
-
-fn markdown(outcomes: &[Outcome]) -> String {
-    let mut text =
-        "| target | executions | a second | corpus | result |\n|---|---:|---:|---:|---|\n"
-            .to_owned();
-    for outcome in outcomes {
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | {} | {} |",
-            outcome.name,
-            outcome.executions,
-            outcome.per_second,
-            outcome.corpus,
-            if outcome.passed { "no fault" } else { "broke" }
-        );
-    }
-    text
+/// A row of the table; none where nothing was executed.
+fn row(name: &str, log: &str, corpus: usize, passed: bool) -> Option<String> {
+    let number = |what: &str| -> Option<u64> {
+        let line = log.lines().find(|line| line.starts_with(what))?;
+        line.split(':').next_back()?.trim().parse().ok()
+    };
+    let executions = number("stat::number_of_executed_units")?;
+    let rate = number("stat::average_exec_per_sec").unwrap_or(0);
+    let result = if passed { "no fault" } else { "broke" };
+    Some(format!(
+        "| {name} | {executions} | {rate} | {corpus} | {result} |\n"
+    ))
 }
 
 #[cfg(test)]
@@ -260,16 +207,13 @@ mod tests {
 
     #[test]
     fn every_target_has_a_corpus_and_a_file() {
-        let workspace = Workspace::find().unwrap();
-        let folder = workspace.path(FOLDER);
+        let folder = Workspace::find().unwrap().path(FOLDER);
         let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
         let all = targets(&manifest).unwrap();
         assert!(all.len() > 20 && all.iter().any(|target| target.needs_torch));
         for Target { name, .. } in all {
-            assert!(
-                folder.join(format!("fuzz_targets/{name}.rs")).is_file(),
-                "{name}"
-            );
+            let file = folder.join(format!("fuzz_targets/{name}.rs"));
+            assert!(file.is_file(), "{name}");
             let seeds = fs::read_dir(folder.join("corpus").join(&name)).unwrap();
             assert!(seeds.count() >= 10, "{name}");
         }
@@ -279,14 +223,8 @@ mod tests {
     fn what_libfuzzer_says_becomes_a_row() {
         let log =
             "Done 10 runs\nstat::number_of_executed_units: 10\nstat::average_exec_per_sec:     5\n";
-        let outcome = Outcome {
-            name: "table".to_owned(),
-            executions: number(log, "stat::number_of_executed_units").unwrap(),
-            per_second: number(log, "stat::average_exec_per_sec").unwrap(),
-            corpus: 3,
-            passed: true,
-        };
-        assert!(markdown(&[outcome]).ends_with("| table | 10 | 5 | 3 | no fault |\n"));
-        assert_eq!(number("", "stat::number_of_executed_units"), None);
+        let expected = "| table | 10 | 5 | 3 | no fault |\n";
+        assert_eq!(row("table", log, 3, true).as_deref(), Some(expected));
+        assert_eq!(row("table", "error: no such target", 3, false), None);
     }
 }

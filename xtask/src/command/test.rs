@@ -11,21 +11,6 @@ use super::set_up;
 use crate::data::{FETCHED, RECORDED};
 use crate::workspace::{Workspace, absolute, step};
 
-/// Packages that must build and pass with no libtorch on the machine.
-const WITHOUT_TORCH: [&str; 11] = [
-    "xtask",
-    "ddl-data",
-    "ddl-simd",
-    "ddl-softdtw",
-    "ddl-dynamics",
-    "ddl-goal",
-    "ddl-eval",
-    "ddl-report",
-    "ddl-network",
-    "ddl",
-    "ddl-cli",
-];
-
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// Only what needs no libtorch; nothing is set up
@@ -48,11 +33,16 @@ impl Arguments {
                 Err(error) => eprintln!("{error:#}"),
             }
         }
-        let packages = WITHOUT_TORCH.iter().flat_map(|package| ["-p", package]);
-        let arguments: Vec<&str> = packages.collect();
-        cargo_test(workspace, &arguments, &self.rest)?;
-        let arguments = ["-p", "ddl-tests", "--no-default-features"];
-        cargo_test(workspace, &arguments, &self.rest)?;
+        let selection = [
+            "--workspace",
+            "--exclude",
+            "ddl-star",
+            "--exclude",
+            "ddl-tests",
+        ];
+        cargo_test(workspace, &selection, &self.rest)?;
+        let selection = ["-p", "ddl-tests", "--no-default-features"];
+        cargo_test(workspace, &selection, &self.rest)?;
         if self.no_torch {
             return Ok(());
         }

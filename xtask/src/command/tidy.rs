@@ -1,4 +1,4 @@
-//! `cargo xtask tidy`: the invariants of docs/architecture.md, as checks.
+//! `cargo xtask tidy`: house rules that no other tool checks.
 
 use anyhow::{Result, bail};
 

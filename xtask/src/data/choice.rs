@@ -223,7 +223,7 @@ mod tests {
     #[test]
     fn the_simulated_convention_is_had_at_once() {
         let (_folder, workspace) = workspace();
-        let mut choose = |convention| choose(&workspace, Some(convention), None, &mut |_| {});
+        let choose = |convention| choose(&workspace, Some(convention), None, &mut |_| {});
         let chosen = choose(Convention::Simulated).unwrap();
         assert_eq!(
             (chosen.convention, chosen.folder),

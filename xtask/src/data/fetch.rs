@@ -39,7 +39,7 @@ pub(crate) fn fetch<'a>(
     let _ = fs::remove_dir(folder);
     bail!(
         "the {convention} recordings cannot be fetched ({}); check the network, or copy them by \
-         hand (datasets/README.md)",
+         hand (docs/recordings.md)",
         reasons.join("; ")
     )
 }

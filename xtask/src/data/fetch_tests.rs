@@ -1,4 +1,8 @@
 //! Fetching from a server on this machine that can be as bad as a network can.
+#![expect(
+    clippy::disallowed_types,
+    reason = "the tests play the server that files are fetched from"
+)]
 
 use std::collections::BTreeMap;
 use std::fs;

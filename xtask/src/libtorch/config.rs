@@ -4,10 +4,11 @@
 //! same flags, and none of them undoes the other's work.
 
 use std::fs;
-use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
+
+use crate::whole_file;
 
 /// Relative to the workspace root; git ignores it.
 pub(super) const GENERATED: &str = ".cargo/config.generated.toml";
@@ -17,25 +18,11 @@ pub(super) const GENERATED: &str = ".cargo/config.generated.toml";
 /// An unchanged file keeps its time stamp, so that nothing is rebuilt.
 pub(super) fn write(file: &Path, libtorch: &Path) -> Result<bool> {
     let text = render(libtorch)?;
-    match fs::read_to_string(file) {
-        Ok(present) if present == text => return Ok(false),
-        Err(error) if error.kind() != ErrorKind::NotFound => {
-            return Err(error).with_context(|| format!("{} cannot be read", file.display()));
-        }
-        _ => {}
+    let is_there = fs::read_to_string(file).is_ok_and(|present| present == text);
+    if !is_there {
+        whole_file::write(file, text.as_bytes())?;
     }
-    let folder = file
-        .parent()
-        .context("the configuration needs a folder to lie in")?;
-    let put = || -> std::io::Result<()> {
-        fs::create_dir_all(folder)?;
-        let mut temporary = tempfile::NamedTempFile::new_in(folder)?;
-        temporary.write_all(text.as_bytes())?;
-        temporary.persist(file)?;
-        Ok(())
-    };
-    put().with_context(|| format!("{} cannot be written", file.display()))?;
-    Ok(true)
+    Ok(!is_there)
 }
 
 /// The folder that the configuration names, if it is there and well formed.
@@ -102,13 +89,14 @@ mod tests {
     }
 
     #[test]
-    fn an_unchanged_configuration_is_not_touched() {
+    fn an_unchanged_configuration_is_not_touched_and_a_damaged_one_counts_as_none() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("config.generated.toml");
+        assert_eq!(read(&file), None);
+        fs::write(&file, "[env\nLIBTORCH = ").unwrap();
+        assert_eq!(read(&file), None);
         assert!(write(&file, Path::new("/opt/one")).unwrap());
-        let before = fs::metadata(&file).unwrap().modified().unwrap();
         assert!(!write(&file, Path::new("/opt/one")).unwrap());
-        assert_eq!(fs::metadata(&file).unwrap().modified().unwrap(), before);
         assert!(write(&file, Path::new("/opt/two")).unwrap());
         assert_eq!(read(&file).as_deref(), Some(Path::new("/opt/two")));
     }
@@ -117,15 +105,5 @@ mod tests {
     fn paths_that_the_linker_would_cut_are_refused() {
         let message = render(Path::new("/opt/one,two")).unwrap_err().to_string();
         assert!(message.contains("comma"), "{message}");
-    }
-
-    #[test]
-    fn a_damaged_configuration_counts_as_none() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("config.generated.toml");
-        assert_eq!(read(&file), None);
-        fs::write(&file, "[env\nLIBTORCH = ").unwrap();
-        assert_eq!(read(&file), None);
-        assert!(write(&file, Path::new("/opt/one")).unwrap());
     }
 }

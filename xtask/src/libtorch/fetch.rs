@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 
 use super::pin::{self, VERSION, WHEELS, Wheel};
+use crate::cache;
 use crate::digest::{Pin, measure};
 use crate::python::{self, Python};
 
@@ -75,8 +76,6 @@ fn read_mark(folder: &Path) -> Result<Complete> {
 }
 
 /// Makes `folder` from the wheels in `wheel_dir`, or from those that pip downloads.
-///
-/// Everything happens in a temporary folder beside it, which takes its name at the very end.
 pub(super) fn fetch(folder: &Path, wheel_dir: Option<&Path>) -> Result<()> {
     if !pin::is_supported() {
         bail!(
@@ -91,40 +90,31 @@ pub(super) fn fetch(folder: &Path, wheel_dir: Option<&Path>) -> Result<()> {
     } else {
         Python::with_pip()?
     };
-    let cache = folder
-        .parent()
-        .context("a cache folder cannot be the root of the disk")?;
-    fs::create_dir_all(cache).with_context(|| format!("{} cannot be created", cache.display()))?;
-    require_space(&python, cache, wheel_dir.is_none())?;
-    let work = tempfile::Builder::new()
-        .prefix(".libtorch-incoming-")
-        .tempdir_in(cache)
-        .with_context(|| format!("{} cannot be written to", cache.display()))?;
-    let downloads = work.path().join("wheels");
-    let wheels = if let Some(given) = wheel_dir {
-        given
-    } else {
-        download(&python, &downloads)?;
-        &downloads
-    };
-    let laid_out = work.path().join("libtorch");
-    fs::create_dir(&laid_out).context("a temporary folder cannot be created")?;
-    for wheel in &WHEELS {
-        lay_out(&python, wheel, wheels, &laid_out)?;
-    }
-    finish(&laid_out)?;
-    publish(&laid_out, folder, work.path())
+    cache::fill(folder, is_complete, |work| {
+        require_space(&python, work.parent().unwrap_or(work), wheel_dir.is_none())?;
+        let downloads = work.join("wheels");
+        if wheel_dir.is_none() {
+            download(&python, &downloads)?;
+        }
+        let laid_out = work.join("libtorch");
+        fs::create_dir(&laid_out).context("a temporary folder cannot be created")?;
+        for wheel in &WHEELS {
+            lay_out(&python, wheel, wheel_dir.unwrap_or(&downloads), &laid_out)?;
+        }
+        finish(&laid_out)?;
+        Ok(laid_out)
+    })
 }
 
-fn require_space(python: &Python, cache: &Path, downloading: bool) -> Result<()> {
+fn require_space(python: &Python, folder: &Path, downloading: bool) -> Result<()> {
     let wheels: u64 = WHEELS.iter().map(|wheel| wheel.bytes).sum();
     let needed = pin::LAID_OUT_BYTES + if downloading { wheels } else { 0 };
-    let free = python.free_space(cache)?;
+    let free = python.free_space(folder)?;
     if free < needed {
         bail!(
             "{} has {} MB free and {} MB are needed: make room, or choose another disk with \
              `cargo xtask setup --cache DIR`",
-            cache.display(),
+            folder.display(),
             free / 1_000_000,
             needed / 1_000_000
         );
@@ -229,21 +219,6 @@ fn finish(folder: &Path) -> Result<()> {
     };
     let text = serde_json::to_string_pretty(&complete).context(".complete cannot be written")?;
     fs::write(folder.join(MARK), text).context(".complete cannot be written")
-}
-
-/// Gives the finished folder its name; a damaged one in its place goes away with `work`.
-fn publish(finished: &Path, folder: &Path, work: &Path) -> Result<()> {
-    if folder.exists() {
-        if is_complete(folder) {
-            return Ok(()); // another set-up was faster
-        }
-        fs::rename(folder, work.join("replaced"))
-            .with_context(|| format!("the damaged {} cannot be replaced", folder.display()))?;
-    }
-    match fs::rename(finished, folder) {
-        Err(_) if is_complete(folder) => Ok(()),
-        outcome => outcome.with_context(|| format!("{} cannot be created", folder.display())),
-    }
 }
 
 #[cfg(test)]

@@ -80,20 +80,3 @@ fn missing_and_wrong_wheels_are_named_and_nothing_is_left() {
     );
     assert_eq!(fs::read_dir(cache.path()).unwrap().count(), 0);
 }
-
-#[test]
-fn a_damaged_folder_is_replaced_by_a_finished_one() {
-    let cache = tempfile::tempdir().unwrap();
-    let work = cache.path().join("work");
-    fs::create_dir(&work).unwrap();
-    let folder = cache.path().join("libtorch");
-    fs::create_dir(&folder).unwrap();
-    fs::write(folder.join("half"), "").unwrap();
-    let source = laid_out();
-    finish(source.path()).unwrap();
-    let finished = work.join("libtorch");
-    fs::rename(source.path(), &finished).unwrap();
-    publish(&finished, &folder, &work).unwrap();
-    assert!(is_complete(&folder));
-    assert!(!folder.join("half").exists());
-}

@@ -1,12 +1,15 @@
 //! Every link inside the site leads to a page that is there, and to a place on it; nothing is loaded from elsewhere.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-use super::html::{self, Reference};
+use super::page::{Page, Reference};
+
+/// Addresses that are no places.
+const OTHER_SCHEMES: [&str; 3] = ["data:", "javascript:", "mailto:"];
 
 /// What the check found.
 #[derive(Debug, Default)]
@@ -18,50 +21,45 @@ pub(super) struct Checked {
 
 /// Reads every page and style below `site`.
 pub(super) fn check(site: &Path) -> Result<Checked> {
-    let mut files = Vec::new();
-    list(site, &mut files)?;
     let mut pages = BTreeMap::new();
     let mut checked = Checked::default();
-    for file in &files {
-        let kind = file.extension().and_then(|extension| extension.to_str());
-        if kind != Some("html") && kind != Some("css") {
-            continue;
-        }
-        let text = fs::read_to_string(file)
-            .with_context(|| format!("{} cannot be read", file.display()))?;
-        if kind == Some("css") {
-            let foreign =
-                foreign_style(&text).map(|what| format!("{} loads {what}", shown(site, file)));
-            checked.faults.extend(foreign);
-        } else {
-            pages.insert(file.clone(), html::read(&text));
-        }
-    }
-    let mut anchors: BTreeMap<&Path, BTreeSet<&str>> = pages
-        .iter()
-        .map(|(file, page)| {
-            (
-                file.as_path(),
-                page.anchors.iter().map(String::as_str).collect(),
-            )
-        })
-        .collect();
-    for (file, page) in &pages {
-        // A page that leads on has the places of the one it leads to.
-        let onward = page.redirect.as_ref().map(|target| resolved(file, target));
-        if let Some(known) = onward.and_then(|onward| anchors.get(onward.as_path()).cloned()) {
-            anchors.insert(file, known);
-        }
-    }
-    for (file, page) in &pages {
-        for reference in &page.references {
-            match fault(file, reference, &anchors) {
-                Verdict::Elsewhere => {}
-                Verdict::Found => checked.links += 1,
-                Verdict::Fault(what) => checked
-                    .faults
-                    .push(format!("{}: {what}", shown(site, file))),
+    for file in files_below(site)? {
+        let shown = file
+            .strip_prefix(site)
+            .unwrap_or(&file)
+            .display()
+            .to_string();
+        let text =
+            |file| fs::read_to_string(file).with_context(|| format!("{shown} cannot be read"));
+        match file.extension().and_then(|extension| extension.to_str()) {
+            Some("html") => {
+                let page = Page::read(&text(&file)?);
+                pages.insert(file, (shown, page));
             }
+            Some("css") => {
+                let foreign =
+                    foreign_style(&text(&file)?).map(|what| format!("{shown} loads {what}"));
+                checked.faults.extend(foreign);
+            }
+            _ => {}
+        }
+    }
+    for (file, (shown, page)) in &pages {
+        for Reference { target, loaded } in &page.references {
+            let what = if is_foreign(target) {
+                loaded.then_some("is loaded from elsewhere")
+            } else if OTHER_SCHEMES
+                .iter()
+                .any(|scheme| target.starts_with(scheme))
+            {
+                None
+            } else {
+                checked.links += 1;
+                fault(file, target, &pages)
+            };
+            checked
+                .faults
+                .extend(what.map(|what| format!("{shown}: {target} {what}")));
         }
     }
     checked.pages = pages.len();
@@ -69,74 +67,43 @@ pub(super) fn check(site: &Path) -> Result<Checked> {
     Ok(checked)
 }
 
-enum Verdict {
-    Elsewhere,
-    Found,
-    Fault(String),
-}
-
-fn fault(file: &Path, reference: &Reference, anchors: &BTreeMap<&Path, BTreeSet<&str>>) -> Verdict {
-    let target = &reference.target;
-    if is_foreign(target) {
-        return if reference.loaded {
-            Verdict::Fault(format!("loads {target}"))
-        } else {
-            Verdict::Elsewhere
-        };
-    }
-    if ["data:", "javascript:", "mailto:"]
-        .iter()
-        .any(|scheme| target.starts_with(scheme))
-    {
-        return Verdict::Elsewhere;
-    }
+/// What is wrong with a link of the page `file` to somewhere on the site.
+fn fault(
+    file: &Path,
+    target: &str,
+    pages: &BTreeMap<PathBuf, (String, Page)>,
+) -> Option<&'static str> {
     let (path, anchor) = target.split_once('#').unwrap_or((target, ""));
-    let path = html::decoded(path.split('?').next().unwrap_or_default());
-    let path = if path.is_empty() {
-        file.to_path_buf()
-    } else {
-        resolved(file, &path)
-    };
-    let path = if path.is_dir() {
-        path.join("index.html")
-    } else {
-        path
-    };
-    // Every page of a trait names the file of its implementors, which rustdoc writes only where there are some.
-    let of_implementors = path
-        .components()
-        .any(|part| part.as_os_str() == "trait.impl");
-    if of_implementors && !path.is_file() {
-        return Verdict::Elsewhere;
-    }
+    let path = resolved(file, path.split('?').next().unwrap_or_default());
     if !path.is_file() {
-        return Verdict::Fault(format!("{target} does not exist"));
+        // Every page of a trait names the file of its implementors, which rustdoc writes only where there are some.
+        return (!path.iter().any(|part| part == "trait.impl")).then_some("does not exist");
     }
     if anchor.is_empty() {
-        return Verdict::Found;
+        return None;
     }
-    let Some(known) = anchors.get(path.as_path()) else {
-        return Verdict::Fault(format!("{target} has a place on what is no page"));
+    let Some((_, page)) = pages.get(&path) else {
+        return Some("has a place on what is no page");
     };
-    // A browser looks for the name as it is written, then for what it means; rustdoc writes both alike.
-    let decoded = html::decoded(anchor);
-    let names = [Some(anchor), Some(&decoded), first_line(anchor)];
-    if names.into_iter().flatten().any(|name| known.contains(name)) {
-        Verdict::Found
-    } else {
-        Verdict::Fault(format!("{target} has no such place"))
-    }
-}
-
-/// The first line of a range of lines of source, which the page's script marks.
-fn first_line(anchor: &str) -> Option<&str> {
-    let (first, last) = anchor.split_once('-')?;
-    let number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    (number(first) && number(last)).then_some(first)
+    // A page that leads on has the places of the one it leads to.
+    let onward = page
+        .redirect
+        .as_ref()
+        .and_then(|onward| pages.get(&resolved(&path, onward)));
+    let known = &onward.map_or(page, |(_, page)| page).anchors;
+    // A browser looks for the name as it is written, then for what it means; of a range of lines rustdoc has the first.
+    let first_line = anchor.split_once('-').map_or(anchor, |(first, _)| first);
+    let is_line = !first_line.is_empty() && first_line.bytes().all(|byte| byte.is_ascii_digit());
+    let found = known.contains(anchor)
+        || known.contains(&decoded(anchor))
+        || is_line && known.contains(first_line);
+    (!found).then_some("has no such place")
 }
 
 fn is_foreign(target: &str) -> bool {
-    target.starts_with("//") || target.starts_with("http:") || target.starts_with("https:")
+    ["//", "http:", "https:"]
+        .iter()
+        .any(|start| target.starts_with(start))
 }
 
 /// What a style would fetch from elsewhere.
@@ -145,16 +112,19 @@ fn foreign_style(css: &str) -> Option<&str> {
         .split("url(")
         .skip(1)
         .chain(css.split("@import").skip(1));
-    let targets = loads.map(|text| text.trim_start().trim_start_matches(['"', '\'']));
-    targets
+    loads
+        .map(|text| text.trim_start().trim_start_matches(['"', '\'']))
         .map(|text| text.split([')', '"', '\'']).next().unwrap_or_default())
         .find(|target| is_foreign(target))
 }
 
-/// A relative target from the page that names it, without `..`.
-fn resolved(file: &Path, target: &str) -> PathBuf {
+/// The file that a relative address on the page `file` means.
+fn resolved(file: &Path, address: &str) -> PathBuf {
+    if address.is_empty() {
+        return file.to_path_buf();
+    }
     let mut path = file.parent().unwrap_or(file).to_path_buf();
-    for part in target.split('/') {
+    for part in decoded(address).split('/') {
         match part {
             "" | "." => {}
             ".." => {
@@ -163,28 +133,44 @@ fn resolved(file: &Path, target: &str) -> PathBuf {
             name => path.push(name),
         }
     }
-    path
+    if path.is_dir() {
+        path.join("index.html")
+    } else {
+        path
+    }
 }
 
-fn shown(site: &Path, file: &Path) -> String {
-    file.strip_prefix(site)
-        .unwrap_or(file)
-        .display()
-        .to_string()
+/// An address without `%20` and the like.
+fn decoded(address: &str) -> String {
+    let mut parts = address.split('%');
+    let mut bytes = parts.next().unwrap_or_default().as_bytes().to_vec();
+    for part in parts {
+        let byte = part
+            .get(..2)
+            .and_then(|digits| u8::from_str_radix(digits, 16).ok());
+        bytes.push(byte.unwrap_or(b'%'));
+        bytes.extend_from_slice(
+            part.get(if byte.is_some() { 2.. } else { 0.. })
+                .unwrap_or_default()
+                .as_bytes(),
+        );
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// Adds every file below `folder` to `files`.
-pub(super) fn list(folder: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
+/// Every file below a folder.
+pub(super) fn files_below(folder: &Path) -> Result<Vec<PathBuf>> {
     let failed = || format!("{} cannot be read", folder.display());
+    let mut files = Vec::new();
     for entry in fs::read_dir(folder).with_context(failed)? {
         let path = entry.with_context(failed)?.path();
         if path.is_dir() {
-            list(&path, files)?;
+            files.extend(files_below(&path)?);
         } else {
             files.push(path);
         }
     }
-    Ok(())
+    Ok(files)
 }
 
 #[cfg(test)]
@@ -194,14 +180,13 @@ mod tests {
     /// A site of two pages, a source page and a style; the first page holds `body`.
     fn faults(body: &str, css: &str) -> Vec<String> {
         let site = tempfile::tempdir().unwrap();
-        let source = "<a href=#3 id=3>3</a>";
         for (file, text) in [
             ("index.html", body),
             (
                 "guide/index.html",
                 "<h1 id=\"a b\">x</h1><h2 id=\"B%3CT%3E\">y</h2>",
             ),
-            ("api/src/x.rs.html", source),
+            ("api/src/x.rs.html", "<a href=#3 id=3>3</a>"),
             (
                 "old.html",
                 "<meta http-equiv=\"refresh\" content=\"0;URL=guide/index.html\">",
@@ -215,9 +200,10 @@ mod tests {
 
     #[test]
     fn links_that_lead_somewhere_pass() {
-        let body = "<a href=\"old.html#a b\"></a><a href=\"guide/index.html#a%20b\"></a><a href=\"guide/#B%3CT%3E\"></a><a href=\"#top\" id=\"top\"></a>\
+        let body = "<a href=\"old.html#a b\"></a><a href='guide/index.html#a%20b'></a><a href=\"guide/#B%3CT%3E\"></a><a href=\"#top\" id=\"top\"></a>\
             <a href=\"api/src/x.rs.html#3-7\"></a><a href=\"https://a.example/\"></a><a href=\"guide/index.html?q=1\"></a>\
-            <img src=\"data:image/png;base64,AA\"><script src=\"api/trait.impl/x/trait.X.js\"></script>";
+            <img src=\"data:image/png;base64,AA\"><script src=\"api/trait.impl/x/trait.X.js\"></script>\
+            <script>\"<a href='x'>\"</script><!-- <a href='y'> -->";
         assert_eq!(
             faults(body, "a { background: url(\"x.svg\"); }"),
             [] as [&str; 0]
@@ -231,6 +217,7 @@ mod tests {
                 "<a href=\"nowhere.html\"></a>",
                 "index.html: nowhere.html does not exist",
             ),
+            ("<a href=ddl_star::Star></a>", "does not exist"),
             ("<a href=\"guide/index.html#c\"></a>", "no such place"),
             ("<a href=\"#top\"></a>", "no such place"),
             ("<a href=\"api/src/x.rs.html#4-7\"></a>", "no such place"),
@@ -249,7 +236,10 @@ mod tests {
             "<link rel=stylesheet href=\"//a.example/x.css\">",
             "<img src=\"http://a.example/x.png\">",
         ] {
-            assert!(faults(body, "")[0].contains("loads "), "{body}");
+            assert!(
+                faults(body, "")[0].contains("is loaded from elsewhere"),
+                "{body}"
+            );
         }
         for css in [
             "@import \"https://a.example/x.css\";",

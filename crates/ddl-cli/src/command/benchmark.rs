@@ -11,6 +11,7 @@ mod profile;
 mod publish;
 mod readme;
 mod record;
+mod report;
 mod work;
 
 pub(crate) use method::Method;
@@ -18,15 +19,13 @@ pub(crate) use plan::{Plan, Task};
 pub(crate) use profile::Profile;
 
 use super::recipe::Recipe;
-use super::{Reporting, at_least_one, baselines, folder};
+use super::{Reporting, at_least_one, folder};
 use crate::interrupt::Interrupt;
-use crate::output;
-use crate::progress::ProgressMode;
 use crate::telling::{human, tell};
 use anyhow::{Context as _, bail, ensure};
 use clap::Args;
-use ddl::data::{Convention, Dataset, locate, remove_half_written};
-use ddl::{DdlError, DeviceChoice, Protocol, Results, RunLock};
+use ddl::data::{Convention, locate, remove_half_written};
+use ddl::{DdlError, DeviceChoice, Protocol, RunLock};
 use display::Display;
 use plan::{Settings, Training};
 use publish::Making;
@@ -138,9 +137,7 @@ impl Benchmark {
             let stood = format!("{done} of {tasks} tasks are finished, after {took}");
             return Err(anyhow::Error::new(DdlError::Interrupted).context(stood));
         }
-        if !finished.is_empty() {
-            self.report(&plan, finished, &out)?;
-        }
+        let report = report::write(&plan, finished, &out, &self.reporting)?;
         tell(format_args!("wall time: {}", human(start.elapsed())));
         ensure!(
             done == tasks,
@@ -161,7 +158,6 @@ impl Benchmark {
             took: start.elapsed(),
             at: time::OffsetDateTime::now_utc(),
         };
-        let report = markdown(&out)?;
         for file in publish::publish(checkout, &plan, &report, &making)? {
             tell(format_args!("published: {file}"));
         }
@@ -177,23 +173,24 @@ impl Benchmark {
             ),
             Some(convention) => convention,
             None => {
-                let there = [Convention::Star, Convention::SocialGan]
-                    .into_iter()
-                    .find(|&convention| locate(convention, data).is_ok());
-                let convention = match there {
-                    Some(convention) => convention,
-                    None if data.is_some() => Convention::Star,
-                    None => Convention::Simulated,
-                };
-                tell(format_args!("data convention: {convention}"));
-                convention
+                let mut recorded = [Convention::Star, Convention::SocialGan].into_iter();
+                let there = recorded.find(|&convention| locate(convention, data).is_ok());
+                match (there, data) {
+                    (Some(convention), _) => convention,
+                    // It is said what the folder lacks.
+                    (None, Some(_)) => Convention::Star,
+                    (None, None) => Convention::Simulated,
+                }
             }
         };
-        if convention == Convention::Simulated {
-            return Ok((convention, None));
+        let found = match convention {
+            Convention::Simulated => None,
+            recorded => Some(std::path::absolute(folder(recorded, data)?)?),
+        };
+        if self.convention.is_none() {
+            tell(format_args!("data convention: {convention}"));
         }
-        let folder = folder(convention, data)?;
-        Ok((convention, Some(std::path::absolute(folder)?)))
+        Ok((convention, found))
     }
 
     fn plan(&self, convention: Convention, data: Option<PathBuf>) -> anyhow::Result<Plan> {
@@ -289,72 +286,6 @@ impl Benchmark {
         display.close();
         Ok(ends)
     }
-
-    /// Writes the report over finished runs, and prints it.
-    fn report(&self, plan: &Plan, runs: Vec<PathBuf>, out: &Path) -> anyhow::Result<()> {
-        let settings = &plan.settings;
-        let mut folders = runs;
-        folders.extend(self.baselines_elsewhere(settings, out)?);
-        let title = format!(
-            "Benchmark: {}, {}, recipe {}",
-            settings.convention, settings.profile, settings.recipe.name
-        );
-        let results = Results::of(title, &folders)?;
-        results.save(out)?;
-        let telling = &self.reporting.telling;
-        if telling.json {
-            output::print(&(results.report.to_json()? + "\n"))?;
-        } else if telling.progress != ProgressMode::Json {
-            output::print(&format!("\n{}\n\n", markdown(out)?.trim_end()))?;
-        }
-        for (what, name) in [
-            ("report", "report.md"),
-            ("", "report.json"),
-            ("for a paper", "report.tex"),
-            ("to look at", "report.html"),
-            ("figures", "figures"),
-        ] {
-            tell(format_args!("{what:12} {}", out.join(name).display()));
-        }
-        Ok(())
-    }
-
-    /// The baselines in the recorded convention that the plan is not in, if its recordings are there: how far apart the two are is seen
-    /// best where nothing is trained.
-    fn baselines_elsewhere(
-        &self,
-        settings: &Settings,
-        out: &Path,
-    ) -> anyhow::Result<Option<PathBuf>> {
-        let other = match settings.convention {
-            Convention::Star => Convention::SocialGan,
-            Convention::SocialGan => Convention::Star,
-            Convention::Simulated | Convention::Own => return Ok(None),
-        };
-        // A choice with the truth says nothing about baselines: they are measured under the others.
-        let mut protocols = settings.protocols.clone();
-        protocols.retain(|protocol| *protocol != Protocol::Published);
-        let data = settings.data.as_deref();
-        let Ok(folder) = locate(other, None).or_else(|_| locate(other, data)) else {
-            return Ok(None);
-        };
-        if protocols.is_empty() {
-            return Ok(None);
-        }
-        let dataset = Dataset::load(other, &folder)?;
-        let folds: Vec<String> = other.fold_names().map(str::to_owned).collect();
-        let part = (protocols.as_slice(), settings.test_walkers);
-        let report = baselines::measure(&dataset, &folds, part, &self.reporting.commit)?;
-        let folder = out.join(format!("baselines-{other}"));
-        Results::new(report, Vec::new()).save(&folder)?;
-        Ok(Some(folder))
-    }
-}
-
-/// The report as it is written for people.
-fn markdown(out: &Path) -> anyhow::Result<String> {
-    let file = out.join("report.md");
-    fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))
 }
 
 /// Which of the known names it is.

@@ -117,8 +117,13 @@ fn page(
     )];
     notes.extend(certificates(&forecasts));
     notes.extend(unfamiliar(&forecasts));
-    let viewer = Viewer::new(observed.recording.name(), moments);
-    Ok(viewer.lead(lead).notes(notes).to_html()?)
+    let viewer = Viewer {
+        title: observed.recording.name(),
+        lead: &lead,
+        notes: &notes,
+        moments: &moments,
+    };
+    Ok(viewer.to_html()?)
 }
 
 /// How many motions are unlike those of the training, in words; nothing where none is.

@@ -4,13 +4,12 @@
 //! skipped, repaired or guessed; the order of the rows does not matter. TrajNet++ alone says that lines and
 //! fields of other kinds may stand between, and that overlapping scenes may repeat a track.
 
+mod blanks;
 mod field;
 mod json_section;
 mod kind;
-mod obsmat;
 mod place;
 mod rows;
-mod social_gan;
 mod star_csv;
 mod stream;
 mod table;
@@ -23,7 +22,7 @@ pub use stream::{Frame, FrameReader};
 
 use crate::error::{DataError, FormatProblem};
 use crate::recording::Recording;
-use place::Place;
+use place::FilePlace;
 
 /// Reads one file of tracks; the recording is named after the file, without its extension.
 ///
@@ -32,7 +31,7 @@ use place::Place;
 /// [`Recording::with_frame_step`].
 ///
 /// # Errors
-/// If the file cannot be read, or its content is wrong: see [`FormatProblem`].
+/// If the file cannot be read, or its content is wrong: see [`FormatError`](crate::FormatError).
 pub fn read_recording(path: &Path, format: Format) -> Result<Recording, DataError> {
     let bytes = std::fs::read(path).map_err(|source| DataError::Read {
         path: path.to_owned(),
@@ -47,7 +46,7 @@ pub fn read_recording(path: &Path, format: Format) -> Result<Recording, DataErro
 /// The frame step is inferred as by [`read_recording`].
 ///
 /// # Errors
-/// If the content is wrong: see [`FormatProblem`].
+/// If the content is wrong: see [`FormatError`](crate::FormatError).
 ///
 /// # Examples
 /// ```
@@ -62,27 +61,27 @@ pub fn read_recording(path: &Path, format: Format) -> Result<Recording, DataErro
 /// ```
 pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Recording, DataError> {
     if COMPRESSED.iter().any(|magic| bytes.starts_with(magic)) {
-        let place = Place::line(1);
+        let place = FilePlace::line(1);
         return Err(place.wrong(origin, FormatProblem::Compressed).into());
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = bytes[..error.valid_up_to()]
             .split(|&byte| byte == b'\n')
             .count();
-        Place::line(line).wrong(origin, FormatProblem::NotUtf8)
+        FilePlace::line(line).wrong(origin, FormatProblem::NotUtf8)
     })?;
     // Spreadsheets mark UTF-8 text with a byte-order mark, which is no content.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut rate = None;
     let rows = match format {
         Format::StarCsv => star_csv::parse(text, origin),
-        Format::SocialGan => social_gan::parse(text, origin),
+        Format::SocialGan => blanks::parse(text, origin, blanks::social_gan),
         Format::Table => table::parse(text, origin),
         Format::TrajNet => trajnet::parse(text, origin).map(|(rows, told)| {
             rate = told.frames_a_second;
             rows
         }),
-        Format::Obsmat => obsmat::parse(text, origin),
+        Format::Obsmat => blanks::parse(text, origin, blanks::obsmat),
     }?;
     Ok(rows::into_recording(rows, origin)?.with_rate(rate))
 }

@@ -4,12 +4,12 @@ use crate::error::{FormatError, FormatProblem};
 
 /// A place within a file, both counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Place {
+pub(super) struct FilePlace {
     pub(super) line: usize,
     pub(super) field: Option<usize>,
 }
 
-impl Place {
+impl FilePlace {
     /// A whole line.
     pub(super) fn line(line: usize) -> Self {
         Self { line, field: None }
@@ -22,13 +22,14 @@ impl Place {
     }
 
     /// The error that something is wrong at this place.
+    #[expect(clippy::needless_pass_by_value, reason = "a problem is told once")]
     pub(super) fn wrong(self, origin: &str, problem: FormatProblem) -> FormatError {
         let Self { line, field } = self;
         FormatError {
             origin: origin.to_owned(),
             line,
             field,
-            problem,
+            problem: problem.to_string(),
         }
     }
 

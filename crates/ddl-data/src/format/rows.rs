@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::field::Who;
-use super::place::Place;
+use super::field::{self, Who};
+use super::place::FilePlace;
 use crate::error::{DataError, FormatError, FormatProblem};
 use crate::names::Numbering;
 use crate::recording::Recording;
@@ -15,54 +15,42 @@ pub(super) const FIELDS: &str = "frame, pedestrian, x, y";
 
 /// One observation and where in the file it is.
 #[derive(Debug)]
-pub(super) struct Row {
+pub(super) struct TrackRow {
     pub(super) frame: i64,
     pub(super) who: Who,
     pub(super) position: Position,
-    pub(super) place: Place,
+    pub(super) place: FilePlace,
 }
 
 /// An observation and where in the file it is.
-type Placed = (Observation, Place);
+type Placed = (Observation, FilePlace);
 
-/// The rows of a text of one observation a line: `row` reads a line, given its number and where it is from.
-pub(super) fn of_lines(
-    text: &str,
-    origin: &str,
-    row: fn(&str, usize, &str) -> Result<Row, FormatError>,
-) -> Result<Vec<Row>, FormatError> {
-    // Blank lines are an error between observations, and harmless after the last one.
-    text.trim_end()
-        .lines()
-        .enumerate()
-        .map(|(index, line)| row(line, index + 1, origin))
-        .collect()
-}
-
-/// The fields of a line, separated by tabs or blanks: as many as `names` names.
-pub(super) fn fields<'a, const COUNT: usize>(
-    text: &'a str,
-    place: Place,
-    origin: &str,
-    names: &'static str,
-) -> Result<[&'a str; COUNT], FormatError> {
-    let fields: Vec<&str> = text.split_ascii_whitespace().collect();
-    let found = fields.len();
-    fields.try_into().map_err(|_| {
-        let expected = COUNT;
-        let problem = FormatProblem::FieldCount {
-            expected,
-            found,
-            names,
-        };
-        place.wrong(origin, problem)
-    })
+impl TrackRow {
+    /// The observation that frame, pedestrian, x and y of a line make, each with the number of its field.
+    pub(super) fn of(
+        line: usize,
+        origin: &str,
+        [(f, frame), (p, pedestrian), (i, x), (j, y)]: [(usize, &str); 4],
+    ) -> Result<Self, FormatError> {
+        let at = |field: usize| FilePlace::field(line, field);
+        Ok(Self {
+            frame: at(f).read(origin, field::integer(frame, "frame"))?,
+            who: at(p).read(origin, field::pedestrian(pedestrian, "pedestrian"))?,
+            position: [
+                at(i).read(origin, field::coordinate(x, "x"))?,
+                at(j).read(origin, field::coordinate(y, "y"))?,
+            ],
+            place: FilePlace::line(line),
+        })
+    }
 }
 
 /// The recording of all rows; its frame step is inferred.
-pub(super) fn into_recording(rows: Vec<Row>, origin: &str) -> Result<Recording, DataError> {
+pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Recording, DataError> {
     if rows.is_empty() {
-        return Err(Place::line(1).wrong(origin, FormatProblem::Empty).into());
+        return Err(FilePlace::line(1)
+            .wrong(origin, FormatProblem::Empty)
+            .into());
     }
     let (mut placed, names) = numbered(rows);
     refuse_duplicates(&mut placed, &names, origin)?;
@@ -77,7 +65,7 @@ pub(super) fn into_recording(rows: Vec<Row>, origin: &str) -> Result<Recording, 
 }
 
 /// The observations with pedestrian numbers: those of the file, or, if any pedestrian of the file is a word, the order of first appearance.
-fn numbered(rows: Vec<Row>) -> (Vec<Placed>, PedestrianNames) {
+fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
     let words = rows.iter().any(|row| matches!(row.who, Who::Word(_)));
     let mut numbering = Numbering::remembering(usize::MAX);
     let mut names = BTreeMap::new();
@@ -144,10 +132,10 @@ mod tests {
     use super::*;
 
     fn step_of(frames: &[i64]) -> i64 {
-        let place = Place::line(1);
+        let place = FilePlace::line(1);
         let rows = frames
             .iter()
-            .map(|&frame| Row {
+            .map(|&frame| TrackRow {
                 frame,
                 who: Who::Number(1, None),
                 position: [0.0, 0.0],

@@ -1,47 +1,47 @@
 //! The `star` csv: four long lines that run in parallel.
 
 use super::field::{self, Who};
-use super::place::Place;
-use super::rows::Row;
+use super::place::FilePlace;
+use super::rows::TrackRow;
 use crate::error::{FormatError, FormatProblem};
 
 const LINES: usize = 4;
 const NAMES: &str = "frame, pedestrian, y, x";
 
-pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
+pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatError> {
     let text = text.trim_end();
     if text.is_empty() {
-        return Err(Place::line(1).wrong(origin, FormatProblem::Empty));
+        return Err(FilePlace::line(1).wrong(origin, FormatProblem::Empty));
     }
     let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     if lines.len() > LINES {
         let problem = FormatProblem::ExtraLine { expected: LINES };
-        return Err(Place::line(LINES + 1).wrong(origin, problem));
+        return Err(FilePlace::line(LINES + 1).wrong(origin, problem));
     }
     let [frames, pedestrians, ys, xs] = lines.as_slice() else {
         let problem = FormatProblem::MissingLine {
             expected: LINES,
             names: NAMES,
         };
-        return Err(Place::line(lines.len() + 1).wrong(origin, problem));
+        return Err(FilePlace::line(lines.len() + 1).wrong(origin, problem));
     };
     let expected = frames.len();
     for (index, line) in lines.iter().enumerate() {
         let found = line.len();
         if found != expected {
             let problem = FormatProblem::UnequalLines { expected, found };
-            return Err(Place::line(index + 1).wrong(origin, problem));
+            return Err(FilePlace::line(index + 1).wrong(origin, problem));
         }
     }
     let row = |index: usize| {
-        let place = |line: usize| Place::field(line, index + 1);
+        let place = |line: usize| FilePlace::field(line, index + 1);
         let pedestrian = field::integer(pedestrians[index], "pedestrian");
         let frame = place(1).read(origin, field::integer(frames[index], "frame"))?;
         let pedestrian = place(2).read(origin, pedestrian)?;
         // The third line is y and the fourth x: that is how STAR and DDL read these files.
         let y = place(3).read(origin, field::coordinate(ys[index], "y"))?;
         let x = place(4).read(origin, field::coordinate(xs[index], "x"))?;
-        Ok(Row {
+        Ok(TrackRow {
             frame,
             who: Who::Number(pedestrian, None),
             position: [x, y],

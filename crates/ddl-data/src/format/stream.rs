@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use super::field::Who;
 use super::kind::Format;
-use super::place::Place;
-use super::rows::Row;
-use super::table::Columns;
-use super::{obsmat, social_gan, trajnet};
+use super::place::FilePlace;
+use super::rows::TrackRow;
+use super::table::TrackColumns;
+use super::{blanks, trajnet};
 use crate::error::{DataError, FormatError, FormatProblem};
 use crate::names::Numbering;
 use crate::{PedestrianId, PedestrianNames, Position};
@@ -41,18 +41,6 @@ pub struct Frame {
 ///
 /// Pedestrians may be words; a number stays one, also beside words. Memory is bounded by the people of a frame, of whom there may be 100,000, and the last
 /// 200,000 words: whose word was forgotten meanwhile is somebody new. A last line that was cut off is read as far as it goes.
-///
-/// ```
-/// use ddl_data::FrameReader;
-///
-/// let text = b"frame,pedestrian,x,y\n0,1,0.0,2.0\n0,2,8.0,2.5\n1,1,0.5,2.0\n";
-/// let mut frames = FrameReader::new(&text[..], "tracker");
-/// let first = frames.next_frame()?.expect("two frames");
-/// assert_eq!((first.number, first.people.len()), (0, 2));
-/// assert_eq!(frames.next_frame()?.map(|frame| frame.number), Some(1));
-/// assert_eq!(frames.next_frame()?, None);
-/// # Ok::<(), ddl_data::DataError>(())
-/// ```
 #[derive(Debug)]
 pub struct FrameReader<R> {
     reader: R,
@@ -83,7 +71,7 @@ struct Growing {
 /// What the lines are.
 #[derive(Debug)]
 enum Kind {
-    Table(Columns),
+    Table(TrackColumns),
     TrajNet,
     SocialGan,
     Obsmat,
@@ -109,7 +97,7 @@ impl<R: BufRead> FrameReader<R> {
     /// The next whole frame; waits for it. `None` at the end.
     ///
     /// # Errors
-    /// If nothing can be read any more, or a line is wrong: see [`FormatProblem`]. What came before has been given out; after an error
+    /// If nothing can be read any more, or a line is wrong: see [`FormatError`]. What came before has been given out; after an error
     /// the reader is at the next line.
     pub fn next_frame(&mut self) -> Result<Option<Frame>, DataError> {
         while !self.ended {
@@ -191,7 +179,7 @@ impl<R: BufRead> FrameReader<R> {
     }
 
     /// The observation of a line, if it holds one.
-    fn row(&mut self, text: &str) -> Result<Option<Row>, FormatError> {
+    fn row(&mut self, text: &str) -> Result<Option<TrackRow>, FormatError> {
         let (line, origin) = (self.lines, self.origin.as_str());
         let Some(kind) = &self.kind else {
             let kind = match Format::guess("".as_ref(), text.as_bytes()) {
@@ -199,7 +187,7 @@ impl<R: BufRead> FrameReader<R> {
                 Format::SocialGan => Kind::SocialGan,
                 Format::Obsmat => Kind::Obsmat,
                 Format::Table | Format::StarCsv => {
-                    self.kind = Some(Kind::Table(Columns::of_line(text, line, origin)?));
+                    self.kind = Some(Kind::Table(TrackColumns::of_line(text, line, origin)?));
                     return Ok(None);
                 }
             };
@@ -208,14 +196,14 @@ impl<R: BufRead> FrameReader<R> {
         };
         match kind {
             Kind::Table(columns) => columns.row_of_line(text, line, origin).map(Some),
-            Kind::SocialGan => social_gan::row(text, line, origin).map(Some),
-            Kind::Obsmat => obsmat::row(text, line, origin).map(Some),
+            Kind::SocialGan => blanks::social_gan(text, line, origin).map(Some),
+            Kind::Obsmat => blanks::obsmat(text, line, origin).map(Some),
             Kind::TrajNet => trajnet::observation(text, line, origin, &mut self.rate),
         }
     }
 
     /// Adds an observation; the frame before, if this is the first of a new one.
-    fn add(&mut self, seen: Row) -> Result<Option<Frame>, FormatError> {
+    fn add(&mut self, seen: TrackRow) -> Result<Option<Frame>, FormatError> {
         let reached = self.current.as_ref().map(|growing| growing.frame.number);
         if let Some(last) = reached.or(self.last)
             && (seen.frame < last || (reached.is_none() && seen.frame == last))
@@ -285,6 +273,6 @@ impl<R: BufRead> FrameReader<R> {
 
     /// The error that something is wrong with the last line.
     fn wrong(&self, problem: FormatProblem) -> FormatError {
-        Place::line(self.lines).wrong(&self.origin, problem)
+        FilePlace::line(self.lines).wrong(&self.origin, problem)
     }
 }

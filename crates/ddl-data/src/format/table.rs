@@ -3,8 +3,8 @@
 use csv::{ErrorKind, StringRecord};
 
 use super::field;
-use super::place::Place;
-use super::rows::{FIELDS, Row};
+use super::place::FilePlace;
+use super::rows::{FIELDS, TrackRow};
 use crate::error::{FormatError, FormatProblem};
 
 const COLUMNS: [&str; 4] = ["frame", "pedestrian", "x", "y"];
@@ -22,15 +22,15 @@ fn names(expected: usize, found: usize) -> &'static str {
     }
 }
 
-pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
+pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatError> {
     if text.trim().is_empty() {
-        return Err(Place::line(1).wrong(origin, FormatProblem::Empty));
+        return Err(FilePlace::line(1).wrong(origin, FormatProblem::Empty));
     }
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| table_error(&e, origin))?;
-    let columns = Columns::of(header, 1, origin)?;
+    let columns = TrackColumns::of(header, 1, origin)?;
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| table_error(&e, origin))?;
@@ -42,12 +42,12 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<Row>, FormatError> {
 
 /// Which column holds what.
 #[derive(Debug)]
-pub(super) struct Columns {
+pub(super) struct TrackColumns {
     places: [usize; 4],
     count: usize,
 }
 
-impl Columns {
+impl TrackColumns {
     /// The columns that a header line names.
     pub(super) fn of_line(text: &str, line: usize, origin: &str) -> Result<Self, FormatError> {
         Self::of(&record(text, line, origin)?, line, origin)
@@ -59,7 +59,7 @@ impl Columns {
         text: &str,
         line: usize,
         origin: &str,
-    ) -> Result<Row, FormatError> {
+    ) -> Result<TrackRow, FormatError> {
         let record = record(text, line, origin)?;
         if record.len() != self.count {
             let problem = FormatProblem::FieldCount {
@@ -67,14 +67,14 @@ impl Columns {
                 found: record.len(),
                 names: names(self.count, record.len()),
             };
-            return Err(Place::line(line).wrong(origin, problem));
+            return Err(FilePlace::line(line).wrong(origin, problem));
         }
         self.row(&record, line, origin)
     }
 
     fn of(header: &StringRecord, line: usize, origin: &str) -> Result<Self, FormatError> {
         let wrong = |field: Option<usize>, detail: String| {
-            Place { line, field }.wrong(origin, FormatProblem::Header { detail })
+            FilePlace { line, field }.wrong(origin, FormatProblem::Header { detail })
         };
         if header.iter().all(|name| name.parse::<f64>().is_ok()) {
             let detail =
@@ -108,19 +108,14 @@ impl Columns {
         })
     }
 
-    fn row(&self, record: &StringRecord, line: usize, origin: &str) -> Result<Row, FormatError> {
-        let [frame, pedestrian, x, y] = self.places;
-        let text = |column: usize| record.get(column).unwrap_or_default();
-        let at = |column: usize| Place::field(line, column + 1);
-        Ok(Row {
-            frame: at(frame).read(origin, field::integer(text(frame), "frame"))?,
-            who: at(pedestrian).read(origin, field::pedestrian(text(pedestrian), "pedestrian"))?,
-            position: [
-                at(x).read(origin, field::coordinate(text(x), "x"))?,
-                at(y).read(origin, field::coordinate(text(y), "y"))?,
-            ],
-            place: Place::line(line),
-        })
+    fn row(
+        &self,
+        record: &StringRecord,
+        line: usize,
+        origin: &str,
+    ) -> Result<TrackRow, FormatError> {
+        let field = |column: usize| (column + 1, record.get(column).unwrap_or_default());
+        TrackRow::of(line, origin, self.places.map(field))
     }
 }
 
@@ -179,7 +174,7 @@ fn quoted_record(text: &str, line: usize, origin: &str) -> Result<StringRecord, 
     let read = reader.read_record(&mut record);
     read.map(|_| record).map_err(|error| {
         let detail = error.to_string();
-        Place::line(line).wrong(origin, FormatProblem::Table { detail })
+        FilePlace::line(line).wrong(origin, FormatProblem::Table { detail })
     })
 }
 
@@ -197,7 +192,7 @@ fn table_error(error: &csv::Error, origin: &str) -> FormatError {
             detail: error.to_string(),
         },
     };
-    Place::line(line).wrong(origin, problem)
+    FilePlace::line(line).wrong(origin, problem)
 }
 
 #[cfg(test)]

@@ -8,8 +8,8 @@ use serde_json::Value;
 
 use super::field::{self, Who};
 use super::json_section::Section;
-use super::place::Place;
-use super::rows::Row;
+use super::place::FilePlace;
+use super::rows::TrackRow;
 use crate::error::{FormatError, FormatProblem};
 use crate::{PedestrianName, Position};
 
@@ -21,7 +21,7 @@ use crate::{PedestrianName, Position};
     clippy::float_cmp,
     reason = "a repeated track is written with the same digits"
 )]
-pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<Row>, Rate), FormatError> {
+pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, Rate), FormatError> {
     let mut seen: BTreeMap<(i64, Who), (Position, usize)> = BTreeMap::new();
     let mut rows = Vec::new();
     let mut rate = Rate::default();
@@ -70,7 +70,7 @@ pub(super) struct Rate {
 impl Rate {
     /// Takes what the scene on a line says.
     #[expect(clippy::float_cmp, reason = "one rate is written with the same digits")]
-    fn take(&mut self, scene: &Scene, line: usize) -> Result<(), FormatProblem> {
+    fn take(&mut self, scene: &SceneFields, line: usize) -> Result<(), FormatProblem> {
         let Some(told) = scene.fps.as_ref().filter(|fps| !fps.is_null()) else {
             return Ok(());
         };
@@ -94,23 +94,23 @@ impl Rate {
 
 /// The parts of a line that are read; others may stand beside them. A part that is there twice is refused.
 #[derive(Deserialize)]
-struct Line {
+struct TrajnetLine {
     #[serde(default)]
-    scene: Option<Section<Scene>>,
+    scene: Option<Section<SceneFields>>,
     #[serde(default)]
-    track: Option<Section<Track>>,
+    track: Option<Section<TrackFields>>,
 }
 
 /// What is read of a scene, as it is written.
 #[derive(Deserialize)]
-struct Scene {
+struct SceneFields {
     #[serde(default)]
     fps: Option<Value>,
 }
 
 /// The fields of a track, as they are written.
 #[derive(Deserialize)]
-struct Track {
+struct TrackFields {
     #[serde(default, deserialize_with = "as_written")]
     f: Option<Value>,
     #[serde(default, deserialize_with = "as_written")]
@@ -134,17 +134,17 @@ pub(super) fn observation(
     line: usize,
     origin: &str,
     rate: &mut Rate,
-) -> Result<Option<Row>, FormatError> {
-    let place = Place::line(line);
+) -> Result<Option<TrackRow>, FormatError> {
+    let place = FilePlace::line(line);
     place.read(origin, row(text, place, rate))
 }
 
-fn row(text: &str, place: Place, rate: &mut Rate) -> Result<Option<Row>, FormatProblem> {
+fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>, FormatProblem> {
     if text.trim().is_empty() {
         return Ok(None);
     }
     let not_one = |detail: String| FormatProblem::Json { detail };
-    let line: Section<Line> =
+    let line: Section<TrajnetLine> =
         serde_json::from_str(text).map_err(|error| not_one(error.to_string()))?;
     let line = match line {
         Section::Fields(line) => line,
@@ -177,7 +177,7 @@ fn row(text: &str, place: Place, rate: &mut Rate) -> Result<Option<Row>, FormatP
     };
     let x = field::coordinate(&text(track.x, "track.x")?, "track.x")?;
     let y = field::coordinate(&text(track.y, "track.y")?, "track.y")?;
-    Ok(Some(Row {
+    Ok(Some(TrackRow {
         frame,
         who,
         position: [x, y],

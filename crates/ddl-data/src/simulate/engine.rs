@@ -4,11 +4,11 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::clock::{DT, FRAME_STEP, SUBSTEPS};
-use super::force::{self, BODY, Motion};
-use super::layout::{Layout, Leg};
+use super::force::{self, BODY, WalkingMotion};
+use super::layout::{Leg, SceneLayout};
 use super::population::{self, Party};
 use super::vector::{add, norm, scale, sub, unit};
-use super::walker::{ARRIVED, Walker};
+use super::walker::{ARRIVED, SimulatedPedestrian};
 use crate::{Observation, PedestrianId, Position, TIME_STEP};
 
 /// Time before recording starts, so that the scene is peopled (s).
@@ -29,7 +29,7 @@ pub(super) struct Trace {
 }
 
 /// Runs a scene for `steps` recorded steps of 0.4 s.
-pub(super) fn run(layout: &Layout, steps: i64, rng: &mut ChaCha8Rng) -> Trace {
+pub(super) fn run(layout: &SceneLayout, steps: i64, rng: &mut ChaCha8Rng) -> Trace {
     let end = WARM_UP + steps as f64 * TIME_STEP;
     let parties = population::draw(layout, end, rng);
     let mut engine = Engine {
@@ -61,11 +61,11 @@ pub(super) fn run(layout: &Layout, steps: i64, rng: &mut ChaCha8Rng) -> Trace {
 }
 
 struct Engine<'a> {
-    layout: &'a Layout,
+    layout: &'a SceneLayout,
     parties: Vec<Party>,
     /// Parties whose time has come, by index, that found their entry taken.
     waiting: Vec<usize>,
-    walkers: Vec<Walker>,
+    walkers: Vec<SimulatedPedestrian>,
     /// The first party whose time has not come.
     next: usize,
     last_id: i64,
@@ -106,10 +106,10 @@ impl Engine<'_> {
             self.last_id += 1;
             let id = PedestrianId(self.last_id);
             let heading = unit(sub(member.targets[0], member.entry));
-            self.walkers.push(Walker {
+            self.walkers.push(SimulatedPedestrian {
                 id,
                 party: index,
-                motion: Motion {
+                motion: WalkingMotion {
                     position: member.entry,
                     velocity: scale(heading, party.speed),
                 },
@@ -125,7 +125,7 @@ impl Engine<'_> {
 
     /// One integration step: forces, motion, bodies and walls, then the next leg or the way out.
     fn step(&mut self, rng: &mut ChaCha8Rng) {
-        let before: Vec<Motion> = self.walkers.iter().map(|w| w.motion).collect();
+        let before: Vec<WalkingMotion> = self.walkers.iter().map(|w| w.motion).collect();
         for index in 0..self.walkers.len() {
             let speed = self.parties[self.walkers[index].party].speed;
             let acceleration = self.acceleration(index, &before);
@@ -164,7 +164,7 @@ impl Engine<'_> {
         });
     }
 
-    fn acceleration(&self, index: usize, before: &[Motion]) -> Position {
+    fn acceleration(&self, index: usize, before: &[WalkingMotion]) -> Position {
         let (walker, me) = (&self.walkers[index], before[index]);
         let mut companions = 0;
         let mut centre = me.position;
@@ -222,7 +222,7 @@ impl Engine<'_> {
 }
 
 /// The position, moved out of every wall and pillar. Twice, for corners.
-fn outside_obstacles(layout: &Layout, position: Position) -> Position {
+fn outside_obstacles(layout: &SceneLayout, position: Position) -> Position {
     (0..2).fold(position, |mut place, _| {
         for wall in &layout.walls {
             place = wall.push_out(place, BODY);

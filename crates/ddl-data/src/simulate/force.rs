@@ -42,13 +42,13 @@ const ELBOW_REACH: f64 = 0.65;
 
 /// What a walker's surroundings see of it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Motion {
+pub(super) struct WalkingMotion {
     pub(super) position: Position,
     pub(super) velocity: Position,
 }
 
 /// Towards the velocity that the walker likes.
-pub(super) fn driving(walker: Motion, desired: Position) -> Position {
+pub(super) fn driving(walker: WalkingMotion, desired: Position) -> Position {
     scale(sub(desired, walker.velocity), 1.0 / RELAXATION)
 }
 
@@ -57,7 +57,7 @@ pub(super) fn driving(walker: Motion, desired: Position) -> Position {
 /// With `e` the unit vector to the other and `D = lambda (v_i - v_j) + e`, the force decays with
 /// `exp(-d / B)`, `B = gamma |D|`, along `D` (braking) and across it (turning), the latter away from
 /// the side on which the other is; `d` is counted between the bodies: Moussaïd et al., Proc. R. Soc. B 276 (2009), equations 4 and 5.
-pub(super) fn stranger(walker: Motion, other: Motion, other_radius: f64) -> Position {
+pub(super) fn stranger(walker: WalkingMotion, other: WalkingMotion, other_radius: f64) -> Position {
     let apart = sub(other.position, walker.position);
     let distance = norm(apart);
     let gap = (distance - BODY - other_radius).max(0.0);
@@ -83,8 +83,8 @@ pub(super) fn stranger(walker: Motion, other: Motion, other_radius: f64) -> Posi
 }
 
 /// Around a pillar, which is a stranger that stands still.
-pub(super) fn pillar(walker: Motion, pillar: &Pillar) -> Position {
-    let still = Motion {
+pub(super) fn pillar(walker: WalkingMotion, pillar: &Pillar) -> Position {
+    let still = WalkingMotion {
         position: pillar.centre,
         velocity: [0.0, 0.0],
     };
@@ -92,7 +92,7 @@ pub(super) fn pillar(walker: Motion, pillar: &Pillar) -> Position {
 }
 
 /// Away from a wall.
-pub(super) fn wall(walker: Motion, wall: &Wall) -> Position {
+pub(super) fn wall(walker: WalkingMotion, wall: &Wall) -> Position {
     let away = sub(walker.position, wall.nearest(walker.position));
     let gap = norm(away) - BODY;
     scale(
@@ -102,14 +102,14 @@ pub(super) fn wall(walker: Motion, wall: &Wall) -> Position {
 }
 
 /// Towards the centre of the own group of `size`, when too far from it.
-pub(super) fn cohesion(walker: Motion, centre: Position, size: usize) -> Position {
+pub(super) fn cohesion(walker: WalkingMotion, centre: Position, size: usize) -> Position {
     let apart = sub(centre, walker.position);
     let excess = norm(apart) - COMFORT * (size - 1) as f64;
     scale(unit(apart), COHESION * excess.clamp(0.0, 2.0))
 }
 
 /// Away from a member of the own group who is too close.
-pub(super) fn companion(walker: Motion, other: Motion) -> Position {
+pub(super) fn companion(walker: WalkingMotion, other: WalkingMotion) -> Position {
     let away = sub(walker.position, other.position);
     let closeness = (1.0 - norm(away) / ELBOW_REACH).max(0.0);
     scale(unit(away), ELBOW * closeness)
@@ -125,8 +125,8 @@ mod tests {
         norm(sub(found, expected)) < 1e-9
     }
 
-    fn moving(position: Position, velocity: Position) -> Motion {
-        Motion { position, velocity }
+    fn moving(position: Position, velocity: Position) -> WalkingMotion {
+        WalkingMotion { position, velocity }
     }
 
     /// Equations 4 and 5 of Moussaïd et al. 2009, written down in numpy outside this project: two who meet, two who walk on beside each other

@@ -1,18 +1,18 @@
 //! The five scenes: walls, pillars, where people come from and where they go.
 
 use super::obstacle::{Pillar, Wall};
-use super::scene::Scene;
+use super::scene::CrowdScene;
 use super::vector::{dot, left, lerp, norm, scale, sub, unit};
 use crate::Position;
 
 /// A line that people come from, pass or leave through.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Gate {
+pub(super) struct GateLine {
     pub(super) a: Position,
     pub(super) b: Position,
 }
 
-impl Gate {
+impl GateLine {
     pub(super) const fn new(a: Position, b: Position) -> Self {
         Self { a, b }
     }
@@ -42,22 +42,22 @@ impl Gate {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Leg {
     /// Walk through a gate.
-    Pass(Gate),
+    Pass(GateLine),
     /// Walk to a place on a line and stand there for a while.
-    Stand(Gate),
+    Stand(GateLine),
 }
 
 /// From where, past what, in proportion to which weight.
 #[derive(Debug, Clone)]
 pub(super) struct Route {
-    pub(super) origin: Gate,
+    pub(super) origin: GateLine,
     /// The last leg is a gate: the way out.
     pub(super) legs: Vec<Leg>,
     pub(super) weight: f64,
 }
 
 impl Route {
-    fn new(weight: f64, origin: Gate, gates: &[Gate]) -> Self {
+    fn new(weight: f64, origin: GateLine, gates: &[GateLine]) -> Self {
         Self {
             origin,
             legs: gates.iter().copied().map(Leg::Pass).collect(),
@@ -67,7 +67,7 @@ impl Route {
 
     /// The same route with a rest somewhere between two points before leg `index`.
     fn standing(mut self, weight: f64, index: usize, [a, b]: [Position; 2]) -> Self {
-        self.legs.insert(index, Leg::Stand(Gate::new(a, b)));
+        self.legs.insert(index, Leg::Stand(GateLine::new(a, b)));
         self.weight = weight;
         self
     }
@@ -75,7 +75,7 @@ impl Route {
 
 /// Everything fixed about a scene.
 #[derive(Debug, Clone)]
-pub(super) struct Layout {
+pub(super) struct SceneLayout {
     pub(super) walls: Vec<Wall>,
     pub(super) pillars: Vec<Pillar>,
     pub(super) routes: Vec<Route>,
@@ -83,25 +83,25 @@ pub(super) struct Layout {
     pub(super) arrival_interval: f64,
 }
 
-impl Layout {
-    pub(super) fn of(scene: Scene) -> Self {
+impl SceneLayout {
+    pub(super) fn of(scene: CrowdScene) -> Self {
         match scene {
-            Scene::Corridor => corridor(),
-            Scene::Crossing => crossing(),
-            Scene::Plaza => plaza(),
-            Scene::Bottleneck => bottleneck(),
-            Scene::Doorway => doorway(),
+            CrowdScene::Corridor => corridor(),
+            CrowdScene::Crossing => crossing(),
+            CrowdScene::Plaza => plaza(),
+            CrowdScene::Bottleneck => bottleneck(),
+            CrowdScene::Doorway => doorway(),
         }
     }
 }
 
 /// A walled way of 26 m x 6 m with two pillars, walked in both directions; some stop at the wall.
-fn corridor() -> Layout {
-    let west = Gate::new([0.0, 0.0], [0.0, 6.0]);
-    let east = Gate::new([26.0, 0.0], [26.0, 6.0]);
+fn corridor() -> SceneLayout {
+    let west = GateLine::new([0.0, 0.0], [0.0, 6.0]);
+    let east = GateLine::new([26.0, 0.0], [26.0, 6.0]);
     let eastward = Route::new(1.0, west, &[east]);
     let westward = Route::new(1.0, east, &[west]);
-    Layout {
+    SceneLayout {
         walls: vec![
             Wall::new([-1.0, 0.0], [27.0, 0.0]),
             Wall::new([-1.0, 6.0], [27.0, 6.0]),
@@ -118,13 +118,13 @@ fn corridor() -> Layout {
 }
 
 /// Two ways of 6 m width that cross at right angles; people go straight on or turn.
-fn crossing() -> Layout {
+fn crossing() -> SceneLayout {
     const HALF: f64 = 3.0;
     const END: f64 = 12.0;
     // Arms in order east, north, west, south: each the one before, turned by a quarter.
     let turn = |point: Position, quarters: usize| (0..quarters).fold(point, |p, _| left(p));
     let gate = |distance: f64, quarters: usize| {
-        Gate::new(
+        GateLine::new(
             turn([distance, -HALF], quarters),
             turn([distance, HALF], quarters),
         )
@@ -148,7 +148,7 @@ fn crossing() -> Layout {
         let legs = [gate(HALF, from), gate(HALF, to), gate(END, to)];
         routes.push(Route::new(0.0, gate(END, from), &legs).standing(0.08, 2, place));
     }
-    Layout {
+    SceneLayout {
         walls,
         pillars: Vec::new(),
         routes,
@@ -157,14 +157,14 @@ fn crossing() -> Layout {
 }
 
 /// An open square of 22 m x 18 m with a fountain and trees; people cross it or meet and talk.
-fn plaza() -> Layout {
+fn plaza() -> SceneLayout {
     let gates = [
-        Gate::new([0.0, 3.0], [0.0, 8.0]),
-        Gate::new([0.0, 11.0], [0.0, 16.0]),
-        Gate::new([5.0, 18.0], [12.0, 18.0]),
-        Gate::new([22.0, 10.0], [22.0, 16.0]),
-        Gate::new([22.0, 2.0], [22.0, 7.0]),
-        Gate::new([8.0, 0.0], [15.0, 0.0]),
+        GateLine::new([0.0, 3.0], [0.0, 8.0]),
+        GateLine::new([0.0, 11.0], [0.0, 16.0]),
+        GateLine::new([5.0, 18.0], [12.0, 18.0]),
+        GateLine::new([22.0, 10.0], [22.0, 16.0]),
+        GateLine::new([22.0, 2.0], [22.0, 7.0]),
+        GateLine::new([8.0, 0.0], [15.0, 0.0]),
     ];
     let places = [
         [[4.0, 5.0], [8.0, 5.0]],
@@ -184,7 +184,7 @@ fn plaza() -> Layout {
             routes.push(route);
         }
     }
-    Layout {
+    SceneLayout {
         walls: vec![
             Wall::new([0.0, 8.5], [0.0, 10.5]),
             Wall::new([16.0, 18.0], [21.0, 18.0]),
@@ -201,11 +201,11 @@ fn plaza() -> Layout {
 }
 
 /// A room of 10 m width that narrows to a passage of 2.4 m; most walk into the passage.
-fn bottleneck() -> Layout {
-    let room = Gate::new([0.0, -5.0], [0.0, 5.0]);
-    let mouth = Gate::new([11.0, -1.2], [11.0, 1.2]);
-    let end = Gate::new([14.0, -1.2], [14.0, 1.2]);
-    let street = Gate::new([23.0, -4.0], [23.0, 4.0]);
+fn bottleneck() -> SceneLayout {
+    let room = GateLine::new([0.0, -5.0], [0.0, 5.0]);
+    let mouth = GateLine::new([11.0, -1.2], [11.0, 1.2]);
+    let end = GateLine::new([14.0, -1.2], [14.0, 1.2]);
+    let street = GateLine::new([23.0, -4.0], [23.0, 4.0]);
     let inward = Route::new(0.75, room, &[mouth, end, street]);
     let outward = Route::new(0.2, street, &[end, mouth, room]);
     let mut walls = Vec::new();
@@ -221,7 +221,7 @@ fn bottleneck() -> Layout {
         let mirrored = corners.map(|[x, y]| [x, side * y]);
         walls.extend(mirrored.windows(2).map(|pair| Wall::new(pair[0], pair[1])));
     }
-    Layout {
+    SceneLayout {
         walls,
         pillars: vec![Pillar::new([5.0, 1.5], 0.3)],
         routes: vec![
@@ -237,10 +237,10 @@ fn bottleneck() -> Layout {
 }
 
 /// Two halls of 18 m width behind each other, joined by two doors of 1.8 m; people wait at the side.
-fn doorway() -> Layout {
-    let south = Gate::new([1.0, 0.0], [17.0, 0.0]);
-    let north = Gate::new([1.0, 20.0], [17.0, 20.0]);
-    let doors = [4.5, 13.0].map(|x: f64| Gate::new([x - 0.9, 10.0], [x + 0.9, 10.0]));
+fn doorway() -> SceneLayout {
+    let south = GateLine::new([1.0, 0.0], [17.0, 0.0]);
+    let north = GateLine::new([1.0, 20.0], [17.0, 20.0]);
+    let doors = [4.5, 13.0].map(|x: f64| GateLine::new([x - 0.9, 10.0], [x + 0.9, 10.0]));
     let mut routes = Vec::new();
     for door in doors {
         let northward = Route::new(1.0, south, &[door, north]);
@@ -251,7 +251,7 @@ fn doorway() -> Layout {
         routes.push(northward);
         routes.push(southward);
     }
-    Layout {
+    SceneLayout {
         walls: vec![
             Wall::new([0.0, -1.0], [0.0, 21.0]),
             Wall::new([18.0, -1.0], [18.0, 21.0]),
@@ -274,8 +274,8 @@ mod tests {
 
     #[test]
     fn no_gate_and_no_place_to_stand_reaches_through_a_wall() {
-        for scene in Scene::ALL {
-            let layout = Layout::of(scene);
+        for scene in CrowdScene::ALL {
+            let layout = SceneLayout::of(scene);
             for route in &layout.routes {
                 let lines = route.legs.iter().map(|leg| match *leg {
                     Leg::Pass(line) | Leg::Stand(line) => line,

@@ -11,11 +11,11 @@
 //! works, and nothing about how well real walkers are forecast.
 //!
 //! ```
-//! use ddl_data::simulate::Scene;
+//! use ddl_data::simulate::CrowdScene;
 //!
-//! let crowd = Scene::Plaza.simulate(7);
-//! assert!(crowd.recording().pedestrians().len() > 50);
-//! assert!(!crowd.groups().is_empty());
+//! let crowd = CrowdScene::Plaza.simulate(7);
+//! assert!(crowd.recording.pedestrians().len() > 50);
+//! assert!(!crowd.groups.is_empty());
 //! ```
 
 mod clock;
@@ -32,16 +32,16 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 pub use obstacle::{Pillar, Wall};
-pub use scene::Scene;
+pub use scene::CrowdScene;
 
 use crate::{PedestrianId, Recording};
 use clock::FRAME_STEP;
-use layout::Layout;
+use layout::SceneLayout;
 
 /// Recorded steps of a scene: three minutes.
 const STEPS: i64 = 450;
 
-impl Scene {
+impl CrowdScene {
     /// Simulates three minutes of the scene; the same seed gives the same bytes.
     #[must_use]
     #[expect(
@@ -51,15 +51,14 @@ impl Scene {
     pub fn simulate(self, seed: u64) -> Crowd {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(self as u64);
-        let layout = Layout::of(self);
+        let layout = SceneLayout::of(self);
         let trace = engine::run(&layout, STEPS, &mut rng);
         // Walkers have unique ids and are seen once a frame; speeds are capped, so that positions
         // stay finite; and three minutes of arrivals every two seconds leave observations.
         let recording = Recording::new(self.name(), FRAME_STEP, trace.observations)
             .expect("a simulation yields unique, finite observations");
-        let Layout { walls, pillars, .. } = layout;
+        let SceneLayout { walls, pillars, .. } = layout;
         Crowd {
-            scene: self,
             recording,
             walls,
             pillars,
@@ -71,42 +70,12 @@ impl Scene {
 /// A simulated recording, and what a real one does not tell: walls and groups.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crowd {
-    scene: Scene,
-    recording: Recording,
-    walls: Vec<Wall>,
-    pillars: Vec<Pillar>,
-    groups: Vec<Vec<PedestrianId>>,
-}
-
-impl Crowd {
-    /// Where it was simulated.
-    pub fn scene(&self) -> Scene {
-        self.scene
-    }
-
     /// Everybody's positions.
-    pub fn recording(&self) -> &Recording {
-        &self.recording
-    }
-
-    /// Everybody's positions, without the rest.
-    #[must_use]
-    pub fn into_recording(self) -> Recording {
-        self.recording
-    }
-
+    pub recording: Recording,
     /// The scene's walls.
-    pub fn walls(&self) -> &[Wall] {
-        &self.walls
-    }
-
+    pub walls: Vec<Wall>,
     /// The scene's pillars.
-    pub fn pillars(&self) -> &[Pillar] {
-        &self.pillars
-    }
-
+    pub pillars: Vec<Pillar>,
     /// Groups of two and more who entered together and stay together.
-    pub fn groups(&self) -> &[Vec<PedestrianId>] {
-        &self.groups
-    }
+    pub groups: Vec<Vec<PedestrianId>>,
 }

@@ -4,7 +4,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Exp, Normal};
 
-use super::layout::{Gate, Layout, Leg};
+use super::layout::{GateLine, Leg, SceneLayout};
 use super::vector::{norm, sub};
 use crate::Position;
 
@@ -30,12 +30,12 @@ pub(super) struct Party {
     pub(super) route: usize,
     /// Speed that all of it like (m/s).
     pub(super) speed: f64,
-    pub(super) members: Vec<Member>,
+    pub(super) members: Vec<PartyMember>,
 }
 
 /// One of a party.
 #[derive(Debug, Clone)]
-pub(super) struct Member {
+pub(super) struct PartyMember {
     /// Where it enters (m).
     pub(super) entry: Position,
     /// Where it passes each leg's gate (m), or stands.
@@ -45,7 +45,7 @@ pub(super) struct Member {
 }
 
 /// Everybody who arrives before `end` (s), in order of time.
-pub(super) fn draw(layout: &Layout, end: f64, rng: &mut ChaCha8Rng) -> Vec<Party> {
+pub(super) fn draw(layout: &SceneLayout, end: f64, rng: &mut ChaCha8Rng) -> Vec<Party> {
     let interval = Exp::new(1.0 / layout.arrival_interval)
         .expect("arrival intervals of the five layouts are positive");
     let mut parties = Vec::new();
@@ -57,7 +57,7 @@ pub(super) fn draw(layout: &Layout, end: f64, rng: &mut ChaCha8Rng) -> Vec<Party
     parties
 }
 
-fn party(layout: &Layout, time: f64, rng: &mut ChaCha8Rng) -> Party {
+fn party(layout: &SceneLayout, time: f64, rng: &mut ChaCha8Rng) -> Party {
     let size = match rng.random_range(0.0..1.0) {
         draw if draw < 0.6 => 1,
         draw if draw < 0.9 => 2,
@@ -89,7 +89,7 @@ fn party(layout: &Layout, time: f64, rng: &mut ChaCha8Rng) -> Party {
     let members = entries
         .into_iter()
         .zip(targets)
-        .map(|(entry, targets)| Member {
+        .map(|(entry, targets)| PartyMember {
             entry,
             targets,
             rest,
@@ -103,7 +103,7 @@ fn party(layout: &Layout, time: f64, rng: &mut ChaCha8Rng) -> Party {
     }
 }
 
-fn choose_route(layout: &Layout, rng: &mut ChaCha8Rng) -> usize {
+fn choose_route(layout: &SceneLayout, rng: &mut ChaCha8Rng) -> usize {
     let total: f64 = layout.routes.iter().map(|r| r.weight).sum();
     let mut draw = rng.random_range(0.0..total);
     for (index, route) in layout.routes.iter().enumerate() {
@@ -116,7 +116,7 @@ fn choose_route(layout: &Layout, rng: &mut ChaCha8Rng) -> usize {
 }
 
 /// Places across a gate for a group of this size, clear of the gate's ends where it is wide enough.
-fn side_by_side(gate: Gate, size: usize, across: f64) -> Vec<Position> {
+fn side_by_side(gate: GateLine, size: usize, across: f64) -> Vec<Position> {
     let room = (gate.width() - 2.0 * GATE_MARGIN).max(0.0);
     let spacing = GROUP_SPACING.min(room / size as f64);
     let span = spacing * (size - 1) as f64;

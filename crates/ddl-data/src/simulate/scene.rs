@@ -4,7 +4,7 @@ use std::fmt;
 
 /// A place where a crowd can be simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Scene {
+pub enum CrowdScene {
     /// A walled way with two pillars, walked in both directions.
     Corridor,
     /// Two ways that cross at right angles.
@@ -17,7 +17,7 @@ pub enum Scene {
     Doorway,
 }
 
-impl Scene {
+impl CrowdScene {
     /// Every scene.
     pub const ALL: [Self; 5] = [
         Self::Corridor,
@@ -39,7 +39,7 @@ impl Scene {
     }
 }
 
-impl fmt::Display for Scene {
+impl fmt::Display for CrowdScene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
     }

@@ -1,7 +1,7 @@
 //! One walker: where it wants to go, how fast, and when it has got there.
 
 use super::clock::DT;
-use super::force::Motion;
+use super::force::WalkingMotion;
 use super::layout::Leg;
 use super::vector::{add, dot, norm, scale, sub, unit};
 use crate::{PedestrianId, Position};
@@ -15,11 +15,11 @@ const WAITING: f64 = 0.4;
 
 /// Somebody in the scene.
 #[derive(Debug)]
-pub(super) struct Walker {
+pub(super) struct SimulatedPedestrian {
     pub(super) id: PedestrianId,
     /// The party it came with, as an index.
     pub(super) party: usize,
-    pub(super) motion: Motion,
+    pub(super) motion: WalkingMotion,
     /// Where it passes each leg's gate, or stands (m).
     pub(super) targets: Vec<Position>,
     /// The present leg of the route.
@@ -30,7 +30,7 @@ pub(super) struct Walker {
     pub(super) leg_start: Position,
 }
 
-impl Walker {
+impl SimulatedPedestrian {
     /// Whether the target of the present leg is nearer than the distance (m).
     pub(super) fn is_within(&self, distance: f64) -> bool {
         norm(sub(self.targets[self.leg], self.motion.position)) < distance
@@ -84,15 +84,15 @@ impl Walker {
 mod tests {
     #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
-    use super::super::layout::Gate;
+    use super::super::layout::GateLine;
     use super::*;
 
     /// At a place, on the way from the origin to a target.
-    fn walker(position: Position, target: Position) -> Walker {
-        Walker {
+    fn walker(position: Position, target: Position) -> SimulatedPedestrian {
+        SimulatedPedestrian {
             id: PedestrianId(1),
             party: 0,
-            motion: Motion {
+            motion: WalkingMotion {
                 position,
                 velocity: [1.0, 0.0],
             },
@@ -104,11 +104,11 @@ mod tests {
     }
 
     fn pass() -> Leg {
-        Leg::Pass(Gate::new([10.0, 1.0], [10.0, -1.0]))
+        Leg::Pass(GateLine::new([10.0, 1.0], [10.0, -1.0]))
     }
 
     fn stand() -> Leg {
-        Leg::Stand(Gate::new([0.0, 0.0], [9.0, 0.0]))
+        Leg::Stand(GateLine::new([0.0, 0.0], [9.0, 0.0]))
     }
 
     #[test]

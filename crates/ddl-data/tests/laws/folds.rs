@@ -166,15 +166,6 @@ fn the_parts_of_a_recording_are_all_of_it_in_order() {
 }
 
 #[test]
-fn training_and_validation_share_no_moment_of_a_real_recording() {
-    for convention in [Convention::Star, Convention::SocialGan] {
-        if let Some(dataset) = recordings::load(convention) {
-            check_splits(&dataset);
-        }
-    }
-}
-
-#[test]
 fn folds_never_train_on_what_they_test_on() {
     let dataset = Dataset::simulated(2);
     assert_eq!(

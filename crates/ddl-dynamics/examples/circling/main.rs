@@ -4,7 +4,6 @@
 //! cargo run -p ddl-dynamics --example circling -- docs/stability.svg
 //! ```
 
-#[allow(dead_code, reason = "other pictures need the rest of it")]
 #[path = "../drawing/mod.rs"]
 mod drawing;
 mod picture;
@@ -15,8 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let file = env::args_os()
         .nth(1)
         .ok_or("name the SVG file to write: ... --example circling -- docs/stability.svg")?;
-    let svg = picture::draw(&picture::Scene::new()?)?;
-    fs::write(&file, svg)
+    fs::write(&file, picture::draw()?)
         .map_err(|error| format!("{} cannot be written: {error}", file.to_string_lossy()))?;
     Ok(())
 }

@@ -3,9 +3,9 @@
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
-use super::{Diffeomorphism, components, gaussian};
+use super::Diffeomorphism;
 use crate::{
-    error::{DynamicsError, ensure_finite},
+    error::{DynamicsError, ensure_finite, ensure_positive},
     real::Real,
 };
 
@@ -38,18 +38,13 @@ const BISECTIONS: usize = 53;
 /// [`MAX_CONTRACTION`](Self::MAX_CONTRACTION) = 0.95, so `det J >= 0.05`.
 ///
 /// # The inverse
-/// `y = x + k(x) v` puts `x` on the line `x = y - s v` with `s = k(x)` in `[0, 1]`, so `s` is a root
-/// of `h(s) = s - k(y - s v)`. As `h'(s) = det J(y - s v) >= 1 - q > 0`, `h(0) = -k(y) <= 0` and
-/// `h(1) = 1 - k(y - v) >= 0`, there is exactly one. It is found by Newton's method, kept within
-/// the bracket of the signs seen so far (a step that would leave it becomes a bisection), and after
-/// 24 such steps by bisection alone, which needs no more than 53: the number of evaluations is
-/// bounded whatever the numbers are. Half a dozen is usual.
+/// `y = x + k(x) v` puts `x` on the line `x = y - s v` with `s = k(x)` in `[0, 1]`, so `s` is the only root of
+/// `h(s) = s - k(y - s v)`, as `h'(s) = det J(y - s v) > 0`. It is found by Newton's method within the bracket of the signs
+/// seen so far, and after 24 steps by bisection alone, which needs no more than 53; half a dozen steps are usual.
 ///
 /// # Numerics
-/// The error of the inverse, carried back by `psi`, is `h(s) v` and the rounding of `y - s v`: a few
-/// `epsilon` times the largest of `|y|`, `|c|` and `|v|`. All is computed in the numbers
-/// `rho (x - c)` and `rho v`, which neither overflow nor underflow where it matters: Jacobians are
-/// finite for every finite position. An image is infinite only where `x + k v` itself is too large
+/// The error of the inverse, carried back by `psi`, is a few `epsilon` times the largest of `|y|`, `|c|` and `|v|`. Jacobians
+/// are finite for every finite position. An image is infinite only where `x + k v` itself is too large
 /// for `T`. Where `k` underflows, `psi` is the identity to the last bit.
 ///
 /// # References
@@ -75,35 +70,31 @@ const BISECTIONS: usize = 53;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(
-    try_from = "Unchecked<T, D>",
+    try_from = "UncheckedTranslation<T, D>",
     bound(
         serialize = "T: Real + Serialize",
         deserialize = "T: Real + Deserialize<'de>"
     )
 )]
 pub struct LocalTranslation<T, const D: usize> {
-    #[serde(with = "components")]
     centre: SVector<T, D>,
     rate: T,
-    #[serde(with = "components")]
     translation: SVector<T, D>,
 }
 
 /// What a file says, before the checks.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, bound(deserialize = "T: Real + Deserialize<'de>"))]
-struct Unchecked<T, const D: usize> {
-    #[serde(with = "components")]
+struct UncheckedTranslation<T, const D: usize> {
     centre: SVector<T, D>,
     rate: T,
-    #[serde(with = "components")]
     translation: SVector<T, D>,
 }
 
-impl<T: Real, const D: usize> TryFrom<Unchecked<T, D>> for LocalTranslation<T, D> {
+impl<T: Real, const D: usize> TryFrom<UncheckedTranslation<T, D>> for LocalTranslation<T, D> {
     type Error = DynamicsError;
 
-    fn try_from(unchecked: Unchecked<T, D>) -> Result<Self, DynamicsError> {
+    fn try_from(unchecked: UncheckedTranslation<T, D>) -> Result<Self, DynamicsError> {
         Self::new(unchecked.centre, unchecked.rate, unchecked.translation)
     }
 }
@@ -117,7 +108,7 @@ impl<T: Real, const D: usize> LocalTranslation<T, D> {
     ///
     /// # Errors
     /// - [`DynamicsError::NonFinite`]: a component of the centre or the translation.
-    /// - [`DynamicsError::InvalidRate`]: the rate is not positive and finite.
+    /// - [`DynamicsError::NotPositive`]: the rate is not positive and finite.
     /// - [`DynamicsError::NotInvertible`]: the contraction is above
     ///   [`MAX_CONTRACTION`](Self::MAX_CONTRACTION).
     pub fn new(
@@ -127,7 +118,7 @@ impl<T: Real, const D: usize> LocalTranslation<T, D> {
     ) -> Result<Self, DynamicsError> {
         ensure_finite("centre", &centre)?;
         ensure_finite("translation", &translation)?;
-        gaussian::ensure_rate(rate)?;
+        ensure_positive("the rate of a Gaussian bump", " per metre", rate)?;
         let checked = Self {
             centre,
             rate,
@@ -176,8 +167,20 @@ impl<T: Real, const D: usize> LocalTranslation<T, D> {
         self.translation * self.rate
     }
 
+    /// `z = rho (x - c)`, so that the bump is `exp(-|z|^2)` (no unit).
+    ///
+    /// A component is infinite where it is too large for `T`, and never NaN.
     fn scaled_offset(&self, position: &SVector<T, D>) -> SVector<T, D> {
-        gaussian::scaled_offset(position, &self.centre, self.rate)
+        SVector::from_fn(|i, _| {
+            let offset = position[i] - self.centre[i];
+            if offset.is_finite() {
+                return offset * self.rate;
+            }
+            // The offset of two finite numbers can overflow; half of it cannot.
+            let half = T::rounded(0.5);
+            let scaled = (position[i] * half - self.centre[i] * half) * self.rate;
+            scaled + scaled
+        })
     }
 
     fn jacobian_at(&self, scaled_offset: &SVector<T, D>, height: T) -> SMatrix<T, D, D> {
@@ -192,7 +195,7 @@ impl<T: Real, const D: usize> LocalTranslation<T, D> {
 
 impl<T: Real, const D: usize> Diffeomorphism<T, D> for LocalTranslation<T, D> {
     fn apply(&self, position: &SVector<T, D>) -> SVector<T, D> {
-        position + self.translation * gaussian::height(&self.scaled_offset(position))
+        position + self.translation * bump_height(&self.scaled_offset(position))
     }
 
     fn inverse(&self, image: &SVector<T, D>) -> SVector<T, D> {
@@ -204,13 +207,9 @@ impl<T: Real, const D: usize> Diffeomorphism<T, D> for LocalTranslation<T, D> {
         image - self.translation * share
     }
 
-    fn jacobian(&self, position: &SVector<T, D>) -> SMatrix<T, D, D> {
-        self.apply_with_jacobian(position).1
-    }
-
     fn apply_with_jacobian(&self, position: &SVector<T, D>) -> (SVector<T, D>, SMatrix<T, D, D>) {
         let scaled_offset = self.scaled_offset(position);
-        let height = gaussian::height(&scaled_offset);
+        let height = bump_height(&scaled_offset);
         (
             position + self.translation * height,
             self.jacobian_at(&scaled_offset, height),
@@ -218,18 +217,23 @@ impl<T: Real, const D: usize> Diffeomorphism<T, D> for LocalTranslation<T, D> {
     }
 }
 
+/// `exp(-|z|^2)`, between 0 and 1. Where it is not 0, all components of `z` are small.
+fn bump_height<T: Real, const D: usize>(scaled_offset: &SVector<T, D>) -> T {
+    (-scaled_offset.norm_squared()).exp()
+}
+
 /// The root `s` in `[0, 1]` of `h(s) = s - exp(-|z - s w|^2)`, with `z = rho (y - c)`, `w = rho v`.
 fn share<T: Real, const D: usize>(z: &SVector<T, D>, w: &SVector<T, D>, newton_steps: usize) -> T {
     let half = T::rounded(0.5);
     let (mut low, mut high) = (T::zero(), T::one());
     // The first step of a fixed-point iteration: far from the centre there is no need for a second.
-    let mut s = gaussian::height(z);
+    let mut s = bump_height(z);
     if s.is_zero() {
         return s;
     }
     for step in 0..newton_steps + BISECTIONS {
         let offset = z - w * s;
-        let height = gaussian::height(&offset);
+        let height = bump_height(&offset);
         let h = s - height;
         if h > T::zero() {
             high = s;
@@ -268,7 +272,7 @@ mod tests {
                 let z = Vector2::new(f64::from(i) * 0.01, height);
                 let (newton, bisection) = (share(&z, &w, NEWTON_STEPS), share(&z, &w, 0));
                 assert!((newton - bisection).abs() < 1e-13, "{z}");
-                assert!((newton - gaussian::height(&(z - w * newton))).abs() < 1e-15);
+                assert!((newton - bump_height(&(z - w * newton))).abs() < 1e-15);
             }
         }
     }

@@ -5,7 +5,7 @@ mod unbending;
 
 use nalgebra::SVector;
 
-use super::{Chain, Diffeomorphism, Layer, LocalTranslation};
+use super::{Chain, Diffeomorphism, LocalTranslation};
 use crate::{error::DynamicsError, polar::polar, real::Real};
 use fit::{FASTEST_RATE, Fit};
 use unbending::Unbending;
@@ -61,28 +61,20 @@ impl<T: Real, const D: usize> Chain<T, D> {
     /// ends the path is continued straight for a tenth of its length, or until it would
     /// meet another part of itself, so that the map is right about its direction there too.
     ///
-    /// In the method of Perrin and Schlehuber-Caissier the points go to the line between start and
-    /// goal at once, and the centre is the point with the largest residual. That is too short a
-    /// line for a path that comes back to where it started: the path would be crushed onto it, and
-    /// each metre of error in the image would be many metres of error in space. And points that have
-    /// to pass each other on their way block each other. Here neither happens, at the price that
-    /// the ends move too: `psi(p*)` is not `p*`.
+    /// In the method of Perrin and Schlehuber-Caissier the points go to the line between start and goal at once; a path that
+    /// comes back to where it started would be crushed onto it. Here it is not, at the price that `psi(p*)` is not `p*`.
     ///
     /// # What is promised, and what is not
     /// The chain is a diffeomorphism whatever the path. How straight the image is, is reported and
     /// not promised: with 150 layers the mean residual of corners, hairpins, S-curves and arcs in
-    /// space is below 0.3 % of the length, the largest below 1.5 %. A path that crosses itself cannot be straightened by any
-    /// such map; nor one that would cross itself while it unbends, by this one. The map is made for
-    /// the path's surroundings, and far away it is the identity.
-    ///
-    /// The same path gives the same chain. The work is proportional to the number of layers: about
-    /// half a millisecond each.
+    /// space is below 0.3 % of the length, the largest below 1.5 %. A path that crosses itself, or would while it unbends,
+    /// cannot be straightened so. The same path gives the same chain, at about half a millisecond a layer.
     ///
     /// # Numerics
     /// Found in `f64` for both number types, in units of the length of the path and from its start.
     ///
     /// # Errors
-    /// - [`DynamicsError::NonFinitePath`]: which component of which point.
+    /// - [`DynamicsError::NonFinite`]: which component of which point.
     /// - [`DynamicsError::InvalidPathLength`]: fewer than two different points, or so far apart or
     ///   so near that the parameters of the layers do not fit into `T`.
     /// - [`DynamicsError::PathTurnsBack`]: the path turns by 180 degrees on the spot, as every
@@ -95,27 +87,6 @@ impl<T: Real, const D: usize> Chain<T, D> {
     /// Mathematical Monthly 82 (1975), for the frame in which the turns are scaled. W. Kabsch, "A
     /// solution for the best rotation to relate two sets of vectors", Acta Crystallographica A 32
     /// (1976), for the placing.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_dynamics::{Chain, Diffeomorphism};
-    /// use nalgebra::Vector2;
-    ///
-    /// // Out to the end of a wall, around it, and back on its other side: 7 m to a goal 1 m away.
-    /// let path = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]].map(Vector2::from);
-    /// let straightening = Chain::straightening(&path, 150)?;
-    /// assert!(straightening.mean_residual < 0.01 * 7.0);
-    ///
-    /// let psi = &straightening.chain;
-    /// let to_go: f64 = (psi.apply(&path[0]) - psi.apply(&path[3])).norm();
-    /// assert!((to_go - 7.0).abs() < 0.2);
-    /// // Straight ahead in the image is out along the wall, away from the goal.
-    /// let (image, jacobian) = psi.apply_with_jacobian(&Vector2::new(1.0, 0.0));
-    /// let u = (image - psi.apply(&path[3])).normalize();
-    /// let velocity = jacobian.try_inverse().map(|inverse| -inverse * u);
-    /// assert!(velocity.is_some_and(|v| v.normalize().x > 0.98));
-    /// # Ok::<(), ddl_dynamics::DynamicsError>(())
-    /// ```
     pub fn straightening(
         path: &[SVector<T, D>],
         layers: usize,
@@ -147,11 +118,11 @@ impl<T: Real, const D: usize> Chain<T, D> {
             shape = unbending.placed((1.0 - unbent).max(0.0), &shape);
             if let Some(bump) = fit.best(&shape) {
                 fit.push(&bump);
-                chain.push(Layer::from(LocalTranslation::new(
+                chain.push(LocalTranslation::new(
                     outside(&bump.centre),
                     T::rounded(bump.rate / length),
                     (bump.translation * length).map(T::rounded),
-                )?));
+                )?);
             }
         }
         shape = unbending.placed(0.0, &shape);
@@ -190,9 +161,8 @@ fn ensure_finite_path<T: Real, const D: usize>(
 ) -> Result<(), DynamicsError> {
     for (point, position) in path.iter().enumerate() {
         if let Some(component) = position.iter().position(|x| !x.is_finite()) {
-            return Err(DynamicsError::NonFinitePath {
-                point,
-                component,
+            return Err(DynamicsError::NonFinite {
+                entry: format!("component {component} of point {point} of the path"),
                 value: position[component].as_f64(),
             });
         }

@@ -4,8 +4,13 @@ use nalgebra::SVector;
 
 use super::{Flow, NaturalGradientFlow};
 use crate::{
-    attractor::Attractor, error::DynamicsError, metric::CholeskyMetric,
-    metric_source::MetricSource, obstacle::ObstacleSource, real::Real, state::State,
+    attractor::Attractor,
+    error::{DynamicsError, ensure_positive},
+    metric::CholeskyMetric,
+    metric_source::MetricSource,
+    obstacle::ObstacleSource,
+    real::Real,
+    state::State,
 };
 
 /// A [`NaturalGradientFlow`] that slows its approach to obstacles and slides along them.
@@ -22,21 +27,17 @@ use crate::{
 /// velocity is continuous, because `P' u = P u` where `n^T v = 0`.
 ///
 /// # What is guaranteed
-/// For balls that stand still:
+/// For balls that stand still (Lemma 6 and Theorem 7 of `docs/stability.md`):
 /// - *The distance to the goal still falls* everywhere off the balls: `P' >= share P` is positive definite
 ///   for `share > 0`. So this is a flow like every other, and a
 ///   [`LyapunovCertificate`](crate::LyapunovCertificate) of it says so.
-/// - *No ball is entered*: each is either left or slowed, `|n^T v'| <= sqrt(2 share) lambda_max`, also with
-///   the updates for other balls, each of which only lowers `P`; on the surface nothing is left of it.
+/// - *No ball is entered*: each is either left or slowed, `|n^T v'| <= sqrt(2 share) lambda_max`.
 /// - *The goal is the only attractor*, if it is outside all balls, the balls do not touch, and the
-///   eigenvalues of `P` stay within `[m, M]`, `m > 0`. A walker can come to rest elsewhere only where
-///   `P' u = 0`: on a surface (`share = 0`), where the null space of `P'` is spanned by `n`, with the ball
-///   exactly between it and the goal (`u = n`): one point a ball. That point is a saddle: along the surface
-///   it is the farthest from the goal, and the distance to the goal falls.
+///   eigenvalues of `P` stay within `[m, M]`, `m > 0`. There is one more point of rest a ball, a saddle: where the ball
+///   is exactly between it and the goal.
 ///
-/// In steps of finite length with [`StableEuler`](crate::StableEuler), the decrease at every step is kept
-/// as it is. And no ball is entered, because [`longest_step`](Flow::longest_step) ends a step where half of
-/// the gap is used up along `n`: the half space beyond the tangent plane does not meet the ball.
+/// In steps of finite length with [`StableEuler`](crate::StableEuler) the same holds, because
+/// [`longest_step`](Flow::longest_step) ends a step where half of the gap is used up along `n`.
 ///
 /// # Numerics
 /// The decrease goes first. A walker held up at a saddle still makes the smallest move to the goal that
@@ -97,21 +98,17 @@ where
     /// one obstacle is near.
     ///
     /// # Errors
-    /// [`DynamicsError::InvalidMargin`] unless the margin is positive and finite.
+    /// [`DynamicsError::NotPositive`] unless the margin is positive and finite.
     pub fn new(
         flow: NaturalGradientFlow<T, D, M>,
         obstacles: O,
         margin: T,
     ) -> Result<Self, DynamicsError> {
-        if margin > T::zero() && margin.is_finite() {
-            Ok(Self {
-                flow,
-                obstacles,
-                margin,
-            })
-        } else {
-            Err(DynamicsError::InvalidMargin(margin.as_f64()))
-        }
+        Ok(Self {
+            flow,
+            obstacles,
+            margin: ensure_positive("the margin around obstacles", " m", margin)?,
+        })
     }
 
     /// The distance from the surface of each obstacle at `state`, and the normal there.

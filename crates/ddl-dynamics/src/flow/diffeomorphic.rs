@@ -31,15 +31,12 @@ use crate::{
 /// [straightening](crate::Chain::straightening).
 ///
 /// # What is guaranteed
-/// `dV/dt = -(J^T u)^T P (J^T u) <= -lambda_min(P) s_min(J)^2 < 0` away from the goal, as `J` is
-/// invertible. `V` has no other minimum and no saddle, and grows without bound since `psi` is onto; so
-/// the flow converges to `p*` from everywhere, after at most `V(p(0)) / (lambda_min(P) s_min(J)^2)`
-/// seconds, both taken at their least along the path.
+/// `dV/dt <= -lambda_min(P) s_min(J)^2 < 0` away from the goal, which is the only minimum of `V`: the flow converges to
+/// it from everywhere (Theorem 5 of `docs/stability.md`).
 ///
 /// In the coordinates `y = psi(p)`, the [`chart`](Flow::chart), the flow is a
-/// [`NaturalGradientFlow`](crate::NaturalGradientFlow) with the metric `J P J^T`:
-/// `dy/dt = J v = -(J P J^T) u`. [`StableEuler`](crate::StableEuler) takes its steps there, and so keeps
-/// its guarantee word for word: `V` falls in every step, for every `dt`.
+/// [`NaturalGradientFlow`](crate::NaturalGradientFlow) with the metric `J P J^T`. [`StableEuler`](crate::StableEuler) takes
+/// its steps there, and so keeps its guarantee: `V` falls in every step, for every `dt`.
 ///
 /// # References
 /// The paper names diffeomorphisms as future work (section V). Rana et al., "Euclideanizing flows"
@@ -94,27 +91,6 @@ where
     ///
     /// # Errors
     /// [`DynamicsError::NonFinite`] when the goal or its image is not finite.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_dynamics::{
-    ///     Chain, CholeskyMetric, DiffeomorphicFlow, Flow, StableEuler, State, rollout,
-    /// };
-    /// use nalgebra::Vector2;
-    ///
-    /// // Shown once: out to the end of a wall, around it, and back on its other side.
-    /// let shown = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]].map(Vector2::from);
-    /// let psi = Chain::straightening(&shown, 150)?.chain;
-    /// let flow = DiffeomorphicFlow::in_chart(shown[3], psi, CholeskyMetric::identity())?;
-    ///
-    /// // The goal is 1 m to the left; the walker sets out straight ahead, and arrives.
-    /// let first = flow.velocity(&State::at(shown[0]))?;
-    /// assert!(first.normalize().x > 0.9, "{first}");
-    /// let path = rollout(&flow, &StableEuler, shown[0], 0.4, 24)?;
-    /// assert!(path.iter().any(|p| p.x > 2.5));
-    /// assert_eq!(path[24], shown[3]);
-    /// # Ok::<(), ddl_dynamics::DynamicsError>(())
-    /// ```
     pub fn in_chart(goal: SVector<T, D>, psi: Psi, source: M) -> Result<Self, DynamicsError> {
         Self::with_metric(goal, psi, source, Given::InChart)
     }

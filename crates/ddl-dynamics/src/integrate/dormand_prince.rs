@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 use super::{Integrator, StableEuler};
 use crate::{
-    error::{DynamicsError, ensure_finite, ensure_time_step},
+    error::{DynamicsError, ensure_finite, ensure_positive, ensure_time_step},
     flow::Flow,
     polar::polar,
     real::Real,
@@ -26,20 +26,15 @@ const SAFETY: f64 = 0.9;
 /// tolerance *and* the potential falls in it; otherwise a shorter one is tried.
 ///
 /// # What is guaranteed
-/// - *Strict decrease* of the computed distance at every step, as for [`StableEuler`], whatever the flow:
-///   an inner step that does not come nearer is not taken.
-/// - *Error* estimated at no more than the tolerance in each inner step. This is an estimate of the local
-///   error, so the error of the whole path is of the order of the tolerance times the number of inner
-///   steps, for flows that depend smoothly on the state.
-/// - *At the goal*: the flow of a distance keeps its speed to the end, so no fixed step fits the last bit.
-///   A walker nearer to the goal than the tolerance (in the [`chart`](Flow::chart), if there is one) is put
-///   on it, where it stays.
+/// - *Strict decrease* of the computed distance at every step, as for [`StableEuler`], whatever the flow.
+/// - *Error* estimated at no more than the tolerance in each inner step: that of the whole path is of the order of
+///   the tolerance times the number of inner steps, for flows that depend smoothly on the state.
+/// - *At the goal*: who is nearer to it than the tolerance (in the [`chart`](Flow::chart), if there is one) is put on it.
 /// - *Time to the goal*: that of the continuous flow, for a distance at most `Phi(0) / lambda_min`.
 ///
-/// Where even a step as short as the tolerance is refused (a metric that jumps), a [`StableEuler`] step
-/// of that length is taken. Metrics may depend on the state's time; its `step` and `history` are those of
-/// the whole time step. An [`AvoidingFlow`](crate::AvoidingFlow) keeps clear of its obstacles up to the
-/// error of the path.
+/// Where even a step as short as the tolerance is refused (a metric that jumps), a [`StableEuler`] step of that length
+/// is taken. A state's `step` and `history` are those of the whole time step. An
+/// [`AvoidingFlow`](crate::AvoidingFlow) keeps clear of its obstacles up to the error of the path.
 ///
 /// # References
 /// Dormand and Prince, "A family of embedded Runge-Kutta formulae" (J. Comp. Appl. Math. 1980).
@@ -67,13 +62,10 @@ impl<T: Real> DormandPrince<T> {
     /// Inner steps with an estimated error of at most `tolerance` (metres, in each component).
     ///
     /// # Errors
-    /// [`DynamicsError::InvalidTolerance`] unless the tolerance is positive and finite.
+    /// [`DynamicsError::NotPositive`] unless the tolerance is positive and finite.
     pub fn new(tolerance: T) -> Result<Self, DynamicsError> {
-        if tolerance > T::zero() && tolerance.is_finite() {
-            Ok(Self { tolerance })
-        } else {
-            Err(DynamicsError::InvalidTolerance(tolerance.as_f64()))
-        }
+        let tolerance = ensure_positive("the tolerance", " m", tolerance)?;
+        Ok(Self { tolerance })
     }
 
     /// The tolerance (metres).
@@ -200,34 +192,14 @@ struct InnerStep<T, const D: usize> {
 /// Times of stages 2 to 6, in steps.
 const NODES: [f64; 5] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
 /// Weights of the earlier velocities in stages 2 to 6, and in the result of order 5.
-const WEIGHTS: [[f64; 6]; 6] = [
-    [0.2, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
-    [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0, 0.0, 0.0, 0.0],
-    [
-        19372.0 / 6561.0,
-        -25360.0 / 2187.0,
-        64448.0 / 6561.0,
-        -212.0 / 729.0,
-        0.0,
-        0.0,
-    ],
-    [
-        9017.0 / 3168.0,
-        -355.0 / 33.0,
-        46732.0 / 5247.0,
-        49.0 / 176.0,
-        -5103.0 / 18656.0,
-        0.0,
-    ],
-    [
-        35.0 / 384.0,
-        0.0,
-        500.0 / 1113.0,
-        125.0 / 192.0,
-        -2187.0 / 6784.0,
-        11.0 / 84.0,
-    ],
+#[rustfmt::skip]
+const WEIGHTS: [&[f64]; 6] = [
+    &[0.2],
+    &[3.0 / 40.0, 9.0 / 40.0],
+    &[44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0],
+    &[19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0],
+    &[9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0],
+    &[35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
 ];
 /// Weights of the seven velocities in the difference of orders 5 and 4.
 const DIFFERENCE: [f64; 7] = [

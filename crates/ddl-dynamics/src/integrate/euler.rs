@@ -13,17 +13,10 @@ use crate::{
 /// The plain Euler step `p' = p + dt v`: the published scheme, kept for parity.
 ///
 /// # What is guaranteed
-/// Not much: with `e = p - p*`, `u = e / |e|` and `v = -P u`,
-///
-/// ```text
-/// |e'|^2 = |e|^2 - 2 dt |e| u^T P u + dt^2 |P u|^2
-/// ```
-///
-/// so the distance to the goal falls in a step exactly when `dt < 2 |e| u^T P u / |P u|^2`. On an
-/// attractor that is a distance the speed does not fade near the goal, so this fails for every fixed
-/// `dt` once the walker is close: the walker jumps over the goal and goes on hopping to and fro. In any
-/// case `|e'|^2 <= |e|^2 + (dt |P u|)^2`. Use [`StableEuler`](super::StableEuler) to keep the guarantee;
-/// a [`LyapunovCertificate`](crate::LyapunovCertificate) names the step that breaks it.
+/// Not much: with `e = p - p*`, `u = e / |e|` and `v = -P u`, the distance to the goal falls in a step exactly when
+/// `dt < 2 |e| u^T P u / |P u|^2` (Proposition 2 of `docs/stability.md`). On a distance this fails for every fixed `dt` close
+/// to the goal: the pedestrian jumps over it and goes on hopping to and fro. Use [`StableEuler`](super::StableEuler)
+/// to keep the guarantee; a [`LyapunovCertificate`](crate::LyapunovCertificate) names the step that breaks it.
 ///
 /// # References
 /// Equation (2) of the paper, with a step of 0.4 s in the published program.

@@ -27,26 +27,14 @@ const ARRIVAL: f64 = 8.0;
 /// what follows). While `dt <= dt*` this is the plain Euler step, to
 /// the last bit; at the goal the walker stays.
 ///
-/// # What is guaranteed, and why
-/// *Strict decrease, for every `dt > 0`.* For a step of length `h`,
-/// `|e'|^2 = |e|^2 - 2 h |e| u^T P u + h^2 |P u|^2`. This falls below `|e|^2` for all
-/// `0 < h < 2 dt*` and is least at `h = dt*`. With `h = min(dt, dt*)` the last term is at most
-/// `h |e| u^T P u`, hence
+/// # What is guaranteed
+/// - *Strict decrease, for every `dt > 0`*: with `h = min(dt, dt*)`, `Phi' <= Phi - h u^T P u / 2 < Phi`.
+/// - *Convergence in a bounded number of steps* on a distance, if the eigenvalues of the metrics stay in `[m, M]`,
+///   `m > 0`: with `r = (M - m) / (M + m)`, `Phi <= tolerance` after at most
+///   `2 Phi(0) / (dt m) + ln(Phi(0) / tolerance) / ln(1 / r)` steps, rounded up one by one.
 ///
-/// ```text
-/// |e'|^2 <= |e|^2 - h |e| u^T P u,     so     Phi' <= Phi - h u^T P u / 2 < Phi
-/// ```
-///
-/// *Convergence in a bounded number of steps* on a distance, if the eigenvalues of the metrics stay in
-/// `[m, M]`, `m > 0`. A step that is not limited lowers `Phi` by at least `dt m / 2`. A limited step ends at
-/// the foot of the perpendicular from the goal, so `Phi' = Phi sin(angle(v, -e))`, and by the
-/// Kantorovich inequality the sine is at most `r = (M - m) / (M + m)`. So `Phi <= tolerance` after
-/// at most `2 Phi(0) / (dt m) + ln(Phi(0) / tolerance) / ln(1 / r)` steps, rounded up one by one.
-///
-/// *Why the closest point and not some fraction of `2 dt*`.* Beyond `dt*` the walker moves away
-/// from its goal again within the step. Short of it, a walker headed straight at its goal would
-/// only halve (say) the distance for ever; with `dt*` it arrives, exactly, and stays. There is no
-/// parameter to tune, and `min(dt, dt*)` is continuous in the state.
+/// The proofs are Theorems 3 and 4 of `docs/stability.md`. Beyond `dt*` a step would move away from the goal again; short of
+/// it, somebody headed straight at the goal would never arrive. `min(dt, dt*)` is continuous in the state.
 ///
 /// # Numerics
 /// The guarantee holds for the *computed* distance, [`Attractor::potential`], in `f32` as in `f64`:
@@ -68,10 +56,10 @@ const ARRIVAL: f64 = 8.0;
 ///
 /// # Examples
 /// ```
-/// use ddl_dynamics::{Attractor, GradientFlow, StableEuler, rollout};
+/// use ddl_dynamics::{Attractor, NaturalGradientFlow, StableEuler, rollout};
 /// use nalgebra::Vector1;
 ///
-/// let flow = GradientFlow::new(Attractor::new(Vector1::new(0.0))?);
+/// let flow = NaturalGradientFlow::straight(Attractor::new(Vector1::new(0.0))?);
 /// let path = rollout(&flow, &StableEuler, Vector1::new(1.25), 0.5, 4)?;
 /// assert_eq!(path, [1.25, 0.75, 0.25, 0.0, 0.0].map(Vector1::new));
 /// # Ok::<(), ddl_dynamics::DynamicsError>(())
@@ -108,7 +96,7 @@ impl StableEuler {
     /// One step from `position` (metres) with `velocity` (m/s) for at most `dt` (seconds).
     ///
     /// # Errors
-    /// [`DynamicsError::InvalidTimeStep`]; [`DynamicsError::NonFinite`] for a position or a
+    /// [`DynamicsError::NotPositive`]; [`DynamicsError::NonFinite`] for a position or a
     /// velocity that is not finite; [`DynamicsError::DistanceTooLarge`] when the distance to the
     /// goal overflows.
     pub fn advance<T: Real, const D: usize>(

@@ -1,12 +1,13 @@
 //! The goal is reached, in a number of steps known beforehand.
 
-use ddl_dynamics::{
-    Attractor, GradientFlow, NaturalGradientFlow, Real, StableEuler, StepLimit, rollout,
-};
+use ddl_dynamics::{Attractor, NaturalGradientFlow, Real, StableEuler, StepLimit, rollout};
 use nalgebra::SVector;
 use proptest::{prelude::*, test_runner::TestCaseResult};
 
-use crate::{draw::SceneDraw, for_every_space};
+use crate::{
+    draw::{SceneDraw, deviation_sine},
+    for_every_space,
+};
 
 /// A limited step shrinks the distance by `(k - 1) / (k + 1)` at least, `k` the condition number.
 fn limited_steps_contract<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
@@ -19,7 +20,7 @@ fn limited_steps_contract<T: Real, const D: usize>(scene: &SceneDraw) -> TestCas
         let velocity = -metric.apply(&away);
         let step = StableEuler::advance(&attractor, &start, &velocity, T::rounded(1e6)).unwrap();
         prop_assert!(step.limit == StepLimit::ClosestApproach || before.is_zero());
-        let factor = metric.eigenvalue_range().largest_deviation_sine();
+        let factor = deviation_sine(metric.eigenvalue_range());
         prop_assert!(attractor.potential(&step.position) <= factor * before + noise);
     }
     Ok(())
@@ -42,8 +43,7 @@ fn arrives_within_the_proved_number_of_steps<T: Real, const D: usize>(
     }
     let range = metric.eigenvalue_range();
     let full = 2.0 * distance / (dt.as_f64() * range.smallest.as_f64());
-    let limited =
-        (distance / tolerance).ln() / -range.largest_deviation_sine().as_f64().max(1e-9).ln();
+    let limited = (distance / tolerance).ln() / -deviation_sine(range).as_f64().max(1e-9).ln();
     let steps = full.ceil() as usize + limited.ceil() as usize;
     let flow = NaturalGradientFlow::new(attractor, metric);
     let path = rollout(&flow, &StableEuler, start, dt, steps).unwrap();
@@ -66,7 +66,7 @@ fn the_gradient_flow_arrives_exactly<T: Real, const D: usize>(scene: &SceneDraw)
     let dt = scene.dt::<T>().max(T::one());
     let steps = (attractor.potential(&start) / dt).as_f64().ceil() as usize + 1;
     let path = rollout(
-        &GradientFlow::new(attractor),
+        &NaturalGradientFlow::straight(attractor),
         &StableEuler,
         start,
         dt,

@@ -1,6 +1,9 @@
 //! Random scenes, drawn as `f64` in three dimensions and cut down to the space under test.
 
-use ddl_dynamics::{Attractor, CholeskyMetric, PUBLISHED_SIGMA, Real};
+use ddl_dynamics::{
+    Attractor, CholeskyMetric, EigenvalueRange, MetricSchedule, NaturalGradientFlow,
+    PUBLISHED_SIGMA, Real,
+};
 use nalgebra::{SMatrix, SVector};
 use proptest::{array::uniform3, collection::vec, prelude::*};
 
@@ -81,25 +84,25 @@ pub(crate) fn well_conditioned_scene() -> impl Strategy<Value = SceneDraw> {
 
 /// Every finite number there is: subnormal and huge ones included.
 pub(crate) fn wild_scene() -> impl Strategy<Value = SceneDraw> {
-    use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
-    let wild = || POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO;
-    (
-        uniform3(wild()),
-        uniform3(wild()),
-        vec(metric_draw(1e3), METRICS),
-        POSITIVE | NORMAL | SUBNORMAL,
-        uniform3(wild()),
-    )
-        .prop_map(|(start, goal, metrics, dt, direction)| SceneDraw {
-            start,
-            goal,
-            metrics,
-            dt,
-            direction,
-        })
+    use proptest::num::f64::{NORMAL, POSITIVE, SUBNORMAL};
+    let places = [wild(), wild(), wild()].map(uniform3);
+    let dt = POSITIVE | NORMAL | SUBNORMAL;
+    (any_scene(), places, dt).prop_map(|(scene, [start, goal, direction], dt)| SceneDraw {
+        start,
+        goal,
+        dt,
+        direction,
+        ..scene
+    })
 }
 
-fn vector<T: Real, const D: usize>(draw: &[f64; 3]) -> SVector<T, D> {
+/// Every finite number there is.
+pub(crate) fn wild() -> impl Strategy<Value = f64> + Copy {
+    use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
+    POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO
+}
+
+pub(crate) fn vector<T: Real, const D: usize>(draw: &[f64; 3]) -> SVector<T, D> {
     // A draw too large for f32 becomes its largest number, so that it stays finite.
     SVector::from_fn(|i, _| {
         let largest = T::MAX.as_f64();
@@ -118,6 +121,14 @@ impl SceneDraw {
 
     pub(crate) fn metrics<T: Real, const D: usize>(&self) -> Vec<CholeskyMetric<T, D>> {
         self.metrics.iter().map(metric).collect()
+    }
+
+    /// The flow of the metrics, one after the other.
+    pub(crate) fn flow<T: Real, const D: usize>(
+        &self,
+    ) -> NaturalGradientFlow<T, D, MetricSchedule<T, D>> {
+        let metrics = MetricSchedule::new(self.metrics()).unwrap();
+        NaturalGradientFlow::new(self.attractor(), metrics)
     }
 
     /// The time step (seconds): positive and finite in `T`.
@@ -145,6 +156,12 @@ fn metric<T: Real, const D: usize>((entries, sigma): &MetricDraw) -> CholeskyMet
         })
     });
     CholeskyMetric::new(factor, T::rounded(*sigma)).unwrap()
+}
+
+/// Sine of the largest angle between a flow and the direction to its goal (Wielandt's form of the Kantorovich inequality),
+/// and the least factor by which a step to the closest point of the line of motion shrinks the distance.
+pub(crate) fn deviation_sine<T: Real>(range: EigenvalueRange<T>) -> T {
+    (range.largest - range.smallest) / (range.largest + range.smallest)
 }
 
 /// `P = L L^T + sigma I` in `f64` by nalgebra's matrix product: independent of the crate's way.

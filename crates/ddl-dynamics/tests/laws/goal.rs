@@ -1,8 +1,8 @@
 //! At the goal, and a hair's breadth from it.
 
 use ddl_dynamics::{
-    Attractor, Euler, Flow, Integrator, LyapunovCertificate, MetricSchedule, NaturalGradientFlow,
-    Real, StableEuler, State, StepLimit, rollout,
+    Attractor, Euler, Flow, Integrator, LyapunovCertificate, NaturalGradientFlow, Real,
+    StableEuler, State, StepLimit, rollout,
 };
 use nalgebra::{SVector, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -17,7 +17,7 @@ fn at_the_goal_nothing_moves<T: Real, const D: usize>(scene: &SceneDraw) -> Test
     let attractor = scene.attractor::<T, D>();
     let goal = *attractor.goal();
     let metrics = scene.metrics::<T, D>();
-    let flow = NaturalGradientFlow::new(attractor, MetricSchedule::new(metrics.clone()).unwrap());
+    let flow = scene.flow();
     prop_assert_eq!(
         flow.velocity(&State::at(goal)).unwrap(),
         SVector::<T, D>::zeros()

@@ -19,7 +19,6 @@ mod goal;
 mod map_draw;
 mod metric;
 mod motion_bounds;
-mod refused_maps;
 mod stable_euler;
 mod straightening;
 mod transform;

@@ -2,8 +2,8 @@
 
 use approx::assert_relative_eq;
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, Euler, Flow, Integrator, MetricSchedule, NaturalGradientFlow, Real,
-    StableEuler, State, StepLimit, rollout,
+    Attractor, CholeskyMetric, Euler, Flow, Integrator, NaturalGradientFlow, Real, StableEuler,
+    State, StepLimit, rollout,
 };
 use nalgebra::{SVector, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -18,8 +18,14 @@ use crate::{
 /// 100 s.
 fn distance_falls_at_every_step<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let attractor = scene.attractor::<T, D>();
-    let flow = NaturalGradientFlow::new(attractor, MetricSchedule::new(scene.metrics()).unwrap());
-    let path = rollout(&flow, &StableEuler, scene.start(), scene.dt(), 3 * METRICS).unwrap();
+    let path = rollout(
+        &scene.flow(),
+        &StableEuler,
+        scene.start(),
+        scene.dt(),
+        3 * METRICS,
+    )
+    .unwrap();
     for pair in path.windows(2) {
         let (before, after) = (attractor.potential(&pair[0]), attractor.potential(&pair[1]));
         prop_assert!(

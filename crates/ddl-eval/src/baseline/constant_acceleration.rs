@@ -16,18 +16,6 @@ use crate::{Forecast, Forecaster, error::ForecastError, vector::minus};
 /// # References
 /// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion prediction",
 /// RA-L 2020 (baseline of the last three positions).
-///
-/// # Examples
-/// ```
-/// use ddl_data::{PedestrianId, Window};
-/// use ddl_eval::{Forecaster, baseline::ConstantAcceleration};
-/// // Steps of 0.1, 0.2, ... 0.7 m: the next are 0.8 and 0.9 m.
-/// let speeds_up = (0..8).map(|t| [0.05 * f64::from(t * (t + 1)), 1.0]).collect();
-/// let window = Window::new("corridor", 0, 10, vec![PedestrianId(7)], vec![speeds_up])?;
-/// let forecast = ConstantAcceleration::unbounded().forecast(&window)?;
-/// assert!((forecast.hypothesis(0, 0)[1][0] - 4.5).abs() < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ConstantAcceleration {
     bounded: bool,
@@ -105,59 +93,39 @@ mod tests {
         Window::new("corridor", 0, 10, vec![PedestrianId(1)], vec![track]).unwrap()
     }
 
-    fn end(forecaster: ConstantAcceleration, steps: [Position; 7]) -> Position {
-        forecaster
-            .forecast(&window(steps))
-            .unwrap()
-            .hypothesis(0, 0)[11]
-    }
-
-    /// From (7, 0) with v = (1, 0) and a = (0, 0.1): 12 m along x, 0.1 * 12 * 13 / 2 = 7.8 m along y.
+    /// By hand, `(unbounded, bounded)` where 12 frames lead: from (7, -0.1) with v = (1, 0) and a = (0, 0.1) 12 m along x and
+    /// 0.1 * 12 * 13 / 2 = 7.8 m along y, which bounded is no faster than 1 m a frame; steps of 1 m, the last of 0.75 m, turn back
+    /// by 12 * 0.75 - 0.25 * 78 = -10.5 m, and bounded 0.5, 0.25 and 0 m follow; steps of 0.5 m, once 0.6 m, the last 0.55 m, get faster,
+    /// bounded by 0.6 m; who walks evenly goes on, who stands stands.
     #[test]
-    fn the_last_change_of_velocity_goes_on() {
-        let mut steps = [[1.0, 0.0]; 7];
-        steps[5] = [1.0, -0.1];
-        let found = end(ConstantAcceleration::unbounded(), steps);
-        assert_relative_eq!(found[0], 19.0, epsilon = 1e-9);
-        assert_relative_eq!(found[1], -0.1 + 7.8, epsilon = 1e-9);
-    }
-
-    /// Steps of 1 m, the last of 0.75 m: 0.5, 0.25 and 0 m follow. Unbounded, the pedestrian turns back:
-    /// 12 * 0.75 - 0.25 * 78 = -10.5 m.
-    #[test]
-    fn who_brakes_comes_to_a_stand() {
-        let mut steps = [[1.0, 0.0]; 7];
-        steps[6] = [0.75, 0.0];
-        assert_relative_eq!(
-            end(ConstantAcceleration::bounded(), steps)[0],
-            7.5,
-            epsilon = 1e-12
-        );
-        let back = end(ConstantAcceleration::unbounded(), steps)[0];
-        assert_relative_eq!(back, 6.75 - 10.5, epsilon = 1e-12);
-    }
-
-    /// Steps of 0.5 m, once 0.6 m and the last 0.55 m: 0.6 m a frame is as fast as it gets.
-    #[test]
-    fn nobody_gets_faster_than_seen() {
-        let mut steps = [[0.5, 0.0]; 7];
-        steps[2] = [0.6, 0.0];
-        steps[6] = [0.55, 0.0];
-        let found = end(ConstantAcceleration::bounded(), steps)[0];
-        assert_relative_eq!(found, 3.65 + 12.0 * 0.6, epsilon = 1e-9);
-    }
-
-    #[test]
-    fn who_walks_evenly_or_stands_is_forecast_as_by_constant_velocity() {
-        for step in [[0.5, -0.25], [0.0, 0.0]] {
-            for forecaster in [
-                ConstantAcceleration::bounded(),
-                ConstantAcceleration::unbounded(),
-            ] {
-                let found = end(forecaster, [step; 7]);
-                assert_relative_eq!(found[0], 19.0 * step[0], epsilon = 1e-12);
-                assert_relative_eq!(found[1], 19.0 * step[1], epsilon = 1e-12);
+    fn ends_by_hand() {
+        let with = |step: Position, changes: &[(usize, Position)]| {
+            let mut steps = [step; 7];
+            for &(t, step) in changes {
+                steps[t] = step;
             }
+            window(steps)
+        };
+        let turning = with([1.0, 0.0], &[(5, [1.0, -0.1])]);
+        let braking = with([1.0, 0.0], &[(6, [0.75, 0.0])]);
+        let hurrying = with([0.5, 0.0], &[(2, [0.6, 0.0]), (6, [0.55, 0.0])]);
+        let (even, standing) = (with([0.5, -0.25], &[]), with([0.0; 2], &[]));
+        let [unbounded, bounded] = [
+            ConstantAcceleration::unbounded(),
+            ConstantAcceleration::bounded(),
+        ];
+        for (forecaster, window, expected) in [
+            (unbounded, &turning, [19.0, 7.7]),
+            (unbounded, &braking, [6.75 - 10.5, 0.0]),
+            (bounded, &braking, [7.5, 0.0]),
+            (bounded, &hurrying, [3.65 + 12.0 * 0.6, 0.0]),
+            (unbounded, &even, [9.5, -4.75]),
+            (bounded, &even, [9.5, -4.75]),
+            (bounded, &standing, [0.0, 0.0]),
+        ] {
+            let found = forecaster.forecast(window).unwrap().hypothesis(0, 0)[11];
+            assert_relative_eq!(found[0], expected[0], epsilon = 1e-9);
+            assert_relative_eq!(found[1], expected[1], epsilon = 1e-9);
         }
     }
 }

@@ -25,21 +25,6 @@ pub const NOISE_SEED: u64 = 1;
 ///
 /// # Errors
 /// The windows cannot be scored.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{Convention, PedestrianId, Window, WindowRule};
-/// use ddl_eval::{Conditions, Protocol, baseline};
-///
-/// let walk = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect(); // ends at (9.5, 0) m
-/// let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![walk])?;
-/// let conditions =
-///     Conditions::new(Convention::Star, WindowRule::Published, Protocol::Single, "eth", "");
-/// let rows = baseline::measure(&conditions, &[window], baseline::NOISE_SEED)?;
-/// let names: Vec<&str> = rows.iter().map(|row| &*row.conditions.forecaster).collect();
-/// assert!(names.contains(&"constant velocity (last step)"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn measure(
     conditions: &Conditions,
     windows: &[Window],
@@ -50,10 +35,7 @@ pub fn measure(
 
 /// The same for windows that are reduced to a part of their pedestrians: the baselines see everybody of the whole windows, one
 /// each, and are scored on that part.
-///
-/// # Errors
-/// As [`measure`]; or a whole window is not that of the reduced one.
-pub fn measure_among(
+pub(crate) fn measure_among(
     conditions: &Conditions,
     windows: &[Window],
     everybody: &[Window],

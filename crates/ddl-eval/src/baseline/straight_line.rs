@@ -188,7 +188,7 @@ fn between(start: Position, goal: Position, t: usize) -> Position {
 )]
 mod tests {
     use super::*;
-    use crate::{Protocol, Scores, fixture::window};
+    use crate::{Protocol, fixture::window};
 
     struct Corners;
     impl GoalSource for Corners {
@@ -212,20 +212,6 @@ mod tests {
         assert_eq!(forecast.hypothesis(0, 1)[11], [0.0, -24.0]);
         assert_eq!(forecast.goal(0, 1), Some([0.0, -24.0]));
         assert_eq!(forecast.most_likely(0), 1);
-    }
-
-    #[test]
-    fn straight_lines_are_stable() {
-        let windows = [window(&[[0.0, 0.0]], &[[1.0, 0.0]])];
-        let forecasts = Protocol::Fair
-            .forecast(&StraightLine::to(Corners), &windows)
-            .unwrap();
-        let scores = Scores::evaluate(&windows, &forecasts).unwrap();
-        let stability = scores.stability.unwrap();
-        assert!(stability.decreasing >= 1.0 && stability.end_distance <= 0.0);
-        assert!(stability.largest_turn < 1e-6);
-        // The pedestrian ends at (12, 0), where the first corner is.
-        assert_eq!(scores.goal_fde, Some(0.0));
     }
 
     #[test]

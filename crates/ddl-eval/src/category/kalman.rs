@@ -51,17 +51,6 @@ mod tests {
 
     use super::*;
 
-    /// The prior pulls the speed towards 0, and eight positions outweigh it: half a centimetre of 6 m.
-    #[test]
-    fn a_straight_walk_goes_on() {
-        let walk: Vec<_> = (0..8)
-            .map(|t| [0.5 * f64::from(t), 1.0 - 0.25 * f64::from(t)])
-            .collect();
-        let end = expected_end(&walk);
-        assert_relative_eq!(end[0], 9.5, epsilon = 5e-3);
-        assert_relative_eq!(end[1], -3.75, epsilon = 5e-3);
-    }
-
     /// The same filter with whole matrices, written with numpy from the equations above: see
     /// `tests/reference/distribution.py`, which prints these numbers.
     #[test]

@@ -25,19 +25,6 @@ pub use scores::CategoryScores;
 pub use trajectory_type::TrajectoryType;
 
 /// A group of pedestrians.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{PedestrianId, Window};
-/// use ddl_eval::category::{Category, MotionKind, TrajectoryType};
-/// let straight = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect();
-/// let window = Window::new("corridor", 0, 10, vec![PedestrianId(7)], vec![straight])?;
-/// assert_eq!(
-///     Category::of(&window, 0),
-///     [Category::Motion(MotionKind::Straight), Category::Type(TrajectoryType::Linear)],
-/// );
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Category {

@@ -17,13 +17,6 @@ const LINEAR: f64 = 0.5;
 ///
 /// The first that holds:
 ///
-/// ```text
-/// I   static            |p(20) - p(1)| < 1 m
-/// II  linear            |p(20) - end| < 0.5 m, end: a constant-velocity Kalman filter of p(1..8), 12 steps on
-/// III interacting       somebody ahead at a forecast frame, within 15 degrees and 5 m, or a group
-/// IV  non-interacting   otherwise
-/// ```
-///
 /// [`Interaction`] has the rules of III and its sub-kinds. It reads the future: for grouping results once
 /// forecasts are made, so no forecast may depend on it.
 ///
@@ -37,17 +30,6 @@ const LINEAR: f64 = 0.5;
 /// # References
 /// Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds: A Deep Learning Perspective", T-ITS
 /// 2021, section III; the tool is `trajnetplusplusdataset`.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{PedestrianId, Window};
-/// use ddl_eval::category::TrajectoryType;
-/// let straight = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect();
-/// let window = Window::new("corridor", 0, 10, vec![PedestrianId(7)], vec![straight])?;
-/// assert_eq!(TrajectoryType::of(&window, 0), Some(TrajectoryType::Linear));
-/// assert_eq!(TrajectoryType::of(&window.without_future(), 0), None);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TrajectoryType {

@@ -83,6 +83,6 @@ pub(super) fn wrong(origin: &str, line: usize, (field, problem): Wrong) -> Exter
         origin: origin.to_owned(),
         line,
         field,
-        problem,
+        problem: problem.to_string(),
     }
 }

@@ -52,7 +52,7 @@ use std::str::FromStr;
 
 use ddl_data::{UnknownName, Window};
 
-pub use error::{ExternalError, ExternalProblem};
+pub use error::ExternalError;
 pub use matched::{Coverage, Matched};
 pub use measure::measure;
 pub use write::{write_forecasts, write_windows};
@@ -104,21 +104,21 @@ impl FromStr for ExternalFormat {
     type Err = UnknownName;
 
     fn from_str(word: &str) -> Result<Self, UnknownName> {
-        Self::ALL
-            .into_iter()
-            .find(|format| format.name() == word)
-            .ok_or_else(|| UnknownName {
-                kind: "format of forecasts",
-                found: word.to_owned(),
-                expected: "jsonl, csv, ndjson",
-            })
+        let expected = "jsonl, csv, ndjson";
+        UnknownName::find(
+            word,
+            &Self::ALL,
+            Self::name,
+            "format of forecasts",
+            expected,
+        )
     }
 }
 
 /// Reads a file of forecasts and matches it with windows.
 ///
 /// # Errors
-/// The file cannot be read; a line is wrong ([`ExternalProblem`] says what, the error says where); or, unless
+/// The file cannot be read; a line is wrong (the error says where, and what); or, unless
 /// [`Coverage::Intersection`] is asked for, a pedestrian has no forecast, or a forecast belongs to no pedestrian of the windows.
 pub fn read(
     path: &Path,

@@ -44,26 +44,3 @@ fn range(first: i64, last: i64) -> String {
         format!("{first} to {last}")
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_first_pedestrian_shows_from_where_is_counted() {
-        let mut numbering = HypothesisNumbering::default();
-        let complaint = |numbering: &mut HypothesisNumbering, numbers: &[i64]| {
-            numbering.check(numbers, "W").unwrap_err().to_string()
-        };
-        assert!(
-            complaint(&mut numbering, &[0, 2]).starts_with(
-                "the hypotheses of W have the numbers 0, 2, expected 0 to 1 or 1 to 2"
-            )
-        );
-        assert!(complaint(&mut numbering, &[2]).contains("expected 0 or 1:"));
-        numbering.check(&[1, 2], "W").unwrap();
-        numbering.check(&[1, 2, 3], "W").unwrap();
-        assert!(complaint(&mut numbering, &[0, 1]).contains("expected 1 to 2 as before"));
-        assert!(complaint(&mut numbering, &[i64::MAX]).contains("expected 1 as before"));
-    }
-}

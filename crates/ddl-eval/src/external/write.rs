@@ -70,10 +70,7 @@ pub fn write_forecasts(
     forecasts: &[Forecast],
     mut writer: impl Write,
 ) -> Result<(), ExternalError> {
-    if windows.len() != forecasts.len() {
-        let (windows, forecasts) = (windows.len(), forecasts.len());
-        return Err(ExternalError::Count { windows, forecasts });
-    }
+    EvaluationError::unless_one_each(windows, forecasts.len())?;
     for (window, forecast) in windows.iter().zip(forecasts) {
         let (expected, found) = (window.len(), forecast.pedestrians());
         if expected != found {

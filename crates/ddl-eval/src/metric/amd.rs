@@ -19,7 +19,7 @@
 //! themselves: here C and m are its own moments, a mixture of one component. That changes nothing in
 //! AMV, because after an M step the total covariance of a mixture with full covariances, within the
 //! components and between their means, is the covariance of the samples, whatever the number of
-//! components (a test below confirms it). AMD is theirs wherever one component is chosen; with several,
+//! components. AMD is theirs wherever one component is chosen; with several,
 //! theirs weighs the components along the way from the mean to the truth.
 //!
 //! Their paper writes AMV as the mean of the largest eigenvalues; their code, from which their numbers
@@ -93,73 +93,4 @@ impl DistributionErrors {
 #[must_use]
 pub fn amv(mean_covariance: Covariance) -> f64 {
     mean_covariance.principal_axes().variances[0]
-}
-
-#[cfg(test)]
-mod tests {
-    use approx::assert_relative_eq;
-    use ddl_data::Position;
-    use proptest::{collection::vec, prelude::*};
-
-    use super::*;
-    use crate::fixture::{forecast, walk, window};
-
-    /// Standing hypotheses at (0, 0) and (6, 8): mean (3, 4), variance 25 along (0.6, 0.8). The truth
-    /// stands at (6, 8): one deviation of 5 m, none across.
-    #[test]
-    fn the_truth_one_deviation_off() {
-        let still = [0.0, 0.0];
-        let window = window(&[[6.0, 8.0]], &[still]);
-        let two = forecast(1, &[walk(still, still), walk([6.0, 8.0], still)]);
-        let errors = DistributionErrors::of(&Scene::new(&window, &two).unwrap(), 0).unwrap();
-        assert_relative_eq!(errors.mahalanobis, 1.0, epsilon = 1e-9);
-        assert_relative_eq!(amv(errors.covariance), 25.0, epsilon = 1e-9);
-        let one = forecast(1, &[walk(still, still)]);
-        assert_eq!(
-            DistributionErrors::of(&Scene::new(&window, &one).unwrap(), 0),
-            None
-        );
-    }
-
-    /// Equal hypotheses, 5 cm from the truth, have a deviation of 1 cm.
-    #[test]
-    fn a_distribution_is_at_least_a_centimetre_wide() {
-        let still = [0.0, 0.0];
-        let window = window(&[still], &[still]);
-        let two = forecast(1, &[walk([0.03, 0.04], still), walk([0.03, 0.04], still)]);
-        let errors = DistributionErrors::of(&Scene::new(&window, &two).unwrap(), 0).unwrap();
-        assert_relative_eq!(errors.mahalanobis, 5.0, epsilon = 1e-9);
-        assert_relative_eq!(amv(errors.covariance), 1e-4, epsilon = 1e-12);
-    }
-
-    proptest! {
-        /// One M step from any responsibilities: weights, means and full covariances of the components.
-        /// Within and between them, the total covariance is that of the samples.
-        #[test]
-        fn the_total_covariance_of_a_mixture_is_that_of_its_samples(
-            samples in vec((-9.0..9.0_f64, -9.0..9.0_f64), 12),
-            raw in vec(vec(0.01..1.0_f64, 3), 12),
-        ) {
-            let points: Vec<Position> = samples.into_iter().map(|(x, y)| [x, y]).collect();
-            let n = points.len() as f64;
-            let mut total = Covariance::default();
-            let whole = Moments::of(&points, &[1.0 / n; 12]);
-            for c in 0..3 {
-                let mass = |row: &Vec<f64>| row[c] / row.iter().sum::<f64>();
-                let share = raw.iter().map(mass).sum::<f64>() / n;
-                let weights: Vec<f64> = raw.iter().map(|row| mass(row) / (n * share)).collect();
-                let component = Moments::of(&points, &weights);
-                let d = [0, 1].map(|axis| component.mean[axis] - whole.mean[axis]);
-                let between = Covariance { xx: d[0] * d[0], xy: d[0] * d[1], yy: d[1] * d[1] };
-                total = total.plus(component.covariance.plus(between).scaled(share));
-            }
-            for (found, expected) in [
-                (total.xx, whole.covariance.xx),
-                (total.xy, whole.covariance.xy),
-                (total.yy, whole.covariance.yy),
-            ] {
-                prop_assert!((found - expected).abs() < 1e-11, "{found} {expected}");
-            }
-        }
-    }
 }

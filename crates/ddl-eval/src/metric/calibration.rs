@@ -86,28 +86,23 @@ mod tests {
 
     use super::*;
 
+    /// Of two goals the likelier (0.75) is the nearest three times out of four; of two others the certain one every other time.
     #[test]
-    fn probabilities_that_come_true_have_no_error() {
-        // Of two goals, the likelier (0.75) is the nearest three times out of four.
-        let weights = [0.75, 0.25];
-        let sets: Vec<_> = (0..400)
-            .map(|i| (&weights[..], usize::from(i % 4 == 0)))
-            .collect();
-        let calibration = Calibration::of(sets).unwrap();
+    fn probabilities_come_true_or_not() {
+        let of = |weights: &[f64; 2], second: usize| {
+            let sets = (0..400).map(|i| (&weights[..], usize::from(i % second == 0)));
+            Calibration::of(sets).unwrap()
+        };
+        let sound = of(&[0.75, 0.25], 4);
         let entropy = -(0.75 * 0.75_f64.ln() + 0.25 * 0.25_f64.ln());
-        assert_relative_eq!(calibration.log_loss, entropy, epsilon = 1e-12);
-        assert_relative_eq!(calibration.uniform_log_loss, 2.0_f64.ln(), epsilon = 1e-12);
-        assert!(calibration.expected_error < 0.01);
-        assert_eq!(calibration.bins.len(), 10);
-    }
-
-    #[test]
-    fn overconfidence_shows() {
-        let weights = [1.0, 0.0];
-        let sets: Vec<_> = (0..100).map(|i| (&weights[..], i % 2)).collect();
-        let calibration = Calibration::of(sets).unwrap();
-        assert_relative_eq!(calibration.expected_error, 0.5, epsilon = 1e-12);
-        assert_relative_eq!(calibration.log_loss, -0.5 * SMALLEST.ln(), epsilon = 1e-12);
+        assert_relative_eq!(sound.log_loss, entropy, epsilon = 1e-12);
+        assert_relative_eq!(sound.uniform_log_loss, 2.0_f64.ln(), epsilon = 1e-12);
+        assert!(sound.expected_error < 0.01);
+        assert_eq!(sound.bins.len(), 10);
+        let overconfident = of(&[1.0, 0.0], 2);
+        assert_relative_eq!(overconfident.expected_error, 0.5, epsilon = 1e-12);
+        let log_loss = -0.5 * SMALLEST.ln();
+        assert_relative_eq!(overconfident.log_loss, log_loss, epsilon = 1e-12);
         assert_eq!(Calibration::of([]), None);
     }
 }

@@ -121,22 +121,22 @@ mod tests {
 
     use super::*;
 
-    /// One stands at the origin, the other passes from (-1, 0.3) to (1, 0.3): 0.3 m at the middle of
-    /// the step, 1.04 m at both frames.
+    /// The least distance lies between the frames, at a frame, and, of two who walk side by side with one velocity, everywhere:
+    /// sides of the triangles 3-4-5 and 5-12-13.
     #[test]
-    fn the_minimum_lies_between_the_frames() {
-        let stands = [[0.0, 0.0]; 2];
-        let passes = [[-1.0, 0.3], [1.0, 0.3]];
-        assert_relative_eq!(closest_approach(&stands, &passes), 0.3);
-        assert_eq!(collides(&[&stands, &passes], DISC_RADIUS), [true; 2]);
-        assert_eq!(collides(&[&stands, &passes], 0.1), [false; 2]);
-    }
-
-    #[test]
-    fn the_minimum_may_lie_at_a_frame() {
+    fn closest_approaches_by_hand() {
         let stands = [[0.0, 0.0]; 3];
+        let passes = [[-1.0, 0.3], [1.0, 0.3]];
         let comes_and_goes = [[3.0, 0.0], [1.0, 0.0], [1.0, 5.0]];
+        let walks = [[0.0, 0.0], [0.7, 0.2], [1.4, 0.4]];
+        let beside = walks.map(|[x, y]| [x + 0.3, y + 0.4]);
+        let parting = [[5.0, 12.0], [5.0, 12.0], [5.0, 12.5]];
+        assert_relative_eq!(closest_approach(&stands, &passes), 0.3);
         assert_relative_eq!(closest_approach(&stands, &comes_and_goes), 1.0);
+        assert_relative_eq!(closest_approach(&walks, &beside), 0.5, epsilon = 1e-12);
+        assert_relative_eq!(closest_approach(&stands, &parting), 13.0);
+        assert_eq!(collides(&[&walks, &beside], 0.2), [false; 2]);
+        assert_eq!(collides(&[&walks, &beside], 0.26), [true; 2]);
     }
 
     #[test]
@@ -145,8 +145,7 @@ mod tests {
         let (a, b, c, d) = (at(0.0), at(0.3), at(0.6), at(1.1));
         let hit = collides(&[&a, &b, &c, &d], DISC_RADIUS);
         assert_eq!(hit, [true, true, true, false]);
-        let (left, right) = (at(0.0), at(0.4));
-        assert_eq!(collides(&[&left, &right], DISC_RADIUS), [false; 2]);
-        assert_eq!(collides(&[&left], DISC_RADIUS), [false]);
+        assert_eq!(collides(&[&a, &at(0.4)], DISC_RADIUS), [false; 2]);
+        assert_eq!(collides(&[&a], DISC_RADIUS), [false]);
     }
 }

@@ -152,35 +152,7 @@ fn least(errors: &[f64]) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
-
     use super::*;
-    use crate::fixture::{forecast, walk, window};
-
-    /// The truth walks 0.5 m a frame along x. Hypothesis 0 is 0.3 m aside all along (ADE 0.3, FDE
-    /// 0.3). Hypothesis 1 drifts by 0.1 m a frame (ADE 0.1 * 6.5 = 0.65, FDE 1.2). Hypothesis 2 is 1 m
-    /// aside and jumps to the true end (ADE 11/12, FDE 0).
-    #[test]
-    fn the_two_minima_are_independent() {
-        let window = window(&[[0.0, 0.0]], &[[0.5, 0.0]]);
-        let mut jumps = walk([0.0, 1.0], [0.5, 0.0]);
-        jumps[11] = [6.0, 0.0];
-        let hypotheses = [
-            walk([0.0, 0.3], [0.5, 0.0]),
-            walk([0.0, 0.0], [0.5, 0.1]),
-            jumps,
-        ];
-        let forecast = forecast(1, &hypotheses);
-        let errors = DisplacementErrors::of(&Scene::new(&window, &forecast).unwrap());
-        assert_relative_eq!(errors.ade(0)[0], 0.3, epsilon = 1e-12);
-        assert_relative_eq!(errors.ade(0)[1], 0.65, epsilon = 1e-12);
-        assert_relative_eq!(errors.fde(0)[1], 1.2, epsilon = 1e-12);
-        assert_relative_eq!(errors.ade(0)[2], 11.0 / 12.0, epsilon = 1e-12);
-        assert_relative_eq!(errors.min_ade(0), 0.3, epsilon = 1e-12);
-        assert_relative_eq!(errors.min_fde(0), 0.0, epsilon = 1e-12);
-        assert_relative_eq!(errors.fde_at_min_ade(0), 0.3, epsilon = 1e-12);
-        assert_relative_eq!(errors.ade_at_min_fde(0), 11.0 / 12.0, epsilon = 1e-12);
-    }
 
     #[test]
     #[should_panic(expected = "a forecast of 1 positions cannot be compared with 2 true ones")]

@@ -12,48 +12,10 @@ use super::displacement::distance;
 use crate::Scene;
 
 /// Distance of the nearest goal of pedestrian `i` from the true end, metres; `None` without goals.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{PedestrianId, Window};
-/// use ddl_eval::metric::goal::goal_fde;
-/// use ddl_eval::{Forecast, Scene};
-///
-/// let walk = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect(); // ends at (9.5, 0) m
-/// let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![walk])?;
-/// let goals = vec![[9.5, 2.0], [8.5, 0.0]];
-/// let positions = vec![[3.5, 0.0]; 2 * 12];
-/// let forecast = Forecast::new(1, 2, positions, vec![0.5, 0.5], Some(goals))?;
-/// assert_eq!(goal_fde(&Scene::new(&window, &forecast)?, 0), Some(1.0));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[must_use]
 pub fn goal_fde(scene: &Scene<'_>, i: usize) -> Option<f64> {
     let end = scene.window().end(i)?;
     (0..scene.hypotheses())
         .map(|k| scene.forecast().goal(i, k).map(|goal| distance(goal, end)))
         .try_fold(f64::INFINITY, |least, d| d.map(|d| least.min(d)))
-}
-
-#[cfg(test)]
-mod tests {
-    use approx::assert_relative_eq;
-
-    use super::*;
-    use crate::{
-        Forecast,
-        fixture::{walk, window},
-    };
-
-    #[test]
-    fn the_nearest_goal_counts_whatever_its_weight() {
-        let window = window(&[[0.0, 0.0]], &[[0.5, 0.0]]);
-        let walks = [walk([0.0; 2], [0.5, 0.0]), walk([0.0; 2], [0.5, 0.0])].concat();
-        let goals = Some(vec![[0.0, 0.0], [6.0, 0.25]]);
-        let forecast = Forecast::new(1, 2, walks.clone(), vec![0.9, 0.1], goals).unwrap();
-        let fde = goal_fde(&Scene::new(&window, &forecast).unwrap(), 0);
-        assert_relative_eq!(fde.unwrap(), 0.25, epsilon = 1e-12);
-        let without = Forecast::equally_likely(1, 2, walks).unwrap();
-        assert_eq!(goal_fde(&Scene::new(&window, &without).unwrap(), 0), None);
-    }
 }

@@ -16,24 +16,6 @@
 use super::displacement::DisplacementErrors;
 
 /// JADE of a scene, metres.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{PedestrianId, Window};
-/// use ddl_eval::metric::{displacement::DisplacementErrors, joint::joint_ade};
-/// use ddl_eval::{Forecast, Scene};
-///
-/// let still = vec![[0.0, 0.0]; 20];
-/// let ids = vec![PedestrianId(1), PedestrianId(2)];
-/// let window = Window::new("yard", 0, 10, ids, vec![still.clone(), still])?;
-/// // The first pedestrian's hypotheses are off by 0 m and 1 m, the second's by 1 m and 0.5 m.
-/// let off = [0.0, 1.0, 1.0, 0.5].into_iter().flat_map(|off| [[off, 0.0]; 12]).collect();
-/// let forecast = Forecast::equally_likely(2, 2, off)?;
-/// let errors = DisplacementErrors::of(&Scene::new(&window, &forecast)?);
-/// assert_eq!(joint_ade(&errors), 0.5); // the first for both: (0 + 1) / 2; the second: (1 + 0.5) / 2
-/// assert_eq!((errors.min_ade(0) + errors.min_ade(1)) / 2.0, 0.25);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[must_use]
 pub fn joint_ade(errors: &DisplacementErrors) -> f64 {
     least_scene_mean(errors, DisplacementErrors::ade)
@@ -53,30 +35,4 @@ fn least_scene_mean(
     (0..errors.hypotheses())
         .map(|k| (0..n).map(|i| of(errors, i)[k]).sum::<f64>() / n as f64)
         .fold(f64::INFINITY, f64::min)
-}
-
-#[cfg(test)]
-mod tests {
-    use approx::assert_relative_eq;
-
-    use super::*;
-    use crate::{
-        Scene,
-        fixture::{forecast, walk, window},
-    };
-
-    /// Hypothesis 0 is right about the first pedestrian and 2 m off about the second, hypothesis 1 is 1 m
-    /// off about the first and right about the second: each pedestrian's own minimum is 0, the scene's
-    /// best is hypothesis 1 with (1 + 0) / 2.
-    #[test]
-    fn one_index_serves_the_whole_scene() {
-        let step = [0.5, 0.0];
-        let window = window(&[[0.0, 0.0], [0.0, 9.0]], &[step, step]);
-        let walks = [[0.0, 0.0], [0.0, 1.0], [0.0, 11.0], [0.0, 9.0]].map(|at| walk(at, step));
-        let forecast = forecast(2, &walks);
-        let errors = DisplacementErrors::of(&Scene::new(&window, &forecast).unwrap());
-        assert_relative_eq!(errors.min_ade(0) + errors.min_ade(1), 0.0);
-        assert_relative_eq!(joint_ade(&errors), 0.5);
-        assert_relative_eq!(joint_fde(&errors), 0.5);
-    }
 }

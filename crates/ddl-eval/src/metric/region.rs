@@ -63,6 +63,7 @@ mod tests {
     use crate::{
         Forecast, RegionTable,
         fixture::{walk, window},
+        metric::{amd::DistributionErrors, kde::kde_nll},
     };
 
     /// Standing hypotheses at (0, 0) and (10, 0), weights 0.8 and 0.2; the truth stands 0.5 m from the second. With a spread of 0.5 m its score
@@ -83,10 +84,19 @@ mod tests {
         );
         assert_eq!(RegionScores::of(&scene, 0), None);
         let forecast = bare.with_spread(vec![0.5; HORIZON], table.into()).unwrap();
-        let scores = RegionScores::of(&Scene::new(&window, &forecast).unwrap(), 0).unwrap();
+        let scene = Scene::new(&window, &forecast).unwrap();
+        let scores = RegionScores::of(&scene, 0).unwrap();
         assert_relative_eq!(scores.coverage[0], 0.0);
         assert_relative_eq!(scores.coverage[1], 1.0);
         let area = 2.0 * 0.25 * (3.0 + (3.0 + 0.25_f64.ln()));
         assert_relative_eq!(scores.end_radius[1], area.sqrt(), epsilon = 0.1);
+        // The likelihood is that of bells of this spread, and their variance of 0.25 is part of that about the mean (2, 0), which is
+        // 0.8 * 4 + 0.2 * 64 = 16 along x.
+        let nll = 0.5 - (0.2 / (std::f64::consts::TAU * 0.25)).ln();
+        assert_relative_eq!(kde_nll(&scene, 0).unwrap(), nll, epsilon = 1e-12);
+        let errors = DistributionErrors::of(&scene, 0).unwrap();
+        let deviations = 8.5 / 16.25_f64.sqrt();
+        assert_relative_eq!(errors.mahalanobis, deviations, epsilon = 1e-12);
+        assert_relative_eq!(errors.covariance.yy, 0.25, epsilon = 1e-12);
     }
 }

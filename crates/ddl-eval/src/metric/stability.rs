@@ -150,44 +150,25 @@ mod tests {
 
     use super::*;
 
+    /// Of each rollout whether Phi falls, how far from the goal it ends and its largest turn: straight there; past a goal at (0.6, 0) by
+    /// 0.4 m (nearer: 0.6 to 0.4) and on by 0.5 m, at 180 degrees to it; the side 3-4-5 of a triangle, at acos(0.6) to it; standing
+    /// at the goal, where no step has a direction, and elsewhere.
     #[test]
-    fn a_walk_straight_to_the_goal_is_stable() {
-        let path: Vec<_> = (1..=12).map(|t| [f64::from(t) / 4.0, 0.0]).collect();
-        let judged = RolloutStability::of([0.0, 0.0], &path, [3.0, 0.0]);
-        assert!(judged.decreasing);
-        assert_relative_eq!(judged.end_distance, 0.0);
-        assert_relative_eq!(judged.largest_turn, 0.0);
-    }
-
-    /// From the origin 1 m towards a goal at (0.6, 0), past it by 0.4 m (nearer: 0.6 -> 0.4), then 0.5
-    /// m on in the same direction: 0.4 -> 0.9 from the goal, at 180 degrees to it.
-    #[test]
-    fn overshooting_is_seen_one_step_later() {
-        let path = [[1.0, 0.0], [1.5, 0.0]];
-        let judged = RolloutStability::of([0.0, 0.0], &path, [0.6, 0.0]);
-        assert!(!judged.decreasing);
-        assert_relative_eq!(judged.end_distance, 0.9, epsilon = 1e-12);
-        assert_relative_eq!(judged.largest_turn, 180.0);
-    }
-
-    /// A 3-4-5 triangle: the step (0.3, 0.4) towards a goal on the x axis turns by acos(0.6).
-    #[test]
-    fn turns_are_measured_against_the_goal_direction() {
-        let judged = RolloutStability::of([0.0, 0.0], &[[0.3, 0.4]], [9.0, 0.0]);
-        assert_relative_eq!(
-            judged.largest_turn,
-            0.6_f64.acos().to_degrees(),
-            epsilon = 1e-9
-        );
-    }
-
-    #[test]
-    fn standing_counts_as_stable_at_the_goal_only() {
-        let stands = [[1.0, 1.0]; 12];
-        assert!(RolloutStability::of([1.0, 1.0], &stands, [1.0, 1.0]).decreasing);
-        let elsewhere = RolloutStability::of([1.0, 1.0], &stands, [2.0, 1.0]);
-        assert!(!elsewhere.decreasing);
-        assert_relative_eq!(elsewhere.largest_turn, 0.0);
+    fn rollouts_by_hand() {
+        let ahead: Vec<_> = (1..=12).map(|t| [f64::from(t) / 4.0, 0.0]).collect();
+        let angle = 0.6_f64.acos().to_degrees();
+        for (path, goal, decreasing, end_distance, largest_turn) in [
+            (&ahead[..], [3.0, 0.0], true, 0.0, 0.0),
+            (&[[1.0, 0.0], [1.5, 0.0]], [0.6, 0.0], false, 0.9, 180.0),
+            (&[[3.0, 4.0]], [9.0, 0.0], true, 52.0_f64.sqrt(), angle),
+            (&[[0.0, 0.0]; 12], [0.0, 0.0], true, 0.0, 0.0),
+            (&[[0.0, 0.0]; 12], [1.0, 0.0], false, 1.0, 0.0),
+        ] {
+            let judged = RolloutStability::of([0.0, 0.0], path, goal);
+            assert_eq!(judged.decreasing, decreasing, "{goal:?}");
+            assert_relative_eq!(judged.end_distance, end_distance, epsilon = 1e-12);
+            assert_relative_eq!(judged.largest_turn, largest_turn, epsilon = 1e-9);
+        }
     }
 
     #[test]

@@ -36,38 +36,3 @@ pub fn collides_with_truth(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
     };
     (0..scene.pedestrians()).map(runs_into_another).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{
-        fixture::{forecast, walk, window},
-        metric::collision::{DISC_RADIUS, collides, representative_tracks},
-    };
-
-    /// The first is forecast to step to (1, 0), where the second really stands; the second is forecast
-    /// far away. Forecast against forecast nobody collides; against the truth the first one does.
-    #[test]
-    fn the_others_are_where_they_really_were() {
-        let still = [0.0, 0.0];
-        let window = window(&[still, [1.0, 0.0]], &[still, still]);
-        let forecast = forecast(2, &[walk([0.7, 0.0], still), walk([9.0, 0.0], still)]);
-        let scene = Scene::new(&window, &forecast).unwrap();
-        assert_eq!(collides_with_truth(&scene, DISC_RADIUS), [true, false]);
-        assert_eq!(collides_with_truth(&scene, 0.1), [false, false]);
-        let forecasts = representative_tracks(&scene);
-        assert_eq!(collides(&forecasts, DISC_RADIUS), [false; 2]);
-    }
-
-    /// Between the frames (-1, 0.3) and (1, 0.3) the way leads 0.3 m past the origin.
-    #[test]
-    fn the_way_between_the_frames_counts_and_the_own_future_does_not() {
-        let still = [0.0, 0.0];
-        let window = window(&[[9.0, 9.0], still], &[still, still]);
-        let mut passes = walk([-1.0, 0.3], still);
-        passes[6..].fill([1.0, 0.3]);
-        let forecast = forecast(2, &[passes, walk(still, still)]);
-        let scene = Scene::new(&window, &forecast).unwrap();
-        assert_eq!(collides_with_truth(&scene, DISC_RADIUS), [true, false]);
-    }
-}

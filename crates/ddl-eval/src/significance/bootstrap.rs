@@ -120,15 +120,6 @@ mod tests {
         blocks_of(10, errors)
     }
 
-    #[test]
-    fn equal_blocks_leave_nothing_in_doubt() {
-        let fold = blocks(&[0.3; 12]);
-        let interval = mean_interval(&[&fold], BlockMetric::MinAde).unwrap();
-        for value in [interval.mean, interval.low, interval.high] {
-            assert_relative_eq!(value, 0.3, epsilon = 1e-12);
-        }
-    }
-
     /// 40 blocks, half of error 0 and half of error 1: the mean of a resample is binomial, 0.5 with the deviation
     /// sqrt(0.25 / 40) = 0.0791, so that 95 % lie within 0.5 -+ 1.96 * 0.0791 = [0.345, 0.655].
     #[test]

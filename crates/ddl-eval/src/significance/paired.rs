@@ -125,14 +125,6 @@ mod tests {
         assert_relative_eq!(compared.p_value, 2.0 / 1024.0, epsilon = 1.5e-3);
     }
 
-    #[test]
-    fn a_forecaster_does_not_differ_from_itself() {
-        let errors = [0.1, 0.5, 0.2, 0.4, 0.3, 0.1, 0.5, 0.2, 0.4, 0.3];
-        let compared = compare(&errors, &errors);
-        assert_relative_eq!(compared.difference.mean, 0.0);
-        assert_relative_eq!(compared.p_value, 1.0);
-    }
-
     /// Differences +1, -1, +1, -1: their mean is 0, which every pattern reaches.
     #[test]
     fn differences_that_cancel_are_chance() {

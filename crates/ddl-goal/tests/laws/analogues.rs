@@ -11,13 +11,13 @@ use crate::tracks::{Track, distance, estimator, walk};
 type Coefficients = [f64; 4];
 
 #[derive(Deserialize)]
-struct Reference {
+struct Definition {
     library: Vec<Coefficients>,
-    pedestrians: Vec<Pedestrian>,
+    pedestrians: Vec<DefinedPedestrian>,
 }
 
 #[derive(Deserialize)]
-struct Pedestrian {
+struct DefinedPedestrian {
     track: Coefficients,
     /// The six nearest.
     analogues: Vec<Analogue>,
@@ -39,7 +39,7 @@ fn track([a, b, c, d]: Coefficients) -> Track {
     (0..20).map(|t| place(f64::from(t))).collect()
 }
 
-fn reference() -> Reference {
+fn reference() -> Definition {
     serde_json::from_str(include_str!("reference/analogues.json")).unwrap()
 }
 
@@ -78,7 +78,7 @@ fn distances_weights_and_ends_are_those_of_the_definition() {
 #[test]
 fn a_goal_is_the_weighted_mean_of_its_analogues() {
     let reference = reference();
-    let Pedestrian {
+    let DefinedPedestrian {
         track: walk,
         analogues,
         ..

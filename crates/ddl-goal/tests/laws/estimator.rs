@@ -120,13 +120,8 @@ fn a_walker_finds_itself_and_goals_near_where_it_goes() {
         let track = estimator.library().tracks()[237].clone();
         let goals = estimator.estimate(&track).unwrap();
         // In its own frame a walker is like itself, and like whoever walks the same way elsewhere or mirrored.
-        assert_eq!(goals.experts()[0].distance, 0.0);
-        let itself = goals.experts().iter().take_while(|e| e.distance == 0.0);
-        assert!(
-            itself
-                .into_iter()
-                .any(|e| (e.index, e.mirrored) == (237, false))
-        );
+        let mut itself = goals.experts().iter().take_while(|e| e.distance == 0.0);
+        assert!(itself.any(|e| (e.index, e.mirrored) == (237, false)));
         let nearest = goals.goals()[goals.nearest(track[19])];
         let miss = distance(nearest, track[19]);
         assert!(miss < 1.0, "{miss} m");
@@ -135,52 +130,45 @@ fn a_walker_finds_itself_and_goals_near_where_it_goes() {
 
 #[test]
 fn alone_or_in_a_batch_on_any_number_of_threads() {
+    let track = |i: u32| walk(0.05 * f64::from(i), 0.2 * f64::from(i), 0.01);
+    let tracks: Vec<Track> = (0..30).map(track).collect();
     for params in both_frames() {
-        alone_or_in_a_batch(&estimator(params));
-    }
-}
-
-fn alone_or_in_a_batch(estimator: &GoalEstimator) {
-    let tracks: Vec<Track> = (0..30)
-        .map(|i| walk(0.05 * f64::from(i), 0.2 * f64::from(i), 0.01))
-        .collect();
-    let alone: Vec<_> = tracks
-        .iter()
-        .map(|t| bits(&estimator.estimate(t).unwrap()))
-        .collect();
-    let slices: Vec<&[[f64; 2]]> = tracks.iter().map(Vec::as_slice).collect();
-    let reversed: Vec<&[[f64; 2]]> = slices.iter().rev().copied().collect();
-    for threads in [1, 3] {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        let batch = pool.install(|| estimator.estimate_batch(&slices)).unwrap();
-        assert_eq!(batch.iter().map(bits).collect::<Vec<_>>(), alone);
-        let batch = pool
-            .install(|| estimator.estimate_batch(&reversed))
-            .unwrap();
-        assert_eq!(batch.iter().rev().map(bits).collect::<Vec<_>>(), alone);
+        let estimator = estimator(params);
+        let alone = |track: &Track| bits(&estimator.estimate(track).unwrap());
+        let alone: Vec<_> = tracks.iter().map(alone).collect();
+        for threads in [1, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            let pool = pool.build().unwrap();
+            let batch = |slices: &[&[[f64; 2]]]| -> Vec<_> {
+                let sets = pool.install(|| estimator.estimate_batch(slices)).unwrap();
+                sets.iter().map(bits).collect()
+            };
+            let mut slices: Vec<&[[f64; 2]]> = tracks.iter().map(Vec::as_slice).collect();
+            assert_eq!(batch(&slices), alone);
+            slices.reverse();
+            assert!(batch(&slices).iter().rev().eq(&alone));
+        }
     }
 }
 
 #[test]
 fn the_seed_decides_in_the_frame_of_the_world_only() {
-    let [own, world] = both_frames();
-    let with = |seed| estimator(world.clone().seed(seed));
     let track = walk(1.1, 0.4, 0.01);
-    let goals = |seed| with(seed).estimate(&track).unwrap();
-    assert_eq!(bits(&goals(1)), bits(&goals(1)));
+    let [own, world] = both_frames().map(|params| {
+        (1..12)
+            .map(|seed| {
+                estimator(params.clone().seed(seed))
+                    .estimate(&track)
+                    .unwrap()
+            })
+            .collect::<Vec<_>>()
+    });
+    assert!(own.iter().all(|set| bits(set) == bits(&own[0])));
     assert!(
-        (2..12).any(|seed| bits(&goals(seed)) != bits(&goals(1))),
+        world.iter().any(|set| bits(set) != bits(&world[0])),
         "k-means ignores the seed"
     );
-    assert_eq!(goals(1).experts(), goals(2).experts());
-    let own = |seed| {
-        let estimator = estimator(own.clone().seed(seed));
-        bits(&estimator.estimate(&track).unwrap())
-    };
-    assert_eq!(own(1), own(2));
+    assert!(world.iter().all(|set| set.experts() == world[0].experts()));
 }
 
 /// A rounding error may change the order of two equally near experts, or a tie of k-means, for a walker here and there.
@@ -190,19 +178,12 @@ fn a_rounding_error_moves_goals_by_as_much() {
         let estimator = estimator(params);
         let mut moved = 0;
         for i in 0..60_u32 {
-            let track = walk(
-                0.2 + 0.023 * f64::from(i),
-                0.11 * f64::from(i),
-                0.0007 * f64::from(i),
-            );
+            let t = f64::from(i);
+            let track = walk(0.2 + 0.023 * t, 0.11 * t, 0.0007 * t);
             let error = |step: usize| if step.is_multiple_of(2) { 1e-9 } else { -1e-9 };
-            let nudged: Track = (0..8)
-                .map(|s| [track[s][0] + error(s), track[s][1] - error(s)])
-                .collect();
-            let (a, b) = (
-                estimator.estimate(&track).unwrap(),
-                estimator.estimate(&nudged).unwrap(),
-            );
+            let nudged = |s: usize| [track[s][0] + error(s), track[s][1] - error(s)];
+            let nudged: Track = (0..8).map(nudged).collect();
+            let [a, b] = [&track, &nudged].map(|track| estimator.estimate(track).unwrap());
             let goals = b.goals().iter();
             let furthest = goals.map(|&goal| distance(a.goals()[a.nearest(goal)], goal));
             moved += u32::from(furthest.fold(0.0, f64::max) > 1e-6);
@@ -211,47 +192,13 @@ fn a_rounding_error_moves_goals_by_as_much() {
     }
 }
 
-/// Everybody walks on at 1 m/s, but one in four stops after 4 s: the weights say so.
-#[test]
-fn weights_are_shares_of_how_alike_walkers_went_on() {
-    let track = |i: u32| -> Track {
-        let (stops, heading) = (i.is_multiple_of(4), 0.3_f64);
-        let (sin, cos) = heading.sin_cos();
-        let steps = (0..20).map(|s| {
-            if stops {
-                f64::from(s.min(10))
-            } else {
-                f64::from(s)
-            }
-        });
-        steps.map(|s| [0.4 * s * cos, 0.4 * s * sin]).collect()
-    };
-    let params = GoalEstimatorParams::default().clusters(2);
-    let estimator = tracks::estimator(params, (0..400).map(track).collect());
-    let goals = estimator.estimate(&track(1)).unwrap();
-    assert!(
-        (goals.weights()[0] - 0.75).abs() < 1e-3,
-        "{:?}",
-        goals.weights()
-    );
-    let (sin, cos) = 0.3_f64.sin_cos();
-    for (goal, far) in goals.goals().iter().zip([7.6, 4.0]) {
-        assert!(distance(*goal, [far * cos, far * sin]) < 1e-4, "{goal:?}");
-    }
-}
-
 #[test]
 fn bad_input_is_refused_by_name() {
     let params = GoalEstimatorParams::published().experts(401);
     let library_of = ExpertLibrary::new(library(), 0.4).unwrap();
     let error = GoalEstimator::new(params.check().unwrap(), library_of).unwrap_err();
-    assert_eq!(
-        error,
-        GoalError::TooFewTracks {
-            tracks: 400,
-            experts: 401
-        }
-    );
+    let (tracks, experts) = (400, 401);
+    assert_eq!(error, GoalError::TooFewTracks { tracks, experts });
 
     let estimator = estimator(GoalEstimatorParams::default());
     let track = walk(1.0, 0.0, 0.0);
@@ -259,27 +206,20 @@ fn bad_input_is_refused_by_name() {
     let all = GoalEstimatorParams::default().experts(1_000);
     let goals = tracks::estimator(all, library()).estimate(&track);
     assert_eq!(goals.unwrap().goals().len(), 20);
-    let short = TrackError::TooShort {
-        found: 7,
-        needed: 8,
-    };
-    assert_eq!(
-        estimator.estimate(&track[..7]),
-        Err(GoalError::Track(short.clone()))
-    );
-    let source = Box::new(GoalError::Track(short));
+    let (found, needed) = (7, 8);
+    let short = GoalError::Track(TrackError::TooShort { found, needed });
+    assert_eq!(estimator.estimate(&track[..7]), Err(short.clone()));
+    let source = Box::new(short);
     let batch = estimator.estimate_batch(&[&track, &track[..7]]);
     assert_eq!(batch, Err(GoalError::BatchTrack { index: 1, source }));
     let far = [[0.0, 0.0], [1e308, 0.0]].repeat(4);
-    assert!(matches!(
-        estimator.estimate(&far),
-        Err(GoalError::Track(TrackError::VelocityOverflow { .. }))
-    ));
+    let error = estimator.estimate(&far).unwrap_err().to_string();
+    assert!(error.contains("too long for a velocity"), "{error}");
     let mut broken = track;
     broken[3][1] = f64::NAN;
     assert_eq!(
         estimator.estimate(&broken).unwrap_err().to_string(),
         "the observed track: position 3 is (1.2000000000000002, NaN): must be finite"
     );
-    assert_eq!(estimator.params().query(), QuerySpan::Observed);
+    assert_eq!(estimator.params().query, QuerySpan::Observed);
 }

@@ -10,7 +10,6 @@ mod analogues;
 mod carry_over;
 mod estimator;
 mod heading;
-mod kmeans;
 mod of_ends;
 mod published;
 mod star_files;

@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 use ddl_goal::{Expert, GoalEstimator, GoalEstimatorParams, QuerySpan};
 use serde::Deserialize;
 
-use crate::star_files::{RECORDINGS, Tracks, Windows, goal_error};
+use crate::star_files::{RECORDINGS, StarTracks, StarWindows, goal_error};
 use crate::tracks::estimator;
 
 #[derive(Deserialize)]
-struct Reference {
-    pedestrians: Vec<Walker>,
+struct PublishedGoals {
+    pedestrians: Vec<PublishedPedestrian>,
 }
 
 #[derive(Deserialize)]
-struct Walker {
+struct PublishedPedestrian {
     fold: String,
     recording: String,
     start_frame: i64,
@@ -43,7 +43,7 @@ fn folder() -> Option<PathBuf> {
 
 /// Those of the complete windows that the published code tests on: someone must be there at the start and 20 steps later,
 /// and the start lies 20 raw frame numbers before the last.
-fn published_windows(tracks: &Tracks) -> Windows {
+fn published_windows(tracks: &StarTracks) -> StarWindows {
     let each = || tracks.by_pedestrian.values();
     let last = each().filter_map(|track| track.keys().last()).max();
     let last = *last.unwrap();
@@ -61,8 +61,10 @@ fn published_windows(tracks: &Tracks) -> Windows {
     windows
 }
 
-fn windows(folder: &Path, recording: &str) -> Windows {
-    Tracks::read(folder, recording).unwrap().complete_windows()
+fn windows(folder: &Path, recording: &str) -> StarWindows {
+    StarTracks::read(folder, recording)
+        .unwrap()
+        .complete_windows()
 }
 
 /// The published estimator with all complete windows of the other recordings as its library.
@@ -79,7 +81,7 @@ fn published(folder: &Path, test_recording: &str, experts: usize) -> GoalEstimat
 fn expert_distances_are_the_published_ones() {
     const FURTHER: usize = 8;
     let Some(folder) = folder() else { return };
-    let reference: Reference =
+    let reference: PublishedGoals =
         serde_json::from_str(include_str!("reference/goals.json")).expect("the fixture is JSON");
     assert_eq!(reference.pedestrians.len(), 100);
     for (fold, recording, tracks) in [("eth", "eth", 36_784), ("zara1", "zara01", 37_042)] {
@@ -129,7 +131,7 @@ fn expert_distances_are_the_published_ones() {
 fn the_mean_goal_error_of_a_test_scene_is_the_published_one() {
     let Some(folder) = folder() else { return };
     let estimator = published(&folder, "eth", 100);
-    let windows: Vec<_> = published_windows(&Tracks::read(&folder, "eth").unwrap())
+    let windows: Vec<_> = published_windows(&StarTracks::read(&folder, "eth").unwrap())
         .into_values()
         .collect();
     assert_eq!(windows.len(), 2_511);

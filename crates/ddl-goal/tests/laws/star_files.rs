@@ -18,15 +18,15 @@ pub(crate) const RECORDINGS: [&str; 8] = [
 ];
 
 /// The 20 positions (m) of a pedestrian from a start frame on.
-pub(crate) type Windows = BTreeMap<(i64, i64), Vec<[f64; 2]>>;
+pub(crate) type StarWindows = BTreeMap<(i64, i64), Vec<[f64; 2]>>;
 
 /// The tracks of one recording by pedestrian and frame.
-pub(crate) struct Tracks {
+pub(crate) struct StarTracks {
     pub(crate) step: i64,
     pub(crate) by_pedestrian: BTreeMap<i64, BTreeMap<i64, [f64; 2]>>,
 }
 
-impl Tracks {
+impl StarTracks {
     /// Reads four lines: frame, pedestrian, y (m), x (m).
     pub(crate) fn read(folder: &Path, recording: &str) -> Result<Self, Box<dyn Error>> {
         let text = std::fs::read_to_string(folder.join(format!("{recording}.csv")))?;
@@ -49,8 +49,8 @@ impl Tracks {
     }
 
     /// Every pedestrian with all 20 frames, from every start.
-    pub(crate) fn complete_windows(&self) -> Windows {
-        let mut windows = Windows::new();
+    pub(crate) fn complete_windows(&self) -> StarWindows {
+        let mut windows = StarWindows::new();
         for (&pedestrian, track) in &self.by_pedestrian {
             for &start in track.keys() {
                 let frames = (0..20).map(|i| start + i * self.step);

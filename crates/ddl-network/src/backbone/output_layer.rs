@@ -1,7 +1,7 @@
 //! From features and noise to what shapes a step.
 
 use crate::StarConfig;
-use crate::config::Frame;
+use crate::config::NetworkFrame;
 use crate::weights::{Initial, Layout, Linear};
 
 /// Declares the output layer: features and noise to (a, b, c), or (x, y). Where the network emits departures from the neutral
@@ -10,7 +10,7 @@ pub fn output_layer(layout: &mut Layout, config: &StarConfig) -> Linear {
     let inputs = (config.output_inputs() + config.noise_width) as usize;
     let outputs = config.output_width() as usize;
     let bound = 1.0 / (inputs as f64).sqrt();
-    let neutral = config.variant.dynamics() && config.frame == Frame::Goal;
+    let neutral = config.variant.dynamics() && config.frame == NetworkFrame::Goal;
     let scale = if neutral { NEAR_NEUTRAL } else { 1.0 };
     let weight = Initial::Uniform { bound, scale };
     let bias = if neutral {

@@ -4,7 +4,7 @@ use super::features::Backbone;
 use super::output_layer::output_layer;
 use crate::StarConfig;
 use crate::backend::{Backend, Memory};
-use crate::config::Frame;
+use crate::config::NetworkFrame;
 use crate::weights::{Layout, Linear};
 use ddl_data::OBSERVED;
 
@@ -12,7 +12,7 @@ use ddl_data::OBSERVED;
 /// the observed time steps, in its own frame with the velocities.
 #[derive(Debug, Clone)]
 pub struct Perceptron {
-    frame: Frame,
+    frame: NetworkFrame,
     hidden: Linear,
     token: Linear,
     output: Linear,
@@ -61,8 +61,8 @@ impl<B: Backend> Backbone<B> for Perceptron {
         let hidden = backend.relu(&backend.linear(self.hidden, &inputs));
         let token = backend.relu(&backend.linear(self.token, &hidden));
         match self.frame {
-            Frame::World => token,
-            Frame::Goal => backend.beside(&token, relative),
+            NetworkFrame::World => token,
+            NetworkFrame::Goal => backend.beside(&token, relative),
         }
     }
 }

@@ -12,13 +12,13 @@ use super::features::Backbone;
 use super::output_layer::output_layer;
 use crate::StarConfig;
 use crate::backend::{Backend, Memory};
-use crate::config::Frame;
+use crate::config::NetworkFrame;
 use crate::weights::{EncoderLayer, Layout, Linear, Sizes};
 
 /// The backbone of the paper.
 #[derive(Debug, Clone)]
 pub struct Star {
-    frame: Frame,
+    frame: NetworkFrame,
     temporal_embedding: Linear,
     spatial_embedding: Linear,
     /// Two encoders of some layers each.
@@ -108,8 +108,8 @@ impl<B: Backend> Backbone<B> for Star {
             cache.push(backend.key_values(layer, &token));
         }
         match self.frame {
-            Frame::World => token,
-            Frame::Goal => backend.beside(&token, relative),
+            NetworkFrame::World => token,
+            NetworkFrame::Goal => backend.beside(&token, relative),
         }
     }
 }

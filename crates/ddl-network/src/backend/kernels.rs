@@ -15,8 +15,8 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub struct Kernels {
     layout: Arc<Layout>,
-    linears: Vec<Arc<kernel::Linear>>,
-    encoder_layers: Vec<Arc<kernel::EncoderLayer>>,
+    linears: Vec<Arc<kernel::LinearKernel>>,
+    encoder_layers: Vec<Arc<kernel::EncoderKernel>>,
     precision: Precision,
 }
 
@@ -28,8 +28,8 @@ impl Kernels {
     #[must_use]
     pub fn new(layout: &Arc<Layout>, numbers: &[f32], precision: Precision) -> Self {
         let linear =
-            |layer: &Linear| Arc::new(kernel::Linear::zeros(layer.inputs(), layer.outputs()));
-        let encoder = |layer: &EncoderLayer| Arc::new(kernel::EncoderLayer::zeros(layer.sizes()));
+            |layer: &Linear| Arc::new(kernel::LinearKernel::zeros(layer.inputs, layer.outputs));
+        let encoder = |layer: &EncoderLayer| Arc::new(kernel::EncoderKernel::zeros(layer.sizes));
         let mut kernels = Self {
             layout: Arc::clone(layout),
             linears: layout.linears().iter().map(linear).collect(),
@@ -167,7 +167,7 @@ impl KernelBackend {
 
     /// The dropouts of a layer, each with a seed of its own; none outside training.
     fn dropouts(&self, layer: EncoderLayer) -> Dropouts {
-        let [weights, attended, hidden, fed] = [0; 4].map(|_| self.dropout(layer.dropout()));
+        let [weights, attended, hidden, fed] = [0; 4].map(|_| self.dropout(layer.dropout));
         Dropouts {
             weights,
             attended,
@@ -186,8 +186,8 @@ impl KernelBackend {
         Some(Dropout { p, seed })
     }
 
-    fn encoder(&self, layer: EncoderLayer) -> Arc<kernel::EncoderLayer> {
-        Arc::clone(&self.kernels.encoder_layers[layer.number()])
+    fn encoder(&self, layer: EncoderLayer) -> Arc<kernel::EncoderKernel> {
+        Arc::clone(&self.kernels.encoder_layers[layer.number])
     }
 }
 
@@ -202,9 +202,9 @@ impl Backend for KernelBackend {
 
     fn linear(&self, layer: Linear, x: &Rc<Rows>) -> Rc<Rows> {
         let [batch, pedestrians, _] = x.shape();
-        let kernel = Arc::clone(&self.kernels.linears[layer.number()]);
+        let kernel = Arc::clone(&self.kernels.linears[layer.number]);
         let (y, x) = (kernel.forward(x), Rc::clone(x));
-        let shape = [batch, pedestrians, layer.outputs()];
+        let shape = [batch, pedestrians, layer.outputs];
         self.made(shape, y, move |gy, of_weights| {
             x.add_gradient(kernel.backward(&x, gy, &mut of_weights[layer.span()]));
         })
@@ -337,4 +337,61 @@ impl Backend for KernelBackend {
 
 fn rows(cache: &[Rc<RowKeyValues>]) -> Vec<&Remembered> {
     cache.iter().map(|token| &token.rows).collect()
+}
+
+#[cfg(all(test, feature = "training"))]
+mod tests {
+    use super::*;
+    use crate::kernel::Sizes;
+
+    fn layer(dropout: f64) -> (Arc<Kernels>, EncoderLayer) {
+        let mut layout = Layout::default();
+        let sizes = Sizes {
+            width: 4,
+            heads: 2,
+            hidden: 3,
+        };
+        let layer = layout.encoder_layer("layer", sizes, dropout);
+        let numbers = vec![0.0; layout.count()];
+        let kernels = Kernels::new(&Arc::new(layout), &numbers, Precision::F32);
+        (Arc::new(kernels), layer)
+    }
+
+    fn seeds(backend: &KernelBackend, layer: EncoderLayer) -> Vec<u64> {
+        let Dropouts {
+            weights,
+            attended,
+            hidden,
+            fed,
+        } = backend.dropouts(layer);
+        let all = [weights, attended, hidden, fed].into_iter().flatten();
+        all.map(|dropout| dropout.seed).collect()
+    }
+
+    /// Also from layer to layer of a pass, and the same ones in a pass of the same seed.
+    #[test]
+    fn the_four_dropouts_of_a_layer_have_distinct_seeds() {
+        let (kernels, layer) = layer(0.1);
+        let pass = |seed| {
+            let backend = KernelBackend::training(Arc::clone(&kernels), Mode::Train, seed);
+            (0..25)
+                .flat_map(|_| seeds(&backend, layer))
+                .collect::<Vec<u64>>()
+        };
+        let mut drawn = pass(7);
+        assert_eq!(drawn, pass(7));
+        assert_ne!(drawn, pass(8));
+        drawn.sort_unstable();
+        drawn.dedup();
+        assert_eq!(drawn.len(), 4 * 25);
+    }
+
+    #[test]
+    fn nothing_is_dropped_without_a_probability_or_outside_training() {
+        for (dropout, mode) in [(0.0, Mode::Train), (0.1, Mode::Evaluate)] {
+            let (kernels, layer) = layer(dropout);
+            let backend = KernelBackend::training(kernels, mode, 7);
+            assert!(seeds(&backend, layer).is_empty(), "{dropout} {mode:?}");
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Which network stands behind the shared rollout.
 
-use crate::NetworkError;
+use crate::names::named;
 use serde::{Deserialize, Serialize};
 
 /// The network behind the shared rollout: what turns observed and forecast positions into features, of which the output
@@ -18,34 +18,6 @@ pub enum BackboneKind {
 impl BackboneKind {
     /// All of them.
     pub const ALL: [Self; 2] = [Self::Star, Self::Perceptron];
-
-    /// The name used on the command line and in reports.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Star => "star",
-            Self::Perceptron => "perceptron",
-        }
-    }
 }
 
-impl std::fmt::Display for BackboneKind {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl std::str::FromStr for BackboneKind {
-    type Err = NetworkError;
-
-    fn from_str(text: &str) -> Result<Self, NetworkError> {
-        Self::ALL
-            .into_iter()
-            .find(|kind| kind.name() == text)
-            .ok_or_else(|| NetworkError::Config {
-                field: "backbone",
-                value: text.to_owned(),
-                rule: "one of star, perceptron",
-            })
-    }
-}
+named!(BackboneKind, "backbone", Star => "star", Perceptron => "perceptron");

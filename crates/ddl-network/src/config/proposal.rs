@@ -1,6 +1,6 @@
 //! Shape of the proposal network, and how it is trained.
 
-use super::range::require;
+use super::range::{at_least_one, not_negative, positive, require};
 use crate::NetworkError;
 use serde::{Deserialize, Serialize};
 
@@ -72,39 +72,20 @@ impl ProposalConfig {
             ("heads", self.heads, 64),
             ("neighbours", self.neighbours as i64, 256),
         ] {
-            require(
-                (1..=most).contains(&value),
-                field,
-                &value,
-                "at least 1 and within reason",
-            )?;
+            let holds = (1..=most).contains(&value);
+            require(holds, field, &value, "at least 1 and within reason")?;
         }
+        let layers = self.layers;
+        require((1..=16).contains(&layers), "layers", &layers, "1 to 16")?;
+        let divides = self.neighbour_width % self.heads == 0;
         require(
-            (1..=16).contains(&self.layers),
-            "layers",
-            &self.layers,
-            "1 to 16",
-        )?;
-        require(
-            self.neighbour_width % self.heads == 0,
+            divides,
             "heads",
             &self.heads,
             "a divisor of neighbour_width",
         )?;
-        let range = self.neighbour_range;
-        require(
-            range.is_finite() && range >= 0.0,
-            "neighbour_range",
-            &range,
-            "finite and not negative",
-        )?;
-        let step = self.time_step;
-        require(
-            step.is_finite() && step > 0.0,
-            "time_step",
-            &step,
-            "finite and positive",
-        )
+        not_negative("neighbour_range", self.neighbour_range)?;
+        positive("time_step", self.time_step)
     }
 }
 
@@ -174,26 +155,13 @@ impl ProposalTraining {
     /// # Errors
     /// [`NetworkError::Config`] naming the first field that is out of range.
     pub fn check(&self) -> Result<(), NetworkError> {
-        require(self.steps > 0, "steps", &self.steps, "at least 1")?;
+        at_least_one("steps", self.steps)?;
         require(self.batch > 0, "batch", &self.batch, "at least 1")?;
-        for (field, value) in [
-            ("learning_rate", self.learning_rate),
-            ("gradient_clip", self.gradient_clip),
-        ] {
-            require(
-                value.is_finite() && value > 0.0,
-                field,
-                &value,
-                "finite and positive",
-            )?;
-        }
+        positive("learning_rate", self.learning_rate)?;
+        positive("gradient_clip", self.gradient_clip)?;
         let relaxed = self.relaxed_ends;
-        require(
-            relaxed.is_finite() && relaxed >= 1.0,
-            "relaxed_ends",
-            &relaxed,
-            "finite and at least 1",
-        )?;
+        let holds = relaxed.is_finite() && relaxed >= 1.0;
+        require(holds, "relaxed_ends", &relaxed, "finite and at least 1")?;
         for (field, value) in [
             ("relaxed_share", self.relaxed_share),
             ("blindness", self.blindness),
@@ -201,22 +169,12 @@ impl ProposalTraining {
         ] {
             require((0.0..=1.0).contains(&value), field, &value, "0 to 1")?;
         }
-        for (field, value) in [
-            ("waypoint_weight", self.waypoint_weight),
-            ("probability_weight", self.probability_weight),
-            ("scale", self.scale),
-            ("turn", self.turn),
-            ("jitter", self.jitter),
-            ("neighbour_jitter", self.neighbour_jitter),
-        ] {
-            require(
-                value.is_finite() && value >= 0.0,
-                field,
-                &value,
-                "finite and not negative",
-            )?;
-        }
-        Ok(())
+        not_negative("waypoint_weight", self.waypoint_weight)?;
+        not_negative("probability_weight", self.probability_weight)?;
+        not_negative("scale", self.scale)?;
+        not_negative("turn", self.turn)?;
+        not_negative("jitter", self.jitter)?;
+        not_negative("neighbour_jitter", self.neighbour_jitter)
     }
 
     /// How many of the nearest ends share the loss of a step, a fraction counting for the last.

@@ -18,3 +18,17 @@ pub(super) fn require(
         })
     }
 }
+
+pub(super) fn at_least_one(field: &'static str, value: u64) -> Result<(), NetworkError> {
+    require(value > 0, field, &value, "at least 1")
+}
+
+pub(super) fn positive(field: &'static str, value: f64) -> Result<(), NetworkError> {
+    let holds = value.is_finite() && value > 0.0;
+    require(holds, field, &value, "finite and positive")
+}
+
+pub(super) fn not_negative(field: &'static str, value: f64) -> Result<(), NetworkError> {
+    let holds = value.is_finite() && value >= 0.0;
+    require(holds, field, &value, "finite and not negative")
+}

@@ -1,7 +1,7 @@
 //! Size and constants of the forecasting network.
 
 use super::backbone_kind::BackboneKind;
-use super::range::require;
+use super::range::{positive, require};
 use super::variant::Variant;
 use crate::NetworkError;
 use serde::{Deserialize, Serialize};
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// The frame in which the network reads where a pedestrian is, and says how it goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Frame {
+pub enum NetworkFrame {
     /// That of the recording, as published.
     World,
     /// The pedestrian's own, whose first axis points from where it was last observed to its goal. Velocities are read beside
@@ -27,7 +27,7 @@ pub struct StarConfig {
     /// What the network reads and what its output means.
     pub variant: Variant,
     /// The frame of what it reads of a pedestrian and of what it emits.
-    pub frame: Frame,
+    pub frame: NetworkFrame,
     /// Width of a token.
     pub model_width: i64,
     /// Attention heads; must divide the width.
@@ -97,7 +97,7 @@ impl StarConfig {
         Self {
             backbone: BackboneKind::Star,
             variant,
-            frame: Frame::World,
+            frame: NetworkFrame::World,
             model_width: 32,
             heads: 8,
             feed_forward_width: 2048,
@@ -116,9 +116,9 @@ impl StarConfig {
     pub fn recommended(variant: Variant) -> Self {
         Self {
             frame: if variant.goal_shift() {
-                Frame::Goal
+                NetworkFrame::Goal
             } else {
-                Frame::World
+                NetworkFrame::World
             },
             feed_forward_width: 128,
             ..Self::published(variant)
@@ -129,8 +129,8 @@ impl StarConfig {
     #[must_use]
     pub fn temporal_inputs(&self) -> i64 {
         match self.frame {
-            Frame::World => 2,
-            Frame::Goal => 4,
+            NetworkFrame::World => 2,
+            NetworkFrame::Goal => 4,
         }
     }
 
@@ -139,8 +139,8 @@ impl StarConfig {
     #[must_use]
     pub fn output_inputs(&self) -> i64 {
         match self.frame {
-            Frame::World => self.model_width,
-            Frame::Goal => self.model_width + self.temporal_inputs(),
+            NetworkFrame::World => self.model_width,
+            NetworkFrame::Goal => self.model_width + self.temporal_inputs(),
         }
     }
 
@@ -155,72 +155,41 @@ impl StarConfig {
     /// # Errors
     /// [`NetworkError::Config`] naming the first field that is out of range.
     pub fn check(&self) -> Result<(), NetworkError> {
-        let positive = [
+        let counts = [
             ("model_width", self.model_width),
             ("heads", self.heads),
             ("feed_forward_width", self.feed_forward_width),
             ("spatial_layers", self.spatial_layers as i64),
             ("noise_width", self.noise_width),
         ];
-        for (field, value) in positive {
-            require(
-                value > 0 && value <= 65_536,
-                field,
-                &value,
-                "a whole number in 1..=65536",
-            )?;
+        for (field, value) in counts {
+            let holds = (1..=65_536).contains(&value);
+            require(holds, field, &value, "a whole number in 1..=65536")?;
         }
+        let (heads, layers) = (self.heads, self.spatial_layers);
+        require(heads <= MOST_HEADS, "heads", &heads, "at most 256")?;
         require(
-            self.heads <= MOST_HEADS,
-            "heads",
-            &self.heads,
-            "at most 256",
-        )?;
-        let numbers = self.layer_numbers();
-        require(
-            numbers <= MOST_LAYER_NUMBERS,
+            self.layer_numbers() <= MOST_LAYER_NUMBERS,
             "feed_forward_width",
             &self.feed_forward_width,
             "so that a layer has at most 2^24 weights",
         )?;
+        let few = layers <= MOST_LAYERS;
+        require(few, "spatial_layers", &layers, "at most 64")?;
+        let divides = self.model_width % heads == 0;
+        require(divides, "heads", &heads, "must divide model_width")?;
         require(
-            self.spatial_layers <= MOST_LAYERS,
-            "spatial_layers",
-            &self.spatial_layers,
-            "at most 64",
-        )?;
-        require(
-            self.model_width % self.heads == 0,
-            "heads",
-            &self.heads,
-            "must divide model_width",
-        )?;
-        require(
-            self.frame == Frame::World || self.variant.goal_shift(),
+            self.frame == NetworkFrame::World || self.variant.goal_shift(),
             "frame",
             &"goal",
             "world for the variants without goal shift",
         )?;
         let dropout = self.spatial_dropout;
-        require(
-            (0.0..1.0).contains(&dropout),
-            "spatial_dropout",
-            &dropout,
-            "in [0, 1)",
-        )?;
-        for (field, value) in [
-            ("neighbour_box", self.neighbour_box),
-            ("sigma", self.sigma),
-            ("time_step", self.time_step),
-        ] {
-            require(
-                value.is_finite() && value > 0.0,
-                field,
-                &value,
-                "finite and positive",
-            )?;
-        }
-        Ok(())
+        let holds = (0.0..1.0).contains(&dropout);
+        require(holds, "spatial_dropout", &dropout, "in [0, 1)")?;
+        positive("neighbour_box", self.neighbour_box)?;
+        positive("sigma", self.sigma)?;
+        positive("time_step", self.time_step)
     }
 }
 
@@ -248,26 +217,24 @@ mod tests {
 
     #[test]
     fn published_sizes_are_accepted_and_broken_ones_named() {
-        let good = StarConfig::published(Variant::Full);
-        good.check().unwrap();
-        let bad = StarConfig {
-            heads: 5,
-            ..good.clone()
+        let refused = |change: &dyn Fn(&mut StarConfig), said: &str| {
+            let mut config = StarConfig::published(Variant::Full);
+            config.check().unwrap();
+            change(&mut config);
+            let error = config.check().unwrap_err().to_string();
+            assert!(error.contains(said), "{error}");
         };
-        assert!(bad.check().unwrap_err().to_string().contains("heads = 5"));
-        let too_many = StarConfig {
-            model_width: 512,
-            heads: 512,
-            ..good.clone()
-        };
-        assert!(too_many.check().unwrap_err().to_string().contains("heads"));
-        let too_wide = StarConfig {
-            model_width: 65_536,
-            feed_forward_width: 65_536,
-            ..good.clone()
-        };
-        assert!(too_wide.check().is_err());
-        let bad = StarConfig { sigma: 0.0, ..good };
-        assert!(bad.check().unwrap_err().to_string().contains("sigma"));
+        refused(&|config| config.heads = 5, "heads = 5");
+        refused(
+            &|config| (config.model_width, config.heads) = (512, 512),
+            "heads = 512",
+        );
+        refused(
+            &|config| config.model_width = 65_536,
+            "at most 2^24 weights",
+        );
+        refused(&|config| config.spatial_layers = 65, "at most 64");
+        refused(&|config| config.spatial_dropout = 1.0, "in [0, 1)");
+        refused(&|config| config.sigma = 0.0, "sigma");
     }
 }

@@ -1,8 +1,9 @@
 //! How to train.
 
-use super::range::require;
+use super::range::{at_least_one, not_negative, positive, require};
 use super::variant::Variant;
 use crate::NetworkError;
+use crate::names::named;
 use serde::{Deserialize, Serialize};
 
 /// How Adam's step size changes over the training.
@@ -37,30 +38,7 @@ impl LearningRateSchedule {
     }
 }
 
-impl std::fmt::Display for LearningRateSchedule {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Constant => "constant",
-            Self::Cosine => "cosine",
-        })
-    }
-}
-
-impl std::str::FromStr for LearningRateSchedule {
-    type Err = NetworkError;
-
-    fn from_str(text: &str) -> Result<Self, NetworkError> {
-        match text {
-            "constant" => Ok(Self::Constant),
-            "cosine" => Ok(Self::Cosine),
-            _ => Err(NetworkError::Config {
-                field: "learning_rate_schedule",
-                value: text.to_owned(),
-                rule: "one of constant, cosine",
-            }),
-        }
-    }
-}
+named!(LearningRateSchedule, "learning_rate_schedule", Constant => "constant", Cosine => "cosine");
 
 /// What a step of training asks of the network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -74,30 +52,10 @@ pub enum Objective {
     Walk,
 }
 
-impl std::fmt::Display for Objective {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::NextStep => "next-step",
-            Self::Walk => "walk",
-        })
-    }
-}
+named!(Objective, "objective", NextStep => "next-step", Walk => "walk");
 
-impl std::str::FromStr for Objective {
-    type Err = NetworkError;
-
-    fn from_str(text: &str) -> Result<Self, NetworkError> {
-        match text {
-            "next-step" => Ok(Self::NextStep),
-            "walk" => Ok(Self::Walk),
-            _ => Err(NetworkError::Config {
-                field: "objective",
-                value: text.to_owned(),
-                rule: "one of next-step, walk",
-            }),
-        }
-    }
-}
+/// So that steps can be counted, whatever the windows.
+const MOST_EPOCHS: usize = 1_000_000;
 
 /// How to train.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -168,12 +126,7 @@ impl TrainingConfig {
             ..Self::published()
         }
     }
-}
 
-/// So that steps can be counted, whatever the windows.
-const MOST_EPOCHS: usize = 1_000_000;
-
-impl TrainingConfig {
     /// Checks every field.
     ///
     /// # Errors
@@ -185,48 +138,19 @@ impl TrainingConfig {
             &self.epochs,
             "a whole number in 1..=1000000",
         )?;
-        let rate = self.learning_rate;
-        require(
-            rate.is_finite() && rate > 0.0,
-            "learning_rate",
-            &rate,
-            "finite and positive",
-        )?;
+        positive("learning_rate", self.learning_rate)?;
         let jitter = self.jitter;
-        require(
-            jitter.is_finite() && jitter >= 0.0,
-            "jitter",
-            &jitter,
-            "finite and not negative",
-        )?;
+        not_negative("jitter", jitter)?;
         require(
             jitter == 0.0 || self.objective == Objective::Walk,
             "jitter",
             &jitter,
             "0 unless the objective is walk: single steps are led to the observed positions themselves",
         )?;
-        let clip = self.gradient_clip;
-        require(
-            clip.is_finite() && clip > 0.0,
-            "gradient_clip",
-            &clip,
-            "finite and positive",
-        )?;
-        require(
-            self.batch_walkers > 0,
-            "batch_walkers",
-            &self.batch_walkers,
-            "at least 1",
-        )?;
-        if let Some(pedestrians) = self.walkers_per_epoch {
-            require(
-                pedestrians > 0,
-                "walkers_per_epoch",
-                &pedestrians,
-                "at least 1",
-            )?;
-        }
-        Ok(())
+        positive("gradient_clip", self.gradient_clip)?;
+        at_least_one("batch_walkers", self.batch_walkers as u64)?;
+        let pedestrians = self.walkers_per_epoch.unwrap_or(1);
+        at_least_one("walkers_per_epoch", pedestrians as u64)
     }
 
     /// Checks that a network of this variant can be trained so.
@@ -273,11 +197,7 @@ mod tests {
             learning_rate: f64::NAN,
             ..TrainingConfig::published()
         };
-        assert!(
-            bad.check()
-                .unwrap_err()
-                .to_string()
-                .contains("learning_rate")
-        );
+        let error = bad.check().unwrap_err().to_string();
+        assert!(error.contains("learning_rate"), "{error}");
     }
 }

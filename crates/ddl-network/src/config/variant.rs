@@ -1,6 +1,6 @@
 //! The four variants of the paper's ablation.
 
-use crate::NetworkError;
+use crate::names::named;
 use serde::{Deserialize, Serialize};
 
 /// The four rows of the paper's Table II: goal shift (A) and dynamics (B), each on or off.
@@ -42,49 +42,6 @@ impl Variant {
     pub fn uses_goal(self) -> bool {
         self != Self::Star
     }
-
-    /// The name used on the command line and in reports.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Full => "full",
-            Self::NoGoalShift => "no-goal-shift",
-            Self::NoDynamics => "no-dynamics",
-            Self::Star => "star",
-        }
-    }
 }
 
-impl std::fmt::Display for Variant {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl std::str::FromStr for Variant {
-    type Err = NetworkError;
-
-    fn from_str(text: &str) -> Result<Self, NetworkError> {
-        Self::ALL
-            .into_iter()
-            .find(|variant| variant.name() == text)
-            .ok_or_else(|| NetworkError::Config {
-                field: "variant",
-                value: text.to_owned(),
-                rule: "one of full, no-goal-shift, no-dynamics, star",
-            })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn variants_round_trip_through_their_names() {
-        for variant in Variant::ALL {
-            assert_eq!(variant.name().parse::<Variant>().unwrap(), variant);
-        }
-        assert!("half".parse::<Variant>().is_err());
-    }
-}
+named!(Variant, "variant", Full => "full", NoGoalShift => "no-goal-shift", NoDynamics => "no-dynamics", Star => "star");

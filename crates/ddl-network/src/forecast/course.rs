@@ -8,7 +8,7 @@ use super::unit::motion_unit;
 use super::visibility::visibility;
 use crate::StarConfig;
 use crate::backend::{Buffer, Rows, Scenes, SeenScenes};
-use crate::config::Frame;
+use crate::config::NetworkFrame;
 use ddl_data::{OBSERVED, Window};
 use ddl_dynamics::{
     Attractor, CholeskyMetric, DynamicsError, Euler, MotionBounds, NaturalGradientFlow,
@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 /// Everybody in every hypothesis, metres.
 #[derive(Debug)]
-pub(super) struct Course {
+pub(super) struct BatchCourse {
     /// `[8, P]`.
     observed: Vec<[f32; 2]>,
     scenes: Arc<Scenes>,
@@ -46,7 +46,7 @@ pub(super) struct Course {
     dynamics: bool,
 }
 
-impl Course {
+impl BatchCourse {
     /// Everybody at the last observed time step.
     pub(super) fn new(batch: &ForecastBatch<'_>, config: &StarConfig) -> Self {
         let (pedestrians, hypotheses) = (batch.pedestrians(), batch.hypotheses());
@@ -61,7 +61,7 @@ impl Course {
         let units: Vec<f64> = tracks()
             .map(|track| motion_unit(track, config.time_step))
             .collect();
-        let frames = (config.frame == Frame::Goal).then(|| {
+        let frames = (config.frame == NetworkFrame::Goal).then(|| {
             let frames = batch.goals.iter().flat_map(|goals| {
                 let each = tracks().zip(goals).zip(&units);
                 each.map(|((track, &goal), &unit)| OwnFrame::new(track[OBSERVED - 1], goal, unit))
@@ -70,7 +70,7 @@ impl Course {
         });
         let bounds = (batch.rule == StepRule::Bounded).then(|| {
             let share = |i: usize| batch.shares.as_ref().map_or(1.0, |shares| shares[i]);
-            let absolute = config.frame == Frame::World;
+            let absolute = config.frame == NetworkFrame::World;
             let each = tracks().enumerate();
             each.map(|(i, track)| {
                 let bounds = motion_bounds(track, config.time_step, share(i));

@@ -5,13 +5,13 @@ const SMALLEST_PIVOT: f32 = 1e-12;
 
 /// Entries of C = W W^T, the covariance of W n for noise n ~ N(0, I).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Spread {
+pub(super) struct NoiseSpread {
     c11: f32,
     c12: f32,
     c22: f32,
 }
 
-impl Spread {
+impl NoiseSpread {
     /// `rows`: the three rows of the output layer's weight, of which the last `noise` columns are for the noise.
     pub(super) fn of(weight: &[f32], inputs: usize, noise: usize) -> Self {
         let row = |i: usize| &weight[i * inputs..][inputs - noise..inputs];
@@ -65,7 +65,7 @@ mod tests {
                 *sum += entry / f64::from(draws);
             }
         }
-        let spread = Spread::of(&weight, inputs, noise);
+        let spread = NoiseSpread::of(&weight, inputs, noise);
         let expected = metric(spread.expected_factor(mean));
         // standard error of the sampled mean: about 3e-3
         for (sampled, expected) in sums.into_iter().zip(expected) {

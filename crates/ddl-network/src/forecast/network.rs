@@ -1,8 +1,8 @@
 //! The forecasting network on plain numbers.
 
 use super::batch::{BatchRollout, ForecastBatch};
-use super::course::Course;
-use super::emission::Spread;
+use super::course::BatchCourse;
+use super::emission::NoiseSpread;
 use super::forecast_windows::ForecastWindows;
 use crate::backbone::{Backbone, Perceptron, Star};
 use crate::backend::{Backend as _, Buffer, KernelBackend, Kernels, Memory, Rows};
@@ -26,7 +26,7 @@ pub struct MotionNetwork {
     backbone: Box<dyn Backbone<KernelBackend>>,
     output: Linear,
     /// What the noise adds to the metric; `None` for the variants without dynamics.
-    spread: Option<Spread>,
+    spread: Option<NoiseSpread>,
 }
 
 impl MotionNetwork {
@@ -150,11 +150,11 @@ fn initial(layout: &Arc<Layout>, seed: u64) -> Weights {
 }
 
 /// What noise adds, where the expectation over it is asked for.
-fn spread(config: &StarConfig, weights: &Weights, output: Linear) -> Option<Spread> {
+fn spread(config: &StarConfig, weights: &Weights, output: Linear) -> Option<NoiseSpread> {
     let numbers = &weights.numbers()[output.span()];
     let noise = config.noise_width as usize;
     let dynamics = config.variant.dynamics();
-    dynamics.then(|| Spread::of(numbers, output.inputs(), noise))
+    dynamics.then(|| NoiseSpread::of(numbers, output.inputs, noise))
 }
 
 impl ForecastWindows for MotionNetwork {
@@ -172,7 +172,7 @@ impl ForecastWindows for MotionNetwork {
 
     fn roll_out(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, NetworkError> {
         let backend = KernelBackend::forward_only(Arc::clone(&self.kernels));
-        let mut course = Course::new(batch, &self.config);
+        let mut course = BatchCourse::new(batch, &self.config);
         let seen = course.seen(0..OBSERVED);
         let scene = self
             .backbone

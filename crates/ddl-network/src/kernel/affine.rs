@@ -7,7 +7,7 @@ mod product;
 #[cfg(test)]
 mod tests;
 
-use super::columns::{Columns, ColumnsMut};
+use super::columns::{MatrixColumns, MatrixColumnsMut};
 use ddl_simd::{LANES, Lanes, Simd};
 use matrix::{Matrix, Start};
 pub(super) use product::sum_of_rows;
@@ -65,8 +65,8 @@ impl Affine {
     pub(super) fn forward<S: Simd, const R: usize, const V: usize>(
         &self,
         simd: S,
-        x: Columns<'_>,
-        y: &mut ColumnsMut<'_>,
+        x: MatrixColumns<'_>,
+        y: &mut MatrixColumnsMut<'_>,
     ) {
         multiply::<S, R, V>(simd, x, &self.transposed, Start::Row(&self.bias), y);
     }
@@ -79,8 +79,8 @@ impl Affine {
     pub(super) fn backward<S: Simd, const R: usize, const V: usize>(
         &self,
         simd: S,
-        gy: Columns<'_>,
-        gx: &mut ColumnsMut<'_>,
+        gy: MatrixColumns<'_>,
+        gx: &mut MatrixColumnsMut<'_>,
         add: bool,
     ) {
         let start = if add { Start::There } else { Start::Zero };
@@ -95,8 +95,8 @@ impl Affine {
     pub(super) fn add_gradients<S: Simd, const R: usize, const V: usize>(
         &self,
         simd: S,
-        x: Columns<'_>,
-        gy: Columns<'_>,
+        x: MatrixColumns<'_>,
+        gy: MatrixColumns<'_>,
         [weight, bias]: [&mut [f32]; 2],
     ) {
         add_transposed_product::<S, R, V>(simd, gy, self.outputs, x, self.inputs, weight);

@@ -4,7 +4,6 @@ mod backward;
 mod dropout;
 mod forward;
 mod queries;
-mod task;
 #[cfg(test)]
 mod tests;
 
@@ -12,15 +11,14 @@ use super::buffer::Buffer;
 use super::dropout::Dropout;
 use super::heads::Heads;
 use super::scenes::Frames;
-use super::threads::each;
-use backward::Backward;
+use super::threads::{Buffered, each};
+use backward::SceneBackward;
 #[cfg(test)]
 use ddl_simd::InstructionSet;
 use ddl_simd::{Dispatch, Lanes};
-use dropout::Decisions;
-use forward::Forward;
-use queries::Buffers;
-use task::Task;
+use dropout::WeightDecisions;
+use forward::SceneForward;
+use queries::{SceneBuffers, Task};
 
 /// Multiplications that take as long as a pair of a query and a key.
 const WORK_OF_A_PAIR: usize = 50;
@@ -97,7 +95,7 @@ impl AmongPedestrians {
         let (mut mixed, mut normalisers) = (&mut attended.mixed[..], &mut attended.normalisers[..]);
         let mut jobs = Vec::new();
         for (qkv, task) in self.tasks(qkv, frames, dropout) {
-            jobs.push(Forward {
+            jobs.push(SceneForward {
                 qkv,
                 mixed: mixed
                     .split_off_mut(..task.scene.pedestrians * row)
@@ -111,8 +109,8 @@ impl AmongPedestrians {
         each(
             jobs,
             self.work(frames, entries),
-            |job, buffers: &mut Buffers| {
-                self.dispatch.run(forward::Run { job, buffers });
+            |job, buffers: &mut SceneBuffers| {
+                self.dispatch.run(Buffered { job, buffers });
             },
         );
     }
@@ -159,7 +157,7 @@ impl AmongPedestrians {
         let mut jobs = Vec::new();
         for (qkv, task) in self.tasks(qkv, frames, dropout) {
             let pedestrians = task.scene.pedestrians;
-            jobs.push(Backward {
+            jobs.push(SceneBackward {
                 qkv,
                 mixed: mixed.split_off(..pedestrians * row).unwrap_or_default(),
                 normalisers: normalisers
@@ -175,8 +173,8 @@ impl AmongPedestrians {
         each(
             jobs,
             self.work(frames, entries),
-            |job, buffers: &mut Buffers| {
-                self.dispatch.run(backward::Run { job, buffers });
+            |job, buffers: &mut SceneBuffers| {
+                self.dispatch.run(Buffered { job, buffers });
             },
         );
     }
@@ -215,7 +213,7 @@ impl AmongPedestrians {
         frames: Frames<'a>,
         dropout: Option<Dropout>,
     ) -> impl Iterator<Item = (&'a [f32], Task<'a>)> {
-        let (heads, decisions) = (self.heads, dropout.and_then(Decisions::new));
+        let (heads, decisions) = (self.heads, dropout.and_then(WeightDecisions::new));
         let row = 3 * heads.row();
         let entries = qkv.chunks_exact(frames.scenes().pedestrians() * row);
         entries.enumerate().flat_map(move |(entry, qkv)| {

@@ -6,7 +6,7 @@ use ddl_simd::{LANES, Simd};
 
 /// Columns of a matrix: all of them, or what stands side by side with others.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Columns<'a> {
+pub(super) struct MatrixColumns<'a> {
     numbers: &'a [f32],
     rows: usize,
     /// Numbers in a row of the whole matrix.
@@ -15,9 +15,9 @@ pub(super) struct Columns<'a> {
     count: usize,
 }
 
-/// [`Columns`] that are written.
+/// [`MatrixColumns`] that are written.
 #[derive(Debug)]
-pub(super) struct ColumnsMut<'a> {
+pub(super) struct MatrixColumnsMut<'a> {
     numbers: &'a mut [f32],
     rows: usize,
     stride: usize,
@@ -25,7 +25,7 @@ pub(super) struct ColumnsMut<'a> {
     count: usize,
 }
 
-impl<'a> Columns<'a> {
+impl<'a> MatrixColumns<'a> {
     /// The matrix whose rows are `count` numbers.
     pub(super) fn whole(numbers: &'a [f32], count: usize) -> Self {
         Self::part(numbers, count, 0, count)
@@ -59,13 +59,13 @@ impl<'a> Columns<'a> {
     }
 }
 
-impl<'a> ColumnsMut<'a> {
+impl<'a> MatrixColumnsMut<'a> {
     pub(super) fn whole(numbers: &'a mut [f32], count: usize) -> Self {
         Self::part(numbers, count, 0, count)
     }
 
     pub(super) fn part(numbers: &'a mut [f32], stride: usize, first: usize, count: usize) -> Self {
-        let rows = Columns::part(numbers, stride, first, count).rows;
+        let rows = MatrixColumns::part(numbers, stride, first, count).rows;
         Self {
             numbers,
             rows,

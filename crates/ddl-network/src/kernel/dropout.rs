@@ -84,6 +84,7 @@ pub(super) fn mixed(word: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::tests::numbers::assert_refused;
 
     fn threshold(p: f64, bits: u32) -> Option<(u32, f32)> {
         let threshold = Dropout { p, seed: 0 }.threshold(bits);
@@ -97,6 +98,9 @@ mod tests {
         assert_eq!(threshold(0.25, 16), Some((16_384, 4.0 / 3.0)));
         assert_eq!(threshold(0.25, 24), Some((4_194_304, 4.0 / 3.0)));
         assert_eq!(threshold(1.0 - 1e-12, 16), Some((65_535, 65_536.0)));
+        for p in [f64::NAN, 1.0, -0.1] {
+            assert_refused("not in [0, 1)", || assert_eq!(threshold(p, 24), None));
+        }
     }
 
     #[test]
@@ -104,11 +108,5 @@ mod tests {
         // The first two numbers of SplitMix64 from 0: a step of the counter before each.
         assert_eq!(mixed(0), 0xe220_a839_7b1d_cdaf);
         assert_eq!(mixed(1), 0x6e78_9e6a_a1b9_65f4);
-    }
-
-    #[test]
-    #[should_panic(expected = "dropout of NaN: not in [0, 1)")]
-    fn refuses_what_is_no_probability() {
-        let _ = threshold(f64::NAN, 16);
     }
 }

@@ -14,12 +14,12 @@ use super::over_memory::{KeyValue, OverMemoryGradients};
 use super::scenes::Frames;
 use backward::Parts;
 use forward::Targets;
-use keep::Attention;
+use keep::KeptAttention;
 pub(crate) use keep::{Kept, Remembered};
-pub(crate) use layer::{Dropouts, EncoderLayer};
+pub(crate) use layer::{Dropouts, EncoderKernel};
 pub use weights::Sizes;
 
-impl EncoderLayer {
+impl EncoderKernel {
     /// The layer with attention among the pedestrians of each scene.
     ///
     /// # Shapes
@@ -38,7 +38,7 @@ impl EncoderLayer {
         let mut attended = Attended::default();
         self.among
             .forward(&qkv, frames, dropouts.weights, &mut attended);
-        let attention = Attention::Among { qkv, attended };
+        let attention = KeptAttention::Among { qkv, attended };
         self.after_attention(x, attention, dropouts)
     }
 
@@ -58,7 +58,7 @@ impl EncoderLayer {
         gy: &[f32],
         of_weights: &mut [f32],
     ) -> Buffer {
-        let Attention::Among { qkv, attended } = &kept.attention else {
+        let KeptAttention::Among { qkv, attended } = &kept.attention else {
             panic!("what was kept is of attention over memory");
         };
         let (mut gx, of_mixed) = self.before_attention(kept, dropouts, gy, of_weights);
@@ -96,7 +96,7 @@ impl EncoderLayer {
         let mut mixed = Buffer::any(x.len());
         self.over
             .forward(&query, &views(memory), own.view(), &mut mixed);
-        let attention = Attention::Over { query, own, mixed };
+        let attention = KeptAttention::Over { query, own, mixed };
         self.after_attention(x, attention, dropouts)
     }
 
@@ -122,7 +122,7 @@ impl EncoderLayer {
         of_memory: &mut [&mut Remembered],
         of_weights: &mut [f32],
     ) -> Buffer {
-        let Attention::Over { query, own, .. } = &kept.attention else {
+        let KeptAttention::Over { query, own, .. } = &kept.attention else {
             panic!("what was kept is of attention among pedestrians");
         };
         let (mut gx, of_mixed) = self.before_attention(kept, dropouts, gy, of_weights);

@@ -50,13 +50,13 @@ impl Heads {
 ///
 /// Heads that lack in the last group and numbers that lack in the last quad are 0 when loaded, and not stored.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+pub(super) struct HeadPart {
     heads: Heads,
     group: usize,
     quad: usize,
 }
 
-impl Part {
+impl HeadPart {
     #[inline(always)]
     pub(super) fn new(heads: Heads, group: usize, quad: usize) -> Self {
         Self { heads, group, quad }
@@ -81,7 +81,7 @@ impl Part {
         simd.transpose([a, b, c, d])
     }
 
-    /// The inverse of [`Part::load`].
+    /// The inverse of [`HeadPart::load`].
     #[inline(always)]
     pub(super) fn store<S: Simd>(
         self,

@@ -4,7 +4,7 @@
 
 use super::affine::Affine;
 use super::buffer::Buffer;
-use super::columns::{Columns, ColumnsMut};
+use super::columns::{MatrixColumns, MatrixColumnsMut};
 use super::threads::each;
 use ddl_simd::{Dispatch, Simd, TiledKernel};
 
@@ -16,14 +16,14 @@ const ROWS: usize = 512;
 /// # Numerics
 /// Nothing depends on the number of threads.
 #[derive(Clone, Debug)]
-pub(crate) struct Linear {
+pub(crate) struct LinearKernel {
     inputs: usize,
     outputs: usize,
     map: Affine,
     dispatch: Dispatch,
 }
 
-impl Linear {
+impl LinearKernel {
     /// A map whose weights are all 0.
     ///
     /// # Panics
@@ -55,15 +55,19 @@ impl Linear {
         let mut y = Buffer::any(x.len() / self.inputs * self.outputs);
         let inputs = x.chunks(ROWS * self.inputs);
         let jobs = inputs.zip(y.chunks_mut(ROWS * self.outputs));
-        let jobs = jobs.map(|(x, y)| Forward {
+        let jobs = jobs.map(|(x, y)| LinearForward {
             map: &self.map,
-            x: Columns::whole(x, self.inputs),
-            y: ColumnsMut::whole(y, self.outputs),
+            x: MatrixColumns::whole(x, self.inputs),
+            y: MatrixColumnsMut::whole(y, self.outputs),
         });
         let work = x.len() * self.outputs;
-        each(jobs.collect(), work, |job: Forward<'_>, (): &mut ()| {
-            self.dispatch.run(job);
-        });
+        each(
+            jobs.collect(),
+            work,
+            |job: LinearForward<'_>, (): &mut ()| {
+                self.dispatch.run(job);
+            },
+        );
         y
     }
 
@@ -79,17 +83,23 @@ impl Linear {
         let inputs = x.chunks(ROWS * self.inputs);
         let inputs = inputs.zip(gy.chunks(ROWS * self.outputs));
         let outputs = gx.chunks_mut(ROWS * self.inputs).zip(&mut sums);
-        let jobs = inputs.zip(outputs).map(|((x, gy), (gx, sums))| Backward {
-            map: &self.map,
-            x: Columns::whole(x, self.inputs),
-            gy: Columns::whole(gy, self.outputs),
-            gx: ColumnsMut::whole(gx, self.inputs),
-            of_weights: sums.split_at_mut(self.outputs * self.inputs).into(),
-        });
+        let jobs = inputs
+            .zip(outputs)
+            .map(|((x, gy), (gx, sums))| LinearBackward {
+                map: &self.map,
+                x: MatrixColumns::whole(x, self.inputs),
+                gy: MatrixColumns::whole(gy, self.outputs),
+                gx: MatrixColumnsMut::whole(gx, self.inputs),
+                of_weights: sums.split_at_mut(self.outputs * self.inputs).into(),
+            });
         let work = 2 * x.len() * self.outputs;
-        each(jobs.collect(), work, |job: Backward<'_>, (): &mut ()| {
-            self.dispatch.run(job);
-        });
+        each(
+            jobs.collect(),
+            work,
+            |job: LinearBackward<'_>, (): &mut ()| {
+                self.dispatch.run(job);
+            },
+        );
         for sums in &sums {
             for (sum, term) in of_weights.iter_mut().zip(sums.iter()) {
                 *sum += term;
@@ -99,28 +109,28 @@ impl Linear {
     }
 }
 
-struct Forward<'a> {
+struct LinearForward<'a> {
     map: &'a Affine,
-    x: Columns<'a>,
-    y: ColumnsMut<'a>,
+    x: MatrixColumns<'a>,
+    y: MatrixColumnsMut<'a>,
 }
 
-impl TiledKernel for Forward<'_> {
+impl TiledKernel for LinearForward<'_> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(mut self, simd: S) {
         self.map.forward::<S, R, V>(simd, self.x, &mut self.y);
     }
 }
 
-struct Backward<'a> {
+struct LinearBackward<'a> {
     map: &'a Affine,
-    x: Columns<'a>,
-    gy: Columns<'a>,
-    gx: ColumnsMut<'a>,
+    x: MatrixColumns<'a>,
+    gy: MatrixColumns<'a>,
+    gx: MatrixColumnsMut<'a>,
     of_weights: [&'a mut [f32]; 2],
 }
 
-impl TiledKernel for Backward<'_> {
+impl TiledKernel for LinearBackward<'_> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(mut self, simd: S) {
         self.map

@@ -2,20 +2,19 @@
 
 mod backward;
 mod forward;
-mod key_value;
 #[cfg(test)]
 mod tests;
 mod tokens;
 
 use super::heads::Heads;
-use super::threads::each;
-use backward::Backward;
+use super::threads::{Buffered, each};
+use backward::MemoryBackward;
 use ddl_simd::Dispatch;
 #[cfg(test)]
 use ddl_simd::InstructionSet;
-use forward::Forward;
-pub(crate) use key_value::{KeyValue, KeyValueMut};
-use tokens::Buffers;
+use forward::MemoryForward;
+use tokens::MemoryBuffers;
+pub(crate) use tokens::{KeyValue, KeyValueMut};
 
 /// Rows that a thread takes at once: with any number of heads they fill whole groups of lanes.
 const ROWS_AT_ONCE: usize = 64;
@@ -100,8 +99,8 @@ impl OverMemory {
         }
         let chunk = ROWS_AT_ONCE * self.heads.row();
         let chunks = mixed.chunks_mut(chunk).enumerate();
-        let jobs: Vec<Forward<'_>> = chunks
-            .map(|(i, mixed)| Forward {
+        let jobs: Vec<MemoryForward<'_>> = chunks
+            .map(|(i, mixed)| MemoryForward {
                 heads: self.heads,
                 first: i * chunk,
                 query,
@@ -110,9 +109,13 @@ impl OverMemory {
                 mixed,
             })
             .collect();
-        each(jobs, work(query, memory), |job, buffers: &mut Buffers| {
-            self.dispatch.run(forward::Run { job, buffers });
-        });
+        each(
+            jobs,
+            work(query, memory),
+            |job, buffers: &mut MemoryBuffers| {
+                self.dispatch.run(Buffered { job, buffers });
+            },
+        );
     }
 
     /// Adds the gradients of the inputs of [`OverMemory::forward`], from that of its output.
@@ -169,7 +172,7 @@ impl OverMemory {
         for first in (0..query.len()).step_by(chunk) {
             let count = chunk.min(query.len() - first);
             let tokens = token_gradients.iter_mut();
-            jobs.push(Backward {
+            jobs.push(MemoryBackward {
                 heads: self.heads,
                 first,
                 query,
@@ -180,9 +183,13 @@ impl OverMemory {
                 token_gradients: tokens.map(|token| token.split_off(count)).collect(),
             });
         }
-        each(jobs, work(query, memory), |job, buffers: &mut Buffers| {
-            self.dispatch.run(backward::Run { job, buffers });
-        });
+        each(
+            jobs,
+            work(query, memory),
+            |job, buffers: &mut MemoryBuffers| {
+                self.dispatch.run(Buffered { job, buffers });
+            },
+        );
     }
 
     fn check(&self, query: &[f32], own: KeyValue<'_>, mixed: &[f32]) {

@@ -23,7 +23,7 @@ pub struct Frames<'a> {
 
 /// One scene in one frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Scene<'a> {
+pub(super) struct SceneCodes<'a> {
     /// Number of the first pedestrian.
     pub(super) first: usize,
     pub(super) pedestrians: usize,
@@ -86,16 +86,6 @@ impl Scenes {
         }
     }
 
-    /// Scenes of `sizes` pedestrians where everybody sees everybody, the same in all frames.
-    ///
-    /// # Panics
-    /// When there is no scene or an empty one.
-    #[cfg(test)]
-    pub(super) fn all_visible(sizes: &[usize]) -> Self {
-        let pairs = sizes.iter().map(|size| size * size).sum();
-        Self::new(sizes, &vec![true; pairs])
-    }
-
     /// Pedestrians in all scenes together.
     #[must_use]
     pub fn pedestrians(&self) -> usize {
@@ -146,7 +136,7 @@ impl<'a> Frames<'a> {
     }
 
     /// The scenes of a batch entry, in the order of the pedestrians.
-    pub(super) fn of_entry(self, entry: usize) -> impl Iterator<Item = Scene<'a>> {
+    pub(super) fn of_entry(self, entry: usize) -> impl Iterator<Item = SceneCodes<'a>> {
         let scenes = self.scenes;
         let frame = self.first + if self.count == 1 { 0 } else { entry };
         let per_frame = scenes.codes.len() / scenes.frames;
@@ -156,7 +146,7 @@ impl<'a> Frames<'a> {
             .ranges
             .iter()
             .zip(within)
-            .map(|(range, within)| Scene {
+            .map(|(range, within)| SceneCodes {
                 first: range.start,
                 pedestrians: range.len(),
                 codes: &codes[within],
@@ -182,6 +172,7 @@ impl<'a> Frames<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::tests::numbers::assert_refused;
 
     #[test]
     fn two_queries_share_a_code() {
@@ -205,30 +196,23 @@ mod tests {
         assert_eq!(of(scenes.throughout(), 0), first);
         assert_eq!(of(scenes.throughout(), 1), all);
         assert_eq!(of(scenes.during(0..1), 1), first);
-        assert_eq!(of(Scenes::all_visible(&[1, 3]).throughout(), 5), all);
+        assert_eq!(of(scenes.during(1..2), 5), all);
     }
 
     #[test]
-    #[should_panic(expected = "every pedestrian sees itself")]
-    fn refuses_a_pedestrian_that_does_not_see_itself() {
-        let _ = Scenes::new(&[2], &[true, true, true, false]);
-    }
-
-    #[test]
-    #[should_panic(expected = "9 entries of visibility")]
-    fn refuses_a_part_of_a_frame() {
-        let _ = Scenes::new(&[2], &[true; 9]);
-    }
-
-    #[test]
-    #[should_panic(expected = "at least one pedestrian")]
-    fn refuses_an_empty_scene() {
-        let _ = Scenes::new(&[2, 0], &[true; 4]);
-    }
-
-    #[test]
-    #[should_panic(expected = "frames 1..3 of 2")]
-    fn refuses_frames_that_are_not_there() {
-        let _ = Scenes::new(&[1], &[true; 2]).during(1..3);
+    fn what_does_not_fit_is_refused() {
+        let refused = |said, sizes: &[usize], visible: &[bool]| {
+            assert_refused(said, || drop(Scenes::new(sizes, visible)));
+        };
+        refused(
+            "every pedestrian sees itself",
+            &[2],
+            &[true, true, true, false],
+        );
+        refused("9 entries of visibility", &[2], &[true; 9]);
+        refused("at least one pedestrian", &[2, 0], &[true; 4]);
+        assert_refused("frames 1..3 of 2", || {
+            let _ = Scenes::new(&[1], &[true; 2]).during(1..3);
+        });
     }
 }

@@ -5,6 +5,13 @@ use rayon::prelude::*;
 /// Multiplications (or what takes as long) below which other threads are not worth waking: some ten microseconds.
 pub(super) const WORTH_WAKING: usize = 1_000_000;
 
+/// A job, and room for what it computes that its thread keeps for the next one.
+#[derive(Debug)]
+pub(super) struct Buffered<'b, J, B> {
+    pub(super) job: J,
+    pub(super) buffers: &'b mut B,
+}
+
 /// Does all jobs, of `work` multiplications together. A job must not depend on the thread that does it.
 pub(super) fn each<J: Send, B: Default>(
     jobs: Vec<J>,

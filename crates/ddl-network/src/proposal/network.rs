@@ -2,9 +2,9 @@
 
 use super::ends::{END_UNIT, ProposeEnds, ProposedEnds};
 use super::layers::{MemberAffine, ProposalLayers};
-use super::seen::Seen;
+use super::seen::SeenRows;
 use super::view::PedestrianView;
-use crate::kernel::{Buffer, Linear, gelu};
+use crate::kernel::{Buffer, LinearKernel, gelu};
 use crate::seed::{Stage, stream};
 use crate::weights::{Layout, Weights};
 use crate::{NetworkError, ProposalConfig};
@@ -27,20 +27,20 @@ pub struct ProposalNetwork {
     config: ProposalConfig,
     layers: ProposalLayers,
     weights: Weights,
-    members: Vec<Member>,
+    members: Vec<MemberKernels>,
 }
 
 /// The kernels of one member.
 #[derive(Debug)]
-struct Member {
-    own: Linear,
-    neighbour: [Linear; 2],
-    query: Linear,
-    key: Linear,
-    value: Linear,
-    hidden: Vec<Linear>,
-    ends: Linear,
-    logits: Linear,
+struct MemberKernels {
+    own: LinearKernel,
+    neighbour: [LinearKernel; 2],
+    query: LinearKernel,
+    key: LinearKernel,
+    value: LinearKernel,
+    hidden: Vec<LinearKernel>,
+    ends: LinearKernel,
+    logits: LinearKernel,
 }
 
 impl ProposalNetwork {
@@ -96,7 +96,7 @@ impl ProposalNetwork {
     }
 
     fn propose_chunk(&self, views: &[PedestrianView]) -> Vec<ProposedEnds> {
-        let seen = Seen::of(views, &self.config);
+        let seen = SeenRows::of(views, &self.config);
         let (k, members) = (self.config.ends as usize, self.config.members as f64);
         let mut proposed: Vec<ProposedEnds> = Vec::new();
         proposed.resize_with(views.len(), || ProposedEnds {
@@ -146,7 +146,11 @@ impl ProposeEnds for ProposalNetwork {
     }
 }
 
-fn members(config: &ProposalConfig, layers: &ProposalLayers, weights: &Weights) -> Vec<Member> {
+fn members(
+    config: &ProposalConfig,
+    layers: &ProposalLayers,
+    weights: &Weights,
+) -> Vec<MemberKernels> {
     let of = |layer: MemberAffine, member: usize| {
         let [inputs, outputs] = layer.sizes();
         let [weight, bias] = layer.of_member(member).map(|span| &weights.numbers()[span]);
@@ -154,12 +158,12 @@ fn members(config: &ProposalConfig, layers: &ProposalLayers, weights: &Weights) 
         let by_outputs =
             (0..outputs).flat_map(|o| (0..inputs).map(move |i| weight[i * outputs + o]));
         let numbers: Vec<f32> = by_outputs.chain(bias.iter().copied()).collect();
-        let mut kernel = Linear::zeros(inputs, outputs);
+        let mut kernel = LinearKernel::zeros(inputs, outputs);
         kernel.update(&numbers);
         kernel
     };
     (0..config.members as usize)
-        .map(|member| Member {
+        .map(|member| MemberKernels {
             own: of(layers.own, member),
             neighbour: layers.neighbour.map(|layer| of(layer, member)),
             query: of(layers.query, member),
@@ -176,9 +180,9 @@ fn members(config: &ProposalConfig, layers: &ProposalLayers, weights: &Weights) 
         .collect()
 }
 
-impl Member {
+impl MemberKernels {
     /// What ends and probabilities are read from, `[B, width]`.
-    fn hidden_layer(&self, seen: &Seen, heads: usize) -> Buffer {
+    fn hidden_layer(&self, seen: &SeenRows, heads: usize) -> Buffer {
         let mut code = self.own.forward(&seen.own);
         gelu(&mut code);
         let context = self.look_around(&code, seen, heads);
@@ -205,7 +209,7 @@ impl Member {
     }
 
     /// What the pedestrians make of their neighbours, `[B, neighbour width]`: attention with one more choice of score 0, nobody.
-    fn look_around(&self, code: &Buffer, seen: &Seen, heads: usize) -> Buffer {
+    fn look_around(&self, code: &Buffer, seen: &SeenRows, heads: usize) -> Buffer {
         let query = self.query.forward(code);
         let near = query.len() / seen.counts.len();
         let mut context = Buffer::zeros(query.len());

@@ -10,7 +10,7 @@ pub const RECENT: usize = 3;
 pub const NEIGHBOUR_FEATURES: usize = 9;
 
 /// What some pedestrians see, as rows.
-pub(super) struct Seen {
+pub(super) struct SeenRows {
     /// `[B, 30]`: positions and velocities.
     pub(super) own: Vec<f32>,
     /// How many neighbours each of them sees.
@@ -21,7 +21,7 @@ pub(super) struct Seen {
     pub(super) onward: Vec<Position>,
 }
 
-impl Seen {
+impl SeenRows {
     pub(super) fn of(views: &[PedestrianView], config: &ProposalConfig) -> Self {
         let time_step = config.time_step;
         let seconds = RECENT as f64 * time_step;

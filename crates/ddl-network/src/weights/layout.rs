@@ -64,39 +64,21 @@ pub struct Layout {
 
 /// An affine map y = x W^T + b of a layout: the weight `[outputs, inputs]`, then the bias `[outputs]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Linear {
-    number: usize,
-    tensor: usize,
-    first: usize,
-    inputs: usize,
-    outputs: usize,
+    /// Its number among the affine maps of the layout.
+    pub number: usize,
+    /// The number of its weight among the tensors of the layout; its bias is the next one.
+    pub tensor: usize,
+    /// Where its numbers begin among all learned ones.
+    pub first: usize,
+    /// Numbers in a row of x.
+    pub inputs: usize,
+    /// Numbers in a row of y.
+    pub outputs: usize,
 }
 
 impl Linear {
-    /// Its number among the affine maps of the layout.
-    #[must_use]
-    pub fn number(self) -> usize {
-        self.number
-    }
-
-    /// The number of its weight among the tensors of the layout; its bias is the next one.
-    #[must_use]
-    pub fn tensor(self) -> usize {
-        self.tensor
-    }
-
-    /// Numbers in a row of x.
-    #[must_use]
-    pub fn inputs(self) -> usize {
-        self.inputs
-    }
-
-    /// Numbers in a row of y.
-    #[must_use]
-    pub fn outputs(self) -> usize {
-        self.outputs
-    }
-
     /// Where its numbers stand among all learned ones.
     #[must_use]
     pub fn span(self) -> Range<usize> {
@@ -106,39 +88,21 @@ impl Linear {
 
 /// A Transformer encoder layer of a layout: twelve tensors, from `self_attn.in_proj_weight` to `norm2.bias`.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct EncoderLayer {
-    number: usize,
-    tensor: usize,
-    first: usize,
-    sizes: Sizes,
-    dropout: f64,
+    /// Its number among the encoder layers of the layout.
+    pub number: usize,
+    /// The number of its first tensor among those of the layout.
+    pub tensor: usize,
+    /// Where its numbers begin among all learned ones.
+    pub first: usize,
+    /// Width, heads and hidden width.
+    pub sizes: Sizes,
+    /// Probability of dropout in training.
+    pub dropout: f64,
 }
 
 impl EncoderLayer {
-    /// Its number among the encoder layers of the layout.
-    #[must_use]
-    pub fn number(self) -> usize {
-        self.number
-    }
-
-    /// The number of its first tensor among those of the layout.
-    #[must_use]
-    pub fn tensor(self) -> usize {
-        self.tensor
-    }
-
-    /// Width, heads and hidden width.
-    #[must_use]
-    pub fn sizes(self) -> Sizes {
-        self.sizes
-    }
-
-    /// Probability of dropout in training.
-    #[must_use]
-    pub fn dropout(self) -> f64 {
-        self.dropout
-    }
-
     /// Where its numbers stand among all learned ones.
     #[must_use]
     pub fn span(self) -> Range<usize> {

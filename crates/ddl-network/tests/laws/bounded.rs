@@ -6,7 +6,8 @@ use ddl_dynamics::{
     Attractor, CholeskyMetric, Euler, NaturalGradientFlow, StableEuler, StepTime, rollout,
 };
 use ddl_network::{
-    ForecastWindows as _, Frame, MotionNetwork, Noise, StarConfig, StepRule, Variant, motion_bounds,
+    ForecastWindows as _, MotionNetwork, NetworkFrame, Noise, StarConfig, StepRule, Variant,
+    motion_bounds,
 };
 use nalgebra::Vector2;
 use proptest::prelude::*;
@@ -73,29 +74,21 @@ fn step(
     let attractor = Attractor::new(goal.into()).unwrap();
     let metric = CholeskyMetric::planar(a, b, c, config.sigma).unwrap();
     let path = match rule {
-        StepRule::Euler => rollout(
-            &NaturalGradientFlow::new(attractor, metric),
-            &Euler,
-            start,
-            dt,
-            1,
-        ),
+        StepRule::Euler => {
+            let flow = NaturalGradientFlow::new(attractor, metric);
+            rollout(&flow, &Euler, start, dt, 1)
+        }
         StepRule::Bounded => {
-            let left = HORIZON - done;
-            let towards = attractor.goal() - start;
             let bounds = motion_bounds(observed, dt, 1.0);
             let bounds = match config.frame {
-                Frame::World => bounds.absolute(),
-                Frame::Goal => bounds,
+                NetworkFrame::World => bounds.absolute(),
+                NetworkFrame::Goal => bounds,
             };
-            let metric = bounds.shape(&metric, &towards, StepTime { done, left, dt });
-            rollout(
-                &NaturalGradientFlow::new(attractor, metric),
-                &StableEuler,
-                start,
-                dt,
-                1,
-            )
+            let left = HORIZON - done;
+            let time = StepTime { done, left, dt };
+            let metric = bounds.shape(&metric, &(attractor.goal() - start), time);
+            let flow = NaturalGradientFlow::new(attractor, metric);
+            rollout(&flow, &StableEuler, start, dt, 1)
         }
     };
     path.unwrap()[1].into()

@@ -5,6 +5,7 @@
 mod bounded;
 mod company;
 mod moved;
+mod precision;
 mod proposals;
 mod refused;
 mod same_bits;

@@ -3,74 +3,33 @@
 /// A figure cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum FigureError {
     /// The forecast is of other people than the window holds.
     #[error("the window holds {expected} pedestrians, the forecast {found}")]
-    Pedestrians {
-        /// Pedestrians in the window.
-        expected: usize,
-        /// Pedestrians in the forecast.
-        found: usize,
-    },
+    Pedestrians { expected: usize, found: usize },
     /// No panel, or too many.
     #[error("a picture of goals holds 1 to {most} cases, found {found}; draw several pictures")]
-    Cases {
-        /// Cases given.
-        found: usize,
-        /// Cases allowed.
-        most: usize,
-    },
+    Cases { found: usize, most: usize },
     /// A pedestrian with its goals cannot be shown.
     #[error("case `{case}`: {problem}")]
-    GoalCase {
-        /// Title of the case.
-        case: String,
-        /// What is wrong.
-        problem: GoalCaseProblem,
-    },
+    GoalCase { case: String, problem: String },
 }
 
 /// What is wrong with a [`GoalCase`](crate::figure::GoalCase).
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum GoalCaseProblem {
-    /// The track is not a whole window.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum GoalCaseProblem {
     #[error("the track must hold 20 positions (8 observed, 12 true), found {found}")]
-    TrackLength {
-        /// Positions given.
-        found: usize,
-    },
-    /// An expert's track is not a whole window.
+    TrackLength { found: usize },
     #[error("expert {index} must hold 20 positions, found {found}")]
-    ExpertLength {
-        /// Which expert, from 0.
-        index: usize,
-        /// Positions given.
-        found: usize,
-    },
-    /// A place that is not finite, or out of all reach.
+    ExpertLength { index: usize, found: usize },
     #[error(
         "{what} is {position:?}, which is no place within 1000 km of the last observed position; are \
          these metres, in the coordinates of the track?"
     )]
-    Place {
-        /// Whose place.
-        what: String,
-        /// The place, metres.
-        position: [f64; 2],
-    },
-    /// A weight is not a probability.
+    Place { what: String, position: [f64; 2] },
     #[error("goal {goal} has the weight {weight}, which is not between 0 and 1")]
-    Weight {
-        /// Which goal, from 0.
-        goal: usize,
-        /// Its weight.
-        weight: f64,
-    },
-    /// The weights do not sum to 1.
+    Weight { goal: usize, weight: f64 },
     #[error("the weights sum to {sum}, not to 1; divide them by their sum")]
-    NotNormalised {
-        /// Sum of the weights given.
-        sum: f64,
-    },
+    NotNormalised { sum: f64 },
 }

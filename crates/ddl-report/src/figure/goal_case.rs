@@ -49,7 +49,7 @@ impl GoalCase {
         let title = title.into();
         let nearest = check(track, &goals).map_err(|problem| FigureError::GoalCase {
             case: title.clone(),
-            problem,
+            problem: problem.to_string(),
         })?;
         Ok(Self {
             title,
@@ -81,7 +81,7 @@ impl GoalCase {
             .err()
         });
         if let Some(problem) = faulty {
-            let case = self.title;
+            let (case, problem) = (self.title, problem.to_string());
             return Err(FigureError::GoalCase { case, problem });
         }
         self.experts = experts;

@@ -32,15 +32,3 @@ pub(super) fn draw_nearest(drawing: &mut Drawing, [x, y]: [f64; 2], weight: f64)
         drawing.line("nearest", along(from), along(to));
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn twice_the_probability_is_twice_the_area() {
-        let area = |weight| radius(weight).powi(2);
-        assert!((area(0.8) / area(0.4) - 2.0).abs() < 1e-12);
-        assert!((area(0.0), area(1.0)) == (2.4 * 2.4, 24.0 * 24.0));
-    }
-}

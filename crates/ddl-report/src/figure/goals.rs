@@ -8,7 +8,7 @@ use super::{
     error::FigureError,
     goal_case::GoalCase,
     goal_ring,
-    legend::{Entry, LegendRows},
+    legend::{LegendEntry, LegendRows},
     pedestrian,
     wrap::wrapped,
 };
@@ -44,7 +44,7 @@ pub fn goals(title: &str, cases: &[GoalCase]) -> Result<String, FigureError> {
         let (found, most) = (cases.len(), MOST_CASES);
         return Err(FigureError::Cases { found, most });
     }
-    let panels: Vec<Panel<'_>> = cases.iter().map(Panel::new).collect();
+    let panels: Vec<GoalPanel<'_>> = cases.iter().map(GoalPanel::new).collect();
     let [width, height] = panels[0].axes.size();
     let columns = columns(cases.len());
     let inner = width * columns as f64;
@@ -81,21 +81,21 @@ fn columns(cases: usize) -> usize {
     }
 }
 
-fn entries(cases: &[GoalCase]) -> Vec<Entry> {
-    let mut entries = vec![Entry::Observed, Entry::Truth];
+fn entries(cases: &[GoalCase]) -> Vec<LegendEntry> {
+    let mut entries = vec![LegendEntry::Observed, LegendEntry::Truth];
     if cases
         .iter()
         .any(|case| case.expert_paths().next().is_some())
     {
-        entries.push(Entry::Experts);
+        entries.push(LegendEntry::Experts);
     }
-    let axes = Entry::Note("Axes: metres from the last observed position");
-    entries.extend([Entry::WeightedGoals, Entry::NearestGoal, axes]);
+    let axes = LegendEntry::Note("Axes: metres from the last observed position");
+    entries.extend([LegendEntry::WeightedGoals, LegendEntry::NearestGoal, axes]);
     entries
 }
 
 /// One pedestrian in metres from its last observed position: recordings may lie far from their origin.
-struct Panel<'a> {
+struct GoalPanel<'a> {
     case: &'a GoalCase,
     observed: Vec<Position>,
     truth: Vec<Position>,
@@ -103,7 +103,7 @@ struct Panel<'a> {
     axes: Axes,
 }
 
-impl<'a> Panel<'a> {
+impl<'a> GoalPanel<'a> {
     fn new(case: &'a GoalCase) -> Self {
         let here = case.here();
         let [observed, truth, goals] =

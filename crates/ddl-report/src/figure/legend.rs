@@ -22,7 +22,7 @@ const PROBABILITIES: [(f64, f64); 3] = [(0.01, 3.0), (0.05, 14.0), (0.2, 32.0)];
 
 /// One line of a legend.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Entry {
+pub(super) enum LegendEntry {
     Observed,
     Truth,
     /// The only hypothesis.
@@ -40,7 +40,7 @@ pub(super) enum Entry {
     Experts,
 }
 
-impl Entry {
+impl LegendEntry {
     fn text(self) -> &'static str {
         match self {
             Self::Observed => "observed, 3.2 s",
@@ -106,7 +106,7 @@ impl Entry {
 }
 
 /// One entry below the other, from the upper left corner on.
-pub(super) fn draw_column(drawing: &mut Drawing, [left, top]: [f64; 2], entries: &[Entry]) {
+pub(super) fn draw_column(drawing: &mut Drawing, [left, top]: [f64; 2], entries: &[LegendEntry]) {
     for (row, entry) in entries.iter().enumerate() {
         let y = top + ENTRY * (row as f64 + 0.5);
         entry.draw(drawing, [left, y], entry.indent(true));
@@ -116,14 +116,14 @@ pub(super) fn draw_column(drawing: &mut Drawing, [left, top]: [f64; 2], entries:
 /// Entries in rows that fill a width.
 #[derive(Debug)]
 pub(super) struct LegendRows<'a> {
-    entries: &'a [Entry],
+    entries: &'a [LegendEntry],
     /// Upper left corner of each entry, from that of the legend.
     places: Vec<[f64; 2]>,
 }
 
 impl<'a> LegendRows<'a> {
     /// Begins a row whenever the next entry would reach beyond `width`.
-    pub(super) fn new(entries: &'a [Entry], width: f64) -> Self {
+    pub(super) fn new(entries: &'a [LegendEntry], width: f64) -> Self {
         let (mut x, mut y) = (0.0, 0.0);
         let mut places = Vec::with_capacity(entries.len());
         for entry in entries {
@@ -157,8 +157,13 @@ mod tests {
 
     #[test]
     fn rows_keep_to_the_width_and_do_not_overlap() {
-        let note = Entry::Note("a note");
-        let entries = [Entry::Observed, Entry::Truth, Entry::Experts, note];
+        let note = LegendEntry::Note("a note");
+        let entries = [
+            LegendEntry::Observed,
+            LegendEntry::Truth,
+            LegendEntry::Experts,
+            note,
+        ];
         for width in [60.0, 300.0, 520.0, 1800.0] {
             let rows = LegendRows::new(&entries, width);
             let mut end = [0.0, -1.0];

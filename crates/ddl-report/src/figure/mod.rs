@@ -24,7 +24,7 @@ mod scene;
 mod typical;
 mod wrap;
 
-pub use error::{FigureError, GoalCaseProblem};
+pub use error::FigureError;
 pub use goal_case::GoalCase;
 pub use goals::goals;
 pub use scene::{SceneFigure, scene};

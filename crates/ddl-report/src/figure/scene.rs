@@ -7,7 +7,7 @@ use super::{
     axes::{Axes, SCENE},
     drawing::{Drawing, PLOT_STYLE},
     error::FigureError,
-    legend::{self, Entry},
+    legend::{self, LegendEntry},
     pedestrian,
 };
 use crate::{Moment, MomentPedestrian};
@@ -39,7 +39,6 @@ pub struct SceneFigure<'a> {
     window: &'a Window,
     forecast: &'a Forecast,
     title: Option<String>,
-    pedestrians: Option<Vec<usize>>,
 }
 
 impl<'a> SceneFigure<'a> {
@@ -50,7 +49,6 @@ impl<'a> SceneFigure<'a> {
             window,
             forecast,
             title: None,
-            pedestrians: None,
         }
     }
 
@@ -58,14 +56,6 @@ impl<'a> SceneFigure<'a> {
     #[must_use]
     pub fn title(mut self, title: impl Into<String>) -> Self {
         self.title = Some(title.into());
-        self
-    }
-
-    /// Draws the forecasts of these rows of the window alone; the others are shown pale, without
-    /// forecasts. Rows that the window does not have are ignored.
-    #[must_use]
-    pub fn only(mut self, pedestrians: impl IntoIterator<Item = usize>) -> Self {
-        self.pedestrians = Some(pedestrians.into_iter().collect());
         self
     }
 
@@ -81,12 +71,8 @@ impl<'a> SceneFigure<'a> {
             let (expected, found) = (window.len(), forecast.pedestrians());
             FigureError::Pedestrians { expected, found }
         })?;
-        let is_drawn = |i: &usize| self.pedestrians.as_ref().is_none_or(|of| of.contains(i));
-        let (drawn, others): (Vec<usize>, Vec<usize>) = (0..window.len()).partition(is_drawn);
-        let [drawn, others] = [drawn, others].map(|of| -> Vec<&MomentPedestrian> {
-            of.into_iter().map(|i| &moment.pedestrians[i]).collect()
-        });
-        let axes = Axes::around(&extent(&drawn), &SCENE);
+        let drawn = &moment.pedestrians;
+        let axes = Axes::around(&extent(drawn), &SCENE);
         let [width, height] = axes.size();
         let heading = self.heading();
         let mut drawing = Drawing::new(width, height, &heading);
@@ -95,23 +81,19 @@ impl<'a> SceneFigure<'a> {
         let [[left, top], [right, _]] = axes.frame();
         drawing.text("heading", [left, top - 18.0], heading);
         legend::draw_column(&mut drawing, [right + 20.0, top], &self.entries());
-        // The plot is cut to those drawn: of the others, what lies within is shown.
         drawing.within(axes.frame(), |drawing| {
-            for pedestrian in others {
-                pedestrian::bystander(drawing, axes.plan(), pedestrian);
-            }
-            for pedestrian in &drawn {
+            for pedestrian in drawn {
                 pedestrian::other_hypotheses(drawing, axes.plan(), pedestrian);
             }
-            for pedestrian in &drawn {
+            for pedestrian in drawn {
                 pedestrian::representative_goal(drawing, axes.plan(), pedestrian);
             }
-            for pedestrian in &drawn {
+            for pedestrian in drawn {
                 let (observed, truth) = (&pedestrian.observed, &pedestrian.truth);
                 drawing.path("seen", &axes.plan().path(observed));
                 pedestrian::track(drawing, axes.plan(), observed, truth);
             }
-            for pedestrian in &drawn {
+            for pedestrian in drawn {
                 pedestrian::representative(drawing, axes.plan(), pedestrian, false);
             }
         });
@@ -129,28 +111,32 @@ impl<'a> SceneFigure<'a> {
     }
 
     /// What the legend names: the roles that the picture has.
-    fn entries(&self) -> Vec<Entry> {
+    fn entries(&self) -> Vec<LegendEntry> {
         let several = self.forecast.hypotheses() > 1;
-        let mut entries = vec![Entry::Observed];
+        let mut entries = vec![LegendEntry::Observed];
         if self.window.has_future() {
-            entries.push(Entry::Truth);
+            entries.push(LegendEntry::Truth);
         }
         if several {
-            let paler = Entry::Note("(the paler, the less likely)");
-            entries.extend([Entry::Representative, Entry::OtherHypotheses, paler]);
+            let paler = LegendEntry::Note("(the paler, the less likely)");
+            entries.extend([
+                LegendEntry::Representative,
+                LegendEntry::OtherHypotheses,
+                paler,
+            ]);
         } else {
-            entries.push(Entry::Forecast);
+            entries.push(LegendEntry::Forecast);
         }
         if self.forecast.has_goals() {
-            entries.push(Entry::Goals(if several { "goals" } else { "goal" }));
+            entries.push(LegendEntry::Goals(if several { "goals" } else { "goal" }));
         }
         entries
     }
 }
 
 /// Every point that the picture must hold.
-fn extent(drawn: &[&MomentPedestrian]) -> Vec<Position> {
-    let of_one = |pedestrian: &&MomentPedestrian| {
+fn extent(drawn: &[MomentPedestrian]) -> Vec<Position> {
+    let of_one = |pedestrian: &MomentPedestrian| {
         let mut points = [&pedestrian.observed[..], &pedestrian.truth].concat();
         for hypothesis in &pedestrian.hypotheses {
             points.extend(&hypothesis.positions);

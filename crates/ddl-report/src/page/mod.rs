@@ -16,6 +16,6 @@ mod template;
 mod training_section;
 mod viewer;
 
-pub use error::{MomentProblem, PageError};
+pub use error::PageError;
 pub use report_page::Page;
 pub use viewer::Viewer;

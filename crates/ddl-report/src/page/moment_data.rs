@@ -73,7 +73,7 @@ pub(super) fn check(moments: &[Moment], truth: Truth) -> Result<(), PageError> {
                 index,
                 recording: moment.recording.clone(),
                 frame: moment.frame,
-                problem,
+                problem: problem.to_string(),
             })
         })?;
     }

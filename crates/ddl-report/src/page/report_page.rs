@@ -24,52 +24,26 @@ const REPORT_SCRIPTS: [&str; 2] = [
 ];
 
 /// A page of results under way: the report, and what to show besides.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{PedestrianId, Window};
-/// use ddl_eval::{Forecaster, baseline::ConstantVelocity};
-/// use ddl_report::{Moment, Report, page::Page};
-/// let walk = (0..20).map(|t| [0.4 * f64::from(t), 0.0]).collect();
-/// let window = Window::new("corridor", 0, 10, vec![PedestrianId(7)], vec![walk])?;
-/// let forecast = ConstantVelocity::last_step().forecast(&window)?;
-/// let moment = Moment::new("corridor", "constant velocity", &window, &forecast)?;
-///
-/// let report = Report::new("Nothing measured yet", [])?;
-/// let html = Page::new(&report).moments(vec![moment]).to_html()?;
-/// assert!(html.starts_with("<!doctype html>"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub struct Page<'a> {
-    report: &'a Report,
-    moments: Vec<Moment>,
-    curves: Vec<TrainingCurve>,
+    /// The results.
+    pub report: &'a Report,
+    /// Moments for the player; those with [picks](Moment::picks) are also shown in the gallery.
+    pub moments: &'a [Moment],
+    /// Training curves.
+    pub curves: &'a [TrainingCurve],
 }
 
 impl<'a> Page<'a> {
     /// A page of the report alone.
     #[must_use]
     pub fn new(report: &'a Report) -> Self {
+        let (moments, curves) = (&[], &[]);
         Self {
             report,
-            moments: Vec::new(),
-            curves: Vec::new(),
+            moments,
+            curves,
         }
-    }
-
-    /// Moments for the player; those with [picks](Moment::picks) are also shown in the gallery.
-    #[must_use]
-    pub fn moments(mut self, moments: Vec<Moment>) -> Self {
-        self.moments = moments;
-        self
-    }
-
-    /// Training curves.
-    #[must_use]
-    pub fn curves(mut self, curves: Vec<TrainingCurve>) -> Self {
-        self.curves = curves;
-        self
     }
 
     /// The page, to be written into a file and opened in a browser.
@@ -82,8 +56,8 @@ impl<'a> Page<'a> {
         let (tables, contents) = document.sections();
         let contents: Vec<String> = contents.iter().map(item).collect();
         let report = json_in_script(&self.report.to_json()?);
-        let moments = json_in_script(&moment_data::to_json(&self.moments)?);
-        let curves = json_in_script(&serde_json::to_string(&self.curves)?);
+        let moments = json_in_script(&moment_data::to_json(self.moments)?);
+        let curves = json_in_script(&serde_json::to_string(self.curves)?);
         let scripts = [PLAYER_SCRIPTS.join("\n"), REPORT_SCRIPTS.join("\n")].join("\n");
         Ok(fill(
             TEMPLATE,
@@ -93,9 +67,9 @@ impl<'a> Page<'a> {
                 ("title", &escape(&document.title)),
                 ("lead", &inline(&document.lead)),
                 ("headline", &headline::headline(self.report)),
-                ("player", &player(&self.moments)),
-                ("gallery", &gallery_section::html(&self.moments)),
-                ("training", &training_section::html(&self.curves)),
+                ("player", &player(self.moments)),
+                ("gallery", &gallery_section::html(self.moments)),
+                ("training", &training_section::html(self.curves)),
                 ("contents", &contents.concat()),
                 ("tables", &tables),
                 ("report-json", &report),
@@ -119,8 +93,8 @@ impl<'a> Page<'a> {
                 headline_chart(&standing, Shape::Wide),
             ));
         }
-        figures.extend(gallery_section::figures(&self.moments));
-        figures.extend(training_section::figures(&self.curves));
+        figures.extend(gallery_section::figures(self.moments));
+        figures.extend(training_section::figures(self.curves));
         let mut used: Vec<String> = Vec::new();
         let named = |(name, drawing): (String, Drawing)| {
             let name = unused(identifier(&name), &mut used);
@@ -130,8 +104,8 @@ impl<'a> Page<'a> {
     }
 
     fn check(&self) -> Result<(), PageError> {
-        moment_data::check(&self.moments, Truth::Whole)?;
-        training_section::check(&self.curves)
+        moment_data::check(self.moments, Truth::Whole)?;
+        training_section::check(self.curves)
     }
 }
 

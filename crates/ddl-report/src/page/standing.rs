@@ -4,7 +4,7 @@ use ddl_data::WindowRule;
 
 use crate::{
     Report,
-    report::{Group, TableLine, groups, order},
+    report::{ResultGroup, TableLine, groups, order},
 };
 use ddl_eval::{Conditions, Scores};
 
@@ -74,7 +74,7 @@ impl Standing {
 pub(super) fn standing(report: &Report) -> Option<Standing> {
     let groups = groups(report.rows());
     // Groups stand in the order of conventions and rules already; the first of equals is taken.
-    let rank = |group: &&Group<'_>| {
+    let rank = |group: &&ResultGroup<'_>| {
         let other_rule = group.window_rule != WindowRule::Published;
         (order(group.protocol), group.convention, other_rule)
     };
@@ -97,7 +97,7 @@ pub(super) fn standing(report: &Report) -> Option<Standing> {
     })
 }
 
-fn all_folds(group: &Group<'_>, measured: &[&str]) -> bool {
+fn all_folds(group: &ResultGroup<'_>, measured: &[&str]) -> bool {
     let mut named = group.convention.fold_names();
     named.all(|name| measured.contains(&name))
 }

@@ -22,51 +22,31 @@ const TEMPLATE: &str = include_str!("viewer.html");
 /// let forecast = ConstantVelocity::last_step().forecast(&window)?;
 /// let moment = Moment::under_way("constant velocity", &window, &forecast, &[vec![]])?;
 ///
-/// let html = Viewer::new("yard.csv", vec![moment]).lead("One pedestrian, seen for 3.2 s.").to_html()?;
+/// let (title, lead) = ("yard.csv", "One pedestrian, seen for 3.2 s.");
+/// let html = Viewer { title, lead, notes: &[], moments: &[moment] }.to_html()?;
 /// assert!(html.starts_with("<!doctype html>") && html.contains("yard.csv"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone)]
-pub struct Viewer {
-    title: String,
-    lead: String,
-    notes: Vec<String>,
-    moments: Vec<Moment>,
+#[derive(Debug, Clone, Copy)]
+pub struct Viewer<'a> {
+    /// The title.
+    pub title: &'a str,
+    /// What it shows, in a sentence or two.
+    pub lead: &'a str,
+    /// What is to be known besides, below the player: a paragraph a note.
+    pub notes: &'a [String],
+    /// The moments that it plays.
+    pub moments: &'a [Moment],
 }
 
-impl Viewer {
-    /// A page under this title that plays these moments.
-    pub fn new(title: impl Into<String>, moments: Vec<Moment>) -> Self {
-        Self {
-            title: title.into(),
-            lead: String::new(),
-            notes: Vec::new(),
-            moments,
-        }
-    }
-
-    /// What it shows, in a sentence or two.
-    #[must_use]
-    pub fn lead(self, lead: impl Into<String>) -> Self {
-        Self {
-            lead: lead.into(),
-            ..self
-        }
-    }
-
-    /// What is to be known besides, below the player: a paragraph a note.
-    #[must_use]
-    pub fn notes(self, notes: Vec<String>) -> Self {
-        Self { notes, ..self }
-    }
-
+impl Viewer<'_> {
     /// The page, to be written into a file and opened in a browser.
     ///
     /// # Errors
     /// A moment is not whole; the message names it.
     pub fn to_html(&self) -> Result<String, PageError> {
-        moment_data::check(&self.moments, Truth::AsSeen)?;
-        let moments = json_in_script(&moment_data::to_json(&self.moments)?);
+        moment_data::check(self.moments, Truth::AsSeen)?;
+        let moments = json_in_script(&moment_data::to_json(self.moments)?);
         let notes: Vec<String> = self
             .notes
             .iter()
@@ -75,11 +55,11 @@ impl Viewer {
         Ok(fill(
             TEMPLATE,
             &[
-                ("head", &head(&self.title)),
+                ("head", &head(self.title)),
                 ("theme-button", THEME_BUTTON),
-                ("title", &escape(&self.title)),
-                ("lead", &escape(&self.lead)),
-                ("player", &player(&self.moments)),
+                ("title", &escape(self.title)),
+                ("lead", &escape(self.lead)),
+                ("player", &player(self.moments)),
                 ("notes", &notes.concat()),
                 ("moments-json", &moments),
                 ("scripts", &PLAYER_SCRIPTS.join("\n")),

@@ -2,7 +2,7 @@
 
 use super::{
     cells::{NOTHING, errors},
-    group::{Group, TableLine},
+    group::{ResultGroup, TableLine},
 };
 use crate::{
     document::{Part, Table},
@@ -11,8 +11,8 @@ use crate::{
 use ddl_eval::Conditions;
 
 /// One table a group that has a variant without one of the two components, then the paper's.
-pub(super) fn parts(groups: &[Group<'_>]) -> Vec<Part> {
-    let ablated: Vec<&Group<'_>> = groups.iter().filter(|g| has_ablated_variant(g)).collect();
+pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
+    let ablated: Vec<&ResultGroup<'_>> = groups.iter().filter(|g| has_ablated_variant(g)).collect();
     if ablated.is_empty() {
         return Vec::new();
     }
@@ -53,13 +53,13 @@ pub(super) fn parts(groups: &[Group<'_>]) -> Vec<Part> {
     parts
 }
 
-fn has_ablated_variant(group: &Group<'_>) -> bool {
+fn has_ablated_variant(group: &ResultGroup<'_>) -> bool {
     let ablated = |line: &TableLine<'_>| variant(line).is_some_and(|row| row.variant != "full");
     group.lines.iter().any(ablated)
 }
 
 /// Whether the variants of a group differ in the variant alone.
-fn alike(group: &Group<'_>) -> bool {
+fn alike(group: &ResultGroup<'_>) -> bool {
     let made = |line: &TableLine<'_>| {
         let rows = line
             .rows
@@ -89,7 +89,7 @@ fn variant(line: &TableLine<'_>) -> Option<&'static AblationRow> {
     rows.find(|row| conditions.forecaster == "DDL" && row.variant == name)
 }
 
-fn measured(group: &Group<'_>) -> Table {
+fn measured(group: &ResultGroup<'_>) -> Table {
     let folds = group.folds();
     let start = ["variant", "goal shift", "dynamics", "seeds"];
     let columns = start.into_iter().chain(folds.iter().copied());

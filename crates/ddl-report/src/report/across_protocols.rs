@@ -4,7 +4,7 @@
 
 use super::{
     cells::{NOTHING, errors},
-    group::{Group, TableLine},
+    group::{ResultGroup, TableLine},
 };
 use crate::document::{Part, Table};
 use ddl_eval::Protocol;
@@ -18,10 +18,10 @@ const NOTE: &str = "The same windows and folds in every line, from the published
 
 /// For each convention, window rule and scored part that has results under `published` and another protocol, the lines
 /// of trained forecasters and of straight lines to goals, protocol by protocol.
-pub(super) fn parts(groups: &[Group<'_>]) -> Vec<Part> {
+pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
     let mut parts = Vec::new();
     for oracle in groups.iter().filter(|g| g.protocol == Protocol::Published) {
-        let mut comparable: Vec<&Group<'_>> =
+        let mut comparable: Vec<&ResultGroup<'_>> =
             groups.iter().filter(|g| g.same_windows(oracle)).collect();
         // From the published pipeline to the honest one.
         comparable.sort_by_key(|g| g.protocol != Protocol::Published);
@@ -47,7 +47,7 @@ pub(super) fn parts(groups: &[Group<'_>]) -> Vec<Part> {
     parts
 }
 
-fn table(groups: &[&Group<'_>]) -> Table {
+fn table(groups: &[&ResultGroup<'_>]) -> Table {
     let folds = groups[0].folds();
     let columns = ["forecaster", "protocol", "candidates"].into_iter();
     let mut table = Table::new(columns.chain(folds.iter().copied()).chain(["mean"]))

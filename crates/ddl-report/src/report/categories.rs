@@ -2,7 +2,7 @@
 
 use super::{
     cells::{NOTHING, counts},
-    group::{Group, TableLine},
+    group::{ResultGroup, TableLine},
 };
 use crate::document::{Part, Table};
 use ddl_eval::{CategoryScores, category::Category};
@@ -14,7 +14,7 @@ pub(super) const LEGEND: &str = "By category of walker: minADE/minFDE in metres,
     several. Categories are told with the true future, after the forecasts are made.";
 
 /// One table with a line a category and a column a forecaster; nothing where no row knows its categories, or no fold is shared.
-pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
+pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let known: Vec<(&TableLine<'_>, String)> = group
         .labelled()
         .filter(|(line, _)| {

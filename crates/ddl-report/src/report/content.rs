@@ -4,7 +4,7 @@ use ddl_data::Convention;
 
 use super::{
     ablation, across_protocols, categories,
-    group::{Group, groups},
+    group::{ResultGroup, groups},
     metrics, published, section, significance,
 };
 use crate::document::{Document, Part};
@@ -36,7 +36,7 @@ pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
     }
 }
 
-fn first_line(groups: &[Group<'_>]) -> String {
+fn first_line(groups: &[ResultGroup<'_>]) -> String {
     let mut conventions: Vec<Convention> = groups.iter().map(|group| group.convention).collect();
     conventions.dedup();
     let all: Vec<String> = conventions

@@ -7,7 +7,7 @@ use crate::document::Part;
 use ddl_eval::{Conditions, Protocol, ResultRow, Scores, significance::BlockErrors};
 
 /// Rows whose numbers are comparable: one table.
-pub(crate) struct Group<'a> {
+pub(crate) struct ResultGroup<'a> {
     pub(crate) convention: Convention,
     pub(crate) window_rule: WindowRule,
     pub(crate) protocol: Protocol,
@@ -22,15 +22,15 @@ pub(crate) struct TableLine<'a> {
 
 /// Sorts rows into tables: by convention, then the published window rule before others, then the
 /// headline protocol first. Lines stand in the order in which their first row was given.
-pub(crate) fn groups(rows: &[ResultRow]) -> Vec<Group<'_>> {
-    let mut groups: Vec<Group<'_>> = Vec::new();
+pub(crate) fn groups(rows: &[ResultRow]) -> Vec<ResultGroup<'_>> {
+    let mut groups: Vec<ResultGroup<'_>> = Vec::new();
     for row in rows {
         let c = &row.conditions;
         let at = groups
             .iter()
             .position(|group| group.admits(c))
             .unwrap_or_else(|| {
-                groups.push(Group {
+                groups.push(ResultGroup {
                     convention: c.convention,
                     window_rule: c.window_rule,
                     protocol: c.protocol,
@@ -65,7 +65,7 @@ pub(crate) fn order(protocol: Protocol) -> usize {
     }
 }
 
-impl Group<'_> {
+impl ResultGroup<'_> {
     fn admits(&self, c: &Conditions) -> bool {
         (
             self.convention,

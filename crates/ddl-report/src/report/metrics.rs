@@ -2,13 +2,13 @@
 
 use super::{
     cells::{self, NOTHING},
-    group::Group,
+    group::ResultGroup,
 };
 use crate::document::{Part, Table};
 use ddl_eval::Scores;
 
 /// A metric of the tables after the first: its column, its decimals, and where it is found in the scores.
-type Column = (&'static str, usize, fn(&Scores) -> Option<f64>);
+type MetricColumn = (&'static str, usize, fn(&Scores) -> Option<f64>);
 
 pub(super) const FURTHER_LEGEND: &str = "Further metrics, mean over the folds named. FDE@minADE: FDE of the \
     hypothesis of least ADE; JADE, JFDE: one hypothesis index for the whole scene; missed: every \
@@ -19,7 +19,7 @@ pub(super) const FURTHER_LEGEND: &str = "Further metrics, mean over the folds na
     turn: largest angle between a step and the goal direction; reverse: rollouts that turn by more \
     than 90 degrees; K: hypotheses a pedestrian.";
 
-const FURTHER: [Column; 13] = [
+const FURTHER: [MetricColumn; 13] = [
     ("FDE@minADE m", 3, |s| Some(s.fde_at_min_ade)),
     ("JADE m", 3, |s| Some(s.joint_ade)),
     ("JFDE m", 3, |s| Some(s.joint_fde)),
@@ -51,7 +51,7 @@ pub(super) const WHOLE_LEGEND: &str = "The forecast as a whole, mean over the fo
     of the ends. Distributions need several hypotheses, and depend on how many there are.";
 
 /// Of the forecast as a whole: all hypotheses with their weights, not the best one.
-const WHOLE: [Column; 13] = [
+const WHOLE: [MetricColumn; 13] = [
     ("ADE@minFDE m", 3, |s| s.ade_at_min_fde),
     ("expected ADE m", 3, |s| s.expected_ade),
     ("expected FDE m", 3, |s| s.expected_fde),
@@ -74,12 +74,12 @@ const WHOLE: [Column; 13] = [
 ];
 
 /// The tables of both, each below its heading.
-pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
+pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let both = [
         ("Further metrics", &FURTHER[..]),
         ("The forecast as a whole", &WHOLE),
     ];
-    let part = |(name, columns): (&str, &[Column])| {
+    let part = |(name, columns): (&str, &[MetricColumn])| {
         let caption = format!("{name}. {}", group.conditions_in_words());
         let table = table(group, columns).captioned(caption);
         [Part::subheading(name), Part::Table(table)]
@@ -88,7 +88,7 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
 }
 
 /// One line a forecaster, one column a metric, mean over the folds that it has.
-fn table(group: &Group<'_>, metrics: &[Column]) -> Table {
+fn table(group: &ResultGroup<'_>, metrics: &[MetricColumn]) -> Table {
     let folds = group.folds();
     let columns = ["forecaster", "folds"]
         .into_iter()

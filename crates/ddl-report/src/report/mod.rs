@@ -20,7 +20,7 @@ mod section;
 mod significance;
 mod spread;
 
-pub(crate) use group::{Group, TableLine, groups, order};
+pub(crate) use group::{ResultGroup, TableLine, groups, order};
 
 /// Version of the JSON file.
 const FORMAT: u32 = 1;
@@ -29,23 +29,6 @@ const FORMAT: u32 = 1;
 ///
 /// Rows are grouped into one table for each data convention, window rule, protocol and test subset,
 /// so that no column mixes numbers that cannot be compared.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{Convention, WindowRule};
-/// use ddl_eval::{Conditions, Protocol, baseline};
-/// use ddl_report::Report;
-/// # use ddl_data::{PedestrianId, Window};
-/// # let walk = (0..20).map(|t| [0.4 * f64::from(t), 0.0]).collect();
-/// # let test_windows = vec![Window::new("eth", 0, 6, vec![PedestrianId(1)], vec![walk])?];
-/// let conditions =
-///     Conditions::new(Convention::Star, WindowRule::Published, Protocol::Single, "eth", "");
-/// let rows = baseline::measure(&conditions, &test_windows, 1)?;
-/// let report = Report::new("Baselines on eth", rows)?;
-/// assert!(report.to_markdown().starts_with("Data convention: `star`"));
-/// assert_eq!(Report::from_json(&report.to_json()?)?, report);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     format: u32,

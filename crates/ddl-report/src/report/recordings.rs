@@ -1,12 +1,12 @@
 //! Own recordings that were measured together, one by one.
 
-use super::{cells::pair, group::Group};
+use super::{cells::pair, group::ResultGroup};
 use crate::document::{Part, Table};
 use ddl_data::Convention;
 use ddl_eval::{RecordingErrors, ResultRow};
 
 /// A table for each set of own recordings: a row a recording and one for all, a column a forecaster.
-pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
+pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     if group.convention != Convention::Own {
         return Vec::new();
     }
@@ -26,7 +26,7 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
 }
 
 /// `None` for a single recording.
-fn table(group: &Group<'_>, fold: &str) -> Option<Table> {
+fn table(group: &ResultGroup<'_>, fold: &str) -> Option<Table> {
     // of several seeds the first
     let rows = group.lines.iter().map(|line| line.on(fold).next());
     let measured: Vec<(String, &ResultRow, Vec<RecordingErrors>)> = group

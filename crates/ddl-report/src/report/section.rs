@@ -5,13 +5,13 @@ use ddl_data::WindowRule;
 use super::{
     categories,
     cells::{counts, errors},
-    group::Group,
+    group::ResultGroup,
     metrics, recordings, significance,
 };
 use crate::document::{Part, Table};
 
 /// The results of one group, from its heading to its further metrics.
-pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
+pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let rule = describe_rule(group.window_rule);
     let subset = group.test_subset.unwrap_or("all test windows");
     let mut parts = vec![
@@ -45,7 +45,7 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
     parts
 }
 
-fn caption(group: &Group<'_>) -> String {
+fn caption(group: &ResultGroup<'_>) -> String {
     format!("minADE/minFDE in metres. {}", group.conditions_in_words())
 }
 
@@ -60,7 +60,7 @@ fn describe_rule(rule: WindowRule) -> String {
     }
 }
 
-fn headline(group: &Group<'_>) -> Table {
+fn headline(group: &ResultGroup<'_>) -> Table {
     let folds = group.folds();
     let columns = ["forecaster"]
         .into_iter()
@@ -76,7 +76,7 @@ fn headline(group: &Group<'_>) -> Table {
 }
 
 /// Under what conditions each line came about; lines alike are named together.
-fn conditions(group: &Group<'_>) -> Vec<String> {
+fn conditions(group: &ResultGroup<'_>) -> Vec<String> {
     let mut alike: Vec<(String, Vec<String>)> = Vec::new();
     for (line, label) in group.labelled() {
         let settings = line.settings();

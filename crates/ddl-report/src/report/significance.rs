@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::{
     cells::{self, NOTHING},
-    group::{Group, TableLine},
+    group::{ResultGroup, TableLine},
 };
 use crate::document::{Part, Table};
 use ddl_eval::significance::{
@@ -20,11 +20,11 @@ pub(super) const LEGEND: &str = "How sure the means are: in brackets the 95 % in
     other places: for that, look at how much the folds differ.";
 
 /// Intervals of every line that has errors by block, and its differences from the first trained one of those with the most folds.
-pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
+pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let folds = group.folds();
-    let lines: Vec<(Measured<'_>, String)> = group
+    let lines: Vec<(MeasuredLine<'_>, String)> = group
         .labelled()
-        .filter_map(|(line, label)| Some((Measured::of(line, &folds)?, label)))
+        .filter_map(|(line, label)| Some((MeasuredLine::of(line, &folds)?, label)))
         .collect();
     let most = lines.iter().map(|(m, _)| m.folds.len()).max();
     let mut candidates = lines.iter().filter(|(m, _)| Some(m.folds.len()) == most);
@@ -71,13 +71,13 @@ pub(super) fn parts(group: &Group<'_>) -> Vec<Part> {
 }
 
 /// A line with its errors by block, seeds averaged.
-struct Measured<'a> {
+struct MeasuredLine<'a> {
     line: &'a TableLine<'a>,
     /// The folds it has, each with its blocks.
     folds: Vec<(String, Vec<BlockErrors>)>,
 }
 
-impl<'a> Measured<'a> {
+impl<'a> MeasuredLine<'a> {
     /// `None` where a row has no errors by block.
     fn of(line: &'a TableLine<'a>, folds: &[&str]) -> Option<Self> {
         let present = line.present(folds);
@@ -100,8 +100,8 @@ impl<'a> Measured<'a> {
 
 /// The difference and its p-value as two cells; nothing where the two have other folds or windows, or are the same line.
 fn difference(
-    measured: &Measured<'_>,
-    reference: &Measured<'_>,
+    measured: &MeasuredLine<'_>,
+    reference: &MeasuredLine<'_>,
     metric: BlockMetric,
 ) -> [String; 2] {
     let nothing = || [NOTHING.to_owned(), NOTHING.to_owned()];

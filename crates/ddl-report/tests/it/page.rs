@@ -62,6 +62,15 @@ fn report() -> Report {
     Report::new("A & B", Protocol::ALL.into_iter().flat_map(row)).unwrap()
 }
 
+fn with_moments(moments: &[Moment]) -> String {
+    let report = report();
+    let page = Page {
+        moments,
+        ..Page::new(&report)
+    };
+    page.to_html().unwrap()
+}
+
 fn embedded<'a>(html: &'a str, id: &str) -> &'a str {
     let (_, rest) = html.split_once(&format!("id=\"{id}\">")).unwrap();
     rest.split_once("</script>").unwrap().0
@@ -167,10 +176,7 @@ fn the_head_is_about_the_model_as_it_is() {
 
 #[test]
 fn a_page_loads_nothing() {
-    let html = Page::new(&report())
-        .moments(vec![moment(2, 3, true)])
-        .to_html()
-        .unwrap();
+    let html = with_moments(&[moment(2, 3, true)]);
     for loading in [
         " src=",
         "@import",
@@ -198,7 +204,11 @@ fn names_cannot_become_markup() {
     let mut trained = curve(&[1, 2]);
     trained.variant = hostile.to_owned();
     let report = report();
-    let page = Page::new(&report).moments(vec![bad]).curves(vec![trained]);
+    let page = Page {
+        report: &report,
+        moments: &[bad],
+        curves: &[trained],
+    };
     let html = page.to_html().unwrap();
     assert!(!html.contains("<script>alert") && !html.contains("</script><script>a"));
     let moments: Value = serde_json::from_str(embedded(&html, "moments-json")).unwrap();
@@ -222,9 +232,11 @@ fn figures_are_files_of_their_own() {
         pick(Show::Turning),
     ]);
     let report = report();
-    let page = Page::new(&report)
-        .moments(vec![picked, moment(1, 1, false)])
-        .curves(vec![curve(&[1, 2, 5]), curve(&[7])]);
+    let page = Page {
+        report: &report,
+        moments: &[picked, moment(1, 1, false)],
+        curves: &[curve(&[1, 2, 5]), curve(&[7])],
+    };
     let figures = page.figures().unwrap();
     let names: Vec<&str> = figures.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(
@@ -300,13 +312,19 @@ fn what_is_not_whole_is_refused_by_name() {
     for (change, expected) in cases {
         let mut bad = moment(2, 2, true);
         change(&mut bad);
-        let page = Page::new(&report).moments(vec![moment(1, 1, false), bad]);
+        let page = Page {
+            moments: &[moment(1, 1, false), bad],
+            ..Page::new(&report)
+        };
         let words = page.to_html().unwrap_err().to_string();
         let expected = format!("moment 1 (recording `scene`, frame 70): {expected}");
         assert!(words.starts_with(&expected), "{words}");
         assert_eq!(page.figures().unwrap_err().to_string(), words);
     }
-    let curves = Page::new(&report).curves(vec![curve(&[1, 3, 3])]);
+    let curves = Page {
+        curves: &[curve(&[1, 3, 3])],
+        ..Page::new(&report)
+    };
     let words = curves.to_html().unwrap_err().to_string();
     assert!(
         words.contains("fold `eth`") && words.contains("epoch 3 follows 3"),
@@ -317,7 +335,7 @@ fn what_is_not_whole_is_refused_by_name() {
 #[test]
 fn forty_crowded_moments_stay_below_six_megabytes() {
     let moments = vec![moment(25, 20, true); 40];
-    let html = Page::new(&report()).moments(moments).to_html().unwrap();
+    let html = with_moments(&moments);
     assert!(html.len() < 6_000_000, "{} bytes", html.len());
 }
 
@@ -347,7 +365,7 @@ proptest! {
         pedestrian.observed = metres[..8].to_vec();
         pedestrian.truth = metres[8..20].to_vec();
         pedestrian.hypotheses[0].positions = metres[20..].to_vec();
-        let html = Page::new(&report()).moments(vec![moment]).to_html().unwrap();
+        let html = with_moments(&[moment]);
         let data: Value = serde_json::from_str(embedded(&html, "moments-json")).unwrap();
         let data = &data[0]["walkers"][0];
         let (observed, last) = walked([0, 0], &data["observed"]);
@@ -362,10 +380,16 @@ fn a_viewer_plays_what_is_not_over_yet() {
     let mut under_way = moment(2, 2, true);
     under_way.pedestrians[1].truth.truncate(3);
     under_way.pedestrians[0].truth.clear();
-    let page = Viewer::new("yard <1>", vec![under_way.clone()])
-        .lead("two & two")
-        .notes(vec!["made by x < y".to_owned()]);
-    let html = page.to_html().unwrap();
+    let view = |moment: &Moment| {
+        let viewer = Viewer {
+            title: "yard <1>",
+            lead: "two & two",
+            notes: &["made by x < y".to_owned()],
+            moments: std::slice::from_ref(moment),
+        };
+        viewer.to_html()
+    };
+    let html = view(&under_way).unwrap();
     for words in [
         "<title>yard &lt;1&gt;</title>",
         "two &amp; two",
@@ -378,5 +402,5 @@ fn a_viewer_plays_what_is_not_over_yet() {
 
     let thirteen = vec![[0.0; 2]; 13];
     under_way.pedestrians[1].truth = thirteen;
-    assert!(Viewer::new("yard", vec![under_way]).to_html().is_err());
+    assert!(view(&under_way).is_err());
 }

@@ -1,4 +1,4 @@
-use super::{Search, Sieve};
+use super::{CandidateSieve, Search};
 use crate::{Cost, SoftDtw};
 use ddl_simd::{Dispatch, InstructionSet};
 
@@ -15,11 +15,11 @@ fn walks(count: usize, steps: usize, offset: f64) -> Vec<Vec<[f64; 2]>> {
     (0..count).map(walk).collect()
 }
 
-fn sieve(gamma: f64, walks: &[Vec<[f64; 2]>]) -> (SoftDtw, Vec<f64>, Option<Sieve<2>>) {
+fn sieve(gamma: f64, walks: &[Vec<[f64; 2]>]) -> (SoftDtw, Vec<f64>, Option<CandidateSieve<2>>) {
     let dtw = SoftDtw::new(gamma, Cost::SquaredEuclidean).expect("valid");
     let own: Vec<f64> = walks.iter().map(|walk| dtw.self_value(walk)).collect();
     let slices: Vec<&[[f64; 2]]> = walks.iter().map(Vec::as_slice).collect();
-    let sieve = Sieve::build(gamma, &slices, &own);
+    let sieve = CandidateSieve::build(gamma, &slices, &own);
     (dtw, own, sieve)
 }
 
@@ -30,7 +30,11 @@ fn each_set() -> impl Iterator<Item = Dispatch> {
 }
 
 /// Scores of all candidates: with nothing to select among, everything is kept.
-fn scores(sieve: &Sieve<2>, dispatch: Dispatch, query: &[[f64; 2]]) -> (Search<2>, Vec<f32>) {
+fn scores(
+    sieve: &CandidateSieve<2>,
+    dispatch: Dispatch,
+    query: &[[f64; 2]],
+) -> (Search<2>, Vec<f32>) {
     let count = sieve.blocks.members.as_flattened().len();
     let mut search = sieve.search(dispatch, query, count).expect("in range");
     for run in &sieve.blocks.runs {

@@ -21,14 +21,14 @@ use crate::select::Selection;
 use crate::sliding::accuracy::FLOOR;
 use crate::sliding::column::{Column, Setting, advance_back, advance_front, similarities};
 use crate::sliding::hits::Hits;
-use crate::sliding::layout::Layout;
+use crate::sliding::layout::WindowLayout;
 use ddl_simd::{LANES, Register, RegisterKernel};
 
 /// All windows of a query against all windows of the layout.
 ///
 /// `M` is the number of steps of a window; with `EXACT` false, a window may be shorter.
-pub(super) struct Sweep<'a, const D: usize, const M: usize, const EXACT: bool> {
-    pub(super) layout: &'a Layout<D>,
+pub(super) struct WindowSweep<'a, const D: usize, const M: usize, const EXACT: bool> {
+    pub(super) layout: &'a WindowLayout<D>,
     /// Steps of the query, at least one window.
     pub(super) query: &'a [[f32; D]],
     /// What the paths before and behind the cut start from.
@@ -38,7 +38,7 @@ pub(super) struct Sweep<'a, const D: usize, const M: usize, const EXACT: bool> {
 }
 
 /// Working memory of a sweep.
-struct Memory<S: Register, const M: usize> {
+struct SweepMemory<S: Register, const M: usize> {
     /// K of a block of query rows at every step of the pieces, and of the block below it.
     above: Vec<Column<S, M>>,
     below: Vec<Column<S, M>>,
@@ -48,7 +48,9 @@ struct Memory<S: Register, const M: usize> {
     sums: Vec<Column<S, M>>,
 }
 
-impl<const D: usize, const M: usize, const EXACT: bool> RegisterKernel for Sweep<'_, D, M, EXACT> {
+impl<const D: usize, const M: usize, const EXACT: bool> RegisterKernel
+    for WindowSweep<'_, D, M, EXACT>
+{
     type Output = ();
 
     #[inline(always)]
@@ -64,7 +66,7 @@ impl<const D: usize, const M: usize, const EXACT: bool> RegisterKernel for Sweep
             front: simd.splat(self.starts.0),
             back: simd.splat(self.starts.1),
         };
-        let mut memory = Memory::<S, M> {
+        let mut memory = SweepMemory::<S, M> {
             above: Vec::new(),
             below: Vec::new(),
             backs: [[[zero; M]; M]; 2],
@@ -112,7 +114,7 @@ impl<const D: usize, const M: usize, const EXACT: bool> RegisterKernel for Sweep
 fn pairs<S: Register, const M: usize>(
     setting: Setting<S>,
     steps: usize,
-    memory: &mut Memory<S, M>,
+    memory: &mut SweepMemory<S, M>,
     hits: &mut Hits<'_>,
 ) {
     let Setting { rows, zero, .. } = setting;
@@ -213,7 +215,7 @@ fn compare<S: Register, const M: usize>(
 #[inline(always)]
 fn last_window<S: Register, const M: usize>(
     setting: Setting<S>,
-    memory: &Memory<S, M>,
+    memory: &SweepMemory<S, M>,
     hits: &mut Hits<'_>,
 ) {
     let Setting { simd, rows, .. } = setting;

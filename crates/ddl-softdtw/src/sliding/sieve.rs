@@ -2,8 +2,8 @@
 
 use crate::select::Selection;
 use crate::sliding::accuracy::Accuracy;
-use crate::sliding::kernel::Sweep;
-use crate::sliding::layout::Layout;
+use crate::sliding::kernel::WindowSweep;
+use crate::sliding::layout::WindowLayout;
 use ddl_simd::Dispatch;
 
 /// Longest window of the general kernel.
@@ -11,14 +11,14 @@ const LONGEST: usize = 32;
 
 /// The windows of all tracks, and what their scores are worth.
 #[derive(Clone, Debug)]
-pub(super) struct Sieve<const D: usize> {
-    layout: Layout<D>,
+pub(super) struct WindowSieve<const D: usize> {
+    layout: WindowLayout<D>,
     accuracy: Accuracy,
 }
 
-impl<const D: usize> Sieve<D> {
+impl<const D: usize> WindowSieve<D> {
     /// The sieve of a layout, or `None` when `f32` cannot hold its windows whatever the query.
-    pub(super) fn new(layout: Layout<D>) -> Option<Self> {
+    pub(super) fn new(layout: WindowLayout<D>) -> Option<Self> {
         let accuracy = Accuracy::of(layout.length())?;
         accuracy.margin_log2(
             accuracy.smallest_accurate_log2(),
@@ -67,7 +67,7 @@ impl<const D: usize> Sieve<D> {
         query: &[[f32; D]],
         selections: &mut [Selection],
     ) {
-        dispatch.run_on_registers(Sweep::<D, M, EXACT> {
+        dispatch.run_on_registers(WindowSweep::<D, M, EXACT> {
             layout: &self.layout,
             query,
             starts: self.accuracy.starts(),
@@ -78,9 +78,9 @@ impl<const D: usize> Sieve<D> {
 
 #[cfg(test)]
 mod tests {
-    use super::Sieve;
+    use super::WindowSieve;
     use crate::select::Selection;
-    use crate::sliding::layout::Layout;
+    use crate::sliding::layout::WindowLayout;
     use crate::{Cost, SoftDtw};
     use ddl_simd::{Dispatch, InstructionSet};
 
@@ -104,7 +104,7 @@ mod tests {
         dtw: SoftDtw,
         tracks: &[Track],
         length: usize,
-    ) -> (Option<Sieve<2>>, Vec<Track>, Vec<f64>) {
+    ) -> (Option<WindowSieve<2>>, Vec<Track>, Vec<f64>) {
         let slices: Vec<&[[f64; 2]]> = tracks.iter().map(Vec::as_slice).collect();
         let counts: Vec<usize> = tracks
             .iter()
@@ -116,8 +116,8 @@ mod tests {
             .iter()
             .map(|window| dtw.self_value(window))
             .collect();
-        let layout = Layout::new(dtw.gamma(), &slices, &counts, length, &own);
-        (Sieve::new(layout), windows, own)
+        let layout = WindowLayout::new(dtw.gamma(), &slices, &counts, length, &own);
+        (WindowSieve::new(layout), windows, own)
     }
 
     #[test]

@@ -13,14 +13,16 @@ pub struct WindowNeighbour {
 
 /// Where a window is.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct WindowPlace {
     pub(super) track: usize,
     pub(super) offset: usize,
 }
 
 /// The first windows of a track.
-pub(super) fn places_of((track, &windows): (usize, &usize)) -> impl Iterator<Item = Place> + use<> {
-    (0..windows).map(move |offset| Place { track, offset })
+pub(super) fn places_of(
+    (track, &windows): (usize, &usize),
+) -> impl Iterator<Item = WindowPlace> + use<> {
+    (0..windows).map(move |offset| WindowPlace { track, offset })
 }
 
 /// Sums of all numbers before each of `numbers`, and of all.

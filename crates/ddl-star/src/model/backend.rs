@@ -1,8 +1,8 @@
 //! The operations of a backbone by libtorch: on any device, in any precision, with its own gradients.
 
-use super::attention::Attention;
+use super::attention::{among_pedestrians, over_cache};
 use super::dropout::dropout;
-use super::neighbours::Seen;
+use super::neighbours::SeenNeighbours;
 use super::parameters::Parameters;
 use super::shared_weights::SharedWeights;
 use ddl_network::backend::{Backend, Mode};
@@ -38,15 +38,11 @@ impl TorchBackend {
         }
     }
 
-    pub(super) fn mode(&self) -> Mode {
-        self.mode
-    }
-
     /// y = x W^T + b with the weight of that number and the bias after it.
     ///
     /// # Shapes
     /// `x` `[.., inputs]` -> `[.., outputs]`.
-    pub(super) fn affine(&self, x: &Tensor, weight: usize) -> Tensor {
+    fn affine(&self, x: &Tensor, weight: usize) -> Tensor {
         let [weight, bias] = [weight, weight + 1].map(|number| &self.tensors[number]);
         match &self.shared {
             Some(shared) => shared.linear(x, weight, bias),
@@ -66,13 +62,15 @@ impl TorchBackend {
         }
     }
 
-    /// What follows attention in an encoder layer: residual connections, normalisations, the feed-forward block.
-    fn after_attention(&self, layer: EncoderLayer, x: &Tensor, attended: Tensor) -> Tensor {
-        let (first, p, mode) = (layer.tensor(), layer.dropout(), self.mode);
+    /// What follows attention in an encoder layer, of what it has mixed: residual connections, normalisations, the
+    /// feed-forward block.
+    fn after_attention(&self, layer: EncoderLayer, x: &Tensor, mixed: &Tensor) -> Rc<Tensor> {
+        let (first, p, mode) = (layer.tensor, layer.dropout, self.mode);
+        let attended = self.affine(mixed, first + 2);
         let x = self.norm(&(x + dropout(attended, p, mode)), first + 8);
         let hidden = dropout(self.affine(&x, first + 4).relu(), p, mode);
         let fed = dropout(self.affine(&hidden, first + 6), p, mode);
-        self.norm(&(x + fed), first + 10)
+        Rc::new(self.norm(&(x + fed), first + 10))
     }
 
     /// Layer normalisation over the last dimension (Ba et al. 2016), eps = 1e-5.
@@ -85,14 +83,14 @@ impl TorchBackend {
 impl Backend for TorchBackend {
     type Tokens = Rc<Tensor>;
     type KeyValues = Rc<Tensor>;
-    type Seen = Seen;
+    type Seen = SeenNeighbours;
 
     fn entries(&self, x: &Rc<Tensor>) -> usize {
         x.size()[0] as usize
     }
 
     fn linear(&self, layer: Linear, x: &Rc<Tensor>) -> Rc<Tensor> {
-        Rc::new(self.affine(x, layer.tensor()))
+        Rc::new(self.affine(x, layer.tensor))
     }
 
     fn relu(&self, x: &Rc<Tensor>) -> Rc<Tensor> {
@@ -111,9 +109,19 @@ impl Backend for TorchBackend {
         }
     }
 
-    fn spatial_attention(&self, layer: EncoderLayer, x: &Rc<Tensor>, seen: &Seen) -> Rc<Tensor> {
-        let attended = Attention::new(self, layer).among_pedestrians(x, seen);
-        Rc::new(self.after_attention(layer, x, attended))
+    fn spatial_attention(
+        &self,
+        layer: EncoderLayer,
+        x: &Rc<Tensor>,
+        seen: &SeenNeighbours,
+    ) -> Rc<Tensor> {
+        let p = match self.mode {
+            Mode::Train => layer.dropout,
+            Mode::Evaluate => 0.0,
+        };
+        let qkv = self.affine(x, layer.tensor);
+        let mixed = among_pedestrians(&qkv, layer.sizes.heads as i64, seen, p);
+        self.after_attention(layer, x, &mixed)
     }
 
     fn temporal_attention(
@@ -122,12 +130,14 @@ impl Backend for TorchBackend {
         newest: &Rc<Tensor>,
         cache: &[Rc<Tensor>],
     ) -> Rc<Tensor> {
-        let attended = Attention::new(self, layer).over_cache(newest, cache);
-        Rc::new(self.after_attention(layer, newest, attended))
+        let qkv = self.affine(newest, layer.tensor);
+        let mixed = over_cache(&qkv, layer.sizes.heads as i64, cache);
+        self.after_attention(layer, newest, &mixed)
     }
 
     fn key_values(&self, layer: EncoderLayer, x: &Rc<Tensor>) -> Rc<Tensor> {
-        Rc::new(Attention::new(self, layer).key_values(x))
+        // The query is projected too: a part of the weights would have a gradient as large as the whole, at every token.
+        Rc::new(self.affine(x, layer.tensor))
     }
 
     fn repeated_key_values(&self, cached: &Rc<Tensor>, batch: usize) -> Rc<Tensor> {

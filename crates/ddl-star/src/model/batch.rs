@@ -1,6 +1,7 @@
 //! Several windows side by side as tensors.
 
 use super::neighbours::Neighbours;
+use super::numbers::tensor;
 use super::scene_means::SceneMeans;
 use crate::StarError;
 use ddl_data::{Rotation, Window};
@@ -56,10 +57,7 @@ impl SceneBatch {
         let (t, p) = (frames as i64, walkers as i64);
         let neighbours = neighbours(windows, mask_frames, neighbour_box, device, kind);
         Ok(Self {
-            positions: Tensor::from_slice(&positions)
-                .f_to_kind(kind)?
-                .f_reshape([t, p, 2])?
-                .f_to_device(device)?,
+            positions: tensor(&positions, &[t, p, 2], (kind, device))?,
             scene_means: SceneMeans::new(neighbours.scenes().ranges(), device, kind),
             neighbours: Rc::new(neighbours),
             share: Tensor::ones([1], (kind, device)),

@@ -37,7 +37,7 @@ enum Prepared<'a> {
         /// The columns for the token.
         weight: Tensor,
         /// For the variants with dynamics.
-        spread: Option<Spread>,
+        spread: Option<NoiseCovariance>,
     },
 }
 
@@ -56,7 +56,7 @@ impl<'a> Emission<'a> {
                 let dynamics = config.variant.dynamics();
                 Prepared::Expected {
                     weight: weight.narrow(1, 0, width),
-                    spread: dynamics.then(|| Spread::of(&of_noise)),
+                    spread: dynamics.then(|| NoiseCovariance::of(&of_noise)),
                 }
             }
         };
@@ -92,13 +92,13 @@ impl<'a> Emission<'a> {
 
 /// What noise adds to the metric: entries of C = W W^T, the covariance of W n for noise n ~ N(0, I).
 #[derive(Debug)]
-struct Spread {
+struct NoiseCovariance {
     c11: Tensor,
     c12: Tensor,
     c22: Tensor,
 }
 
-impl Spread {
+impl NoiseCovariance {
     /// # Shapes
     /// `weight` `[3, noise]`, the columns of the output layer for the noise.
     fn of(weight: &Tensor) -> Self {
@@ -134,32 +134,3 @@ impl Spread {
 
 /// Pivots of the expected metric below this count as this, in m/s.
 const SMALLEST_PIVOT: f64 = 1e-12;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use tch::{Device, Kind};
-
-    /// The metric of the factor is the mean of the noisy metrics.
-    #[test]
-    fn the_expected_factor_is_that_of_the_mean_metric() {
-        tch::manual_seed(3);
-        let options = (Kind::Double, Device::Cpu);
-        let (mean, weight) = (
-            Tensor::randn([3], options),
-            Tensor::randn([3, 16], options) * 0.1,
-        );
-        let metric = |factors: &Tensor| {
-            let entry = |i: i64| factors.select(-1, i);
-            let (a, b, c) = (entry(0), entry(1), entry(2));
-            Tensor::stack(&[a.square(), &a * &b, b.square() + c.square()], -1)
-        };
-        let noise = Tensor::randn([400_000, 16], options);
-        let sampled = metric(&(&mean + noise.matmul(&weight.transpose(0, 1))));
-        let sampled = sampled.mean_dim([0i64].as_slice(), false, None::<Kind>);
-        let expected = metric(&Spread::of(&weight).expected_factor(&mean));
-        // standard error of the sampled mean: about 2e-3
-        let difference = (sampled - expected).abs().max().double_value(&[]);
-        assert!(difference < 1e-2, "{difference}");
-    }
-}

@@ -95,7 +95,7 @@ pub fn bounded_step(
     let [a, b, c] = entries(factors);
     let neutral = neutral(&u.detach(), &arriving, &smallest, bounds, time);
     let neutral = neutral.changed(|eigenvalue| clamp(&eigenvalue));
-    let emitted = Symmetric {
+    let emitted = SymmetricTensors {
         xx: a.square() + constants.sigma,
         xy: &a * &b,
         yy: b.square() + c.square() + constants.sigma,
@@ -103,7 +103,7 @@ pub fn bounded_step(
     let given = if bounds.absolute {
         emitted
     } else {
-        Symmetric {
+        SymmetricTensors {
             xx: &neutral.xx + (emitted.xx - 1.0) * &arriving,
             xy: &neutral.xy + emitted.xy * &arriving,
             yy: &neutral.yy + (emitted.yy - 1.0) * &arriving,
@@ -122,7 +122,7 @@ fn neutral(
     smallest: &Tensor,
     bounds: &StepBounds,
     time: StepTime<f64>,
-) -> Symmetric {
+) -> SymmetricTensors {
     let g = MotionBounds::momentum(time);
     let (cos, sin) = (-u.narrow(-1, 0, 1), -u.narrow(-1, 1, 1));
     let (vx, vy) = (
@@ -140,7 +140,7 @@ fn neutral(
         .minimum(&most);
     let r = &a + (&b / &a) * &b * 2.0;
     let (both, difference) = (&cos * &sin, cos.square() - sin.square());
-    Symmetric {
+    SymmetricTensors {
         xx: &a * cos.square() - &b * &both * 2.0 + &r * sin.square(),
         xy: (&a - &r) * &both + &b * difference,
         yy: &a * sin.square() + b * both * 2.0 + r * cos.square(),
@@ -148,13 +148,13 @@ fn neutral(
 }
 
 /// Symmetric 2 x 2 matrices, `[.., 1]` each entry.
-struct Symmetric {
+struct SymmetricTensors {
     xx: Tensor,
     xy: Tensor,
     yy: Tensor,
 }
 
-impl Symmetric {
+impl SymmetricTensors {
     /// The matrix times `u` `[.., 2]`.
     fn times(&self, u: &Tensor) -> Tensor {
         let (u1, u2) = (u.narrow(-1, 0, 1), u.narrow(-1, 1, 1));

@@ -47,25 +47,17 @@ impl GoalFrame {
     /// `[.., P, 2]`, broadcast with `[G, P, 1]`.
     pub(crate) fn of_world(&self, vectors: &Tensor) -> Tensor {
         let (x, y) = (vectors.narrow(-1, 0, 1), vectors.narrow(-1, 1, 1));
-        Tensor::cat(
-            &[
-                &self.cos * &x + &self.sin * &y,
-                &self.cos * &y - &self.sin * &x,
-            ],
-            -1,
-        ) / &self.unit
+        let ahead = &self.cos * &x + &self.sin * &y;
+        let left = &self.cos * &y - &self.sin * &x;
+        Tensor::cat(&[ahead, left], -1) / &self.unit
     }
 
     /// The reverse of [`of_world`](Self::of_world).
     pub(crate) fn to_world(&self, vectors: &Tensor) -> Tensor {
         let (x, y) = (vectors.narrow(-1, 0, 1), vectors.narrow(-1, 1, 1));
-        Tensor::cat(
-            &[
-                &self.cos * &x - &self.sin * &y,
-                &self.cos * &y + &self.sin * &x,
-            ],
-            -1,
-        ) * &self.unit
+        let along_x = &self.cos * &x - &self.sin * &y;
+        let along_y = &self.cos * &y + &self.sin * &x;
+        Tensor::cat(&[along_x, along_y], -1) * &self.unit
     }
 
     /// The lower-triangular factor of the same metric in the world: L' L'^T = R^T L L^T R.
@@ -85,58 +77,5 @@ impl GoalFrame {
         let below = (x1 * y1 + x2 * y2) / &first;
         let rest = &a * &c / &first;
         Tensor::cat(&[first, below, rest], -1)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use tch::{Device, Kind};
-
-    /// The metric itself is what turns, P' = R^T P R, .
-    #[test]
-    fn the_metric_turns_with_the_frame() {
-        tch::manual_seed(5);
-        let options = (Kind::Double, Device::Cpu);
-        let (observed, goals) = (
-            Tensor::randn([8, 40, 2], options),
-            Tensor::randn([3, 40, 2], options),
-        );
-        let frame = GoalFrame::new(&observed, &goals, 0.4);
-        let factors = Tensor::randn([3, 40, 3], options);
-        let u = Tensor::randn([3, 40, 2], options);
-        let turned = frame.factors_to_world(&factors);
-        let own = metric_times(&factors, &frame.of_world(&u));
-        let difference = (metric_times(&turned, &u) - frame.to_world(&own))
-            .abs()
-            .max();
-        assert!(difference.double_value(&[]) < 1e-12);
-    }
-
-    #[test]
-    fn the_goal_lies_ahead_and_whoever_is_there_looks_along_x() {
-        let options = (Kind::Double, Device::Cpu);
-        let last = Tensor::from_slice(&[1.0, 2.0, 5.0, 5.0]).reshape([1, 2, 2]);
-        let goals = Tensor::from_slice(&[1.0, 4.0, 5.0, 5.0]).reshape([1, 2, 2]);
-        let frame = GoalFrame::new(&last.expand([8, -1, -1], false), &goals, 0.4);
-        let ahead = frame.of_world(&(&goals - &last));
-        assert_eq!(
-            Vec::<f64>::try_from(ahead.reshape([-1])).unwrap_or_default(),
-            [2.0, 0.0, 0.0, 0.0]
-        );
-        let east = frame.to_world(&Tensor::ones([1, 2, 2], options));
-        assert_eq!(
-            Vec::<f64>::try_from(east.reshape([-1])).unwrap_or_default(),
-            [-1.0, 1.0, 1.0, 1.0]
-        );
-    }
-
-    fn metric_times(factors: &Tensor, u: &Tensor) -> Tensor {
-        let l = |i: i64| factors.narrow(-1, i, 1);
-        let (w1, w2) = (
-            l(0) * u.narrow(-1, 0, 1) + l(1) * u.narrow(-1, 1, 1),
-            l(2) * u.narrow(-1, 1, 1),
-        );
-        Tensor::cat(&[l(0) * &w1, l(1) * &w1 + l(2) * w2], -1)
     }
 }

@@ -40,8 +40,8 @@ impl Neighbours {
     }
 
     /// Who sees whom during some frames: one frame serves every batch entry, several one entry each.
-    pub(crate) fn during(self: &Rc<Self>, frames: Range<usize>) -> Seen {
-        Seen {
+    pub(crate) fn during(self: &Rc<Self>, frames: Range<usize>) -> SeenNeighbours {
+        SeenNeighbours {
             neighbours: Rc::clone(self),
             frames,
         }
@@ -103,12 +103,12 @@ struct MaskedRows {
 
 /// [`Neighbours`] during some frames.
 #[derive(Debug, Clone)]
-pub struct Seen {
+pub struct SeenNeighbours {
     neighbours: Rc<Neighbours>,
     frames: Range<usize>,
 }
 
-impl Seen {
+impl SeenNeighbours {
     /// Walkers in rows of one length, for libtorch.
     ///
     /// # Shapes

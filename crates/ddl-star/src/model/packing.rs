@@ -89,18 +89,6 @@ mod tests {
         ranges
     }
 
-    #[test]
-    fn small_scenes_share_a_row() {
-        let packing = Packing::new(&scenes(&[2, 9, 1, 7, 6]));
-        assert_eq!((packing.rows(), packing.length()), (2, 16));
-        // 9 and 7 fill the first row; 6, 2 and 1 stand in the second
-        assert_eq!(packing.places()[..2], [22, 23]);
-        assert_eq!(packing.places()[2], 0);
-        assert_eq!(packing.places()[11], 24);
-        assert_eq!(packing.places()[12], 9);
-        assert_eq!(packing.places()[19], 16);
-    }
-
     proptest! {
         #[test]
         fn every_walker_has_a_place_and_every_scene_one_row(

@@ -2,17 +2,17 @@
 
 use super::backend::TorchBackend;
 use super::batch::SceneBatch;
-use super::course::Course;
 use super::emission::NoiseInput;
 use super::flow::{FlowConstants, StepBounds};
 use super::goal_frame::GoalFrame;
+use super::guidance::Guidance;
 use super::network::TorchNetwork;
 use super::own_motion;
 use super::tensor_backend::{Pass, TensorBackend};
 use ddl_data::OBSERVED;
 use ddl_network::backbone::Backbone;
 use ddl_network::backend::{Memory, Mode};
-use ddl_network::{Frame, StepRule};
+use ddl_network::{NetworkFrame, StepRule};
 use std::slice::from_ref;
 use tch::{Kind, Tensor};
 
@@ -205,7 +205,7 @@ impl TorchNetwork {
     /// # Shapes
     /// `batch` of at least 8 frames, unless the network reads positions relative to the goal in the world's frame; `goals`
     /// `[.., P, 2]`.
-    fn course(&self, batch: &SceneBatch, goals: &Tensor, rule: StepRule) -> Course {
+    fn course(&self, batch: &SceneBatch, goals: &Tensor, rule: StepRule) -> Guidance {
         let config = self.config();
         let time_step = config.time_step;
         let observed = || batch.positions.narrow(0, 0, OBSERVED as i64);
@@ -216,10 +216,10 @@ impl TorchNetwork {
             goals.shallow_clone()
         };
         let frame = match config.frame {
-            Frame::World => None,
-            Frame::Goal => Some(GoalFrame::new(&observed(), &goals, time_step)),
+            NetworkFrame::World => None,
+            NetworkFrame::Goal => Some(GoalFrame::new(&observed(), &goals, time_step)),
         };
-        Course {
+        Guidance {
             reference: if config.variant.goal_shift() {
                 goals
             } else {
@@ -237,7 +237,7 @@ impl TorchNetwork {
                     top_speed: own_motion::top_speeds(&observed(), time_step),
                     velocity: own_motion::velocities(&observed(), time_step),
                     share: batch.share.shallow_clone(),
-                    absolute: config.frame == Frame::World,
+                    absolute: config.frame == NetworkFrame::World,
                 }),
             },
         }

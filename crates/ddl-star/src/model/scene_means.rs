@@ -69,25 +69,3 @@ impl SceneMeans {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_walker_gets_the_mean_of_its_own_scene() {
-        let means = SceneMeans::new(&[0..1, 1..4, 4..6], Device::Cpu, Kind::Double);
-        let x = Tensor::from_slice(&[
-            5.0, 1.0, 1.0, 2.0, 2.0, 4.0, 6.0, 9.0, 10.0, 0.0, 30.0, 1.0, //
-            0.0, 0.0, 3.0, 3.0, 3.0, 3.0, 3.0, 3.0, -1.0, 4.0, 1.0, 5.0,
-        ])
-        .view([2, 6, 2]);
-        let expected = Tensor::from_slice(&[
-            5.0, 1.0, 3.0, 5.0, 3.0, 5.0, 3.0, 5.0, 20.0, 0.5, 20.0, 0.5, //
-            0.0, 0.0, 3.0, 3.0, 3.0, 3.0, 3.0, 3.0, 0.0, 4.5, 0.0, 4.5,
-        ])
-        .view([2, 6, 2]);
-        let difference = (means.of(&x) - expected).abs().max().double_value(&[]);
-        assert!(difference < 1e-14, "{difference}");
-    }
-}

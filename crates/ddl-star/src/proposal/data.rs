@@ -1,6 +1,7 @@
 //! What the network sees of many pedestrians, as tensors.
 
 use crate::StarError;
+use crate::model::tensor;
 use ddl_data::OBSERVED;
 use ddl_network::{PedestrianView, ProposalConfig};
 use tch::{Device, Kind, Tensor};
@@ -35,12 +36,7 @@ impl Views {
             neighbours.resize(neighbours.len() + (slots - taken) * OBSERVED * 2, 0.0);
             present.extend((0..slots).map(|slot| f64::from(u8::from(slot < taken))));
         }
-        let tensor = |values: &[f64], shape: &[i64]| -> Result<Tensor, StarError> {
-            Ok(Tensor::f_from_slice(values)?
-                .f_reshape(shape)?
-                .to_kind(kind)
-                .to_device(device))
-        };
+        let tensor = |of: &[f64], shape: &[i64]| tensor(of, shape, (kind, device));
         let slots = slots as i64;
         Ok(Self {
             own: tensor(&own, &[count, track / 2, 2])?,

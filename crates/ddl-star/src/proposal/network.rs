@@ -3,7 +3,7 @@
 use super::data::Views;
 use crate::StarError;
 use crate::device::ComputeDevice;
-use crate::model::Parameters;
+use crate::model::{Parameters, numbers};
 use ddl_data::{HORIZON, OBSERVED};
 use ddl_network::proposal::{
     END_UNIT, MemberAffine, NEIGHBOUR_FEATURES, ProposalLayers, RECENT, WAYPOINTS,
@@ -248,11 +248,6 @@ impl TorchProposals {
         let seconds = RECENT as f64 * self.config.time_step;
         (track.select(-2, last) - track.select(-2, last - RECENT as i64)) / seconds
     }
-}
-
-fn numbers(tensor: &Tensor) -> Result<Vec<f64>, StarError> {
-    let flat = tensor.to_device(tch::Device::Cpu).to_kind(Kind::Double);
-    Ok(Vec::try_from(flat.contiguous().reshape([-1]))?)
 }
 
 /// Proposals by libtorch. Tensors may move between threads, but not be shared: one call at a time.

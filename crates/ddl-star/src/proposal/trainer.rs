@@ -6,9 +6,10 @@ use super::loss::{LossWeights, winner_takes_all};
 use super::network::TorchProposals;
 use crate::StarError;
 use crate::device::OneThread;
+use crate::model::tensor;
 use crate::training::GENERATOR;
 use crate::training::checkpoint::{self, Extra};
-use crate::training::gate::Gate;
+use crate::training::gate::FiniteGate;
 use crate::training::optimizer::Adam;
 use ddl_network::seed::{Stage, stream};
 use ddl_network::weights::Origin;
@@ -27,7 +28,7 @@ const REPORTED: f64 = 0.98;
 
 /// How far a training has come.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-struct Progress {
+struct ProposalProgress {
     steps: u64,
     distance: f64,
 }
@@ -39,7 +40,7 @@ pub struct ProposalTrainer {
     network: TorchProposals,
     adam: Adam,
     /// Always open: every step is looked at before it is taken.
-    gate: Gate,
+    gate: FiniteGate,
     /// Running mean of the weights, which is what is used in the end.
     average: Tensor,
     /// Of the examples, then of the reversed ones.
@@ -48,7 +49,7 @@ pub struct ProposalTrainer {
     /// Examples that are not reversed.
     onward: usize,
     training: ProposalTraining,
-    progress: Progress,
+    progress: ProposalProgress,
 }
 
 impl ProposalTrainer {
@@ -81,20 +82,17 @@ impl ProposalTrainer {
             .flat_map(|example| example.future.as_flattened())
             .copied()
             .collect();
-        let future = Tensor::f_from_slice(&future)?
-            .f_reshape([all.len() as i64, -1, 2])?
-            .to_kind(kind)
-            .to_device(device);
+        let future = tensor(&future, &[all.len() as i64, -1, 2], (kind, device))?;
         Ok(Self {
             adam: Adam::new(network.parameters()),
-            gate: Gate::new(device, kind),
+            gate: FiniteGate::new(device, kind),
             average: network.parameters().flat().detach().copy(),
             network,
             views,
             future,
             onward: examples.len(),
             training,
-            progress: Progress::default(),
+            progress: ProposalProgress::default(),
         })
     }
 
@@ -142,7 +140,7 @@ impl ProposalTrainer {
         };
         let (parameters, most) = (self.network.parameters(), self.training.steps);
         let steps = checkpoint::load(parameters, &mut self.adam, &mut extra, most, origin, path)?;
-        self.progress = Progress {
+        self.progress = ProposalProgress {
             steps,
             distance: extra.progress[1],
         };

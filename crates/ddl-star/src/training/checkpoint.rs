@@ -26,7 +26,7 @@ pub(crate) struct Extra<'a> {
 
 /// How far a training run has come.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Progress {
+pub(crate) struct TrainerProgress {
     /// Batches seen, over all epochs.
     pub(crate) steps: u64,
     /// Sum of the loss over the batches of the running epoch.

@@ -2,6 +2,7 @@
 
 use super::schedule::Schedule;
 use crate::StarError;
+use crate::model::tensor;
 use ddl_data::Rotation;
 use ddl_network::seed::{Stage, stream};
 use rand::{Rng as _, RngExt as _};
@@ -79,12 +80,7 @@ impl StepDraws {
             }
         }
         let count = seeds.len() as i64;
-        let tensor = |numbers: &[f64], shape: &[i64]| -> Result<Tensor, tch::TchError> {
-            Tensor::from_slice(numbers)
-                .f_to_kind(kind)?
-                .f_reshape(shape)?
-                .f_to_device(device)
-        };
+        let tensor = |of: &[f64], shape: &[i64]| tensor(of, shape, (kind, device));
         let turns = if turned || mirrored {
             Some(tensor(&turns, &[count, 2, 2])?)
         } else {
@@ -116,46 +112,5 @@ impl StepDraws {
     pub(crate) fn spoil(&mut self, step: u64) {
         let row = (step - self.steps.start) as i64;
         let _ = self.noise.narrow(0, row, 1).fill_(f64::NAN);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test may panic")]
-
-    use super::*;
-    use ddl_data::{Dataset, WindowRule};
-    use ddl_network::TrainingConfig;
-
-    /// Whether a run was stopped in between makes no difference to what a step draws.
-    #[test]
-    fn a_step_draws_the_same_whatever_it_is_drawn_with() {
-        let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
-        let schedule = Schedule::new(&windows, &TrainingConfig::published());
-        let draws = |steps| {
-            StepDraws::new(
-                steps,
-                &schedule,
-                (true, true),
-                16,
-                Device::Cpu,
-                Kind::Double,
-            )
-            .unwrap()
-        };
-        let (whole, part) = (draws(0..9), draws(6..9));
-        for step in 6..9 {
-            let (one, other) = (whole.at(step).unwrap(), part.at(step).unwrap());
-            assert_eq!((one.libtorch, one.kernels), (other.libtorch, other.kernels));
-            assert_eq!(one.noise, other.noise);
-            assert_eq!(one.turn, other.turn);
-        }
-        assert_ne!(whole.at(1).unwrap().noise, whole.at(2).unwrap().noise);
-        assert!(whole.at(9).is_none() && part.at(5).is_none());
-        // a rotation: its columns have length 1 and are at right angles
-        let turn = whole.at(3).unwrap().turn.unwrap();
-        let gram = turn.matmul(&turn.transpose(0, 1));
-        let difference = gram - Tensor::eye(2, (Kind::Double, Device::Cpu));
-        assert!(difference.abs().max().double_value(&[]) < 1e-15);
     }
 }

@@ -7,12 +7,12 @@ use tch::{Device, Kind, Tensor};
 /// It lives on the device: whether an update counts is decided there, so that nobody waits. What it lets
 /// through is multiplied by 1; what comes after is as if it had not been.
 #[derive(Debug)]
-pub(crate) struct Gate {
+pub(crate) struct FiniteGate {
     /// Scalar, 1 or 0.
     open: Tensor,
 }
 
-impl Gate {
+impl FiniteGate {
     /// An open gate.
     pub(crate) fn new(device: Device, kind: Kind) -> Self {
         Self {
@@ -51,8 +51,8 @@ mod tests {
     #[test]
     fn it_stays_shut_once_it_has_seen_what_is_no_number() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            let mut gate = Gate::new(Device::Cpu, Kind::Double);
-            let open = |gate: &Gate| gate.open().int64_value(&[]);
+            let mut gate = FiniteGate::new(Device::Cpu, Kind::Double);
+            let open = |gate: &FiniteGate| gate.open().int64_value(&[]);
             gate.watch(&Tensor::from_slice(&[0.0, 1e308]));
             assert!(open(&gate) == 1 && gate.shut().int64_value(&[]) == 0);
             gate.watch(&Tensor::from_slice(&[1.0, bad]));

@@ -1,6 +1,6 @@
 //! Adam (Kingma and Ba 2015) with its state in our hands, so that it can be saved and restored.
 
-use super::gate::Gate;
+use super::gate::FiniteGate;
 use crate::model::Parameters;
 use tch::Tensor;
 
@@ -46,7 +46,7 @@ impl Adam {
         norm: &Tensor,
         clip: f64,
         learning_rate: f64,
-        gate: &Gate,
+        gate: &FiniteGate,
     ) {
         let _guard = tch::no_grad_guard();
         let mut gradient = gradient * (clip / (norm + 1e-6)).clamp_max(1.0);
@@ -95,7 +95,7 @@ mod tests {
     fn it_does_what_the_paper_says() {
         let parameters = parameters();
         let mut adam = Adam::new(&parameters);
-        let gate = Gate::new(Device::Cpu, Kind::Double);
+        let gate = FiniteGate::new(Device::Cpu, Kind::Double);
         let mut known: Vec<f64> = Vec::try_from(parameters.flat()).unwrap();
         let (mut m, mut v) = ([0.0; 12], [0.0; 12]);
         for step in 1..=5_i32 {
@@ -122,7 +122,7 @@ mod tests {
     fn a_shut_gate_leaves_everything_as_it_was() {
         let parameters = parameters();
         let mut adam = Adam::new(&parameters);
-        let mut gate = Gate::new(Device::Cpu, Kind::Double);
+        let mut gate = FiniteGate::new(Device::Cpu, Kind::Double);
         let gradient = Tensor::linspace(-1.0, 2.0, 12, (Kind::Double, Device::Cpu));
         adam.step(&parameters, &gradient, &gradient.norm(), 1.0, 0.01, &gate);
         let state = |adam: &Adam| {

@@ -1,7 +1,7 @@
 //! The batches of a training, made once.
 
 use crate::StarError;
-use crate::model::SceneBatch;
+use crate::model::{SceneBatch, tensor};
 use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
 use std::cell::OnceCell;
 use tch::{Device, Kind, Tensor};
@@ -122,10 +122,7 @@ impl PreparedBatches {
             Some(goals) => {
                 let goals = windows.iter().flat_map(|&index| &goals[index]);
                 let goals: Vec<f64> = goals.flatten().copied().collect();
-                Tensor::f_from_slice(&goals)?
-                    .f_reshape([-1, 2])?
-                    .f_to_kind(self.kind)?
-                    .f_to_device(self.device)?
+                tensor(&goals, &[-1, 2], (self.kind, self.device))?
             }
         };
         Ok(place.get_or_init(|| TrainingBatch { scenes, goals }))
@@ -140,22 +137,6 @@ mod tests {
     use ddl_data::{Dataset, WindowRule};
 
     #[test]
-    fn a_batch_is_made_once_and_is_that_of_its_windows() {
-        let dataset = Dataset::simulated(1);
-        let windows = dataset.recordings()[0].windows(WindowRule::Complete);
-        let (device, kind) = (Device::Cpu, Kind::Double);
-        let prepared = PreparedBatches::new((windows.clone(), None), 2, 10.0, device, kind);
-        let first = prepared.batch(1, &[3, 0]).unwrap();
-        let some = [&windows[3], &windows[0]];
-        let fresh = SceneBatch::new(&some, WINDOW, WINDOW - 1, 10.0, device, kind).unwrap();
-        assert_eq!(first.scenes.positions(), fresh.positions());
-        assert_eq!(first.goals, fresh.positions().get(19));
-        assert!(std::ptr::eq(first, prepared.batch(1, &[3, 0]).unwrap()));
-        assert_eq!(prepared.window(3).start_frame(), windows[3].start_frame());
-        assert!(prepared.batch(0, &[]).is_err());
-    }
-
-    #[test]
     fn jitter_moves_what_was_observed_and_nothing_else() {
         let dataset = Dataset::simulated(1);
         let windows = dataset.recordings()[0].windows(WindowRule::Complete);
@@ -167,13 +148,7 @@ mod tests {
         let off = exact.shared().jittered(0.05);
         let moved = off.scenes.positions() - exact.scenes.positions();
         let (observed, future) = (moved.slice(0, 0, 8, 1), moved.slice(0, 8, 20, 1));
-        assert!(
-            future
-                .eq_tensor(&future.zeros_like())
-                .all()
-                .int64_value(&[])
-                == 1
-        );
+        assert_eq!(future, future.zeros_like());
         assert_eq!(off.goals, exact.goals);
         // Every walker, frame and axis has an error of its own, some walkers' are small, and over all of them the mean
         // square of a uniform deviation is a third of that of the largest.

@@ -1,15 +1,15 @@
 //! The training loop, one step at a time, so that the caller decides when to report, save and stop.
 
 use super::GENERATOR;
-use super::checkpoint::{self, Extra, Progress};
+use super::checkpoint::{self, Extra, TrainerProgress};
 use super::draws::{StepDraw, StepDraws};
-use super::gate::Gate;
+use super::gate::FiniteGate;
 use super::loss::{mean_distance, mean_squared_distance};
 use super::optimizer::Adam;
 use super::prepared::{PreparedBatches, TrainingBatch};
 use super::schedule::Schedule;
 use crate::StarError;
-use crate::model::{NoiseInput, Pass, TorchNetwork};
+use crate::model::{NoiseInput, Pass, TorchNetwork, numbers};
 use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
 use ddl_network::backend::{Kernels, Mode};
 use ddl_network::weights::{Origin, Weights};
@@ -18,7 +18,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::PoisonError;
 use std::time::Instant;
-use tch::{Device, Kind, Tensor};
+use tch::{Device, Tensor};
 
 /// Steps whose losses CUDA keeps before they are read.
 const READ_EVERY_ON_CUDA: usize = 16;
@@ -34,12 +34,12 @@ pub struct Trainer {
     schedule: Schedule,
     batches: PreparedBatches,
     draws: Option<StepDraws>,
-    gate: Gate,
+    gate: FiniteGate,
     /// Loss and norm of the gradient of the last steps, `[2]` each, not read yet.
     unread: Vec<Tensor>,
     read_every: usize,
     config: TrainingConfig,
-    progress: Progress,
+    progress: TrainerProgress,
 }
 
 impl Trainer {
@@ -113,7 +113,7 @@ impl Trainer {
             network.device(),
             network.kind(),
         );
-        let gate = Gate::new(network.device(), network.kind());
+        let gate = FiniteGate::new(network.device(), network.kind());
         let read_every = match network.device() {
             Device::Cpu => 1,
             _ => READ_EVERY_ON_CUDA,
@@ -129,7 +129,7 @@ impl Trainer {
             unread: Vec::new(),
             read_every,
             config,
-            progress: Progress::default(),
+            progress: TrainerProgress::default(),
         })
     }
 
@@ -176,7 +176,7 @@ impl Trainer {
     /// [`step`](Self::step).
     pub fn save(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
         self.read()?;
-        let Progress {
+        let TrainerProgress {
             steps,
             loss_sum,
             seconds,
@@ -200,7 +200,7 @@ impl Trainer {
             vectors: Vec::new(),
         };
         let steps = checkpoint::load(parameters, &mut self.adam, &mut extra, total, origin, path)?;
-        self.progress = Progress {
+        self.progress = TrainerProgress {
             steps,
             loss_sum: extra.progress[1],
             seconds: extra.progress[2],
@@ -288,11 +288,7 @@ impl Trainer {
         if unread.is_empty() {
             return Ok(None);
         }
-        let numbers = Tensor::f_stack(&unread, 0)?
-            .f_to_device(Device::Cpu)?
-            .f_to_kind(Kind::Double)?
-            .f_reshape([-1])?;
-        let numbers: Vec<f64> = Vec::try_from(numbers)?;
+        let numbers = numbers(&Tensor::f_stack(&unread, 0)?)?;
         let (pairs, _) = numbers.as_chunks::<2>();
         let mut sum = 0.0;
         for (&[loss, norm], left) in pairs.iter().zip((1..=pairs.len() as u64).rev()) {

@@ -6,6 +6,7 @@ use super::*;
 use crate::device::ComputeDevice;
 use ddl_data::{Dataset, WindowRule};
 use ddl_network::{DeviceChoice, StarConfig, Variant};
+use tch::Kind;
 
 /// Seven steps an epoch; in `Double` all of it is libtorch's.
 fn trainer(kind: Kind, read_every: usize) -> Trainer {

@@ -10,7 +10,7 @@ use crate::model::ddl::Ddl;
 use ddl_data::{Position, Window};
 use ddl_eval::{Forecast, ForecastError, Scores};
 use ddl_goal::GoalEstimator;
-use ddl_network::{ForecastWindows, Frame, Noise};
+use ddl_network::{ForecastWindows, NetworkFrame, Noise};
 
 /// Noise samples on the one goal.
 const SAMPLES: usize = 20;
@@ -92,8 +92,8 @@ impl Published {
             seed: self.seed,
         };
         let gait = match config.frame {
-            Frame::World => Gait::PlainEuler,
-            Frame::Goal => Gait::Stable(None),
+            NetworkFrame::World => Gait::PlainEuler,
+            NetworkFrame::Goal => Gait::Stable(None),
         };
         let rollouts = self
             .network

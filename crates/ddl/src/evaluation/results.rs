@@ -103,9 +103,11 @@ impl Results {
             write_atomically(&folder.join(name), text.as_bytes())?;
         }
         RunDirectory::new(folder).write_moments(&self.moments)?;
-        let page = Page::new(&self.report)
-            .moments(self.moments.clone())
-            .curves(self.curves.clone());
+        let page = Page {
+            report: &self.report,
+            moments: &self.moments,
+            curves: &self.curves,
+        };
         let drawn = page.figures()?;
         for (name, svg) in &drawn {
             write_atomically(&figures.join(name), svg.as_bytes())?;

@@ -6,7 +6,7 @@ use crate::trust::calibration::Calibration;
 use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
 use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds, Violation};
 use ddl_eval::{Forecast, ForecastError};
-use ddl_network::{Frame, StarConfig, Variant, motion_bounds};
+use ddl_network::{NetworkFrame, StarConfig, Variant, motion_bounds};
 
 /// A forecast whose every hypothesis carries a Lyapunov certificate.
 ///
@@ -231,8 +231,8 @@ impl Walked<'_> {
         let observed = self.window.observed(i);
         let bounds = motion_bounds(observed, self.config.time_step, self.shares[i]);
         match self.config.frame {
-            Frame::World => bounds.absolute(),
-            Frame::Goal => bounds,
+            NetworkFrame::World => bounds.absolute(),
+            NetworkFrame::Goal => bounds,
         }
     }
 

@@ -70,7 +70,7 @@ impl Course {
         others: &ObstacleSchedule<f64, 2>,
         factors: &[[f64; 3]],
     ) -> Result<Walk, DynamicsError> {
-        let flow = AvoidingFlow::new(self.flow(factors)?, others, Clearance::MARGIN)?;
+        let flow = AvoidingFlow::new(self.flow(factors)?, others.clone(), Clearance::MARGIN)?;
         self.follow(&flow, false)
     }
 

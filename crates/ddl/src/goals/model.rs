@@ -116,7 +116,7 @@ impl GoalModel {
         network: Option<Box<dyn ProposeEnds>>,
     ) -> Result<Self, DdlError> {
         let library = experts::load(&config.goals_origin(), config.data.walkers, &run.experts())?;
-        let clusters = config.goals.retrieval.clone().check()?.clusters();
+        let clusters = config.goals.retrieval.clone().check()?.clusters;
         let params = config.goals.retrieval.clone().query(QuerySpan::Observed);
         let estimator = GoalEstimator::new(params.check()?, library)
             .map_err(|error| experts::unusable(&error, &run.experts()))?;
@@ -147,7 +147,7 @@ impl GoalModel {
             proposal,
             motions,
         } = unpacked;
-        let clusters = config.goals.retrieval.clone().check()?.clusters();
+        let clusters = config.goals.retrieval.clone().check()?.clusters;
         let goals = Self {
             source: source.clone(),
             config,

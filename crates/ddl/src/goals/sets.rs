@@ -16,7 +16,7 @@ pub(crate) fn retrieved(
     estimator: &GoalEstimator,
     windows: &[Window],
 ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
-    let needed = estimator.params().query().positions();
+    let needed = estimator.params().query.positions();
     let mut tracks: Vec<&[Position]> = Vec::new();
     for window in windows {
         if window.steps() < needed {

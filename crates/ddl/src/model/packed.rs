@@ -7,7 +7,7 @@
 use crate::device::Device;
 use crate::error::DdlError;
 use crate::model::source::ModelSource;
-use crate::run::config::{FORMAT, RunConfig};
+use crate::run::config::{ConfigFormat, FORMAT, RunConfig};
 use crate::run::sha256;
 use crate::trust::familiarity::TrainingMotions;
 use ddl_network::weights::{HalfTensor, Weights};
@@ -42,12 +42,6 @@ pub(super) struct Header {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) motions: Option<String>,
     pub(super) sha256: String,
-}
-
-/// The part of `config.json` that every layout of a run has.
-#[derive(Deserialize)]
-struct Layout {
-    format: u32,
 }
 
 /// What a packed model holds.
@@ -138,7 +132,7 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
             "was packed by another version of this program ({error}); pack its run anew"
         ))
     };
-    let Layout { format } = serde_json::from_str(&config).map_err(|error| other(&error))?;
+    let ConfigFormat { format } = serde_json::from_str(&config).map_err(|error| other(&error))?;
     if format != FORMAT {
         return Err(other(&format!(
             "it is of a run of layout {format}, this program reads {FORMAT}"

@@ -13,6 +13,12 @@ use std::collections::BTreeMap;
 /// Version of the run directory's layout.
 pub const FORMAT: u32 = 6;
 
+/// The part of `config.json` that every version of the layout has.
+#[derive(Deserialize)]
+pub(crate) struct ConfigFormat {
+    pub(crate) format: u32,
+}
+
 /// Everything that decides what a run computes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

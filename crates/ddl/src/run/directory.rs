@@ -20,12 +20,12 @@
 use crate::error::DdlError;
 use crate::goals::recipe::GoalRecipe;
 use crate::model::builtin::BuiltinModel;
-use crate::run::config::{FORMAT, RunConfig};
+use crate::run::config::{ConfigFormat, FORMAT, RunConfig};
 use crate::run::lock::RunLock;
 use ddl_data::{remove_half_written, write_whole};
 use ddl_network::EpochReport;
 use ddl_report::Moment;
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde::{Serialize, de::DeserializeOwned};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -35,12 +35,6 @@ const MOST_JSON_BYTES: u64 = 1 << 28;
 
 /// A run under way is saved at least this often.
 pub(crate) const SAVE_EVERY: Duration = Duration::from_secs(30);
-
-/// The part of `config.json` that every layout has.
-#[derive(Deserialize)]
-struct Layout {
-    format: u32,
-}
 
 /// Path of a run, and of the files in it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -253,7 +247,7 @@ impl RunDirectory {
         };
         // The layout first: what another one holds may not be understood.
         let text = read_text(&path)?;
-        let Layout { format } = serde_json::from_str(&text).map_err(damaged)?;
+        let ConfigFormat { format } = serde_json::from_str(&text).map_err(damaged)?;
         if format != FORMAT {
             let problem =
                 format!("has layout {format}, this program reads {FORMAT}; train it anew");

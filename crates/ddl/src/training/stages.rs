@@ -187,10 +187,10 @@ fn ensure_enough_tracks(goals: &GoalRecipe, windows: &[Window]) -> Result<(), Dd
     let retrieval = goals.retrieval.clone().check()?;
     let (tracks, experts) = (
         windows.iter().map(Window::len).sum::<usize>(),
-        match retrieval.frame() {
-            RetrievalFrame::World => published.experts().max(retrieval.experts()),
+        match retrieval.frame {
+            RetrievalFrame::World => published.experts.max(retrieval.experts),
             // a smaller library is used whole
-            RetrievalFrame::Heading => published.experts(),
+            RetrievalFrame::Heading => published.experts,
         },
     );
     if tracks < experts {

@@ -238,8 +238,8 @@ mod tests {
             (Simulated, Published, Smoke, "-simulated-published-smoke"),
         ] {
             let settings = Settings {
-                convention,
                 profile,
+                convention,
                 ..of(recipe)
             };
             assert_eq!(file(&settings), format!("docs/benchmark{expected}.md"));

@@ -31,7 +31,15 @@ pub(super) fn with_results(
             Protocol::Single => "ADE/FDE in metres of one hypothesis",
             _ => "minADE/minFDE in metres of the best of up to 20 hypotheses",
         };
-        results += &format!("Protocol `{protocol}`, {error}:\n\n{table}\n");
+        results.extend([
+            "Protocol `",
+            protocol.name(),
+            "`, ",
+            error,
+            ":\n\n",
+            &table,
+            "\n",
+        ]);
     }
     Ok(format!("{before}{BEGIN}{results}{END}{after}"))
 }

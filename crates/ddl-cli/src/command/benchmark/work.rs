@@ -53,7 +53,7 @@ pub(super) enum End {
 }
 
 /// How a task gets on.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(super) enum Event<'a> {
     Started,
     /// Which part of the task is done, from 0 to 1, and what it is at.

@@ -3,6 +3,7 @@
 
 use super::super::fixture;
 use super::super::method::Method;
+use super::super::plan::Settings;
 use super::*;
 use crate::command::recipe::Recipe;
 use std::path::PathBuf;
@@ -84,7 +85,11 @@ impl Bench {
 }
 
 fn plan(folds: &[&str]) -> Plan {
-    let settings = fixture::settings(Recipe::Recommended);
+    let settings = Settings {
+        epochs: 20,
+        train_walkers: None,
+        ..fixture::settings(Recipe::Recommended)
+    };
     fixture::plan(settings, folds, &[Method::FULL], &[1]).unwrap()
 }
 

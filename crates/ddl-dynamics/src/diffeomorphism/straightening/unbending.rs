@@ -136,33 +136,22 @@ mod tests {
 
     use super::*;
 
-    fn helix() -> Vec<Vector3<f64>> {
-        (0..40)
+    /// Fully bent it is the curve itself, wherever it starts from; unbent it is straight and as long.
+    #[test]
+    fn a_helix_unbends() {
+        let points: Vec<_> = (0..40)
             .map(|i| {
                 let t = f64::from(i) * 0.2;
                 Vector3::new(t.cos(), t.sin(), 0.3 * t)
             })
-            .collect()
-    }
-
-    #[test]
-    fn fully_bent_is_the_curve_itself_wherever_it_starts_from() {
-        let points = helix();
+            .collect();
         let unbending = Unbending::new(&points).unwrap();
         for (point, placed) in points.iter().zip(unbending.placed(1.0, &points)) {
             assert!((point - placed).norm() < 1e-13);
         }
-    }
-
-    #[test]
-    fn unbent_is_straight_and_as_long() {
-        let points = helix();
-        let placed = Unbending::new(&points).unwrap().placed(0.0, &points);
-        let length: f64 = points
-            .windows(2)
-            .map(|pair| (pair[1] - pair[0]).norm())
-            .sum();
-        assert!(((placed[39] - placed[0]).norm() - length).abs() < 1e-12);
+        let placed = unbending.placed(0.0, &points);
+        let sides = points.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+        assert!(((placed[39] - placed[0]).norm() - sides.sum::<f64>()).abs() < 1e-12);
     }
 
     #[test]

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use ddl_data::{HORIZON, PedestrianId, Position, Window};
-use ddl_eval::Forecast;
+use ddl_data::{Convention, HORIZON, PedestrianId, Position, Window, WindowRule};
 use ddl_eval::external::{self, Coverage, ExternalError, ExternalFormat, Matched};
+use ddl_eval::{Conditions, Forecast, Protocol};
 
 /// Two windows of the recording `yard`, observed until 70 and until 80: pedestrians 3 and 5, then 5.
 pub(crate) fn windows() -> Vec<Window> {
@@ -42,6 +42,22 @@ pub(crate) fn read(
     coverage: Coverage,
 ) -> Result<Matched, ExternalError> {
     external::read_from(text.as_bytes(), "f", format, &windows(), coverage)
+}
+
+/// JSON lines for these windows.
+pub(crate) fn of(
+    windows: &[Window],
+    text: &str,
+    coverage: Coverage,
+) -> Result<Matched, ExternalError> {
+    let format = ExternalFormat::JsonLines;
+    external::read_from(text.as_bytes(), "f", format, windows, coverage)
+}
+
+/// Conditions of forecasts for the windows of the yard.
+pub(crate) fn conditions(protocol: Protocol) -> Conditions {
+    let (convention, rule) = (Convention::Star, WindowRule::Complete);
+    Conditions::new(convention, rule, protocol, "yard", "mine")
 }
 
 pub(crate) fn complaint(text: &str, format: ExternalFormat) -> String {

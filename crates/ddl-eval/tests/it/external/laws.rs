@@ -1,13 +1,11 @@
 //! What must hold of files of forecasts, whatever is in them.
 
-use std::fmt::Write as _;
-
 use ddl_data::{OBSERVED, Position, Window};
 use ddl_eval::external::{self, Coverage, ExternalFormat};
 use ddl_eval::{Forecast, Scores};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::generated;
 
@@ -96,55 +94,6 @@ proptest! {
         prop_assert_eq!(lines.next(), None);
     }
 
-    #[test]
-    fn no_bytes_make_a_reader_panic(bytes in vec(any::<u8>(), 0..300), (windows, _) in forecast_windows()) {
-        for format in ExternalFormat::ALL {
-            for coverage in [Coverage::Whole, Coverage::Intersection] {
-                let _ = external::read_from(&bytes[..], "f", format, &windows, coverage);
-            }
-        }
-    }
-
-    #[test]
-    fn no_text_of_the_right_words_makes_a_reader_panic(
-        text in "(\\{|\\}|\\[|\\]|,|:|\"|\n|[-0-9.e]|NaN|null|-Infinity|\"track\":|\"scene\":|\"p\":|\"scene_id\":0|\"prediction_number\":0|\"observed_until\":|\"pedestrian\":|\"hypotheses\":|\"positions\":|observed_until|pedestrian|frame|x|y){0,80}",
-        (windows, _) in forecast_windows(),
-    ) {
-        for format in ExternalFormat::ALL {
-            let _ = external::read_from(text.as_bytes(), "f", format, &windows, Coverage::Intersection);
-        }
-    }
-
-    /// A file with a few bytes changed is read, or refused, and what is read makes forecasts.
-    #[test]
-    fn no_change_of_a_valid_file_makes_a_reader_panic(
-        (windows, forecasts) in forecast_windows(),
-        changes in vec((any::<prop::sample::Index>(), any::<u8>(), 0..3), 1..5),
-    ) {
-        for (format, text) in [
-            (ExternalFormat::JsonLines, written(&windows, &forecasts)),
-            (ExternalFormat::Table, as_table(&windows, &forecasts)),
-            (ExternalFormat::TrajNet, as_trajnet(&windows, &forecasts)),
-        ] {
-            let mut bytes = text.into_bytes();
-            let whole = external::read_from(&bytes[..], "f", format, &windows, Coverage::Whole);
-            prop_assert_eq!(whole.unwrap().forecasts.len(), windows.len());
-            for (place, byte, kind) in &changes {
-                let index = place.index(bytes.len());
-                match kind {
-                    0 => bytes[index] = *byte,
-                    1 => bytes.insert(index, *byte),
-                    _ => bytes.truncate(index.max(1)),
-                }
-            }
-            if let Ok(matched) = external::read_from(&bytes[..], "f", format, &windows, Coverage::Intersection) {
-                for (window, forecast) in matched.windows.iter().zip(&matched.forecasts) {
-                    prop_assert_eq!(window.len(), forecast.pedestrians());
-                }
-            }
-        }
-    }
-
     /// Whoever is scored alone among everybody sees what it sees where all are scored.
     #[test]
     fn what_looks_at_others_is_the_same_for_a_part((windows, forecasts) in forecast_windows()) {
@@ -164,78 +113,4 @@ proptest! {
         prop_assert!((into_truth / n - whole.true_neighbour_collision_rate.unwrap()).abs() < 1e-12);
         prop_assert_eq!(categories, whole.categories.iter().map(|c| c.pedestrians).sum::<usize>());
     }
-
-    /// Tables and TrajNet++ carry the same positions, bit by bit.
-    #[test]
-    fn the_other_formats_carry_the_same_positions((windows, forecasts) in forecast_windows()) {
-        for (format, text) in [
-            (ExternalFormat::Table, as_table(&windows, &forecasts)),
-            (ExternalFormat::TrajNet, as_trajnet(&windows, &forecasts)),
-        ] {
-            let matched = external::read_from(text.as_bytes(), "f", format, &windows, Coverage::Whole).unwrap();
-            for (read, forecast) in matched.forecasts.iter().zip(&forecasts) {
-                for (i, k) in pairs(forecast) {
-                    prop_assert_eq!(read.hypothesis(i, k), forecast.hypothesis(i, k));
-                    if format == ExternalFormat::Table {
-                        prop_assert_eq!(read.weight(i, k).to_bits(), forecast.weight(i, k).to_bits());
-                    }
-                }
-            }
-        }
-    }
-}
-
-fn pairs(forecast: &Forecast) -> Vec<(usize, usize)> {
-    let hypotheses = forecast.hypotheses();
-    (0..forecast.pedestrians())
-        .flat_map(|i| (0..hypotheses).map(move |k| (i, k)))
-        .collect()
-}
-
-fn as_table(windows: &[Window], forecasts: &[Forecast]) -> String {
-    let mut text = "recording,observed_until,pedestrian,hypothesis,weight,frame,x,y\n".to_owned();
-    for (window, forecast) in windows.iter().zip(forecasts) {
-        for (i, k) in pairs(forecast) {
-            let positions = forecast
-                .hypothesis(i, k)
-                .iter()
-                .zip(&window.frames()[OBSERVED..]);
-            for ([x, y], frame) in positions {
-                writeln!(
-                    text,
-                    "{},{},{},{k},{},{frame},{x:?},{y:?}",
-                    window.recording(),
-                    window.frames()[OBSERVED - 1],
-                    window.pedestrians()[i],
-                    forecast.weight(i, k)
-                )
-                .unwrap();
-            }
-        }
-    }
-    text
-}
-
-/// Every pedestrian is the primary one of a scene of its own.
-fn as_trajnet(windows: &[Window], forecasts: &[Forecast]) -> String {
-    let (mut text, mut id) = (String::new(), 0);
-    for (window, forecast) in windows.iter().zip(forecasts) {
-        let frames = window.frames();
-        for (i, pedestrian) in window.pedestrians().iter().enumerate() {
-            let (s, e) = (frames[0], frames[19]);
-            let scene = json!({"id": id, "p": pedestrian.0, "s": s, "e": e, "recording": window.recording()});
-            writeln!(text, "{}", json!({"scene": scene})).unwrap();
-            for k in 0..forecast.hypotheses() {
-                let positions = forecast.hypothesis(i, k).iter().zip(&frames[OBSERVED..]);
-                for ([x, y], f) in positions {
-                    let track = json!({
-                        "f": f, "p": pedestrian.0, "x": x, "y": y, "prediction_number": k, "scene_id": id,
-                    });
-                    writeln!(text, "{}", json!({"track": track})).unwrap();
-                }
-            }
-            id += 1;
-        }
-    }
-    text
 }

@@ -1,15 +1,15 @@
 //! What is read, matched with windows, and scored.
 
-use ddl_data::{Convention, Format, PedestrianId, Window, WindowRule, parse_recording};
-use ddl_eval::baseline::{self, SocialForce};
+use ddl_data::{Format, PedestrianId, Window, WindowRule, parse_recording};
+use ddl_eval::baseline::SocialForce;
 use ddl_eval::category::TrajectoryType;
 use ddl_eval::external::{self, Coverage, ExternalError, ExternalFormat};
 use ddl_eval::{Category, Conditions, Forecast, Forecaster as _, Protocol, Scores};
 use std::fmt::Write as _;
 
 use super::files::{
-    HEADER, complaint, expected, hypothesis, line, ndjson, read, rows, scene, still, table, tracks,
-    whole, windows,
+    HEADER, complaint, conditions, expected, hypothesis, line, ndjson, of, read, rows, scene,
+    still, table, tracks, whole, windows,
 };
 
 #[test]
@@ -41,33 +41,25 @@ fn every_format_says_the_same() {
     }
 }
 
+/// A neighbour counts where no scene has it as its own. The benchmark of TrajNet++ shows a frame more before the forecast; that of the
+/// last scene is the first of the other window.
 #[test]
-fn a_neighbour_counts_where_no_scene_has_it_as_its_own() {
-    let text = scene(0, 3, 0)
-        + &tracks(0, 3, 0, 70, 1.0)
-        + &tracks(0, 5, 0, 70, 2.0)
-        + &scene(2, 5, 10)
-        + &tracks(2, 5, 0, 80, 3.0);
-    let matched = read(&text, ExternalFormat::TrajNet, Coverage::Whole).unwrap();
-    assert_eq!(matched.forecasts, expected());
-}
-
-/// The benchmark of TrajNet++ shows a frame more before the forecast; that of the second scene is the first of the other window.
-#[test]
-fn scenes_of_9_observed_frames_are_the_windows_of_their_last_8() {
-    let text = [(0, 3, 0), (1, 5, 0), (2, 5, 10)].map(|(id, primary, start)| {
-        let of_8 = scene(id, primary, start);
-        of_8.replace(
-            &format!("\"s\": {start},"),
-            &format!("\"s\": {},", start - 10),
-        )
-    });
-    let text = text.concat()
-        + &tracks(0, 3, 0, 70, 1.0)
-        + &tracks(1, 5, 0, 70, 2.0)
-        + &tracks(2, 5, 0, 80, 3.0);
-    let matched = read(&text, ExternalFormat::TrajNet, Coverage::Whole).unwrap();
-    assert_eq!(matched.forecasts, expected());
+fn scenes_of_trajnet_stand_for_windows() {
+    let of_9 = |id, primary, start: i64| {
+        let from = format!("\"s\": {start},");
+        scene(id, primary, start).replace(&from, &format!("\"s\": {},", start - 10))
+    };
+    let last = tracks(2, 5, 0, 80, 3.0);
+    let first = tracks(0, 3, 0, 70, 1.0);
+    let neighbour = first.clone() + &tracks(0, 5, 0, 70, 2.0);
+    let alone = first + &tracks(1, 5, 0, 70, 2.0);
+    for text in [
+        scene(0, 3, 0) + &neighbour + &scene(2, 5, 10) + &last,
+        of_9(0, 3, 0) + &of_9(1, 5, 0) + &of_9(2, 5, 10) + &alone + &last,
+    ] {
+        let matched = read(&text, ExternalFormat::TrajNet, Coverage::Whole).unwrap();
+        assert_eq!(matched.forecasts, expected());
+    }
 }
 
 /// Pedestrians whom the recording knows by words are forecast under their words, in every format.
@@ -107,9 +99,7 @@ fn pedestrians_may_have_words_for_names() {
         assert_eq!(matched.unwrap().forecasts, [both], "{format}");
     }
     let one = line(70, 1, &hypothesis(1.0)).replace(":1,\"hyp", ":\"007\",\"hyp");
-    let (format, whole) = (ExternalFormat::JsonLines, Coverage::Whole);
-    let missing = external::read_from(one.as_bytes(), "f", format, &windows, whole);
-    let told = missing.unwrap_err().to_string();
+    let told = of(&windows, &one, Coverage::Whole).unwrap_err().to_string();
     assert!(
         told.contains("observed until 70 pedestrian 7f3e-aa41"),
         "{told}"
@@ -147,16 +137,13 @@ fn the_intersection_names_itself_and_scores_those_alone() {
         // of "yard", 70 and 5, computed with Python's hashlib
         "walkers forecast by f: 1 of 3, digest f5c3a037"
     );
+    let other = line(70, 3, &hypothesis(2.0));
+    let other = read(&other, ExternalFormat::JsonLines, Coverage::Intersection).unwrap();
+    let of_other = "walkers forecast by f: 1 of 3, digest 0f80b53d";
+    assert_eq!(other.test_subset().unwrap(), of_other);
     assert_eq!(matched.windows.len(), 1);
     assert_eq!(matched.windows[0].pedestrians(), [PedestrianId(5)]);
-    let conditions = Conditions::new(
-        Convention::Star,
-        WindowRule::Complete,
-        Protocol::Fair,
-        "yard",
-        "mine",
-    );
-    let rows = external::measure(&conditions, &matched, baseline::NOISE_SEED).unwrap();
+    let rows = external::measure(&conditions(Protocol::Fair), &matched, 1).unwrap();
     for row in &rows {
         assert_eq!(row.scores.pedestrians, 1);
         assert_eq!(row.conditions.test_subset, matched.test_subset());
@@ -172,24 +159,12 @@ fn the_intersection_names_itself_and_scores_those_alone() {
 }
 
 #[test]
-fn the_same_number_of_other_pedestrians_is_another_subset() {
-    let of = |pedestrian| {
-        let text = line(70, pedestrian, &hypothesis(2.0));
-        let matched = read(&text, ExternalFormat::JsonLines, Coverage::Intersection).unwrap();
-        matched.test_subset().unwrap()
-    };
-    assert_eq!(of(3), "walkers forecast by f: 1 of 3, digest 0f80b53d");
-    assert_ne!(of(3), of(5));
-}
-
-#[test]
 fn the_subset_of_the_caller_is_kept() {
     let subset = |text: &str, coverage| {
         let matched = read(text, ExternalFormat::JsonLines, coverage).unwrap();
-        let (rule, protocol) = (WindowRule::Complete, Protocol::Single);
         let conditions = Conditions {
             test_subset: Some("every second window".to_owned()),
-            ..Conditions::new(Convention::Star, rule, protocol, "yard", "mine")
+            ..conditions(Protocol::Single)
         };
         let rows = external::measure(&conditions, &matched, 1).unwrap();
         rows[1].conditions.test_subset.clone().unwrap()
@@ -250,18 +225,9 @@ fn who_is_not_forecast_is_still_there() {
         format!("{{\"positions\":{positions:?}}}")
     };
     let text = line(70, 1, &straight_on(0.0)) + &line(70, 3, &straight_on(50.0));
-    let matched = external::read_from(
-        text.as_bytes(),
-        "f",
-        ExternalFormat::JsonLines,
-        &windows,
-        Coverage::Intersection,
-    )
-    .unwrap();
+    let matched = of(&windows, &text, Coverage::Intersection).unwrap();
     assert_eq!(matched.everybody, windows);
-    let (rule, protocol) = (WindowRule::Complete, Protocol::Single);
-    let conditions = Conditions::new(Convention::Star, rule, protocol, "yard", "mine");
-    let rows = external::measure(&conditions, &matched, 1).unwrap();
+    let rows = external::measure(&conditions(Protocol::Single), &matched, 1).unwrap();
     let mine = &rows[0].scores;
     assert_eq!(mine.pedestrians, 2);
     assert!((mine.true_collision_rate - 0.5).abs() < f64::EPSILON);
@@ -291,14 +257,7 @@ fn who_is_not_forecast_is_still_there() {
 #[test]
 fn the_protocol_published_is_refused_with_the_reason() {
     let matched = read(&whole(), ExternalFormat::JsonLines, Coverage::Whole).unwrap();
-    let conditions = Conditions::new(
-        Convention::Star,
-        WindowRule::Complete,
-        Protocol::Published,
-        "yard",
-        "mine",
-    );
-    let error = external::measure(&conditions, &matched, 1).unwrap_err();
+    let error = external::measure(&conditions(Protocol::Published), &matched, 1).unwrap_err();
     assert!(matches!(error, ExternalError::Published));
     assert!(error.to_string().contains("inside the forecaster"));
 }
@@ -359,23 +318,15 @@ fn the_recording_may_be_left_out_only_where_there_is_one() {
     let walk = vec![(0..20).map(|t| [f64::from(t), 9.0]).collect()];
     two.push(Window::new("square", 0, 10, vec![PedestrianId(3)], walk).unwrap());
     let text = whole();
-    let read = |text: &str| {
-        external::read_from(
-            text.as_bytes(),
-            "f",
-            ExternalFormat::JsonLines,
-            &two,
-            Coverage::Whole,
-        )
-    };
+    let read = |text: &str| of(&two, text, Coverage::Whole);
     assert_eq!(
         read(&text).unwrap_err().to_string(),
         "f, line 1, recording: is missing, and the windows are of several recordings: yard, square"
     );
-    let of = |text: &str, name: &str| {
+    let named = |text: &str, name: &str| {
         text.replace("{\"obs", &format!("{{\"recording\":\"{name}\",\"obs"))
     };
-    let both = of(&text, "yard") + &of(&line(70, 3, &hypothesis(4.0)), "square");
+    let both = named(&text, "yard") + &named(&line(70, 3, &hypothesis(4.0)), "square");
     let matched = read(&both).unwrap();
     assert_eq!(matched.forecasts.len(), 3);
     assert_eq!(matched.forecasts[2].hypothesis(0, 0), still(4.0, 0.0));
@@ -395,11 +346,8 @@ fn forecasts_that_begin_elsewhere_are_refused_with_a_likely_reason() {
         *window = window.map_positions(|_, _, [x, y]| [x + 6.0, y]);
     }
     let measure = |text: &str| {
-        let (format, coverage) = (ExternalFormat::JsonLines, Coverage::Intersection);
-        let matched = external::read_from(text.as_bytes(), "f", format, &far, coverage).unwrap();
-        let (convention, rule) = (Convention::Star, WindowRule::Published);
-        let conditions = Conditions::new(convention, rule, Protocol::Fair, "eth", "mine");
-        external::measure(&conditions, &matched, 1)
+        let matched = of(&far, text, Coverage::Intersection).unwrap();
+        external::measure(&conditions(Protocol::Fair), &matched, 1)
     };
     for (text, expected) in [
         (swapped, "if x and y were exchanged"),

@@ -35,6 +35,7 @@ fn every_mistake_of_json_lines_is_named_with_its_place() {
     let format = ExternalFormat::JsonLines;
     let first = line(70, 3, &hypothesis(1.0));
     check(format, "", "1: the file holds no forecast");
+    check(format, &"[".repeat(100_000), "1: not a JSON object");
     let second_lines = r#"
 [1] => 2: not a JSON object
 {"observed_until":70, => 2: not a JSON object

@@ -7,7 +7,7 @@
 )]
 
 use super::matrix::{Matrix, Start};
-use crate::kernel::columns::{Columns, ColumnsMut, load, store};
+use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
 use ddl_simd::{LANES, Lanes, Simd, Tile};
 
 /// Rows of B that are gone through together.
@@ -20,10 +20,10 @@ const BLOCK: usize = 32;
 #[inline(always)]
 pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
     simd: S,
-    a: Columns<'_>,
+    a: MatrixColumns<'_>,
     b: &Matrix,
     start: Start<'_>,
-    y: &mut ColumnsMut<'_>,
+    y: &mut MatrixColumnsMut<'_>,
 ) {
     let rows = a.rows();
     assert_eq!(rows, y.rows(), "rows of a product");
@@ -45,10 +45,10 @@ pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
 #[inline(always)]
 fn tile<S: Simd, const R: usize, const V: usize>(
     simd: S,
-    a: Columns<'_>,
+    a: MatrixColumns<'_>,
     b: &Matrix,
     start: Start<'_>,
-    y: &mut ColumnsMut<'_>,
+    y: &mut MatrixColumnsMut<'_>,
     row: usize,
 ) {
     let mut of_a: [&[f32]; R] = [&[]; R];
@@ -127,15 +127,15 @@ fn add_block<S: Simd, const R: usize, const V: usize>(
 #[inline(always)]
 pub(super) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
     simd: S,
-    a: Columns<'_>,
+    a: MatrixColumns<'_>,
     rows: usize,
-    b: Columns<'_>,
+    b: MatrixColumns<'_>,
     columns: usize,
     sum: &mut [f32],
 ) {
     assert_eq!(a.rows(), b.rows(), "rows of a product");
     assert_eq!(sum.len(), rows * columns, "entries of a product");
-    let sum = &mut ColumnsMut::whole(sum, columns);
+    let sum = &mut MatrixColumnsMut::whole(sum, columns);
     let mut row = 0;
     while row + R <= rows {
         transposed_tile::<S, R, V>(simd, a, b, columns, sum, row);
@@ -150,10 +150,10 @@ pub(super) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
 #[inline(always)]
 fn transposed_tile<S: Simd, const R: usize, const V: usize>(
     simd: S,
-    a: Columns<'_>,
-    b: Columns<'_>,
+    a: MatrixColumns<'_>,
+    b: MatrixColumns<'_>,
     columns: usize,
-    sums: &mut ColumnsMut<'_>,
+    sums: &mut MatrixColumnsMut<'_>,
     row: usize,
 ) {
     for first in (0..columns).step_by(V * LANES) {
@@ -186,7 +186,7 @@ fn transposed_tile<S: Simd, const R: usize, const V: usize>(
 
 /// Adds all rows of a matrix to `sums`.
 #[inline(always)]
-pub(in crate::kernel) fn sum_of_rows<S: Simd>(simd: S, rows: Columns<'_>, sums: &mut [f32]) {
+pub(in crate::kernel) fn sum_of_rows<S: Simd>(simd: S, rows: MatrixColumns<'_>, sums: &mut [f32]) {
     for at in (0..sums.len()).step_by(LANES) {
         let mut sum = simd.splat(0.0);
         for row in 0..rows.rows() {

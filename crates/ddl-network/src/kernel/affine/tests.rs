@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
 
 use super::Affine;
-use crate::kernel::columns::{Columns, ColumnsMut};
+use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
 use crate::kernel::tests::numbers::{Numbers, assert_close, wide};
 use ddl_simd::{Dispatch, InstructionSet, Simd, TiledKernel};
 use proptest::prelude::*;
@@ -11,10 +11,10 @@ use proptest::prelude::*;
 /// All three products, y and gx in the middle of wider rows.
 struct All<'a> {
     map: &'a Affine,
-    x: Columns<'a>,
-    gy: Columns<'a>,
-    y: ColumnsMut<'a>,
-    gx: ColumnsMut<'a>,
+    x: MatrixColumns<'a>,
+    gy: MatrixColumns<'a>,
+    y: MatrixColumnsMut<'a>,
+    gx: MatrixColumnsMut<'a>,
     gradients: [&'a mut [f32]; 2],
 }
 
@@ -77,10 +77,10 @@ proptest! {
             let (mut of_weight, mut of_bias) = (vec![0.25; weight.len()], vec![0.25; outputs]);
             Dispatch::new(set).unwrap().run(All {
                 map: &map,
-                x: Columns::whole(&x, inputs),
-                gy: Columns::whole(&gy, outputs),
-                y: ColumnsMut::part(&mut y, wide_y, 2, outputs),
-                gx: ColumnsMut::part(&mut gx, wide_gx, 1, inputs),
+                x: MatrixColumns::whole(&x, inputs),
+                gy: MatrixColumns::whole(&gy, outputs),
+                y: MatrixColumnsMut::part(&mut y, wide_y, 2, outputs),
+                gx: MatrixColumnsMut::part(&mut gx, wide_gx, 1, inputs),
                 gradients: [&mut of_weight, &mut of_bias],
             });
             let middle = |all: &[f32], stride: usize, first: usize, count: usize| -> Vec<f32> {

@@ -7,14 +7,14 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use super::queries::{Buffers, UNSEEN, dot};
-use super::task::Task;
-use crate::kernel::heads::Part;
+use super::queries::{SceneBuffers, Task, UNSEEN, dot};
+use crate::kernel::heads::HeadPart;
+use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, Lanes, Simd, Vectors, ZERO_QUAD};
 
 /// The rows of one scene.
 #[derive(Debug)]
-pub(super) struct Backward<'a> {
+pub(super) struct SceneBackward<'a> {
     pub(super) task: Task<'a>,
     pub(super) qkv: &'a [f32],
     pub(super) mixed: &'a [f32],
@@ -24,13 +24,7 @@ pub(super) struct Backward<'a> {
     pub(super) qkv_gradient: &'a mut [f32],
 }
 
-#[derive(Debug)]
-pub(super) struct Run<'a, 'b> {
-    pub(super) job: Backward<'a>,
-    pub(super) buffers: &'b mut Buffers,
-}
-
-impl Kernel for Run<'_, '_> {
+impl Kernel for Buffered<'_, SceneBackward<'_>, SceneBuffers> {
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) {
         for group in 0..self.job.task.heads.groups() {
@@ -48,7 +42,7 @@ impl Kernel for Run<'_, '_> {
     }
 }
 
-impl Run<'_, '_> {
+impl Buffered<'_, SceneBackward<'_>, SceneBuffers> {
     #[inline(always)]
     fn group<S: Simd, const DROP: bool>(&mut self, simd: S, group: usize, quads: usize) {
         let task = self.job.task;
@@ -62,7 +56,7 @@ impl Run<'_, '_> {
             let (key_gradient, value_gradient) = gradient[row..].split_at_mut(row);
             for quad in 0..quads {
                 let (of_key, of_value) = spread(simd, buffers, key, quad, quads);
-                let part = Part::new(task.heads, group, quad);
+                let part = HeadPart::new(task.heads, group, quad);
                 // Queries were scaled to scores that are powers of two.
                 let of_key = simd.scaled(of_key, simd.splat(std::f32::consts::LN_2));
                 part.store_sum(simd, of_key, key_gradient);
@@ -75,7 +69,7 @@ impl Run<'_, '_> {
             let (first, second) = two.split_at_mut(3 * row);
             let mut second = second.get_mut(..row);
             for (quad, gradient) in gradients.iter().enumerate() {
-                let part = Part::new(task.heads, group, quad);
+                let part = HeadPart::new(task.heads, group, quad);
                 let gradient = simd.scaled(simd.read(gradient), scale);
                 part.store(simd, gradient, &mut first[..row], second.as_deref_mut());
             }
@@ -107,7 +101,7 @@ impl Run<'_, '_> {
             let (first, first_mixed) = (&gradient[..row], &mixed[..row]);
             let (second, second_mixed) = (gradient.get(row..2 * row), mixed.get(row..2 * row));
             for (quad, result) in gradients.iter_mut().enumerate() {
-                let part = Part::new(heads, group, quad);
+                let part = HeadPart::new(heads, group, quad);
                 let gradient = simd.scaled(part.load(simd, first, second), share);
                 let mixed = part.load(simd, first_mixed, second_mixed);
                 product = simd.dot(gradient, mixed, product);
@@ -123,7 +117,7 @@ impl Run<'_, '_> {
 #[inline(always)]
 fn weigh<S: Simd, const DROP: bool>(
     simd: S,
-    buffers: &mut Buffers,
+    buffers: &mut SceneBuffers,
     task: &Task<'_>,
     key: usize,
     quads: usize,
@@ -161,7 +155,7 @@ fn weigh<S: Simd, const DROP: bool>(
 #[inline(always)]
 fn spread<S: Simd>(
     simd: S,
-    buffers: &mut Buffers,
+    buffers: &mut SceneBuffers,
     key: usize,
     quad: usize,
     quads: usize,

@@ -8,7 +8,7 @@ use ddl_simd::{LANES, Lanes};
 
 /// What the kernels need to know of a [`Dropout`].
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Decisions {
+pub(super) struct WeightDecisions {
     seed: u64,
     /// A weight is kept when its 24 bits are this or more.
     least: i32,
@@ -16,7 +16,7 @@ pub(super) struct Decisions {
     scale: f32,
 }
 
-impl Decisions {
+impl WeightDecisions {
     /// `None` when nothing is dropped.
     ///
     /// # Panics
@@ -113,72 +113,40 @@ fn hash(query: QueryBits, key: u32, head: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::tests::chance::Decided;
 
-    fn decisions(p: f64, seed: u64) -> Decisions {
-        Decisions::new(Dropout { p, seed }).unwrap()
+    fn decisions(p: f64, seed: u64) -> WeightDecisions {
+        WeightDecisions::new(Dropout { p, seed }).unwrap()
     }
 
-    /// The share over all, and over each value of each index alone.
-    #[test]
-    fn drops_the_right_share_everywhere() {
-        let p = 0.1;
-        let dropout = decisions(p, 7);
-        let (entries, pedestrians, heads) = (6, 60, 8);
-        let mut shares = vec![(0.0, 0.0); entries + 2 * pedestrians + heads];
-        for entry in 0..entries {
-            for query in 0..pedestrians {
-                for key in 0..pedestrians {
-                    for head in 0..heads {
-                        let factor = dropout.factor(entry, query, key, head);
-                        let dropped = f64::from(u8::from(factor == 0.0));
-                        assert!(factor == 0.0 || (factor - 1.0 / 0.9).abs() < 1e-6);
-                        let at = [entry, entries + query, entries + pedestrians + key];
-                        for index in at.into_iter().chain([entries + 2 * pedestrians + head]) {
-                            shares[index].0 += dropped;
-                            shares[index].1 += 1.0;
-                        }
-                    }
-                }
-            }
-        }
-        for (index, (dropped, count)) in shares.into_iter().enumerate() {
-            let deviation = (p * (1.0 - p) / f64::from(count as u32)).sqrt();
-            let share: f64 = dropped / count;
-            assert!((share - p).abs() < 4.5 * deviation, "{index}: {share}");
-        }
+    /// Over entries and queries in rows, keys and heads in columns.
+    fn decided(p: f64, seed: u64) -> Decided {
+        let (pedestrians, heads) = (60, 8);
+        let decisions = decisions(p, seed);
+        Decided::new(p, [6 * pedestrians, pedestrians * heads], |row, column| {
+            let (entry, query) = (row / pedestrians, row % pedestrians);
+            decisions.factor(entry, query, column / heads, column % heads) == 0.0
+        })
     }
 
-    /// Neighbouring decisions agree as often as independent ones.
     #[test]
-    fn neighbours_are_independent() {
-        let dropout = decisions(0.5, 3);
-        let kept = |at: [usize; 4]| dropout.factor(at[0], at[1], at[2], at[3]) > 0.0;
-        for axis in 0..4 {
-            let (mut agree, mut count) = (0.0, 0.0);
-            for index in 0..40_000 {
-                let at = [index % 5, index / 5 % 40, index / 200 % 40, index / 8000];
-                let mut next = at;
-                next[axis] += 1;
-                agree += f64::from(u8::from(kept(at) == kept(next)));
-                count += 1.0;
-            }
-            // standard error 0.0025
-            assert!((agree / count - 0.5_f64).abs() < 0.012, "{axis}: {agree}");
+    fn decisions_are_like_chance_and_seeds_decide_apart() {
+        for p in [0.1, 0.5] {
+            decided(p, 7).assert_like_chance();
+        }
+        let first = decided(0.1, 1);
+        for seed in [0, 2, 1 + (1 << 32)] {
+            first.assert_apart_from(&format!("seed {seed}"), &decided(0.1, seed));
         }
     }
 
     #[test]
-    fn seeds_differ_and_nothing_drops_at_zero() {
-        let (one, other) = (decisions(0.5, 1), decisions(0.5, 2));
-        let differ = (0..1000)
-            .filter(|&key| (one.factor(0, 0, key, 0) > 0.0) != (other.factor(0, 0, key, 0) > 0.0));
-        assert!((400..600).contains(&differ.count()));
-        assert!(Decisions::new(Dropout { p: 0.0, seed: 1 }).is_none());
-    }
-
-    #[test]
-    #[should_panic(expected = "not in [0, 1)")]
-    fn refuses_to_drop_all() {
-        let _ = decisions(1.0, 1);
+    fn what_is_kept_is_scaled_and_nothing_drops_at_zero() {
+        let kept = (0..100).map(|key| decisions(0.1, 7).factor(0, 0, key, 0));
+        assert!(
+            kept.filter(|&factor| factor != 0.0)
+                .all(|factor| (factor - 1.0 / 0.9).abs() < 1e-6)
+        );
+        assert!(WeightDecisions::new(Dropout { p: 0.0, seed: 1 }).is_none());
     }
 }

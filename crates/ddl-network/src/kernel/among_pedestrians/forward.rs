@@ -2,14 +2,14 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use super::queries::{Buffers, LARGE, UNSEEN, dot};
-use super::task::Task;
-use crate::kernel::heads::Part;
+use super::queries::{LARGE, SceneBuffers, Task, UNSEEN, dot};
+use crate::kernel::heads::HeadPart;
+use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, Lanes, Quad, Simd};
 
 /// The rows of one scene.
 #[derive(Debug)]
-pub(super) struct Forward<'a> {
+pub(super) struct SceneForward<'a> {
     pub(super) task: Task<'a>,
     pub(super) qkv: &'a [f32],
     pub(super) mixed: &'a mut [f32],
@@ -17,13 +17,7 @@ pub(super) struct Forward<'a> {
     pub(super) normalisers: &'a mut [[Lanes; 2]],
 }
 
-#[derive(Debug)]
-pub(super) struct Run<'a, 'b> {
-    pub(super) job: Forward<'a>,
-    pub(super) buffers: &'b mut Buffers,
-}
-
-impl Kernel for Run<'_, '_> {
+impl Kernel for Buffered<'_, SceneForward<'_>, SceneBuffers> {
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) {
         for group in 0..self.job.task.heads.groups() {
@@ -41,7 +35,7 @@ impl Kernel for Run<'_, '_> {
     }
 }
 
-impl Run<'_, '_> {
+impl Buffered<'_, SceneForward<'_>, SceneBuffers> {
     #[inline(always)]
     fn group<S: Simd, const DROP: bool>(&mut self, simd: S, group: usize, quads: usize) {
         let task = self.job.task;
@@ -86,7 +80,7 @@ impl Run<'_, '_> {
                     let value = simd.read(&value[quad]);
                     sum = simd.accumulate(sum, simd.load(&weight.0), value);
                 }
-                let part = Part::new(task.heads, group, quad);
+                let part = HeadPart::new(task.heads, group, quad);
                 part.store(simd, simd.scaled(sum, share), first, second.as_deref_mut());
             }
             simd.store(largest, &mut normaliser[0].0);

@@ -2,17 +2,33 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use super::dropout::LaneBits;
-use super::task::Task;
-use crate::kernel::heads::{GROUP, Part, row_of};
+use super::dropout::{LaneBits, WeightDecisions};
+use crate::kernel::heads::{GROUP, HeadPart, Heads, row_of};
+use crate::kernel::scenes::SceneCodes;
 use ddl_simd::{LANES, Lanes, Quad, Simd, ZERO_QUAD};
+
+/// One scene in one batch entry.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Task<'a> {
+    pub(super) scene: SceneCodes<'a>,
+    pub(super) entry: usize,
+    pub(super) decisions: Option<WeightDecisions>,
+    pub(super) heads: Heads,
+}
+
+impl Task<'_> {
+    /// Groups of heads times pairs of queries.
+    pub(super) fn normalisers(&self) -> usize {
+        self.heads.groups() * self.scene.pedestrians.div_ceil(2)
+    }
+}
 
 /// Room for one group of heads of a scene, kept from scene to scene.
 ///
 /// Queries lie two by two, a pedestrian in each half of the lanes; keys lie one by one, the same in both halves, so that
 /// two queries meet a key in one operation and no sum goes across lanes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Buffers {
+pub(super) struct SceneBuffers {
     /// By two queries and quad of the head's numbers, scaled so that scores are powers of two.
     pub(super) queries: Vec<Quad>,
     /// By key and quad.
@@ -32,7 +48,7 @@ pub(super) struct Buffers {
     /// By two queries, of one key.
     pub(super) score_gradients: Vec<Lanes>,
     /// What two queries see of a large scene.
-    pub(super) seen: Seen,
+    pub(super) seen: SeenKeys,
 }
 
 /// Scenes with more pedestrians are gone through by who is seen. Nobody sees far, and in a crowd of thousands most are far; smaller scenes
@@ -43,13 +59,13 @@ pub(super) const LARGE: usize = 128;
 ///
 /// Who is not seen has the weight 0: to leave him out changes no bit.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Seen {
+pub(super) struct SeenKeys {
     pub(super) codes: Vec<u8>,
     pub(super) keys: Vec<Quad>,
     pub(super) values: Vec<Quad>,
 }
 
-impl Seen {
+impl SeenKeys {
     /// Takes those with a code other than 0 out of all.
     pub(super) fn gather(&mut self, codes: &[u8], keys: &[Quad], values: &[Quad], quads: usize) {
         self.codes.clear();
@@ -78,7 +94,7 @@ pub(super) static UNSEEN: [Lanes; 4] = {
     table
 };
 
-impl Buffers {
+impl SceneBuffers {
     /// Brings queries, keys and values of a group of heads into lanes.
     #[inline(always)]
     pub(super) fn load<S: Simd>(
@@ -100,7 +116,7 @@ impl Buffers {
             let (first, second) = two.split_at(3 * row);
             let second = second.get(..row);
             for (quad, query) in queries.iter_mut().enumerate() {
-                let part = Part::new(task.heads, group, quad);
+                let part = HeadPart::new(task.heads, group, quad);
                 let loaded = part.load(simd, &first[..row], second);
                 simd.write(simd.scaled(loaded, scale), query);
             }
@@ -110,7 +126,7 @@ impl Buffers {
         for (pedestrian, (keys, values)) in qkv.chunks_exact(3 * row).zip(keys) {
             let (key, value) = pedestrian[row..].split_at(row);
             for quad in 0..quads {
-                let part = Part::new(task.heads, group, quad);
+                let part = HeadPart::new(task.heads, group, quad);
                 simd.write(part.load(simd, key, Some(key)), &mut keys[quad]);
                 simd.write(part.load(simd, value, Some(value)), &mut values[quad]);
             }

@@ -5,12 +5,12 @@
 #![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
 
 use super::forward::ROWS;
-use super::keep::{Kept, Normal};
-use super::layer::{Dropouts, EncoderLayer};
+use super::keep::{Kept, KeptRows};
+use super::layer::{Dropouts, EncoderKernel};
 use crate::kernel::add_norm::{AddNorm, Decisions};
 use crate::kernel::affine::Affine;
 use crate::kernel::buffer::Buffer;
-use crate::kernel::columns::{Columns, ColumnsMut};
+use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
 use crate::kernel::dropout::Dropout;
 use crate::kernel::feed_forward::Gradients;
 use crate::kernel::threads::each;
@@ -27,18 +27,20 @@ pub(super) enum Parts<'a> {
 
 impl<'a> Parts<'a> {
     /// The rows from `first` on, as many as there are in `rows`.
-    fn rows(&self, index: usize, width: usize, first: usize, rows: usize) -> Columns<'a> {
+    fn rows(&self, index: usize, width: usize, first: usize, rows: usize) -> MatrixColumns<'a> {
         match self {
             Self::Together(all) => {
                 let all = &all[first * 3 * width..][..rows * 3 * width];
-                Columns::part(all, 3 * width, index * width, width)
+                MatrixColumns::part(all, 3 * width, index * width, width)
             }
-            Self::Apart(all) => Columns::whole(&all[index][first * width..][..rows * width], width),
+            Self::Apart(all) => {
+                MatrixColumns::whole(&all[index][first * width..][..rows * width], width)
+            }
         }
     }
 }
 
-impl EncoderLayer {
+impl EncoderKernel {
     /// What follows attention, backwards: the gradient of x so far, and that of what attention has mixed.
     pub(super) fn before_attention(
         &self,
@@ -99,7 +101,7 @@ impl EncoderLayer {
         let mut sums: Vec<Buffer> = Vec::new();
         sums.resize_with(gy.len().div_ceil(piece), || Buffer::zeros(count));
         let jobs = inputs.zip(outputs).zip(&mut sums).enumerate();
-        let jobs = jobs.map(|(i, (((normal, gy), (of_x, of_t)), sums))| Backward {
+        let jobs = jobs.map(|(i, (((normal, gy), (of_x, of_t)), sums))| NormBackward {
             norm: layer.norm,
             map: layer.map.map(|(map, t)| (map, &t[i * piece..][..gy.len()])),
             width,
@@ -111,9 +113,13 @@ impl EncoderLayer {
             sums,
         });
         let work = gy.len() * layer.map.map_or(20, |_| 2 * width);
-        each(jobs.collect(), work, |job: Backward<'_>, (): &mut ()| {
-            self.dispatch.run(job);
-        });
+        each(
+            jobs.collect(),
+            work,
+            |job: NormBackward<'_>, (): &mut ()| {
+                self.dispatch.run(job);
+            },
+        );
         add_up(&sums, of_weights);
     }
 
@@ -179,12 +185,12 @@ struct Sublayer<'a> {
     norm: &'a AddNorm,
     /// With its input.
     map: Option<(&'a Affine, &'a [f32])>,
-    normal: &'a Normal,
+    normal: &'a KeptRows,
     dropout: Option<Dropout>,
 }
 
 /// Some rows of it.
-struct Backward<'a> {
+struct NormBackward<'a> {
     norm: &'a AddNorm,
     map: Option<(&'a Affine, &'a [f32])>,
     width: usize,
@@ -197,7 +203,7 @@ struct Backward<'a> {
     sums: &'a mut [f32],
 }
 
-impl TiledKernel for Backward<'_> {
+impl TiledKernel for NormBackward<'_> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(self, simd: S) {
         let Self {
@@ -219,17 +225,17 @@ impl TiledKernel for Backward<'_> {
         };
         let mut of_mapped = Buffer::any(of_t.len());
         norm.backward(simd, normal, gy, decisions, [of_x, &mut of_mapped], of_norm);
-        let of_mapped = Columns::whole(&of_mapped, width);
-        let mut of_t = ColumnsMut::whole(of_t, width);
+        let of_mapped = MatrixColumns::whole(&of_mapped, width);
+        let mut of_t = MatrixColumnsMut::whole(of_t, width);
         map.backward::<S, R, V>(simd, of_mapped, &mut of_t, false);
         let of_map = of_map.split_at_mut(width * width).into();
-        map.add_gradients::<S, R, V>(simd, Columns::whole(t, width), of_mapped, of_map);
+        map.add_gradients::<S, R, V>(simd, MatrixColumns::whole(t, width), of_mapped, of_map);
     }
 }
 
 /// Some rows of the projections.
 struct ProjectBackward<'a> {
-    parts: Vec<(&'a Affine, Columns<'a>)>,
+    parts: Vec<(&'a Affine, MatrixColumns<'a>)>,
     width: usize,
     x: &'a [f32],
     gx: &'a mut [f32],
@@ -241,8 +247,8 @@ impl TiledKernel for ProjectBackward<'_> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(self, simd: S) {
         let width = self.width;
-        let x = Columns::whole(self.x, width);
-        let mut gx = ColumnsMut::whole(self.gx, width);
+        let x = MatrixColumns::whole(self.x, width);
+        let mut gx = MatrixColumnsMut::whole(self.gx, width);
         let (weights, biases) = self.sums.split_at_mut(self.parts.len() * width * width);
         let weights = weights.chunks_exact_mut(width * width);
         let of_weights = weights.zip(biases.chunks_exact_mut(width));

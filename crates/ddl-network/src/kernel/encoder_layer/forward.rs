@@ -2,12 +2,12 @@
 
 #![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
 
-use super::keep::{Attention, Kept, Normal};
-use super::layer::{Dropouts, EncoderLayer};
-use crate::kernel::add_norm::{self, AddNorm, Decisions};
+use super::keep::{Kept, KeptAttention, KeptRows};
+use super::layer::{Dropouts, EncoderKernel};
+use crate::kernel::add_norm::{AddNorm, Decisions, Normal};
 use crate::kernel::affine::Affine;
 use crate::kernel::buffer::Buffer;
-use crate::kernel::columns::{Columns, ColumnsMut};
+use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
 use crate::kernel::dropout::Dropout;
 use crate::kernel::threads::each;
 use ddl_simd::{Simd, TiledKernel};
@@ -43,15 +43,17 @@ impl<'a> Targets<'a> {
     }
 
     #[inline(always)]
-    fn columns(&mut self, index: usize, projections: usize, width: usize) -> ColumnsMut<'_> {
+    fn columns(&mut self, index: usize, projections: usize, width: usize) -> MatrixColumnsMut<'_> {
         match self {
-            Self::Together(all) => ColumnsMut::part(all, projections * width, index * width, width),
-            Self::Apart(all) => ColumnsMut::whole(all[index], width),
+            Self::Together(all) => {
+                MatrixColumnsMut::part(all, projections * width, index * width, width)
+            }
+            Self::Apart(all) => MatrixColumnsMut::whole(all[index], width),
         }
     }
 }
 
-impl EncoderLayer {
+impl EncoderKernel {
     /// Queries, keys and values, or those of them from `first` on.
     pub(super) fn project(&self, first: usize, x: &[f32], mut targets: Targets<'_>) {
         let width = self.sizes.width;
@@ -73,7 +75,7 @@ impl EncoderLayer {
     pub(super) fn after_attention(
         &self,
         x: &[f32],
-        attention: Attention,
+        attention: KeptAttention,
         dropouts: Dropouts,
     ) -> (Buffer, Kept) {
         let (mut z, mut fed, mut y) = (
@@ -108,10 +110,10 @@ impl EncoderLayer {
         [x, t]: [&[f32]; 2],
         dropout: Option<Dropout>,
         y: &mut [f32],
-    ) -> Normal {
+    ) -> KeptRows {
         let width = self.sizes.width;
         let rows = x.len() / width;
-        let mut normal = Normal {
+        let mut normal = KeptRows {
             numbers: Buffer::any(x.len()),
             scales: Buffer::any(rows),
         };
@@ -121,18 +123,18 @@ impl EncoderLayer {
         let normals = numbers.zip(normal.scales.chunks_mut(ROWS));
         let outputs = normals.zip(y.chunks_mut(ROWS * width));
         let jobs = inputs.zip(outputs).enumerate();
-        let jobs = jobs.map(|(i, ((x, t), ((numbers, scales), y)))| Forward {
+        let jobs = jobs.map(|(i, ((x, t), ((numbers, scales), y)))| NormForward {
             norm,
             map,
             width,
             x,
             t,
             decisions: decisions.map(|decisions| (decisions, i * ROWS)),
-            normal: add_norm::Normal { numbers, scales },
+            normal: Normal { numbers, scales },
             y,
         });
         let work = x.len() * map.map_or(10, |_| width);
-        each(jobs.collect(), work, |job: Forward<'_>, (): &mut ()| {
+        each(jobs.collect(), work, |job: NormForward<'_>, (): &mut ()| {
             self.dispatch.run(job);
         });
         normal
@@ -150,7 +152,7 @@ struct Project<'a> {
 impl TiledKernel for Project<'_> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(mut self, simd: S) {
-        let x = Columns::whole(self.x, self.width);
+        let x = MatrixColumns::whole(self.x, self.width);
         let count = self.projections.len();
         for (i, projection) in self.projections.iter().enumerate() {
             let mut target = self.targets.columns(i, count, self.width);
@@ -160,26 +162,26 @@ impl TiledKernel for Project<'_> {
 }
 
 /// Some rows after a sublayer.
-struct Forward<'a> {
+struct NormForward<'a> {
     norm: &'a AddNorm,
     map: Option<&'a Affine>,
     width: usize,
     x: &'a [f32],
     t: &'a [f32],
     decisions: Option<(Decisions, usize)>,
-    normal: add_norm::Normal<'a>,
+    normal: Normal<'a>,
     y: &'a mut [f32],
 }
 
-impl TiledKernel for Forward<'_> {
+impl TiledKernel for NormForward<'_> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(mut self, simd: S) {
         let mut mapped = Buffer::default();
         let t = match self.map {
             Some(map) => {
                 mapped = Buffer::any(self.t.len());
-                let t = Columns::whole(self.t, self.width);
-                let mut into = ColumnsMut::whole(&mut mapped, self.width);
+                let t = MatrixColumns::whole(self.t, self.width);
+                let mut into = MatrixColumnsMut::whole(&mut mapped, self.width);
                 map.forward::<S, R, V>(simd, t, &mut into);
                 &mapped
             }

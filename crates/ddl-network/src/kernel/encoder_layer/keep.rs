@@ -7,15 +7,15 @@ use crate::kernel::over_memory::{KeyValue, KeyValueMut};
 /// What the gradient of an encoder layer needs of its forward pass.
 #[derive(Debug)]
 pub(crate) struct Kept {
-    pub(super) attention: Attention,
-    pub(super) normal1: Normal,
+    pub(super) attention: KeptAttention,
+    pub(super) normal1: KeptRows,
     /// The output of the first normalisation.
     pub(super) z: Buffer,
-    pub(super) normal2: Normal,
+    pub(super) normal2: KeptRows,
 }
 
 #[derive(Debug)]
-pub(super) enum Attention {
+pub(super) enum KeptAttention {
     Among {
         qkv: Buffer,
         attended: Attended,
@@ -27,7 +27,7 @@ pub(super) enum Attention {
     },
 }
 
-impl Attention {
+impl KeptAttention {
     pub(super) fn mixed(&self) -> &[f32] {
         match self {
             Self::Among { attended, .. } => attended.mixed(),
@@ -38,7 +38,7 @@ impl Attention {
 
 /// Rows that were normalised, and by what.
 #[derive(Debug)]
-pub(super) struct Normal {
+pub(super) struct KeptRows {
     pub(super) numbers: Buffer,
     pub(super) scales: Buffer,
 }

@@ -19,7 +19,7 @@ use ddl_simd::InstructionSet;
 /// Results and gradients do not depend on the number of threads, results neither on the other rows that are computed
 /// along (attention among pedestrians aside). The instruction sets agree to rounding.
 #[derive(Clone, Debug)]
-pub(crate) struct EncoderLayer {
+pub(crate) struct EncoderKernel {
     pub(super) sizes: Sizes,
     /// To queries, keys and values.
     pub(super) projections: [Affine; 3],
@@ -45,7 +45,7 @@ pub(crate) struct Dropouts {
     pub(crate) fed: Option<Dropout>,
 }
 
-impl EncoderLayer {
+impl EncoderKernel {
     /// A layer whose learned numbers are all 0.
     ///
     /// # Panics

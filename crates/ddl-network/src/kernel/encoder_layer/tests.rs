@@ -1,7 +1,7 @@
 //! What must hold for every layer. That it is the layer of libtorch is tested where both meet, in `ddl-star`.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{Dropouts, EncoderLayer, Remembered, Sizes};
+use super::{Dropouts, EncoderKernel, Remembered, Sizes};
 use crate::Precision;
 use crate::kernel::buffer::Buffer;
 use crate::kernel::dropout::Dropout;
@@ -11,7 +11,15 @@ use ddl_simd::InstructionSet;
 use proptest::prelude::*;
 use rayon::ThreadPoolBuilder;
 
-struct Case {
+fn star(hidden: usize) -> Sizes {
+    Sizes {
+        width: 32,
+        heads: 8,
+        hidden,
+    }
+}
+
+struct LayerCase {
     sizes: Sizes,
     scenes: Scenes,
     weights: Vec<f32>,
@@ -24,7 +32,7 @@ struct Case {
 /// Output, gradient of the input, of the weights and of the memory.
 type Results = [Vec<f32>; 4];
 
-impl Case {
+impl LayerCase {
     fn new(seed: u64, sizes: Sizes, scenes: &[usize], p: f64) -> Self {
         let mut numbers = Numbers(seed);
         let visible = numbers.visible(scenes, 1);
@@ -49,15 +57,15 @@ impl Case {
         }
     }
 
-    fn layer(&self, set: InstructionSet) -> EncoderLayer {
-        let mut layer = EncoderLayer::zeros(self.sizes)
+    fn layer(&self, set: InstructionSet) -> EncoderKernel {
+        let mut layer = EncoderKernel::zeros(self.sizes)
             .with_instructions(set)
             .unwrap();
         layer.update(&self.weights, Precision::F32);
         layer
     }
 
-    fn among(&self, layer: &EncoderLayer) -> Results {
+    fn among(&self, layer: &EncoderKernel) -> Results {
         let frames = self.scenes.throughout();
         let (y, kept) = layer.among_pedestrians(&self.x, frames, self.dropouts);
         let mut of_weights = vec![0.0; self.weights.len()];
@@ -73,7 +81,7 @@ impl Case {
     }
 
     /// What is remembered of x is a token of the memory as well.
-    fn over(&self, layer: &EncoderLayer) -> Results {
+    fn over(&self, layer: &EncoderKernel) -> Results {
         let mut memory = vec![layer.remember(&self.x)];
         memory.extend(self.memory.iter().map(|[key, value]| Remembered {
             key: Buffer::copy(key),
@@ -120,7 +128,7 @@ proptest! {
     fn instruction_sets_agree(sizes in sizes(), scenes in prop::collection::vec(1..5_usize, 1..4), seed in any::<u64>()) {
         // Rows of few numbers are normalised by what may be next to nothing.
         prop_assume!(sizes.width >= 8);
-        let case = Case::new(seed, sizes, &scenes, 0.3);
+        let case = LayerCase::new(seed, sizes, &scenes, 0.3);
         let first = case.layer(InstructionSet::Portable);
         for set in InstructionSet::available() {
             let layer = case.layer(set);
@@ -138,39 +146,22 @@ proptest! {
 
 #[test]
 fn the_number_of_threads_changes_no_bit() {
-    let sizes = Sizes {
-        width: 32,
-        heads: 8,
-        hidden: 100,
-    };
-    let case = Case::new(5, sizes, &[100, 3, 200, 1], 0.1);
+    let case = LayerCase::new(5, star(100), &[160, 3, 200, 1, 200], 0.1);
     for set in InstructionSet::available() {
         let layer = case.layer(set);
-        let mut results = [1, 2, 3]
-            .map(|threads| {
-                let pool = ThreadPoolBuilder::new()
-                    .num_threads(threads)
-                    .build()
-                    .unwrap();
-                let both = pool.install(|| [case.among(&layer), case.over(&layer)]);
-                both.map(|results| results.map(|numbers| bits(&numbers)))
-            })
-            .into_iter();
-        let first = results.next().unwrap();
-        for other in results {
-            assert!(first == other, "{set:?}");
-        }
+        let [first, others @ ..] = [1, 2, 3, 7].map(|threads| {
+            let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+            let run = || [case.among(&layer), case.over(&layer)];
+            let both = pool.unwrap().install(run);
+            both.map(|results| results.map(|numbers| bits(&numbers)))
+        });
+        assert!(others.iter().all(|other| *other == first), "{set:?}");
     }
 }
 
 /// Along the gradient the output rises as steeply as the gradient is long, dropout included.
 #[test]
 fn gradients_are_slopes() {
-    let sizes = Sizes {
-        width: 32,
-        heads: 8,
-        hidden: 64,
-    };
     let scenes = [4, 1, 6];
     let moved = |numbers: &[f32], direction: &[f32], by: f64| -> Vec<f32> {
         let moved = numbers.iter().zip(direction);
@@ -185,8 +176,8 @@ fn gradients_are_slopes() {
         products.sum()
     };
     for (over, p) in [(false, 0.0), (false, 0.2), (true, 0.0), (true, 0.2)] {
-        let case = Case::new(11, sizes, &scenes, p);
-        let run = |case: &Case| {
+        let case = LayerCase::new(11, star(64), &scenes, p);
+        let run = |case: &LayerCase| {
             let layer = case.layer(InstructionSet::detect());
             if over {
                 case.over(&layer)
@@ -199,10 +190,10 @@ fn gradients_are_slopes() {
             let (gx, of_weights) = (times(&gx, of_x), times(&of_weights, of_weights_too));
             let square = dot(&gx, &gx) + dot(&of_weights, &of_weights);
             let loss = |by: f64| {
-                let case = Case {
+                let case = LayerCase {
                     x: moved(&case.x, &gx, by),
                     weights: moved(&case.weights, &of_weights, by),
-                    ..Case::new(11, sizes, &scenes, p)
+                    ..LayerCase::new(11, star(64), &scenes, p)
                 };
                 dot(&run(&case)[0], &case.gy)
             };
@@ -221,13 +212,8 @@ fn gradients_are_slopes() {
 /// And back: what `update` says last counts.
 #[test]
 fn the_feed_forward_block_alone_is_rounded() {
-    let sizes = Sizes {
-        width: 32,
-        heads: 8,
-        hidden: 256,
-    };
-    let case = Case::new(3, sizes, &[4, 1, 6], 0.0);
-    let forwards = |layer: &EncoderLayer| {
+    let case = LayerCase::new(3, star(256), &[4, 1, 6], 0.0);
+    let forwards = |layer: &EncoderKernel| {
         let memory = layer.remember(&case.x);
         let frames = case.scenes.throughout();
         let (among, _) = layer.among_pedestrians(&case.x, frames, case.dropouts);

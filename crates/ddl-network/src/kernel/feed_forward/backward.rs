@@ -9,12 +9,12 @@ use std::ops::DerefMut;
 
 use super::block::{BLOCK, Block, Panel, tile_mut};
 use super::block_rows::{BlockRows, ROWS};
-use super::dropout::Decisions;
-use super::gradients::{Gradients, Part};
+use super::dropout::UnitDecisions;
+use super::gradients::{Gradients, UnitGradients};
 use super::hidden::{activate, deactivate};
 use super::layer::FeedForward;
 use super::product::{add_product, add_transposed_product, sum_of_rows};
-use super::weights::Weights;
+use super::weights::BlockWeights;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::threads::each;
 use ddl_simd::{Simd, TiledKernel};
@@ -26,65 +26,82 @@ const SPAN: usize = 512;
 /// Rows whose hidden activations of one block are kept for the derivatives of the weights, in the first-level cache.
 const KEPT: usize = 64;
 
-pub(super) fn run(
-    layer: &FeedForward,
-    [x, gy]: [&[f32]; 2],
-    dropout: Option<Dropout>,
-    gx: &mut [f32],
-    grads: &mut Gradients<impl DerefMut<Target = [f32]>>,
-) {
-    assert!(layer.rounded.is_none(), "a backward pass in bf16");
-    let weights = &layer.weights;
-    let Weights {
-        width,
-        hidden,
-        columns,
-        units,
-        ..
-    } = *weights;
-    assert_eq!(x.len() % width, 0, "x is not made of rows of {width}");
-    assert_eq!(x.len(), gy.len(), "entries of x and gy");
-    assert_eq!(x.len(), gx.len(), "entries of x and gx");
-    grads.check(width, hidden);
-    let decisions = dropout.and_then(|dropout| Decisions::new(dropout, x.len() / width));
+impl FeedForward {
+    /// The derivative with respect to x, and those with respect to the weights added to `grads`.
+    ///
+    /// With the same dropout as in [`Self::forward`], whose decisions are made again.
+    ///
+    /// # Shapes
+    /// `x`, `gy` `[rows, width]` -> `gx` `[rows, width]`, overwritten.
+    ///
+    /// # Panics
+    /// As in [`Self::forward`]; when `grads` was made for other widths; in bf16.
+    ///
+    /// # Numerics
+    /// An entry differs from the exact one by at most (width + hidden + 16) 2^-24 (for gx), (width + rows + 16) 2^-24 (for
+    /// the others) times the formula with the absolute values of all its terms; where W1 x + b1 is 0 to rounding the
+    /// derivative of `ReLU` may be taken as 0 or 1. Nothing depends on the number of threads.
+    pub(crate) fn backward(
+        &self,
+        x: &[f32],
+        gy: &[f32],
+        dropout: Option<Dropout>,
+        gx: &mut [f32],
+        grads: &mut Gradients<impl DerefMut<Target = [f32]>>,
+    ) {
+        assert!(self.rounded.is_none(), "a backward pass in bf16");
+        let weights = &self.weights;
+        let BlockWeights {
+            width,
+            hidden,
+            columns,
+            units,
+            ..
+        } = *weights;
+        assert_eq!(x.len() % width, 0, "x is not made of rows of {width}");
+        assert_eq!(x.len(), gy.len(), "entries of x and gy");
+        assert_eq!(x.len(), gx.len(), "entries of x and gx");
+        grads.check(width, hidden);
+        let decisions = dropout.and_then(|dropout| UnitDecisions::new(dropout, x.len() / width));
 
-    for row in gy.chunks_exact(width) {
-        for (sum, term) in grads.b2.iter_mut().zip(row) {
-            *sum += term;
-        }
-    }
-    let group = units.div_ceil(GROUPS);
-    let rows = (x.len() / width).min(SPAN).next_multiple_of(ROWS);
-    let parts = grads.parts(width, group).into_iter();
-    let mut parts: Vec<_> = parts
-        .map(|part| (part, Scratch::new(rows, columns)))
-        .collect();
-    let pieces = x.chunks(SPAN * width).zip(gy.chunks(SPAN * width));
-    for (span, ((x, gy), gx)) in pieces.zip(gx.chunks_mut(SPAN * width)).enumerate() {
-        let x = BlockRows::padded(x, width);
-        let gy = BlockRows::padded(gy, width);
-        let groups: Vec<_> = parts.iter_mut().enumerate().collect();
-        let work = 5 * x.rows() * width * hidden;
-        each(groups, work, |(g, (part, scratch)), (): &mut ()| {
-            layer.dispatch.run(Backward {
-                weights,
-                decisions: decisions.as_ref(),
-                first: span * SPAN,
-                units: g * group,
-                x: &x,
-                gy: &gy,
-                scratch,
-                part,
-            });
-        });
-        gx.fill(0.0);
-        let work = gx.len() * parts.len();
-        let pieces: Vec<_> = gx.chunks_mut(KEPT * width).enumerate().collect();
-        each(pieces, work, |(piece, gx), (): &mut ()| {
-            for (_, scratch) in &parts {
-                scratch.gx.add_to(piece * KEPT, gx, width);
+        for row in gy.chunks_exact(width) {
+            for (sum, term) in grads.b2.iter_mut().zip(row) {
+                *sum += term;
             }
-        });
+        }
+        let group = units.div_ceil(GROUPS);
+        let rows = (x.len() / width).min(SPAN).next_multiple_of(ROWS);
+        let parts = grads.parts(width, group).into_iter();
+        let mut parts: Vec<_> = parts
+            .map(|part| (part, Scratch::new(rows, columns)))
+            .collect();
+        let pieces = x.chunks(SPAN * width).zip(gy.chunks(SPAN * width));
+        for (span, ((x, gy), gx)) in pieces.zip(gx.chunks_mut(SPAN * width)).enumerate() {
+            let x = BlockRows::padded(x, width);
+            let gy = BlockRows::padded(gy, width);
+            let groups: Vec<_> = parts.iter_mut().enumerate().collect();
+            let work = 5 * x.rows() * width * hidden;
+            each(groups, work, |(g, (part, scratch)), (): &mut ()| {
+                self.dispatch.run(UnitsBackward {
+                    weights,
+                    decisions: decisions.as_ref(),
+                    first: span * SPAN,
+                    units: g * group,
+                    x: &x,
+                    gy: &gy,
+                    scratch,
+                    part,
+                });
+            });
+            gx.fill(0.0);
+            let work = gx.len() * parts.len();
+            let pieces: Vec<_> = gx.chunks_mut(KEPT * width).enumerate().collect();
+            each(pieces, work, |(piece, gx), (): &mut ()| {
+                for (_, scratch) in &parts {
+                    scratch.gx.add_to(piece * KEPT, gx, width);
+                }
+            });
+        }
     }
 }
 
@@ -115,9 +132,9 @@ impl Scratch {
 }
 
 /// One group of hidden units over one span of rows.
-struct Backward<'a, 'b> {
-    weights: &'a Weights,
-    decisions: Option<&'a Decisions>,
+struct UnitsBackward<'a, 'b> {
+    weights: &'a BlockWeights,
+    decisions: Option<&'a UnitDecisions>,
     /// The first row's number.
     first: usize,
     /// The group's first block of units.
@@ -125,10 +142,10 @@ struct Backward<'a, 'b> {
     x: &'a BlockRows,
     gy: &'a BlockRows,
     scratch: &'a mut Scratch,
-    part: &'a mut Part<'b>,
+    part: &'a mut UnitGradients<'b>,
 }
 
-impl TiledKernel for Backward<'_, '_> {
+impl TiledKernel for UnitsBackward<'_, '_> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(self, simd: S) {
         let Self {

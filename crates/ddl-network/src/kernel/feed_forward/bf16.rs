@@ -4,13 +4,16 @@
 //! B with neighbours in a column.
 
 #![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+#![expect(
+    clippy::needless_range_loop,
+    reason = "loops of a known count over registers, written as the matrices are"
+)]
 
-pub(super) mod forward;
-mod product;
-
-use super::block::{BLOCK, Block, PARTS, Panel};
-use super::weights::Weights;
-use ddl_simd::{LANES, PairDispatch, PairKernel, Pairs, Simd};
+use super::block::{BLOCK, Block, PARTS, Panel, tile_mut};
+use super::product::{load_tile, store_tile};
+use super::tile::Tile;
+use super::weights::BlockWeights;
+use ddl_simd::{self, LANES, PairDispatch, PairKernel, Pairs, Simd};
 
 /// Pairs that [`BLOCK`] numbers make.
 const PAIRS: usize = BLOCK / 2;
@@ -59,7 +62,7 @@ impl TwoRows {
     }
 }
 
-/// The squares of [`Weights`] that the forward pass reads, rounded.
+/// The squares of [`BlockWeights`] that the forward pass reads, rounded.
 #[derive(Clone, Debug)]
 pub(super) struct Squares {
     w1_transposed: Vec<PairPanel>,
@@ -67,7 +70,7 @@ pub(super) struct Squares {
 }
 
 impl Squares {
-    pub(super) fn round(weights: &Weights, dispatch: PairDispatch) -> Self {
+    pub(super) fn round(weights: &BlockWeights, dispatch: PairDispatch) -> Self {
         let round = |panels: &[Panel]| {
             let mut rounded = vec![[TwoRows::ZERO; PAIRS]; panels.len()];
             dispatch.run(Round {
@@ -96,4 +99,114 @@ impl PairKernel for Round<'_> {
             into.round(pairs, rows);
         }
     }
+}
+
+/// The tile, with rounded weights.
+pub(super) struct PairForward<'a> {
+    pub(super) tile: Tile<'a>,
+    pub(super) squares: &'a Squares,
+}
+
+impl PairKernel for PairForward<'_> {
+    #[inline(always)]
+    fn run<P: Pairs>(self, pairs: P) {
+        let Self {
+            tile:
+                Tile {
+                    weights,
+                    decisions,
+                    first,
+                    x,
+                    y,
+                },
+            squares,
+        } = self;
+        let columns = weights.columns;
+        // The blocks of the first rows, those of the next ones, and so on.
+        let mut rounded_x = vec![[PairedRow::ZERO; ROWS]; columns * x.rows() / ROWS];
+        for (tile, rounded) in rounded_x.iter_mut().enumerate() {
+            let (row, column) = (tile / columns * ROWS, tile % columns);
+            for r in 0..ROWS {
+                rounded[r].round(pairs, &x.column(column)[row + r]);
+            }
+        }
+        for column in 0..columns {
+            y.column_mut(column).fill(weights.b2[column]);
+        }
+        let mut hidden = [Block::ZERO; ROWS];
+        let mut rounded = [PairedRow::ZERO; ROWS];
+        for unit in 0..weights.units {
+            let b1 = weights.unit(unit).b1();
+            let of_unit = unit * columns..(unit + 1) * columns;
+            let w1_transposed = &squares.w1_transposed[of_unit.clone()];
+            let w2_transposed = &squares.w2_transposed[of_unit];
+            for (tile, x) in rounded_x.chunks_exact(columns).enumerate() {
+                let row = tile * ROWS;
+                activate(pairs, b1, w1_transposed, x, &mut hidden);
+                if let Some(decisions) = decisions {
+                    decisions.apply(pairs.simd(), &mut hidden, first + row, unit);
+                }
+                for r in 0..ROWS {
+                    rounded[r].round(pairs, &hidden[r]);
+                }
+                for (column, w2) in w2_transposed.iter().enumerate() {
+                    let y = tile_mut(y.column_mut(column), row);
+                    add_product(pairs, y, &rounded, w2);
+                }
+            }
+        }
+    }
+}
+
+/// relu(W1 x + b1) of a block of units, for some rows, in `f32`.
+#[inline(always)]
+fn activate<P: Pairs>(
+    pairs: P,
+    b1: &Block,
+    w1_transposed: &[PairPanel],
+    x: &[[PairedRow; ROWS]],
+    hidden: &mut [Block; ROWS],
+) {
+    let simd = pairs.simd();
+    let b1 = [simd.load(b1.part(0)), simd.load(b1.part(1))];
+    let mut sum: Sums<P> = [b1; ROWS];
+    for (x, w1) in x.iter().zip(w1_transposed) {
+        sum = multiply(pairs, sum, x, w1);
+    }
+    for r in 0..ROWS {
+        for v in 0..PARTS {
+            sum[r][v] = simd.max(simd.splat(0.0), sum[r][v]);
+        }
+    }
+    store_tile(simd, &sum, hidden, 0);
+}
+
+/// Rows of a [`Sums`]: with all columns of a block they fill half of the 32 registers of AVX-512, as two operations a cycle
+/// of six cycles each need at least twelve.
+const ROWS: usize = 8;
+
+/// Accumulators: all parts of some rows.
+type Sums<P> = ddl_simd::Tile<<P as Pairs>::Simd, ROWS, PARTS>;
+
+/// sum + A B.
+#[inline(always)]
+fn multiply<P: Pairs>(pairs: P, mut sum: Sums<P>, a: &[PairedRow; ROWS], b: &PairPanel) -> Sums<P> {
+    for t in 0..PAIRS {
+        let of_b = [pairs.load(b[t].part(0)), pairs.load(b[t].part(1))];
+        for r in 0..ROWS {
+            let of_a = pairs.splat(a[r].0[t]);
+            for v in 0..PARTS {
+                sum[r][v] = pairs.dot(of_a, of_b[v], sum[r][v]);
+            }
+        }
+    }
+    sum
+}
+
+/// sum + A B, the sum in memory.
+#[inline(always)]
+fn add_product<P: Pairs>(pairs: P, sum: &mut [Block; ROWS], a: &[PairedRow; ROWS], b: &PairPanel) {
+    let tile = load_tile(pairs.simd(), sum, 0);
+    let tile = multiply(pairs, tile, a, b);
+    store_tile(pairs.simd(), &tile, sum, 0);
 }

@@ -9,7 +9,7 @@ use ddl_simd::{LANES, Simd};
 
 /// What the kernels need to know of a [`Dropout`].
 #[derive(Clone, Debug)]
-pub(super) struct Decisions {
+pub(super) struct UnitDecisions {
     /// An activation is kept when its 16 bits, shifted to the upper half, are this or more.
     least: u32,
     /// 1 / (1 - p).
@@ -18,7 +18,7 @@ pub(super) struct Decisions {
     rows: Vec<RowKey>,
 }
 
-impl Decisions {
+impl UnitDecisions {
     /// Those of the rows 0 .. `rows`; `None` when nothing is dropped.
     ///
     /// # Panics
@@ -55,5 +55,3 @@ impl Decisions {
 
 #[cfg(test)]
 pub(super) mod reference;
-#[cfg(test)]
-mod tests;

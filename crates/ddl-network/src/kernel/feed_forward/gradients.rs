@@ -48,14 +48,14 @@ impl<N: DerefMut<Target = [f32]>> Gradients<N> {
     }
 
     /// What belongs to the first `units` blocks of hidden units, to the next, and so on.
-    pub(super) fn parts(&mut self, width: usize, units: usize) -> Vec<Part<'_>> {
+    pub(super) fn parts(&mut self, width: usize, units: usize) -> Vec<UnitGradients<'_>> {
         let hidden = self.b1.len();
         let size = units * BLOCK;
         let w1 = self.w1.chunks_mut(size * width);
         let b1 = self.b1.chunks_mut(size);
         let mut parts: Vec<_> = w1
             .zip(b1)
-            .map(|(w1, b1)| Part { w1, b1, w2: vec![] })
+            .map(|(w1, b1)| UnitGradients { w1, b1, w2: vec![] })
             .collect();
         for row in self.w2.chunks_exact_mut(hidden) {
             for (part, piece) in parts.iter_mut().zip(row.chunks_mut(size)) {
@@ -67,7 +67,7 @@ impl<N: DerefMut<Target = [f32]>> Gradients<N> {
 }
 
 /// The derivatives that belong to some of the hidden units.
-pub(super) struct Part<'a> {
+pub(super) struct UnitGradients<'a> {
     /// Their rows.
     pub(super) w1: &'a mut [f32],
     pub(super) b1: &'a mut [f32],

@@ -1,7 +1,7 @@
 //! The weights of the block, as its passes read them.
 
 use super::bf16::Squares;
-use super::weights::Weights;
+use super::weights::BlockWeights;
 use crate::Precision;
 #[cfg(test)]
 use ddl_simd::InstructionSet;
@@ -13,7 +13,7 @@ use ddl_simd::{Dispatch, PairDispatch};
 /// backward pass computes them again.
 #[derive(Clone, Debug)]
 pub(crate) struct FeedForward {
-    pub(super) weights: Weights,
+    pub(super) weights: BlockWeights,
     /// For the forward pass in bf16.
     pub(super) rounded: Option<Squares>,
     pub(super) dispatch: Dispatch,
@@ -27,7 +27,7 @@ impl FeedForward {
     /// When a width is 0.
     pub(crate) fn zeros(width: usize, hidden: usize) -> Self {
         Self {
-            weights: Weights::new(width, hidden),
+            weights: BlockWeights::new(width, hidden),
             rounded: None,
             dispatch: Dispatch::detect(),
             pair_dispatch: PairDispatch::detect(),
@@ -45,21 +45,6 @@ impl FeedForward {
         self.weights.update(weights);
         self.rounded = (precision == Precision::Bf16)
             .then(|| Squares::round(&self.weights, self.pair_dispatch));
-    }
-
-    /// Both at once, in `f32`.
-    #[cfg(test)]
-    pub(crate) fn pack(
-        w1: &[f32],
-        b1: &[f32],
-        w2: &[f32],
-        b2: &[f32],
-        width: usize,
-        hidden: usize,
-    ) -> Self {
-        let mut block = Self::zeros(width, hidden);
-        block.update([w1, b1, w2, b2], Precision::F32);
-        block
     }
 
     /// The same with other instructions than the fastest, bf16 emulated; `None` when the machine lacks them.

@@ -1,22 +1,19 @@
-//! Against the formula in double precision.
+//! Against the formula in double precision, and what must hold for every layer.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod bf16;
 mod exact;
-mod laws;
 
+use super::dropout::reference;
 use super::{FeedForward, Gradients};
+use crate::Precision;
 use crate::kernel::Dropout;
+use crate::kernel::tests::numbers::assert_refused;
 use ddl_simd::InstructionSet;
 use exact::Case;
+use proptest::prelude::*;
 
 const UNIT: f64 = 1.0 / 16_777_216.0;
-
-fn sets() -> Vec<InstructionSet> {
-    let sets = InstructionSet::available();
-    assert!(sets.contains(&InstructionSet::Portable));
-    sets
-}
 
 #[track_caller]
 fn assert_near(name: &str, found: &[f32], exact: &[f64], bounds: &[f64]) {
@@ -32,73 +29,54 @@ fn assert_near(name: &str, found: &[f32], exact: &[f64], bounds: &[f64]) {
     }
 }
 
-/// Both passes with every instruction set, within the stated bounds.
+/// The layer with every instruction set.
+fn layers(case: &Case) -> Vec<FeedForward> {
+    let sets = InstructionSet::available();
+    assert!(sets.contains(&InstructionSet::Portable));
+    let layer = |set| case.layer().with_instructions(set).unwrap();
+    sets.into_iter().map(layer).collect()
+}
+
+/// Both passes, and the forward pass in bf16, within the stated bounds.
 fn check(case: &Case) {
     let exact = case.exact();
     let scaled = |steps: usize, [sizes, doubts]: [&[f64]; 2]| -> Vec<f64> {
         let bound = |(size, doubt): (&f64, &f64)| steps as f64 * UNIT * size + doubt + 1e-37;
         sizes.iter().zip(doubts).map(bound).collect()
     };
-    let rows = case.x.len() / case.width;
-    let (of_y, of_gx) = (case.width + case.hidden + 8, case.width + case.hidden + 16);
-    let of_weights = case.width + rows + 16;
-    for set in sets() {
-        let layer = case.layer().with_instructions(set).unwrap();
+    let (width, hidden, rows) = (case.width, case.hidden, case.x.len() / case.width);
+    for layer in layers(case) {
         let (y, gx, grads) = case.run(&layer);
         let name =
-            |what: &str| format!("{set:?}, {what}, {} x {rows} x {}", case.width, case.hidden);
+            |what: &str| format!("{:?}, {what}, {width} x {rows} x {hidden}", layer.dispatch);
         let none = vec![0.0; y.len()];
-        let bounds = scaled(of_y, [&exact.y.sizes, &none]);
+        let bounds = scaled(width + hidden + 8, [&exact.y.sizes, &none]);
         assert_near(&name("y"), &y, &exact.y.values, &bounds);
         let found = [gx, grads.w1, grads.b1, grads.w2, grads.b2];
-        let steps = [of_gx, of_weights, of_weights, of_weights, of_weights];
         for (i, what) in ["gx", "W1", "b1", "W2", "b2"].into_iter().enumerate() {
+            let steps = width + 16 + if i == 0 { hidden } else { rows };
             let exact = &exact.gradients[i];
-            let bounds = scaled(steps[i], [&exact.sizes, &exact.doubts]);
+            let bounds = scaled(steps, [&exact.sizes, &exact.doubts]);
             assert_near(&name(what), &found[i], &exact.values, &bounds);
         }
     }
+    bf16::check(case);
 }
 
+/// Nothing at all, one row, several tiles, spans and blocks.
 #[test]
-fn values_and_gradients_are_those_of_the_formula() {
-    let dropout = |p| Some(Dropout { p, seed: 11 });
-    for (width, hidden) in [(16, 16), (32, 48), (64, 64), (48, 96), (32, 2048)] {
-        for rows in [1, 7, 8, 25, 65] {
-            check(&Case::new(width, hidden, rows, None));
-            check(&Case::new(width, hidden, rows, dropout(0.1)));
-        }
-    }
-    check(&Case::new(32, 64, 1301, dropout(0.5)));
-    check(&Case::new(33, 300, 531, dropout(0.9)));
-}
-
-#[test]
-fn gradients_are_limits_of_differences() {
-    let dropout = Some(Dropout { p: 0.25, seed: 5 });
-    for (width, hidden, rows) in [(16, 16, 5), (32, 48, 9)] {
-        let case = Case::new(width, hidden, rows, dropout);
-        let (_, gx, grads) = case.run(&case.layer());
-        let found = [gx, grads.w1, grads.b1, grads.w2, grads.b2];
-        for (which, found) in found.iter().enumerate() {
-            for at in (0..found.len()).step_by(7) {
-                let step = 1e-6;
-                let loss = |change: f64| case.loss_with(which, at, change);
-                let slope = (loss(step) - loss(-step)) / (2.0 * step);
-                let error = (f64::from(found[at]) - slope).abs();
-                assert!(error < 2e-5, "{which}, {at}: {} for {slope}", found[at]);
-            }
-        }
-    }
-}
-
-#[test]
-fn no_rows() {
-    let case = Case::new(32, 64, 0, Some(Dropout { p: 0.1, seed: 1 }));
-    for set in sets() {
-        let (y, gx, grads) = case.run(&case.layer().with_instructions(set).unwrap());
-        assert!(y.is_empty() && gx.is_empty());
-        assert_eq!(grads, Gradients::zeros(32, 64));
+fn the_error_bounds_hold_at_the_edges() {
+    for (width, hidden, rows, p) in [
+        (32, 64, 0, 0.1),
+        (16, 16, 1, 0.0),
+        (32, 48, 7, 0.1),
+        (64, 64, 8, 0.0),
+        (32, 2048, 65, 0.1),
+        (32, 64, 1301, 0.5),
+        (33, 300, 531, 0.9),
+    ] {
+        let dropout = Some(Dropout { p, seed: 11 });
+        check(&Case::new(width, hidden, rows, dropout));
     }
 }
 
@@ -106,42 +84,108 @@ fn no_rows() {
 fn what_is_not_a_number_stays_in_its_row() {
     let mut case = Case::new(32, 64, 12, None);
     case.x[5 * 32 + 3] = f32::NAN;
-    for set in sets() {
-        let (y, gx, grads) = case.run(&case.layer().with_instructions(set).unwrap());
-        for (r, row) in y.chunks(32).enumerate() {
-            assert!(row.iter().all(|y| y.is_nan() == (r == 5)), "{set:?}, {r}");
+    for layer in layers(&case).into_iter().chain(bf16::layers(&case)) {
+        for (r, row) in bf16::run(&case, &layer).chunks(32).enumerate() {
+            let way = (layer.dispatch, layer.pair_dispatch);
+            assert!(row.iter().all(|y| y.is_nan() == (r == 5)), "{way:?}, {r}");
         }
+    }
+    for layer in layers(&case) {
+        let (_, gx, grads) = case.run(&layer);
         // As in libtorch, the derivative of ReLU at NaN is 1.
-        assert!(gx.iter().all(|gx| gx.is_finite()), "{set:?}");
-        assert!(grads.w2.iter().all(|g| g.is_nan()), "{set:?}");
+        assert!(gx.iter().all(|gx| gx.is_finite()));
+        assert!(grads.w2.iter().all(|g| g.is_nan()));
     }
 }
 
 #[test]
-#[should_panic(expected = "x is not made of rows of 32")]
-fn half_a_row() {
-    let layer = Case::new(32, 64, 0, None).layer();
-    layer.forward(&[0.0; 48], None, &mut [0.0; 48]);
+fn what_does_not_fit_is_refused() {
+    let case = Case::new(32, 64, 0, None);
+    let (layer, row) = (case.layer(), [0.0; 32]);
+    assert_refused("x is not made of rows of 32", || {
+        layer.forward(&[0.0; 48], None, &mut [0.0; 48]);
+    });
+    assert_refused("entries of the gradient of W1", || {
+        let mut grads = Gradients::zeros(32, 32);
+        layer.backward(&row, &row, None, &mut [0.0; 32], &mut grads);
+    });
+    assert_refused("dropout of 1: not in [0, 1)", || {
+        layer.forward(&row, Some(Dropout { p: 1.0, seed: 1 }), &mut [0.0; 32]);
+    });
+    assert_refused("entries of W2", || {
+        FeedForward::zeros(32, 1).update([&row, &[0.0], &[0.0; 31], &row], Precision::F32);
+    });
+    assert_refused("a backward pass in bf16", || {
+        let mut grads = Gradients::zeros(32, 64);
+        bf16::layers(&case)[0].backward(&row, &row, None, &mut [0.0; 32], &mut grads);
+    });
 }
 
-#[test]
-#[should_panic(expected = "entries of the gradient of W1")]
-fn gradients_of_another_layer() {
-    let layer = Case::new(32, 64, 0, None).layer();
-    let mut grads = Gradients::zeros(32, 32);
-    layer.backward(&[0.0; 32], &[0.0; 32], None, &mut [0.0; 32], &mut grads);
+fn dropouts() -> impl Strategy<Value = Option<Dropout>> {
+    prop_oneof![
+        Just(None),
+        (0.0..0.95, any::<u64>()).prop_map(|(p, seed)| Some(Dropout { p, seed })),
+    ]
 }
 
-#[test]
-#[should_panic(expected = "dropout of 1: not in [0, 1)")]
-fn dropping_all() {
-    let layer = Case::new(32, 64, 0, None).layer();
-    let dropout = Some(Dropout { p: 1.0, seed: 1 });
-    layer.forward(&[0.0; 32], dropout, &mut [0.0; 32]);
-}
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
 
-#[test]
-#[should_panic(expected = "entries of W2")]
-fn a_matrix_of_another_size() {
-    let _: FeedForward = FeedForward::pack(&[0.0; 32], &[0.0], &[0.0; 31], &[0.0; 32], 32, 1);
+    #[test]
+    fn the_error_bounds_hold(
+        width in 1..70_usize,
+        hidden in 1..140_usize,
+        rows in 0..150_usize,
+        dropout in dropouts(),
+    ) {
+        check(&Case::new(width, hidden, rows, dropout));
+    }
+
+    #[test]
+    fn a_row_does_not_see_the_others(rows in 1..80_usize, from in 0..80_usize) {
+        let from = from.min(rows);
+        let case = Case::new(32, 64, rows, None);
+        for layer in layers(&case).into_iter().chain(bf16::layers(&case)) {
+            let all = bf16::run(&case, &layer);
+            let mut some = vec![0.0; (rows - from) * 32];
+            layer.forward(&case.x[from * 32..], None, &mut some);
+            prop_assert_eq!(&all[from * 32..], &some);
+        }
+    }
+
+    #[test]
+    fn derivatives_are_added(hidden in 1..100_usize, rows in 1..80_usize, dropout in dropouts()) {
+        let case = Case::new(32, hidden, rows, dropout);
+        let layer = case.layer();
+        let (_, gx, once) = case.run(&layer);
+        let (mut again, mut twice) = (gx.clone(), once.clone());
+        layer.backward(&case.x, &case.gy, dropout, &mut again, &mut twice);
+        prop_assert_eq!(gx, again);
+        let doubled = |sums: &[f32]| -> Vec<f32> { sums.iter().map(|sum| 2.0 * sum).collect() };
+        prop_assert_eq!(doubled(&once.w1), twice.w1);
+        prop_assert_eq!(doubled(&once.w2), twice.w2);
+    }
+
+    /// With W1 and W2 the unit matrix and everything active, y and gx show which units were kept.
+    #[test]
+    fn both_passes_drop_the_same_units(rows in 1..200_usize, p in 0.01..0.99, seed: u64) {
+        const WIDTH: usize = 64;
+        let mut case = Case::new(WIDTH, WIDTH, rows, Some(Dropout { p, seed }));
+        for matrix in [&mut case.w1, &mut case.w2] {
+            for (i, entry) in matrix.iter_mut().enumerate() {
+                *entry = if i / WIDTH == i % WIDTH { 1.0 } else { 0.0 };
+            }
+        }
+        for (numbers, value) in [(&mut case.b1, 0.0), (&mut case.b2, 0.0), (&mut case.x, 1.0), (&mut case.gy, 1.0)] {
+            numbers.fill(value);
+        }
+        for layer in layers(&case) {
+            let (y, gx, _) = case.run(&layer);
+            prop_assert_eq!(&y, &gx);
+            for (i, y) in y.iter().enumerate() {
+                let factor = reference::factor(Dropout { p, seed }, i / WIDTH, i % WIDTH);
+                prop_assert_eq!(y.to_bits(), (factor as f32).to_bits());
+            }
+        }
+    }
 }

@@ -4,16 +4,16 @@
 
 use super::block::{Block, tile_mut};
 use super::block_rows::BlockRows;
-use super::dropout::Decisions;
+use super::dropout::UnitDecisions;
 use super::hidden::activate;
 use super::product::add_product;
-use super::weights::Weights;
+use super::weights::BlockWeights;
 use ddl_simd::{Simd, TiledKernel};
 
 /// Some rows.
 pub(super) struct Tile<'a> {
-    pub(super) weights: &'a Weights,
-    pub(super) decisions: Option<&'a Decisions>,
+    pub(super) weights: &'a BlockWeights,
+    pub(super) decisions: Option<&'a UnitDecisions>,
     /// The first row's number.
     pub(super) first: usize,
     pub(super) x: &'a BlockRows,

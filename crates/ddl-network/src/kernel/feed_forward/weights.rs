@@ -5,7 +5,7 @@ use super::block::{BLOCK, Block, Panel, transpose};
 /// Squares of 32 x 32 weights, those of one block of hidden units together, and padded with zeros: a unit of the padding
 /// is 0 and adds nothing.
 #[derive(Clone, Debug)]
-pub(super) struct Weights {
+pub(super) struct BlockWeights {
     pub(super) width: usize,
     pub(super) hidden: usize,
     /// Blocks of a row of x.
@@ -20,7 +20,7 @@ pub(super) struct Weights {
     pub(super) b2: Vec<Block>,
 }
 
-impl Weights {
+impl BlockWeights {
     /// Zeros.
     pub(super) fn new(width: usize, hidden: usize) -> Self {
         assert!(width > 0 && hidden > 0, "a width of 0");
@@ -76,7 +76,7 @@ impl Weights {
 /// The weights of a block of hidden units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Unit<'a> {
-    weights: &'a Weights,
+    weights: &'a BlockWeights,
     unit: usize,
 }
 

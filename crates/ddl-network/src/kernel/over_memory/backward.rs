@@ -5,14 +5,16 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use super::key_value::{KeyValue, KeyValueMut};
-use super::tokens::{Buffers, Place, accumulate, dot, soften, weighted};
+use super::tokens::{
+    KeyValue, KeyValueMut, MemoryBuffers, SixteenHeads, accumulate, dot, soften, weighted,
+};
 use crate::kernel::heads::Heads;
+use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, LANES, Lanes, Simd, ZERO_QUAD};
 
 /// Some of the rows.
 #[derive(Debug)]
-pub(super) struct Backward<'a> {
+pub(super) struct MemoryBackward<'a> {
     pub(super) heads: Heads,
     /// Where the rows start in the whole.
     pub(super) first: usize,
@@ -26,13 +28,7 @@ pub(super) struct Backward<'a> {
     pub(super) token_gradients: Vec<KeyValueMut<'a>>,
 }
 
-#[derive(Debug)]
-pub(super) struct Run<'a, 'b> {
-    pub(super) job: Backward<'a>,
-    pub(super) buffers: &'b mut Buffers,
-}
-
-impl Kernel for Run<'_, '_> {
+impl Kernel for Buffered<'_, MemoryBackward<'_>, MemoryBuffers> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         // The usual width is spelled out, which takes the loops over quads away.
@@ -46,7 +42,7 @@ impl Kernel for Run<'_, '_> {
     }
 }
 
-impl Run<'_, '_> {
+impl Buffered<'_, MemoryBackward<'_>, MemoryBuffers> {
     #[inline(always)]
     fn rows<S: Simd>(mut self, simd: S, width: usize, quads: usize) {
         let length = self.job.query_gradient.len();
@@ -56,13 +52,13 @@ impl Run<'_, '_> {
         let tokens = self.job.memory.len() + 1;
         self.buffers.taken.resize(tokens, Lanes::ZERO);
         for at in (0..length).step_by(LANES * width) {
-            let place = Place::new(self.job.first, at, length, width);
+            let place = SixteenHeads::new(self.job.first, at, length, width);
             self.group(simd, place, at, quads);
         }
     }
 
     #[inline(always)]
-    fn group<S: Simd>(&mut self, simd: S, place: Place, at: usize, quads: usize) {
+    fn group<S: Simd>(&mut self, simd: S, place: SixteenHeads, at: usize, quads: usize) {
         let (job, buffers) = (&mut self.job, &mut *self.buffers);
         let scale = job.heads.scale();
         let to_scores = simd.splat(scale * std::f32::consts::LOG2_E);

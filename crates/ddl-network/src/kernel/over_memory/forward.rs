@@ -2,14 +2,14 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use super::key_value::KeyValue;
-use super::tokens::{Buffers, Place, accumulate, soften, weighted};
+use super::tokens::{KeyValue, MemoryBuffers, SixteenHeads, accumulate, soften, weighted};
 use crate::kernel::heads::Heads;
+use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, LANES, Simd, ZERO_QUAD};
 
 /// Some of the rows.
 #[derive(Debug)]
-pub(super) struct Forward<'a> {
+pub(super) struct MemoryForward<'a> {
     pub(super) heads: Heads,
     /// Where the rows start in the whole.
     pub(super) first: usize,
@@ -20,13 +20,7 @@ pub(super) struct Forward<'a> {
     pub(super) mixed: &'a mut [f32],
 }
 
-#[derive(Debug)]
-pub(super) struct Run<'a, 'b> {
-    pub(super) job: Forward<'a>,
-    pub(super) buffers: &'b mut Buffers,
-}
-
-impl Kernel for Run<'_, '_> {
+impl Kernel for Buffered<'_, MemoryForward<'_>, MemoryBuffers> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         // The usual width is spelled out, which takes the loops over quads away.
@@ -40,7 +34,7 @@ impl Kernel for Run<'_, '_> {
     }
 }
 
-impl Run<'_, '_> {
+impl Buffered<'_, MemoryForward<'_>, MemoryBuffers> {
     #[inline(always)]
     fn rows<S: Simd>(self, simd: S, width: usize, quads: usize) {
         let Self { job, buffers } = self;
@@ -49,7 +43,7 @@ impl Run<'_, '_> {
         buffers.query.resize(quads, ZERO_QUAD);
         let query = &mut buffers.query[..quads];
         for (group, mixed) in job.mixed.chunks_mut(LANES * width).enumerate() {
-            let place = Place::new(job.first, group * LANES * width, length, width);
+            let place = SixteenHeads::new(job.first, group * LANES * width, length, width);
             for (quad, query) in query.iter_mut().enumerate() {
                 let loaded = place.load(simd, job.query, quad);
                 simd.write(simd.scaled(loaded, scale), query);

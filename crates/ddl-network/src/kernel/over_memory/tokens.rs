@@ -5,12 +5,49 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use super::key_value::KeyValue;
 use ddl_simd::{DEPTH, LANES, Lanes, Quad, Simd, Vectors, ZERO_QUAD};
+
+/// Keys and values of one token a row, `[rows, heads, head width]` each.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct KeyValue<'a> {
+    /// What queries are compared with.
+    pub(crate) key: &'a [f32],
+    /// What is mixed.
+    pub(crate) value: &'a [f32],
+}
+
+/// Gradients of a [`KeyValue`], of the same shapes.
+#[derive(Debug)]
+pub(crate) struct KeyValueMut<'a> {
+    /// Of the keys.
+    pub(crate) key: &'a mut [f32],
+    /// Of the values.
+    pub(crate) value: &'a mut [f32],
+}
+
+impl KeyValueMut<'_> {
+    /// The same, for a shorter time.
+    pub(super) fn reborrow(&mut self) -> KeyValueMut<'_> {
+        KeyValueMut {
+            key: self.key,
+            value: self.value,
+        }
+    }
+}
+
+impl<'a> KeyValueMut<'a> {
+    /// Takes `count` numbers each off the front.
+    pub(super) fn split_off(&mut self, count: usize) -> KeyValueMut<'a> {
+        KeyValueMut {
+            key: self.key.split_off_mut(..count).unwrap_or_default(),
+            value: self.value.split_off_mut(..count).unwrap_or_default(),
+        }
+    }
+}
 
 /// Room for sixteen heads, kept from group to group.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Buffers {
+pub(super) struct MemoryBuffers {
     /// By quad, scaled so that scores are powers of two.
     pub(super) query: Vec<Quad>,
     /// By quad.
@@ -25,13 +62,13 @@ pub(super) struct Buffers {
 
 /// Where sixteen heads lie in a slice: `numbers` from `first` on, fewer than sixteen heads at its end.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct SixteenHeads {
     pub(super) first: usize,
     pub(super) numbers: usize,
     pub(super) width: usize,
 }
 
-impl Place {
+impl SixteenHeads {
     /// Of the group that starts at `at` of `length` numbers, `first` being added to it in the whole slice.
     #[inline(always)]
     pub(super) fn new(first: usize, at: usize, length: usize, width: usize) -> Self {
@@ -173,7 +210,7 @@ pub(super) fn weighted<S: Simd>(simd: S, weight: S::Floats, numbers: Vectors<S>)
 #[inline(always)]
 pub(super) fn soften<S: Simd>(
     simd: S,
-    place: Place,
+    place: SixteenHeads,
     query: &[Quad],
     memory: &[KeyValue<'_>],
     own: KeyValue<'_>,

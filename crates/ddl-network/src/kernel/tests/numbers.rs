@@ -1,4 +1,6 @@
-//! Numbers to test with, and how far results are apart.
+//! Numbers to test with, how far results are apart, and what is refused.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// A generator of reproducible numbers (`SplitMix64`).
 pub(crate) struct Numbers(pub(crate) u64);
@@ -48,4 +50,17 @@ pub(crate) fn wide(numbers: &[f32]) -> Vec<f64> {
 
 pub(crate) fn bits(numbers: &[f32]) -> Vec<u32> {
     numbers.iter().map(|number| number.to_bits()).collect()
+}
+
+/// Panics unless `run` does, with a message that says this.
+pub(crate) fn assert_refused(said: &str, run: impl FnOnce()) {
+    let panic = catch_unwind(AssertUnwindSafe(run)).expect_err(said);
+    let message = match panic.downcast_ref::<String>() {
+        Some(message) => message,
+        None => *panic.downcast_ref::<&str>().unwrap_or(&"no message"),
+    };
+    assert!(
+        message.contains(said),
+        "{message:?} says nothing of {said:?}"
+    );
 }

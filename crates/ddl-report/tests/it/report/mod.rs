@@ -71,6 +71,21 @@ fn row(protocol: Protocol, fold: &str, seed: u64, min_ade: f64) -> ResultRow {
     }
 }
 
+/// Pedestrians who turn to the left, with this error.
+fn turning(pedestrians: usize, min_ade: f64) -> Vec<CategoryScores> {
+    vec![CategoryScores {
+        category: Category::Motion(MotionKind::TurningLeft),
+        pedestrians,
+        min_ade,
+        min_fde: 2.0 * min_ade,
+        fde_at_min_ade: 2.0 * min_ade,
+        miss_rate: 0.0,
+        most_likely_ade: min_ade,
+        most_likely_fde: min_ade,
+        collision_rate: 0.0,
+    }]
+}
+
 const FOLDS: [&str; 5] = ["eth", "hotel", "univ", "zara1", "zara2"];
 
 fn five_folds(protocol: Protocol, seed: u64, min_ade: f64) -> Vec<ResultRow> {
@@ -251,16 +266,6 @@ fn settings_that_differ_make_lines_of_their_own() {
 }
 
 #[test]
-fn ablation_variants_bring_the_published_ablation() {
-    let mut rows = five_folds(Protocol::Published, 1, 0.25);
-    rows[0].conditions.variant = Some("no-dynamics".to_owned());
-    let page = Report::new("Ablation", rows).unwrap().to_markdown();
-    assert!(
-        page.contains("| DDL (no-dynamics) ") && page.contains("### Table II of the DDL paper")
-    );
-}
-
-#[test]
 fn simulated_crowds_are_not_taken_for_recordings() {
     let mut rows = five_folds(Protocol::Fair, 1, 0.25);
     let names: Vec<_> = Convention::Simulated.fold_names().collect();
@@ -415,17 +420,7 @@ fn categories_are_pooled_over_pedestrians() {
     let mut rows = five_folds(Protocol::Fair, 1, 0.25);
     rows.truncate(2);
     for (row, (pedestrians, min_ade)) in rows.iter_mut().zip([(30, 0.1), (10, 0.5)]) {
-        row.scores.categories = vec![CategoryScores {
-            category: Category::Motion(MotionKind::TurningLeft),
-            pedestrians,
-            min_ade,
-            min_fde: 2.0 * min_ade,
-            fde_at_min_ade: 2.0 * min_ade,
-            miss_rate: 0.0,
-            most_likely_ade: min_ade,
-            most_likely_fde: min_ade,
-            collision_rate: 0.0,
-        }];
+        row.scores.categories = turning(pedestrians, min_ade);
     }
     let page = Report::new("Categories", rows).unwrap().to_markdown();
     let row = cells(line(&page, "| turning left "));

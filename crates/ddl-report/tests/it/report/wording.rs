@@ -1,9 +1,9 @@
 //! What a report says of rows that are easily taken for more than they are.
 
-use ddl_eval::{Category, CategoryScores, MotionKind, Protocol, ResultRow};
+use ddl_eval::{Protocol, ResultRow};
 use ddl_report::Report;
 
-use super::{cells, five_folds, line, row};
+use super::{cells, five_folds, line, row, turning};
 
 fn of_forecaster(mut rows: Vec<ResultRow>, name: &str) -> Vec<ResultRow> {
     for row in &mut rows {
@@ -106,21 +106,11 @@ fn too_few_blocks_have_no_interval() {
 /// Every column of the categories is over the same pedestrians: those of the folds that all forecasters have.
 #[test]
 fn categories_are_told_over_shared_folds_alone() {
-    let turning = |mut row: ResultRow, min_ade: f64| {
-        row.scores.categories = vec![CategoryScores {
-            category: Category::Motion(MotionKind::TurningLeft),
-            pedestrians: 10,
-            min_ade,
-            min_fde: min_ade,
-            fde_at_min_ade: min_ade,
-            miss_rate: 0.0,
-            most_likely_ade: min_ade,
-            most_likely_fde: min_ade,
-            collision_rate: 0.0,
-        }];
+    let of = |fold: &str, min_ade| {
+        let mut row = row(Protocol::Fair, fold, 1, 0.25);
+        row.scores.categories = turning(10, min_ade);
         row
     };
-    let of = |fold: &str, min_ade| turning(row(Protocol::Fair, fold, 1, 0.25), min_ade);
     let mut rows = vec![of("eth", 0.1)];
     rows.extend(of_forecaster(
         vec![of("eth", 0.3), of("hotel", 0.9)],
@@ -130,6 +120,6 @@ fn categories_are_told_over_shared_folds_alone() {
     assert!(page.contains("pooled over eth."), "{page}");
     assert_eq!(
         cells(line(&page, "| turning left ")),
-        ["turning left", "10", "0.100/0.100", "0.300/0.300"]
+        ["turning left", "10", "0.100/0.200", "0.300/0.600"]
     );
 }

@@ -1,5 +1,6 @@
 //! The formula in double precision, term by term.
 
+use crate::Precision;
 use crate::kernel::Dropout;
 use crate::kernel::feed_forward::dropout::reference;
 use crate::kernel::feed_forward::{FeedForward, Gradients};
@@ -66,17 +67,14 @@ impl Case {
         }
     }
 
+    pub(super) fn weights(&self) -> [&[f32]; 4] {
+        [&self.w1, &self.b1, &self.w2, &self.b2]
+    }
+
     pub(super) fn layer(&self) -> FeedForward {
-        let Self {
-            w1,
-            b1,
-            w2,
-            b2,
-            width,
-            hidden,
-            ..
-        } = self;
-        FeedForward::pack(w1, b1, w2, b2, *width, *hidden)
+        let mut layer = FeedForward::zeros(self.width, self.hidden);
+        layer.update(self.weights(), Precision::F32);
+        layer
     }
 
     /// y, gx and the derivatives of the weights.
@@ -140,28 +138,5 @@ impl Case {
             y,
             gradients: [gx, w1, b1, w2, b2],
         }
-    }
-
-    /// The sum of gy y with one number of x, W1, b1, W2 or b2 changed.
-    pub(super) fn loss_with(&self, which: usize, at: usize, change: f64) -> f64 {
-        let wide = |values: &[f32]| -> Vec<f64> { values.iter().map(|v| f64::from(*v)).collect() };
-        let mut inputs = [&self.x, &self.w1, &self.b1, &self.w2, &self.b2].map(|v| wide(v));
-        inputs[which][at] += change;
-        let [x, w1, b1, w2, b2] = inputs;
-        let (width, hidden) = (self.width, self.hidden);
-        let mut loss = 0.0;
-        for row in 0..self.x.len() / width {
-            let x = &x[row * width..][..width];
-            for i in 0..width {
-                let mut y = b2[i];
-                for j in 0..hidden {
-                    let terms = w1[j * width..][..width].iter().zip(x).map(|(w, x)| w * x);
-                    let sum = b1[j] + terms.sum::<f64>();
-                    y += w2[i * hidden + j] * sum.max(0.0) * self.factor(row, j);
-                }
-                loss += f64::from(self.gy[row * width + i]) * y;
-            }
-        }
-        loss
     }
 }

@@ -1,0 +1,78 @@
+//! The report over all finished runs, with the baselines of the other data convention beside it.
+
+use super::super::{Reporting, baselines};
+use super::plan::{Plan, Settings};
+use crate::output;
+use crate::progress::ProgressMode;
+use crate::telling::tell;
+use ddl::data::{Convention, Dataset, locate};
+use ddl::{Protocol, Results};
+use std::path::{Path, PathBuf};
+
+/// Writes the report over finished runs, where there are some, and prints it; what it says to people.
+pub(super) fn write(
+    plan: &Plan,
+    runs: Vec<PathBuf>,
+    out: &Path,
+    reporting: &Reporting,
+) -> anyhow::Result<String> {
+    if runs.is_empty() {
+        return Ok(String::new());
+    }
+    let settings = &plan.settings;
+    let mut folders = runs;
+    folders.extend(baselines_elsewhere(settings, out, &reporting.commit)?);
+    let title = format!(
+        "Benchmark: {}, {}, recipe {}",
+        settings.convention, settings.profile, settings.recipe.name
+    );
+    let results = Results::of(title, &folders)?;
+    results.save(out)?;
+    let text = results.report.to_markdown();
+    if reporting.telling.json {
+        output::print(&(results.report.to_json()? + "\n"))?;
+    } else if reporting.telling.progress != ProgressMode::Json {
+        output::print(&format!("\n{}\n\n", text.trim_end()))?;
+    }
+    for (what, name) in [
+        ("report", "report.md"),
+        ("", "report.json"),
+        ("for a paper", "report.tex"),
+        ("to look at", "report.html"),
+        ("figures", "figures"),
+    ] {
+        tell(format_args!("{what:12} {}", out.join(name).display()));
+    }
+    Ok(text)
+}
+
+/// The baselines in the recorded convention that the plan is not in, if its recordings are there: how far apart the two are is seen
+/// best where nothing is trained.
+fn baselines_elsewhere(
+    settings: &Settings,
+    out: &Path,
+    commit: &str,
+) -> anyhow::Result<Option<PathBuf>> {
+    let other = match settings.convention {
+        Convention::Star => Convention::SocialGan,
+        Convention::SocialGan => Convention::Star,
+        Convention::Simulated | Convention::Own => return Ok(None),
+    };
+    // A choice with the truth says nothing about baselines: they are measured under the others.
+    let mut protocols = settings.protocols.clone();
+    protocols.retain(|protocol| *protocol != Protocol::Published);
+    let beside = settings.data.as_deref();
+    let Ok(folder) = locate(other, None).or_else(|_| locate(other, beside)) else {
+        return Ok(None);
+    };
+    if protocols.is_empty() {
+        return Ok(None);
+    }
+    let dataset = Dataset::load(other, &folder)?;
+    let folds: Vec<String> = other.fold_names().map(str::to_owned).collect();
+    let part = (protocols.as_slice(), settings.test_walkers);
+    let report = baselines::measure(&dataset, &folds, part, commit)?;
+    let folder = out.join(format!("baselines-{other}"));
+    Results::new(report, Vec::new()).save(&folder)?;
+    Ok(Some(folder))
+}

@@ -1,0 +1,66 @@
+//! Text of one observation a line, its columns separated by tabs or blanks: `social-gan`, and the `obsmat` of the ETH recordings.
+
+use super::field::{self, Who};
+use super::place::FilePlace;
+use super::rows::{FIELDS, TrackRow};
+use crate::error::{FormatError, FormatProblem};
+
+const OBSMAT: &str = "frame, pedestrian, x, z, y, v_x, v_z, v_y";
+
+/// The rows of a text: `row` reads a line, given its number and where it is from.
+pub(super) fn parse(
+    text: &str,
+    origin: &str,
+    row: fn(&str, usize, &str) -> Result<TrackRow, FormatError>,
+) -> Result<Vec<TrackRow>, FormatError> {
+    // Blank lines are an error between observations, and harmless after the last one.
+    let lines = text.trim_end().lines().enumerate();
+    lines
+        .map(|(index, line)| row(line, index + 1, origin))
+        .collect()
+}
+
+/// The fields of a line: as many as `names` names.
+fn fields<'a, const COUNT: usize>(
+    text: &'a str,
+    line: usize,
+    origin: &str,
+    names: &'static str,
+) -> Result<[&'a str; COUNT], FormatError> {
+    let fields: Vec<&str> = text.split_ascii_whitespace().collect();
+    let (expected, found) = (COUNT, fields.len());
+    fields.try_into().map_err(|_| {
+        let problem = FormatProblem::FieldCount {
+            expected,
+            found,
+            names,
+        };
+        FilePlace::line(line).wrong(origin, problem)
+    })
+}
+
+pub(super) fn social_gan(text: &str, line: usize, origin: &str) -> Result<TrackRow, FormatError> {
+    let [frame, pedestrian, x, y] = fields(text, line, origin, FIELDS)?;
+    TrackRow::of(line, origin, [(1, frame), (2, pedestrian), (3, x), (4, y)])
+}
+
+pub(super) fn obsmat(text: &str, line: usize, origin: &str) -> Result<TrackRow, FormatError> {
+    let [frame, pedestrian, x, z, y, v_x, v_z, v_y] = fields(text, line, origin, OBSMAT)?;
+    let at = |field: usize| FilePlace::field(line, field);
+    let row = TrackRow::of(line, origin, [(1, frame), (2, pedestrian), (3, x), (5, y)])?;
+    // Floats, of which no pedestrian is a word.
+    let number = at(2).read(origin, field::integer(pedestrian, "pedestrian"))?;
+    // Height and velocities are not used; that they are numbers shows that the columns are these.
+    for (field, name, text) in [
+        (4, "z", z),
+        (6, "v_x", v_x),
+        (7, "v_z", v_z),
+        (8, "v_y", v_y),
+    ] {
+        at(field).read(origin, field::number(text, name))?;
+    }
+    Ok(TrackRow {
+        who: Who::Number(number, None),
+        ..row
+    })
+}

@@ -1,0 +1,58 @@
+//! Names of the values of an enum: on the command line, in files and in reports.
+
+/// Gives an enum `name`, `Display` and `FromStr`, whose error names this configuration field.
+macro_rules! named {
+    ($type:ident, $field:literal, $first:ident => $first_name:literal $(, $value:ident => $name:literal)*) => {
+        impl $type {
+            /// The name used on the command line and in reports.
+            #[must_use]
+            pub fn name(self) -> &'static str {
+                match self {
+                    Self::$first => $first_name,
+                    $(Self::$value => $name,)*
+                }
+            }
+        }
+
+        impl std::fmt::Display for $type {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(self.name())
+            }
+        }
+
+        impl std::str::FromStr for $type {
+            type Err = crate::NetworkError;
+
+            fn from_str(text: &str) -> Result<Self, Self::Err> {
+                match text {
+                    $first_name => Ok(Self::$first),
+                    $($name => Ok(Self::$value),)*
+                    _ => Err(crate::NetworkError::Config {
+                        field: $field,
+                        value: text.to_owned(),
+                        rule: concat!("one of ", $first_name $(, ", ", $name)*),
+                    }),
+                }
+            }
+        }
+    };
+}
+pub(crate) use named;
+
+#[cfg(test)]
+mod tests {
+    use crate::{Precision, Variant};
+
+    #[test]
+    fn names_are_read_and_others_refused_with_what_there_is() {
+        for variant in Variant::ALL {
+            assert_eq!(variant.to_string().parse::<Variant>().unwrap(), variant);
+        }
+        for precision in [Precision::F32, Precision::Bf16] {
+            assert_eq!(precision.name().parse::<Precision>().unwrap(), precision);
+        }
+        let error = "f16".parse::<Precision>().unwrap_err().to_string();
+        let said = "configuration: precision = f16 is not allowed: one of f32, bf16";
+        assert_eq!(error, said);
+    }
+}

@@ -1,0 +1,96 @@
+//! The network on libtorch behind the trait that forecasts are asked of.
+
+use super::backend::TorchBackend;
+use super::batch::SceneBatch;
+use super::emission::NoiseInput;
+use super::network::TorchNetwork;
+use super::numbers::{numbers, tensor};
+use super::rollout::Rollout;
+use super::tensor_backend::Pass;
+use crate::StarError;
+use ddl_data::{HORIZON, OBSERVED, Window};
+use ddl_network::backend::Mode;
+use ddl_network::weights::Weights;
+use ddl_network::{
+    BatchRollout, ForecastBatch, ForecastWindows, NetworkError, Precision, StarConfig,
+};
+use std::sync::{Mutex, PoisonError};
+use tch::Tensor;
+
+impl TorchNetwork {
+    /// This network behind the trait that forecasts are asked of, computed by libtorch.
+    #[must_use]
+    pub fn into_forecaster(self) -> Box<dyn ForecastWindows> {
+        Box::new(TorchForecaster {
+            config: self.config().clone(),
+            network: Mutex::new(self),
+        })
+    }
+
+    /// Forecasts one batch by libtorch.
+    fn roll_out_batch(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, StarError> {
+        let _guard = tch::no_grad_guard();
+        let (device, kind) = (self.device(), self.kind());
+        let views: Vec<&Window> = batch.windows.iter().collect();
+        let half_box = self.config().neighbour_box;
+        let mut scenes = SceneBatch::new(&views, OBSERVED, OBSERVED, half_box, device, kind)?;
+        let tensor = |of: &[f64], shape: &[i64]| tensor(of, shape, (kind, device));
+        let pedestrians = scenes.walkers() as i64;
+        if let Some(shares) = &batch.shares {
+            scenes.share = tensor(shares, &[1, pedestrians, 1])?;
+        }
+        let goals = batch.goals.concat();
+        let shape = [batch.goals.len() as i64, pedestrians, 2];
+        let goals = tensor(goals.as_flattened(), &shape)?;
+        let noise = match &batch.noise {
+            None => NoiseInput::Expected,
+            Some(draws) => {
+                let shape = [batch.noise_vectors as i64, self.config().noise_width];
+                NoiseInput::Draws(tensor(draws, &shape)?)
+            }
+        };
+        let pass = Pass::Torch(TorchBackend::new(self.parameters(), Mode::Evaluate));
+        let steps = (HORIZON, batch.rule);
+        let Rollout { positions, factors } =
+            self.roll_out_in(&scenes, &goals, &noise, steps, &pass);
+        Ok(BatchRollout {
+            hypotheses: positions.size()[1] as usize,
+            positions: arrays(&positions)?,
+            factors: factors.as_ref().map(arrays).transpose()?,
+        })
+    }
+}
+
+/// The last dimension as arrays of N.
+fn arrays<const N: usize>(tensor: &Tensor) -> Result<Vec<[f64; N]>, StarError> {
+    let numbers = numbers(tensor)?;
+    let (groups, _) = numbers.as_chunks::<N>();
+    Ok(groups.to_vec())
+}
+
+/// Forecasts by libtorch. Tensors may move between threads, but not be shared: one forecast at a time.
+#[derive(Debug)]
+struct TorchForecaster {
+    config: StarConfig,
+    network: Mutex<TorchNetwork>,
+}
+
+impl ForecastWindows for TorchForecaster {
+    fn config(&self) -> &StarConfig {
+        &self.config
+    }
+
+    fn copy_weights(&self) -> Result<Weights, NetworkError> {
+        let network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(network.parameters().to_weights()?)
+    }
+
+    fn precision(&self) -> Precision {
+        Precision::F32
+    }
+
+    fn roll_out(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, NetworkError> {
+        let network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(network.roll_out_batch(batch)?)
+    }
+}

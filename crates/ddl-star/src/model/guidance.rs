@@ -1,0 +1,71 @@
+//! Where the walkers of a batch are led, and what the network's input and output mean on the way.
+
+use super::flow::{FlowConstants, StepBounds, bounded_step, natural_gradient_step};
+use super::goal_frame::GoalFrame;
+use ddl_dynamics::StepTime;
+use tch::Tensor;
+
+/// What the walkers of a batch are told of where they go, and what their output means there.
+#[derive(Debug)]
+pub(super) struct Guidance {
+    /// What temporal positions are relative to, `[G or 1, P, 2]`: the goal, or the last observed position.
+    pub(super) reference: Tensor,
+    /// The frame they are read in; `None` for that of the world.
+    pub(super) frame: Option<GoalFrame>,
+    pub(super) dynamics: bool,
+    pub(super) constants: FlowConstants,
+    /// Of the steps; `None` for plain Euler steps.
+    pub(super) bounds: Option<StepBounds>,
+}
+
+impl Guidance {
+    /// Positions as the temporal encoder reads them, with the velocity since the positions `before` where there is a frame.
+    ///
+    /// # Shapes
+    /// `[.., P, 2]` -> `[.., P, inputs]`, broadcast with the reference.
+    pub(super) fn seen(&self, positions: &Tensor, before: &Tensor) -> Tensor {
+        let relative = positions - &self.reference;
+        match &self.frame {
+            None => relative,
+            Some(frame) => {
+                let velocity = frame.of_world(&((positions - before) / self.constants.time_step));
+                let place = frame.of_world(&relative);
+                Tensor::cat(
+                    &[place.expand_as(&velocity), velocity.expand_as(&place)],
+                    -1,
+                )
+            }
+        }
+    }
+
+    /// What the output layer says, in the frame of the world.
+    pub(super) fn to_world(&self, emitted: &Tensor) -> Tensor {
+        match &self.frame {
+            None => emitted.shallow_clone(),
+            Some(frame) if self.dynamics => frame.factors_to_world(emitted),
+            Some(frame) => frame.to_world(emitted),
+        }
+    }
+
+    /// One step on: with `done` steps made and `left` of them left, this one included.
+    pub(super) fn next_positions(
+        &self,
+        positions: &Tensor,
+        goals: &Tensor,
+        emitted: &Tensor,
+        (done, left): (usize, usize),
+    ) -> Tensor {
+        if !self.dynamics {
+            return &self.reference + emitted;
+        }
+        let constants = self.constants;
+        match &self.bounds {
+            None => natural_gradient_step(positions, goals, emitted, constants),
+            Some(bounds) => {
+                let dt = constants.time_step;
+                let time = StepTime { done, left, dt };
+                bounded_step(positions, goals, emitted, constants, bounds, time)
+            }
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Commands on the pages of the documentation: what a reader types, and what the page says is answered.
+//!
+//! `xtask`, which depends on no crate of the workspace, includes this very file to check the calls of `cargo xtask`.
+
+#![allow(
+    unreachable_pub,
+    reason = "public in one of the two crates that it belongs to"
+)]
+
+/// A command as a page shows it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Command {
+    /// Number of its line on the page, from 1.
+    pub line: usize,
+    /// What is typed, without the prompt; of several lines where it goes on after `> `.
+    pub typed: String,
+    /// The lines below it: some of what is answered, `...` for what is left out.
+    pub answered: Vec<String>,
+}
+
+/// The commands of a page's `console` blocks, in their order.
+pub fn commands(page: &str) -> Vec<Command> {
+    let mut found: Vec<Command> = Vec::new();
+    let mut inside = false;
+    for (line, text) in (1..).zip(page.lines()) {
+        let text = text.trim_start();
+        if let Some(kind) = text.strip_prefix("```") {
+            inside = !inside && kind.trim() == "console";
+            continue;
+        }
+        if !inside {
+            continue;
+        }
+        if let Some(typed) = text.strip_prefix("$ ") {
+            found.push(Command {
+                line,
+                typed: typed.trim_end().to_owned(),
+                answered: Vec::new(),
+            });
+        } else if let Some(last) = found.last_mut() {
+            match text.strip_prefix("> ") {
+                Some(more) if last.answered.is_empty() => {
+                    last.typed.push('\n');
+                    last.typed.push_str(more.trim_end());
+                }
+                _ => last.answered.push(text.trim_end().to_owned()),
+            }
+        }
+    }
+    found
+}
+
+impl Command {
+    /// The words of a plain command, without comment and redirections; `None` where a shell has more to do than to start one program.
+    pub fn words(&self) -> Option<Vec<&str>> {
+        let typed = self.typed.split(" #").next().unwrap_or_default();
+        let is_plain = !typed.contains(['|', ';', '&', '$', '`', '(', '\n', '"', '\'', '<', '>']);
+        is_plain.then(|| typed.split_whitespace().collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+    use super::*;
+
+    #[test]
+    fn commands_are_taken_with_their_answers() {
+        let page = "text\n```console\n$ ddl info   # what is there\nversion: 1\n...\n$ for i in 1 2; do\n>   echo $i\n> done\n```\n\
+            ```text\n$ not this\n```\n  ```console\n  $ ls -l\n  ```\n";
+        let found = commands(page);
+        let typed: Vec<(usize, &str)> = found
+            .iter()
+            .map(|command| (command.line, command.typed.as_str()))
+            .collect();
+        assert_eq!(
+            typed,
+            [
+                (3, "ddl info   # what is there"),
+                (6, "for i in 1 2; do\n  echo $i\ndone"),
+                (14, "ls -l")
+            ]
+        );
+        assert_eq!(found[0].answered, ["version: 1", "..."]);
+        assert_eq!(found[0].words().unwrap(), ["ddl", "info"]);
+        assert_eq!(found[1].words(), None);
+        assert_eq!(found[2].words().unwrap(), ["ls", "-l"]);
+    }
+}

@@ -1,0 +1,81 @@
+//! What is kept for the user from one call to the next: libtorch, tools, packages, a folder each.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+
+/// `$XDG_CACHE_HOME/ddl`, or `~/.cache/ddl`.
+pub(crate) fn folder() -> Result<PathBuf> {
+    let base = env::var_os("XDG_CACHE_HOME")
+        .map(PathBuf::from)
+        .filter(|path| path.is_absolute())
+        .or_else(|| env::home_dir().map(|home| home.join(".cache")))
+        .context("no home folder: set XDG_CACHE_HOME, or give a folder for libtorch with `cargo xtask setup --cache`")?;
+    Ok(base.join("ddl"))
+}
+
+/// Puts a folder into the cache, complete or not at all.
+///
+/// `make` is given a temporary folder beside it, and returns the finished folder in there, which takes its name at the
+/// very end. A damaged one in its place goes away.
+pub(crate) fn fill(
+    folder: &Path,
+    is_whole: impl Fn(&Path) -> bool,
+    make: impl FnOnce(&Path) -> Result<PathBuf>,
+) -> Result<()> {
+    let cache = folder
+        .parent()
+        .context("a cache folder cannot be the root of the disk")?;
+    fs::create_dir_all(cache).with_context(|| format!("{} cannot be created", cache.display()))?;
+    let work = tempfile::Builder::new()
+        .prefix(".incoming-")
+        .tempdir_in(cache)
+        .with_context(|| format!("{} cannot be written to", cache.display()))?;
+    let finished = make(work.path())?;
+    if folder.exists() && !is_whole(folder) {
+        fs::rename(folder, work.path().join("replaced"))
+            .with_context(|| format!("the damaged {} cannot be replaced", folder.display()))?;
+    }
+    match fs::rename(finished, folder) {
+        Err(_) if is_whole(folder) => Ok(()), // somebody else was faster
+        outcome => outcome.with_context(|| format!("{} cannot be created", folder.display())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anyhow::bail;
+
+    #[test]
+    fn the_cache_is_below_the_users_cache_folder() {
+        let cache = folder().unwrap();
+        assert!(cache.is_absolute() && cache.ends_with("ddl"));
+    }
+
+    #[test]
+    fn a_damaged_folder_is_replaced_by_a_finished_one_and_a_failure_leaves_nothing() {
+        let cache = tempfile::tempdir().unwrap();
+        let folder = cache.path().join("tool");
+        let is_whole = |folder: &Path| folder.join("whole").is_file();
+        let make = |file: &'static str| {
+            move |work: &Path| {
+                let finished = work.join("finished");
+                fs::create_dir(&finished)?;
+                fs::write(finished.join(file), "")?;
+                Ok(finished)
+            }
+        };
+        assert!(fill(&folder, is_whole, |_| bail!("no network")).is_err());
+        assert_eq!(fs::read_dir(cache.path()).unwrap().count(), 0);
+        fill(&folder, is_whole, make("half")).unwrap();
+        fill(&folder, is_whole, make("whole")).unwrap();
+        assert!(is_whole(&folder) && !folder.join("half").exists());
+        // A second one is not needed.
+        fill(&folder, is_whole, make("other")).unwrap();
+        assert!(is_whole(&folder) && !folder.join("other").exists());
+        assert_eq!(fs::read_dir(cache.path()).unwrap().count(), 1);
+    }
+}

@@ -1,0 +1,158 @@
+//! Links between files of the repository.
+//!
+//! A page of `docs/` is read here and on the site, a crate's README in a registry and in its documentation: their links
+//! out of `docs/` or of the crate are whole addresses, so that they hold everywhere. Links inside `docs/` are checked on the
+//! site (`cargo xtask docs`).
+
+use std::path::{Component, Path, PathBuf};
+
+/// Where the repository is read, before a path in it; `workspace.package.repository` says the same.
+const REPOSITORY: &str = "https://github.com/ddl-forecast/ddl/blob/main/";
+
+/// What is wrong with the links of a file.
+pub(super) fn faults(file: &Path, text: &str, files: &[PathBuf]) -> Vec<String> {
+    if file.extension().is_none_or(|extension| extension != "md") {
+        return Vec::new();
+    }
+    let at = file.display();
+    let mut faults: Vec<String> = targets(text)
+        .filter_map(|target| Some(format!("{at}: {target}: {}", fault(file, target, files)?)))
+        .collect();
+    if file.ends_with("README.md") && file.starts_with("crates") {
+        let folder = file.with_file_name("examples");
+        let examples = files.iter().filter_map(|file| example_name(&folder, file));
+        let missing = examples.filter(|name| !text.contains(&format!("examples/{name}")));
+        faults.extend(missing.map(|name| format!("{at}: the example {name} is not linked")));
+    }
+    faults
+}
+
+fn fault(file: &Path, target: &str, files: &[PathBuf]) -> Option<&'static str> {
+    let target = target.split('#').next().unwrap_or_default();
+    let is_there = |path: &Path| files.iter().any(|file| file.starts_with(path));
+    if let Some(path) = target.strip_prefix(REPOSITORY) {
+        return (!is_there(Path::new(path))).then_some("there is no such file in the repository");
+    }
+    // In a crate's README a path without a slash or an ending is an item of the crate.
+    let in_crate = file.starts_with("crates");
+    let is_page = Path::new(target).extension().is_some_and(|end| end == "md");
+    let is_path = target.contains('/') || is_page || !in_crate;
+    if target.is_empty() || target.contains(':') || !is_path {
+        return None;
+    }
+    let path = joined(file.parent()?, target);
+    if in_crate || file.starts_with("docs") && !path.starts_with("docs") {
+        return Some("this page is read elsewhere, too: give the whole address in the repository");
+    }
+    (!is_there(&path)).then_some("there is no such file")
+}
+
+/// `folder/relative` without `.` and `..`.
+fn joined(folder: &Path, relative: &str) -> PathBuf {
+    let mut path = PathBuf::new();
+    for part in folder.join(relative).components() {
+        match part {
+            Component::ParentDir => drop(path.pop()),
+            Component::CurDir => {}
+            other => path.push(other),
+        }
+    }
+    path
+}
+
+/// `NAME` of `NAME.rs` and `NAME/main.rs` in the folder of examples.
+fn example_name(examples: &Path, file: &Path) -> Option<String> {
+    let within = file.strip_prefix(examples).ok()?;
+    let name = match within.parent()?.to_str()? {
+        "" => within.to_str()?.strip_suffix(".rs")?,
+        folder => within.ends_with("main.rs").then_some(folder)?,
+    };
+    Some(name.to_owned())
+}
+
+/// What the links of a page lead to, outside blocks of code.
+fn targets(text: &str) -> impl Iterator<Item = &str> {
+    let mut in_code = false;
+    let prose = text.lines().filter(move |line| {
+        let is_fence = line.trim_start().starts_with("```");
+        in_code ^= is_fence;
+        !in_code && !is_fence
+    });
+    let links = prose.flat_map(|line| line.split("](").skip(1));
+    links.filter_map(|rest| rest.split([')', ' ']).next())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(file: &str, text: &str) -> Vec<String> {
+        let files = [
+            "docs/goals.md",
+            "crates/a/examples/one.rs",
+            "crates/a/examples/two/main.rs",
+            "README.md",
+        ];
+        faults(Path::new(file), text, &files.map(PathBuf::from))
+    }
+
+    #[test]
+    fn the_address_is_that_of_the_workspace() {
+        let manifest = include_str!("../../../Cargo.toml");
+        let address = REPOSITORY.strip_suffix("/blob/main/").unwrap();
+        assert!(manifest.contains(&format!("repository = \"{address}\"\n")));
+    }
+
+    #[test]
+    fn links_that_lead_somewhere_pass() {
+        let whole = format!("[a]({REPOSITORY}docs/goals.md#top), [b](https://other/y), [c](#d)");
+        for (file, text) in [
+            ("docs/x.md", whole.as_str()),
+            ("docs/x.md", "[a](goals.md#b)\n```\n[a](b.md)\n```\n"),
+            ("README.md", "[a](docs/goals.md) ![b](docs)"),
+            ("datasets/README.md", "[a](../docs/goals.md)"),
+            (
+                "crates/b/README.md",
+                "[`Flow::chart`](Flow::chart) [c](Flow)",
+            ),
+        ] {
+            assert_eq!(found(file, text), [] as [&str; 0], "{file}");
+        }
+    }
+
+    #[test]
+    fn links_that_lead_nowhere_or_only_from_here_are_named() {
+        let gone = format!("[a]({REPOSITORY}docs/gone.md)");
+        for (file, text, needle) in [
+            (
+                "docs/x.md",
+                gone.as_str(),
+                "docs/gone.md: there is no such file in the repository",
+            ),
+            (
+                "README.md",
+                "[a](docs/gone.md)",
+                "docs/gone.md: there is no such file",
+            ),
+            ("docs/x.md", "[a](../README.md)", "whole address"),
+            (
+                "crates/b/README.md",
+                "[a](../../docs/goals.md)",
+                "whole address",
+            ),
+            ("crates/b/README.md", "[a](NOTES.md)", "whole address"),
+        ] {
+            let found = found(file, text);
+            assert!(found.len() == 1 && found[0].contains(needle), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn every_example_is_linked() {
+        let text = format!("[one]({REPOSITORY}crates/a/examples/one.rs)");
+        assert_eq!(
+            found("crates/a/README.md", &text),
+            ["crates/a/README.md: the example two is not linked"]
+        );
+    }
+}
