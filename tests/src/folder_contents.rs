@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Every file below a folder with its bytes, and every folder with `None`, by path relative to it.
+/// Every file below a folder with its bytes (a link with its target), and every folder with `None`, by path relative to it.
 pub type Contents = BTreeMap<PathBuf, Option<Vec<u8>>>;
 
 /// Reads everything below `folder`.
@@ -13,14 +13,21 @@ pub fn read(folder: &Path) -> Contents {
     while let Some(next) = waiting.pop() {
         let entries = std::fs::read_dir(&next).expect("the folder can be listed");
         for entry in entries {
-            let path = entry.expect("the folder can be listed").path();
+            let entry = entry.expect("the folder can be listed");
+            let (path, kind) = (entry.path(), entry.file_type().expect("the kind of a file"));
             let relative = path.strip_prefix(folder).unwrap_or(&path).to_owned();
-            if path.is_dir() {
+            if kind.is_dir() {
                 contents.insert(relative, None);
                 waiting.push(path);
-            } else {
+            } else if kind.is_symlink() {
+                let target = std::fs::read_link(&path).expect("the link can be read");
+                contents.insert(relative, Some(target.into_os_string().into_encoded_bytes()));
+            } else if kind.is_file() {
                 let bytes = std::fs::read(&path).expect("the file can be read");
                 contents.insert(relative, Some(bytes));
+            } else {
+                // A pipe: to open it would wait for who writes to it.
+                contents.insert(relative, Some(Vec::new()));
             }
         }
     }
