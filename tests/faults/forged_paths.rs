@@ -1,34 +1,30 @@
 //! No file is named by what stands in a model file.
 
-use super::folder_with_model;
-use ddl_tests::{figures, processes, program, safetensors_file};
+use super::EVALUATE;
+use ddl_tests::place::{Place, json};
+use ddl_tests::{figures, safetensors_file};
 use serde_json::Value;
-use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// Runs the program. Who opens a pipe that nobody writes to waits for ever, and is ended here.
-fn ends(folder: &Path, line: &str) -> bool {
-    let mut command = program::command(folder, line);
-    let mut child = command
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
+/// Whether the program ends within this time. Who opens a pipe that nobody writes to waits for ever, and is ended here.
+fn ends(place: &Place, line: &str, within: Duration) -> bool {
+    let mut child = place.start(line);
+    drop((child.stdout.take(), child.stderr.take()));
     let begun = Instant::now();
-    while begun.elapsed() < Duration::from_secs(30) {
+    while begun.elapsed() < within {
         if child.try_wait().unwrap().is_some() {
             return true;
         }
         std::thread::sleep(Duration::from_millis(5));
     }
-    processes::signal(child.id(), "KILL");
+    child.kill().unwrap();
     child.wait().unwrap();
     false
 }
 
-fn pipe(folder: &Path) -> String {
-    let pipe = folder.join("pipe");
+fn pipe(place: &Place) -> String {
+    let pipe = place.at("pipe");
     let made = Command::new("mkfifo").arg(&pipe).status().unwrap();
     assert!(made.success());
     pipe.display().to_string()
@@ -52,91 +48,91 @@ fn texts(value: &Value, pointer: &str, found: &mut Vec<String>) {
 /// Every text of `config.json`, one after the other, is the path of a pipe: opening it would never end.
 #[test]
 fn no_text_of_a_configuration_is_opened() {
-    let folder = folder_with_model();
-    let here = folder.path();
-    let forged = pipe(here);
+    let place = Place::with_model();
+    let forged = pipe(&place);
     // that such a pipe is noticed
-    assert!(!ends_soon(here, &format!("forecast --model run {forged}")));
-    let file = here.join("run/config.json");
-    let whole = std::fs::read(&file).unwrap();
-    let config: Value = serde_json::from_slice(&whole).unwrap();
+    let opened = format!("forecast --model run {forged}");
+    assert!(!ends(&place, &opened, Duration::from_secs(2)));
+    let config: Value = json(&place.text("run/config.json"));
     let mut pointers = Vec::new();
     texts(&config, "", &mut pointers);
     assert!(pointers.len() > 8, "{pointers:?}");
-    let mut tried = 0;
+    let commands = ["forecast --model run tracks.csv", "info --model run"];
+    let commands = &commands[..figures::rounds(1, 2)];
     for pointer in &pointers {
         let mut config = config.clone();
         *config.pointer_mut(pointer).unwrap() = Value::from(forged.clone());
-        std::fs::write(&file, config.to_string()).unwrap();
-        let commands = ["forecast --model run tracks.csv", "info --model run"];
-        let commands = commands.iter().take(figures::rounds(1, 2));
+        place.write("run/config.json", config.to_string());
         for command in commands {
-            assert!(ends(here, command), "{pointer} was opened by: {command}");
-            tried += 1;
+            let ended = ends(&place, command, Duration::from_secs(30));
+            assert!(ended, "{pointer} was opened by: {command}");
         }
     }
     figures::tell(
         "paths in a configuration",
         format!(
-            "{} texts, each the path of a pipe that blocks who opens it; {tried} commands",
-            pointers.len()
+            "{} texts, each the path of a pipe that blocks who opens it; {} commands",
+            pointers.len(),
+            pointers.len() * commands.len()
         ),
         "none was opened",
     );
 }
 
-/// A model forged throughout, so that it loads: its names of fold, recordings, commit, device are paths.
+/// A run with this path for its names of fold, recordings, commit and device, so that it loads.
+fn forge(place: &Place, original: &Value, path: &str) {
+    let mut config = original.clone();
+    for pointer in [
+        "/data/fold",
+        "/data/sha256",
+        "/commit",
+        "/libtorch",
+        "/device",
+    ] {
+        *config.pointer_mut(pointer).unwrap() = path.into();
+    }
+    config["data"]["validation_recordings"] = vec![path].into();
+    place.write("run/config.json", config.to_string());
+    for name in ["model", "proposal", "experts"] {
+        let file = format!("run/{name}.safetensors");
+        let bytes = place.read(&file);
+        let (mut header, numbers) = safetensors_file::parts(&bytes).unwrap();
+        let mut origin: Value = json(header["__metadata__"]["origin"].as_str().unwrap());
+        for fact in ["data.fold", "data.sha256"] {
+            origin[fact] = path.into();
+        }
+        origin["data.validation_recordings"] =
+            config["data"]["validation_recordings"].to_string().into();
+        header["__metadata__"]["origin"] = origin.to_string().into();
+        place.write(&file, safetensors_file::join(&header, numbers));
+    }
+}
+
 #[test]
 fn a_model_with_paths_for_names_forecasts_as_before() {
-    let folder = folder_with_model();
-    let here = folder.path();
+    let place = Place::with_model();
     let forecast = "forecast --model run tracks.csv --threads 1";
-    let expected = program::run(here, forecast).succeeds();
+    let pack = "pack --model run --out packed";
+    let expected = place.ok(forecast);
+    let original: Value = json(&place.text("run/config.json"));
     let paths = [
-        pipe(here),
+        pipe(&place),
         "../../etc/passwd".to_owned(),
         "/etc/passwd\u{0}x".to_owned(),
     ];
-    let run = here.join("run");
-    let original = std::fs::read(run.join("config.json")).unwrap();
     for path in &paths {
-        let mut config: Value = serde_json::from_slice(&original).unwrap();
-        for pointer in [
-            "/data/fold",
-            "/data/sha256",
-            "/commit",
-            "/libtorch",
-            "/device",
-        ] {
-            *config.pointer_mut(pointer).unwrap() = Value::from(path.clone());
+        forge(&place, &original, path);
+        for line in [forecast, pack] {
+            assert!(
+                ends(&place, line, Duration::from_secs(30)),
+                "{path} was opened"
+            );
         }
-        config["data"]["validation_recordings"] = Value::from(vec![path.clone()]);
-        std::fs::write(run.join("config.json"), config.to_string()).unwrap();
-        for name in ["model", "proposal", "experts"] {
-            let file = run.join(format!("{name}.safetensors"));
-            let bytes = std::fs::read(&file).unwrap();
-            let (mut header, numbers) = safetensors_file::parts(&bytes).unwrap();
-            let origin = header["__metadata__"]["origin"].as_str().unwrap();
-            let mut origin: Value = serde_json::from_str(origin).unwrap();
-            for fact in ["data.fold", "data.sha256"] {
-                origin[fact] = Value::from(path.clone());
-            }
-            origin["data.validation_recordings"] =
-                Value::from(config["data"]["validation_recordings"].to_string());
-            header["__metadata__"]["origin"] = Value::from(origin.to_string());
-            let forged = safetensors_file::join(&header, numbers);
-            std::fs::write(&file, forged).unwrap();
-        }
-        assert!(ends(here, forecast), "{path} was opened");
-        assert_eq!(program::run(here, forecast).succeeds(), expected);
-        assert!(
-            ends(here, "pack --model run --out packed"),
-            "{path} was opened"
-        );
-        let _ = program::run(here, "forecast --model packed tracks.csv").succeeds();
+        assert_eq!(place.ok(forecast), expected);
+        let _ = place.ok(pack);
+        let _ = place.ok("forecast --model packed tracks.csv");
         // data is looked for by the names of the convention alone: there is no such fold
-        let message = program::run(here, "evaluate --model run --threads 1").fails();
-        assert!(message.contains("corridor"), "{message}");
+        place.fails("evaluate --model run --threads 1", &["corridor"]);
     }
     figures::tell(
         "a model forged to load, with paths for names",
@@ -151,49 +147,29 @@ fn a_model_with_paths_for_names_forecasts_as_before() {
 /// A file of a run that is a link: read through, as everything the system names; written over, not through.
 #[test]
 fn nothing_is_written_through_a_link() {
-    let folder = folder_with_model();
-    let here = folder.path();
-    let (model, elsewhere) = (here.join("run/model.safetensors"), here.join("elsewhere"));
-    std::fs::rename(&model, &elsewhere).unwrap();
-    std::os::unix::fs::symlink("../elsewhere", &model).unwrap();
-    let _ = program::run(here, "forecast --model run tracks.csv").succeeds();
+    let place = Place::with_model();
+    let link = |to: &str, name: &str| std::os::unix::fs::symlink(to, place.at(name)).unwrap();
+    let forecast = "forecast --model run tracks.csv";
+    std::fs::rename(place.at("run/model.safetensors"), place.at("elsewhere")).unwrap();
+    link("../elsewhere", "run/model.safetensors");
+    let canary = place.at("canary").display().to_string();
     for (line, name) in [
-        ("forecast --model run tracks.csv --output out", "out"),
+        (&format!("{forecast} --output out")[..], "out"),
         ("pack --model run --out packed", "packed"),
-        (
-            "evaluate --model run --protocol fair --test-walkers 20 --threads 1",
-            "run/report.json",
-        ),
+        (EVALUATE, "run/report.json"),
     ] {
-        let canary = here.join("canary");
-        std::fs::write(&canary, "untouched").unwrap();
-        std::os::unix::fs::symlink(&canary, here.join(name)).unwrap();
-        let _ = program::run(here, line).succeeds();
-        assert_eq!(std::fs::read(&canary).unwrap(), b"untouched", "{line}");
-        assert!(!here.join(name).is_symlink(), "{line}");
+        place.write("canary", "untouched");
+        link(&canary, name);
+        let _ = place.ok(line);
+        assert_eq!(place.text("canary"), "untouched", "{line}");
+        assert!(!place.at(name).is_symlink(), "{line}");
     }
     // a link to nowhere is no model, and makes none
-    std::fs::remove_file(&elsewhere).unwrap();
-    let message = program::run(here, "forecast --model run tracks.csv").fails();
-    assert!(message.contains("not finished"), "{message}");
+    place.remove("elsewhere");
+    place.fails(forecast, &["not finished"]);
     figures::tell(
         "links among the files of a run",
         "3 outputs and a model",
         "read through, never written through",
     );
-}
-
-/// Whether it ends within two seconds.
-fn ends_soon(folder: &Path, line: &str) -> bool {
-    let mut command = program::command(folder, line);
-    let mut child = command
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(Duration::from_secs(2));
-    let ended = child.try_wait().unwrap().is_some();
-    processes::signal(child.id(), "KILL");
-    child.wait().unwrap();
-    ended
 }

@@ -5,12 +5,10 @@
 use ddl::data::{PedestrianId, Position};
 use ddl::eval::baseline::ConstantVelocity;
 use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster, LiveForecaster};
-use ddl_tests::{figures, processes, tiny_model};
-use std::process::Command;
+use ddl_tests::one_forecast::One;
+use ddl_tests::{figures, processes};
 use std::time::Instant;
 
-/// Set in the child: the file to write to.
-const CHILD: &str = "DDL_TESTS_LONG_STREAM";
 /// Frames of an hour, 0.4 s apart.
 const HOUR: usize = 9_000;
 const MIB: u64 = 1 << 20;
@@ -39,7 +37,7 @@ fn quantiles(seconds: &mut [f64]) -> [f64; 2] {
 }
 
 /// What the child does: streams `frames`, of which the first `part` and the last are measured.
-fn stream(model: impl Forecaster, (frames, part): (usize, usize)) -> Option<String> {
+fn stream(model: impl Forecaster, (frames, part): (usize, usize)) -> Option<Vec<f64>> {
     let mut live = LiveForecaster::new(model);
     let mut seconds = vec![0.0; frames];
     let (mut early, mut most) = (0, 0);
@@ -55,28 +53,19 @@ fn stream(model: impl Forecaster, (frames, part): (usize, usize)) -> Option<Stri
     }
     let late = processes::resident_bytes()?;
     let peak = processes::peak_bytes(std::process::id())?;
-    let of_first = quantiles(&mut seconds[..part].to_vec());
-    let of_last = quantiles(&mut seconds[frames - part..].to_vec());
-    let numbers = [early as f64, late as f64, peak as f64, most as f64];
-    let numbers = numbers.iter().chain(&of_first).chain(&of_last);
-    Some(numbers.map(f64::to_string).collect::<Vec<_>>().join(" "))
-}
-
-/// One forecast a pedestrian, as a robot takes it.
-struct OneForecast(Ddl);
-
-impl Forecaster for OneForecast {
-    fn name(&self) -> String {
-        "one forecast".to_owned()
-    }
-
-    fn forecast(
-        &self,
-        window: &ddl::data::Window,
-    ) -> Result<ddl::Forecast, ddl::eval::ForecastError> {
-        // one window in, one forecast out
-        Ok(self.0.forecast_one(std::slice::from_ref(window))?.remove(0))
-    }
+    let [median, p99] = quantiles(&mut seconds[..part].to_vec());
+    let [last_median, last_p99] = quantiles(&mut seconds[frames - part..].to_vec());
+    let [early, late, peak] = [early, late, peak].map(|bytes| bytes as f64);
+    Some(vec![
+        early,
+        late,
+        peak,
+        most as f64,
+        median,
+        p99,
+        last_median,
+        last_p99,
+    ])
 }
 
 #[test]
@@ -87,9 +76,9 @@ fn a_day_of_forecasts_does_not_add_up() {
         "a_day_of_forecasts_does_not_add_up",
         size,
         || {
-            tiny_model::use_one_thread();
+            ddl::prepare(DeviceChoice::Cpu, Some(1)).unwrap();
             let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu).unwrap();
-            stream(OneForecast(model), size)
+            stream(One(&model), size)
         },
     );
 }
@@ -111,28 +100,11 @@ fn watched(
     what: &str,
     test: &str,
     (frames, part): (usize, usize),
-    stream: impl FnOnce() -> Option<String>,
+    stream: impl FnOnce() -> Option<Vec<f64>>,
 ) {
-    if let Some(file) = std::env::var_os(CHILD) {
-        return std::fs::write(file, stream().unwrap_or_default()).unwrap();
-    }
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("numbers");
-    let output = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", &format!("long_stream::{test}")])
-        .env(CHILD, &file)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{output:?}");
-    let numbers = std::fs::read_to_string(file).unwrap();
-    if numbers.is_empty() {
-        eprintln!("skipped: this system does not tell the memory of a process");
+    let Some(numbers) = processes::alone(&format!("long_stream::{test}"), stream) else {
         return;
-    }
-    let numbers: Vec<f64> = numbers
-        .split(' ')
-        .map(|number| number.parse().unwrap())
-        .collect();
+    };
     let [early, late, peak, most, median, p99, last_median, last_p99] = numbers[..] else {
         panic!("{numbers:?}");
     };

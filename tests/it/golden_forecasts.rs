@@ -100,26 +100,29 @@ fn built_in_models_forecast_as_libtorch_did() {
     }
 }
 
-/// Alone or among other windows, on one thread or three: the same bits, goals and certificates included.
+/// Alone or among other windows, on one thread or two, from a longer recording or a shorter one: the same bits, goals and certificates
+/// included.
 #[test]
 fn a_forecast_has_the_same_bits_in_any_company() {
     let crowd = ddl_tests::crowd::windows(3, 40);
-    let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu).unwrap();
     let pool = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         pool.build().unwrap()
     };
-    let together = pool(1)
-        .install(|| model.forecast_certified(&crowd))
-        .unwrap();
-    let threads = pool(3)
-        .install(|| model.forecast_certified(&crowd))
-        .unwrap();
-    assert_eq!(together, threads);
-    for (window, among) in crowd.iter().zip(&together) {
-        let alone = model
-            .forecast_certified(std::slice::from_ref(window))
+    for model in BuiltinModel::ALL {
+        let model = Ddl::builtin(model, DeviceChoice::Cpu).unwrap();
+        let together = pool(1)
+            .install(|| model.forecast_certified(&crowd))
             .unwrap();
-        assert_eq!(&alone[0], among);
+        let threads = pool(2)
+            .install(|| model.forecast_certified(&crowd))
+            .unwrap();
+        assert_eq!(together, threads);
+        for (window, among) in crowd.iter().zip(&together) {
+            for alone in [window.clone(), window.without_future()] {
+                let alone = model.forecast_certified(&[alone]).unwrap();
+                assert_eq!(&alone[0], among);
+            }
+        }
     }
 }

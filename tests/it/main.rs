@@ -1,13 +1,30 @@
-//! Tests across crates that need no libtorch.
+//! Tests across crates and of the program `ddl` that need no libtorch.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-mod certified_flow;
+mod bounded_motion;
+mod errors;
+mod evaluate;
 mod examples;
+mod forecast;
 mod golden_forecasts;
 mod guarantee_on_real_people;
-mod leak_baselines;
-mod leak_goals;
-mod leak_is_caught;
+#[cfg(unix)]
+mod guide;
+mod keep_clear;
+mod leak;
+mod leak_in_reports;
+mod live;
+mod manners;
 mod other_program;
-mod outside_bytes;
+mod own_recordings;
+mod packed;
+mod packed_benchmark;
+mod tracks_as_they_come;
+
+#[test]
+fn readers_keep_their_laws_on_their_corpora_and_what_is_made_of_them() {
+    for reader in ddl_tests::outside_bytes::READERS {
+        ddl_tests::outside_bytes::corpus::run(reader);
+    }
+}

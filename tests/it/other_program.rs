@@ -1,56 +1,198 @@
-//! Forecasts of another program, without libtorch: the Python example on real recordings is the baseline it says.
+//! `ddl windows` and `ddl evaluate --forecasts`: another program's forecasts, end to end.
 
-use ddl_data::{Convention, Dataset, WindowRule};
-use ddl_eval::external::{self, Coverage, ExternalFormat};
-use ddl_eval::{Conditions, Protocol, baseline};
-use ddl_tests::{other_program, recordings};
+use ddl::data::{Format, WindowRule, parse_recording};
+use ddl::eval::ResultRow;
+use ddl::eval::external::{self, Coverage, ExternalFormat};
+use ddl::report::Report;
+use ddl_tests::place::Place;
+use ddl_tests::skip::skip;
+use ddl_tests::{own_tracks, recordings};
+use std::path::Path;
+use std::process::Command;
 
-/// Constant velocity under the published rule, printed by an independent program; and the walkers.
-const EXPECTED: [(&str, f64, f64, usize); 2] =
-    [("zara1", 0.428, 0.953, 2324), ("hotel", 0.325, 0.615, 1026)];
+const BASELINE: &str = "constant velocity (last step)";
+const EVALUATE: &str = "evaluate --convention simulated --fold plaza --forecasts";
 
+/// Lets the program of `docs/your-model.md`, constant velocity in Python, forecast `windows.jsonl` into `forecasts.jsonl`; false, with the
+/// reason printed, where there is no Python, which CI must have.
+fn python_forecasts(place: &Place) -> bool {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/ddl-cli/examples");
+    let output = Command::new("python3")
+        .arg(examples.join("constant_velocity.py"))
+        .args(["windows.jsonl", "forecasts.jsonl"])
+        .current_dir(place.path())
+        .output();
+    match output {
+        Ok(output) => {
+            assert!(output.status.success(), "{output:?}");
+            true
+        }
+        Err(error) => skip(format!("python3 cannot be started: {error}")).unwrap_or(false),
+    }
+}
+
+fn row<'a>(report: &'a Report, protocol: &str, forecaster: &str) -> &'a ResultRow {
+    let of = |row: &&ResultRow| {
+        row.conditions.protocol.name() == protocol && row.conditions.forecaster == forecaster
+    };
+    report.rows().iter().find(of).unwrap()
+}
+
+/// The example's row and the baseline's agree, under both protocols.
+fn report(place: &Place, folder: &str, name: &str) -> Report {
+    let report = Report::load(&place.at(folder).join("report.json")).unwrap();
+    for protocol in ["fair", "single"] {
+        let [mine, baseline] = [name, BASELINE].map(|name| &row(&report, protocol, name).scores);
+        assert_eq!(mine.pedestrians, baseline.pedestrians);
+        for (a, b) in [
+            (mine.min_ade, baseline.min_ade),
+            (mine.min_fde, baseline.min_fde),
+            (mine.joint_ade, baseline.joint_ade),
+            (mine.joint_fde, baseline.joint_fde),
+            (mine.miss_rate, baseline.miss_rate),
+            (mine.collision_rate, baseline.collision_rate),
+        ] {
+            assert!((a - b).abs() < 1e-9, "{protocol}: {a} and {b}");
+        }
+    }
+    report
+}
+
+/// The numbers of constant velocity under the published rule were printed by an independent program.
 #[test]
-fn the_python_example_has_the_numbers_of_constant_velocity() {
+fn the_python_example_is_scored_as_the_baseline_on_real_recordings() {
     let Some(data) = recordings::star_folder() else {
         return;
     };
-    let dataset = Dataset::load(Convention::Star, &data).unwrap();
-    for (fold, ade, fde, walkers) in EXPECTED {
-        let folder = tempfile::tempdir().unwrap();
-        let windows = dataset.fold(fold).unwrap();
-        let windows = windows.test_windows(WindowRule::Published);
-        let file = std::fs::File::create(folder.path().join("windows.jsonl")).unwrap();
-        external::write_windows(&windows, file).unwrap();
-        if !other_program::forecasts_in(folder.path()) {
+    for (fold, printed, walkers) in [
+        ("zara1", "0.428/0.953", 2324),
+        ("hotel", "0.325/0.615", 1026),
+    ] {
+        let place = Place::empty();
+        let of = format!("--convention star --fold {fold} --data {}", data.display());
+        assert_eq!(
+            place.ok(&format!("windows {of} --output windows.jsonl")),
+            ""
+        );
+        if !python_forecasts(&place) {
             return;
         }
-        let path = folder.path().join("forecasts.jsonl");
-        let format = ExternalFormat::of_file(&path);
-        let matched = external::read(&path, format, &windows, Coverage::Whole).unwrap();
-        assert_eq!(
-            (matched.pedestrians(), matched.test_subset()),
-            (walkers, None)
+        let evaluate = "evaluate --forecasts forecasts.jsonl --name mine --out results";
+        let summary = place.ok(&format!("{evaluate} {of}"));
+        let line = summary.lines().find(|line| line.ends_with("  mine"));
+        let line = line.unwrap();
+        assert!(
+            line.contains(printed) && line.contains(&walkers.to_string()),
+            "{line}"
         );
-        let conditions = Conditions::new(
-            Convention::Star,
-            WindowRule::Published,
-            Protocol::Single,
-            fold,
-            "python",
-        );
-        let rows = external::measure(&conditions, &matched, baseline::NOISE_SEED).unwrap();
-        let (mine, baseline) = (&rows[0], &rows[1]);
-        assert_eq!(mine.conditions.forecaster, "python");
+        let report = report(&place, "results", "mine");
+        let mine = row(&report, "fair", "mine");
+        let selection = mine.conditions.selection.as_deref().unwrap();
         assert_eq!(
-            baseline.conditions.forecaster,
-            "constant velocity (last step)"
+            selection,
+            "made by another program, read from forecasts.jsonl"
         );
         assert_eq!(mine.scores.pedestrians, walkers);
-        assert!((mine.scores.min_ade - ade).abs() <= 0.000_501, "{mine:?}");
-        assert!((mine.scores.min_fde - fde).abs() <= 0.000_501, "{mine:?}");
-        assert!((mine.scores.min_ade - baseline.scores.min_ade).abs() < 1e-9);
-        assert!((mine.scores.min_fde - baseline.scores.min_fde).abs() < 1e-9);
-        assert!((mine.scores.joint_fde - baseline.scores.joint_fde).abs() < 1e-9);
-        assert!((mine.scores.miss_rate - baseline.scores.miss_rate).abs() < 1e-9);
+        assert_eq!(mine.conditions.window_rule, WindowRule::Published);
+        let page = place.text("results/report.md");
+        assert!(page.contains("| mine ") && page.contains(printed), "{page}");
+    }
+}
+
+/// A folder with the windows of a simulated crowd and the example's forecasts of them.
+fn simulated() -> Option<Place> {
+    let place = Place::empty();
+    let windows = "windows --convention simulated --fold plaza --output windows.jsonl";
+    assert_eq!(place.ok(windows), "");
+    python_forecasts(&place).then_some(place)
+}
+
+#[test]
+fn a_part_of_the_walkers_is_scored_only_when_asked_for() {
+    let Some(place) = simulated() else { return };
+    let summary = place.ok(&format!("{EVALUATE} forecasts.jsonl --out whole"));
+    assert!(summary.contains("  forecasts\n"), "{summary}");
+    let _ = report(&place, "whole", "forecasts");
+
+    let text = place.text("forecasts.jsonl");
+    let some: Vec<&str> = text.lines().skip(7).collect();
+    place.write("some.jsonl", some.join("\n"));
+    let part = format!("{EVALUATE} some.jsonl --out part");
+    let (count, all) = (some.len(), some.len() + 7);
+    let missing = format!("some.jsonl forecasts {count} of the {all} walkers");
+    place.fails(&part, &[&missing, "--intersection", "rule complete"]);
+    let summary = place.ok(&format!("{part} --intersection"));
+    assert!(summary.contains("  some\n"), "{summary}");
+    let report = report(&place, "part", "some");
+    // Then a digest of who they are, the same in every row.
+    let subset = format!("walkers forecast by some.jsonl: {count} of {all}, digest ");
+    let first = &report.rows()[0].conditions.test_subset;
+    assert!(first.as_deref().unwrap().starts_with(&subset), "{first:?}");
+    for row in report.rows() {
+        assert_eq!(&row.conditions.test_subset, first);
+        assert_eq!(row.scores.pedestrians, count);
+    }
+}
+
+#[test]
+fn what_cannot_be_measured_is_refused_with_the_reason() {
+    let Some(place) = simulated() else { return };
+    for (arguments, needle) in [
+        (
+            "forecasts.jsonl --protocol published",
+            "inside the forecaster",
+        ),
+        ("nowhere.jsonl", "cannot read nowhere.jsonl"),
+        ("forecasts.csv", "cannot read forecasts.csv"),
+        (
+            "windows.jsonl",
+            "windows.jsonl, line 1, hypotheses: is missing",
+        ),
+        (
+            "forecasts.jsonl --window-rule published",
+            "of nobody in the windows",
+        ),
+    ] {
+        place.fails(&format!("{EVALUATE} {arguments}"), &[needle]);
+    }
+    place.all_fail(&[
+        "evaluate --convention simulated --fold doorway --forecasts forecasts.jsonl => the windows are of doorway, the file also of plaza",
+        "windows --convention simulated => corridor, crossing, plaza",
+        "evaluate => --data",
+    ]);
+    place.all_refused(&[
+        "evaluate --model run --forecasts forecasts.jsonl => ",
+        "evaluate --model run --fold plaza => ",
+        "evaluate --forecasts forecasts.jsonl --fold plaza --window-rule all => ",
+    ]);
+}
+
+/// Both formats that `ddl forecast` writes are formats that are read, as they are.
+#[test]
+fn what_ddl_forecast_writes_is_read_back() {
+    let place = Place::with_model();
+    let rows = own_tracks::three_people(20);
+    let tracks = own_tracks::csv(&rows);
+    let recording = parse_recording(tracks.as_bytes(), "tracks", Format::Table).unwrap();
+    let windows = recording.windows(WindowRule::Complete);
+    assert_eq!(windows.len(), 1);
+    let read = |options: &str, format: ExternalFormat| {
+        let text = place.forecast(&rows, options).succeeds();
+        let coverage = Coverage::Intersection; // other moments than the one with a future are forecast too
+        external::read_from(text.as_bytes(), "f", format, &windows, coverage).unwrap()
+    };
+    let plain = read("--format jsonl", ExternalFormat::JsonLines);
+    assert_eq!(plain.forecasts[0].hypotheses(), 20);
+    assert!(plain.forecasts[0].has_goals() && plain.test_subset().is_none());
+    let certified = read("--format jsonl --certificate", ExternalFormat::JsonLines);
+    assert_eq!(certified.forecasts, plain.forecasts);
+    for options in ["--format csv", "--format csv --certificate"] {
+        let table = read(options, ExternalFormat::Table);
+        for (i, k) in (0..3).flat_map(|i| (0..20).map(move |k| (i, k))) {
+            let (a, b) = (&table.forecasts[0], &plain.forecasts[0]);
+            let mut pairs = a.hypothesis(i, k).iter().zip(b.hypothesis(i, k));
+            assert!(pairs.all(|(a, b)| own_tracks::alike_in_a_table(*a, *b)));
+            assert_eq!(a.weight(i, k).to_bits(), b.weight(i, k).to_bits());
+        }
     }
 }

@@ -1,36 +1,30 @@
-//! Tests across crates that need libtorch, and those of the program `ddl`.
+//! Tests of training, across crates and of the program `ddl`, which need libtorch.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-mod bounded_motion;
-mod builtin;
-mod certificates;
-mod convergence;
-mod errors;
-mod evaluate_report;
-mod examples;
-mod forecast_own_tracks;
-mod goals_and_info;
-mod goals_measured;
-mod guide;
-mod keep_clear;
-mod leak;
-mod leak_in_reports;
-mod live;
-mod live_program;
-mod manners;
-mod other_program;
-mod outside_bytes;
-mod outside_recordings;
-mod own_recordings;
+mod from_training;
 mod own_training;
-mod packed;
-mod precision;
-mod prepare;
-mod real_recordings;
-mod recipes;
-mod start_up;
-mod tracks_as_they_come;
 mod train_resume;
 mod training_memory;
-mod view;
+
+#[cfg(unix)]
+#[test]
+fn the_page_about_training() {
+    ddl_tests::guide::check("docs/training.md");
+}
+
+#[test]
+fn readers_of_trainings_keep_their_laws_on_their_corpora_and_what_is_made_of_them() {
+    for reader in ddl_tests::outside_bytes::TORCH_READERS {
+        ddl_tests::outside_bytes::corpus::run(reader);
+    }
+}
+
+#[test]
+fn the_example_of_training_makes_its_steps() {
+    let here = std::path::Path::new(".");
+    let output = ddl_tests::example::run("ddl-star", "training_steps", here, "1 0.1");
+    assert_eq!(output.succeeds(), "1 steps, dropout 0.1\n");
+    // An example that is added is run from then on.
+    assert_eq!(ddl_tests::example::all_of("ddl-star").len(), 1);
+}

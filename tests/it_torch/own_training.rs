@@ -1,36 +1,24 @@
-//! Training on own recordings beside the built-in models: what is measured on the validation part, and weights to begin with.
+//! Training on own recordings, alone and beside the built-in models: what is measured on the validation part, and weights to begin with.
 
 use ddl::{RunConfig, RunDirectory};
-use ddl_tests::own_tracks::{self, Row};
-use ddl_tests::program;
+use ddl_tests::own_tracks;
+use ddl_tests::place::Place;
 use serde_json::Value;
-use std::path::Path;
 
 /// Options that make a training one of seconds.
 const SMALL: &str = "--train-walkers 64 --batch-walkers 16 --proposal-steps 5 --threads 1";
+const ALONE: &str = "--from none --epochs 3";
 
-/// A simulated crowd cut into clips of so many frames (10 a step), as csv files in the folder `clips`.
-fn clips(folder: &Path, scene: &str, frames: i64, count: i64) {
-    let crowds = ddl_tests::crowd::dataset();
-    let recording = crowds.recording(scene).unwrap();
-    std::fs::create_dir(folder.join("clips")).unwrap();
-    for clip in 0..count {
-        let begin = clip * frames;
-        let seen = recording.observations().iter();
-        let rows: Vec<Row> = seen
-            .filter(|seen| (begin..begin + frames).contains(&seen.frame))
-            .map(|seen| {
-                let [x, y] = seen.position;
-                (seen.frame, seen.pedestrian.0, x, y)
-            })
-            .collect();
-        let file = folder.join(format!("clips/clip{clip}.csv"));
-        std::fs::write(file, own_tracks::csv(&rows)).unwrap();
-    }
+fn with_recordings() -> Place {
+    let place = Place::empty();
+    own_tracks::write_recordings(&place);
+    place
 }
 
-fn json(text: &str) -> Value {
-    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+fn with_clips(frames: i64, count: i64) -> Place {
+    let place = Place::empty();
+    own_tracks::write_clips(&place, frames, count);
+    place
 }
 
 /// minADE and pedestrians of the first row of a report.
@@ -40,23 +28,117 @@ fn first_row(report: &Value) -> (f64, u64) {
     (min_ade.as_f64().unwrap(), pedestrians.as_u64().unwrap())
 }
 
+/// The errors on the validation part, by which the best epoch is chosen; the first one's number, and the best one's.
+fn errors(run: &RunDirectory) -> (Vec<f64>, usize) {
+    let epochs = run.metrics().unwrap();
+    let errors: Vec<f64> = epochs.iter().map(|e| e.validation.unwrap()).collect();
+    let best = (0..errors.len()).min_by(|&a, &b| errors[a].total_cmp(&errors[b]));
+    (errors, epochs[best.unwrap()].epoch)
+}
+
+#[test]
+fn own_recordings_are_trained_on_and_measured_with() {
+    let place = with_recordings();
+    let train = format!("train --data mine --out run {ALONE} {SMALL}");
+    let trained = place.json(&format!("{train} --json"));
+    let run = RunDirectory::new(place.at("run"));
+    let config: RunConfig = run.config().unwrap();
+    assert_eq!(config.data.fold, "none");
+    assert_eq!((config.data.validation, config.patience), (0.2, Some(10)));
+    let (errors, best) = errors(&run);
+    assert_eq!(errors.len(), 3);
+    assert_eq!(trained["kept_epoch"], best);
+    // The best epoch is the model, and the others are not kept.
+    assert_eq!(run.kept_epochs().unwrap(), [best]);
+    let epoch = format!("run/epochs/{best:03}.safetensors");
+    assert_eq!(place.read("run/model.safetensors"), place.read(&epoch));
+
+    // The number that the epoch was chosen by is the one that the evaluation reports.
+    let report = place
+        .json("evaluate --model run --data mine --validation --protocol fair --threads 1 --json");
+    let conditions = &report["rows"][0]["conditions"];
+    assert_eq!(conditions["convention"], "own");
+    assert_eq!(
+        conditions["selection"],
+        "epoch of the least validation error"
+    );
+    // Few enough for all of them to have been measured after each epoch.
+    let (min_ade, walkers) = first_row(&report);
+    assert!((50..=1000).contains(&walkers), "{walkers}");
+    assert!(
+        (min_ade - errors[best - 1]).abs() < 1e-9,
+        "{min_ade} {errors:?}"
+    );
+
+    what_it_learned_from_is_no_test(&place);
+    // Its results are kept with it, and make a report.
+    let _ = place.ok("report run --out report");
+    assert!(place.at("report/report.html").is_file());
+    // The best epoch is read before it becomes the model: nothing else is removed.
+    place.remove("run/model.safetensors");
+    let whole = place.read(&epoch);
+    let mut damaged = whole.clone();
+    *damaged.last_mut().unwrap() ^= 1;
+    place.write(&epoch, damaged);
+    place.fails(&train, &["epochs", "is damaged"]);
+    place.write(&epoch, &whole);
+    let _ = place.ok(&train);
+    assert_eq!(place.read("run/model.safetensors"), whole);
+    // A hole in the record would choose among some of the epochs.
+    place.remove("run/model.safetensors");
+    place.remove("run/metrics.jsonl");
+    place.fails(&train, &["no record of epoch 1"]);
+}
+
+/// Whatever it is called, and alone too.
+fn what_it_learned_from_is_no_test(place: &Place) {
+    place.write("renamed.csv", place.read("mine/yard.csv"));
+    let evaluate = |data: &str| format!("evaluate --model run --data {data} --threads 1");
+    for data in ["mine", "mine/lobby.csv", "renamed.csv"] {
+        place.fails(&evaluate(data), &["was trained on"]);
+    }
+    // A file of that name that is only cut, resampled or rounded would be no test.
+    let text = place.text("mine/yard.csv");
+    let (cut, _) = text.trim_end().rsplit_once('\n').unwrap();
+    place.write("other/yard.csv", cut);
+    place.fails(
+        &evaluate("other"),
+        &["called \"yard\" as well", "another name"],
+    );
+}
+
+#[test]
+fn a_recording_can_be_left_out_and_the_run_goes_on_where_it_stopped() {
+    let place = with_recordings();
+    let train = format!(
+        "train --data mine --convention own --fold yard --patience 1 {ALONE} {SMALL} --out"
+    );
+    let told = place.ok(&format!("{train} run"));
+    let next = "next: ddl evaluate --model run --data mine\n";
+    assert!(told.contains(next), "{told}");
+    // Stopped after the goals, then finished by the same command: the same bytes.
+    for half in ["--only-goals", ""] {
+        let _ = place.ok(&format!("{train} halves {half}"));
+    }
+    let weights = |run: &str| place.read(&format!("{run}/model.safetensors"));
+    assert_eq!(weights("run"), weights("halves"));
+    let told = place.ok("evaluate --model run --data mine --protocol fair --threads 1");
+    assert!(told.contains("yard") && !told.contains("lobby"), "{told}");
+}
+
 /// Training, `ddl evaluate` of the run and of the built-in model tell the same numbers of the same windows, also where there are more
 /// pedestrians than epochs are chosen by.
 #[test]
 fn training_and_evaluation_measure_alike() {
-    let place = tempfile::tempdir().unwrap();
-    let folder = place.path();
-    clips(folder, "plaza", 2000, 2);
-    let run = |command_line: &str| program::run(folder, command_line);
+    let place = with_clips(2000, 2);
     let kept = "--data clips --validation-recordings clip1";
-    let train = format!("train {kept} --out run --epochs 1 {SMALL} --json --progress none");
-    let trained = json(&run(&train).succeeds());
+    let train = format!("train {kept} --out run --epochs 1 {SMALL} --progress none");
+    let trained = place.json(&format!("{train} --json"));
     let told = &trained["validation"];
     for (model, part) in [("run", "run"), ("hotel", "builtin")] {
-        let evaluate = format!(
-            "evaluate --model {model} {kept} --validation --protocol fair --threads 1 --json --progress none"
-        );
-        let (min_ade, pedestrians) = first_row(&json(&run(&evaluate).succeeds()));
+        let evaluate = "--validation --protocol fair --threads 1 --json --progress none";
+        let report = place.json(&format!("evaluate --model {model} {kept} {evaluate}"));
+        let (min_ade, pedestrians) = first_row(&report);
         assert!(pedestrians > 1000, "{pedestrians}");
         assert_eq!(told["pedestrians"].as_u64(), Some(pedestrians));
         let said = told[part]["min_ade"].as_f64().unwrap();
@@ -64,7 +146,7 @@ fn training_and_evaluation_measure_alike() {
     }
     assert_eq!(trained["validation_min_ade"], told["run"]["min_ade"]);
     // And in words, by the same command again.
-    let words = run(&train.replace(" --json", "")).succeeds();
+    let words = place.ok(&train);
     for part in ["run", "builtin"] {
         let errors = ["min_ade", "min_fde"].map(|error| told[part][error].as_f64().unwrap());
         let errors = format!("{:.3}/{:.3}", errors[0], errors[1]);
@@ -72,67 +154,45 @@ fn training_and_evaluation_measure_alike() {
     }
     assert!(words.contains("training "), "{words}");
     // Another part than its own would hold what it has learned from.
-    let other = run("evaluate --model run --data clips --validation --validation-recordings clip0");
-    assert!(other.fails().contains("leave --validation-recordings out"));
+    let other = "evaluate --model run --data clips --validation --validation-recordings clip0";
+    place.fails(other, &["leave --validation-recordings out"]);
 }
 
 /// Weights to begin with are an epoch like the others: what comes of them is no worse where it was chosen.
 #[test]
 fn a_training_begins_with_another_models_weights() {
-    let place = tempfile::tempdir().unwrap();
-    let folder = place.path();
-    clips(folder, "plaza", 1500, 2);
-    let run = |command_line: &str| program::run(folder, command_line);
+    let place = with_clips(1500, 2);
     // Steps that destroy more than they mend.
-    let train =
-        format!("train --data clips --from hotel --epochs 2 --learning-rate 0.05 {SMALL} --json");
-    let trained = json(&run(&format!("{train} --out run")).succeeds());
+    let train = format!(
+        "train --data clips --from hotel --epochs 2 --learning-rate 0.05 {SMALL} --json --out"
+    );
+    let trained = place.json(&format!("{train} run"));
     assert_eq!(trained["kept_epoch"], 0);
-    let directory = RunDirectory::new(folder.join("run"));
-    let config: RunConfig = directory.config().unwrap();
-    let from = config.from.unwrap();
+    let run = RunDirectory::new(place.at("run"));
+    let from = run.config().unwrap().from.unwrap();
     assert_eq!(
         (from.model.as_str(), from.sha256.len()),
         ("hotel (built in)", 64)
     );
-    let epochs = directory.metrics().unwrap();
-    let errors: Vec<f64> = epochs
-        .iter()
-        .map(|epoch| epoch.validation.unwrap())
-        .collect();
-    assert_eq!(
-        epochs.iter().map(|epoch| epoch.epoch).collect::<Vec<_>>(),
-        [0, 1, 2]
-    );
-    assert!(errors[0] < errors[1].min(errors[2]), "{errors:?}");
-    assert_eq!(directory.kept_epochs().unwrap(), [0]);
+    let (errors, best) = errors(&run);
+    assert_eq!((errors.len(), best), (3, 0), "{errors:?}");
+    assert_eq!(run.kept_epochs().unwrap(), [0]);
     // Stopped after the goals, then finished by the same command: the same bytes.
     for half in ["--only-goals", ""] {
-        let _ = run(&format!("{train} --out halves {half}")).succeeds();
+        let _ = place.ok(&format!("{train} halves {half}"));
     }
-    let weights = |run: &str| std::fs::read(folder.join(run).join("model.safetensors")).unwrap();
+    let weights = |run: &str| place.read(&format!("{run}/model.safetensors"));
     assert_eq!(weights("run"), weights("halves"));
     // A run and a packed one can be begun with as well; other weights are another run.
-    let _ = run("pack --model run --out packed.safetensors").succeeds();
+    let _ = place.ok("pack --model run --out packed.safetensors");
     for model in ["run", "packed.safetensors"] {
         let train = train.replace("hotel", model);
-        let _ = run(&format!("{train} --out of-{model}")).succeeds();
-        let message = run(&format!("{train} --out run")).fails();
-        assert!(
-            message.contains("holds another run: its from.model"),
-            "{message}"
+        let _ = place.ok(&format!("{train} of-{model}"));
+        place.fails(
+            &format!("{train} run"),
+            &["holds another run: its from.model"],
         );
     }
-    let _ = run("evaluate --model run --data clips --validation --protocol fair --threads 1")
-        .succeeds();
-    let _ = run("report run --out report").succeeds();
-}
-
-#[test]
-fn weights_of_other_sizes_are_refused() {
-    let place = tempfile::tempdir().unwrap();
-    let folder = place.path();
-    clips(folder, "plaza", 1500, 2);
     for (options, words) in [
         (
             "--feed-forward-width 16",
@@ -147,53 +207,36 @@ fn weights_of_other_sizes_are_refused() {
             "star.feed_forward_width is 128, not 2048 as asked for",
         ),
     ] {
-        let command_line = format!("train --data clips --from hotel {options} --out run {SMALL}");
-        let message = program::run(folder, &command_line).fails();
-        assert!(
-            message.contains("hotel (built in)") && message.contains(words),
-            "{message}"
-        );
-        assert!(
-            !folder.join("run").exists(),
-            "{command_line} left a run behind"
-        );
+        let line = format!("train --data clips --from hotel {options} --out new {SMALL}");
+        place.fails(&line, &["hotel (built in)", words]);
     }
-    let message = program::run(folder, "train --data clips --from nowhere --out run").fails();
-    assert!(message.contains("nowhere"), "{message}");
+    place.fails("train --data clips --from nowhere --out new", &["nowhere"]);
 }
 
 /// Clips of 12 s: their last fifths hold no window of 8 s, and too few windows to learn all from.
 #[test]
 fn short_clips_are_validated_on_whole_and_begin_with_the_builtin_model() {
-    let place = tempfile::tempdir().unwrap();
-    let folder = place.path();
-    clips(folder, "plaza", 300, 6);
-    let run = |command_line: &str| program::run(folder, command_line);
-    let train = format!("train --data clips --out run --epochs 1 {SMALL}");
-    let finished = run(&train);
-    let told = finished.stderr.clone();
-    assert!(
-        told.contains("(--validation-recordings clip1,clip4)"),
-        "{told}"
-    );
-    assert!(
-        told.contains("weights of the built-in model hotel (--from none"),
-        "{told}"
-    );
+    let place = with_clips(300, 6);
+    let finished = place.run(&format!("train --data clips --out run --epochs 1 {SMALL}"));
+    for told in [
+        "(--validation-recordings clip1,clip4)",
+        "weights of the built-in model hotel (--from none",
+    ] {
+        assert!(finished.stderr.contains(told), "{finished:?}");
+    }
     let _ = finished.succeeds();
-    let config: RunConfig = RunDirectory::new(folder.join("run")).config().unwrap();
+    let config: RunConfig = RunDirectory::new(place.at("run")).config().unwrap();
     assert_eq!(config.data.validation_recordings, ["clip1", "clip4"]);
     assert_eq!((config.data.validation, config.patience), (0.0, Some(10)));
     // The built-in model is measured on the same clips, named by nobody.
     for data in ["--model run --data clips", "--data clips"] {
         let evaluate = format!("evaluate {data} --validation --protocol fair --threads 1");
-        let words = run(&evaluate).succeeds();
-        let recordings: Vec<&str> = words
-            .lines()
-            .filter(|line| line.starts_with("clip"))
+        let words = place.ok(&evaluate);
+        let recordings = words.lines().filter(|line| line.starts_with("clip"));
+        let names: Vec<&str> = recordings
+            .filter_map(|line| line.split(' ').next())
             .collect();
-        assert_eq!(recordings.len(), 2, "{words}");
-        assert!(recordings[0].starts_with("clip1 ") && recordings[1].starts_with("clip4 "));
+        assert_eq!(names, ["clip1", "clip4"], "{words}");
         assert!(
             words.contains("\nvalidation: clip1, clip4 whole\n"),
             "{words}"
@@ -204,73 +247,50 @@ fn short_clips_are_validated_on_whole_and_begin_with_the_builtin_model() {
 /// A recording whose last fifth holds no window of 8 s: its run cannot be measured on that.
 #[test]
 fn an_empty_validation_part_is_no_result() {
-    let place = tempfile::tempdir().unwrap();
-    let folder = place.path();
-    clips(folder, "plaza", 900, 1);
-    let run = |command_line: &str| program::run(folder, command_line);
+    let place = with_clips(900, 1);
     let train = format!("train --data clips --out run --epochs 1 --from none {SMALL}");
-    let message = run(&train).fails();
-    assert!(
-        message.contains("--validation 0.4") && !message.contains("--validation-recordings"),
-        "{message}"
-    );
-    let _ = run(&format!("{train} --patience 0")).succeeds();
-    let of = "--model run --data clips --threads 1";
-    for command_line in [
-        format!("evaluate {of} --validation"),
-        format!("goals {of} --measure validation"),
-    ] {
-        let message = run(&command_line).fails();
-        assert!(
-            message.contains("--validation 0.4") && message.contains("20 steps in a row"),
-            "{message}"
-        );
+    let message = place.run(&train).fails();
+    assert!(message.contains("--validation 0.4"), "{message}");
+    assert!(!message.contains("--validation-recordings"), "{message}");
+    let _ = place.ok(&format!("{train} --patience 0"));
+    for command in ["evaluate --validation", "goals --measure validation"] {
+        let line = format!("{command} --model run --data clips --threads 1");
+        place.fails(&line, &["--validation 0.4", "20 steps in a row"]);
     }
+    place.write_tracks("short.csv", &own_tracks::three_people(12));
+    place.fails("train --data short.csv --out new", &["no training windows"]);
 }
 
+/// Cameras of 23.98 frames a second that count pixels: what was said is remembered with the run.
 #[test]
-fn recordings_of_a_folder_have_a_row_each() {
-    let place = tempfile::tempdir().unwrap();
-    let folder = place.path();
-    clips(folder, "plaza", 300, 3);
-    let run = |command_line: &str| program::run(folder, command_line);
-    let words = run("evaluate --data clips --protocol fair --threads 1 --out report").succeeds();
-    assert!(words.contains("3 recordings, clip0 to clip2"), "{words}");
-    assert!(!words.contains("clip0+"), "{words}");
-    let by_recording = words.split("\nrecording ").nth(1).unwrap();
-    for clip in ["clip0", "clip1", "clip2"] {
-        let lines = by_recording.lines().filter(|line| line.starts_with(clip));
-        assert_eq!(lines.count(), 1, "{words}");
-    }
-    let page = std::fs::read_to_string(folder.join("report/report.md")).unwrap();
-    assert!(
-        page.contains("By recording") && page.contains("| clip2 "),
-        "{page}"
+fn a_run_remembers_rate_and_homography() {
+    let place = Place::empty();
+    own_tracks::write_film(&place);
+    let units = "--fps 23.98 --homography film/H.txt";
+    let train = format!("train --data film --validation 0.3 {units} --epochs 1 --out run {SMALL}");
+    let _ = place.ok(&train);
+    let kept = RunDirectory::new(place.at("run"))
+        .config()
+        .unwrap()
+        .units
+        .unwrap();
+    assert_eq!(
+        (kept.fps, kept.dt, kept.frame_step),
+        (Some(23.98), None, None)
     );
-
-    let measured = run("goals --measure test --data clips --json --progress none --threads 1");
-    let measured = json(&measured.succeeds());
-    assert_eq!(measured["fold"], "3 recordings, clip0 to clip2");
-    assert_eq!(measured["recordings"].as_object().unwrap().len(), 3);
-    let of_part = run("goals --measure validation --data clips --threads 1").succeeds();
+    assert!(kept.homography.is_some());
+    place.remove("film/H.txt");
+    let measure = "evaluate --model run --data film --validation --threads 1";
+    let measured = place.run(&format!("{measure} --protocol single"));
+    let note = "note: 3 recordings: the numbers are read as in the run's training (--fps 23.98 and its homography); give --fps";
+    assert!(measured.stderr.contains(note), "{measured:?}");
+    let _ = measured.succeeds();
+    let _ = place.ok(&format!("{measure} --protocol fair"));
+    // with another rate these are other recordings than those it was trained on
+    let refused = place.run(&format!("{measure} --protocol fair --fps 25"));
+    assert_eq!(refused.code, Some(1), "{refused:?}");
     assert!(
-        of_part.contains("clip1") && !of_part.contains("clip2"),
-        "{of_part}"
+        refused.stderr.contains("trained on other recordings"),
+        "{refused:?}"
     );
-}
-
-/// Every command that reports takes both, so that programs need not know which has a bar.
-#[test]
-fn results_for_programs_and_progress_go_together() {
-    let place = tempfile::tempdir().unwrap();
-    let folder = place.path();
-    clips(folder, "plaza", 300, 1);
-    for command_line in [
-        "data clips",
-        "info",
-        "evaluate --data clips --protocol single --threads 1",
-    ] {
-        let finished = program::run(folder, &format!("{command_line} --json --progress none"));
-        let _ = json(&finished.succeeds());
-    }
 }

@@ -3,7 +3,6 @@
 use ddl_eval::Forecast;
 
 /// Every number of a forecast as its bits: shape, then weights, certificates' verdicts, positions and goals.
-#[must_use]
 pub fn of(forecast: &Forecast) -> Vec<u64> {
     let (pedestrians, hypotheses) = (forecast.pedestrians(), forecast.hypotheses());
     let mut bits = vec![pedestrians as u64, hypotheses as u64];
@@ -18,7 +17,6 @@ pub fn of(forecast: &Forecast) -> Vec<u64> {
 }
 
 /// The bits of many forecasts, one entry a window.
-#[must_use]
 pub fn of_all(forecasts: &[Forecast]) -> Vec<Vec<u64>> {
     forecasts.iter().map(of).collect()
 }

@@ -19,7 +19,6 @@ pub struct Command {
 }
 
 /// The commands of a page's `console` blocks, in their order.
-#[must_use]
 pub fn commands(page: &str) -> Vec<Command> {
     let mut found: Vec<Command> = Vec::new();
     let mut inside = false;
@@ -53,7 +52,6 @@ pub fn commands(page: &str) -> Vec<Command> {
 
 impl Command {
     /// The words of a plain command, without comment and redirections; `None` where a shell has more to do than to start one program.
-    #[must_use]
     pub fn words(&self) -> Option<Vec<&str>> {
         let typed = self.typed.split(" #").next().unwrap_or_default();
         let is_plain = !typed.contains(['|', ';', '&', '$', '`', '(', '\n', '"', '\'', '<', '>']);

@@ -11,42 +11,35 @@ pub const FOLD: &str = "corridor";
 const EXPERTS: usize = 600;
 
 /// The five simulated scenes.
-#[must_use]
 pub fn dataset() -> Dataset {
     Dataset::simulated(SEED)
 }
 
 /// Test windows with their futures, of 2 to `most` pedestrians, spread over the whole recording.
-///
-/// # Panics
-/// If the scene has no `count` such windows.
-#[must_use]
 pub fn windows(count: usize, most: usize) -> Vec<Window> {
     let dataset = dataset();
     let fold = dataset.fold(FOLD).expect("the simulated scene exists");
-    let all = fold.test_windows(WindowRule::Complete);
-    let fitting: Vec<_> = all
-        .into_iter()
-        .filter(|window| (2..=most).contains(&window.len()))
-        .collect();
+    let mut fitting = fold.test_windows(WindowRule::Complete);
+    fitting.retain(|window| (2..=most).contains(&window.len()));
     assert!(
         fitting.len() >= count,
-        "{} windows of 2 to {most} pedestrians, {count} wanted",
+        "{count} wanted of {}",
         fitting.len()
     );
     let stride = fitting.len() / count;
     fitting.into_iter().step_by(stride).take(count).collect()
 }
 
-/// A goal estimator whose experts walk in the training scenes.
-///
-/// # Panics
-/// If the parameters are out of range.
-#[must_use]
-pub fn goal_estimator(params: GoalEstimatorParams) -> GoalEstimator {
+/// The windows of the training scenes.
+pub fn training_windows() -> Vec<Window> {
     let dataset = dataset();
     let fold = dataset.fold(FOLD).expect("the simulated scene exists");
-    let windows = fold.training_windows(WindowRule::Complete);
+    fold.training_windows(WindowRule::Complete)
+}
+
+/// A goal estimator whose experts walk in the training scenes.
+pub fn goal_estimator(params: GoalEstimatorParams) -> GoalEstimator {
+    let windows = training_windows();
     let tracks: Vec<_> = windows
         .iter()
         .flat_map(|window| (0..window.len()).map(|i| window.track(i).to_vec()))

@@ -5,23 +5,15 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Runs an example of a crate in `folder`, with the arguments of a command line, which are parted by blanks.
-///
-/// # Panics
-/// If it was not built, is older than its sources, or cannot be started.
-#[must_use]
 pub fn run(package: &str, example: &str, folder: &Path, command_line: &str) -> Finished {
     let place = Path::new("examples").join(example);
-    let path = program::built(&place, &format!("-p {package} --example {example}"));
+    let path = program::built(&place, &["-p", package, "--example", example]);
     let output = program::undisturbed(&path, folder, command_line).output();
     let output = output.expect("the example can be started");
     Finished::new(format!("{example} {command_line}"), &output)
 }
 
 /// The names of a crate's examples: `examples/NAME.rs` and `examples/NAME/main.rs`; none without a folder of them.
-///
-/// # Panics
-/// If its folder cannot be read.
-#[must_use]
 pub fn all_of(package: &str) -> BTreeSet<String> {
     let folder =
         Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../crates/{package}/examples"));

@@ -8,21 +8,16 @@ use std::io::Write as _;
 const VARIABLE: &str = "DDL_FAULTS_FIGURES";
 
 /// Whether the full number of rounds is asked for.
-#[must_use]
 pub fn are_asked_for() -> bool {
     file().is_some()
 }
 
 /// How often something is tried: `few` times among all tests, `many` times for the figures.
-#[must_use]
 pub fn rounds<T>(few: T, many: T) -> T {
     if are_asked_for() { many } else { few }
 }
 
 /// Tells a figure: a row of a table, which is printed, and added to the file where one is named.
-///
-/// # Panics
-/// If the file cannot be written.
 pub fn tell(fault: &str, tried: impl Display, found: impl Display) {
     let row = format!("| {fault} | {tried} | {found} |\n");
     eprint!("{row}");

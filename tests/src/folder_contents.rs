@@ -3,28 +3,31 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Every file below a folder with its bytes, and every folder with `None`, by path relative to it.
+/// Every file below a folder with its bytes (a link with its target), and every folder with `None`, by path relative to it.
 pub type Contents = BTreeMap<PathBuf, Option<Vec<u8>>>;
 
 /// Reads everything below `folder`.
-///
-/// # Panics
-/// If it cannot be read.
-#[must_use]
 pub fn read(folder: &Path) -> Contents {
     let mut contents = Contents::new();
     let mut waiting = vec![folder.to_owned()];
     while let Some(next) = waiting.pop() {
         let entries = std::fs::read_dir(&next).expect("the folder can be listed");
         for entry in entries {
-            let path = entry.expect("the folder can be listed").path();
+            let entry = entry.expect("the folder can be listed");
+            let (path, kind) = (entry.path(), entry.file_type().expect("the kind of a file"));
             let relative = path.strip_prefix(folder).unwrap_or(&path).to_owned();
-            if path.is_dir() {
+            if kind.is_dir() {
                 contents.insert(relative, None);
                 waiting.push(path);
-            } else {
+            } else if kind.is_symlink() {
+                let target = std::fs::read_link(&path).expect("the link can be read");
+                contents.insert(relative, Some(target.into_os_string().into_encoded_bytes()));
+            } else if kind.is_file() {
                 let bytes = std::fs::read(&path).expect("the file can be read");
                 contents.insert(relative, Some(bytes));
+            } else {
+                // A pipe: to open it would wait for who writes to it.
+                contents.insert(relative, Some(Vec::new()));
             }
         }
     }
@@ -32,9 +35,6 @@ pub fn read(folder: &Path) -> Contents {
 }
 
 /// Writes contents that were read before into `folder`, which is made if need be.
-///
-/// # Panics
-/// If a file cannot be written.
 pub fn write(contents: &Contents, folder: &Path) {
     std::fs::create_dir_all(folder).expect("the folder can be made");
     for (relative, bytes) in contents {
@@ -47,7 +47,6 @@ pub fn write(contents: &Contents, folder: &Path) {
 }
 
 /// Names of the files and folders that differ, for a message that does not print megabytes.
-#[must_use]
 pub fn differences(before: &Contents, after: &Contents) -> Vec<String> {
     let names: std::collections::BTreeSet<&PathBuf> = before.keys().chain(after.keys()).collect();
     names
@@ -61,5 +60,21 @@ pub fn differences(before: &Contents, after: &Contents) -> Vec<String> {
             };
             Some(format!("{} {what}", name.display()))
         })
+        .collect()
+}
+
+/// Asserts that nothing differs.
+pub fn assert_same(before: &Contents, after: &Contents) {
+    assert_eq!(differences(before, after), Vec::<String>::new());
+}
+
+/// Files under temporary names anywhere below a folder: what was being written.
+pub fn half_written(folder: &Path) -> Vec<String> {
+    let marks = [".writing-", ".report-", ".tmp"];
+    let names = read(folder)
+        .into_keys()
+        .map(|name| name.display().to_string());
+    names
+        .filter(|name| marks.iter().any(|mark| name.contains(mark)))
         .collect()
 }

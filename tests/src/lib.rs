@@ -1,30 +1,41 @@
-//! What the cross-crate and command-line tests share: recordings, crowds, a tiny trained model, the
+//! What the cross-crate and command-line tests share: recordings, crowds, a model with drawn weights, the
 //! program `ddl`, and what the tests compare.
 //!
-//! The test target `it` needs no libtorch; `it_torch` does (feature `torch`, on by default), and runs
-//! the program, which `cargo build -p ddl-cli` builds, and so does `faults`, which breaks what can break.
+//! The test targets `it` and `faults` need no libtorch, and run a program without it; `it_torch` and `faults_torch` train
+//! (feature `torch`, on by default).
+
+#![allow(
+    clippy::missing_panics_doc,
+    reason = "a test that cannot go on has failed"
+)]
 
 pub mod answer;
 pub mod bits;
+pub mod chance;
 pub mod console;
 pub mod crowd;
+pub mod drawn_model;
 pub mod example;
 pub mod figures;
 pub mod folder_contents;
-pub mod goal_lines;
+pub mod guide;
 #[cfg(unix)]
 pub mod mount;
-pub mod other_program;
+#[cfg(unix)]
+pub mod offline;
+pub mod one_forecast;
 pub mod outside_bytes;
 pub mod own_tracks;
 pub mod page_inputs;
 pub mod page_run;
+pub mod place;
 pub mod processes;
 pub mod program;
+pub mod progress;
 pub mod python_packages;
 pub mod recordings;
 pub mod safetensors_file;
+pub mod skip;
 #[cfg(feature = "torch")]
-pub mod tiny_model;
+pub mod trained_model;
 pub mod training_result;
-pub mod wild_future;

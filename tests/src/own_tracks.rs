@@ -1,5 +1,7 @@
 //! Tracks such as a user of the program brings along, as csv.
 
+use crate::crowd;
+use crate::place::Place;
 use std::fmt::Write as _;
 
 /// One row: frame, pedestrian, x and y in metres.
@@ -13,7 +15,6 @@ pub const FRAME_STEP: i64 = 10;
 const RESOLUTION: f64 = 1.0 / 1024.0;
 
 /// Three people for `frames` frames of 0.4 s: one walks east, one comes to meet them, one hardly moves.
-#[must_use]
 pub fn three_people(frames: i64) -> Vec<Row> {
     let place = |t: f64, pedestrian: i64| match pedestrian {
         1 => (0.5 * t, 0.05 * (1.3 * t).sin()),
@@ -31,13 +32,11 @@ pub fn three_people(frames: i64) -> Vec<Row> {
 }
 
 /// Whether a position of a table, which has 0.1 mm, is this one.
-#[must_use]
 pub fn alike_in_a_table(printed: [f64; 2], position: [f64; 2]) -> bool {
     (0..2).all(|axis| (printed[axis] - position[axis]).abs() <= 0.5001e-4)
 }
 
 /// The rows as the program reads them.
-#[must_use]
 pub fn csv(rows: &[Row]) -> String {
     let mut text = "frame,pedestrian,x,y\n".to_owned();
     for (frame, pedestrian, x, y) in rows {
@@ -46,15 +45,57 @@ pub fn csv(rows: &[Row]) -> String {
     text
 }
 
-/// The rows in another order, which is the same at every call.
-#[must_use]
-pub fn shuffled(rows: &[Row]) -> Vec<Row> {
-    let mut rows = rows.to_vec();
-    // multiplication by an odd number permutes the numbers below 2^64, and scatters the first few
-    let mut place = 0_u64;
-    rows.sort_by_cached_key(|_| {
-        place += 1;
-        place.wrapping_mul(0x9e37_79b9_7f4a_7c15)
-    });
-    rows
+/// A part of a simulated crowd, as somebody may have recorded it.
+pub fn of_scene(scene: &str, frames: std::ops::Range<i64>) -> Vec<Row> {
+    let crowds = crowd::dataset();
+    let recording = crowds.recording(scene).expect("the simulated scene exists");
+    let seen = recording.observations().iter();
+    seen.filter(|seen| frames.contains(&seen.frame))
+        .map(|seen| {
+            let [x, y] = seen.position;
+            (seen.frame, seen.pedestrian.0, x, y)
+        })
+        .collect()
+}
+
+/// The folder `film`: three recordings in pixels, 23.98 frames a second, and their homography.
+pub fn write_film(place: &Place) {
+    for (name, scene) in [
+        ("hall", "corridor"),
+        ("lobby", "plaza"),
+        ("yard", "crossing"),
+    ] {
+        // a frame of the crowd is 0.04 s, one of the film 1 / 23.98 s: nearly
+        let mut rows = of_scene(scene, 0..900);
+        for (.., x, y) in &mut rows {
+            (*x, *y) = (50.0 * *x, 50.0 * *y);
+        }
+        place.write_tracks(&format!("film/{name}.csv"), &rows);
+    }
+    // beside the recordings, and none of them
+    place.write("film/H.txt", "0.02 0 0\n0 0.02 0\n0 0 1\n");
+}
+
+/// The folder `mine`: two recordings of a minute, as csv, and a file that is none.
+pub fn write_recordings(place: &Place) {
+    for (name, scene) in [("lobby", "corridor"), ("yard", "plaza")] {
+        place.write_tracks(&format!("mine/{name}.csv"), &of_scene(scene, 0..1500));
+    }
+    place.write("mine/README.md", "not a recording");
+}
+
+/// The folder `clips`: a simulated crowd cut into so many clips of so many frames (10 a step).
+pub fn write_clips(place: &Place, frames: i64, count: i64) {
+    for clip in 0..count {
+        let rows = of_scene("plaza", clip * frames..(clip + 1) * frames);
+        place.write_tracks(&format!("clips/clip{clip}.csv"), &rows);
+    }
+}
+
+/// The rows in the words of TrajNet++.
+pub fn ndjson(rows: &[Row]) -> String {
+    let line = |(f, p, x, y): &Row| {
+        format!("{{\"track\": {{\"f\": {f}, \"p\": {p}, \"x\": {x}, \"y\": {y}}}}}\n")
+    };
+    rows.iter().map(line).collect()
 }

@@ -1,7 +1,8 @@
 //! A folder in which the commands of a page are run, one after the other, in one shell.
 
 use crate::console::Command;
-use crate::{answer, page_inputs, program};
+use crate::program::{self, Finished};
+use crate::{answer, page_inputs};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -27,20 +28,8 @@ pub struct PageFolder {
     datasets: Option<PathBuf>,
 }
 
-/// What one command did.
-#[derive(Debug)]
-struct Answered {
-    code: i32,
-    stdout: String,
-    stderr: String,
-}
-
 impl PageFolder {
     /// The files of [`page_inputs`], `ddl` and `tracker` on the search path, `target/release/ddl`, and the checkout's `crates`.
-    ///
-    /// # Panics
-    /// If it cannot be made, or the program was not built.
-    #[must_use]
     pub fn new(checkout: &Path, datasets: Option<PathBuf>) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let bin = tempfile::tempdir().expect("a temporary folder can be made");
@@ -62,16 +51,11 @@ impl PageFolder {
     }
 
     /// Where the commands run.
-    #[must_use]
     pub fn path(&self) -> &Path {
         self.folder.path()
     }
 
     /// Runs commands in one shell; what is wrong is returned, a text for each command.
-    ///
-    /// # Panics
-    /// If there is no shell.
-    #[must_use]
     pub fn run(&self, commands: &[(&Command, Depth)]) -> Vec<String> {
         let notes = tempfile::tempdir().expect("a temporary folder can be made");
         let empty = tempfile::tempdir().expect("a temporary folder can be made");
@@ -113,13 +97,13 @@ impl PageFolder {
             .iter()
             .enumerate()
             .filter_map(|(i, (command, depth))| {
-                let Some(answered) = Answered::read(&notes.path().join(i.to_string())) else {
+                let Some(answered) = read(command, &notes.path().join(i.to_string())) else {
                     return Some(format!(
                         "line {}: `{}` was not run: {said}",
                         command.line, command.typed
                     ));
                 };
-                let problem = answered.problem(command, *depth)?;
+                let problem = problem(&answered, command, *depth)?;
                 Some(format!(
                     "line {}: `{}`: {problem}\n{answered:#?}",
                     command.line, command.typed
@@ -138,38 +122,38 @@ fn write_tracker(bin: &Path) {
     std::fs::set_permissions(&program, mode).expect("a program can be made executable");
 }
 
-impl Answered {
-    fn read(at: &Path) -> Option<Self> {
-        let read = |kind: &str| std::fs::read(at.with_extension(kind)).ok();
-        let text = |kind: &str| Some(String::from_utf8_lossy(&read(kind)?).into_owned());
-        Some(Self {
-            code: text("code")?.trim().parse().ok()?,
-            stdout: text("out")?,
-            stderr: text("err")?,
-        })
-    }
+/// What one command did.
+fn read(command: &Command, at: &Path) -> Option<Finished> {
+    let bytes = |kind: &str| std::fs::read(at.with_extension(kind)).ok();
+    let text = |kind: &str| Some(String::from_utf8_lossy(&bytes(kind)?).into_owned());
+    Some(Finished {
+        command: command.typed.clone(),
+        code: Some(text("code")?.trim().parse().ok()?),
+        stdout: text("out")?,
+        stderr: text("err")?,
+    })
+}
 
-    fn problem(&self, command: &Command, depth: Depth) -> Option<String> {
-        if depth == Depth::Begun {
-            // No recordings, no such run: 1. Interrupted: 130. Wrong arguments: 2.
-            let begun = [0, 1, 130].contains(&self.code);
-            return (!begun).then(|| format!("it cannot be begun: exit code {}", self.code));
-        }
-        let expected = expected_code(&command.answered);
-        if self.code != expected {
-            return Some(format!("exit code {}, not {expected}", self.code));
-        }
-        let answers = [
-            format!("{}{}", self.stdout, self.stderr),
-            format!("{}{}", self.stderr, self.stdout),
-        ];
-        let missing =
-            answers.map(|text| answer::first_missing(&command.answered, &text).map(str::to_owned));
-        let [Some(missing), Some(_)] = missing else {
-            return None;
-        };
-        Some(format!("its answer has no line `{missing}`, or not there"))
+fn problem(finished: &Finished, command: &Command, depth: Depth) -> Option<String> {
+    let code = finished.code?;
+    if depth == Depth::Begun {
+        // No recordings, no such run: 1. Interrupted: 130. Wrong arguments: 2.
+        let begun = [0, 1, 130].contains(&code);
+        return (!begun).then(|| format!("it cannot be begun: exit code {code}"));
     }
+    let expected = expected_code(&command.answered);
+    if code != expected {
+        return Some(format!("exit code {code}, not {expected}"));
+    }
+    let (stdout, stderr) = (&finished.stdout, &finished.stderr);
+    let answers = [format!("{stdout}{stderr}"), format!("{stderr}{stdout}")];
+    let missing = answers
+        .each_ref()
+        .map(|text| answer::first_missing(&command.answered, text));
+    let [Some(missing), Some(_)] = missing else {
+        return None;
+    };
+    Some(format!("its answer has no line `{missing}`, or not there"))
 }
 
 /// A shown error stands for the exit code 1; one of the arguments, which ends with the advice to ask for help, for 2.
@@ -186,64 +170,41 @@ fn expected_code(answered: &[String]) -> i32 {
 mod tests {
     use super::*;
 
-    fn command(typed: &str, answered: &[&str]) -> Command {
-        Command {
+    fn judged(shown: &[&str], (code, stdout, stderr): (i32, &str, &str), depth: Depth) -> String {
+        let command = Command {
             line: 1,
-            typed: typed.to_owned(),
-            answered: answered.iter().map(|&line| line.to_owned()).collect(),
-        }
-    }
-
-    fn answered(code: i32, stdout: &str, stderr: &str) -> Answered {
-        Answered {
-            code,
+            typed: "x".to_owned(),
+            answered: shown.iter().map(|&line| line.to_owned()).collect(),
+        };
+        let finished = Finished {
+            command: "x".to_owned(),
+            code: Some(code),
             stdout: stdout.to_owned(),
             stderr: stderr.to_owned(),
-        }
+        };
+        problem(&finished, &command, depth).unwrap_or_default()
     }
 
     #[test]
     fn a_page_that_says_something_else_is_caught() {
-        let problem = |shown: &[&str], code, stdout: &str, stderr: &str| {
-            answered(code, stdout, stderr).problem(&command("x", shown), Depth::Whole)
-        };
-        assert_eq!(problem(&["a", "note: ..."], 0, "a\nb\n", "note: c\n"), None);
-        assert_eq!(
-            problem(&["warning: c", "a"], 0, "a\n", "warning: c\n"),
-            None
-        );
-        assert_eq!(problem(&["error: e"], 1, "", "error: e\n"), None);
-        assert_eq!(
-            problem(
-                &["error: e", "For more information, try '--help'."],
-                2,
-                "",
-                "error: e\n\nFor more information, try '--help'.\n"
-            ),
-            None
-        );
-        assert!(
-            problem(&[], 1, "", "error: e\n")
-                .unwrap()
-                .contains("exit code 1, not 0")
-        );
-        assert!(
-            problem(&["error: e"], 0, "", "")
-                .unwrap()
-                .contains("exit code 0, not 1")
-        );
-        assert!(
-            problem(&["b"], 0, "a\n", "")
-                .unwrap()
-                .contains("no line `b`")
-        );
-    }
-
-    #[test]
-    fn what_is_only_begun_must_have_right_arguments() {
-        let begun =
-            |code| answered(code, "", "").problem(&command("x", &["not looked at"]), Depth::Begun);
-        assert!([0, 1, 130].iter().all(|&code| begun(code).is_none()));
-        assert!([2, 101, 127].iter().all(|&code| begun(code).is_some()));
+        let refused = ["error: e", "For more information, try '--help'."];
+        for (shown, code, stdout, stderr, wrong) in [
+            (&["a", "note: ..."][..], 0, "a\nb\n", "note: c\n", ""),
+            (&["warning: c", "a"], 0, "a\n", "warning: c\n", ""),
+            (&["error: e"], 1, "", "error: e\n", ""),
+            (&refused, 2, "", &refused.join("\n\n"), ""),
+            (&[], 1, "", "error: e\n", "exit code 1, not 0"),
+            (&["error: e"], 0, "", "", "exit code 0, not 1"),
+            (&["b"], 0, "a\n", "", "no line `b`"),
+        ] {
+            let problem = judged(shown, (code, stdout, stderr), Depth::Whole);
+            assert_eq!(problem.is_empty(), wrong.is_empty(), "{shown:?}");
+            assert!(problem.contains(wrong), "{shown:?}: {problem}");
+        }
+        // What is only begun must have right arguments.
+        for (code, right) in [(0, true), (1, true), (130, true), (2, false), (101, false)] {
+            let problem = judged(&["y"], (code, "", ""), Depth::Begun);
+            assert_eq!(problem.is_empty(), right, "{problem}");
+        }
     }
 }

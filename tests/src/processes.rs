@@ -9,7 +9,6 @@ const TICKS_A_SECOND: f64 = 100.0;
 
 /// Processor time of the process so far, its own and the system's for it, of all its threads. Still known when it has ended
 /// and nobody has asked how.
-#[must_use]
 pub fn processor_time(id: u32) -> Option<Duration> {
     let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
     // The second field is the program's name in parentheses, and may hold anything.
@@ -26,7 +25,6 @@ pub fn processor_time(id: u32) -> Option<Duration> {
 }
 
 /// Bytes of this process that are in memory now, or were and are swapped out.
-#[must_use]
 pub fn resident_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let kibibytes = |name: &str| -> Option<u64> {
@@ -37,7 +35,6 @@ pub fn resident_bytes() -> Option<u64> {
 }
 
 /// The most bytes of a process that were in memory at once so far.
-#[must_use]
 pub fn peak_bytes(id: u32) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{id}/status")).ok()?;
     let line = status
@@ -48,9 +45,6 @@ pub fn peak_bytes(id: u32) -> Option<u64> {
 }
 
 /// Lets a process run to its end, watched; its processor time and the most bytes it had in memory, as far as both are told.
-///
-/// # Panics
-/// If it cannot be waited for.
 pub fn watch(child: &mut Child) -> (ExitStatus, Option<(Duration, u64)>) {
     let mut seen = None;
     loop {
@@ -64,9 +58,6 @@ pub fn watch(child: &mut Child) -> (ExitStatus, Option<(Duration, u64)>) {
 }
 
 /// Sends a signal, such as `KILL`.
-///
-/// # Panics
-/// If `kill` cannot be started.
 pub fn signal(id: u32, name: &str) {
     let id = id.to_string();
     let sent = Command::new("kill").args(["-s", name, &id]).output();
@@ -75,7 +66,6 @@ pub fn signal(id: u32, name: &str) {
 }
 
 /// A process and all that it started, and they started, as far as their parents are still there.
-#[must_use]
 pub fn with_descendants(id: u32) -> Vec<u32> {
     let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
     let ids = entries.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
@@ -100,22 +90,26 @@ fn parent(id: u32) -> Option<u32> {
     fields.split_whitespace().nth(1)?.parse().ok() // after the state
 }
 
-#[cfg(test)]
-mod tests {
-    use super::{processor_time, resident_bytes};
-
-    #[test]
-    #[cfg(target_os = "linux")]
-    fn this_process_is_told_of() {
-        let before = processor_time(std::process::id()).expect("Linux tells");
-        let mut sum = 0_u64;
-        while processor_time(std::process::id()).expect("Linux tells") <= before {
-            sum = std::hint::black_box(sum + 1);
-        }
-        let small = resident_bytes().expect("Linux tells");
-        let ballast = vec![1_u8; 32 << 20];
-        let large = resident_bytes().expect("Linux tells");
-        assert!(large > small + (16 << 20), "{small}, then {large}");
-        drop(std::hint::black_box(ballast));
+/// What `measure` finds in a process of its own, started anew from the test that calls this, which is named, because the other tests of
+/// the program use memory as they like; `None` where the system does not tell, and in that process.
+pub fn alone(test: &str, measure: impl FnOnce() -> Option<Vec<f64>>) -> Option<Vec<f64>> {
+    const FILE: &str = "DDL_TESTS_NUMBERS_FILE";
+    if let Some(file) = std::env::var_os(FILE) {
+        let numbers = serde_json::to_string(&measure()).expect("numbers are JSON");
+        std::fs::write(file, numbers).expect("a file can be written");
+        return None;
     }
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let file = folder.path().join("numbers");
+    let program = std::env::current_exe().expect("a running test has a path");
+    let mut command = Command::new(program);
+    let output = command.args(["--exact", test]).env(FILE, &file).output();
+    let output = output.expect("the test can be started anew");
+    assert!(output.status.success(), "{output:?}");
+    let numbers = std::fs::read(file).expect("the test of that name measures");
+    let numbers: Option<Vec<f64>> = serde_json::from_slice(&numbers).expect("numbers are JSON");
+    if numbers.is_none() {
+        eprintln!("skipped: this system does not tell the memory of a process");
+    }
+    numbers
 }

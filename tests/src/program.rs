@@ -1,6 +1,5 @@
-//! The program `ddl`, run as a user runs it.
+//! The program `ddl`, run as a user runs it, and built for that where need be.
 
-use crate::own_tracks::{self, Row};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -13,10 +12,6 @@ const VARIABLES: [&str; 3] = ["DDL_DATASETS", "DDL_COMMIT", "RUST_LOG"];
 /// The program with the arguments of a command line, which are parted by blanks, to be run in
 /// `folder`: nothing inherited that would change a result, and backtraces on, so that an error which
 /// prints one is seen.
-///
-/// # Panics
-/// If the program was not built, or is older than its sources.
-#[must_use]
 pub fn command(folder: &Path, command_line: &str) -> Command {
     undisturbed(path(), folder, command_line)
 }
@@ -37,25 +32,10 @@ pub(crate) fn undisturbed(program: &Path, folder: &Path, command_line: &str) -> 
 }
 
 /// Runs the program in `folder` to its end.
-///
-/// # Panics
-/// If it cannot be started.
-#[must_use]
 pub fn run(folder: &Path, command_line: &str) -> Finished {
     let output = command(folder, command_line).output();
     let output = output.expect("the program can be started");
     Finished::new(format!("ddl {command_line}"), &output)
-}
-
-/// Forecasts rows of tracks, whole observations alone, with the model in `folder`, where they are written to `tracks.csv`.
-///
-/// # Panics
-/// If they cannot be written, or the program cannot be started.
-#[must_use]
-pub fn forecast(folder: &Path, rows: &[Row], options: &str) -> Finished {
-    std::fs::write(folder.join("tracks.csv"), own_tracks::csv(rows)).expect("a csv can be written");
-    let command_line = format!("forecast --model . tracks.csv --whole --threads 1 {options}");
-    run(folder, &command_line)
 }
 
 /// How a run of the program ended.
@@ -73,7 +53,6 @@ pub struct Finished {
 
 impl Finished {
     /// What the output of a finished process says.
-    #[must_use]
     pub fn new(command: String, output: &Output) -> Self {
         let text = |bytes| String::from_utf8_lossy(bytes).into_owned();
         Self {
@@ -85,10 +64,6 @@ impl Finished {
     }
 
     /// Its standard output, after it went well.
-    ///
-    /// # Panics
-    /// If it did not.
-    #[must_use]
     pub fn succeeds(self) -> String {
         assert_eq!(self.code, Some(0), "{self:#?}");
         self.stdout
@@ -96,10 +71,6 @@ impl Finished {
 
     /// Its error message, after it failed as a good program does: exit code 1, nothing on standard
     /// output, one line on standard error that begins with `error: ` and says nothing twice.
-    ///
-    /// # Panics
-    /// If it failed otherwise, or not at all.
-    #[must_use]
     pub fn fails(self) -> String {
         assert_eq!(self.code, Some(1), "{self:#?}");
         assert_eq!(self.stdout, "", "{self:#?}");
@@ -122,36 +93,34 @@ impl Finished {
     }
 }
 
-/// Where the program lies.
-///
-/// # Panics
-/// If it was not built, or is older than its sources.
-#[must_use]
+/// Where the program lies, built with libtorch where these tests are (feature `torch`), without it where they are not.
 pub fn path() -> &'static Path {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
-    PATH.get_or_init(|| built(Path::new("ddl"), "-p ddl-cli"))
+    let target: &[&str] = if cfg!(feature = "torch") {
+        &["-p", "ddl-cli", "--features", "torch"]
+    } else {
+        &["-p", "ddl-cli"]
+    };
+    PATH.get_or_init(|| {
+        let path = built(Path::new("ddl"), target);
+        if is_with_torch(&path) != cfg!(feature = "torch") {
+            build(target);
+        }
+        path
+    })
 }
 
-/// A program of the profile of this test, by its place among what cargo builds, such as `examples/live`; `target` is what
-/// `cargo build` is told to make it.
-///
-/// # Panics
-/// If it was not built, or is older than its sources.
-pub(crate) fn built(place: &Path, target: &str) -> PathBuf {
-    let path = beside_this_test(place);
-    assert!(
-        path.is_file(),
-        "{} is missing; build it with `{}`",
-        path.display(),
-        build_command(target)
-    );
-    if let Some(newer) = newer_source(&path) {
-        panic!(
-            "{} is older than {}; build it anew with `{}`",
-            path.display(),
-            newer.display(),
-            build_command(target)
-        );
+/// A program of the profile of this test, by its place among what cargo builds, such as `examples/live`. What is missing, or older than
+/// its sources, is built first; `target` is what cargo is told to make it.
+pub(crate) fn built(place: &Path, target: &[&str]) -> PathBuf {
+    let mut path = profile_folder().join(place).into_os_string();
+    path.push(std::env::consts::EXE_SUFFIX);
+    let path = PathBuf::from(path);
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
+    let others = ["tests", "benches", "examples"];
+    let others = &others[..if place.starts_with("examples") { 2 } else { 3 }];
+    if modified(&path).is_none_or(|time| newest(&crates, others) > Some(time)) {
+        build(target);
     }
     path
 }
@@ -159,43 +128,52 @@ pub(crate) fn built(place: &Path, target: &str) -> PathBuf {
 /// Cargo puts tests into `deps`, one below the programs of the same profile.
 fn profile_folder() -> PathBuf {
     let test = std::env::current_exe().expect("a running test has a path");
-    let deps = test.parent().unwrap_or(&test);
-    let profile = if deps.ends_with("deps") {
-        deps.parent().unwrap_or(deps)
-    } else {
-        deps
-    };
-    profile.to_path_buf()
+    let deps = test.ancestors().find(|folder| folder.ends_with("deps"));
+    let profile = deps.and_then(Path::parent);
+    profile.expect("cargo built this test").to_path_buf()
 }
 
-fn beside_this_test(place: &Path) -> PathBuf {
-    let mut path = profile_folder().join(place).into_os_string();
-    path.push(std::env::consts::EXE_SUFFIX);
-    path.into()
+fn build(target: &[&str]) {
+    let folder = profile_folder();
+    let profile = folder.file_name().unwrap_or_default();
+    let is_debug = profile == "debug";
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
+    cargo
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .arg("build")
+        .args(target)
+        .arg("--profile")
+        .arg(if is_debug { OsStr::new("dev") } else { profile })
+        .arg("--target-dir")
+        .arg(folder.parent().unwrap_or(&folder));
+    let status = cargo.status().expect("cargo can be started");
+    assert!(status.success(), "{cargo:?}: {status}");
 }
 
-fn build_command(target: &str) -> String {
-    let profile = profile_folder();
-    match profile.file_name().and_then(OsStr::to_str) {
-        None | Some("debug") => format!("cargo build {target}"),
-        Some("release") => format!("cargo build {target} --release"),
-        Some(other) => format!("cargo build {target} --profile {other}"),
-    }
+fn is_with_torch(program: &Path) -> bool {
+    let info = Command::new(program).args(["info", "--json"]).output();
+    let info = info.expect("the program can be started").stdout;
+    !String::from_utf8_lossy(&info).contains("libtorch, which this program is built without")
 }
 
-/// A source changed after the program was built, of those that cargo lists beside it. Pages included
-/// as documentation do not count: they change nothing that the program does.
-fn newer_source(program: &Path) -> Option<PathBuf> {
-    let list = std::fs::read_to_string(program.with_extension("d")).ok()?;
-    let (_, sources) = list.split_once(": ")?;
-    let built = modified(program)?;
-    sources
-        .trim_end()
-        .replace("\\ ", "\0")
-        .split(' ')
-        .map(|source| PathBuf::from(source.replace('\0', " ")))
-        .filter(|source| source.extension() != Some(OsStr::new("md")))
-        .find(|source| modified(source).is_some_and(|time| time > built))
+/// When a source was last changed, but for folders of these names. Pages included as documentation change nothing that a program does.
+fn newest(folder: &Path, others: &[&str]) -> Option<SystemTime> {
+    let entries = std::fs::read_dir(folder).ok()?.flatten();
+    let times = entries.filter_map(|entry| {
+        let (path, name) = (entry.path(), entry.file_name());
+        if path.is_dir() {
+            let is_other = others.iter().any(|other| name == *other)
+                || name == "ddl-star" && !cfg!(feature = "torch");
+            return if is_other {
+                None
+            } else {
+                newest(&path, others)
+            };
+        }
+        let is_page = path.extension() == Some(OsStr::new("md"));
+        if is_page { None } else { modified(&path) }
+    });
+    times.max()
 }
 
 fn modified(path: &Path) -> Option<SystemTime> {

@@ -30,7 +30,6 @@ pub fn parts(bytes: &[u8]) -> Result<(Value, &[u8]), String> {
 }
 
 /// The bytes of a file of these parts.
-#[must_use]
 pub fn join(header: &Value, numbers: &[u8]) -> Vec<u8> {
     let mut header = header.to_string();
     // Numbers begin at a multiple of eight bytes.

@@ -5,10 +5,6 @@ use std::path::{Path, PathBuf};
 
 /// The files of a run, byte for byte, but for what holds seconds: of `metrics.jsonl` the losses are compared, and
 /// `optimizer.safetensors` holds the weights of the model.
-///
-/// # Panics
-/// If a file cannot be read, or there are no metrics.
-#[must_use]
 pub fn of(run: &Path) -> Contents {
     let mut files = folder_contents::read(run);
     let metrics = files.remove(&PathBuf::from("metrics.jsonl")).flatten();

@@ -38,6 +38,24 @@ fn options_of_the_network_do_not_go_with_forecasts_of_another_program() {
     }
 }
 
+/// A benchmark trains, and says at once what that takes.
+#[cfg(not(feature = "torch"))]
+#[test]
+fn without_libtorch_a_benchmark_says_where_to_get_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_ddl"))
+        .args(["benchmark", "--convention", "simulated"])
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    let complaint = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{complaint}");
+    let said = complaint
+        .starts_with("error: training needs libtorch, which this program is built without");
+    assert!(said && complaint.lines().count() == 1, "{complaint}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
 #[test]
 fn it_names_its_version_and_commands() {
     assert_eq!(

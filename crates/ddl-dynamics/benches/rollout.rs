@@ -13,7 +13,7 @@ use criterion::{
 use ddl_dynamics::{
     Euler, Flow, Integrator, LyapunovCertificate, Real, StableEuler, rollout, rollout_into,
 };
-use hypotheses::{Hypothesis, STEPS, TIME_STEP, drawn};
+use hypotheses::{MadeUpWalk, STEPS, TIME_STEP, drawn};
 use nalgebra::SVector;
 
 /// Hypotheses gone through in turn.
@@ -25,13 +25,13 @@ fn rollouts<T: Real, const D: usize>(
     name: &str,
     integrator: &impl Integrator<T, D>,
 ) {
-    let hypotheses: Vec<Hypothesis<T, D>> = drawn(COUNT, SEED);
+    let hypotheses: Vec<MadeUpWalk<T, D>> = drawn(COUNT, SEED);
     let dt = T::rounded(TIME_STEP);
     let mut positions = [SVector::zeros(); STEPS + 1];
     group.bench_function(name, |b| {
         b.iter(|| {
             for hypothesis in &hypotheses {
-                let Hypothesis { flow, start } = black_box(hypothesis);
+                let MadeUpWalk { flow, start } = black_box(hypothesis);
                 rollout_into(flow, integrator, *start, dt, &mut positions).expect("finite");
                 black_box(&positions);
             }
@@ -41,9 +41,9 @@ fn rollouts<T: Real, const D: usize>(
 
 /// The certificate of a rollout that is there already, and its verdict.
 fn certificates<T: Real, const D: usize>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str) {
-    let hypotheses: Vec<Hypothesis<T, D>> = drawn(COUNT, SEED);
+    let hypotheses: Vec<MadeUpWalk<T, D>> = drawn(COUNT, SEED);
     let dt = T::rounded(TIME_STEP);
-    let follow = |Hypothesis { flow, start }: &_| rollout(flow, &StableEuler, *start, dt, STEPS);
+    let follow = |MadeUpWalk { flow, start }: &_| rollout(flow, &StableEuler, *start, dt, STEPS);
     let paths: Vec<_> = hypotheses
         .iter()
         .map(|hypothesis| follow(hypothesis).expect("finite"))

@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 use crate::{
     error::{DynamicsError, ensure_finite},
-    polar::polar,
+    polar::polar_way,
     real::Real,
 };
 
@@ -112,10 +112,8 @@ impl<T: Real, const D: usize> Attractor<T, D> {
     /// or the offset `e` when quadratic; 0 at the goal.
     ///
     /// # Numerics
-    /// The norm of a gradient is not differentiable at the goal; 0 is the one choice among its
-    /// subgradients that keeps a walker there at rest. The published program divides by
-    /// `max(|e|, 1e-12)` instead, which shortens the gradient within 1e-12 m of the goal; here `u`
-    /// has length 1 for every offset but zero, subnormal and huge ones included.
+    /// `u` has length 1 for every offset but zero, subnormal and huge ones included. (The published program divides by
+    /// `max(|e|, 1e-12)`, which shortens it within 1e-12 m of the goal.)
     #[inline]
     pub fn gradient(&self, position: &SVector<T, D>) -> SVector<T, D> {
         self.potential_and_gradient(position).1
@@ -135,14 +133,7 @@ impl<T: Real, const D: usize> Attractor<T, D> {
     /// either kind of potential.
     #[inline]
     pub fn distance_and_direction(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
-        let (distance, direction) = polar(&self.offset(position));
-        if distance.is_finite() {
-            return (distance, direction);
-        }
-        // The offset of two finite points can overflow; half of it cannot.
-        let half = T::rounded(0.5);
-        let (half_distance, direction) = polar(&(position * half - self.goal * half));
-        (half_distance + half_distance, direction)
+        polar_way(&self.goal, position)
     }
 }
 

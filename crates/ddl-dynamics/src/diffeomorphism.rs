@@ -32,23 +32,6 @@ pub use straightening::Straightening;
 /// - A Jacobian with an entry too large for `T` is not finite. That takes a coordinate that is
 ///   close to the largest number of `T` itself, or hundreds of maps at their limit one after the
 ///   other.
-///
-/// # Examples
-/// The trait is object-safe:
-/// ```
-/// use ddl_dynamics::{Chain, Diffeomorphism, LocalTranslation};
-/// use nalgebra::Vector2;
-///
-/// let push = LocalTranslation::new(Vector2::zeros(), 1.0, Vector2::new(0.0, 0.5))?;
-/// let twice = Chain::new(vec![push, push]);
-/// let maps: [&dyn Diffeomorphism<f64, 2>; 2] = [&push, &twice];
-/// for map in maps {
-///     let x = Vector2::new(0.25, -1.0);
-///     assert!((map.inverse(&map.apply(&x)) - x).norm() < 1e-14);
-///     assert!(map.jacobian(&x).determinant() > 0.0);
-/// }
-/// # Ok::<(), ddl_dynamics::DynamicsError>(())
-/// ```
 pub trait Diffeomorphism<T: Real, const D: usize> {
     /// The image `psi(x)` of `position` (metres).
     fn apply(&self, position: &SVector<T, D>) -> SVector<T, D>;

@@ -2,7 +2,6 @@
 
 mod avoiding;
 mod diffeomorphic;
-mod gradient;
 mod natural_gradient;
 
 use nalgebra::SVector;
@@ -14,7 +13,6 @@ use crate::{
 
 pub use avoiding::AvoidingFlow;
 pub use diffeomorphic::DiffeomorphicFlow;
-pub use gradient::GradientFlow;
 pub use natural_gradient::NaturalGradientFlow;
 
 /// A velocity field with one attractor, stable by its form.

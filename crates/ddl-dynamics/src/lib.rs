@@ -19,7 +19,7 @@ mod state;
 pub use attractor::Attractor;
 pub use diffeomorphism::{Chain, Diffeomorphism, LocalTranslation, Straightening};
 pub use error::DynamicsError;
-pub use flow::{AvoidingFlow, DiffeomorphicFlow, Flow, GradientFlow, NaturalGradientFlow};
+pub use flow::{AvoidingFlow, DiffeomorphicFlow, Flow, NaturalGradientFlow};
 pub use integrate::{DormandPrince, Euler, Integrator, StableEuler, StableStep, StepLimit};
 pub use lyapunov::{Bounded, CertifiedStep, LyapunovCertificate, MotionEvidence, Violation};
 pub use metric::{CholeskyMetric, PUBLISHED_SIGMA};

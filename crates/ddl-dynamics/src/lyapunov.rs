@@ -166,19 +166,6 @@ impl<T: Real> LyapunovCertificate<T> {
     ///
     /// # Errors
     /// Those of [`new`](Self::new), and, inside [`DynamicsError::Step`], those of the flow's metric.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_dynamics::{Attractor, GradientFlow, LyapunovCertificate, StableEuler, rollout};
-    /// use nalgebra::Vector3;
-    ///
-    /// let flow = GradientFlow::new(Attractor::new(Vector3::new(1.0, 2.0, 2.0))?);
-    /// let path = rollout(&flow, &StableEuler, Vector3::zeros(), 0.4, 12)?;
-    /// let certificate = LyapunovCertificate::of_rollout(&flow, &path, 0.4)?;
-    /// assert!(certificate.holds().is_ok());
-    /// assert_eq!(certificate.final_potential(), 0.0);
-    /// # Ok::<(), ddl_dynamics::DynamicsError>(())
-    /// ```
     pub fn of_rollout<const D: usize, F: Flow<T, D> + ?Sized>(
         flow: &F,
         path: &[SVector<T, D>],

@@ -232,24 +232,4 @@ mod tests {
         assert_eq!(metric.apply(&u), Vector2::new(0.0, 1e-8));
         assert_eq!(metric.eigenvalue_range().smallest, 1e-8);
     }
-
-    #[test]
-    fn eigenvalues_by_hand() {
-        // L = [2 0; 1 2]: L L^T = [4 2; 2 5], trace 9, determinant 16: (9 ± sqrt(17)) / 2.
-        let range = CholeskyMetric::planar(2.0, 1.0, 2.0, 0.25)
-            .unwrap()
-            .eigenvalue_range();
-        assert!((range.smallest - (4.75 - 17.0_f64.sqrt() / 2.0)).abs() < 1e-14);
-        assert!((range.largest - (4.75 + 17.0_f64.sqrt() / 2.0)).abs() < 1e-14);
-    }
-
-    #[test]
-    fn nearly_singular_eigenvalue_keeps_its_digits() {
-        // a = 1, b = 1, c = 1e-6. Trace t = 2 + 1e-12, determinant d = 1e-12; the smaller eigenvalue
-        // is d/t + d^2/t^3 + ... = 5e-13 - 1.25e-25 + O(1e-37), which the textbook formula loses.
-        let range = CholeskyMetric::planar(1.0, 1.0, 1e-6, 1e-300)
-            .unwrap()
-            .eigenvalue_range();
-        assert!((range.smallest / (5e-13_f64 - 1.25e-25) - 1.0).abs() < 1e-15);
-    }
 }

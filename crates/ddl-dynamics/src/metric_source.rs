@@ -12,20 +12,7 @@ use crate::{
 /// Gives the metric `P(p(t))` at a state.
 ///
 /// Implemented by a [`CholeskyMetric`] (the same everywhere), by a [`MetricSchedule`] (one per
-/// step, as a network emits them) and by every closure of the state:
-///
-/// ```
-/// use ddl_dynamics::{CholeskyMetric, MetricSource, State};
-/// use nalgebra::Vector2;
-///
-/// // Slows down within the first second.
-/// let source = |state: &State<'_, f64, 2>| {
-///     CholeskyMetric::planar(1.4 - 0.4 * state.time.min(1.0), 0.2, 0.9, 1e-8)
-/// };
-/// let metric = source.metric(&State::at(Vector2::new(3.0, 0.0)))?;
-/// assert_eq!(metric.factor().m11, 1.4);
-/// # Ok::<(), ddl_dynamics::DynamicsError>(())
-/// ```
+/// step, as a network emits them) and by every closure of the state.
 pub trait MetricSource<T: Real, const D: usize> {
     /// The metric at `state`.
     ///

@@ -1,6 +1,6 @@
 //! Bounds on a motion that has to arrive in time, and the neutral motion within them.
 
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 
 use crate::{metric::CholeskyMetric, polar::polar, real::Real, spectrum::EigenvalueRange};
 
@@ -15,15 +15,13 @@ use crate::{metric::CholeskyMetric, polar::polar, real::Real, spectrum::Eigenval
 /// m = max(SLOWEST s, n s - (n - 1) V)        M = min(FASTEST s, n s, V)        m = M = s  if n = 1
 /// ```
 ///
-/// with `V` the [top speed](Self::top_speed). The *neutral* metric `N` within these bounds leads from the
-/// pedestrian's own velocity over to the arriving one: with the unit vector `t` to the goal, the own velocity `v0`
-/// and `g = MOMENTUM exp(-time / RELAXATION)` its flow is `(1 - g) s t + g v0`, as far as the bounds allow. What
-/// shapes a step is `N + share (P - N)`, with `P = N + s (Q - I)` of a given metric `Q`, or `P = Q` of an
-/// [absolute](Self::absolute) one, brought within the bounds.
+/// with `V` the [top speed](Self::top_speed). The *neutral* metric `N` within these bounds leads from the pedestrian's own
+/// velocity over to the arriving one. What shapes a step is `N + share (P - N)`, with `P = N + s (Q - I)` of a given metric
+/// `Q`, or `P = Q` of an [absolute](Self::absolute) one, brought within the bounds.
 ///
 /// # What is guaranteed
 /// If `d <= n dt V` at the start, then for every sequence of metrics: no step is faster than `V`, no step
-/// of the remaining ones passes the goal, and the last one ends on it. `docs/stability.md` has the proof.
+/// of the remaining ones passes the goal, and the last one ends on it. `docs/stability.md` has the formulas and the proof.
 ///
 /// # Examples
 /// ```
@@ -182,14 +180,15 @@ impl<T: Real> MotionBounds<T> {
         let (distance, direction) = polar(towards);
         let range = self.eigenvalues(distance, time.left, time.dt);
         let s = self.arriving_speed(distance, time.left, time.dt);
-        let neutral = self.neutral(s, &direction, &range, time).within(&range);
+        let neutral = within(&self.neutral(s, &direction, &range, time), &range);
         let given = if self.absolute {
-            Symmetric::of(metric)
+            entries(metric)
         } else {
-            neutral.shifted(metric, s)
+            let identity = Vector3::new(T::one(), T::zero(), T::one());
+            neutral + (entries(metric) - identity) * s
         };
-        let given = given.within(&range);
-        neutral.blended(&given, self.share).into_metric(&range)
+        let given = within(&given, &range);
+        into_metric(&(neutral + (given - neutral) * self.share), &range)
     }
 
     /// `N`, before its eigenvalues are brought within the bounds: of all matrices with this flow the one of the
@@ -200,7 +199,7 @@ impl<T: Real> MotionBounds<T> {
         direction: &Vector2<T>,
         range: &EigenvalueRange<T>,
         time: StepTime<T>,
-    ) -> Symmetric<T> {
+    ) -> Vector3<T> {
         let g = T::rounded(Self::momentum(time));
         let [cos, sin] = [direction.x, direction.y];
         let along = (T::one() - g) * s + g * self.velocity.dot(direction);
@@ -209,86 +208,50 @@ impl<T: Real> MotionBounds<T> {
         let most = a * T::rounded(Self::STEEPEST);
         let b = across.max(-most).min(most);
         let r = a + (b / a) * b * T::rounded(2.0);
-        Symmetric {
-            xx: a * cos * cos - (b + b) * cos * sin + r * sin * sin,
-            xy: (a - r) * cos * sin + b * (cos * cos - sin * sin),
-            yy: a * sin * sin + (b + b) * cos * sin + r * cos * cos,
-        }
+        Vector3::new(
+            a * cos * cos - (b + b) * cos * sin + r * sin * sin,
+            (a - r) * cos * sin + b * (cos * cos - sin * sin),
+            a * sin * sin + (b + b) * cos * sin + r * cos * cos,
+        )
     }
 }
 
-/// A symmetric 2 x 2 matrix.
-#[derive(Clone, Copy)]
-struct Symmetric<T> {
-    xx: T,
-    xy: T,
-    yy: T,
+/// `P` by its entries `xx`, `xy` and `yy`.
+fn entries<T: Real>(metric: &CholeskyMetric<T, 2>) -> Vector3<T> {
+    let p = metric.to_matrix();
+    Vector3::new(p.m11, p.m12, p.m22)
 }
 
-impl<T: Real> Symmetric<T> {
-    fn of(metric: &CholeskyMetric<T, 2>) -> Self {
-        let p = metric.to_matrix();
-        Self {
-            xx: p.m11,
-            xy: p.m12,
-            yy: p.m22,
-        }
-    }
+/// Mean of the eigenvalues, half their difference, and the cosine and sine of twice the angle of the larger one's
+/// eigenvector.
+fn axes<T: Real>(p: &Vector3<T>) -> (T, T, [T; 2]) {
+    let two = T::rounded(2.0);
+    let (mean, half) = (p.x / two + p.z / two, p.x / two - p.z / two);
+    let (radius, double) = polar(&Vector2::new(half, p.y));
+    (mean, radius, [double.x, double.y])
+}
 
-    /// The matrix and `s (Q - I)`.
-    fn shifted(&self, q: &CholeskyMetric<T, 2>, s: T) -> Self {
-        let q = q.to_matrix();
-        Self {
-            xx: self.xx + s * (q.m11 - T::one()),
-            xy: self.xy + s * q.m12,
-            yy: self.yy + s * (q.m22 - T::one()),
-        }
-    }
+/// The same eigenvectors, eigenvalues clamped.
+fn within<T: Real>(p: &Vector3<T>, range: &EigenvalueRange<T>) -> Vector3<T> {
+    let (mean, radius, [cos, sin]) = axes(p);
+    let (first, second) = clamped(mean, radius, range);
+    let two = T::rounded(2.0);
+    let (middle, half) = (first / two + second / two, first / two - second / two);
+    Vector3::new(middle + half * cos, half * sin, middle - half * cos)
+}
 
-    /// Mean of the eigenvalues, half their difference, and the cosine and sine of twice the angle of the larger one's
-    /// eigenvector.
-    fn axes(&self) -> (T, T, [T; 2]) {
-        let two = T::rounded(2.0);
-        let (mean, half) = (self.xx / two + self.yy / two, self.xx / two - self.yy / two);
-        let (radius, double) = polar(&Vector2::new(half, self.xy));
-        (mean, radius, [double.x, double.y])
-    }
-
-    /// The same eigenvectors, eigenvalues clamped.
-    fn within(&self, range: &EigenvalueRange<T>) -> Self {
-        let (mean, radius, [cos, sin]) = self.axes();
-        let (first, second) = clamped(mean, radius, range);
-        let two = T::rounded(2.0);
-        let (middle, half) = (first / two + second / two, first / two - second / two);
-        Self {
-            xx: middle + half * cos,
-            xy: half * sin,
-            yy: middle - half * cos,
-        }
-    }
-
-    fn blended(&self, other: &Self, share: T) -> Self {
-        let blend = |a: T, b: T| a + share * (b - a);
-        Self {
-            xx: blend(self.xx, other.xx),
-            xy: blend(self.xy, other.xy),
-            yy: blend(self.yy, other.yy),
-        }
-    }
-
-    fn into_metric(self, range: &EigenvalueRange<T>) -> CholeskyMetric<T, 2> {
-        let (mean, radius, [cos, sin]) = self.axes();
-        let (first, second) = clamped(mean, radius, range);
-        // Half of the double angle: (1 + cos, sin) has its direction, and so has (sin, 1 - cos).
-        let axis = if cos >= T::zero() {
-            Vector2::new(T::one() + cos, sin)
-        } else {
-            Vector2::new(sin, T::one() - cos)
-        };
-        let (_, axis) = polar(&axis);
-        let stretch = (first - second).max(T::zero()).sqrt();
-        CholeskyMetric::of_axis(axis * stretch, second)
-    }
+fn into_metric<T: Real>(p: &Vector3<T>, range: &EigenvalueRange<T>) -> CholeskyMetric<T, 2> {
+    let (mean, radius, [cos, sin]) = axes(p);
+    let (first, second) = clamped(mean, radius, range);
+    // Half of the double angle: (1 + cos, sin) has its direction, and so has (sin, 1 - cos).
+    let axis = if cos >= T::zero() {
+        Vector2::new(T::one() + cos, sin)
+    } else {
+        Vector2::new(sin, T::one() - cos)
+    };
+    let (_, axis) = polar(&axis);
+    let stretch = (first - second).max(T::zero()).sqrt();
+    CholeskyMetric::of_axis(axis * stretch, second)
 }
 
 /// Both eigenvalues within the range, the larger one first.

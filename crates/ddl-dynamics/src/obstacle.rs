@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 use crate::{
     error::{DynamicsError, ensure_finite, ensure_positive},
-    polar::polar,
+    polar::polar_way,
     real::Real,
     state::State,
 };
@@ -57,14 +57,8 @@ impl<T: Real, const D: usize> Ball<T, D> {
     /// `position`, 0 at the centre. A distance too large for `T` is infinite.
     #[must_use]
     pub fn gap_and_normal(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
-        let (distance, normal) = polar(&(position - self.centre));
-        if distance.is_finite() {
-            return (distance - self.radius, normal);
-        }
-        // The offset of two finite points can overflow; half of it cannot.
-        let half = T::rounded(0.5);
-        let (half_gap, normal) = polar(&(position * half - self.centre * half));
-        (half_gap + half_gap - self.radius, normal)
+        let (distance, normal) = polar_way(&self.centre, position);
+        (distance - self.radius, normal)
     }
 }
 
@@ -117,11 +111,20 @@ impl<T: Real, const D: usize> ObstacleSchedule<T, D> {
     pub fn new(steps: Vec<Vec<Ball<T, D>>>) -> Self {
         Self { steps }
     }
+    fn in_step(&self, step: usize) -> &[Ball<T, D>] {
+        let of_step = self.steps.get(step).or(self.steps.last());
+        of_step.map_or(&[], Vec::as_slice)
+    }
 }
 
 impl<T: Real, const D: usize> ObstacleSource<T, D> for ObstacleSchedule<T, D> {
     fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>] {
-        let of_step = self.steps.get(state.step).or(self.steps.last());
-        of_step.map_or(&[], Vec::as_slice)
+        self.in_step(state.step)
+    }
+}
+
+impl<T: Real, const D: usize> ObstacleSource<T, D> for &ObstacleSchedule<T, D> {
+    fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>] {
+        self.in_step(state.step)
     }
 }

@@ -21,10 +21,10 @@ use crate::{
 ///
 /// # Examples
 /// ```
-/// use ddl_dynamics::{Attractor, Euler, GradientFlow, rollout};
+/// use ddl_dynamics::{Attractor, Euler, NaturalGradientFlow, rollout};
 /// use nalgebra::Vector2;
 ///
-/// let flow = GradientFlow::new(Attractor::new(Vector2::new(0.0, 8.0))?);
+/// let flow = NaturalGradientFlow::straight(Attractor::new(Vector2::new(0.0, 8.0))?);
 /// let path = rollout(&flow, &Euler, Vector2::zeros(), 0.5, 12)?;
 /// assert_eq!(path.len(), 13);
 /// assert_eq!(path[12], Vector2::new(0.0, 6.0));

@@ -17,7 +17,7 @@ use std::{
 use ddl_dynamics::{
     AvoidingFlow, Ball, Euler, Flow, Integrator, Real, StableEuler, rollout, rollout_into,
 };
-use hypotheses::{Hypothesis, STEPS, TIME_STEP, drawn};
+use hypotheses::{MadeUpWalk, STEPS, TIME_STEP, drawn};
 use nalgebra::SVector;
 
 thread_local! {
@@ -60,12 +60,12 @@ fn allocations(run: impl FnOnce()) -> u64 {
 }
 
 fn allocates_nothing<T: Real, const D: usize>(integrator: &impl Integrator<T, D>) {
-    let hypotheses: Vec<Hypothesis<T, D>> = drawn(300, 7);
+    let hypotheses: Vec<MadeUpWalk<T, D>> = drawn(300, 7);
     let dt = T::rounded(TIME_STEP);
     // 40 steps: all walkers come to their goals, so no branch of a step is left out.
     let mut positions = [SVector::<T, D>::zeros(); 41];
     let made = allocations(|| {
-        for Hypothesis { flow, start } in &hypotheses {
+        for MadeUpWalk { flow, start } in &hypotheses {
             rollout_into(flow, integrator, *start, dt, &mut positions).unwrap();
             black_box(&positions);
         }
@@ -86,9 +86,9 @@ fn no_step_allocates() {
 /// Among obstacles, several of them near at once.
 #[test]
 fn around_obstacles() {
-    let hypotheses: Vec<Hypothesis<f64, 2>> = drawn(300, 7);
+    let hypotheses: Vec<MadeUpWalk<f64, 2>> = drawn(300, 7);
     let mut positions = [SVector::<f64, 2>::zeros(); 41];
-    for Hypothesis { flow, start } in &hypotheses {
+    for MadeUpWalk { flow, start } in &hypotheses {
         let goal = flow.attractor().goal();
         let ball = |along: f64, aside: f64| {
             let way = goal - start;
@@ -108,8 +108,8 @@ fn around_obstacles() {
 /// The counter counts: `rollout` makes one vector of positions, and nothing else.
 #[test]
 fn a_rollout_that_owns_its_positions_allocates_once() {
-    let hypotheses: Vec<Hypothesis<f64, 2>> = drawn(1, 7);
-    let Hypothesis { flow, start } = &hypotheses[0];
+    let hypotheses: Vec<MadeUpWalk<f64, 2>> = drawn(1, 7);
+    let MadeUpWalk { flow, start } = &hypotheses[0];
     let made = allocations(|| {
         black_box(rollout(flow, &StableEuler, *start, TIME_STEP, STEPS).unwrap());
     });

@@ -3,9 +3,9 @@
 use crate::error::{GoalError, TrackError};
 use crate::estimator::GoalEstimator;
 use crate::expert::Expert;
-use crate::frame::RetrievalFrame;
 use crate::library::TRACK_LENGTH;
 use crate::motion::Motion;
+use crate::params::RetrievalFrame;
 use crate::span::QuerySpan;
 
 impl GoalEstimator {

@@ -5,35 +5,22 @@ use rayon::prelude::*;
 use crate::analogues::Analogues;
 use crate::error::GoalError;
 use crate::expert::Expert;
-use crate::frame::RetrievalFrame;
 use crate::goal_set::GoalSet;
 use crate::kmeans::KMeans;
 use crate::library::ExpertLibrary;
-use crate::params::ValidGoalEstimatorParams;
+use crate::params::{RetrievalFrame, ValidGoalEstimatorParams};
 use crate::retrieve::Retriever;
 
 /// Estimates where walkers are heading from how similar walkers of a library went on.
 ///
-/// In [`RetrievalFrame::Heading`], the default, every walker is described in its [`crate::HeadingFrame`]: by its
-/// velocities, divided by its pace (mean speed + 0.25 m/s), and by how its end deviates from repeating its last step.
+/// In [`RetrievalFrame::Heading`], the default, every walker is described in its [`crate::HeadingFrame`] by its velocities,
+/// divided by its pace; the N tracks of the library, or mirror images of tracks, that moved most alike are the experts,
+/// weighted by likeness; and K goals are chosen among how their ends deviate from going straight on. Nothing is random.
+/// `docs/goals.md` has the formulas.
 ///
-/// 1. The N tracks of the library, or mirror images of tracks, with the least squared difference of the divided
-///    velocities are the experts. A step counts half as much as the one after it. The difference of the headings in the
-///    world is added with a small weight: 0.2² |`u_a` − `u_b`|², where u is the unit vector of the heading, or shorter below
-///    1 m/s.
-/// 2. An expert at distance d has the weight exp(−(d − `d_1`) / (0.4 `d_N`)), with `d_1` the least and `d_N` the largest
-///    distance, normalised to sum to 1.
-/// 3. K goals are chosen among the experts' deviations such that the weighted mean distance of the nearest goal is small:
-///    cells are cut in two, the costliest first, and three steps of Lloyd's iteration follow. Nothing is random.
-/// 4. Each goal is carried over to the walker: where repeating the last step leads, plus the deviation. Its weight is
-///    the sum of the weights of the experts nearest to it.
-///
-/// In [`RetrievalFrame::World`], the published estimator:
-///
-/// 1. The observed velocities (m/s, forward differences) are compared with those of every track of the library in the
-///    normalised soft-DTW distance, and the N nearest are the experts (equations 4 and 5 of the paper).
-/// 2. The end of each expert is taken relative to its first position (equation 6).
-/// 3. k-means of these ends gives K goals, placed at the first observed position.
+/// In [`RetrievalFrame::World`], the published estimator, velocities are compared in the normalised soft-DTW distance
+/// (equations 4 and 5 of the paper), and k-means of the N nearest tracks' ends, each taken relative to its first position
+/// (equation 6), gives K goals, placed at the first observed position.
 ///
 /// The result depends on the library, the parameters and the positions that [`crate::QuerySpan`] reads: not on the other
 /// tracks of a batch, nor their order, nor the number of threads.
@@ -63,12 +50,12 @@ use crate::retrieve::Retriever;
 pub struct GoalEstimator {
     params: ValidGoalEstimatorParams,
     library: ExpertLibrary,
-    method: Method,
+    method: Preparation,
 }
 
 /// What the frame of the retrieval calls for.
 #[derive(Clone, Debug)]
-enum Method {
+enum Preparation {
     World(Box<Retriever>, KMeans),
     Heading(Analogues),
 }
@@ -84,7 +71,7 @@ impl GoalEstimator {
         library: ExpertLibrary,
     ) -> Result<Self, GoalError> {
         let method = match params.frame {
-            RetrievalFrame::Heading => Method::Heading(Analogues::new(&library)?),
+            RetrievalFrame::Heading => Preparation::Heading(Analogues::new(&library)?),
             RetrievalFrame::World => {
                 if library.len() < params.experts {
                     let (tracks, experts) = (library.len(), params.experts);
@@ -92,7 +79,7 @@ impl GoalEstimator {
                 }
                 let retriever = Retriever::new(&library, params.gamma, params.query)?;
                 let kmeans = KMeans::new(params.clusters, params.restarts);
-                Method::World(Box::new(retriever), kmeans)
+                Preparation::World(Box::new(retriever), kmeans)
             }
         };
         Ok(Self {
@@ -123,8 +110,8 @@ impl GoalEstimator {
     pub fn estimate(&self, track: &[[f64; 2]]) -> Result<GoalSet, GoalError> {
         let (experts, clusters) = (self.params.experts, self.params.clusters);
         match &self.method {
-            Method::Heading(analogues) => analogues.goals(track, experts, clusters),
-            Method::World(retriever, kmeans) => {
+            Preparation::Heading(analogues) => analogues.goals(track, experts, clusters),
+            Preparation::World(retriever, kmeans) => {
                 let experts = retriever.nearest(track, experts)?;
                 let ends: Vec<[f64; 2]> = experts
                     .iter()

@@ -3,8 +3,19 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::ParamsError;
-use crate::frame::RetrievalFrame;
 use crate::span::QuerySpan;
+
+/// In which coordinates walkers are compared and their ends are carried over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RetrievalFrame {
+    /// The coordinates of the recording: a walker is like another only if both head the same way. What the published
+    /// estimator does, with soft-DTW and k-means.
+    World,
+    /// The walker's own [`crate::HeadingFrame`], in which every track of the library also serves as its mirror image.
+    #[default]
+    Heading,
+}
 
 /// Parameters of a [`crate::GoalEstimator`], to be set one by one and then checked.
 ///
@@ -171,9 +182,8 @@ impl std::ops::Deref for ValidGoalEstimatorParams {
 
 #[cfg(test)]
 mod tests {
-    use super::GoalEstimatorParams;
+    use super::{GoalEstimatorParams, RetrievalFrame};
     use crate::error::ParamsError;
-    use crate::frame::RetrievalFrame;
     use crate::span::QuerySpan;
 
     #[test]

@@ -24,10 +24,14 @@ pub(crate) fn first_centres(
     let draws = 2 + (clusters as f64).ln() as usize;
     let first = points.get(draw(&points.weight, rng));
     let mut centres = vec![first];
-    let mut nearest = distances(points, first);
-    let mut weighted = vec![0.0; points.len()];
-    let mut best = vec![0.0; points.len()];
-    let mut trial = vec![0.0; points.len()];
+    let [mut nearest, mut weighted, mut best, mut trial] =
+        [(); 4].map(|()| vec![0.0; points.len()]);
+    add_centre(
+        points,
+        &vec![f64::INFINITY; points.len()],
+        first,
+        &mut nearest,
+    );
     while centres.len() < clusters {
         for ((weighted, nearest), weight) in weighted.iter_mut().zip(&nearest).zip(&points.weight) {
             *weighted = nearest * weight;
@@ -45,15 +49,6 @@ pub(crate) fn first_centres(
         std::mem::swap(&mut nearest, &mut best);
     }
     centres
-}
-
-fn distances(points: &Points, centre: [f64; 2]) -> Vec<f64> {
-    points
-        .x
-        .iter()
-        .zip(&points.y)
-        .map(|(&x, &y)| squared_distance([x, y], centre))
-        .collect()
 }
 
 /// Squared distances to the nearest centre once `centre` is one, written to `into`, and their weighted sum.

@@ -1,5 +1,2 @@
 #![no_main]
-
-use ddl_fuzz as _;
-
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| ddl_tests::outside_bytes::obsmat::read(bytes));
+ddl_fuzz::target!(tracks::obsmat);

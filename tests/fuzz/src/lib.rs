@@ -4,6 +4,14 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 
+/// A fuzz target of the reader at this path below `ddl_tests::outside_bytes`.
+#[macro_export]
+macro_rules! target {
+    ($($reader:tt)*) => {
+        libfuzzer_sys::fuzz_target!(|bytes: &[u8]| ddl_tests::outside_bytes::$($reader)*(bytes));
+    };
+}
+
 /// Bytes that no reader of a small input may ask for at once.
 const MOST: usize = 64 << 20;
 

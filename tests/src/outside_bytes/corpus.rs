@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::Reader;
 use super::edits::Choices;
+use crate::chance::Chance;
 
 /// Byte edits of each file.
 const EDITS: u64 = 300;
@@ -11,10 +12,6 @@ const EDITS: u64 = 300;
 const MOST_TRUNCATIONS: usize = 2048;
 
 /// The files of a reader's corpus, by name.
-///
-/// # Panics
-/// When there is none, or one cannot be read.
-#[must_use]
 pub fn files(reader: &str) -> Vec<(PathBuf, Vec<u8>)> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
         .join("fuzz/corpus")
@@ -34,9 +31,6 @@ pub fn files(reader: &str) -> Vec<(PathBuf, Vec<u8>)> {
 }
 
 /// Hands a reader every file of its corpus, all their truncations, and some edits of each, the same at every call.
-///
-/// # Panics
-/// When a law is broken; the bytes are then printed.
 pub fn run((name, read): Reader) {
     for (path, bytes) in files(name) {
         let hand_over = |bytes: &[u8], how: &str| {
@@ -57,7 +51,8 @@ pub fn run((name, read): Reader) {
         }
         for seed in 0..EDITS {
             let mut edited = bytes.clone();
-            let noise = noise(seed);
+            let mut chance = Chance(seed);
+            let noise: Vec<u8> = (0..8).flat_map(|_| chance.number().to_le_bytes()).collect();
             let mut choices = Choices::new(&noise);
             for _ in 0..=(seed % 3) {
                 choices.edit(&mut edited);
@@ -65,20 +60,4 @@ pub fn run((name, read): Reader) {
             hand_over(&edited, "edited");
         }
     }
-}
-
-/// Bytes that look like any (splitmix64).
-fn noise(seed: u64) -> Vec<u8> {
-    let mut state = seed;
-    let word = || {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    };
-    std::iter::repeat_with(word)
-        .take(8)
-        .flat_map(u64::to_le_bytes)
-        .collect()
 }

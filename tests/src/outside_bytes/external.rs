@@ -20,34 +20,22 @@ fn windows() -> &'static [Window] {
 }
 
 /// Reads JSON lines of forecasts.
-///
-/// # Panics
-/// When what is read breaks its law.
 pub fn read_json_lines(bytes: &[u8]) {
     check(bytes, ExternalFormat::JsonLines);
 }
 
 /// Reads a table of forecasts.
-///
-/// # Panics
-/// When what is read breaks its law.
 pub fn read_table(bytes: &[u8]) {
     check(bytes, ExternalFormat::Table);
 }
 
 /// Reads TrajNet++ ndjson of forecasts.
-///
-/// # Panics
-/// When what is read breaks its law.
 pub fn read_trajnet(bytes: &[u8]) {
     check(bytes, ExternalFormat::TrajNet);
 }
 
 /// The first byte says whether part of the walkers will do; the others are the file. What is read, written as JSON lines, reads the
 /// same.
-///
-/// # Panics
-/// When it does not, or a position is out of bounds.
 fn check(bytes: &[u8], format: ExternalFormat) {
     let Some((&part, file)) = bytes.split_first() else {
         return;

@@ -6,9 +6,6 @@ use ddl_data::{Homography, Observation, PedestrianId, PedestrianNames};
 const PIXELS: [[f64; 2]; 4] = [[0.0, 0.0], [320.0, 240.0], [-1e6, 1e6], [1e-300, -0.0]];
 
 /// Reads bytes as a homography, and asks it for places.
-///
-/// # Panics
-/// When what is read is no place within bounds, or reads otherwise with commas for blanks.
 pub fn read(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let Ok(homography) = text.parse::<Homography>() else {

@@ -5,9 +5,6 @@ use ddl_data::{Completion, LiveTracks, PedestrianId, Position};
 use super::edits::Choices;
 
 /// Each few bytes are a frame: how far it is ahead, and who is where; now and then a number of any bits.
-///
-/// # Panics
-/// When an error changes the tracks, or what is remembered grows beyond those who may be in a window again.
 pub fn read(bytes: &[u8]) {
     let mut choices = Choices::new(bytes);
     let completion = Completion::new(2 + choices.below(7), choices.below(3));

@@ -11,26 +11,21 @@ pub mod goal_library;
 pub mod homography;
 pub mod live_tracks;
 pub mod model_files;
-pub mod obsmat;
 pub mod own_tracks;
-mod recording;
 pub mod report;
-pub mod social_gan;
-pub mod star_csv;
 pub mod stream;
-pub mod table;
-pub mod trajnet;
+pub mod tracks;
 
 /// A reader under its laws, by the name of its fuzz target and corpus.
 pub type Reader = (&'static str, fn(&[u8]));
 
 /// The readers that need no libtorch.
 pub const READERS: [Reader; 20] = [
-    ("table", table::read),
-    ("star_csv", star_csv::read),
-    ("social_gan", social_gan::read),
-    ("trajnet", trajnet::read),
-    ("obsmat", obsmat::read),
+    ("table", tracks::table),
+    ("star_csv", tracks::star_csv),
+    ("social_gan", tracks::social_gan),
+    ("trajnet", tracks::trajnet),
+    ("obsmat", tracks::obsmat),
     ("own_tracks", own_tracks::read),
     ("stream", stream::read),
     ("live_tracks", live_tracks::read),
@@ -42,8 +37,8 @@ pub const READERS: [Reader; 20] = [
     ("moments", report::read_moments),
     ("goal_library", goal_library::read),
     ("packed_model", model_files::packed_model::read),
-    ("run_config", model_files::run_config::read),
-    ("metrics", model_files::metrics::read),
+    ("run_config", model_files::json::read_run_config),
+    ("metrics", model_files::json::read_metrics),
     ("weights", model_files::weights::read),
     ("experts", model_files::experts::read),
 ];

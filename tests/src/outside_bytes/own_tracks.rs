@@ -4,7 +4,7 @@ use ddl_data::{
     COORDINATE_LIMIT, Completion, Format, OBSERVED, Recording, WindowRule, parse_recording,
 };
 
-use super::recording::bounded;
+use super::tracks::bounded;
 
 const NAMES: [&str; 4] = ["a.csv", "a.txt", "a.ndjson", "a"];
 /// Seconds a frame that the second byte chooses from.
@@ -14,9 +14,6 @@ const FRAME_TIMES: [f64; 6] = [0.4, 0.04, 1.0 / 30.0, 0.1, 1e-9, 7.0];
 const PADDED_LIMIT: f64 = (1.0 + 6.0 * 2.0) * COORDINATE_LIMIT;
 
 /// The first byte chooses the name of a file of tracks, the second the rate; the others are its content.
-///
-/// # Panics
-/// When a window is not of the recording.
 pub fn read(bytes: &[u8]) {
     let [name, rate, text @ ..] = bytes else {
         return;

@@ -5,9 +5,6 @@ use std::sync::OnceLock;
 use ddl_report::{Moment, Report, page::Page};
 
 /// Reads bytes as `report.json`, and makes a page of it. Written again, it reads the same.
-///
-/// # Panics
-/// When it does not.
 pub fn read(bytes: &[u8]) {
     let Ok(report) = Report::from_json(&String::from_utf8_lossy(bytes)) else {
         return;
@@ -23,9 +20,6 @@ pub fn read(bytes: &[u8]) {
 }
 
 /// Reads bytes as `moments.json`, and draws them.
-///
-/// # Panics
-/// When what is written again reads otherwise.
 pub fn read_moments(bytes: &[u8]) {
     static EMPTY: OnceLock<Report> = OnceLock::new();
     let Ok(moments) = serde_json::from_slice::<Vec<Moment>>(bytes) else {

@@ -5,9 +5,6 @@ use std::io::BufReader;
 use ddl_data::{Completion, Frame, FrameReader, LiveTracks};
 
 /// The first byte says in pieces of how many bytes the others come.
-///
-/// # Panics
-/// When the pieces make a difference, frames are out of order, or an error changes the tracks.
 pub fn read(bytes: &[u8]) {
     let Some((&piece, text)) = bytes.split_first() else {
         return;

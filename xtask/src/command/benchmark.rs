@@ -44,7 +44,7 @@ fn benchmark(workspace: &Workspace, mut options: Vec<String>) -> Result<Command>
     let chosen = data::choose(workspace, asked, data.as_deref(), &mut |text| {
         attempts.push(text.to_owned());
     })?;
-    println!("data convention: {} ({})", chosen.convention, chosen.reason);
+    eprintln!("data convention: {} ({})", chosen.convention, chosen.reason);
     for attempt in attempts {
         eprintln!("{attempt}");
     }

@@ -39,7 +39,15 @@ impl Arguments {
         let command = workspace
             // The test `program` has the program built with it.
             .cargo(["test", "--package", "ddl-tests", "--package", "ddl-cli"])
-            .args(["--test", "program", "--test", "faults", "--"])
+            .args([
+                "--test",
+                "program",
+                "--test",
+                "faults",
+                "--test",
+                "faults_torch",
+                "--",
+            ])
             .args(["--test-threads", "1", "--nocapture"])
             .args(&self.rest)
             .env("OMP_NUM_THREADS", "1")

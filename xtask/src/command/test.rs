@@ -33,19 +33,26 @@ impl Arguments {
                 Err(error) => eprintln!("{error:#}"),
             }
         }
+        let selection = [
+            "--workspace",
+            "--exclude",
+            "ddl-star",
+            "--exclude",
+            "ddl-tests",
+        ];
+        cargo_test(workspace, &selection, &self.rest)?;
+        let selection = ["-p", "ddl-tests", "--no-default-features"];
+        cargo_test(workspace, &selection, &self.rest)?;
         if self.no_torch {
-            let selection = [
-                "--workspace",
-                "--exclude",
-                "ddl-star",
-                "--exclude",
-                "ddl-tests",
-            ];
-            cargo_test(workspace, &selection, &self.rest)?;
-            let selection = ["-p", "ddl-tests", "--no-default-features"];
-            return cargo_test(workspace, &selection, &self.rest);
+            return Ok(());
         }
-        cargo_test(workspace, &["--workspace"], &self.rest)
+        // The other side: what libtorch adds.
+        let packages = ["-p", "ddl-star", "-p", "ddl", "-p", "ddl-cli"];
+        let arguments = [&packages[..], &["--features", "ddl-cli/torch"]].concat();
+        cargo_test(workspace, &arguments, &self.rest)?;
+        let tests = ["--test", "it_torch", "--test", "faults_torch"];
+        let arguments = [&["-p", "ddl-tests"][..], &tests].concat();
+        cargo_test(workspace, &arguments, &self.rest)
     }
 }
 

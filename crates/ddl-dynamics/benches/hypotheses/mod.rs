@@ -13,14 +13,14 @@ pub(crate) const STEPS: usize = 12;
 pub(crate) const TIME_STEP: f64 = 0.4;
 
 /// A walk to be forecast.
-pub(crate) struct Hypothesis<T, const D: usize> {
+pub(crate) struct MadeUpWalk<T, const D: usize> {
     pub(crate) start: SVector<T, D>,
     pub(crate) flow: NaturalGradientFlow<T, D, MetricSchedule<T, D>>,
 }
 
 /// Walkers at about 1 m/s, 2 to 6 m from their goals in any direction, leaning to either side: about half of
 /// them arrive within the 4.8 s. The same in every precision.
-pub(crate) fn drawn<T: Real, const D: usize>(count: usize, seed: u64) -> Vec<Hypothesis<T, D>> {
+pub(crate) fn drawn<T: Real, const D: usize>(count: usize, seed: u64) -> Vec<MadeUpWalk<T, D>> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut between = |low: f64, high: f64| rng.random_range(low..high);
     (0..count)
@@ -41,7 +41,7 @@ pub(crate) fn drawn<T: Real, const D: usize>(count: usize, seed: u64) -> Vec<Hyp
             let metrics = (0..STEPS).map(|_| metric()).collect();
             let schedule = MetricSchedule::new(metrics).expect("12 metrics");
             let attractor = Attractor::new(goal.map(T::rounded)).expect("finite");
-            Hypothesis {
+            MadeUpWalk {
                 start: start.map(T::rounded),
                 flow: NaturalGradientFlow::new(attractor, schedule),
             }

@@ -38,18 +38,13 @@ const BISECTIONS: usize = 53;
 /// [`MAX_CONTRACTION`](Self::MAX_CONTRACTION) = 0.95, so `det J >= 0.05`.
 ///
 /// # The inverse
-/// `y = x + k(x) v` puts `x` on the line `x = y - s v` with `s = k(x)` in `[0, 1]`, so `s` is a root
-/// of `h(s) = s - k(y - s v)`. As `h'(s) = det J(y - s v) >= 1 - q > 0`, `h(0) = -k(y) <= 0` and
-/// `h(1) = 1 - k(y - v) >= 0`, there is exactly one. It is found by Newton's method, kept within
-/// the bracket of the signs seen so far (a step that would leave it becomes a bisection), and after
-/// 24 such steps by bisection alone, which needs no more than 53: the number of evaluations is
-/// bounded whatever the numbers are. Half a dozen is usual.
+/// `y = x + k(x) v` puts `x` on the line `x = y - s v` with `s = k(x)` in `[0, 1]`, so `s` is the only root of
+/// `h(s) = s - k(y - s v)`, as `h'(s) = det J(y - s v) > 0`. It is found by Newton's method within the bracket of the signs
+/// seen so far, and after 24 steps by bisection alone, which needs no more than 53; half a dozen steps are usual.
 ///
 /// # Numerics
-/// The error of the inverse, carried back by `psi`, is `h(s) v` and the rounding of `y - s v`: a few
-/// `epsilon` times the largest of `|y|`, `|c|` and `|v|`. All is computed in the numbers
-/// `rho (x - c)` and `rho v`, which neither overflow nor underflow where it matters: Jacobians are
-/// finite for every finite position. An image is infinite only where `x + k v` itself is too large
+/// The error of the inverse, carried back by `psi`, is a few `epsilon` times the largest of `|y|`, `|c|` and `|v|`. Jacobians
+/// are finite for every finite position. An image is infinite only where `x + k v` itself is too large
 /// for `T`. Where `k` underflows, `psi` is the identity to the last bit.
 ///
 /// # References

@@ -87,27 +87,6 @@ impl<T: Real, const D: usize> Chain<T, D> {
     /// Mathematical Monthly 82 (1975), for the frame in which the turns are scaled. W. Kabsch, "A
     /// solution for the best rotation to relate two sets of vectors", Acta Crystallographica A 32
     /// (1976), for the placing.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_dynamics::{Chain, Diffeomorphism};
-    /// use nalgebra::Vector2;
-    ///
-    /// // Out to the end of a wall, around it, and back on its other side: 7 m to a goal 1 m away.
-    /// let path = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]].map(Vector2::from);
-    /// let straightening = Chain::straightening(&path, 150)?;
-    /// assert!(straightening.mean_residual < 0.01 * 7.0);
-    ///
-    /// let psi = &straightening.chain;
-    /// let to_go: f64 = (psi.apply(&path[0]) - psi.apply(&path[3])).norm();
-    /// assert!((to_go - 7.0).abs() < 0.2);
-    /// // Straight ahead in the image is out along the wall, away from the goal.
-    /// let (image, jacobian) = psi.apply_with_jacobian(&Vector2::new(1.0, 0.0));
-    /// let u = (image - psi.apply(&path[3])).normalize();
-    /// let velocity = jacobian.try_inverse().map(|inverse| -inverse * u);
-    /// assert!(velocity.is_some_and(|v| v.normalize().x > 0.98));
-    /// # Ok::<(), ddl_dynamics::DynamicsError>(())
-    /// ```
     pub fn straightening(
         path: &[SVector<T, D>],
         layers: usize,

@@ -91,27 +91,6 @@ where
     ///
     /// # Errors
     /// [`DynamicsError::NonFinite`] when the goal or its image is not finite.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_dynamics::{
-    ///     Chain, CholeskyMetric, DiffeomorphicFlow, Flow, StableEuler, State, rollout,
-    /// };
-    /// use nalgebra::Vector2;
-    ///
-    /// // Shown once: out to the end of a wall, around it, and back on its other side.
-    /// let shown = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]].map(Vector2::from);
-    /// let psi = Chain::straightening(&shown, 150)?.chain;
-    /// let flow = DiffeomorphicFlow::in_chart(shown[3], psi, CholeskyMetric::identity())?;
-    ///
-    /// // The goal is 1 m to the left; the walker sets out straight ahead, and arrives.
-    /// let first = flow.velocity(&State::at(shown[0]))?;
-    /// assert!(first.normalize().x > 0.9, "{first}");
-    /// let path = rollout(&flow, &StableEuler, shown[0], 0.4, 24)?;
-    /// assert!(path.iter().any(|p| p.x > 2.5));
-    /// assert_eq!(path[24], shown[3]);
-    /// # Ok::<(), ddl_dynamics::DynamicsError>(())
-    /// ```
     pub fn in_chart(goal: SVector<T, D>, psi: Psi, source: M) -> Result<Self, DynamicsError> {
         Self::with_metric(goal, psi, source, Given::InChart)
     }

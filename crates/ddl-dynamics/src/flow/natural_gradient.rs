@@ -15,7 +15,7 @@ use crate::{
 /// `|e(t)| <= |e(0)| exp(-lambda_min t)`. The velocity is less than 90 degrees away from the direction to the goal.
 ///
 /// # References
-/// Equation (9) of the paper, with `P` of equation (11).
+/// Equation (9) of the paper, with `P` of equation (11); equation (8) is [`straight`](NaturalGradientFlow::straight).
 ///
 /// # Examples
 /// ```
@@ -32,6 +32,13 @@ use crate::{
 pub struct NaturalGradientFlow<T, const D: usize, M> {
     attractor: Attractor<T, D>,
     source: M,
+}
+
+impl<T: Real, const D: usize> NaturalGradientFlow<T, D, CholeskyMetric<T, D>> {
+    /// Gradient descent, `v = -grad Phi`: with the identity for `P`, straight to the goal, on a distance at 1 m/s.
+    pub fn straight(attractor: Attractor<T, D>) -> Self {
+        Self::new(attractor, CholeskyMetric::identity())
+    }
 }
 
 impl<T: Real, const D: usize, M: MetricSource<T, D>> NaturalGradientFlow<T, D, M> {

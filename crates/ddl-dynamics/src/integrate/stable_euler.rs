@@ -56,10 +56,10 @@ const ARRIVAL: f64 = 8.0;
 ///
 /// # Examples
 /// ```
-/// use ddl_dynamics::{Attractor, GradientFlow, StableEuler, rollout};
+/// use ddl_dynamics::{Attractor, NaturalGradientFlow, StableEuler, rollout};
 /// use nalgebra::Vector1;
 ///
-/// let flow = GradientFlow::new(Attractor::new(Vector1::new(0.0))?);
+/// let flow = NaturalGradientFlow::straight(Attractor::new(Vector1::new(0.0))?);
 /// let path = rollout(&flow, &StableEuler, Vector1::new(1.25), 0.5, 4)?;
 /// assert_eq!(path, [1.25, 0.75, 0.25, 0.0, 0.0].map(Vector1::new));
 /// # Ok::<(), ddl_dynamics::DynamicsError>(())

@@ -56,41 +56,24 @@ impl<T: Real> CertifiedStep<T> {
     }
 
     pub(super) fn check(&self, step: usize, after: T) -> Result<(), Violation> {
+        let (before, rate) = (self.potential.as_f64(), self.rate.as_f64());
+        let (min_eigenvalue, after) = (self.min_eigenvalue.as_f64(), after.as_f64());
         // Written so that a NaN, which no certificate made here holds, breaks the guarantee too.
-        let positive_definite = self.min_eigenvalue > T::zero();
-        if !positive_definite {
-            let min_eigenvalue = self.min_eigenvalue.as_f64();
-            return Err(Violation::NotPositiveDefinite {
+        let (definite, descending) = (min_eigenvalue > 0.0, rate < 0.0);
+        match (before == 0.0, after == 0.0) {
+            _ if !definite => Err(Violation::NotPositiveDefinite {
                 step,
                 min_eigenvalue,
-            });
-        }
-        if self.potential.is_zero() {
-            return if after.is_zero() {
-                Ok(())
-            } else {
-                Err(Violation::LeftGoal {
-                    step,
-                    after: after.as_f64(),
-                })
-            };
-        }
-        let descending = self.rate < T::zero();
-        if !descending {
-            return Err(Violation::NotDescending {
-                step,
-                rate: self.rate.as_f64(),
-            });
-        }
-        if after < self.potential {
-            Ok(())
-        } else {
-            let (before, after) = (self.potential.as_f64(), after.as_f64());
-            Err(Violation::NotDecreasing {
+            }),
+            (true, true) => Ok(()),
+            (true, false) => Err(Violation::LeftGoal { step, after }),
+            _ if !descending => Err(Violation::NotDescending { step, rate }),
+            _ if after < before => Ok(()),
+            _ => Err(Violation::NotDecreasing {
                 step,
                 before,
                 after,
-            })
+            }),
         }
     }
 }

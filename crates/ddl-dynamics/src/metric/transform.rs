@@ -22,19 +22,6 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// # Numerics
     /// `P` is not formed: the triangular factor of `[J L, sqrt(sigma) J]` is found by rotations. The
     /// result is `J P J^T (1 + epsilon)`, the last term in place of a `sigma`.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_dynamics::CholeskyMetric;
-    /// use nalgebra::Matrix2;
-    ///
-    /// let metric = CholeskyMetric::planar(1.0, 0.5, 1.0, 0.1)?;
-    /// let map = Matrix2::new(0.0, -2.0, 1.0, 0.5);
-    /// let seen = metric.congruent(&map)?;
-    /// let formed = map * metric.to_matrix() * map.transpose();
-    /// assert!((seen.to_matrix() - formed).norm() < 1e-14);
-    /// # Ok::<(), ddl_dynamics::DynamicsError>(())
-    /// ```
     pub fn congruent(&self, map: &SMatrix<T, D, D>) -> Result<Self, DynamicsError> {
         // s_min(J)^2 >= 1 / |J^-1|^2 (Frobenius).
         let inverse = map.try_inverse();

@@ -11,7 +11,7 @@ use crate::{draw::SceneDraw, for_every_space};
 
 /// The flow straight to a goal, at 1 m/s.
 fn straight_to(goal: Vector2<f64>) -> NaturalGradientFlow<f64, 2, CholeskyMetric<f64, 2>> {
-    NaturalGradientFlow::new(Attractor::new(goal).unwrap(), CholeskyMetric::identity())
+    NaturalGradientFlow::straight(Attractor::new(goal).unwrap())
 }
 
 /// Balls along the way of the scene: two that keep their place, one on the goal, one on the start.

@@ -1,8 +1,6 @@
 //! The goal is reached, in a number of steps known beforehand.
 
-use ddl_dynamics::{
-    Attractor, GradientFlow, NaturalGradientFlow, Real, StableEuler, StepLimit, rollout,
-};
+use ddl_dynamics::{Attractor, NaturalGradientFlow, Real, StableEuler, StepLimit, rollout};
 use nalgebra::SVector;
 use proptest::{prelude::*, test_runner::TestCaseResult};
 
@@ -68,7 +66,7 @@ fn the_gradient_flow_arrives_exactly<T: Real, const D: usize>(scene: &SceneDraw)
     let dt = scene.dt::<T>().max(T::one());
     let steps = (attractor.potential(&start) / dt).as_f64().ceil() as usize + 1;
     let path = rollout(
-        &GradientFlow::new(attractor),
+        &NaturalGradientFlow::straight(attractor),
         &StableEuler,
         start,
         dt,

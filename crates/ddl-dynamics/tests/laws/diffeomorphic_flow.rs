@@ -128,55 +128,32 @@ fn no_finite_input_breaks_a_bent_flow<T: Real, const D: usize>(
 }
 for_every_space!(no_finite_input_breaks_a_bent_flow, wild_bent_scene);
 
-/// The largest angle between a move and the straight direction to the goal (degrees).
-fn widest_turn(path: &[Vector2<f64>], goal: &Vector2<f64>) -> f64 {
-    path.windows(2)
-        .filter(|pair| pair[0] != pair[1] && pair[0] != *goal)
-        .map(|pair| (pair[1] - pair[0]).angle(&(goal - pair[0])).to_degrees())
-        .fold(0.0, f64::max)
-}
-
-/// Behind a wall from the goal: the walker sets out away from it, with any integrator, and arrives. A metric
-/// of its own bends the path and does not lose the goal.
+/// Behind a wall from the goal: in steps of 0.4 s and of the adaptive integrator the path is straight in the chart; and a
+/// metric of its own bends it and does not lose the goal.
 #[test]
-fn a_turn_of_more_than_120_degrees_converges() {
+fn a_detour_is_straight_in_the_chart_and_survives_a_metric() {
     let shown = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]].map(Vector2::from);
-    let goal = shown[3];
+    let (start, goal) = (shown[0], shown[3]);
     let psi = Chain::straightening(&shown, 150).unwrap().chain;
     let identity = CholeskyMetric::identity();
     let straight = DiffeomorphicFlow::in_chart(goal, psi.clone(), identity).unwrap();
+    let precise = DormandPrince::new(1e-6).unwrap();
+    for path in [
+        rollout(&straight, &StableEuler, start, 0.4, 30).unwrap(),
+        rollout(&straight, &precise, start, 0.4, 30).unwrap(),
+    ] {
+        let certificate = LyapunovCertificate::of_rollout(&straight, &path, 0.4).unwrap();
+        assert_eq!(certificate.holds(), Ok(()));
+        assert!(certificate.largest_angle() < 0.017);
+        assert!(path.iter().any(|p| p.x > 2.5) && (path[30] - goal).norm() < 1e-12);
+    }
     let leaning = CholeskyMetric::planar(1.1, 0.3, 0.9, 1e-8).unwrap();
     let leaning = DiffeomorphicFlow::new(goal, psi, leaning).unwrap();
-    let precise = DormandPrince::new(1e-6).unwrap();
-    let (slow, fast) = (0.05, 0.4);
-    let walk = |dt, steps| rollout(&straight, &StableEuler, shown[0], dt, steps);
-    for (name, path, least, end) in [
-        ("straight", walk(fast, 30), 120.0, 1e-12),
-        ("short steps", walk(slow, 240), 120.0, 1e-12),
-        (
-            "adaptive",
-            rollout(&straight, &precise, shown[0], fast, 30),
-            120.0,
-            1e-12,
-        ),
-        (
-            "leaning",
-            rollout(&leaning, &StableEuler, shown[0], slow, 4000),
-            100.0,
-            1e-6,
-        ),
-    ] {
-        let path = path.unwrap();
-        let turn = widest_turn(&path, &goal);
-        assert!(turn > least, "{name}: {turn} degrees");
-        let left = (path[path.len() - 1] - goal).norm();
-        assert!(left <= end, "{name}: {left} m left");
-    }
-    let path = rollout(&straight, &StableEuler, shown[0], fast, 30).unwrap();
-    let certificate = LyapunovCertificate::of_rollout(&straight, &path, fast).unwrap();
-    assert_eq!(certificate.holds(), Ok(()));
-    // In the chart the same path is straight.
-    assert!(certificate.largest_angle().to_degrees() < 1.0);
+    let path = rollout(&leaning, &StableEuler, start, 0.05, 4000).unwrap();
+    let moves = path.windows(2);
+    let turns = moves.map(|pair| (pair[1] - pair[0]).angle(&(goal - pair[0])));
+    assert!(turns.fold(0.0, f64::max) > 100_f64.to_radians());
+    assert!((path[4000] - goal).norm() < 1e-6);
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! The published scheme: what it does, and what it does not keep.
 
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, Euler, GradientFlow, Integrator, LyapunovCertificate,
-    NaturalGradientFlow, Real, State, Violation, rollout,
+    Attractor, CholeskyMetric, Euler, Integrator, LyapunovCertificate, NaturalGradientFlow, Real,
+    State, Violation, rollout,
 };
 use nalgebra::{Vector1, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -60,7 +60,7 @@ fn plain_euler_circles_the_goal_and_the_certificate_names_the_step() {
     // At 1 m/s in steps of 0.5 s from 1.25 m: 0.75, 0.25, then to and fro over the goal for ever.
     let attractor = Attractor::new(Vector1::new(0.0)).unwrap();
     let path = rollout(
-        &GradientFlow::new(attractor),
+        &NaturalGradientFlow::straight(attractor),
         &Euler,
         Vector1::new(1.25),
         0.5,

@@ -1,8 +1,8 @@
 //! At the goal, and a hair's breadth from it.
 
 use ddl_dynamics::{
-    Attractor, Euler, Flow, Integrator, LyapunovCertificate, NaturalGradientFlow, Real,
-    StableEuler, State, StepLimit, rollout,
+    Attractor, Euler, Flow, Integrator, LyapunovCertificate, Real, StableEuler, State, StepLimit,
+    rollout,
 };
 use nalgebra::{SVector, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -36,29 +36,6 @@ fn at_the_goal_nothing_moves<T: Real, const D: usize>(scene: &SceneDraw) -> Test
     Ok(())
 }
 for_every_space!(at_the_goal_nothing_moves, any_scene);
-
-/// 1e-12 m from a goal at the origin the velocity is that of any other distance, and the walker
-/// arrives and stays.
-fn next_to_the_goal_the_flow_is_whole<T: Real, const D: usize>(
-    scene: &SceneDraw,
-) -> TestCaseResult {
-    let attractor = Attractor::new(SVector::<T, D>::zeros()).unwrap();
-    let Some(unit) = scene.unit::<T, D>() else {
-        return Ok(());
-    };
-    let near = unit * T::rounded(1e-12);
-    let metrics = scene.metrics::<T, D>();
-    let gradient = attractor.gradient(&near);
-    prop_assert!((gradient - unit).norm() <= T::rounded(8.0) * T::EPSILON);
-    let flow = NaturalGradientFlow::new(attractor, metrics[0]);
-    let velocity = flow.velocity(&State::at(near)).unwrap();
-    prop_assert_eq!(velocity, -metrics[0].apply(&gradient));
-    let step = StableEuler::advance(&attractor, &near, &velocity, scene.dt()).unwrap();
-    prop_assert!(attractor.potential(&step.position) < attractor.potential(&near));
-    prop_assert!(step.limit != StepLimit::AtGoal);
-    Ok(())
-}
-for_every_space!(next_to_the_goal_the_flow_is_whole, any_scene);
 
 #[test]
 fn one_spacing_from_a_far_goal_the_walker_arrives() {

@@ -5,7 +5,7 @@
 use ddl_goal::{GoalEstimator, GoalEstimatorParams};
 use serde::Deserialize;
 
-use crate::tracks::{Track, distance, estimator, walk};
+use crate::tracks::{Positions, distance, estimator, walk};
 
 /// x = a t + b t², y = c t + d t² (m), t counting steps.
 type Coefficients = [f64; 4];
@@ -34,7 +34,7 @@ struct Analogue {
     end: [f64; 2],
 }
 
-fn track([a, b, c, d]: Coefficients) -> Track {
+fn track([a, b, c, d]: Coefficients) -> Positions {
     let place = |t: f64| [a * t + b * t * t, c * t + d * t * t];
     (0..20).map(|t| place(f64::from(t))).collect()
 }
@@ -99,7 +99,7 @@ fn a_goal_is_the_weighted_mean_of_its_analogues() {
 /// Analogues that moved exactly alike count the same, however they went on.
 #[test]
 fn equal_analogues_weigh_the_same() {
-    let turned = |side: f64| -> Track {
+    let turned = |side: f64| -> Positions {
         let mut track = walk(1.0, 0.0, 0.0);
         let onward = track[8..].iter_mut().zip(1..);
         onward.for_each(|(place, step)| place[1] += side * 0.1 * f64::from(step));

@@ -3,7 +3,7 @@
 use ddl_goal::{GoalEstimator, GoalEstimatorParams, HeadingFrame, TrackError};
 use proptest::prelude::*;
 
-use crate::tracks::{self, Track, distance, walk};
+use crate::tracks::{self, Positions, distance, walk};
 
 /// A turned, then moved scene.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,7 @@ fn motion() -> impl Strategy<Value = SceneMotion> {
 }
 
 /// 8 positions of somebody whose steps are up to 0.8 m long.
-fn observed() -> impl Strategy<Value = Track> {
+fn observed() -> impl Strategy<Value = Positions> {
     let step = prop::array::uniform2(-0.8..0.8_f64);
     let scale = prop_oneof![Just(1.0), Just(0.05)];
     (prop::collection::vec(step, 7), scale).prop_map(|(steps, scale)| {
@@ -52,7 +52,7 @@ fn has_heading(track: &[[f64; 2]]) -> bool {
 
 /// Goals by walkers of several speeds and turns, in a scene.
 fn estimator(scene: &dyn Fn([f64; 2]) -> [f64; 2]) -> GoalEstimator {
-    let track = |i: u32| -> Track {
+    let track = |i: u32| -> Positions {
         let turn = f64::from(i / 25) * 0.013 - 0.1;
         let track = walk(f64::from(i % 25 + 1) * 0.07, 0.3, turn);
         track.into_iter().map(scene).collect()
@@ -98,7 +98,7 @@ proptest! {
         track in observed(), motion in motion(), point in prop::array::uniform2(-50.0..50.0_f64),
     ) {
         prop_assume!(has_heading(&track));
-        let moved: Track = track.iter().map(|&p| motion.of(p)).collect();
+        let moved: Positions = track.iter().map(|&p| motion.of(p)).collect();
         let (here, there) = (HeadingFrame::new(&track)?, HeadingFrame::new(&moved)?);
         prop_assert!(distance(here.to_frame(point), there.to_frame(motion.of(point))) < 1e-8);
     }
@@ -109,7 +109,7 @@ proptest! {
     ) {
         prop_assume!(has_heading(&track));
         let mirror = |[x, y]: [f64; 2]| [x, -y];
-        let mirrored: Track = track.iter().map(|&p| mirror(p)).collect();
+        let mirrored: Positions = track.iter().map(|&p| mirror(p)).collect();
         let (here, there) = (HeadingFrame::new(&track)?, HeadingFrame::new(&mirrored)?);
         prop_assert_eq!(there.to_frame(mirror(point)), mirror(here.to_frame(point)));
     }
@@ -132,11 +132,11 @@ proptest! {
             let (sin, cos) = (bend * f64::from(i)).sin_cos();
             [f64::from(i) * 0.4 * speed * cos, f64::from(i) * 0.4 * speed * sin]
         };
-        let track: Track = (0..8).map(walk).collect();
-        let moved: Track = track.iter().map(|&p| motion.of(p)).collect();
-        let mirrored: Track = track.iter().map(|&[x, y]| [x, -y]).collect();
+        let track: Positions = (0..8).map(walk).collect();
+        let moved: Positions = track.iter().map(|&p| motion.of(p)).collect();
+        let mirrored: Positions = track.iter().map(|&[x, y]| [x, -y]).collect();
         // The direction in the world counts a little, so the library turns with the walker.
-        let pairs = |track: &Track, scene: &dyn Fn([f64; 2]) -> [f64; 2]| -> Vec<([f64; 2], f64)> {
+        let pairs = |track: &Positions, scene: &dyn Fn([f64; 2]) -> [f64; 2]| -> Vec<([f64; 2], f64)> {
             let set = estimator(scene).estimate(track).unwrap();
             set.goals().iter().copied().zip(set.weights().iter().copied()).collect()
         };
@@ -153,7 +153,7 @@ fn who_stands_keeps_the_axes_of_the_world() {
     let frame = HeadingFrame::new(&[[5.0, 6.0]; 8]).unwrap();
     assert_eq!((frame.origin(), frame.heading()), ([5.0, 6.0], [1.0, 0.0]));
     // Who stopped still faces where it walked.
-    let mut stopped: Track = (0..7).map(|i| [0.0, 0.1 * f64::from(i)]).collect();
+    let mut stopped: Positions = (0..7).map(|i| [0.0, 0.1 * f64::from(i)]).collect();
     stopped.push(stopped[6]);
     assert_eq!(HeadingFrame::new(&stopped).unwrap().heading(), [0.0, 1.0]);
 }

@@ -2,10 +2,10 @@
 
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
 
-pub(crate) type Track = Vec<[f64; 2]>;
+pub(crate) type Positions = Vec<[f64; 2]>;
 
 /// 20 positions (m), 0.4 s apart, of somebody who turns by `turn` (rad) at each step.
-pub(crate) fn walk(speed: f64, heading: f64, turn: f64) -> Track {
+pub(crate) fn walk(speed: f64, heading: f64, turn: f64) -> Positions {
     let mut position = [3.0 * heading, -speed];
     (0..20)
         .map(|i| {
@@ -22,7 +22,7 @@ pub(crate) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// An estimator of valid parameters with a library of these tracks.
-pub(crate) fn estimator(params: GoalEstimatorParams, tracks: Vec<Track>) -> GoalEstimator {
+pub(crate) fn estimator(params: GoalEstimatorParams, tracks: Vec<Positions>) -> GoalEstimator {
     let library = ExpertLibrary::new(tracks, 0.4).unwrap();
     GoalEstimator::new(params.check().unwrap(), library).unwrap()
 }

@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use crate::outside_bytes::edits::Choices;
+use crate::safetensors_file;
 
 /// A sound file in both of its layouts.
 pub(super) struct Digested {
@@ -30,24 +31,15 @@ impl Digested {
 }
 
 fn without_digest(file: &[u8]) -> Vec<u8> {
-    let (length, rest) = file.split_at(8);
-    let length = u64::from_le_bytes(length.try_into().expect("eight bytes")) as usize;
-    let (header, numbers) = rest.split_at(length);
-    let mut header: Value = serde_json::from_slice(header).expect("a sound header");
+    let (mut header, numbers) = safetensors_file::parts(file).expect("a sound file");
     let origin = &mut header["__metadata__"]["origin"];
-    let mut facts: Value = origin
-        .as_str()
-        .and_then(|facts| serde_json::from_str(facts).ok())
-        .expect("a sound origin");
-    let removed = facts
-        .as_object_mut()
-        .and_then(|facts| facts.remove("numbers.sha256"));
-    assert!(removed.is_some(), "the file has a digest");
+    let facts = origin.as_str().map(serde_json::from_str::<Value>);
+    let mut facts = facts.expect("a sound origin").expect("a sound origin");
+    let all = facts.as_object_mut().expect("a sound origin");
+    assert!(
+        all.remove("numbers.sha256").is_some(),
+        "the file has a digest"
+    );
     *origin = facts.to_string().into();
-    let mut header = header.to_string();
-    while !header.len().is_multiple_of(8) {
-        header.push(' ');
-    }
-    let length = (header.len() as u64).to_le_bytes();
-    [&length[..], header.as_bytes(), numbers].concat()
+    safetensors_file::join(&header, numbers)
 }

@@ -2,10 +2,9 @@
 
 mod digested;
 pub mod experts;
-pub mod metrics;
+pub mod json;
 mod packed_file;
 pub mod packed_model;
-pub mod run_config;
 mod smallest;
 #[cfg(feature = "torch")]
 pub mod training_state;

@@ -31,9 +31,6 @@ impl Sound {
 }
 
 /// The first byte says whether the networks are made as well, which takes most of the time: one in four does.
-///
-/// # Panics
-/// When a file is read that does not hold what its networks need, an error does not name the file, or a sound one is refused.
 pub fn read(bytes: &[u8]) {
     thread_local! {
         static SOUND: Sound = Sound::make();

@@ -1,13 +1,13 @@
 //! The smallest networks there are: what is fuzzed is the reading.
 
 use ddl::network::{MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig};
-use ddl::{BuiltinModel, GoalRecipe, RunConfig};
+use ddl::{RunConfig, Variant};
+
+use crate::drawn_model;
 
 /// The configuration of a run with the smallest networks, whose goals are proposed.
 pub(super) fn config() -> RunConfig {
-    let mut config = BuiltinModel::default()
-        .config()
-        .expect("the built-in models are whole");
+    let mut config = drawn_model::config(Variant::Full);
     config.star = StarConfig {
         model_width: 2,
         heads: 1,
@@ -16,7 +16,6 @@ pub(super) fn config() -> RunConfig {
         noise_width: 1,
         ..config.star
     };
-    config.goals = GoalRecipe::proposed(1);
     if let Some(proposal) = &mut config.goals.proposal {
         proposal.network = ProposalConfig {
             members: 1,

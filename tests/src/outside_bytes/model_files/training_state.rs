@@ -51,9 +51,6 @@ impl Sound {
 }
 
 /// Edits of a sound file.
-///
-/// # Panics
-/// When a state is read that has more steps than the training, an error changes the steps or does not name the file, or the sound file is refused.
 pub fn read(bytes: &[u8]) {
     // libtorch's tensors stay on their thread.
     thread_local! {

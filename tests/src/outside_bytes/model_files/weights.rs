@@ -35,9 +35,6 @@ impl Sound {
 }
 
 /// Edits of a sound file.
-///
-/// # Panics
-/// When an error does not name the file, when the sound file is refused or reads as other numbers, or when what is read is not finite.
 pub fn read(bytes: &[u8]) {
     thread_local! {
         static SOUND: Sound = Sound::make().expect("the sound file can be made");

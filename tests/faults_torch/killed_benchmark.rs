@@ -1,0 +1,162 @@
+//! `kill -9` at any moment of a benchmark: the same command goes on to the same results.
+
+use ddl_tests::chance::Chance;
+use ddl_tests::folder_contents::{self, Contents, assert_same, half_written};
+use ddl_tests::place::Place;
+use ddl_tests::{figures, processes, program};
+use serde_json::Value;
+use std::os::unix::process::ExitStatusExt as _;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// A benchmark of two models, each of which takes some seconds.
+const BENCHMARK: &str = "benchmark --convention simulated --profile smoke --folds corridor --seeds 1,2 --train-walkers 64 --test-walkers 20 \
+                         --protocol fair --jobs 2 --out out";
+
+fn benchmark(place: &Place) -> Command {
+    let mut command = program::command(place.path(), BENCHMARK);
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    command
+}
+
+/// One that has claimed its folder.
+fn begun(place: &Place) -> Child {
+    let mut child = benchmark(place).spawn().unwrap();
+    while !place.at("out/plan.json").exists() {
+        assert!(child.try_wait().unwrap().is_none());
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child
+}
+
+fn kill_all(child: &mut Child) {
+    // the benchmark first, so that it begins nothing new
+    for id in processes::with_descendants(child.id()) {
+        processes::signal(id, "KILL");
+    }
+    child.wait().unwrap();
+}
+
+fn forget_seconds(value: &mut Value) {
+    match value {
+        Value::Object(fields) => {
+            fields.retain(|name, _| !name.contains("seconds"));
+            fields.values_mut().for_each(forget_seconds);
+        }
+        Value::Array(items) => items.iter_mut().for_each(forget_seconds),
+        _ => {}
+    }
+}
+
+/// Weights and results of a finished benchmark, without what differs from time to time: seconds.
+fn finish(place: &Place) -> Contents {
+    let status = benchmark(place).status().unwrap();
+    let mut contents = folder_contents::read(&place.at("out"));
+    let logs = contents
+        .iter()
+        .filter(|(name, _)| name.ends_with("log.txt"));
+    let logs = logs.map(|(_, log)| String::from_utf8_lossy(log.as_deref().unwrap_or_default()));
+    assert!(status.success(), "{status}: {}", logs.collect::<String>());
+    let kept = [
+        "model.safetensors",
+        "proposal.safetensors",
+        "report.json",
+        "moments.json",
+    ];
+    contents.retain(|name, _| kept.iter().any(|kept| name.ends_with(kept)));
+    for (name, bytes) in &mut contents {
+        if let (true, Some(bytes)) = (name.ends_with("report.json"), bytes) {
+            let mut report: Value = serde_json::from_slice(bytes).unwrap();
+            forget_seconds(&mut report);
+            *bytes = report.to_string().into_bytes();
+        }
+    }
+    contents
+}
+
+/// Half of the times everything is killed, half of the times the benchmark alone, whose processes go on by themselves.
+#[test]
+fn a_killed_benchmark_ends_in_the_same_results() {
+    let clock = Instant::now();
+    let expected = finish(&Place::empty());
+    let takes = clock.elapsed();
+    assert!(expected.contains_key(std::path::Path::new("report.json")));
+    let rounds = figures::rounds(2, 50);
+    let mut chance = Chance::new("killed benchmark");
+    for round in 0..rounds {
+        let place = Place::empty();
+        let mut moment = chance.moment((round, rounds), takes);
+        // one that is done before it is killed is begun anew, and killed earlier
+        loop {
+            let mut child = benchmark(&place).spawn().unwrap();
+            std::thread::sleep(moment);
+            if round % 2 == 0 {
+                kill_all(&mut child);
+            } else {
+                child.kill().unwrap();
+            }
+            if child.wait().unwrap().signal().is_some() {
+                break;
+            }
+            moment = moment.mul_f64(0.8);
+            let _ = std::fs::remove_dir_all(place.at("out"));
+        }
+        eprintln!("killed after {moment:?}, round {round}");
+        assert_same(&expected, &finish(&place));
+        assert_eq!(half_written(place.path()), Vec::<String>::new());
+    }
+    figures::tell(
+        "`kill -9` of a benchmark",
+        format!(
+            "{rounds} benchmarks of 2 models, {:.1} s each, each killed once at a random moment; {} times the benchmark alone, whose \
+             processes went on",
+            takes.as_secs_f64(),
+            rounds / 2
+        ),
+        format!("{rounds} of {rounds} go on to the same results but for times"),
+    );
+}
+
+#[test]
+fn a_second_benchmark_in_the_same_folder_is_refused() {
+    let place = Place::empty();
+    let mut first = begun(&place);
+    let told = place.run(BENCHMARK).fails();
+    for words in ["another process is at work", "choose another"] {
+        assert!(told.contains(words), "{told}");
+    }
+    kill_all(&mut first);
+    let _ = finish(&place);
+    figures::tell(
+        "two benchmarks in one folder",
+        "the second, then again after a `kill -9` of the first",
+        "refused, naming the folder; free after the kill",
+    );
+}
+
+/// Ctrl-C, and what stops a container: processes save and leave, the exit code says so, and the same command goes on.
+#[test]
+fn an_interrupted_benchmark_stops_cleanly_and_goes_on() {
+    let place = Place::empty();
+    let log = place.at("out/corridor-full-1/log.txt");
+    let trainings = || {
+        let log = std::fs::read_to_string(&log).unwrap_or_default();
+        log.matches("$ ddl train").count()
+    };
+    for signal in ["INT", "TERM"] {
+        let before = trainings();
+        let mut child = begun(&place);
+        while trainings() == before {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        let processes = processes::with_descendants(child.id());
+        processes::signal(child.id(), signal);
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{signal}");
+        for id in processes {
+            let line = std::fs::read_to_string(format!("/proc/{id}/cmdline"));
+            let is_left = line.is_ok_and(|line| line.contains("corridor"));
+            assert!(!is_left, "{id} is left");
+        }
+    }
+    let _ = finish(&place);
+}

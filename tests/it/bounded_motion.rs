@@ -1,0 +1,306 @@
+//! Forecasts of anybody who can be observed: standing, strolling, running, turning, trembling, lost now and then. None is faster than the
+//! pedestrian can be, each arrives, every certificate holds with its bounds, and none is worse than straight lines to the same goals.
+
+use ddl::data::{Completion, HORIZON, LiveTracks, OBSERVED, PedestrianId, Position, Window};
+use ddl::eval::metric::stability::RolloutStability;
+use ddl::{
+    BuiltinModel, CertifiedForecast, Ddl, DeviceChoice, Forecaster as _, Precision, Variant,
+};
+use ddl_tests::place::Place;
+use ddl_tests::{bits, crowd, drawn_model};
+use proptest::prelude::*;
+use std::sync::LazyLock;
+
+/// Cases of the law.
+const CASES: u32 = 1000;
+/// Pedestrians forecast together: a case is one of them.
+const TOGETHER: usize = 25;
+const TIME_STEP: f64 = 0.4;
+
+/// The built-in models, and two with drawn weights.
+static MODELS: LazyLock<Vec<Ddl>> = LazyLock::new(|| {
+    let builtin = BuiltinModel::ALL.map(|model| Ddl::builtin(model, DeviceChoice::Cpu).unwrap());
+    let drawn = [Variant::Full, Variant::NoGoalShift].map(drawn_model::of);
+    builtin.into_iter().chain(drawn).collect()
+});
+
+fn builtin() -> &'static [Ddl] {
+    &MODELS[..BuiltinModel::ALL.len()]
+}
+
+/// The fastest a forecast may be: the larger of 2.2 m/s and 1.3 times the fastest observed step and 0.5 m/s more.
+fn limit(observed: &[Position]) -> f64 {
+    let fastest = steps(observed).fold(0.0, f64::max);
+    (1.3 * fastest + 0.5).max(2.2)
+}
+
+/// Speeds of steps, m/s.
+fn steps(path: &[Position]) -> impl Iterator<Item = f64> + '_ {
+    path.windows(2)
+        .map(|pair| distance(pair[0], pair[1]) / TIME_STEP)
+}
+
+fn distance(a: Position, b: Position) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// An observation: speed, change of speed, turn a step, tremble and steps at which the position was held.
+fn observation() -> impl Strategy<Value = Vec<Position>> {
+    let speed = prop_oneof![1 => Just(0.0), 3 => 0.0..2.0_f64, 4 => 0.0..12.0_f64];
+    let tremble = prop_oneof![2 => Just(0.0), 2 => 0.0..0.1_f64, 1 => 0.0..0.6_f64];
+    let turn = prop_oneof![2 => Just(0.0), 2 => -0.5..0.5_f64, 1 => -3.1..3.1_f64];
+    let noise = prop::collection::vec([-1.0..1.0_f64, -1.0..1.0_f64], OBSERVED);
+    let held = prop::collection::vec(prop::bool::weighted(0.15), OBSERVED);
+    let place = [-50.0..50.0_f64, -50.0..50.0_f64];
+    (
+        speed,
+        0.6..1.4_f64,
+        turn,
+        tremble,
+        noise,
+        held,
+        (place, 0.0..6.3_f64),
+    )
+        .prop_map(
+            |(speed, faster, turn, tremble, noise, held, (place, mut heading))| {
+                let (mut here, mut speed) = (place, speed);
+                let mut track: Vec<Position> = Vec::new();
+                for (off, held) in noise.into_iter().zip(held) {
+                    let seen = [0, 1].map(|axis| here[axis] + tremble * off[axis]);
+                    // A tracker that lost somebody repeats the last position.
+                    track.push(if held {
+                        *track.last().unwrap_or(&seen)
+                    } else {
+                        seen
+                    });
+                    here = [
+                        here[0] + TIME_STEP * speed * heading.cos(),
+                        here[1] + TIME_STEP * speed * heading.sin(),
+                    ];
+                    heading += turn;
+                    speed = (speed * faster).min(12.0);
+                }
+                track
+            },
+        )
+}
+
+fn window(tracks: Vec<Vec<Position>>) -> Window {
+    let ids = (0..tracks.len() as i64).map(PedestrianId).collect();
+    Window::new("anybody", 0, 1, ids, tracks).unwrap()
+}
+
+fn within_bounds(
+    observed: &[Position],
+    certified: &CertifiedForecast,
+    i: usize,
+) -> Result<(), TestCaseError> {
+    let forecast = &certified.forecast;
+    let familiarity = forecast.familiarity(i);
+    prop_assert!(
+        familiarity.is_some_and(|f| f > 0.0 && f <= 1.0),
+        "{familiarity:?}"
+    );
+    for k in 0..forecast.hypotheses() {
+        let path: Vec<Position> = observed[OBSERVED - 1..]
+            .iter()
+            .chain(forecast.hypothesis(i, k))
+            .copied()
+            .collect();
+        let fastest = steps(&path).fold(0.0, f64::max);
+        prop_assert!(
+            fastest <= limit(observed),
+            "{fastest} m/s after {observed:?}"
+        );
+        let certificate = certified.certificate(i, k);
+        prop_assert_eq!(certificate.holds(), Ok(()));
+        let motion = certificate.motion().unwrap();
+        prop_assert!((motion.speed.largest - fastest).abs() < 1e-6);
+        prop_assert!(motion.speed.bound <= limit(observed));
+        prop_assert!(motion.distance_left.is_some_and(|left| left.largest < 1e-6));
+        let goal = forecast.goal(i, k).unwrap();
+        let left: Vec<f64> = path
+            .iter()
+            .map(|&position| distance(position, goal))
+            .collect();
+        let mut steps = left.windows(2);
+        prop_assert!(
+            steps.all(|pair| pair[1] < pair[0] || pair[0] == 0.0),
+            "{left:?}"
+        );
+        prop_assert!(left[HORIZON] < 1e-6);
+        prop_assert!(RolloutStability::of(path[0], &path[1..], goal).decreasing);
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(CASES / TOGETHER as u32))]
+
+    #[test]
+    fn every_forecast_is_within_its_bounds(
+        tracks in prop::collection::vec(observation(), TOGETHER),
+        model in 0..MODELS.len(),
+    ) {
+        check(&MODELS[model], &tracks)?;
+    }
+}
+
+fn check(model: &Ddl, tracks: &[Vec<Position>]) -> Result<(), TestCaseError> {
+    let windows = [window(tracks.to_vec())];
+    let many = model.forecast_certified(&windows).unwrap().remove(0);
+    let one = model.forecast_one_certified(&windows).unwrap().remove(0);
+    for (i, observed) in tracks.iter().enumerate() {
+        within_bounds(observed, &many, i)?;
+        within_bounds(observed, &one, i)?;
+    }
+    Ok(())
+}
+
+/// Observations that no training scene holds: on one spot together, a leap of 100 m, steps to and fro.
+#[test]
+fn strange_observations_are_forecast_as_stably() {
+    let standing = vec![[3.0, -2.0]; OBSERVED];
+    let mut leaping = standing.clone();
+    leaping[OBSERVED - 1] = [103.0, -2.0];
+    let to_and_fro = |t: usize| [if t.is_multiple_of(2) { -2.0 } else { 2.0 }, 0.1 * t as f64];
+    let to_and_fro = (0..OBSERVED).map(to_and_fro).collect();
+    for model in &*MODELS {
+        check(
+            model,
+            &[standing.clone(), standing.clone(), leaping.clone()],
+        )
+        .unwrap();
+        check(model, &[standing.clone(), Vec::clone(&to_and_fro)]).unwrap();
+    }
+}
+
+/// What is certified is what is forecast: many, and the one towards the central goal, in single precision or in half.
+#[test]
+fn the_certified_forecast_is_the_forecast() {
+    let windows = crowd::windows(3, 10);
+    for variant in [Variant::Full, Variant::NoGoalShift] {
+        let model = drawn_model::of(variant);
+        let model = model.in_precision(Precision::Bf16).unwrap();
+        let goals = model.goal_model().goals(&windows).unwrap();
+        let many = model.forecast_certified(&windows).unwrap();
+        let one = model.forecast_one_certified(&windows).unwrap();
+        let plain = [
+            model.forecast_all(&windows).unwrap(),
+            model.forecast_one(&windows).unwrap(),
+        ];
+        for ((certified, plain), hypotheses) in [many, one].iter().zip(&plain).zip([20, 1]) {
+            for ((certified, plain), window) in certified.iter().zip(plain).zip(&windows) {
+                assert_eq!(bits::of(&certified.forecast), bits::of(plain));
+                assert_eq!(certified.first_violation(), None);
+                assert_eq!(certified.certificates.len(), window.len() * hypotheses);
+            }
+        }
+        for ((sets, one), window) in goals.iter().zip(&plain[1]).zip(&windows) {
+            for (i, set) in sets.iter().enumerate() {
+                assert_eq!(one.goal(i, 0), Some(set.central(window.observed(i))));
+            }
+        }
+    }
+}
+
+#[test]
+fn reports_name_the_precision() {
+    let place = Place::with_model();
+    let evaluate = "evaluate --model run --precision bf16 --protocol single --test-walkers 20";
+    let report = place.json(&format!("{evaluate} --threads 1 --json"));
+    for conditions in report["rows"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|row| &row["conditions"])
+    {
+        let of_model = conditions["variant"].is_string();
+        assert_eq!(
+            conditions["device"],
+            if of_model { "cpu, bf16" } else { "cpu" }
+        );
+    }
+}
+
+/// minADE of the model and of straight lines to its goals, of somebody who walks straight on at this speed, metres.
+fn straight_on(model: &Ddl, speed: f64) -> [f64; 2] {
+    let at = |t: usize| [TIME_STEP * speed * t as f64, 0.0];
+    let forecast = model
+        .forecast(&window(vec![(0..OBSERVED).map(at).collect()]))
+        .unwrap();
+    let start = at(OBSERVED - 1);
+    let error = |place: &dyn Fn(usize, usize) -> Position| {
+        let ade = |k: usize| {
+            let off = |t: usize| distance(place(k, t), at(OBSERVED + t));
+            (0..HORIZON).map(off).sum::<f64>() / HORIZON as f64
+        };
+        (0..forecast.hypotheses())
+            .map(ade)
+            .fold(f64::INFINITY, f64::min)
+    };
+    let line = |k: usize, t: usize| {
+        let (goal, share) = (
+            forecast.goal(0, k).unwrap(),
+            (t + 1) as f64 / HORIZON as f64,
+        );
+        [0, 1].map(|axis| start[axis] + share * (goal[axis] - start[axis]))
+    };
+    [error(&|k, t| forecast.hypothesis(0, k)[t]), error(&line)]
+}
+
+#[test]
+fn straight_walkers_of_every_speed_are_forecast_as_well_as_by_straight_lines() {
+    builtin().iter().for_each(straight_at_every_speed);
+}
+
+fn straight_at_every_speed(model: &Ddl) {
+    let mut last: Option<f64> = None;
+    for speed in (1..=80).map(|tenth| 0.1 * f64::from(tenth)) {
+        let [ours, lines] = straight_on(model, speed);
+        let source = model.source();
+        assert!(
+            ours <= 1.05 * lines + 0.01,
+            "{source}, {speed} m/s: {ours} m, lines {lines} m"
+        );
+        // No sharp edge: a tenth of a metre a second more changes the error by less than a quarter of a metre.
+        if let Some(last) = last {
+            assert!(
+                (ours - last).abs() < 0.25,
+                "{source}, {speed} m/s: from {last} to {ours} m"
+            );
+        }
+        last = Some(ours);
+    }
+}
+
+#[test]
+fn whoever_runs_is_less_familiar_than_whoever_walks() {
+    for model in builtin() {
+        let [walks, runs, races] = [1.2, 3.5, 8.0].map(|speed| {
+            let tremble = |t: usize| if t.is_multiple_of(2) { 0.02 } else { 0.0 };
+            let at = |t: usize| [TIME_STEP * speed * t as f64, tremble(t)];
+            let walk = window(vec![(0..OBSERVED).map(at).collect()]);
+            model.goal_model().familiarity(&walk)[0]
+        });
+        let order = walks > 0.5 && runs < 0.1 && races < 0.01;
+        assert!(order, "{walks} {runs} {races}");
+    }
+}
+
+/// Who was seen twice gives no sign of walking evenly: positions before the first one seen are not evidence. The one forecast goes to the
+/// median of the goals.
+#[test]
+fn made_up_positions_are_no_evidence() {
+    let mut tracks = LiveTracks::new().completing(Completion::USUAL);
+    let pedestrian = PedestrianId(7);
+    assert_eq!(tracks.push(0, [(pedestrian, [0.0, 0.0])]).unwrap(), None);
+    let window = tracks.push(1, [(pedestrian, [0.1, 0.0])]).unwrap().unwrap();
+    assert_eq!(window.made_up(0).padded, 6);
+    for model in builtin() {
+        let windows = std::slice::from_ref(&window);
+        let median = model.goal_model().goals(windows).unwrap()[0][0].median();
+        let one = model.forecast_one(windows).unwrap();
+        assert_eq!(one[0].goal(0, 0), Some(median), "{}", model.source());
+    }
+}

@@ -1,0 +1,219 @@
+//! Errors are part of the interface: exit code 1, one clear line, and nothing written.
+
+use ddl::Variant;
+use ddl::data::Convention;
+use ddl_tests::place::Place;
+use ddl_tests::{crowd, drawn_model, own_tracks};
+
+const FORECAST: &str = "forecast --model run tracks.csv --output out.csv";
+
+#[test]
+fn a_missing_model_is_named() {
+    let place = Place::with_model();
+    for command in [
+        "forecast tracks.csv",
+        "goals tracks.csv",
+        "evaluate",
+        "info",
+    ] {
+        let line = format!("{command} --model nowhere");
+        place.fails(&line, &["nowhere", "ddl train", "built-in", "zara1, zara2"]);
+    }
+    place.fails("report nowhere --out pages", &["nowhere", "ddl evaluate"]);
+    place.remove("run/model.safetensors");
+    place.fails(FORECAST, &["not finished", "ddl train"]);
+}
+
+/// Whichever file of the run ends too early, it is named and nothing is forecast from it.
+#[test]
+fn half_a_file_is_named() {
+    let place = Place::with_model();
+    for file in [
+        "model.safetensors",
+        "proposal.safetensors",
+        "experts.safetensors",
+        "config.json",
+    ] {
+        let name = format!("run/{file}");
+        let whole = place.read(&name);
+        for kept in [whole.len() / 2, whole.len() - 1, 0] {
+            place.write(&name, &whole[..kept]);
+            place.fails(FORECAST, &[file]);
+        }
+        place.write(&name, whole);
+    }
+}
+
+/// Weights of another variant, and weights of the same shapes and goals of another fold, copied over those of the run.
+#[test]
+fn files_of_another_run_are_refused() {
+    let [other, elsewhere] = [Place::with_variant(Variant::NoDynamics), Place::empty()];
+    let mut config = drawn_model::config(Variant::Full);
+    config.data.fold = "plaza".to_owned();
+    drawn_model::write(config, &crowd::windows(20, 10), &elsewhere.at("run"));
+    let fold = "data.fold is plaza, not corridor";
+    let place = Place::with_model();
+    for (from, file, difference) in [
+        (&other, "model", "star.variant is no-dynamics, not full"),
+        (&elsewhere, "model", fold),
+        (&elsewhere, "proposal", fold),
+        (&elsewhere, "experts", fold),
+    ] {
+        let file = format!("{file}.safetensors");
+        let name = format!("run/{file}");
+        let whole = place.read(&name);
+        place.write(&name, from.read(&name));
+        place.fails(FORECAST, &[&file, "another run", difference]);
+        place.write(&name, whole);
+    }
+}
+
+/// A run without validation cannot be measured on it, and one without results not be reported. A choice among epochs needs several:
+/// one that was kept alone is no choice, and is not passed off as one.
+#[test]
+fn what_a_run_does_not_hold_is_said() {
+    let place = Place::with_model();
+    place.fails("evaluate --model run --validation", &["--validation 0.2"]);
+    place.fails("report run --out pages", &["ddl evaluate"]);
+    let mut config = drawn_model::config(Variant::Full);
+    config.training.epochs = 2;
+    config.keep_every = 2;
+    drawn_model::write(config, &crowd::windows(60, 10), &place.at("last"));
+    std::fs::rename(
+        place.at("last/epochs/001.safetensors"),
+        place.at("last/epochs/002.safetensors"),
+    )
+    .unwrap();
+    let published = "evaluate --model last --protocol published --test-walkers 20";
+    place.fails(
+        published,
+        &["`published`", "train it anew without --last-epoch-only"],
+    );
+    // what needs no choice is measured
+    let _ = place.ok("evaluate --model last --protocol fair --test-walkers 20 --threads 1");
+}
+
+/// Training and CUDA are libtorch's: in one sentence, how to get them.
+#[cfg(not(feature = "torch"))]
+#[test]
+fn what_needs_libtorch_says_how_to_get_it() {
+    let place = Place::with_model();
+    for (line, what) in [
+        (
+            "train --convention simulated --fold plaza --out new",
+            "training",
+        ),
+        (
+            "train --convention simulated --fold plaza --out new --device cuda",
+            "CUDA",
+        ),
+        ("forecast --model run tracks.csv --device cuda", "CUDA"),
+        ("evaluate --model run --device cuda", "CUDA"),
+        ("goals tracks.csv --device cuda", "CUDA"),
+    ] {
+        let needs = format!("{what} needs libtorch, which this program is built without");
+        let build = "cargo build --release -p ddl-cli --features torch";
+        place.fails(line, &[&needs, "`cargo xtask setup`", build]);
+    }
+    // What it can do instead is its choice where it may choose.
+    let _ = place.ok("forecast --model run tracks.csv --device auto");
+    let cuda = &place.json("info --json")["cuda"];
+    assert!(cuda.as_str().unwrap().contains("libtorch"), "{cuda}");
+}
+
+/// Recordings are read before anything is trained.
+#[test]
+fn recordings_that_cannot_be_trained_on_are_refused() {
+    let place = Place::empty();
+    let train = "train --fold hotel --data data --out new";
+    std::fs::create_dir(place.at("data")).unwrap();
+    place.fails(train, &["star", "eth.csv", "--convention simulated"]);
+    // the right names, the wrong content
+    for name in Convention::Star.file_names() {
+        place.write(
+            &format!("data/{name}"),
+            "10\t1\t1.0\t2.0\n10\t2\t3.0\t4.0\n",
+        );
+    }
+    place.fails(train, &["eth.csv", "line"]);
+}
+
+#[test]
+fn a_bad_line_of_tracks_is_named() {
+    let place = Place::with_model();
+    let good = own_tracks::csv(&own_tracks::three_people(9));
+    let lines: Vec<&str> = good.lines().collect();
+    for (bad, needle) in [
+        ("10,1,left,2.0", "\"left\""),
+        ("10,1,2.0", "3 fields"),
+        ("10,1,NaN,2.0", "finite"),
+        ("10,1,1e999,2.0", "finite"),
+        ("ten,1,2.0,2.0", "\"ten\""),
+        ("0,1,5.0,5.0", "already"),
+    ] {
+        let mut lines = lines.clone();
+        lines[4] = bad;
+        place.write("tracks.csv", lines.join("\n"));
+        place.fails(FORECAST, &["tracks.csv", "line 5", needle]);
+    }
+    let headless = lines[1..].join("\n");
+    for (text, needle) in [("", "empty"), (lines[0], "empty"), (&headless, "header")] {
+        place.write("tracks.csv", text);
+        place.fails(FORECAST, &["tracks.csv", "line 1", needle]);
+    }
+}
+
+#[test]
+fn tracks_that_cannot_be_forecast_are_refused() {
+    let place = Place::with_model();
+    let nowhere = "view tracks.csv --output nowhere/page.html";
+    place.fails(nowhere, &["there is no folder nowhere"]);
+    let missing = "cannot read nowhere.csv: No such file or directory (os error 2)";
+    assert_eq!(place.run("forecast nowhere.csv").fails(), missing);
+    place.write_tracks("tracks.csv", &own_tracks::three_people(7));
+    let whole = format!("{FORECAST} --whole");
+    place.fails(&whole, &["tracks.csv", "8 steps", "10 frames"]);
+    place.write_tracks("tracks.csv", &own_tracks::three_people(1));
+    place.fails(FORECAST, &["tracks.csv", "two steps", "--fps"]);
+    place.all_fail(&[
+        "forecast --model run . => . is a folder",
+        "forecast --model run . => ddl data .",
+        "data - => ddl forecast -",
+        "data - => name a file",
+        "view - => a file of tracks",
+        "view nowhere.csv => cannot read nowhere.csv",
+    ]);
+    place.all_refused(&["view => <TRACKS>"]);
+}
+
+#[test]
+fn a_homography_or_a_rate_that_is_none_is_named() {
+    let place = Place::with_model();
+    let options = format!("{FORECAST} --homography H.txt");
+    place.fails(&options, &["H.txt", "No such file"]);
+    for (text, needle) in [
+        ("1 0 0\n0 1 0\n", "three rows"),
+        ("1 0 0\n0 1 zero\n0 0 1\n", "line 2"),
+        ("1 0 0\n1 0 0\n0 0 1\n", "singular"),
+    ] {
+        place.write("H.txt", text);
+        place.fails(&options, &["H.txt", needle]);
+    }
+    place.write("H.txt", "0 0 1\n0 1 0\n1 0 0\n"); // x = 0 is the horizon
+    place.fails(
+        &options,
+        &["tracks.csv", "pedestrian 1, frame 0", "horizon"],
+    );
+    // rows are 10 frames apart
+    place.fails(
+        &format!("{FORECAST} --fps 5"),
+        &["tracks.csv", "2.00 s apart"],
+    );
+    place.all_refused(&[
+        "forecast tracks.csv --fps 0 => above 0",
+        "forecast tracks.csv --fps many => must be a number",
+        "forecast tracks.csv --dt=-1 => above 0",
+        "forecast tracks.csv --fps 25 --dt 0.04 => cannot be used with",
+        "forecast tracks.csv --fps 25 --frame-step 10 => cannot be used with",
+    ]);
+}

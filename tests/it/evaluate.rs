@@ -1,0 +1,284 @@
+//! `ddl evaluate`, `ddl goals --measure`, `ddl baselines`, `ddl report`: the way of a number from a model to the page.
+
+use ddl::data::{Convention, Dataset, Window, WindowRule};
+use ddl::eval::ResultRow;
+use ddl::network::{StarConfig, TrainingConfig};
+use ddl::report::{Moment, Report};
+use ddl::{GoalEvaluation, Protocol, RunConfig, Variant};
+use ddl_tests::place::{Place, json};
+use ddl_tests::progress::{returns_at_once, told};
+use ddl_tests::{crowd, drawn_model, recordings};
+
+const EVALUATE: &str = "evaluate --model run --protocol published --protocol fair --protocol single \
+                        --test-walkers 60 --threads 1 --commit 0123abc";
+
+/// A run of the published recipe, whose networks learn single steps: plain Euler steps are measured too.
+fn config() -> RunConfig {
+    RunConfig {
+        star: StarConfig::published(Variant::Full),
+        training: TrainingConfig {
+            epochs: 2,
+            walkers_per_epoch: Some(200),
+            seed: 5,
+            ..TrainingConfig::published()
+        },
+        ..drawn_model::config(Variant::Full)
+    }
+}
+
+/// Every row names the conditions of its number.
+fn check_conditions(row: &ResultRow) {
+    let conditions = &row.conditions;
+    assert_eq!(conditions.convention, Convention::Simulated);
+    assert_eq!(conditions.window_rule, WindowRule::Complete);
+    assert_eq!(conditions.fold, crowd::FOLD);
+    let place = (conditions.device.as_str(), conditions.commit.as_str());
+    assert_eq!(place, ("cpu", "0123abc"));
+    assert!(!conditions.forecaster.is_empty());
+    let words = |fact: &Option<String>| fact.clone().unwrap();
+    assert!(words(&conditions.test_subset).contains("60 walkers"));
+    if conditions.forecaster.starts_with("DDL") {
+        assert_eq!(conditions.variant.as_deref(), Some("full"));
+        assert_eq!((conditions.seed, conditions.epochs), (Some(5), Some(2)));
+        assert!(words(&conditions.training_subset).contains("200 walkers"));
+        let selection = words(&conditions.selection);
+        let on_test = conditions.protocol == Protocol::Published;
+        assert_eq!(selection.contains("TEST"), on_test, "{selection}");
+    }
+}
+
+/// Stable steps are certified all; plain ones, published or not, are counted as they are.
+fn check_certificates(protocol: Protocol, rows: &[&ResultRow]) {
+    let named = |start: &str| {
+        rows.iter()
+            .find(|row| row.conditions.forecaster.starts_with(start))
+    };
+    let stability = |row: &&ResultRow| row.scores.stability.unwrap();
+    let model = stability(
+        rows.iter()
+            .find(|row| row.conditions.forecaster == "DDL")
+            .unwrap(),
+    );
+    let (stable, all) = ((model.certified, model.decreasing), (Some(1.0), 1.0));
+    assert_eq!(
+        stable == all,
+        !protocol.shows_future(),
+        "{protocol}: {model:?}"
+    );
+    let plain = named("DDL with plain Euler steps").map(stability);
+    assert_eq!(plain.is_some(), protocol == Protocol::Fair);
+    if let Some(plain) = plain {
+        assert!(plain.certified.unwrap() < 1.0, "{plain:?}");
+        assert_eq!(plain.rollouts, model.rollouts);
+    }
+    // The one forecast is a straight line itself; beside it stands what the network would make of the way.
+    let line = named("straight line to");
+    assert_eq!(line.is_none(), protocol == Protocol::Single);
+    if let Some(line) = line {
+        assert_eq!(stability(line).certified, None);
+        // The goals depend on the run: another seed has other lines.
+        assert_eq!(line.conditions.seed, Some(5));
+        let recipe = line.conditions.recipe.as_deref().unwrap();
+        assert!(recipe.starts_with("goals "), "{recipe}");
+    }
+    let shaped = named("DDL on the way that its network shapes").map(stability);
+    assert_eq!(shaped.is_some(), protocol == Protocol::Single);
+    assert!(shaped.is_none_or(|shaped| shaped.certified == Some(1.0)));
+}
+
+/// All rows of one table are of the same walkers, about as many as asked for, among them the model and a baseline.
+fn check_table(protocol: Protocol, rows: &[&ResultRow], walkers: usize) {
+    let mut models = rows.iter().filter(|row| row.conditions.forecaster == "DDL");
+    let (Some(model), None) = (models.next(), models.next()) else {
+        panic!("{protocol}: not one model");
+    };
+    assert_eq!(model.scores.hypotheses, protocol.hypotheses());
+    let mut names = rows.iter().map(|row| &row.conditions.forecaster);
+    assert!(
+        names.any(|name| name.starts_with("constant velocity")),
+        "{protocol}"
+    );
+    for row in rows {
+        let (scores, of_model) = (&row.scores, &model.scores);
+        assert_eq!(
+            (scores.pedestrians, scores.windows),
+            (of_model.pedestrians, of_model.windows)
+        );
+        assert!(scores.pedestrians > 0 && scores.pedestrians < walkers + 40);
+        // people walk below 3 m/s: no forecast of 4.8 s is off by more than this
+        assert!((0.01..15.0).contains(&scores.min_ade), "{scores:?}");
+        assert!(scores.min_fde <= scores.fde_at_min_ade);
+    }
+}
+
+fn of_protocol(rows: &[ResultRow], protocol: Protocol) -> Vec<&ResultRow> {
+    rows.iter()
+        .filter(|row| row.conditions.protocol == protocol)
+        .collect()
+}
+
+#[test]
+fn a_number_goes_from_the_model_to_the_page() {
+    let place = Place::empty();
+    drawn_model::write(config(), &crowd::windows(200, 20), &place.at("run"));
+    std::fs::copy(
+        place.at("run/epochs/001.safetensors"),
+        place.at("run/epochs/002.safetensors"),
+    )
+    .unwrap();
+    assert!(told(&place, EVALUATE, &["evaluate"]).len() >= 2);
+    let report = Report::load(&place.at("run/report.json")).unwrap();
+    report.rows().iter().for_each(check_conditions);
+    for protocol in Protocol::ALL {
+        let rows = of_protocol(report.rows(), protocol);
+        check_table(protocol, &rows, 60);
+        check_certificates(protocol, &rows);
+    }
+    returns_at_once(&place, EVALUATE);
+
+    // Moments to look at: what the model forecast under `fair`, certified, some of them picked to show something.
+    let moments: Vec<Moment> = json(&place.text("run/moments.json"));
+    assert!(moments.iter().any(|moment| !moment.picks.is_empty()));
+    for moment in &moments {
+        assert_eq!(
+            (moment.fold.as_str(), moment.forecaster.as_str()),
+            (crowd::FOLD, "DDL")
+        );
+        let mut hypotheses = moment.pedestrians.iter().flat_map(|one| &one.hypotheses);
+        assert!(hypotheses.all(|h| (h.certified, h.decreasing) == (Some(true), Some(true))));
+    }
+
+    let baselines = "baselines --convention simulated --fold doorway --test-walkers 60 --commit 0123abc --out baselines";
+    let printed = place.ok(baselines);
+    assert!(printed.contains("doorway") && printed.contains("constant velocity (last step)"));
+    let elsewhere = Report::load(&place.at("baselines/report.json")).unwrap();
+    assert!(
+        elsewhere
+            .rows()
+            .iter()
+            .all(|row| row.conditions.fold == "doorway")
+    );
+
+    let told = place.ok("report run baselines --title Corridor --out pages");
+    assert!(told.ends_with("report.html\n") && told.lines().count() == 1);
+    let collected = Report::load(&place.at("pages/report.json")).unwrap();
+    assert_eq!(collected.title(), "Corridor");
+    assert_eq!(collected.rows(), [report.rows(), elsewhere.rows()].concat());
+    let latex = place.text("pages/report.tex");
+    assert!(latex.contains("\\begin{tabular}") && latex.contains("\\texttt{fair}"));
+    let markdown = place.text("pages/report.md");
+    assert!(markdown.lines().next().unwrap().contains("simulated"));
+    for text in [
+        "Corridor",
+        "`fair`",
+        "`single`",
+        "`published`",
+        "0123abc",
+        "certified %",
+        "| DDL with plain Euler steps ",
+        Protocol::Published.warning().unwrap(),
+    ] {
+        assert!(markdown.contains(text), "{text} is not on the page");
+    }
+}
+
+/// Each protocol under each window rule, on real recordings.
+#[test]
+fn a_model_of_the_hotel_fold_is_measured() {
+    let Some(data) = recordings::star_folder() else {
+        return;
+    };
+    let dataset = Dataset::load(Convention::Star, &data).unwrap();
+    let fold = dataset.fold("hotel").unwrap();
+    // Counted by an independent program.
+    let counts = |windows: Vec<Window>| {
+        (
+            windows.len(),
+            windows.iter().map(Window::len).sum::<usize>(),
+        )
+    };
+    assert_eq!(
+        counts(fold.training_windows(WindowRule::Complete)),
+        (4569, 38_323)
+    );
+    for (rule, expected) in [
+        (WindowRule::Published, (387, 1026)),
+        (WindowRule::Complete, (413, 1075)),
+    ] {
+        assert_eq!(counts(fold.test_windows(rule)), expected, "{rule}");
+    }
+    let place = Place::empty();
+    let mut config = drawn_model::config(Variant::Full);
+    config.data.convention = Convention::Star;
+    config.data.fold = "hotel".to_owned();
+    let some: Vec<Window> = fold
+        .training_windows(WindowRule::Complete)
+        .into_iter()
+        .step_by(40)
+        .collect();
+    drawn_model::write(config, &some, &place.at("run"));
+    let summary = place.ok(&format!("{EVALUATE} --data {}", data.display()));
+    let report = Report::load(&place.at("run/report.json")).unwrap();
+    for protocol in Protocol::ALL {
+        assert!(summary.contains(protocol.name()), "{summary}");
+        let [published, complete] = [WindowRule::Published, WindowRule::Complete].map(|rule| {
+            let mut rows = of_protocol(report.rows(), protocol);
+            rows.retain(|row| row.conditions.window_rule == rule);
+            check_table(protocol, &rows, 60);
+            rows[0].scores.pedestrians
+        });
+        assert!(
+            published <= complete && complete >= 60,
+            "{published} of {complete}"
+        );
+    }
+}
+
+#[test]
+fn goals_are_measured_and_drawn() {
+    let place = Place::with_model();
+    let measure = "goals --model run --measure test --threads 1";
+    let test: GoalEvaluation = json(&place.ok(&format!("{measure} --json --svg goals.svg")));
+    assert_eq!(test.recordings.keys().collect::<Vec<_>>(), [crowd::FOLD]);
+    assert_eq!(
+        (test.clusters, test.recordings[crowd::FOLD]),
+        (20, test.all)
+    );
+    assert!(test.all.walkers > 100);
+    assert!(test.all.oracle_fde > 0.01 && test.all.oracle_fde < test.all.likeliest_fde);
+    let calibration = test.calibration.unwrap();
+    assert!(calibration.log_loss.is_finite() && calibration.bins.len() == 10);
+    let svg = place.text("goals.svg");
+    for words in ["<svg", "corridor, frame", "m off"] {
+        assert!(svg.contains(words), "{words}");
+    }
+    let words = place.ok(measure);
+    let all = format!("{:.3}", test.all.oracle_fde);
+    assert!(
+        words.contains("nearest goal off") && words.contains(&all),
+        "{words}"
+    );
+}
+
+#[test]
+fn what_cannot_be_measured_is_said() {
+    let place = Place::with_model();
+    place.all_refused(&[
+        "goals --model run tracks.csv --measure test => cannot be used with",
+        "goals --model run --measure test --last => cannot be used with",
+        "goals --model run --last => TRACKS",
+    ]);
+    let test = "goals --model run --measure test";
+    place.all_fail(&[
+        "goals --model run => TRACKS",
+        "goals --model run tracks.csv --svg goals.svg => --measure",
+        "goals --model run --measure validation => --validation-recordings",
+    ]);
+    place.remove("run/proposal.safetensors");
+    place.fails(test, &["has no goals yet"]);
+    place.write("run/config.json", r#"{"format": 1, "star": {}}"#);
+    place.fails(
+        test,
+        &[&format!("has layout 1, this program reads {}", ddl::FORMAT)],
+    );
+}

@@ -1,0 +1,365 @@
+//! `ddl forecast` and `ddl goals`: a user's own tracks in, hypotheses out, with the evidence that each goes to its goal.
+
+use ddl::data::Position;
+use ddl::dynamics::LyapunovCertificate;
+use ddl::{BuiltinModel, Variant};
+use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
+use ddl_tests::place::{Place, json_lines};
+use serde::Deserialize;
+use serde_json::Value;
+
+const HYPOTHESES: usize = 20;
+const FRAMES: usize = 12;
+
+/// A row of the csv.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CsvRow {
+    observed_until: i64,
+    pedestrian: i64,
+    hypothesis: usize,
+    weight: f64,
+    goal_x: f64,
+    goal_y: f64,
+    frame: i64,
+    x: f64,
+    y: f64,
+    padded: usize,
+    filled: usize,
+    familiarity: f64,
+    #[serde(default)]
+    distance_to_goal: Option<f64>,
+    #[serde(default)]
+    certified: Option<bool>,
+}
+
+/// A line of the JSON lines.
+#[derive(Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct JsonLine {
+    observed_until: i64,
+    pedestrian: i64,
+    padded: usize,
+    filled: usize,
+    frames: Vec<i64>,
+    /// In (0, 1].
+    familiarity: f64,
+    /// Metres, one a step; none for one forecast.
+    #[serde(default)]
+    spread: Vec<f64>,
+    hypotheses: Vec<Hypothesis>,
+}
+
+#[derive(Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Hypothesis {
+    weight: f64,
+    goal: Position,
+    positions: Vec<Position>,
+    #[serde(default)]
+    certificate: Value,
+}
+
+fn table<T: serde::de::DeserializeOwned>(text: &str) -> Vec<T> {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    reader.deserialize().collect::<Result<_, _>>().unwrap()
+}
+
+fn distance(a: Position, b: Position) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The certificate of a hypothesis, held against the positions printed beside it; the distances to the goal after each step.
+fn check_certificate(start: Position, hypothesis: &Hypothesis) -> Vec<f64> {
+    let value = &hypothesis.certificate;
+    let certificate: LyapunovCertificate<f64> = serde_json::from_value(value.clone()).unwrap();
+    assert_eq!(certificate.holds(), Ok(()));
+    assert_eq!(
+        (&value["holds"], &value["violation"]),
+        (&Value::Bool(true), &Value::Null)
+    );
+    assert_eq!(certificate.goal(), hypothesis.goal);
+    assert_eq!(certificate.steps().len(), FRAMES);
+    assert!(certificate.min_eigenvalue().unwrap() > 0.0);
+    for (name, number) in [
+        ("min_eigenvalue", certificate.min_eigenvalue()),
+        ("min_step_margin", certificate.min_step_margin()),
+        ("largest_angle", Some(certificate.largest_angle())),
+    ] {
+        assert_eq!(value[name].as_f64(), number, "{name}");
+    }
+    let path = std::iter::once(&start).chain(&hypothesis.positions);
+    let left: Vec<f64> = path.map(|&p| distance(p, hypothesis.goal)).collect();
+    let potentials: Vec<f64> = certificate.potentials().collect();
+    assert_eq!(potentials.len(), left.len());
+    let mut pairs = left.iter().zip(&potentials);
+    assert!(pairs.all(|(left, potential)| (left - potential).abs() < 1e-12));
+    let mut steps = potentials.windows(2);
+    assert!(
+        steps.all(|step| step[1] < step[0] || step == [0.0, 0.0]),
+        "{potentials:?}"
+    );
+    potentials[1..].to_vec()
+}
+
+/// JSON lines, csv, with certificates and without: twenty weighted futures of twelve frames each, the same ones, that come nearer to
+/// their goals at every step.
+#[test]
+fn every_format_holds_the_same_futures_and_certificates_speak_of_them() {
+    let place = Place::with_model();
+    let people = own_tracks::three_people(10);
+    let at = |moment, who| {
+        let row = people.iter().find(|row| (row.0, row.1) == (moment, who));
+        row.map(|&(.., x, y)| [x, y]).unwrap()
+    };
+    let forecast = |options: &str| place.forecast(&people, options).succeeds();
+    let lines: Vec<JsonLine> = json_lines(&forecast("--format jsonl --certificate"));
+    let certified = forecast("--certificate");
+    let mut rows = table::<CsvRow>(&certified).into_iter();
+    let walkers: Vec<_> = lines
+        .iter()
+        .map(|line| (line.observed_until, line.pedestrian))
+        .collect();
+    let expected = [70, 80, 90].map(|moment| [1, 2, 3].map(|who| (moment, who)));
+    assert_eq!(walkers, expected.concat());
+    for line in &lines {
+        let frames: Vec<i64> = (1..=12)
+            .map(|t| line.observed_until + t * FRAME_STEP)
+            .collect();
+        assert_eq!(line.frames, frames);
+        assert_eq!(line.hypotheses.len(), HYPOTHESES);
+        let weights: f64 = line
+            .hypotheses
+            .iter()
+            .map(|hypothesis| hypothesis.weight)
+            .sum();
+        assert!((weights - 1.0).abs() < 1e-9);
+        assert!(line.familiarity > 0.0 && line.familiarity <= 1.0);
+        assert!(line.spread.is_sorted() && line.spread.len() == FRAMES);
+        for (k, hypothesis) in line.hypotheses.iter().enumerate() {
+            let left = check_certificate(at(line.observed_until, line.pedestrian), hypothesis);
+            for (t, &position) in hypothesis.positions.iter().enumerate() {
+                let row = rows.next().unwrap();
+                let place = (
+                    row.observed_until,
+                    row.pedestrian,
+                    row.hypothesis,
+                    row.frame,
+                );
+                assert_eq!(place, (line.observed_until, line.pedestrian, k, frames[t]));
+                assert!(own_tracks::alike_in_a_table([row.x, row.y], position));
+                let goal = [row.goal_x, row.goal_y];
+                assert!(own_tracks::alike_in_a_table(goal, hypothesis.goal));
+                assert_eq!(row.weight.to_bits(), hypothesis.weight.to_bits());
+                // to three digits
+                assert!((row.familiarity / line.familiarity - 1.0).abs() < 6e-3);
+                assert_eq!([row.padded, row.filled, line.padded, line.filled], [0; 4]);
+                assert_eq!(
+                    (row.distance_to_goal, row.certified),
+                    (Some(left[t]), Some(true))
+                );
+            }
+        }
+    }
+    assert!(rows.next().is_none());
+    // The certificate changes no other number.
+    let cut = |line: &str| line.split(',').take(12).collect::<Vec<_>>().join(",");
+    let cut: Vec<String> = certified.lines().map(cut).collect();
+    assert_eq!(forecast("").lines().collect::<Vec<_>>(), cut);
+    let header = ",x,y,padded,filled,familiarity,distance_to_goal,certified";
+    assert!(certified.lines().next().unwrap().ends_with(header));
+    let mut plain: Vec<JsonLine> = json_lines(&forecast("--format jsonl"));
+    for (plain, line) in plain.iter_mut().zip(&lines) {
+        for (plain, hypothesis) in plain.hypotheses.iter_mut().zip(&line.hypotheses) {
+            plain.certificate = hypothesis.certificate.clone();
+        }
+    }
+    assert_eq!(plain, lines);
+}
+
+/// Of every model that comes with the program, which is used without any option: in any order of rows, among other moments or alone, from a longer recording or a shorter one, on one thread or two: the same bits.
+#[test]
+fn a_forecast_has_the_same_bits_in_any_company() {
+    let place = Place::empty();
+    let rows = own_tracks::three_people(12);
+    let mut from_west_to_east = rows.clone();
+    from_west_to_east.sort_by(|one, other| one.2.total_cmp(&other.2));
+    assert_ne!(rows, from_west_to_east);
+    let end: Vec<Row> = rows.iter().filter(|row| row.0 >= 40).copied().collect();
+    place.write_tracks("rows.csv", &rows);
+    place.write_tracks("shuffled.csv", &from_west_to_east);
+    place.write_tracks("end.csv", &end);
+    let unnamed = place.ok("forecast rows.csv --whole");
+    assert_eq!(unnamed.lines().count(), 1 + 5 * 3 * HYPOTHESES * FRAMES);
+    for model in BuiltinModel::ALL {
+        let forecast = |rest: &str| place.ok(&format!("forecast --model {model} --whole {rest}"));
+        let [table, lines] = ["csv", "jsonl"].map(|format| {
+            let all = forecast(&format!("rows.csv --format {format} --threads 1"));
+            for other in ["shuffled.csv --threads 1", "rows.csv --threads 2"] {
+                let other = forecast(&format!("{other} --format {format}"));
+                assert!(all == other, "{model}");
+            }
+            all
+        });
+        assert_eq!(
+            table == unnamed,
+            model == BuiltinModel::default(),
+            "{model}"
+        );
+        let last: Vec<&str> = lines.lines().skip(4 * 3).collect();
+        for alone in ["rows.csv --last --threads 1", "end.csv --threads 2"] {
+            let alone = forecast(&format!("{alone} --format jsonl"));
+            assert_eq!(alone.lines().collect::<Vec<_>>(), last, "{model}");
+        }
+    }
+}
+
+/// Map coordinates are millions of metres: a forecast there is that at the origin, moved, and numbers lie 1e-9 m apart; certificates
+/// hold all the same.
+#[test]
+fn forecasts_move_with_the_origin_of_the_map() {
+    let rows = own_tracks::three_people(8);
+    let [east, north] = [500_000.0, 4_600_000.0];
+    let moved = |&(frame, id, x, y): &Row| (frame, id, x + east, y + north);
+    let moved: Vec<Row> = rows.iter().map(moved).collect();
+    for variant in [Variant::Full, Variant::NoGoalShift] {
+        let place = Place::with_variant(variant);
+        let forecast =
+            |rows| -> Vec<CsvRow> { table(&place.forecast(rows, "--certificate").succeeds()) };
+        let there = forecast(&moved);
+        assert_eq!(there.len(), 3 * HYPOTHESES * FRAMES);
+        for (here, there) in forecast(&rows).iter().zip(&there) {
+            let off = (here.x + east - there.x).hypot(here.y + north - there.y);
+            assert!(off < 1e-3, "{variant}: off by {off} m");
+        }
+        for hypothesis in there.chunks_exact(FRAMES) {
+            assert!(hypothesis.iter().all(|row| row.certified == Some(true)));
+            let left: Vec<f64> = hypothesis
+                .iter()
+                .filter_map(|row| row.distance_to_goal)
+                .collect();
+            assert!(
+                left.windows(2)
+                    .all(|pair| pair[1] < pair[0] || pair[0] == 0.0),
+                "{left:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn output_goes_to_the_file_named_and_nowhere_else() {
+    let place = Place::with_model();
+    let line = "forecast --model run tracks.csv --whole";
+    let printed = place.ok(line);
+    let mut before = ddl_tests::folder_contents::read(place.path());
+    assert_eq!(place.ok(&format!("{line} --output out.csv")), "");
+    before.insert("out.csv".into(), Some(printed.into_bytes()));
+    place.assert_unchanged_since(&before);
+}
+
+/// Regions: a radius a row in csv and discs in JSON lines, the same ones; the region of 90 % is the larger, and grows with time.
+#[test]
+fn regions_are_written_as_radii_and_as_discs() {
+    let place = Place::with_model();
+    let line = "forecast --model run tracks.csv --whole --last --region 0.5,0.9";
+    let table = place.ok(line);
+    let (header, rows) = table.split_once('\n').unwrap();
+    assert!(
+        header.ends_with("familiarity,radius_0.5,radius_0.9"),
+        "{header}"
+    );
+    let mut of_table = 0;
+    for row in rows.lines() {
+        let fields: Vec<&str> = row.split(',').collect();
+        let [half, most] = [12, 13].map(|field: usize| fields[field].parse().unwrap_or(0.0));
+        assert!(most >= half && half >= 0.0, "{row}");
+        of_table += usize::from(most > 0.0);
+    }
+    let mut of_lines = 0;
+    for line in json_lines::<Value>(&place.ok(&format!("{line} --format jsonl"))) {
+        let regions = line["regions"].as_array().unwrap();
+        let levels: Vec<_> = regions
+            .iter()
+            .map(|region| &region["probability"])
+            .collect();
+        assert_eq!(levels, [0.5, 0.9]);
+        let discs: Vec<Vec<[f64; 3]>> =
+            serde_json::from_value(regions[1]["discs"].clone()).unwrap();
+        let largest = |step: usize| discs[step].iter().map(|disc| disc[2]).fold(0.0, f64::max);
+        assert!(largest(0) > 0.0 && largest(11) > largest(0));
+        of_lines += discs.iter().map(Vec::len).sum::<usize>();
+    }
+    assert_eq!(of_table, of_lines);
+    let refused = place.run("forecast --model run tracks.csv --region 1.5");
+    assert!(
+        refused.stderr.contains("a region has a probability of"),
+        "{refused:?}"
+    );
+}
+
+/// One hypothesis a pedestrian, which comes nearer to its goal at every step.
+#[test]
+fn one_forecast_of_a_file() {
+    let place = Place::with_model();
+    let text = place.ok("forecast --model run tracks.csv --whole --last --one --format jsonl");
+    let lines: Vec<JsonLine> = json_lines(&text);
+    assert_eq!(lines.len(), 3);
+    for line in lines {
+        let [one] = &line.hypotheses[..] else {
+            panic!("{line:?}");
+        };
+        assert!((one.weight - 1.0).abs() < 1e-15);
+        let left: Vec<f64> = one
+            .positions
+            .iter()
+            .map(|&p| distance(p, one.goal))
+            .collect();
+        assert!(left.windows(2).all(|pair| pair[1] < pair[0]) && left[11] < 1e-6);
+    }
+}
+
+#[derive(Deserialize)]
+struct Goal {
+    observed_until: i64,
+    pedestrian: i64,
+    weight: f64,
+    x: f64,
+    y: f64,
+}
+
+/// `ddl goals` prints the goals of the forecasts. In tables, positions have 0.1 mm.
+#[test]
+fn goals_of_own_tracks_are_those_of_the_forecasts() {
+    let place = Place::with_model();
+    let ask = |command: &str| place.ok(&format!("{command} --model run tracks.csv --whole"));
+    let printed = ask("goals");
+    let mut goals = table::<Goal>(&printed).into_iter();
+    for line in json_lines::<JsonLine>(&ask("forecast --format jsonl")) {
+        for hypothesis in line.hypotheses {
+            let goal = goals.next().unwrap();
+            let of = (goal.observed_until, goal.pedestrian);
+            assert_eq!(of, (line.observed_until, line.pedestrian));
+            assert!(own_tracks::alike_in_a_table(
+                [goal.x, goal.y],
+                hypothesis.goal
+            ));
+            assert_eq!(goal.weight.to_bits(), hypothesis.weight.to_bits());
+        }
+    }
+    assert!(goals.next().is_none());
+    for text in [printed, ask("forecast")] {
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let header = reader.headers().unwrap().clone();
+        let mut longest = 0;
+        for record in reader.records() {
+            for (name, cell) in header.iter().zip(&record.unwrap()) {
+                if ["goal_x", "goal_y", "x", "y"].contains(&name) {
+                    longest = longest.max(cell.split_once('.').unwrap().1.len());
+                    assert_ne!(cell, "-0.0");
+                }
+            }
+        }
+        assert_eq!(longest, 4);
+    }
+}

@@ -1,0 +1,294 @@
+//! Forecasts frame by frame are those of the windows cut from the whole recording, bit for bit: in the library, and of `ddl forecast -`,
+//! which a tracker writes to.
+
+use ddl::data::{LiveError, Observation, PedestrianId, Position, Recording};
+use ddl::eval::baseline::ConstantVelocity;
+use ddl::{DdlError, Forecaster as _, LiveForecaster, Variant};
+use ddl_tests::own_tracks::{self, Row};
+use ddl_tests::place::{Place, json, json_lines};
+use ddl_tests::program::Finished;
+use ddl_tests::{bits, crowd, drawn_model, program};
+use serde_json::Value;
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
+
+fn people(recording: &Recording, frame: i64) -> Vec<(PedestrianId, Position)> {
+    let seen = recording.at(frame).iter();
+    seen.map(|o| (o.pedestrian, o.position)).collect()
+}
+
+/// Three people for 24 frames; one is missing at frame 60 and leaves at 160, and nobody at all is seen at frame 180.
+fn coming_and_going() -> Recording {
+    let there =
+        |&(frame, id, ..): &Row| frame != 180 && !(id == 2 && (frame == 60 || frame >= 160));
+    let rows = own_tracks::three_people(24).into_iter().filter(there);
+    let rows = rows.map(|(frame, id, x, y)| Observation::new(frame, PedestrianId(id), [x, y]));
+    Recording::new("live", own_tracks::FRAME_STEP, rows.collect()).unwrap()
+}
+
+/// The first frames of a simulated crowd.
+fn beginning_of_a_crowd() -> Recording {
+    let crowds = crowd::dataset();
+    let recording = crowds.recording("plaza").unwrap();
+    let until = recording.frames()[20];
+    let early = recording.observations().iter().filter(|o| o.frame <= until);
+    Recording::new("live", recording.frame_step(), early.copied().collect()).unwrap()
+}
+
+/// Plays a recording, plainly and certified where there is a flow, and holds every forecast to that of the window.
+#[test]
+fn every_frame_is_forecast_as_its_window_is() {
+    for (variant, recording, expected) in [
+        // Windows from frame 70 on; not at 180, and after it not before 260.
+        (Variant::Full, coming_and_going(), 11),
+        (Variant::Star, coming_and_going(), 11),
+        (Variant::Full, beginning_of_a_crowd(), 14),
+    ] {
+        let model = drawn_model::of(variant);
+        let step = recording.frame_step();
+        let mut live = LiveForecaster::with_frame_step(&model, step).unwrap();
+        let mut certified = variant.dynamics().then(|| live.clone());
+        let mut windows = recording.observed_windows().into_iter().peekable();
+        let mut forecasts = 0;
+        for &frame in recording.frames() {
+            let people = people(&recording, frame);
+            let now = live.push(frame, people.iter().copied()).unwrap();
+            let evidence = certified
+                .as_mut()
+                .and_then(|live| live.push_certified(frame, people).unwrap());
+            let window = windows.next_if(|window| window.frames()[7] == frame);
+            assert_eq!(now.is_some(), window.is_some(), "frame {frame}");
+            let (Some(now), Some(window)) = (now, window) else {
+                continue;
+            };
+            forecasts += 1;
+            assert_eq!(now.frame(), frame);
+            assert_eq!(now.window.pedestrians(), window.pedestrians());
+            let forecast = model.forecast(&window).unwrap();
+            assert_eq!(bits::of(&now.forecast), bits::of(&forecast));
+            if let Some(evidence) = evidence {
+                let windows = std::slice::from_ref(&window);
+                let expected = model.forecast_certified(windows).unwrap().remove(0);
+                let found = &evidence.forecast;
+                assert_eq!(bits::of(&found.forecast), bits::of(&forecast));
+                assert_eq!(found.certificates, expected.certificates);
+                assert_eq!(evidence.window, now.window);
+            }
+        }
+        assert_eq!(forecasts, expected, "{variant}");
+    }
+}
+
+#[test]
+fn an_error_changes_nothing() {
+    let recording = coming_and_going();
+    let model = drawn_model::of(Variant::Full);
+    let step = recording.frame_step();
+    let mut live = LiveForecaster::with_frame_step(&model, step).unwrap();
+    live.push(0, people(&recording, 0)).unwrap();
+    for &frame in &recording.frames()[1..9] {
+        let everybody = people(&recording, frame);
+        let before = live.tracks().clone();
+        let twice = everybody.iter().chain(&everybody[..1]).copied();
+        for error in [
+            live.push(frame - step, everybody.clone()),
+            live.push(frame, twice),
+            live.push(frame, [(PedestrianId(3), [f64::NAN, 0.0])]),
+        ] {
+            let error = error.unwrap_err();
+            assert!(matches!(error, DdlError::Live(_)), "{error}");
+        }
+        if frame >= 70 {
+            // Finite, and a position like any other until somebody forecasts from it.
+            let mut far = everybody.clone();
+            far[0].1 = [f64::MAX, 0.0];
+            for error in [
+                live.push(frame, far.clone()).map(drop),
+                live.push_certified(frame, far).map(drop),
+            ] {
+                let error = error.unwrap_err();
+                assert!(matches!(error, DdlError::Forecast(_)), "{error}");
+            }
+        }
+        assert_eq!(live.tracks(), &before);
+        let now = live.push(frame, everybody).unwrap();
+        assert_eq!(now.is_some(), frame >= 70);
+    }
+    let error = LiveForecaster::with_frame_step(ConstantVelocity::last_step(), 0).unwrap_err();
+    assert!(matches!(
+        error,
+        DdlError::Live(LiveError::FrameStep { found: 0 })
+    ));
+}
+
+/// The program at work.
+struct Live {
+    child: Child,
+    input: ChildStdin,
+    output: BufReader<ChildStdout>,
+}
+
+impl Live {
+    fn start(place: &Place, options: &str) -> Self {
+        let line = format!("forecast - --model run --threads 1 --format jsonl {options}");
+        let mut command = program::command(place.path(), &line);
+        let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
+        Self {
+            input: child.stdin.take().unwrap(),
+            output: BufReader::new(child.stdout.take().unwrap()),
+            child,
+        }
+    }
+
+    fn write(&mut self, text: &str) {
+        self.input.write_all(text.as_bytes()).unwrap();
+        self.input.flush().unwrap();
+    }
+
+    fn line(&mut self) -> Value {
+        let mut line = String::new();
+        self.output.read_line(&mut line).unwrap();
+        json(&line)
+    }
+
+    /// The rest of its output, what was told, and the exit code.
+    fn end(mut self) -> (String, String, Option<i32>) {
+        drop(self.input);
+        let mut rest = String::new();
+        self.output.read_to_string(&mut rest).unwrap();
+        let output = self.child.wait_with_output().unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        (rest, told, output.status.code())
+    }
+}
+
+fn rows_of(rows: &[Row], frames: std::ops::Range<i64>) -> String {
+    let here = rows.iter().copied().filter(|row| frames.contains(&row.0));
+    let table = own_tracks::csv(&here.collect::<Vec<_>>());
+    table.split_once('\n').unwrap().1.to_owned()
+}
+
+/// The answer comes while the tracker still waits with the next frame, and is that of the file.
+#[test]
+fn every_frame_is_answered_before_the_next_one_comes() {
+    let place = Place::with_model();
+    let rows = own_tracks::three_people(10);
+    let expected = place.forecast(&rows, "--format jsonl").succeeds();
+    let mut expected = json_lines::<Value>(&expected).into_iter();
+    let mut live = Live::start(&place, "--whole --fps 25");
+    live.write("frame,pedestrian,x,y\n");
+    for frame in (0..100).step_by(10) {
+        // an empty line ends the frame
+        live.write(&(rows_of(&rows, frame..frame + 1) + "\n"));
+        if frame >= 70 {
+            for _ in 0..3 {
+                assert_eq!(live.line(), expected.next().unwrap());
+            }
+        }
+    }
+    assert_eq!(live.end(), (String::new(), String::new(), Some(0)));
+    assert_eq!(expected.next(), None);
+}
+
+/// From the second frame on, the step learned from the first two. Who has seen enough may go: that ends it quietly.
+#[test]
+fn two_frames_are_enough_and_a_reader_that_leaves_ends_it_quietly() {
+    let place = Place::with_model();
+    let rows = own_tracks::three_people(10);
+    let mut live = Live::start(&place, "--one --certificate");
+    live.write(&format!(
+        "frame,pedestrian,x,y\n{}\n",
+        rows_of(&rows, 0..11)
+    ));
+    let first = live.line();
+    assert_eq!(
+        (&first["observed_until"], &first["padded"]),
+        (&10.into(), &6.into())
+    );
+    assert_eq!(first["hypotheses"].as_array().unwrap().len(), 1);
+    assert_eq!(first["hypotheses"][0]["certificate"]["holds"], true);
+    let Live {
+        child,
+        mut input,
+        output,
+    } = live;
+    drop(output);
+    for frame in (20..100).step_by(10) {
+        // it may have gone already
+        let _ = input.write_all((rows_of(&rows, frame..frame + 1) + "\n").as_bytes());
+    }
+    drop(input);
+    let finished = Finished::new("forecast -".to_owned(), &child.wait_with_output().unwrap());
+    assert_eq!(finished.code, Some(0), "{finished:?}");
+    assert!(
+        finished.stderr.contains("10 apart in 0.4 s"),
+        "{finished:?}"
+    );
+    assert_eq!(finished.stderr.lines().count(), 1, "{finished:?}");
+}
+
+/// What came before a bad line has been answered.
+#[test]
+fn a_bad_line_is_named_and_nothing_before_it_is_lost() {
+    let place = Place::with_model();
+    let good = own_tracks::csv(&own_tracks::three_people(9));
+    for (bad, message) in [
+        ("90,1,left,2\n", "line 29, field 3"),
+        ("0,1,1,2\n", "line 29: frame 0 comes after frame 80"),
+        ("80,1,1,2\n", "line 29: pedestrian 1 is in frame 80 already"),
+    ] {
+        let line = "forecast - --model run --whole --frame-step 10 --format jsonl";
+        let finished = place.run_on(&format!("{good}{bad}"), line);
+        // frame 80, which the bad line ends, is answered too
+        assert_eq!(
+            (finished.stdout.lines().count(), finished.code),
+            (6, Some(1))
+        );
+        let told = &finished.stderr;
+        assert!(
+            told.starts_with("error: standard input, ") && told.contains(message),
+            "{told}"
+        );
+    }
+}
+
+#[test]
+fn what_cannot_be_live_is_refused() {
+    let place = Place::with_model();
+    place.all_fail(&[
+        "forecast - --model run --last => --last",
+        "forecast - --model run --fps 24 => 9.6 frames",
+        "goals - --model run => ddl forecast -",
+        // standard input is empty
+        "forecast - --model run => holds no tracks",
+        // and a file from before stays as it was
+        "forecast - --model run --output tracks.csv => holds no tracks",
+    ]);
+}
+
+/// Pixels are seen in the speeds as soon as somebody was seen whole, and an unfamiliar motion whenever it comes: each is told of once.
+#[test]
+fn what_looks_wrong_is_told_once() {
+    let place = Place::empty();
+    let mut pixels = own_tracks::three_people(12);
+    for row in &mut pixels {
+        row.2 *= 100.0;
+    }
+    let line = "forecast - --threads 1 --frame-step 10";
+    let finished = place.run_on(&own_tracks::csv(&pixels), &format!("{line} --one"));
+    let told = "warning: half of the steps";
+    assert_eq!(finished.stderr.matches(told).count(), 1, "{finished:?}");
+    let mut rows = own_tracks::three_people(20);
+    // From side to side, 8 m a step.
+    rows.extend((8..20).map(|t| (10 * t, 4, t as f64, 8.0 * (t % 2) as f64)));
+    rows.sort_by_key(|row| (row.0, row.1));
+    for options in ["", "--certificate --one"] {
+        let line = format!("{line} --whole {options}");
+        let finished = place.run_on(&own_tracks::csv(&rows), &line);
+        let unlike = "motions are unlike those that the model was trained on";
+        assert_eq!(finished.stderr.matches(unlike).count(), 1, "{finished:?}");
+        let whose = "that of pedestrian 4 observed until frame 150";
+        assert!(finished.stderr.contains(whose), "{finished:?}");
+    }
+}

@@ -1,0 +1,216 @@
+//! What every command of the program keeps to: help, completions, manual pages, JSON for programs, a quick start.
+
+use ddl::Variant;
+use ddl_tests::own_tracks;
+use ddl_tests::place::Place;
+use ddl_tests::{crowd, drawn_model, processes, program};
+use serde_json::Value;
+#[cfg(all(target_os = "linux", not(feature = "torch")))]
+use std::collections::BTreeSet;
+use std::io::Read as _;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::Duration;
+
+/// A terminal of old.
+const LINES: usize = 24;
+const COLUMNS: usize = 80;
+/// The promise, of a release build, with an expert library of 12,000 simulated walkers; and room for a debug build's assertions.
+const SOON: Duration = Duration::from_secs(if cfg!(debug_assertions) { 2 } else { 1 });
+/// The best of so many counts: the others were held up by something else.
+const RUNS: usize = 3;
+
+#[test]
+fn help_fits_a_screen_and_names_the_exit_codes() {
+    let place = Place::empty();
+    let help = place.ok("--help");
+    assert!(help.lines().count() <= LINES, "{help}");
+    assert!(
+        help.lines().all(|line| line.chars().count() <= COLUMNS),
+        "{help}"
+    );
+    for words in [
+        "Exit codes: 0 done, or whoever read",
+        "130 interrupted",
+        "forecast",
+        "view",
+    ] {
+        assert!(help.contains(words), "{words}: {help}");
+    }
+    // Without a command the same is said, as a mistake.
+    let bare = place.run("");
+    assert_eq!((bare.code, bare.stdout.as_str()), (Some(2), ""));
+    assert_eq!(bare.stderr.trim_end(), help.trim_end());
+}
+
+#[test]
+fn every_command_has_help_completions_and_a_manual_page() {
+    let place = Place::empty();
+    let help = place.ok("--help");
+    let lines = help.lines().filter_map(|line| line.strip_prefix("  "));
+    let commands: Vec<&str> = lines
+        .filter_map(|line| line.split_whitespace().next())
+        .collect();
+    assert!(commands.len() >= 13, "{commands:?}");
+    let completions = place.ok("completions bash");
+    let _ = place.ok("man pages");
+    for command in commands {
+        let help = place.ok(&format!("{command} --help"));
+        assert!(help.contains("Usage: ddl"), "{command}: {help}");
+        assert!(
+            completions.contains(&format!("ddl,{command})")),
+            "{command}"
+        );
+        let page = place.text(&format!("pages/ddl-{command}.1"));
+        assert!(page.contains(".TH"), "{command}: {page}");
+    }
+    for shell in ["zsh", "fish", "powershell", "elvish"] {
+        let script = place.ok(&format!("completions {shell}"));
+        assert!(script.contains("forecast"), "{shell}");
+    }
+}
+
+/// Every command that reports takes `--progress` beside it, so that programs need not know which has a bar. Nothing but plain text goes
+/// into a pipe.
+#[test]
+fn commands_that_report_also_speak_json() {
+    let place = Place::with_model();
+    for line in [
+        "info",
+        "info run",
+        "info hotel",
+        "data tracks.csv",
+        "pack --model run --out packed.safetensors",
+        "evaluate --model run --protocol single --test-walkers 8 --threads 1",
+        "report run --out report",
+        "baselines --convention simulated --fold plaza --protocol single --test-walkers 8",
+        "goals --model run --measure test --threads 1",
+    ] {
+        let _ = place.json(&format!("{line} --json --progress none"));
+    }
+    for line in ["--help", "info run", "train --help", "nonsense"] {
+        let finished = place.run(line);
+        let all = finished.stdout + &finished.stderr;
+        assert!(!all.contains('\u{1b}'), "{line}: {all:?}");
+    }
+}
+
+#[test]
+fn info_describes_the_program() {
+    let info = Place::empty().json("info --json");
+    assert_eq!(info["version"], env!("CARGO_PKG_VERSION"));
+    assert!(info["cuda"].is_string());
+    assert_eq!(info["models"].as_array().unwrap().len(), 5);
+    // Results name the commit that the program was built from, also of a checkout that was changed since.
+    let commit = info["commit"].as_str().unwrap();
+    if Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../.git")
+        .exists()
+    {
+        let hash = commit.strip_suffix("-dirty").unwrap_or(commit);
+        let is_hash = hash.chars().all(|c| c.is_ascii_hexdigit());
+        assert!(hash.len() >= 12 && is_hash, "{commit}");
+    } else {
+        assert_eq!(commit, "unknown");
+    }
+}
+
+#[test]
+fn info_describes_models() {
+    let place = Place::with_variant(Variant::NoGoalShift);
+    let info = place.json("info --model run --json");
+    let config: Value = serde_json::from_str(&place.text("run/config.json")).unwrap();
+    assert_eq!(info["config"], config);
+    assert_eq!(info["epochs"].as_array().unwrap().len(), 1);
+    assert_eq!(info["experts"], config["data"]["walkers"]);
+    let parameters = info["parameters"].as_u64().unwrap();
+    // four bytes each, and a header
+    let bytes = place.read("run/model.safetensors").len() as u64;
+    assert!(parameters > 10_000 && (4 * parameters..4 * parameters + 65_536).contains(&bytes));
+    let for_people = place.ok("info run");
+    let walkers = &config["data"]["walkers"];
+    let sentence = format!(
+        "run: variant no-goal-shift, trained on {walkers} walks of 20 steps (convention simulated, without corridor); goals "
+    );
+    assert!(for_people.starts_with(&sentence), "{for_people}");
+    assert!(
+        for_people.contains("variant: no-goal-shift"),
+        "{for_people}"
+    );
+    place.remove("run/model.safetensors");
+    let unfinished = place.ok("info run");
+    let sentence = sentence.replace("trained on", "to be trained on");
+    assert!(unfinished.starts_with(&sentence), "{unfinished}");
+    assert_eq!(
+        place.json("info --model zara1 --json")["config"]["data"]["fold"],
+        "zara1"
+    );
+}
+
+/// Processor time until the first byte is there, or a little later, as the process goes on meanwhile. Not the clock's, so that other work
+/// on the machine does not decide.
+fn until_first_output(place: &Place, line: &str) -> Option<Duration> {
+    let mut command = program::command(place.path(), line);
+    let mut child = command.stdout(Stdio::piped()).spawn().unwrap();
+    let mut output = child.stdout.take().unwrap();
+    let mut first = [0];
+    output.read_exact(&mut first).unwrap();
+    let time = processes::processor_time(child.id());
+    let mut rest = String::new();
+    output.read_to_string(&mut rest).unwrap();
+    assert!(child.wait().unwrap().success());
+    assert!(rest.lines().count() > 100, "no forecast: {rest}");
+    time
+}
+
+#[test]
+fn the_first_output_comes_soon() {
+    let place = Place::empty();
+    place.write_tracks("tracks.csv", &own_tracks::three_people(8));
+    let config = drawn_model::config(Variant::Full);
+    drawn_model::write(config, &crowd::training_windows(), &place.at("run"));
+    let line = "forecast --model run tracks.csv --threads 1";
+    let runs: Vec<_> = (0..RUNS)
+        .map(|_| until_first_output(&place, line))
+        .collect();
+    let Some(best) = runs.iter().min().copied().flatten() else {
+        eprintln!("skipped: this system does not tell the processor time of a process");
+        return;
+    };
+    assert!(best <= SOON, "{runs:?} of processor time, at most {SOON:?}");
+}
+
+/// No library is loaded but those of every Rust program, neither at the start nor later: whatever else the program needs is in it.
+#[cfg(all(target_os = "linux", not(feature = "torch")))]
+#[test]
+fn no_library_is_loaded_but_the_systems() {
+    let place = Place::empty();
+    place.write_tracks("tracks.csv", &own_tracks::three_people(8));
+    for line in ["--help", "forecast tracks.csv", "info --json"] {
+        let mut command = program::command(place.path(), line);
+        command
+            .env("LD_DEBUG", "libs")
+            .env("LD_DEBUG_OUTPUT", place.at("loaded"));
+        let mut child = command.stdout(Stdio::null()).spawn().unwrap();
+        assert!(child.wait().unwrap().success());
+        // The system's loader tells of every library, by its path.
+        let told = place.text(&format!("loaded.{}", child.id()));
+        let paths = told
+            .lines()
+            .filter_map(|line| Some(line.split_once("calling init: ")?.1));
+        let name = |path: &str| {
+            path.rsplit('/')
+                .next()
+                .unwrap_or(path)
+                .split(".so")
+                .next()
+                .map(str::to_owned)
+        };
+        let mut loaded: BTreeSet<String> = paths.filter_map(name).collect();
+        assert!(loaded.contains("libc"), "{line}: {told}");
+        loaded.retain(|name| {
+            !["libc", "libm", "libgcc_s"].contains(&&**name) && !name.starts_with("ld-linux")
+        });
+        assert!(loaded.is_empty(), "{line}: {loaded:?}");
+    }
+}

@@ -1,0 +1,145 @@
+//! A user's own recordings, told of and measured on: `ddl data`, `ddl evaluate --data`, `ddl windows --data`.
+
+use ddl_tests::own_tracks;
+use ddl_tests::place::{Place, json};
+use serde_json::Value;
+
+/// A folder with the recordings `mine`.
+fn with_recordings() -> Place {
+    let place = Place::empty();
+    own_tracks::write_recordings(&place);
+    place
+}
+
+#[test]
+fn own_recordings_are_told_of() {
+    let place = with_recordings();
+    let told = place.json("data mine --json");
+    let each = told["recordings"].as_array().unwrap();
+    assert_eq!(each.len(), 2);
+    assert_eq!(
+        (&each[0]["recording"], &each[0]["frame_step"]),
+        (&"lobby".into(), &10.into())
+    );
+    let windows = |of: &Value| of["to_learn_from"].as_u64().unwrap();
+    assert!(windows(&each[1]) > 100, "{told}");
+    let total = windows(&told["total"]);
+    assert_eq!(total, windows(&each[0]) + windows(&each[1]));
+    let words = place.ok("data mine");
+    let in_all = format!(" {total} pedestrian-windows in ");
+    assert!(words.lines().last().unwrap().contains(&in_all), "{words}");
+}
+
+/// Any model can be measured on recordings it does not know. Where a folder holds none of the ETH/UCY recordings, a fold is one of its
+/// own.
+#[test]
+fn models_are_measured_on_own_recordings() {
+    let place = with_recordings();
+    let windows = place.ok("windows --data mine --fold yard");
+    assert!(windows.lines().count() > 100 && !windows.contains("lobby"));
+    let measure = "--test-walkers 40 --protocol single --threads 1";
+    let [of_fold, of_file, of_model] = [
+        "--data mine --fold yard",
+        "--data mine/yard.csv",
+        "--model hotel --convention own --data mine/yard.csv",
+    ]
+    .map(|of| place.ok(&format!("evaluate {of} {measure}")));
+    assert!(
+        of_fold.contains("convention own, protocol single"),
+        "{of_fold}"
+    );
+    assert!(of_fold.contains("\nyard "), "{of_fold}");
+    assert_eq!(of_fold, of_file);
+    assert_eq!(of_fold, of_model);
+}
+
+/// The sound files are told of, and the broken ones named, so that they can be mended at once.
+#[test]
+fn files_that_cannot_be_read_are_named_together() {
+    let place = with_recordings();
+    place.write("mine/roof.csv", "frame,pedestrian,x,y\n1,1,a,0\n");
+    let told = place.run("data mine");
+    assert_eq!(told.code, Some(1));
+    for name in ["mine/lobby.csv", "mine/yard.csv"] {
+        assert!(told.stdout.contains(name), "{told:?}");
+    }
+    assert!(told.stderr.starts_with("error: mine/roof.csv"), "{told:?}");
+
+    for index in 0..11 {
+        place.write(&format!("mine/empty{index}.txt"), "");
+    }
+    for line in ["data mine", "train --data mine --out run"] {
+        let told = place.run(line);
+        assert_eq!(told.code, Some(1));
+        let lines: Vec<&str> = told.stderr.lines().collect();
+        assert!(
+            lines.iter().all(|line| line.starts_with("error: ")),
+            "{told:?}"
+        );
+        assert!(lines[0].contains("mine/empty0.txt"), "{told:?}");
+        let last = "error: 12 of 14 files cannot be read; the first 10 are named above";
+        assert_eq!((lines.len(), lines[10]), (11, last));
+    }
+    assert!(!place.at("run").exists());
+    let told = place.run("data mine --json");
+    let read = &json::<Value>(&told.stdout)["total"]["recordings"];
+    assert_eq!((told.code, read), (Some(1), &2.into()));
+}
+
+#[test]
+fn mistakes_with_own_recordings_say_what_to_do() {
+    let place = with_recordings();
+    std::fs::create_dir(place.at("empty")).unwrap();
+    // A folder that holds a recording of ETH/UCY.
+    place.write("star/zara01.csv", "");
+    place.write_tracks("short.csv", &own_tracks::three_people(12));
+    place.all_fail(&[
+        "train --out run => your own recordings (--data FOLDER)",
+        "train --data mine --out run --last-epoch-only => --patience 0",
+        "train --data empty --out run => holds no recordings",
+        "train --data nowhere --out run => cannot read nowhere",
+        "train --data mine --convention own --fold attic --out run => it has lobby, yard",
+        "train --data mine --fold lobby --out run => add --convention own",
+        "train --data mine --out run --validation 0 --patience 3 => patience of 3 epochs",
+        "train --convention simulated --fold plaza --fps 25 --out run => your own recordings",
+        "train --data mine --validation-recordings nope --out run => \"nope\" is not one of these recordings: lobby, yard",
+        "baselines --convention own --data mine --fold none => it has lobby, yard",
+        "evaluate --model hotel --convention own => --data FOLDER",
+        "evaluate --data mine --fold attic => it has lobby, yard",
+        "windows --data mine --fold attic => it has lobby, yard",
+        "evaluate --data star --fold attic => add --convention own",
+        "windows --data star --fold attic => add --convention own",
+        "evaluate --data mine --window-rule complete => leave --window-rule out",
+        "forecast short.csv --region 0.5,0.50 => 0.5 twice",
+        "evaluate --model hotel --convention own --data short.csv => 20 steps in a row",
+    ]);
+}
+
+#[test]
+fn recordings_of_a_folder_have_a_row_each() {
+    let place = Place::empty();
+    own_tracks::write_clips(&place, 300, 3);
+    let words = place.ok("evaluate --data clips --protocol fair --threads 1 --out report");
+    assert!(words.contains("3 recordings, clip0 to clip2"), "{words}");
+    assert!(!words.contains("clip0+"), "{words}");
+    let by_recording = words.split("\nrecording ").nth(1).unwrap();
+    for clip in ["clip0", "clip1", "clip2"] {
+        let lines = by_recording.lines().filter(|line| line.starts_with(clip));
+        assert_eq!(lines.count(), 1, "{words}");
+    }
+    let page = place.text("report/report.md");
+    assert!(
+        page.contains("By recording") && page.contains("| clip2 "),
+        "{page}"
+    );
+
+    let measured =
+        place.json("goals --measure test --data clips --json --progress none --threads 1");
+    assert_eq!(measured["fold"], "3 recordings, clip0 to clip2");
+    assert_eq!(measured["recordings"].as_object().unwrap().len(), 3);
+    let of_part = place.ok("goals --measure validation --data clips --threads 1");
+    assert!(
+        of_part.contains("clip1") && !of_part.contains("clip2"),
+        "{of_part}"
+    );
+}

@@ -1,0 +1,209 @@
+//! `ddl pack`: a packed model forecasts as its run does without the expert library; and the packed models that come with the program.
+
+use ddl::data::Convention;
+use ddl::eval::ResultRow;
+use ddl::report::Report;
+use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _, ModelSource, Protocol, Variant};
+use ddl_tests::place::Place;
+use ddl_tests::{crowd, drawn_model, folder_contents, recordings};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+const PACKED: &str = "DDL without an expert library";
+/// Metres by which results may differ through weights in half precision, or on another machine.
+const ROUNDING: f64 = 0.002;
+
+/// The one row of that name under `fair`.
+fn row<'a>(report: &'a Report, forecaster: &str) -> &'a ResultRow {
+    let mut rows = report.rows().iter().filter(|row| {
+        row.conditions.forecaster == forecaster && row.conditions.protocol == Protocol::Fair
+    });
+    let (Some(row), None) = (rows.next(), rows.next()) else {
+        panic!("not one row {forecaster}");
+    };
+    row
+}
+
+fn recipe(row: &ResultRow) -> &str {
+    row.conditions.recipe.as_deref().unwrap()
+}
+
+#[test]
+fn a_packed_run_is_measured_as_the_run_without_its_library() {
+    let place = Place::with_model();
+    let said = place.ok("pack --model run --out packed.safetensors");
+    assert!(said.contains("packed.safetensors"), "{said}");
+    let measure = "--protocol fair --protocol single --test-walkers 120 --threads 1";
+    let _ = place.ok(&format!("evaluate --model run {measure}"));
+    let before = folder_contents::read(place.path());
+    let line = format!("evaluate --model packed.safetensors {measure}");
+    let printed = place.ok(&line);
+    assert!(printed.contains(PACKED), "{printed}");
+    // A packed model has no place for results of its own.
+    place.assert_unchanged_since(&before);
+    let _ = place.ok(&format!("{line} --out packed"));
+
+    let of_run = Report::load(&place.at("run/report.json")).unwrap();
+    let of_packed = Report::load(&place.at("packed/report.json")).unwrap();
+    assert!(place.at("packed/report.html").is_file());
+    let (expected, found) = (row(&of_run, PACKED), row(&of_packed, PACKED));
+    assert_eq!(found.scores.pedestrians, expected.scores.pedestrians);
+    assert!((found.scores.min_ade - expected.scores.min_ade).abs() < ROUNDING);
+    assert!((found.scores.min_fde - expected.scores.min_fde).abs() < ROUNDING);
+    // The library is what the rows of the run differ in: without that there would be nothing to compare.
+    let whole = row(&of_run, "DDL");
+    assert!((whole.scores.min_fde - expected.scores.min_fde).abs() > 1e-6);
+    let lines = row(&of_packed, "straight line to the estimated goals");
+    for (row, words) in [
+        (found, "no expert library"),
+        (found, "16 bits"),
+        (expected, "no expert library"),
+        (lines, "no expert library"),
+        (whole, "and retrieved"),
+    ] {
+        assert!(recipe(row).contains(words), "{}", recipe(row));
+    }
+    for row in [found, expected] {
+        assert_eq!(row.scores.stability.unwrap().certified, Some(1.0));
+    }
+    // Networks of this recipe learn stable walks, and plain steps lead where they have never been.
+    let rows = of_run.rows().iter().chain(of_packed.rows());
+    let mut names = rows.map(|row| &row.conditions.forecaster);
+    assert!(names.all(|name| !name.contains("plain Euler")));
+}
+
+#[test]
+fn every_command_takes_a_packed_model() {
+    let place = Place::with_model();
+    let _ = place.ok("pack --model run --out packed");
+    let forecasts = place.ok("forecast --model packed tracks.csv --whole --last");
+    assert_eq!(forecasts.lines().count(), 1 + 3 * 20 * 12);
+    let goals = place.ok("goals --model packed tracks.csv --whole --last");
+    assert_eq!(goals.lines().count(), 1 + 3 * 20);
+    let measured = place.ok("goals --model packed --measure test --svg goals.svg --threads 1");
+    assert!(measured.contains("no expert library"), "{measured}");
+    assert!(place.at("goals.svg").is_file());
+    let [info, of_run] = ["packed", "run"].map(|model| place.json(&format!("info {model} --json")));
+    assert_eq!(info["experts"], 0);
+    for fact in ["config", "parameters"] {
+        assert_eq!(info[fact], of_run[fact], "{fact}");
+    }
+    let _ = place.ok("pack --model packed --out again");
+    let same = place.read("packed") == place.read("again");
+    assert!(same, "packing a packed model changes it");
+}
+
+#[test]
+fn what_a_packed_model_cannot_do_is_said() {
+    let place = Place::with_model();
+    let _ = place.ok("pack --model run --out packed");
+    let mut config = drawn_model::config(Variant::Full);
+    config.goals = ddl::GoalRecipe::retrieved(1);
+    drawn_model::write(config, &crowd::windows(20, 10), &place.at("retrieved"));
+    place.all_fail(&[
+        "evaluate --model packed --protocol published => no expert library",
+        "evaluate --model zara1 --convention simulated => cannot be measured on `simulated`",
+        "evaluate --fold plaza --convention simulated => star",
+        "evaluate --fold corridor => zara1",
+        "pack --model retrieved --out new => --goals proposed",
+        // Weights alone are no model, and say so.
+        "forecast tracks.csv --model run/model.safetensors => ddl pack",
+    ]);
+    // A model is measured on no scene but the one left out.
+    place.all_refused(&[
+        "evaluate --model packed --fold plaza => ",
+        "evaluate --model zara1 --fold eth => ",
+    ]);
+}
+
+#[test]
+fn the_network_comes_back_in_every_variant() {
+    let windows = crowd::windows(3, 6);
+    for variant in Variant::ALL {
+        let place = Place::with_variant(variant);
+        let _ = place.ok("pack --model run --out packed");
+        let [run, packed] =
+            ["run", "packed"].map(|name| Ddl::load(&place.at(name), DeviceChoice::Cpu).unwrap());
+        assert_eq!(packed.config(), run.config());
+        assert_eq!(packed.source(), &ModelSource::Packed(place.at("packed")));
+        let [of_run, of_packed] = [run, packed].map(|m| m.forecast_all(&windows).unwrap());
+        if variant == Variant::Star {
+            // It reads no goals: only the rounding of its weights is left.
+            for (one, other) in of_run.iter().zip(&of_packed) {
+                for (i, k) in (0..one.pedestrians()).flat_map(|i| (0..20).map(move |k| (i, k))) {
+                    for (a, b) in one.hypothesis(i, k).iter().zip(other.hypothesis(i, k)) {
+                        assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 0.02, "{a:?}, {b:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What is reported of a built-in model, beside its weights.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Reported {
+    convention: Convention,
+    window_rule: String,
+    protocol: Protocol,
+    min_ade: f64,
+    min_fde: f64,
+    walkers: usize,
+    test_walkers: Option<usize>,
+    seed: u64,
+    commit: String,
+}
+
+fn reported() -> BTreeMap<String, Reported> {
+    let text = include_str!("../../crates/ddl/models/reported.json");
+    serde_json::from_str(text).unwrap()
+}
+
+#[test]
+fn every_built_in_model_is_reported_and_of_the_seed_it_is_reported_with() {
+    let reported = reported();
+    let names: Vec<&str> = reported.keys().map(String::as_str).collect();
+    assert_eq!(names, BuiltinModel::ALL.map(BuiltinModel::name));
+    for model in BuiltinModel::ALL {
+        let (one, config) = (&reported[model.name()], model.config().unwrap());
+        assert_eq!(one.convention, config.data.convention);
+        assert_eq!(one.seed, config.training.seed);
+        assert!(one.min_ade > 0.0 && one.min_ade < one.min_fde && !one.commit.is_empty());
+    }
+}
+
+/// Of the smallest test scene.
+#[test]
+fn the_reported_number_comes_out_again() {
+    let Some(data) = recordings::star_folder() else {
+        return;
+    };
+    let expected = &reported()["hotel"];
+    let place = Place::empty();
+    let walkers = expected
+        .test_walkers
+        .map_or(String::new(), |n| format!("--test-walkers {n}"));
+    let _ = place.ok(&format!(
+        "evaluate --fold hotel --protocol {} {walkers} --out results --data {}",
+        expected.protocol,
+        data.display()
+    ));
+    let report = Report::load(&place.at("results/report.json")).unwrap();
+    let mut rows = report
+        .rows()
+        .iter()
+        .filter(|row| row.conditions.forecaster == PACKED);
+    let row = rows.find(|row| row.conditions.window_rule.to_string() == expected.window_rule);
+    let scores = &row.unwrap().scores;
+    assert_eq!(scores.pedestrians, expected.walkers);
+    for (found, expected) in [
+        (scores.min_ade, expected.min_ade),
+        (scores.min_fde, expected.min_fde),
+    ] {
+        assert!(
+            (found - expected).abs() < ROUNDING,
+            "{found}, reported {expected}"
+        );
+    }
+}

@@ -1,0 +1,104 @@
+//! `ddl pack --benchmark`: a finished benchmark becomes the models that come with the program.
+
+use ddl::data::{Convention, WindowRule};
+use ddl::eval::Conditions;
+use ddl::report::Report;
+use ddl::{Ddl, DeviceChoice, Protocol, Variant};
+use ddl_tests::place::{Place, json};
+use ddl_tests::{crowd, drawn_model, folder_contents};
+use serde_json::{Value, json};
+
+const PACKED: &str = "DDL without an expert library";
+const FOLDS: [&str; 5] = ["eth", "hotel", "univ", "zara1", "zara2"];
+const PACK: &str = "pack --benchmark . --out models";
+
+/// A finished benchmark of these folds: a drawn model as the run of each, and what it is said to have reached.
+fn benchmark(profile: &str, convention: &str, folds: &[&str]) -> Place {
+    let place = Place::empty();
+    let (all, fair) = (crowd::dataset(), [Protocol::Fair]);
+    let measured = ddl::measure_baselines(&all, &[crowd::FOLD.into()], &fair, Some(8), "0123abc");
+    let measured = measured.unwrap().remove(0);
+    let mut tasks = Vec::new();
+    for (&fold, seed) in folds.iter().flat_map(|fold| [(fold, 2), (fold, 1)]) {
+        let row = |forecaster: &str, min_ade| {
+            let rule = WindowRule::Published;
+            let mut row = measured.clone();
+            row.conditions = Conditions {
+                seed: Some(seed),
+                commit: "0123abc".to_owned(),
+                ..Conditions::new(Convention::Star, rule, Protocol::Fair, fold, forecaster)
+            };
+            row.scores.min_ade = min_ade;
+            row
+        };
+        let id = format!("{fold}-full-{seed}");
+        let rows = [row("DDL", 9.0), row(PACKED, seed as f64)];
+        let run = place.at(&id).join("run");
+        folder_contents::write(drawn_model::contents(Variant::Full), &run);
+        let report = Report::new(&id, rows).unwrap().to_json().unwrap();
+        place.write(&format!("{id}/run/report.json"), report);
+        tasks.push(json!({
+            "id": id, "fold": fold, "variant": "full", "seed": seed, "train_cost": 1.0, "evaluate_cost": 1.0,
+        }));
+    }
+    let plan = json!({
+        "format": 3,
+        "settings": {
+            "profile": profile, "convention": convention, "data": null, "device": "cpu", "cargo_profile": "release", "epochs": 4,
+            "train_walkers": null, "proposal_steps": null, "test_walkers": 2500, "protocols": ["fair", "single"],
+            "recipe": {"name": "recommended", "optimiser": null},
+        },
+        "tasks": tasks,
+    });
+    place.write("plan.json", plan.to_string());
+    place
+}
+
+#[test]
+fn a_benchmark_becomes_the_models_that_come_with_the_program() {
+    let place = benchmark("paper", "star", &FOLDS);
+    for (option, seed) in [("", 1), (" --seed 2", 2)] {
+        let said = place.ok(&format!("{PACK}{option}"));
+        assert_eq!(said.matches(" weights\n").count(), 5, "{said}");
+        let reported: Value = json(&place.text("models/reported.json"));
+        assert_eq!(reported.as_object().unwrap().len(), 5);
+        for fold in FOLDS {
+            let packed = place.at(&format!("models/{fold}.safetensors"));
+            assert!(Ddl::load(&packed, DeviceChoice::Cpu).is_ok());
+            let one = &reported[fold];
+            for (fact, expected) in [
+                ("min_ade", json!(f64::from(seed))),
+                ("seed", json!(seed)),
+                ("window_rule", json!("published")),
+                ("protocol", json!("fair")),
+                ("test_walkers", json!(2500)),
+                ("commit", json!("0123abc")),
+            ] {
+                assert_eq!(one[fact], expected, "{fact}");
+            }
+            assert!(one["walkers"].as_u64().unwrap() > 0 && one["min_fde"].is_f64());
+        }
+    }
+}
+
+#[test]
+fn half_a_benchmark_is_refused_and_nothing_replaced() {
+    for (profile, convention, folds, words) in [
+        ("paper", "star", &FOLDS[..4], ["zara2", "all folds"]),
+        ("paper", "social-gan", &FOLDS[..1], ["social-gan", "star"]),
+        ("quick", "star", &FOLDS[..1], ["of profile quick", "paper"]),
+    ] {
+        benchmark(profile, convention, folds).fails(PACK, &words);
+    }
+    let place = benchmark("paper", "star", &FOLDS);
+    // Every other fold can be packed.
+    place.write("univ-full-1/run/model.safetensors", "damaged");
+    place.fails(PACK, &["univ-full-1"]);
+    let older = Report::new("older", []).unwrap().to_json().unwrap();
+    place.write("univ-full-1/run/report.json", older);
+    place.fails(PACK, &["univ-full-1", PACKED]);
+    place.remove("univ-full-1/run/report.json");
+    place.fails(PACK, &["is the benchmark finished?"]);
+    place.remove("plan.json");
+    place.fails(PACK, &["`ddl benchmark` makes"]);
+}

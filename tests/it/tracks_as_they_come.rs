@@ -1,0 +1,426 @@
+//! Tracks that are not as a data set has them: begun late, with holes, of another rate, in pixels, with words for pedestrians; and what
+//! is told of them.
+
+use ddl::TrackUnits;
+use ddl_tests::own_tracks::{self, Row, ndjson};
+use ddl_tests::place::{Place, json_lines};
+use ddl_tests::{crowd, drawn_model};
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+/// What a scene of TrajNet++ says of the rate.
+const SCENE: &str = "{\"scene\": {\"id\": 0, \"p\": 1, \"s\": 0, \"e\": 200, \"fps\": 2}}\n";
+const WORDS: [&str; 3] = ["7f3e-aa41", "007", "b, \"the guard\""];
+
+/// Moment, pedestrian, positions padded and filled.
+fn made_up(line: &Value) -> [i64; 4] {
+    ["observed_until", "pedestrian", "padded", "filled"].map(|name| line[name].as_i64().unwrap())
+}
+
+/// The rows with a word for each pedestrian, in csv.
+fn in_words(rows: &[Row]) -> String {
+    let mut text = "frame,pedestrian,x,y\n".to_owned();
+    for (frame, pedestrian, x, y) in rows {
+        let word = WORDS[usize::try_from(*pedestrian).unwrap() - 1].replace('"', "\"\"");
+        writeln!(text, "{frame},\"{word}\",{x},{y}").unwrap();
+    }
+    text
+}
+
+/// Forecasts of rows with a built-in model, and what was told.
+fn forecast(rows: &[Row], options: &str) -> (Vec<Value>, String) {
+    let place = Place::empty();
+    place.write_tracks("tracks.csv", rows);
+    place.write("H.txt", "0.015625 0 -5\n0 -0.015625 3.75\n0 0 1\n");
+    let line = "forecast tracks.csv --threads 1 --format jsonl";
+    let finished = place.run(&format!("{line} {options}"));
+    assert_eq!(finished.code, Some(0), "{finished:?}");
+    (json_lines(&finished.stdout), finished.stderr)
+}
+
+#[test]
+fn late_comers_and_holes_are_forecast_and_flagged() {
+    let mut rows = own_tracks::three_people(10);
+    // the second comes at frame 60, the third is not seen at 40 and 50
+    rows.retain(|&(frame, who, ..)| {
+        !(who == 2 && frame < 60 || who == 3 && [40, 50].contains(&frame))
+    });
+    let (lines, told) = forecast(&rows, "--certificate --last");
+    let note = "of 3 forecasts 1 are of people seen for less than 8 steps, and 1 over holes";
+    assert!(told.contains(note), "{told}");
+    let found: Vec<_> = lines.iter().map(made_up).collect();
+    assert_eq!(found, [[90, 1, 0, 0], [90, 2, 4, 0], [90, 3, 0, 2]]);
+    for line in &lines {
+        let mut hypotheses = line["hypotheses"].as_array().unwrap().iter();
+        assert!(hypotheses.all(|hypothesis| hypothesis["certificate"]["holds"] == true));
+    }
+    let (lines, told) = forecast(&rows, "--last --whole");
+    assert_eq!(
+        (lines.iter().map(made_up).collect(), told),
+        (vec![[90, 1, 0, 0]], String::new())
+    );
+    // who has just appeared is counted
+    rows.push((90, 4, 3.0, 1.0));
+    let missing = "1 of the 4 people at frame 90 were seen at too few of the last 8 steps";
+    let told = forecast(&rows, "--last").1;
+    assert!(told.contains(missing), "{told}");
+}
+
+/// The same walks filmed at 25 frames a second say the same at the frames that both have.
+#[test]
+fn a_faster_camera_forecasts_at_every_frame() {
+    let walks = own_tracks::three_people(9);
+    let at = |frame: i64| walks.iter().filter(move |row| row.0 == frame);
+    let filmed = |frame: i64| {
+        let (before, share) = (frame / 10 * 10, (frame % 10) as f64 / 10.0);
+        let between = move |a: f64, b: f64| a + share * (b - a);
+        let pairs = at(before).zip(at((before + 10).min(80)));
+        pairs.map(move |(a, b)| (frame, a.1, between(a.2, b.2), between(a.3, b.3)))
+    };
+    let rows: Vec<Row> = (0..=80).flat_map(filmed).collect();
+    let slow = forecast(&walks, "--whole --fps 25").0;
+    let mut fast = forecast(&rows, "--whole --fps 25").0;
+    assert_eq!(fast.len(), 11 * 3);
+    let ends = [&fast[0], &fast[32]].map(|line| made_up(line)[0]);
+    assert_eq!(ends, [70, 80]);
+    fast.retain(|line| made_up(line)[0] % 10 == 0);
+    assert_eq!(slow, fast);
+}
+
+#[test]
+fn a_rate_that_meets_no_step_is_resampled_and_said() {
+    let rows: Vec<Row> = (0..=72)
+        .map(|frame| (frame, 1, 0.05 * frame as f64, 1.0))
+        .collect();
+    let (lines, told) = forecast(&rows, "--fps 24 --last");
+    assert!(told.contains("0.4 s are 9.6 frames"), "{told}");
+    assert_eq!(made_up(&lines[0]), [72, 1, 0, 0]);
+    let frames: Vec<f64> = serde_json::from_value(lines[0]["frames"].clone()).unwrap();
+    assert!((frames[0] - 81.6).abs() < 1e-9 && (frames[11] - 187.2).abs() < 1e-9);
+    assert_eq!(lines[0]["frames"][4], 120);
+}
+
+/// Pixels of a camera that looks straight down, 64 a metre, y downwards; and tracks in the words of TrajNet++.
+#[test]
+fn pixels_become_metres_and_formats_make_no_difference() {
+    let metres = own_tracks::three_people(8);
+    let pixel = |&(f, i, x, y): &Row| (f, i, 64.0 * x + 320.0, 240.0 - 64.0 * y);
+    let pixels: Vec<Row> = metres.iter().map(pixel).collect();
+    let expected = forecast(&metres, "--whole").0;
+    assert_eq!(forecast(&pixels, "--whole --homography H.txt").0, expected);
+    let told = forecast(&pixels, "--whole").1;
+    assert!(told.contains("--homography"), "{told}");
+    let place = Place::empty();
+    place.write("tracks.ndjson", ndjson(&metres));
+    let text = place.ok("forecast tracks.ndjson --whole --format jsonl");
+    assert_eq!(json_lines::<Value>(&text), expected);
+}
+
+/// Whoever is named by a word is forecast as who is numbered, and comes back under that word.
+#[test]
+fn words_come_back_as_they_were_written() {
+    let place = Place::empty();
+    let rows = own_tracks::three_people(10);
+    let numbered = forecast(&rows, "--whole --certificate").0;
+    place.write("words.csv", in_words(&rows));
+    let ask = |line: &str| place.ok(&format!("{line} --threads 1"));
+    let in_words = |mut line: Value| {
+        let number = line["pedestrian"].as_u64().unwrap();
+        line["pedestrian"] = WORDS[usize::try_from(number).unwrap() - 1].into();
+        line
+    };
+    let expected: Vec<Value> = numbered.into_iter().map(in_words).collect();
+    let options = "--whole --certificate --format jsonl";
+    let whole = ask(&format!("forecast words.csv {options}"));
+    assert_eq!(json_lines::<Value>(&whole), expected);
+    let line = format!("forecast - --threads 1 --frame-step 10 {options}");
+    let live = place.run_on(&place.text("words.csv"), &line).succeeds();
+    assert_eq!(json_lines::<Value>(&live), expected);
+    for table in [
+        ask("forecast words.csv --whole"),
+        ask("goals words.csv --whole"),
+    ] {
+        let mut reader = csv::Reader::from_reader(table.as_bytes());
+        let column = reader
+            .headers()
+            .unwrap()
+            .iter()
+            .position(|name| name == "pedestrian");
+        let word =
+            |record: csv::Result<csv::StringRecord>| record.unwrap()[column.unwrap()].to_owned();
+        let found: BTreeSet<String> = reader.records().map(word).collect();
+        assert_eq!(found, WORDS.map(str::to_owned).into());
+    }
+    let _ = ask("view words.csv --no-open -o page.html");
+    assert!(
+        place
+            .text("page.html")
+            .contains("\"pedestrian\":\"b, \\\"the guard\\\"\"")
+    );
+    place.write("twice.csv", place.text("words.csv") + "90,7f3e-aa41,0,0\n");
+    place.fails(
+        "forecast twice.csv",
+        &["pedestrian 7f3e-aa41 is in frame 90 already"],
+    );
+}
+
+/// Another program forecasts recordings with words, and is scored.
+#[test]
+fn windows_of_words_are_forecast_by_another_program() {
+    let place = Place::empty();
+    place.write("yard.csv", in_words(&own_tracks::three_people(24)));
+    let of = "--convention own --data yard.csv --fold yard";
+    let mut forecasts = String::new();
+    for line in json_lines::<Value>(&place.ok(&format!("windows {of}"))) {
+        let word = line["pedestrian"].as_str().unwrap();
+        assert!(WORDS.contains(&word), "{word}");
+        let still = json!({
+            "recording": line["recording"], "observed_until": line["observed_until"], "pedestrian": word,
+            "hypotheses": [{"positions": vec![&line["observed"][7]; 12]}],
+        });
+        forecasts += &(still.to_string() + "\n");
+    }
+    place.write("still.jsonl", forecasts);
+    let scores = place.ok(&format!(
+        "evaluate --forecasts still.jsonl {of} --name still"
+    ));
+    assert!(scores.contains("pedestrian-windows"), "{scores}");
+}
+
+/// A step of 0.4 s is taken by the scenes' rate, unless another is given, and that is said.
+#[test]
+fn the_rate_of_scenes_is_used() {
+    let place = Place::empty();
+    let plain = ndjson(&own_tracks::three_people(40));
+    place.write("plain.ndjson", &plain);
+    place.write("two.ndjson", format!("{SCENE}{plain}"));
+    place.write(
+        "usual.ndjson",
+        format!("{}{plain}", SCENE.replace("2}}", "2.5}}")),
+    );
+    let ask = |line: &str| place.run(&format!("forecast --threads 1 --last {line}"));
+    for (line, told, same_as) in [
+        (
+            "two.ndjson",
+            "note: the file's scenes give 2 frames a second, and its frame numbers rise by 10: read as --fps 20\n",
+            "plain.ndjson --fps 20",
+        ),
+        (
+            "two.ndjson --fps 25",
+            "note: read as --fps 25, although the file's scenes give 2 frames a second, and its frame numbers rise by 10 (--fps 20)\n",
+            "plain.ndjson --fps 25",
+        ),
+        ("usual.ndjson", "", "plain.ndjson"),
+        ("two.ndjson --fps 20", "", "plain.ndjson --fps 20"),
+    ] {
+        let finished = ask(line);
+        let notes = finished.stderr.split_inclusive('\n');
+        let of_rate: String = notes.filter(|note| note.contains("scenes")).collect();
+        assert_eq!(of_rate, told);
+        assert_eq!(finished.succeeds(), ask(same_as).succeeds());
+    }
+    // line by line as well, where it makes whole frames
+    for (file, told) in [
+        (
+            "usual.ndjson",
+            "10 apart in 0.4 s, by the fps of the scenes, 2.5",
+        ),
+        (
+            "two.ndjson",
+            "8 apart in 0.4 s, by the fps of the scenes, 2",
+        ),
+    ] {
+        let live = place.run_on(&place.text(file), "forecast - --threads 1 --one");
+        assert_eq!(live.code, Some(0), "{live:?}");
+        assert!(live.stderr.contains(told), "{live:?}");
+    }
+}
+
+/// Options say what numbers mean, then the file, then the run.
+#[test]
+fn the_rate_of_a_run_yields_to_files_and_options() {
+    let place = Place::with_model();
+    let mut config: Value = serde_json::from_str(&place.text("run/config.json")).unwrap();
+    config["units"] = json!({"fps": 50.0});
+    place.write("run/config.json", config.to_string());
+    let rows = own_tracks::three_people(40);
+    place.write("two.ndjson", SCENE.to_owned() + &ndjson(&rows));
+    place.write_tracks("plain.csv", &rows);
+    let note = "note: the numbers are read as in the run's training (--fps 50); give --fps, --dt, --frame-step or --homography to read them differently\n";
+    let run = |line: &str| place.run(&format!("{line} --model run --threads 1"));
+    for command in ["forecast", "goals", "view --no-open -o page.html"] {
+        let told = run(&format!("{command} plain.csv --last"));
+        assert!(told.stderr.contains(note), "{told:?}");
+        let page = std::fs::read(place.at("page.html")).ok();
+        let same = run(&format!("{command} plain.csv --last --fps 50"));
+        assert!(!same.stderr.contains("training"), "{same:?}");
+        assert_eq!(told.succeeds(), same.succeeds());
+        assert_eq!(page, std::fs::read(place.at("page.html")).ok());
+        let of_file = run(&format!("{command} two.ndjson --last")).stderr;
+        assert!(of_file.contains(": read as --fps 20\n"), "{of_file}");
+        assert!(!of_file.contains("training"), "{of_file}");
+    }
+    let two = run("forecast two.ndjson --last").succeeds();
+    assert_eq!(two, run("forecast plain.csv --last --fps 20").succeeds());
+    for (file, options, told) in [
+        (
+            "plain.csv",
+            "",
+            "20 apart in 0.4 s, as in the run's training (--fps 50)",
+        ),
+        (
+            "two.ndjson",
+            "",
+            "8 apart in 0.4 s, by the fps of the scenes, 2",
+        ),
+        ("plain.csv", "--fps 25", ""),
+    ] {
+        let line = format!("forecast - --model run --threads 1 --one {options}");
+        let live = place.run_on(&place.text(file), &line);
+        assert_eq!(live.code, Some(0), "{live:?}");
+        assert_eq!(live.stderr.contains("apart"), !told.is_empty(), "{live:?}");
+        assert!(live.stderr.contains(told), "{live:?}");
+    }
+}
+
+/// Cameras of 23.98 frames a second that count pixels: what a run remembers of them holds for the recordings that it is measured on,
+/// and not for files that give their rate.
+#[test]
+fn rate_and_homography_of_a_run_are_used() {
+    let place = Place::with_model();
+    own_tracks::write_film(&place);
+    let units = "--fps 23.98 --homography film/H.txt";
+    let told = place.run(&format!("data film {units}"));
+    let note = "note: 3 recordings: 0.4 s are 9.592 frames: positions are taken";
+    assert_eq!(told.stderr.matches("9.592").count(), 1, "{told:?}");
+    assert!(told.stderr.contains(note), "{told:?}");
+    let text = told.succeeds();
+    let total = text.lines().last().unwrap();
+    assert!(total.starts_with("in all: 3 recordings, "), "{text}");
+    assert!(
+        total.contains(" pedestrians, ") && total.ends_with(" hours"),
+        "{text}"
+    );
+
+    let matrix = place.text("film/H.txt");
+    let mut config = drawn_model::config(ddl::Variant::Full);
+    config.units = Some(TrackUnits {
+        fps: Some(23.98),
+        homography: Some(matrix.parse().unwrap()),
+        ..TrackUnits::default()
+    });
+    drawn_model::write(config, &crowd::windows(60, 10), &place.at("film-run"));
+    let remembered = "note: the numbers are read as in the run's training (--fps 23.98 and its homography); give --fps, --dt, --frame-step \
+                      or --homography to read them differently\n";
+    let forecast = "forecast film/hall.csv --model film-run --last --threads 1";
+    let finished = place.run(forecast);
+    assert!(finished.stderr.contains(remembered), "{finished:?}");
+    let said = place.run(&format!("{forecast} {units}"));
+    assert!(!said.stderr.contains("training"), "{said:?}");
+    assert_eq!(finished.succeeds(), said.succeeds());
+    let live = place.run_on(&place.text("film/hall.csv"), "forecast - --model film-run");
+    let message = "the run was trained with --fps 23.98: 0.4 s are 9.592 frames";
+    assert_eq!(live.code, Some(1), "{live:?}");
+    assert!(live.stderr.contains(message), "{live:?}");
+
+    place.write(
+        "two.ndjson",
+        SCENE.to_owned() + &ndjson(&own_tracks::three_people(40)),
+    );
+    let measure = "evaluate --model film-run --data two.ndjson --protocol single --threads 1 --homography none";
+    let of_file = place.run(measure);
+    assert!(
+        of_file.stderr.contains(": read as --fps 20\n"),
+        "{of_file:?}"
+    );
+    assert!(!of_file.stderr.contains("training"), "{of_file:?}");
+    assert_eq!(of_file.succeeds(), place.ok(&format!("{measure} --fps 20")));
+}
+
+/// Recordings in pixels, or of a camera that is too near, are doubted aloud, and in the facts for programs too.
+#[test]
+fn numbers_that_nobody_walks_at_are_doubted() {
+    let place = Place::empty();
+    for (factor, words) in [
+        (60.0, "half of the steps are faster"),
+        (0.1, "nine in ten steps"),
+    ] {
+        let scaled = |(f, p, x, y)| (f, p, factor * x, factor * y);
+        let rows: Vec<Row> = own_tracks::three_people(60)
+            .into_iter()
+            .map(scaled)
+            .collect();
+        place.write_tracks("hall.csv", &rows);
+        for line in [
+            "evaluate --model hotel --convention own --data hall.csv --test-walkers 1 --protocol single --threads 1",
+            "forecast hall.csv --last --one --threads 1",
+        ] {
+            let finished = place.run(line);
+            assert!(finished.stderr.contains(words), "{finished:#?}");
+        }
+    }
+    let rows: Vec<Row> = (0..9).map(|t| (t, 1, 30.0 * t as f64, 0.0)).collect();
+    place.write_tracks("pixels.csv", &rows);
+    let told = &place.json("data pixels.csv --json")["recordings"][0];
+    assert_eq!(told["file"], "pixels.csv");
+    let doubts = told["doubts"].as_array().unwrap();
+    assert_eq!(doubts.len(), 2);
+    assert!(doubts[0].as_str().unwrap().contains("metres"), "{told}");
+}
+
+#[test]
+fn frames_are_numbered_as_the_tracks_number_them() {
+    let place = Place::empty();
+    // 24 frames a second: a step of 0.4 s is 9.6 frames.
+    let far = |t| if t < 96 { 0.0 } else { 90.0 };
+    let walk = |who: i64, off: fn(i64) -> f64| {
+        (0..200).map(move |t| (t, who, 0.05 * t as f64 + off(t), 3.0 * who as f64))
+    };
+    place.write_tracks(
+        "tracks.csv",
+        &walk(1, |_| 0.0).chain(walk(2, far)).collect::<Vec<_>>(),
+    );
+    let told = place.ok("data tracks.csv --fps 24");
+    assert!(told.contains("(7 to 199, 9.6 a step of 0.4 s"), "{told}");
+    for (before, after) in [("(pedestrian 2 at frame ", ')'), ("jumps at frame ", ',')] {
+        let at = told
+            .split(before)
+            .nth(1)
+            .unwrap()
+            .split(after)
+            .next()
+            .unwrap();
+        assert!((95..=106).contains(&at.parse::<i64>().unwrap()), "{told}");
+    }
+}
+
+/// `ddl view`: forecasts of own tracks as a page that loads nothing from anywhere.
+#[test]
+fn a_page_shows_the_moments_of_own_tracks() {
+    let place = Place::empty();
+    place.write_tracks("lobby.csv", &own_tracks::three_people(15));
+    let told = place.ok("view lobby.csv --moments 5");
+    assert_eq!(told, "lobby-forecasts.html\n");
+    let page = place.text("lobby-forecasts.html");
+    // From the second frame on somebody can be forecast.
+    assert!(page.contains("5 of 14 moments of lobby.csv"));
+    assert!(page.contains("Certificates: 300 of 300 hypotheses"));
+    // The one address is the name of SVG.
+    let mut addresses = page.split("http").skip(1);
+    assert!(addresses.all(|address| address.starts_with("://www.w3.org/2000/svg")));
+    let data = page.split("id=\"moments-json\">").nth(1).unwrap();
+    let moments: Vec<Value> = ddl_tests::place::json(data.split("</script>").next().unwrap());
+    let count = |moment: usize, name: &str| {
+        moments[moment]["walkers"][0][name]
+            .as_array()
+            .unwrap()
+            .len()
+    };
+    assert_eq!(moments.len(), 5);
+    assert_eq!(moments[4]["frame"], 14 * own_tracks::FRAME_STEP);
+    assert_eq!((count(4, "truth"), count(4, "paths")), (0, 20));
+    // The first of five is the third of fourteen: seen for 3 frames, and what then happened is there.
+    assert_eq!(moments[0]["walkers"][0]["made_up"]["padded"], 5);
+    assert_eq!(count(0, "truth"), 24);
+}

@@ -1,0 +1,254 @@
+//! `ddl train`: what it tells, what it leaves, and that its goals can be measured before the network is trained.
+
+use ddl::data::{Convention, Window, WindowRule};
+use ddl::network::{EpochReport, NetworkFrame, Objective, StarConfig, TrainingConfig};
+use ddl::{GoalEvaluation, RunConfig, RunDirectory, Variant};
+use ddl_tests::place::{Place, json, json_lines};
+use ddl_tests::progress::{returns_at_once, told};
+use ddl_tests::{crowd, drawn_model, folder_contents, trained_model};
+
+#[test]
+fn a_training_tells_its_steps_and_leaves_a_run() {
+    let place = Place::empty();
+    // 200 walkers in batches of 64: 4 steps an epoch
+    let train = "train --convention simulated --fold plaza --recipe published --seed 5 --epochs 2 --train-walkers 200 --batch-walkers 64 \
+                 --proposal-steps 10 --commit 0123abc --threads 1 --out run";
+    let mut steps = told(&place, train, &["goals", "train"]);
+    steps.retain(|step| step.stage == "train");
+    assert_eq!(steps.len(), 8);
+    assert!(steps[7].message.contains("epoch 2"));
+    returns_at_once(&place, train);
+    let again = place.ok(train);
+    let done = "run: trained, 2 epochs\nnext: ddl evaluate --model run";
+    assert!(again.starts_with(done), "{again}");
+
+    let run = RunDirectory::new(place.at("run"));
+    for file in [
+        run.model(),
+        run.optimizer(),
+        run.experts(),
+        run.proposal(),
+        run.epoch(1),
+        run.epoch(2),
+    ] {
+        assert!(file.is_file(), "{} is missing", file.display());
+    }
+    let config = run.config().unwrap();
+    assert_eq!(config.data.convention, Convention::Simulated);
+    assert_eq!(
+        (config.data.fold.as_str(), config.training.seed),
+        ("plaza", 5)
+    );
+    assert_eq!(config.commit, "0123abc");
+    let epochs: Vec<EpochReport> = json_lines(&place.text("run/metrics.jsonl"));
+    assert_eq!(epochs, run.metrics().unwrap());
+    let numbers: Vec<_> = epochs
+        .iter()
+        .map(|epoch| (epoch.epoch, epoch.batches))
+        .collect();
+    assert_eq!(numbers, [(1, 4), (2, 4)]);
+    assert!(
+        epochs
+            .iter()
+            .all(|epoch| epoch.loss.is_finite() && epoch.loss > 0.0)
+    );
+    let measure = "evaluate --model run --protocol fair --test-walkers 20 --threads 1";
+    assert!(place.ok(measure).contains("minADE"));
+}
+
+#[test]
+fn goals_are_measured_before_the_network_is_trained() {
+    let place = Place::empty();
+    let train = "train --convention simulated --fold plaza --epochs 1 --train-walkers 40 --batch-walkers 20 --proposal-steps 8 \
+                 --validation 0.25 --validation-recordings crossing --threads 1 --out run";
+    let _ = place.ok(&format!("{train} --only-goals"));
+    assert!(!place.at("run/model.safetensors").exists());
+    let measured = |on: &str| -> GoalEvaluation {
+        let line = format!("goals --model run --measure {on} --json --threads 1");
+        json(&place.ok(&line))
+    };
+    let test = measured("test");
+    // all of the recording set apart, the ends of the others, nothing of the test scene
+    let validation = measured("validation");
+    let names: Vec<&str> = validation.recordings.keys().map(String::as_str).collect();
+    assert_eq!(names, ["bottleneck", "corridor", "crossing", "doorway"]);
+    let crowds = crowd::dataset();
+    let whole = crowds
+        .recording("crossing")
+        .unwrap()
+        .windows(WindowRule::Complete);
+    let walkers: usize = whole.iter().map(Window::len).sum();
+    assert_eq!(validation.recordings["crossing"].walkers, walkers);
+    assert!(
+        validation.windows.contains("crossing whole"),
+        "{}",
+        validation.windows
+    );
+    // the same command without --only-goals goes on, and the goals stay
+    let before = place.read("run/proposal.safetensors");
+    let _ = place.ok(train);
+    assert!(place.at("run/model.safetensors").is_file());
+    assert!(place.read("run/proposal.safetensors") == before);
+    let again = measured("test");
+    assert_eq!((again.all, again.recordings), (test.all, test.recordings));
+}
+
+/// The configuration that a run is begun with; its network is not trained.
+fn begun_with(options: &str) -> RunConfig {
+    let place = Place::empty();
+    let train = "train --convention simulated --fold corridor --only-goals --proposal-steps 1 --threads 1 --out run";
+    let _ = place.ok(&format!("{train} {options}"));
+    RunDirectory::new(place.at("run")).config().unwrap()
+}
+
+#[test]
+fn the_recommended_recipe_is_the_default() {
+    for variant in Variant::ALL {
+        let config = begun_with(&format!("--variant {variant}"));
+        assert_eq!(config.star, StarConfig::recommended(variant));
+        assert_eq!(config.training, TrainingConfig::recommended(variant));
+    }
+    let full = begun_with("--recipe recommended");
+    assert_eq!(full, begun_with(""));
+    let star = (full.star.frame, full.star.feed_forward_width);
+    assert_eq!(star, (NetworkFrame::Goal, 128));
+    assert_eq!(full.training.objective, Objective::Walk);
+}
+
+/// Options change their part of it alone.
+#[test]
+fn the_published_recipe_is_the_papers() {
+    let config = begun_with("--recipe published");
+    let published = StarConfig::published(Variant::Full);
+    assert_eq!(
+        (&config.star, &config.training),
+        (&published, &TrainingConfig::published())
+    );
+    // the numbers of the paper, whatever the constructors say
+    let star = (config.star.frame, config.star.feed_forward_width);
+    assert_eq!(star, (NetworkFrame::World, 2048));
+    let training = (config.training.epochs, config.training.batch_walkers);
+    assert_eq!(
+        (config.training.objective, training),
+        (Objective::NextStep, (200, 256))
+    );
+    let changed = begun_with("--recipe published --epochs 7 --seed 3 --feed-forward-width 64");
+    let star = StarConfig {
+        feed_forward_width: 64,
+        ..published
+    };
+    let training = TrainingConfig {
+        epochs: 7,
+        seed: 3,
+        ..TrainingConfig::published()
+    };
+    assert_eq!((changed.star, changed.training), (star, training));
+}
+
+/// Neither over another run, nor from half a file of its own, and not silently anew either.
+#[test]
+fn a_folder_that_holds_something_else_is_not_trained_over() {
+    let place = Place::empty();
+    folder_contents::write(trained_model::contents(), &place.at("run"));
+    let recipe = serde_json::to_string(&drawn_model::goal_recipe(1)).unwrap();
+    place.write("recipe.json", recipe);
+    let walkers = trained_model::WALKERS;
+    let batch = trained_model::BATCH;
+    let train = format!(
+        "train --convention simulated --epochs 1 --train-walkers {walkers} --batch-walkers {batch} --out run"
+    );
+    for (different, part) in [
+        ("--fold corridor --seed 77", "training.seed is 1, not 77"),
+        (
+            "--fold corridor --variant no-dynamics",
+            "star.variant is full, not no-dynamics",
+        ),
+        // plain STAR has no goals to make a frame of, which is told first
+        (
+            "--fold corridor --variant star",
+            "star.frame is goal, not world",
+        ),
+        (
+            "--fold corridor --recipe published --learning-rate 3e-3",
+            "star.feed_forward_width is 128, not 2048",
+        ),
+        ("--fold plaza", "data.fold is corridor, not plaza"),
+    ] {
+        let line = format!("{train} --goal-recipe recipe.json {different}");
+        place.fails(&line, &["another run", part]);
+    }
+    let other_goals = format!("{train} --fold corridor --proposal-steps 21");
+    place.fails(&other_goals, &["another run", "its goals."]);
+
+    // Everything as it was trained: the state of a training under way, then the model, is cut off.
+    let train = format!("{train} --goal-recipe recipe.json --fold corridor");
+    let whole = place.read("run/optimizer.safetensors");
+    let model = place.read("run/model.safetensors");
+    for name in ["optimizer.safetensors", "model.safetensors"] {
+        place.remove("run/model.safetensors");
+        let file = format!("run/{name}");
+        place.write(&file, &whole[..whole.len() / 2]);
+        place.fails(&train, &[name, "delete it"]);
+        place.remove(&file);
+        let _ = place.ok(&train);
+        assert!(place.read("run/model.safetensors") == model, "{name}");
+    }
+}
+
+/// A number out of range must not leave a folder behind that the corrected command then refuses.
+#[test]
+fn numbers_out_of_range_are_refused_before_anything_is_written() {
+    let place = Place::empty();
+    let eth = "train --convention simulated --fold eth --out new";
+    place.fails(eth, &["eth", "corridor", "plaza"]);
+    // should one be taken after all, it must not train for long
+    let short = [
+        ("--epochs", "1"),
+        ("--train-walkers", "1"),
+        ("--proposal-steps", "1"),
+    ];
+    for (option, value, field) in [
+        ("--epochs", "0", "epochs"),
+        ("--batch-walkers", "0", "batch_walkers"),
+        ("--train-walkers", "0", "walkers_per_epoch"),
+        ("--learning-rate", "NaN", "learning_rate"),
+        ("--proposal-steps", "0", "steps"),
+        ("--validation", "NaN", "validation"),
+        ("--validation", "1", "validation"),
+    ] {
+        let mut line = format!(
+            "train --convention simulated --fold corridor --out new --threads 1 {option} {value}"
+        );
+        for (other, value) in short.iter().filter(|(other, _)| *other != option) {
+            line = format!("{line} {other} {value}");
+        }
+        place.fails(&line, &[field, value]);
+    }
+}
+
+/// CUDA that is not there is an error, and not the CPU.
+#[test]
+fn cuda_that_is_not_there_is_refused() {
+    let place = Place::with_model();
+    if place.json("info --json")["cuda"] == "yes" {
+        eprintln!("skipped: this machine has CUDA");
+        return;
+    }
+    for line in [
+        "train --convention simulated --fold corridor --out new",
+        "evaluate --model run",
+        "forecast --model run tracks.csv",
+    ] {
+        place.fails(&format!("{line} --device cuda"), &["cuda", "--device cpu"]);
+    }
+}
+
+/// A program that embeds the library may choose device and threads again, also when tensors are at work already: that is answered, and
+/// not a panic out of libtorch.
+#[test]
+fn device_and_threads_may_be_chosen_again() {
+    trained_model::use_one_thread();
+    for _ in 0..2 {
+        ddl::prepare(ddl::DeviceChoice::Cpu, Some(1)).unwrap();
+    }
+}

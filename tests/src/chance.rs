@@ -1,0 +1,51 @@
+//! Numbers that differ from run to run and are told, so that a failure can be had again.
+
+use std::time::Duration;
+
+/// A source of such numbers, begun with a seed.
+#[derive(Debug)]
+pub struct Chance(pub u64);
+
+impl Chance {
+    /// Another seed at every call, which is printed.
+    pub fn new(what: &str) -> Self {
+        let seed = std::hash::BuildHasher::hash_one(&std::hash::RandomState::new(), what);
+        eprintln!("{what}: seed {seed}");
+        Self(seed)
+    }
+
+    /// Any number (splitmix64).
+    pub fn number(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// A whole number below `limit`.
+    pub fn below(&mut self, limit: u64) -> u64 {
+        self.number() % limit.max(1)
+    }
+
+    /// A moment of the `index`-th of `count` equal parts of a time.
+    pub fn moment(&mut self, (index, count): (u32, u32), of: Duration) -> Duration {
+        let part = of / count;
+        let within = Duration::from_micros(self.below(part.as_micros() as u64));
+        part * index + within
+    }
+    /// Places in a file: some of the first sixteen bytes, and others anywhere; half of those in the first kilobytes, where headers are.
+    pub fn places(&mut self, length: usize, count: usize) -> Vec<usize> {
+        let heads = (0..16.min(length)).step_by(if count < 16 { 5 } else { 1 });
+        let limits = [length, length.min(4096)].into_iter().cycle().take(count);
+        let anywhere = limits.map(|limit| self.below(limit as u64) as usize);
+        heads.chain(anywhere).collect()
+    }
+
+    /// The bytes with a bit of one of them turned.
+    pub fn turned(&mut self, bytes: &[u8], place: usize) -> Vec<u8> {
+        let mut bytes = bytes.to_vec();
+        bytes[place] ^= 1 << self.below(8);
+        bytes
+    }
+}

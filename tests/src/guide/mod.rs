@@ -1,0 +1,97 @@
+//! Commands that the documentation shows, run as far as a test can run them.
+//!
+//! Whatever [`class`] does not name runs to its end and must answer as its page says. Calls of `cargo xtask` are held to its own
+//! arguments by a test of xtask (`xtask/src/command/docs.rs`).
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+pub mod class;
+mod python;
+
+use crate::console::{self, Command};
+use crate::page_run::{Depth, PageFolder};
+use crate::{drawn_model, folder_contents, recordings};
+use class::Class;
+use ddl::Variant;
+use std::path::{Path, PathBuf};
+
+/// The folder of the workspace.
+pub fn checkout() -> PathBuf {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
+    tests.parent().unwrap().to_path_buf()
+}
+
+/// The commands of a page, which is named by its place in the workspace.
+pub fn commands(page: &str) -> Vec<Command> {
+    console::commands(&text_of(page))
+}
+
+fn text_of(page: &str) -> String {
+    std::fs::read_to_string(checkout().join(page)).unwrap_or_else(|error| panic!("{page}: {error}"))
+}
+
+/// Runs the commands of a page to their ends.
+pub fn check(page: &str) {
+    check_to(page, class::whole_or_begun);
+}
+
+/// Runs the commands of a page, each as far as `depth` says.
+pub fn check_to(page: &str, depth: fn(&str, &Command) -> Depth) {
+    let text = text_of(page);
+    let commands = console::commands(&text);
+    let folder = PageFolder::new(&checkout(), recordings::star_folder());
+    if text.contains("--model runs/zara1") {
+        let run = folder.path().join("runs/zara1");
+        folder_contents::write(drawn_model::contents(Variant::Full), &run);
+    }
+    let mut to_run = Vec::new();
+    for command in &commands {
+        match class::of(page, command, depth) {
+            Class::Run(depth) => to_run.push((command, depth)),
+            Class::OfCargo => check_cargo(page, command),
+            Class::OfXtask | Class::Elsewhere => {}
+        }
+    }
+    let faults = folder.run(&to_run);
+    assert!(faults.is_empty(), "{page}\n{}", faults.join("\n"));
+    python::run(page, &text, &folder);
+}
+
+/// Packages, examples, benchmarks and tests that a call of cargo names exist.
+fn check_cargo(page: &str, command: &Command) {
+    let words = command
+        .words()
+        .unwrap_or_else(|| panic!("{page}:{}: more than a plain call of cargo", command.line));
+    let after = |option: &str| {
+        words
+            .iter()
+            .skip_while(|&&word| word != option)
+            .nth(1)
+            .copied()
+    };
+    let package = after("-p").unwrap_or_else(|| panic!("{page}:{}: of no package", command.line));
+    let of_tests = package == "ddl-tests";
+    let folder = checkout().join(if of_tests {
+        "tests".to_owned()
+    } else {
+        format!("crates/{package}")
+    });
+    assert!(
+        folder.join("Cargo.toml").is_file(),
+        "{page}:{}: no package {package}",
+        command.line
+    );
+    for (option, place) in [
+        ("--example", "examples"),
+        ("--bench", "benches"),
+        ("--test", if of_tests { "." } else { "tests" }),
+    ] {
+        let Some(name) = after(option) else { continue };
+        let at = folder.join(place).join(name);
+        assert!(
+            at.is_dir() || at.with_extension("rs").is_file(),
+            "{page}:{}: no {option} {name}",
+            command.line
+        );
+    }
+}

@@ -1,0 +1,102 @@
+//! Files of tracks in every format: what is read keeps its bounds and, written again in the same format, reads the same.
+
+use ddl_data::{Format, Observation, PedestrianId, Position, Recording, parse_recording};
+
+/// The table of one's own tracks.
+pub fn table(bytes: &[u8]) {
+    check(bytes, Format::Table, |rows| {
+        let header = "y,frame,x,pedestrian\n".to_owned();
+        header + &lines(rows, |f, p, [x, y]| format!("{y},{f},{x},{p}"))
+    });
+}
+
+/// The four lines of the convention `star`.
+pub fn star_csv(bytes: &[u8]) {
+    check(bytes, Format::StarCsv, |rows| {
+        let column = |field: &dyn Fn(&Observation) -> String| {
+            rows.iter().map(field).collect::<Vec<_>>().join(",") + "\n"
+        };
+        [
+            column(&|seen| seen.frame.to_string()),
+            column(&|seen| seen.pedestrian.to_string()),
+            column(&|seen| seen.position[1].to_string()),
+            column(&|seen| seen.position[0].to_string()),
+        ]
+        .concat()
+    });
+}
+
+/// The lines of the convention `social-gan`.
+pub fn social_gan(bytes: &[u8]) {
+    check(bytes, Format::SocialGan, |rows| {
+        lines(rows, |f, p, [x, y]| format!("{f}\t{p}.0\t{x:e}\t{y}"))
+    });
+}
+
+/// TrajNet++ ndjson.
+pub fn trajnet(bytes: &[u8]) {
+    check(bytes, Format::TrajNet, |rows| {
+        lines(rows, |f, p, [x, y]| {
+            format!("{{\"track\": {{\"y\": {y:?}, \"x\": {x:?}, \"p\": {p}, \"f\": {f}}}}}")
+        })
+    });
+}
+
+/// The eight columns of `obsmat.txt`.
+pub fn obsmat(bytes: &[u8]) {
+    check(bytes, Format::Obsmat, |rows| {
+        lines(rows, |f, p, [x, y]| {
+            format!("{f}.0 {p} {x} 0 {y} nan 0 1e300")
+        })
+    });
+}
+
+/// Reads bytes as a file of tracks. What is read keeps its bounds and, written again in the same format, with its rows the other way
+/// round, reads the same.
+fn check(bytes: &[u8], format: Format, written: fn(&[Observation]) -> String) {
+    let recording = match parse_recording(bytes, "fuzzed", format) {
+        Ok(recording) => recording,
+        Err(error) => {
+            assert!(error.to_string().contains("fuzzed"), "{error}");
+            return;
+        }
+    };
+    bounded(&recording);
+    // The rows below are written with numbers; words have tests of their own in `ddl-data`.
+    if recording
+        .observations()
+        .iter()
+        .any(|seen| seen.pedestrian.0 >= 1 << 53)
+    {
+        return;
+    }
+    let mut rows = recording.observations().to_vec();
+    rows.reverse();
+    // the format's rate is no part of its rows
+    let rate = recording
+        .rate()
+        .map(|fps| format!("{{\"scene\": {{\"fps\": {fps}}}}}\n"));
+    let text = rate.unwrap_or_default() + &written(&rows);
+    let again = parse_recording(text.as_bytes(), "fuzzed", format)
+        .unwrap_or_else(|error| panic!("what was read is refused when written: {error}\n{text}"));
+    assert_eq!(again, recording, "{text}");
+}
+
+/// Whoever reads tracks may count on these bounds.
+pub(super) fn bounded(recording: &Recording) {
+    for seen in recording.observations() {
+        assert!(
+            seen.position
+                .iter()
+                .all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT),
+            "{seen:?} is farther away than anybody walks"
+        );
+        assert!(seen.frame.unsigned_abs() < 1 << 53, "{seen:?}");
+    }
+}
+
+/// A line for each row, made of frame, pedestrian and position.
+fn lines(rows: &[Observation], line: fn(i64, PedestrianId, Position) -> String) -> String {
+    let line = |seen: &Observation| line(seen.frame, seen.pedestrian, seen.position) + "\n";
+    rows.iter().map(line).collect()
+}

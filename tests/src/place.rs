@@ -1,0 +1,160 @@
+//! A folder of its own, in which a test writes files and runs the program.
+
+use crate::own_tracks::{self, Row};
+use crate::program::{self, Finished};
+use crate::{drawn_model, folder_contents};
+use ddl::Variant;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Stdio};
+use tempfile::TempDir;
+
+/// The folder, which is removed at the end of the test.
+#[derive(Debug)]
+pub struct Place(TempDir);
+
+impl Place {
+    /// Empty.
+    pub fn empty() -> Self {
+        Self(tempfile::tempdir().expect("a temporary folder can be made"))
+    }
+
+    /// With a [drawn model](drawn_model) in `run`, and tracks of three people for 9 frames in `tracks.csv`.
+    pub fn with_model() -> Self {
+        Self::with_variant(Variant::Full)
+    }
+
+    /// The same with a model of another variant.
+    pub fn with_variant(variant: Variant) -> Self {
+        let place = Self::empty();
+        folder_contents::write(drawn_model::contents(variant), &place.at("run"));
+        place.write_tracks("tracks.csv", &own_tracks::three_people(9));
+        place
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    /// A file in it.
+    pub fn at(&self, name: &str) -> PathBuf {
+        self.path().join(name)
+    }
+
+    /// Writes a file, and the folder that it is in.
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        let file = self.at(name);
+        let folder = file.parent().expect("a file is in a folder");
+        std::fs::create_dir_all(folder).expect("a folder can be made");
+        std::fs::write(file, content).expect("a file can be written");
+    }
+
+    /// Writes tracks as csv.
+    pub fn write_tracks(&self, name: &str, rows: &[Row]) {
+        self.write(name, own_tracks::csv(rows));
+    }
+
+    /// The bytes of a file.
+    pub fn read(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.at(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    /// The text of a file.
+    pub fn text(&self, name: &str) -> String {
+        String::from_utf8(self.read(name)).expect("the file is text")
+    }
+
+    /// Removes a file.
+    pub fn remove(&self, name: &str) {
+        std::fs::remove_file(self.at(name)).expect("the file can be removed");
+    }
+
+    /// Runs the program here.
+    pub fn run(&self, line: &str) -> Finished {
+        program::run(self.path(), line)
+    }
+
+    /// What the program prints, which must go well.
+    pub fn ok(&self, line: &str) -> String {
+        self.run(line).succeeds()
+    }
+
+    /// What the program prints, as JSON.
+    pub fn json(&self, line: &str) -> Value {
+        json(&self.ok(line))
+    }
+
+    /// The program fails, writes nothing, and says all of `needles`.
+    pub fn fails(&self, line: &str, needles: &[&str]) {
+        let before = folder_contents::read(self.path());
+        let message = self.run(line).fails();
+        self.assert_unchanged_since(&before);
+        for needle in needles {
+            assert!(
+                message.contains(needle),
+                "{line}: `{needle}` is not in: {message}"
+            );
+        }
+    }
+
+    /// Commands that fail, each with words that it says: `COMMAND => WORDS`.
+    pub fn all_fail(&self, lines: &[&str]) {
+        for line in lines {
+            let (line, words) = line.split_once(" => ").expect("a command and words");
+            self.fails(line, &[words]);
+        }
+    }
+
+    /// Nothing was written since.
+    pub fn assert_unchanged_since(&self, before: &folder_contents::Contents) {
+        folder_contents::assert_same(before, &folder_contents::read(self.path()));
+    }
+
+    /// Commands whose arguments are refused, with exit code 2 and these words: `COMMAND => WORDS`.
+    pub fn all_refused(&self, lines: &[&str]) {
+        for line in lines {
+            let (line, words) = line.split_once(" => ").expect("a command and words");
+            let finished = self.run(line);
+            assert_eq!(finished.code, Some(2), "{finished:#?}");
+            assert!(finished.stderr.contains(words), "{finished:#?}");
+        }
+    }
+
+    /// The program with this text as its standard input.
+    pub fn run_on(&self, input: &str, line: &str) -> Finished {
+        self.write("standard input", input);
+        let input = std::fs::File::open(self.at("standard input")).expect("it was just written");
+        let mut command = program::command(self.path(), line);
+        let output = command.stdin(Stdio::from(input)).output();
+        Finished::new(
+            line.to_owned(),
+            &output.expect("the program can be started"),
+        )
+    }
+
+    /// The program at work, with readers of what it prints and tells.
+    pub fn start(&self, line: &str) -> Child {
+        let mut command = program::command(self.path(), line);
+        let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.spawn().expect("the program can be started")
+    }
+
+    /// Forecasts tracks, whole observations alone, with the model in `run`.
+    pub fn forecast(&self, rows: &[Row], options: &str) -> Finished {
+        self.write_tracks("tracks.csv", rows);
+        let line = "forecast --model run tracks.csv --whole --threads 1";
+        self.run(&format!("{line} {options}"))
+    }
+}
+
+/// JSON.
+pub fn json<T: DeserializeOwned>(text: &str) -> T {
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+/// JSON, one value a line.
+pub fn json_lines<T: DeserializeOwned>(text: &str) -> Vec<T> {
+    text.lines().map(json).collect()
+}

@@ -1,0 +1,97 @@
+//! Training of the [drawn model](crate::drawn_model)'s networks in this process, for seconds.
+
+use crate::folder_contents::{self, Contents};
+use crate::place::Place;
+use crate::{crowd, drawn_model, training_result};
+use ddl::network::TrainingConfig;
+use ddl::{
+    DdlError, DeviceChoice, RunDirectory, TrainingProgress, TrainingRequest, TrainingStage,
+    TrainingStep, Variant,
+};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::{Mutex, Once, OnceLock};
+
+/// libtorch has one generator of random numbers: runs side by side would draw from each other's.
+static TRAINING: Mutex<()> = Mutex::new(());
+
+/// Walkers it is trained on: enough for every weight to have moved.
+pub const WALKERS: usize = 96;
+/// Walkers a batch: four batches.
+pub const BATCH: usize = WALKERS / 4;
+
+/// Training of some seconds by the program: 12 steps of the proposal network, then 3 epochs of 8 steps.
+pub const TRAIN: &str = "train --convention simulated --fold doorway --epochs 3 --train-walkers 128 --batch-walkers 16 \
+                         --proposal-steps 12 --threads 1 --out run";
+
+/// Runs [`TRAIN`] to its end; what it leaves, as far as it is the same every time.
+pub fn finish(place: &Place) -> Contents {
+    let _ = place.ok(TRAIN);
+    training_result::of(&place.at("run"))
+}
+
+/// One thread for tensors in this process, where tests run side by side already: sums are then in one
+/// order. To be called before the first tensor is made; may be called again.
+pub fn use_one_thread() {
+    static PREPARED: Once = Once::new();
+    PREPARED.call_once(|| {
+        ddl::prepare(DeviceChoice::Cpu, Some(1)).expect("the CPU is always there");
+    });
+}
+
+/// The files of a run that was trained to its end.
+pub fn contents() -> &'static Contents {
+    static TRAINED: OnceLock<Contents> = OnceLock::new();
+    TRAINED.get_or_init(|| {
+        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        train(&RunDirectory::new(folder.path())).expect("training succeeds");
+        folder_contents::read(folder.path())
+    })
+}
+
+/// Trains, or goes on, wherever the run lies.
+///
+/// # Errors
+/// What stops the training.
+pub fn train(run: &RunDirectory) -> Result<(), DdlError> {
+    train_until(run, |_| ControlFlow::Continue(()))
+}
+
+/// Begins a training, which goes on as long as its observer lets it.
+///
+/// # Errors
+/// What stops the training.
+pub fn train_until(
+    run: &RunDirectory,
+    mut goes_on: impl FnMut(&TrainingStep) -> ControlFlow<()>,
+) -> Result<(), DdlError> {
+    use_one_thread();
+    let _one_at_a_time = TRAINING.lock();
+    let observe = |now: &TrainingProgress| goes_on(&now.step);
+    ddl::train(&request(run.path()), &crowd::dataset(), observe)
+}
+
+/// What is trained: one epoch.
+fn request(out: &Path) -> TrainingRequest {
+    let config = drawn_model::config(Variant::Full);
+    TrainingRequest {
+        fold: config.data.fold,
+        star: config.star,
+        training: TrainingConfig {
+            walkers_per_epoch: Some(WALKERS),
+            batch_walkers: BATCH,
+            ..config.training
+        },
+        goals: config.goals,
+        validation: 0.0,
+        validation_recordings: Vec::new(),
+        patience: None,
+        from: None,
+        units: None,
+        last_epoch_only: false,
+        until: TrainingStage::Network,
+        out: RunDirectory::new(out),
+        device: DeviceChoice::Cpu,
+        commit: config.commit,
+    }
+}
