@@ -181,6 +181,15 @@ mod tests {
         assert!(apart(median, [-1.0, 0.0]) < 1e-2, "{median:?}");
     }
 
+    /// By hand: from a point of weight 1/2, two others of weight 1 pull with (1, 1), and weight / distance sums to
+    /// 1/3 + 1/4. So the step is (1 - 0.5 / sqrt 2) / (7/12) along each axis.
+    #[test]
+    fn a_step_from_a_point_is_shortened_by_its_weight() {
+        let points = [[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]];
+        let step = Pull::at([0.0; 2], &points, &[0.5, 1.0, 1.0]).step();
+        assert!(apart(step, [1.108_194_187_554_388; 2]) < 1e-12, "{step:?}");
+    }
+
     #[test]
     #[expect(clippy::float_cmp, reason = "the point itself")]
     fn points_of_one_place_are_one_point() {
