@@ -2,7 +2,7 @@
 
 use approx::assert_relative_eq;
 use ddl_dynamics::{Chain, Diffeomorphism, DynamicsError, LocalTranslation, Real};
-use nalgebra::{ComplexField, DMatrix, Matrix2, SMatrix, SVector, Vector2};
+use nalgebra::{ComplexField, DMatrix, SMatrix, SVector, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
 
 use crate::{
@@ -162,21 +162,6 @@ fn the_bound_of_a_translation_is_attained<T: Real, const D: usize>(
 }
 for_every_space!(the_bound_of_a_translation_is_attained, any_maps);
 
-/// Thirty times its width away, a translation is the identity to the last bit.
-fn far_away_nothing_moves<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
-    for map in draw.translations::<T, D>() {
-        for axis in 0..D {
-            let mut far = *map.centre();
-            far[axis] += T::rounded(30.0) / map.rate();
-            prop_assert_eq!(map.apply(&far), far);
-            prop_assert_eq!(map.inverse(&far), far);
-            prop_assert_eq!(map.jacobian(&far), SMatrix::<T, D, D>::identity());
-        }
-    }
-    Ok(())
-}
-for_every_space!(far_away_nothing_moves, any_maps);
-
 /// No finite position gives NaN, whatever the parameters; and a translation's Jacobian is finite.
 fn no_finite_input_gives_nan<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
     let number = |vector: SVector<T, D>| vector.iter().all(|x| !x.as_f64().is_nan());
@@ -205,15 +190,6 @@ proptest! {
         // Equality takes 0 and -0 for the same.
         prop_assert_eq!(serde_json::to_string(&back).unwrap(), text);
     }
-}
-
-#[test]
-fn no_layers_are_the_identity() {
-    let chain = Chain::<f64, 2>::new(Vec::new());
-    let x = Vector2::new(1.0, -2.0);
-    assert_eq!((chain.apply(&x), chain.inverse(&x)), (x, x));
-    assert_eq!(chain.jacobian(&x), Matrix2::identity());
-    assert_relative_eq!(chain.log_determinant_lower_bound(), 0.0);
 }
 
 /// Maps that would fold space over, or have no meaning, are refused by name.

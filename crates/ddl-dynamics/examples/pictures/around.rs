@@ -170,7 +170,8 @@ pub(crate) fn falls(numbers: &[f64]) -> usize {
 }
 
 /// The picture as the text of an SVG file; the same bytes each time.
-pub(crate) fn draw(wall: &Arrivals<AroundWall>, pillars: &Arrivals<AmongPillars>) -> String {
+pub(crate) fn draw() -> Result<String, DynamicsError> {
+    let (wall, pillars) = (behind_a_wall()?, among_pillars()?);
     let [steps, among] = [wall.followed.steps(), pillars.followed.steps()];
     let (_, angle) = wall.followed.largest_angle();
     let rises = steps - falls(&wall.followed.distances);
@@ -184,23 +185,13 @@ pub(crate) fn draw(wall: &Arrivals<AroundWall>, pillars: &Arrivals<AmongPillars>
     let title = "Around the end of a wall, and among pillars";
     let mut sheet = Sheet::new([900.0, 746.0], title, &description);
     draw_legend(&mut sheet);
-    draw_wall(&mut sheet, wall);
-    draw_pillars(&mut sheet, pillars);
-    draw_falling(
-        &mut sheet,
-        "wall",
-        84.0,
-        &wall.followed.potentials,
-        Some(&wall.followed.distances),
-    );
-    draw_falling(
-        &mut sheet,
-        "pillars",
-        460.0,
-        &pillars.followed.distances,
-        None,
-    );
-    sheet.finish()
+    draw_wall(&mut sheet, &wall);
+    draw_pillars(&mut sheet, &pillars);
+    let (v, distances) = (&wall.followed.potentials, &wall.followed.distances);
+    draw_falling(&mut sheet, "wall", 84.0, v, Some(distances));
+    let distances = &pillars.followed.distances;
+    draw_falling(&mut sheet, "pillars", 460.0, distances, None);
+    Ok(sheet.finish())
 }
 
 fn draw_legend(sheet: &mut Sheet) {
