@@ -2,11 +2,14 @@
 
 use ddl_data::{Completion, Format, FrameReader, PedestrianId, PedestrianName, parse_recording};
 
+/// A line of a file, given the frame and the pedestrian.
+type Row = fn(i64, &str) -> String;
+
 /// The same tracks with words for pedestrians, in every format that may have them.
 #[test]
 fn pedestrians_may_be_words() {
     let names = ["7f3e-aa", "12", "007", "1e3"];
-    let formats: [(Format, &str, fn(i64, &str) -> String); 3] = [
+    let formats: [(Format, &str, Row); 3] = [
         (Format::Table, "frame,pedestrian,x,y\n", |t, name| {
             format!("{t},{name},{t},0\n")
         }),
