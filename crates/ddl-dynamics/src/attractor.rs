@@ -83,8 +83,8 @@ impl<T: Real, const D: usize> Attractor<T, D> {
     /// The distance to the goal, `|p - p*|` (metres).
     ///
     /// # Numerics
-    /// Zero only when `position` equals the goal component by component: squares that underflow or overflow do no harm. A
-    /// distance above the largest number of `T` is infinite.
+    /// Zero only when `position` equals the goal component by component: squares that underflow or overflow do no harm.
+    /// A distance above the largest number of `T` is infinite.
     #[inline]
     pub fn distance(&self, position: &SVector<T, D>) -> T {
         self.distance_and_direction(position).0
@@ -99,8 +99,8 @@ impl<T: Real, const D: usize> Attractor<T, D> {
         self.potential_and_gradient(position).0
     }
 
-    /// The gradient of the potential: the unit vector `u = e / |e|` away from the goal, or the offset `e` when quadratic; 0
-    /// at the goal.
+    /// The gradient of the potential: the unit vector `u = e / |e|` away from the goal, or the offset `e` when
+    /// quadratic; 0 at the goal.
     ///
     /// # Numerics
     /// `u` has length 1 for every offset but zero, subnormal and huge ones included.

@@ -29,8 +29,8 @@ pub use violation::Violation;
 /// [chart](Flow::chart) goal, potentials, eigenvalues and angles are those of the chart, not of space. `Phi` is the
 /// distance to the goal, also for a quadratic attractor.
 ///
-/// JSON keeps it bit by bit with the feature `float_roundtrip` of `serde_json`; without it a rounding can change the strict
-/// verdict on a walker who hardly moves.
+/// JSON keeps it bit by bit with the feature `float_roundtrip` of `serde_json`; without it a rounding can change the
+/// strict verdict on a walker who hardly moves.
 ///
 /// # Examples
 /// ```
@@ -62,16 +62,16 @@ pub struct LyapunovCertificate<T> {
 }
 
 impl<T: Real> LyapunovCertificate<T> {
-    /// The same certificate with the figures of the [motion](Self::motion), each with the bound that [`MotionBounds`] set
-    /// to it: [`holds`](Self::holds) judges these too.
+    /// The same certificate with the figures of the [motion](Self::motion), each with the bound that [`MotionBounds`]
+    /// set to it: [`holds`](Self::holds) judges these too.
     ///
     /// # Shapes
-    /// `path`: the positions that the certificate is of (metres), the start first. `alone` unless obstacles were minded,
-    /// which may hold a pedestrian up: only its speed is bounded then.
+    /// `path`: the positions that the certificate is of (metres), the start first. `alone` unless obstacles were
+    /// minded, which may hold a pedestrian up: only its speed is bounded then.
     ///
     /// # Errors
-    /// [`DynamicsError::LengthMismatch`], or [`DynamicsError::OtherPath`] when the distances from the goal are not those
-    /// that the certificate is of, as with a [chart](Flow::chart).
+    /// [`DynamicsError::LengthMismatch`], or [`DynamicsError::OtherPath`] when the distances from the goal are not
+    /// those that the certificate is of, as with a [chart](Flow::chart).
     pub fn within(
         self,
         path: &[SVector<T, 2>],

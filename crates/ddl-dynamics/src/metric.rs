@@ -19,8 +19,8 @@ pub const PUBLISHED_SIGMA: f64 = 1e-8;
 /// those of `L` in (m/s)^(1/2). The smallest eigenvalue is at least `sigma`, whatever `L` is.
 ///
 /// # Numerics
-/// `P` is never formed to be applied: in `f32` a diagonal entry `a * a + 1e-8` rounds to `a * a` as soon as `|a| >= 0.5`,
-/// and a matrix meant to be positive definite is singular.
+/// `P` is never formed to be applied: in `f32` a diagonal entry `a * a + 1e-8` rounds to `a * a` as soon as `|a| >=
+/// 0.5`, and a matrix meant to be positive definite is singular.
 ///
 /// # References
 /// Equations (11) and (12) of the paper.
@@ -119,8 +119,8 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// `P u = L (L^T u) + sigma u`.
     ///
     /// # Numerics
-    /// Where `L^T u` almost cancels (a factor far from round, seen along its weak direction), the computed `P u` may fail
-    /// to point away from the goal although [`quadratic_form`](Self::quadratic_form) is positive.
+    /// Where `L^T u` almost cancels (a factor far from round, seen along its weak direction), the computed `P u` may
+    /// fail to point away from the goal although [`quadratic_form`](Self::quadratic_form) is positive.
     #[inline]
     pub fn apply(&self, u: &SVector<T, D>) -> SVector<T, D> {
         let projected = self.transposed_times(u);
@@ -156,8 +156,8 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// They are `sigma + s^2` with `s` the singular values of `L`.
     ///
     /// # Numerics
-    /// For `D = 1` and `D = 2` in closed form, accurate to a few units in the last place even when `L` is nearly singular.
-    /// For other `D` by a singular value decomposition, with an error of a few `epsilon * |L|` in `s`.
+    /// For `D = 1` and `D = 2` in closed form, accurate to a few units in the last place even when `L` is nearly
+    /// singular. For other `D` by a singular value decomposition, with an error of a few `epsilon * |L|` in `s`.
     pub fn eigenvalue_range(&self) -> EigenvalueRange<T> {
         let (small, large) = factor_singular_values(&self.factor);
         EigenvalueRange {

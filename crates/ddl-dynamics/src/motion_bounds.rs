@@ -4,8 +4,8 @@ use nalgebra::{Vector2, Vector3};
 
 use crate::{metric::CholeskyMetric, polar::polar, real::Real, spectrum::EigenvalueRange};
 
-/// The bounds between which a metric shapes the way of a pedestrian that arrives at its goal in time, and the motion that
-/// is made where nothing shapes it.
+/// The bounds between which a metric shapes the way of a pedestrian that arrives at its goal in time, and the motion
+/// that is made where nothing shapes it.
 ///
 /// With the distance `d` to the goal and `n` steps of `dt` seconds left, the *arriving speed* is
 /// `s = d / (n dt)`: at this constant speed the straight walk ends on the goal. The eigenvalues of `P` are
@@ -156,8 +156,8 @@ impl<T: Real> MotionBounds<T> {
         }
     }
 
-    /// What shapes a step of a pedestrian for whom `metric` was given, with the way to the goal `towards` (m). Its smallest
-    /// eigenvalue is exact, and positive, also where `metric` is singular.
+    /// What shapes a step of a pedestrian for whom `metric` was given, with the way to the goal `towards` (m). Its
+    /// smallest eigenvalue is exact, and positive, also where `metric` is singular.
     pub fn shape(
         &self,
         metric: &CholeskyMetric<T, 2>,

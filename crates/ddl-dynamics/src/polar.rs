@@ -8,8 +8,8 @@ use crate::real::Real;
 ///
 /// # Numerics
 /// A vector whose squares underflow or overflow is divided by its largest component first, so the direction is accurate
-/// down to subnormal components. The length may be infinite; the direction still is exact to rounding. A component that is
-/// not finite gives NaN.
+/// down to subnormal components. The length may be infinite; the direction still is exact to rounding. A component that
+/// is not finite gives NaN.
 #[inline]
 pub(crate) fn polar<T: Real, const D: usize>(vector: &SVector<T, D>) -> (T, SVector<T, D>) {
     let square = vector.norm_squared();

@@ -49,8 +49,8 @@ impl<T: Real, const D: usize> Chain<T, D> {
         &self.layers
     }
 
-    /// The natural logarithm of a number below which `det J` is nowhere (no unit); the number itself may be too small for
-    /// `T`.
+    /// The natural logarithm of a number below which `det J` is nowhere (no unit); the number itself may be too small
+    /// for `T`.
     pub fn log_determinant_lower_bound(&self) -> T {
         self.layers.iter().fold(T::zero(), |sum, layer| {
             sum + layer.determinant_lower_bound().ln()

@@ -23,15 +23,15 @@ const BISECTIONS: usize = 53;
 /// ```
 ///
 /// # When it is invertible, and why
-/// `psi - id` is Lipschitz with the constant `q = sqrt(2/e) rho |v|`, the [`contraction`](Self::contraction): the gradient
-/// of `k` is longest at `|x - c| = 1 / (sqrt(2) rho)`, where it is `sqrt(2/e) rho`. For `q < 1`
+/// `psi - id` is Lipschitz with the constant `q = sqrt(2/e) rho |v|`, the [`contraction`](Self::contraction): the
+/// gradient of `k` is longest at `|x - c| = 1 / (sqrt(2) rho)`, where it is `sqrt(2/e) rho`. For `q < 1`
 ///
 /// ```text
 /// (1 - q) |a - b| <= |psi(a) - psi(b)| <= (1 + q) |a - b|
 /// ```
 ///
-/// so `psi` is one-to-one and onto, the singular values of `J` lie within `[1 - q, 1 + q]`, and `det J >= 1 - q`, which is
-/// attained at `x = c + v / (sqrt(2) rho |v|)`. Here `q` is at most [`MAX_CONTRACTION`](Self::MAX_CONTRACTION).
+/// so `psi` is one-to-one and onto, the singular values of `J` lie within `[1 - q, 1 + q]`, and `det J >= 1 - q`, which
+/// is attained at `x = c + v / (sqrt(2) rho |v|)`. Here `q` is at most [`MAX_CONTRACTION`](Self::MAX_CONTRACTION).
 ///
 /// # The inverse
 /// `y = x + k(x) v` puts `x` on the line `x = y - s v` with `s = k(x)` in `[0, 1]`, so `s` is the only root of

@@ -49,11 +49,11 @@ impl<T: Real, const D: usize> Chain<T, D> {
     /// # How
     /// The path is unbent like a wire: all its turns are scaled by a factor that goes from 1 to 0 with the first three
     /// quarters of the layers, no side changes its length, and each shape is placed over the one before it. Each layer
-    /// brings the images of the points nearer to the present shape: of all centres at such an image and 26 rates between
-    /// 0.3 and 40 per length of the path, each with the translation of least squares, shortened to a
-    /// [contraction](LocalTranslation::contraction) of at most 1/2, the one that lowers the sum of squared residuals most
-    /// is taken. At both ends the path is continued straight for a tenth of its length, or until it would meet another
-    /// part of itself.
+    /// brings the images of the points nearer to the present shape: of all centres at such an image and 26 rates
+    /// between 0.3 and 40 per length of the path, each with the translation of least squares, shortened to a
+    /// [contraction](LocalTranslation::contraction) of at most 1/2, the one that lowers the sum of squared residuals
+    /// most is taken. At both ends the path is continued straight for a tenth of its length, or until it would meet
+    /// another part of itself.
     ///
     /// In the method of Perrin and Schlehuber-Caissier the points go to the line between start and goal at once; a path that
     /// comes back to where it started would be crushed onto it. Here it is not, at the price that `psi(p*)` is not `p*`.
@@ -72,10 +72,10 @@ impl<T: Real, const D: usize> Chain<T, D> {
     /// - [`DynamicsError::PathTurnsBack`]: the path turns by 180 degrees on the spot.
     ///
     /// # References
-    /// N. Perrin, P. Schlehuber-Caissier, "Fast diffeomorphic matching to learn globally asymptotically stable nonlinear
-    /// dynamical systems", Systems & Control Letters 96 (2016). R. L. Bishop, "There is more than one way to frame a curve",
-    /// American Mathematical Monthly 82 (1975). W. Kabsch, "A solution for the best rotation to relate two sets of
-    /// vectors", Acta Crystallographica A 32 (1976).
+    /// N. Perrin, P. Schlehuber-Caissier, "Fast diffeomorphic matching to learn globally asymptotically stable
+    /// nonlinear dynamical systems", Systems & Control Letters 96 (2016). R. L. Bishop, "There is more than one way to
+    /// frame a curve", American Mathematical Monthly 82 (1975). W. Kabsch, "A solution for the best rotation to relate
+    /// two sets of vectors", Acta Crystallographica A 32 (1976).
     pub fn straightening(
         path: &[SVector<T, D>],
         layers: usize,

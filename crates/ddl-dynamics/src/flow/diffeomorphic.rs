@@ -25,18 +25,18 @@ use crate::{
 /// Here it may turn further, because `V` falls and not the distance.
 ///
 /// The metric may be given in space ([`new`](Self::new)), or in the coordinates of the chart
-/// ([`in_chart`](Self::in_chart)): `v = -J^-1 P u`. With the identity for `P` the second goes along the lines that `psi`
-/// makes straight: along a path that was shown, if `psi` is its [straightening](crate::Chain::straightening).
+/// ([`in_chart`](Self::in_chart)): `v = -J^-1 P u`. With the identity for `P` the second goes along the lines that
+/// `psi` makes straight: along a path that was shown, if `psi` is its [straightening](crate::Chain::straightening).
 ///
 /// # What is guaranteed
 /// `dV/dt <= -lambda_min(P) s_min(J)^2 < 0` away from the goal, which is the only minimum of `V`: the flow converges to
-/// it from everywhere (Theorem 5 of `docs/stability.md`). In the coordinates `y = psi(p)`, the [`chart`](Flow::chart), the
-/// flow is a [`NaturalGradientFlow`](crate::NaturalGradientFlow) with the metric `J P J^T`.
+/// it from everywhere (Theorem 5 of `docs/stability.md`). In the coordinates `y = psi(p)`, the [`chart`](Flow::chart),
+/// the flow is a [`NaturalGradientFlow`](crate::NaturalGradientFlow) with the metric `J P J^T`.
 /// [`StableEuler`](crate::StableEuler) takes its steps there: `V` falls in every step, for every `dt`.
 ///
 /// # References
-/// The paper names diffeomorphisms as future work (section V). Rana et al., "Euclideanizing flows" (L4DC 2020), learn such
-/// maps from demonstrations.
+/// The paper names diffeomorphisms as future work (section V). Rana et al., "Euclideanizing flows" (L4DC 2020), learn
+/// such maps from demonstrations.
 ///
 /// # Examples
 /// ```

@@ -19,8 +19,9 @@ const INNER_STEPS: usize = 10_000;
 /// Part of the ideal length that is tried.
 const SAFETY: f64 = 0.9;
 
-/// The Dormand-Prince pair of orders 5 and 4 with adaptive steps inside each time step: the path of the continuous flow,
-/// for offline use. An inner step is taken when its estimated error is at most the tolerance *and* the potential falls.
+/// The Dormand-Prince pair of orders 5 and 4 with adaptive steps inside each time step: the path of the continuous
+/// flow, for offline use. An inner step is taken when its estimated error is at most the tolerance *and* the potential
+/// falls.
 ///
 /// # What is guaranteed
 /// - *Strict decrease* of the computed distance at every step, as for [`StableEuler`], whatever the flow.
@@ -71,8 +72,8 @@ impl<T: Real> DormandPrince<T> {
 
 impl<T: Real, const D: usize> Integrator<T, D> for DormandPrince<T> {
     /// # Errors
-    /// Those of the flow and of [`StableEuler::advance`]; [`DynamicsError::TooStiff`] when ten thousand inner steps do not
-    /// cover the time step, or an inner step would have to be shorter than any number of `T`.
+    /// Those of the flow and of [`StableEuler::advance`]; [`DynamicsError::TooStiff`] when ten thousand inner steps do
+    /// not cover the time step, or an inner step would have to be shorter than any number of `T`.
     fn step<F: Flow<T, D> + ?Sized>(
         &self,
         flow: &F,
@@ -142,8 +143,8 @@ fn distance<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
     }
 }
 
-/// When a straight line along `velocity` is closest to the goal in the flow's chart (seconds); the largest number where it
-/// does not come closer.
+/// When a straight line along `velocity` is closest to the goal in the flow's chart (seconds); the largest number where
+/// it does not come closer.
 fn time_to_closest<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
     flow: &F,
     position: &SVector<T, D>,

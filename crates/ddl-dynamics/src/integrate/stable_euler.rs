@@ -42,7 +42,8 @@ const ARRIVAL: f64 = 8.0;
 ///   [`apply`](crate::CholeskyMetric::apply)), is replaced by the smallest move straight to the goal that shows in the
 ///   distance, about `epsilon max(|p|, |p*|)`, doubled until it does.
 ///
-/// So every computed rollout ends on the goal if it is run on for long enough. [`StableStep::limit`] tells which case a step was.
+/// So every computed rollout ends on the goal if it is run on for long enough. [`StableStep::limit`] tells which case a
+/// step was.
 ///
 /// # Examples
 /// ```

@@ -52,10 +52,10 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// - [`DynamicsError::NoDirection`] when `direction` is zero, [`DynamicsError::NonFinite`] when it is not finite.
     ///
     /// # Numerics
-    /// `P` is not formed: with `A = [L, sqrt(sigma) I]`, `P = A A^T` and `y = A^T n`, `P' = A' A'^T` for
-    /// `A' = A (I - b y y^T)`, `b = (1 - sqrt(share)) / |y|^2`, whose triangular factor is found by rotations. A share below
-    /// `epsilon^2` times the condition number of `P` is not resolved. The result is `P' (1 + epsilon)`, the last term in
-    /// place of a `sigma`.
+    /// `P` is not formed: with `A = [L, sqrt(sigma) I]`, `P = A A^T` and `y = A^T n`, `P' = A' A'^T` for `A' = A (I - b
+    /// y y^T)`, `b = (1 - sqrt(share)) / |y|^2`, whose triangular factor is found by rotations. A share below
+    /// `epsilon^2` times the condition number of `P` is not resolved. The result is `P' (1 + epsilon)`, the last term
+    /// in place of a `sigma`.
     pub fn slowed_along(&self, direction: &SVector<T, D>, share: T) -> Result<Self, DynamicsError> {
         if !(share > T::zero() && share <= T::one()) {
             return Err(DynamicsError::InvalidShare(share.as_f64()));

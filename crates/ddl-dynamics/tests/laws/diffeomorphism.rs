@@ -198,38 +198,33 @@ fn what_cannot_be_inverted_is_refused() {
     let new = |x: f64, rate: f64, v: f64| {
         LocalTranslation::new(Vector2::new(0.0, x), rate, Vector2::new(v, 0.0))
     };
-    for (x, rate, v, message) in [
-        (0.0, 0.0, 0.0, "the rate of a Gaussian bump is 0 per metre"),
-        (
-            0.0,
-            -1.0,
-            0.0,
-            "the rate of a Gaussian bump is -1 per metre",
-        ),
-        (0.0, f64::NAN, 0.0, "the rate of a Gaussian bump is NaN"),
-        (f64::NAN, 1.0, 0.0, "component 1 of the centre is NaN"),
-        (
-            0.0,
-            1.0,
-            f64::INFINITY,
-            "component 0 of the translation is inf",
-        ),
-        (
-            0.0,
-            f64::MAX,
-            f64::MAX,
-            "the local translation is not invertible",
-        ),
-        (
-            0.0,
-            1.0,
-            2.0,
-            "and must be at most 0.95; shorten the translation v or lower the rate rho",
-        ),
-    ] {
+    let refused = |x, rate, v, message: &str| {
         let error = new(x, rate, v).unwrap_err().to_string();
         assert!(error.contains(message), "{error}");
-    }
+    };
+    let rate = "the rate of a Gaussian bump is";
+    refused(0.0, 0.0, 0.0, &format!("{rate} 0 per metre"));
+    refused(0.0, -1.0, 0.0, &format!("{rate} -1 per metre"));
+    refused(0.0, f64::NAN, 0.0, &format!("{rate} NaN"));
+    refused(f64::NAN, 1.0, 0.0, "component 1 of the centre is NaN");
+    refused(
+        0.0,
+        1.0,
+        f64::INFINITY,
+        "component 0 of the translation is inf",
+    );
+    refused(
+        0.0,
+        f64::MAX,
+        f64::MAX,
+        "the local translation is not invertible",
+    );
+    refused(
+        0.0,
+        1.0,
+        2.0,
+        "and must be at most 0.95; shorten the translation v or lower the rate rho",
+    );
     // The limit itself is accepted, a little more is not.
     let limit = 0.95 / STEEPEST;
     assert!(new(0.0, 2.0, limit * 0.5 * (1.0 - 1e-14)).is_ok());
