@@ -52,8 +52,7 @@ const EXAMPLES: [(&str, &[&str]); 11] = [
             "plain Euler steps: step 43 does not approach the goal",
         ],
     ),
-    ("ddl-dynamics circling circling.svg", &[]),
-    ("ddl-dynamics around around.svg", &[]),
+    ("ddl-dynamics pictures .", &[]),
     (
         "ddl-goal goals_of_a_walker",
         &["300 experts of 3000 walkers", "nearest goal: 0."],

@@ -8,14 +8,7 @@ use crate::Position;
 
 /// A rotation about the world's origin.
 ///
-/// Turning a scene changes no distance, so that a model trained on turned scenes cannot learn the
-/// directions of one street by heart. Training draws one angle in [0, pi) for each batch.
-///
-/// ```
-/// use ddl_data::Rotation;
-/// let [x, y] = Rotation::new(std::f64::consts::FRAC_PI_2).apply([1.0, 0.0]);
-/// assert!(x.abs() < 1e-12 && (y - 1.0).abs() < 1e-12);
-/// ```
+/// Training draws one angle in [0, pi) for each batch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotation {
     angle: f64,

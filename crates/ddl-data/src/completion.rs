@@ -13,9 +13,9 @@ const LEAST_SEEN: usize = 2;
 /// How much of the 8 observed positions may be made up where a walker was not seen at all of them.
 ///
 /// - A *hole* of a few frames is filled on the straight line between the positions before and after it.
-/// - An observation that *begins late* is padded at its start, as if the walker had come with the mean velocity at which it was seen.
+/// - An observation that *begins late* is padded at its start, with the mean velocity of the rest.
 ///
-/// The last position is always one that was seen. How much was made up stands in [`Window::made_up`](crate::Window::made_up).
+/// The last position is always one that was seen; [`Window::made_up`](crate::Window::made_up) says how much was not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Completion {
     least_seen: usize,
@@ -23,7 +23,7 @@ pub struct Completion {
 }
 
 impl Completion {
-    /// Nothing is made up: who was not seen in each of the 8 frames is not forecast. So data sets are cut.
+    /// Nothing is made up: who was not seen in each of the 8 frames is not forecast.
     pub const NONE: Self = Self {
         least_seen: OBSERVED,
         longest_gap: 0,
@@ -56,11 +56,8 @@ impl Completion {
         self.longest_gap
     }
 
-    /// The 8 positions up to the last of `seen`, one every `step` raw frames, and what of them was made up; `None` where that
-    /// is not allowed.
-    ///
-    /// # Shapes
-    /// `seen`: raw frames and positions (m), in order of time.
+    /// The 8 positions up to the last of `seen` (raw frames and m, in order of time), one every `step` raw frames, and
+    /// what of them was made up; `None` where that is not allowed.
     pub(crate) fn observation(
         self,
         seen: impl DoubleEndedIterator<Item = (i64, Position)>,

@@ -17,12 +17,11 @@ pub struct Dataset {
 }
 
 impl Dataset {
-    /// Reads all recordings of a convention from the folder that holds its files (see
-    /// [`locate`](crate::locate)).
+    /// Reads all recordings of a convention from the folder that holds its files (see [`locate`](crate::locate)).
     ///
     /// # Errors
-    /// If a file is missing or cannot be read, or its content is wrong (the message names file, line
-    /// and field), and for [`Convention::Simulated`] and [`Convention::Own`], which have no files of fixed names.
+    /// If a file is missing or its content is wrong (the message names file, line and field), and for
+    /// [`Convention::Simulated`] and [`Convention::Own`], which have no files of fixed names.
     pub fn load(convention: Convention, folder: &Path) -> Result<Self, DataError> {
         let format = convention.format().ok_or(DataError::NoFiles(convention))?;
         let mut recordings = Vec::new();

@@ -1,9 +1,9 @@
 //! What looks wrong with a recording.
 
 use std::collections::BTreeMap;
-use std::fmt;
 
 use serde::Serialize;
+use thiserror::Error;
 
 use crate::{Observation, PedestrianId, PedestrianName, Position, Recording, TIME_STEP};
 
@@ -21,83 +21,55 @@ const MANY_STEPS: usize = 20;
 /// Share of frames without somebody between their first and last from which on it is told.
 const OFTEN: f64 = 0.03;
 
-/// Something that looks wrong; in words it says what may be done about it.
-#[derive(Debug, Clone, PartialEq)]
+/// Something that looks wrong; in words it says what may be done about it. Speeds are in m/s, distances in m.
+#[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum Doubt {
     /// Nobody was seen at two frames so far apart, which are taken for 0.4 s.
-    NoSteps {
-        /// Raw frames in a step.
-        frame_step: i64,
-    },
-    /// The median speed is no walker's, m/s: pixels, or another rate.
-    Fast {
-        /// The median speed, m/s.
-        median: f64,
-    },
-    /// Walking pedestrians are too slow: another frame rate.
-    Slow {
-        /// The 90 % quantile of the speeds of steps of tracks that walk, m/s.
-        brisk: f64,
-    },
+    #[error(
+        "nobody was seen at two frames {frame_step} apart, which are taken for 0.4 s: give the rate of the frames"
+    )]
+    NoSteps { frame_step: i64 },
+    /// The median speed is no walker's: pixels, or another rate.
+    #[error(
+        "half of the steps are faster than {median:.1} m/s; are the positions in metres, and the rows of a pedestrian 0.4 s apart?"
+    )]
+    Fast { median: f64 },
+    /// The 90 % quantile of the speeds of those who walk is too low: another frame rate.
+    #[error(
+        "nine in ten steps of those who walk are slower than {brisk:.2} m/s; are the rows of a pedestrian 0.4 s apart, or those of a faster camera?"
+    )]
+    Slow { brisk: f64 },
     /// Nobody ever leaves the place, over many steps: degrees, kilometres.
-    Still {
-        /// The farthest that anybody came, m.
-        farthest: f64,
-    },
-    /// People are often not seen between two frames at which they are, so that steps of theirs are missing.
-    Unseen {
-        /// Share of the frames between somebody's first and last at which that person is not there.
-        share: f64,
-    },
+    #[error(
+        "nobody comes farther than {farthest:.3} m; are the positions in metres, or in degrees or kilometres?"
+    )]
+    Still { farthest: f64 },
+    /// The share of the frames between somebody's first and last at which that person is not seen is large.
+    #[error(
+        "people are not seen in {:.0} % of the frames between their first and their last; a step counts where somebody is seen at its very frame, so \
+         fill short gaps where the tracker can",
+        100.0 * .share
+    )]
+    Unseen { share: f64 },
     /// A track goes on somewhere else.
+    #[error(
+        "pedestrian {} jumps at frame {}, {:.1} m/s over one step; does the track go on with somebody else?",
+        .0.pedestrian,
+        .0.frame,
+        .0.speed
+    )]
     Jump(Fastest),
     /// No window of 20 steps: forecasts are possible, training and measuring are not.
+    #[error(
+        "nobody was seen at 20 steps in a row: nothing can be trained on these tracks, or measured with them"
+    )]
     NothingToLearnFrom,
 }
 
-impl fmt::Display for Doubt {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoSteps { frame_step } => write!(
-                f,
-                "nobody was seen at two frames {frame_step} apart, which are taken for 0.4 s: give the rate of the frames"
-            ),
-            Self::Fast { median } => write!(
-                f,
-                "half of the steps are faster than {median:.1} m/s; are the positions in metres, and the rows of a pedestrian 0.4 s apart?"
-            ),
-            Self::Slow { brisk } => write!(
-                f,
-                "nine in ten steps of those who walk are slower than {brisk:.2} m/s; are the rows of a pedestrian 0.4 s apart, or those of a faster camera?"
-            ),
-            Self::Still { farthest } => write!(
-                f,
-                "nobody comes farther than {farthest:.3} m; are the positions in metres, or in degrees or kilometres?"
-            ),
-            Self::Unseen { share } => write!(
-                f,
-                "people are not seen in {:.0} % of the frames between their first and their last; a step counts where somebody is seen at its very frame, so \
-                 fill short gaps where the tracker can",
-                100.0 * share
-            ),
-            Self::Jump(Fastest {
-                speed,
-                pedestrian,
-                frame,
-            }) => write!(
-                f,
-                "pedestrian {pedestrian} jumps at frame {frame}, {speed:.1} m/s over one step; does the track go on with somebody else?"
-            ),
-            Self::NothingToLearnFrom => f.write_str(
-                "nobody was seen at 20 steps in a row: nothing can be trained on these tracks, or measured with them",
-            ),
-        }
-    }
-}
-
-/// The fastest step of a recording.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+/// The fastest step of a recording.
 #[non_exhaustive]
 pub struct Fastest {
     /// Its speed, m/s.
@@ -124,14 +96,12 @@ impl Speeds {
     /// What looks wrong with them.
     pub(crate) fn doubt(&self) -> Option<Doubt> {
         let (Some(median), Some(fastest)) = (self.median, &self.fastest) else {
-            return Some(Doubt::NoSteps {
-                frame_step: self.frame_step,
-            });
+            let frame_step = self.frame_step;
+            return Some(Doubt::NoSteps { frame_step });
         };
         if self.farthest < STILL && self.steps >= MANY_STEPS {
-            Some(Doubt::Still {
-                farthest: self.farthest,
-            })
+            let farthest = self.farthest;
+            Some(Doubt::Still { farthest })
         } else if median > IMPLAUSIBLE {
             Some(Doubt::Fast { median })
         } else if fastest.speed > JUMP {
@@ -144,7 +114,7 @@ impl Speeds {
 }
 
 impl Recording {
-    /// What looks wrong with the speeds of its people, if anything: the first of the doubts of [its summary](Self::summary), for less work.
+    /// The first of the doubts of [its summary](Self::summary), about the speeds of its people, for less work.
     #[must_use]
     pub fn speed_doubt(&self) -> Option<Doubt> {
         self.speeds(&self.tracks()).doubt()

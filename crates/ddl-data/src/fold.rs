@@ -29,11 +29,11 @@ const SOCIAL_GAN_VALIDATION: f64 = 0.2;
 /// Windows of the three folders that Social-GAN publishes for a fold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SocialGanSplit {
-    /// Windows of the files `train/*_train.txt`.
+    /// Of the files `train/*_train.txt`.
     pub training: Vec<Window>,
-    /// Windows of the files `val/*_val.txt`.
+    /// Of the files `val/*_val.txt`.
     pub validation: Vec<Window>,
-    /// Windows of the files `test/*.txt`.
+    /// Of the files `test/*.txt`.
     pub test: Vec<Window>,
 }
 
@@ -57,9 +57,6 @@ impl<'a> Fold<'a> {
     }
 
     /// Keeps training recordings for validation whole: nothing of them is trained on.
-    ///
-    /// In `star` and `social-gan` no fold tests on `uni_examples` and `zara03`: they show what a model makes of recordings
-    /// it has never seen.
     ///
     /// # Errors
     /// [`DataError::NotATrainingRecording`] for a name that is not a training recording of this fold.
@@ -98,8 +95,8 @@ impl<'a> Fold<'a> {
 
     /// The windows to test on, recording by recording, in order of time.
     ///
-    /// Under [`WindowRule::Published`], none starts at the very first frame of the first recording,
-    /// which the published test loader skips; published numbers are over the rest.
+    /// Under [`WindowRule::Published`], none starts at the very first frame of the first recording, as in the published
+    /// loader.
     #[must_use]
     pub fn test_windows(&self, rule: WindowRule) -> Vec<Window> {
         let mut windows: Vec<_> = self.test.iter().flat_map(|r| r.windows(rule)).collect();
@@ -111,9 +108,6 @@ impl<'a> Fold<'a> {
     }
 
     /// All windows to train on, recording by recording, in order of time.
-    ///
-    /// The published trainer also loses one random window and its last incomplete batch; that is a
-    /// matter of the training loop, and every window is here.
     #[must_use]
     pub fn training_windows(&self, rule: WindowRule) -> Vec<Window> {
         self.training.iter().flat_map(|r| r.windows(rule)).collect()
@@ -121,11 +115,9 @@ impl<'a> Fold<'a> {
 
     /// Divides the windows of each training recording at a moment in time.
     ///
-    /// The cut of a recording with n annotated frames comes before the frame with index
-    /// floor((1 - f) n), f being `validation_fraction` (clamped to [0, 1], NaN taken as 0). Windows
-    /// that span the cut belong to neither side, so that no position is seen in both. With f = 0.2
-    /// this is the split of the Social-GAN convention ([`social_gan_split`](Self::social_gan_split)). Recordings [set apart](Self::set_apart) are
-    /// validated on whole.
+    /// The cut of a recording with n annotated frames comes before the frame with index floor((1 - f) n), f being
+    /// `validation_fraction` (clamped to [0, 1], NaN taken as 0). Windows that span the cut belong to neither side.
+    /// Recordings [set apart](Self::set_apart) are validated on whole.
     #[must_use]
     pub fn training_split(&self, rule: WindowRule, validation_fraction: f64) -> TrainingSplit {
         let mut split = TrainingSplit {
@@ -149,13 +141,10 @@ impl<'a> Fold<'a> {
         split
     }
 
-    /// Training, validation and test of the Social-GAN convention, window by window what its published folders
-    /// `train`, `val` and `test` hold.
-    ///
-    /// Each training recording is two files there: `_train` with its first floor(0.8 n) of n annotated frames,
-    /// `_val` with the rest ([`Recording::parts`]); windows are cut from each file alone, so none spans the
-    /// two. The test scene's files are whole. `min_pedestrians` is 2 in the original code, 1 in much later work.
-    /// Recordings [set apart](Self::set_apart) are validated on whole, which the published folders do not do.
+    /// Training, validation and test of the Social-GAN convention, window by window what its published folders `train`,
+    /// `val` and `test` hold: each training recording is cut after its first floor(0.8 n) of n annotated frames
+    /// ([`Recording::parts`]). `min_pedestrians` is 2 in the original code, 1 in much later work. Recordings
+    /// [set apart](Self::set_apart) are validated on whole, which the published folders do not do.
     #[must_use]
     pub fn social_gan_split(&self, min_pedestrians: usize) -> SocialGanSplit {
         let rule = WindowRule::SocialGan { min_pedestrians };

@@ -13,8 +13,9 @@ const SIZE: usize = 3;
 
 /// A plane seen by a camera: the matrix that takes pixels to metres on the ground.
 ///
-/// With H the matrix, a pixel (u, v), column and row, is the place (X / W, Y / W) where (X, Y, W) = H (u, v, 1): what
-/// `findHomography(pixels, metres)` of `OpenCV` returns. The `H.txt` of the ETH recordings counts (row, column): swap its first two columns.
+/// With H the matrix, a pixel (u, v), column and row, is the place (X / W, Y / W) where (X, Y, W) = H (u, v, 1), as of
+/// `OpenCV`'s `findHomography(pixels, metres)`. The `H.txt` of the ETH recordings counts (row, column): swap its first
+/// two columns.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "[[f64; SIZE]; SIZE]")]
 pub struct Homography([[f64; SIZE]; SIZE]);
@@ -49,7 +50,7 @@ impl Homography {
         }
     }
 
-    /// Where a pixel is on the ground (m); `None` on the horizon, which is nowhere, and so near to it that the place would be farther
+    /// Where a pixel is on the ground (m); `None` on the horizon, and so near to it that the place would be farther
     /// away than [`COORDINATE_LIMIT`].
     #[must_use]
     pub fn apply(&self, [u, v]: [f64; 2]) -> Option<Position> {

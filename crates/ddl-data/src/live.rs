@@ -12,15 +12,14 @@ const NAME: &str = "live";
 
 /// Everybody's last positions, fed one frame at a time.
 ///
-/// After every frame, [`window`](Self::window) is the one that [`Recording::observed_windows`](crate::Recording::observed_windows) would
-/// cut from all frames so far and that ends at this frame: whoever is there and was seen at each of the last 8 steps, 0.4 s apart, with the same
-/// numbers in the same order.
+/// After every frame, [`window`](Self::window) is the one that
+/// [`Recording::observed_windows`](crate::Recording::observed_windows) would cut from all frames so far and that ends
+/// here.
 ///
 /// - A frame comes after the one before, by a step (0.4 s), by more, or by less where the tracker is faster than that.
-/// - Whoever was not seen at one of the 8 steps is not in the window, nothing is made up; unless a [`Completion`] is
-///   [asked for](Self::completing).
-/// - Whoever has been away for a step (0.4 s), or longer than the longest hole that is filled, is forgotten, and starts anew when seen again. So what is
-///   kept is bounded by the people of the last frames, and what was seen of them within some 4 s.
+/// - Whoever was not seen at one of the 8 steps is not in the window, unless a [`Completion`] is [asked
+///   for](Self::completing).
+/// - Whoever has been away for a step (0.4 s), or longer than the longest hole that is filled, is forgotten.
 /// - After an error nothing has changed: the same frame can be pushed again, corrected.
 /// - A frame far ahead makes earlier ones come too early: [`clear`](Self::clear) starts anew.
 ///
@@ -209,7 +208,7 @@ impl LiveTracks {
         })
     }
 
-    /// What is remembered of somebody who is not in the frame; `None` where the hole is too long already for what was seen to be in a window again.
+    /// What is remembered of somebody who is not in the frame; `None` where the hole is too long already.
     fn remembered(&self, absent: &LivePedestrian, frame: i64) -> Option<LivePedestrian> {
         self.remembered_before(absent, frame + 1)
     }
@@ -229,8 +228,8 @@ impl LiveTracks {
         Some(LivePedestrian { id, seen })
     }
 
-    /// The window that ends at the last frame, of everybody in it who was seen, or completed, at each of the last 8 steps; `None` when that is
-    /// nobody.
+    /// The window that ends at the last frame, of everybody in it who was seen, or completed, at each of the last 8
+    /// steps.
     #[must_use]
     pub fn window(&self) -> Option<Window> {
         let last = self.last_frame?;
@@ -255,29 +254,15 @@ impl LiveTracks {
 }
 
 impl Recording {
-    /// What can be forecast from: windows of [`OBSERVED`] frames without a future, one for every frame up to which somebody was seen
-    /// that many steps in a row.
-    ///
-    /// Unlike [`Recording::windows`] this asks nothing of the frames that follow.
+    /// What can be forecast from: windows of [`OBSERVED`] frames without a future, one for every frame up to which
+    /// somebody was seen that many steps in a row.
     #[must_use]
     pub fn observed_windows(&self) -> Vec<Window> {
         self.completed_windows(Completion::NONE)
     }
 
-    /// The [`observed_windows`](Self::observed_windows) with incomplete observations filled in as the completion allows: a
-    /// pedestrian belongs to the window of a frame when it is seen there and often enough before. [`Window::made_up`] counts
-    /// the filled-in positions.
-    ///
-    /// ```
-    /// use ddl_data::{Completion, Observation, PedestrianId, Recording};
-    ///
-    /// let walk = [0, 10, 40].map(|frame| Observation::new(frame, PedestrianId(1), [0.05 * frame as f64, 0.0]));
-    /// let windows = Recording::new("yard", 10, walk.to_vec())?.completed_windows(Completion::USUAL);
-    /// let last = &windows[1];
-    /// assert_eq!((last.made_up(0).padded, last.made_up(0).filled), (3, 2));
-    /// assert_eq!(last.observed(0)[5..], [[1.0, 0.0], [1.5, 0.0], [2.0, 0.0]]);
-    /// # Ok::<(), ddl_data::RecordingError>(())
-    /// ```
+    /// The [`observed_windows`](Self::observed_windows) with incomplete observations filled in as the completion
+    /// allows; [`Window::made_up`] counts the filled-in positions.
     #[must_use]
     pub fn completed_windows(&self, completion: Completion) -> Vec<Window> {
         let mut tracks = LiveTracks::of(self).completing(completion);

@@ -13,12 +13,10 @@ const DEFAULT_FOLDER: &str = "datasets/eth_ucy";
 
 /// Finds the folder that holds a convention's files.
 ///
-/// Looked at is `explicit` if given, else the folder that `$DDL_DATASETS` names if set, else
-/// `datasets/eth_ucy`. The last two, where relative, are tried from the current directory and from
-/// each one above it, up to the root of the workspace (the first directory with a `Cargo.lock`):
-/// cargo runs the tests of a member in the member's own folder. Within what is looked at, the files may lie in the folder
-/// itself, in its sub-folder named after the convention, or in such a folder beside it (so that
-/// `.../star` also leads to `.../social-gan`).
+/// Looked at is `explicit` if given, else the folder that `$DDL_DATASETS` names if set, else `datasets/eth_ucy`. The
+/// last two, where relative, are tried from the current directory and from each one above it, up to the first with a
+/// `Cargo.lock`. The files may lie in the folder itself, in its sub-folder named after the convention, or in such a
+/// folder beside it.
 ///
 /// # Errors
 /// [`DataError::NotFound`] names every folder tried and the first file it lacks;

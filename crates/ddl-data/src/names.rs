@@ -10,12 +10,6 @@ use crate::PedestrianId;
 use crate::track::FRAME_LIMIT;
 
 /// A pedestrian as a file or stream has it.
-///
-/// ```
-/// use ddl_data::PedestrianName;
-/// assert_eq!(PedestrianName::of_text("17"), PedestrianName::Number(17));
-/// assert_eq!(PedestrianName::of_text("017").to_string(), "017");
-/// ```
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum PedestrianName {

@@ -42,7 +42,7 @@ impl Convention {
         self.plan().recordings.iter().map(|r| r.name.as_str())
     }
 
-    /// Names of the leave-one-out folds, in order; none for own recordings, whose folds [the data set](crate::Dataset::fold_names) knows.
+    /// Names of the leave-one-out folds, in order; none for own recordings.
     pub fn fold_names(self) -> impl Iterator<Item = &'static str> {
         self.plan().folds.iter().map(|f| f.name.as_str())
     }

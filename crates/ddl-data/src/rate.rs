@@ -50,9 +50,9 @@ fn whole_multiple(frames: f64, spacing: i64) -> Option<i64> {
 impl Recording {
     /// The recording in steps of 0.4 s, given the seconds from one frame number to the next, such as 0.04 at 25 frames a second.
     ///
-    /// Where frames keep time and some whole number of the usual spacing between them makes a step (10 frames of 0.04 s), nothing changes but the
-    /// [`frame_step`](Recording::frame_step): every frame can be forecast from. Otherwise positions are taken every 0.4 s, counted back from the last
-    /// frame, on straight lines between observations that are no further apart than usual.
+    /// Where frames keep time and some whole number of the usual spacing between them makes a step (10 frames of 0.04
+    /// s), nothing changes but the [`frame_step`](Recording::frame_step). Otherwise positions are taken every 0.4 s,
+    /// counted back from the last frame, on straight lines between observations that are no further apart than usual.
     ///
     /// # Errors
     /// [`RateError`] where the time is not positive, observations are more than 1.2 s apart, or frames leave their range.
@@ -83,8 +83,8 @@ impl Recording {
         self.resampled(parts, (frames * parts as f64).round() as i64)
     }
 
-    /// Seconds from one frame number to the next as the file tells them by its [`rate`](Self::rate): its frames are usually
-    /// [`frame_step`](Self::frame_step) numbers apart, as long as that was not set.
+    /// Seconds from one frame number to the next as the file tells them by its [`rate`](Self::rate), as long as the
+    /// [`frame_step`](Self::frame_step) was not set.
     #[must_use]
     pub fn frame_time_told(&self) -> Option<f64> {
         Some(1.0 / (self.rate()? * self.frame_step() as f64))

@@ -10,8 +10,7 @@ use crate::{HORIZON, OBSERVED, Observation, PedestrianId, PedestrianNames, Posit
 
 /// All observations of one scene, sorted by frame and then by pedestrian.
 ///
-/// Invariants, held from construction on: at least one observation, every position finite, no
-/// pedestrian twice in a frame, a positive frame step.
+/// Invariants: at least one observation, every position finite, no pedestrian twice in a frame, a positive frame step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     name: Arc<str>,
@@ -28,12 +27,11 @@ pub struct Recording {
 impl Recording {
     /// A recording of the observations given, in any order.
     ///
-    /// `frame_step` is the number of raw frames in one step of [`TIME_STEP`](crate::TIME_STEP)
-    /// seconds.
+    /// `frame_step` is the number of raw frames in one step of [`TIME_STEP`](crate::TIME_STEP) seconds.
     ///
     /// # Errors
-    /// Without observations, with a frame step outside 1..=2^31, a frame of 2^53 or more in size, a
-    /// position that is not finite, or a pedestrian twice in a frame.
+    /// Without observations, with a frame step outside 1..=2^31, a frame of 2^53 or more in size, a position that is
+    /// not finite, or a pedestrian twice in a frame.
     pub fn new(
         name: impl Into<Arc<str>>,
         frame_step: i64,
@@ -120,7 +118,8 @@ impl Recording {
         &self.names
     }
 
-    /// How many of the annotated frames follow each other in a second, where the file says so, whatever their numbers: the `fps` of TrajNet++ scenes.
+    /// How many of the annotated frames follow each other in a second, where the file says so: the `fps` of TrajNet++
+    /// scenes.
     pub fn rate(&self) -> Option<f64> {
         self.rate
     }
@@ -213,8 +212,8 @@ impl Recording {
     /// The recording in two parts by time: the first floor((1 - f) n) of its n annotated frames, and the rest; a part
     /// without any frame is `None`.
     ///
-    /// `fraction` is the share f of the second part, clamped to [0, 1], NaN taken as 0. With f = 0.2 the parts are
-    /// the files `_train` and `_val` that the Social-GAN convention keeps of a training recording.
+    /// `fraction` is the share f of the second part, clamped to [0, 1], NaN taken as 0. With f = 0.2 the parts are the
+    /// files `_train` and `_val` of the Social-GAN convention.
     #[must_use]
     pub fn parts(&self, fraction: f64) -> (Option<Self>, Option<Self>) {
         let cut = self.cut_index(fraction);
@@ -253,8 +252,8 @@ impl Recording {
         })
     }
 
-    /// What then happened to each pedestrian of an observed window, as far as it was seen: up to [`HORIZON`](crate::HORIZON) positions from
-    /// the step after the last observed one on, ending before the first step at which the pedestrian was not seen.
+    /// The positions of each pedestrian of an observed window after it, up to [`HORIZON`](crate::HORIZON) of them,
+    /// ending before the first step at which the pedestrian was not seen.
     ///
     /// ```
     /// use ddl_data::{Observation, PedestrianId, Recording};

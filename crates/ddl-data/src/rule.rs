@@ -26,10 +26,9 @@ pub(crate) const SOCIAL_GAN_FEWEST: usize = 2;
 pub enum WindowRule {
     /// The windows of the published STAR and DDL code, quirks included.
     ///
-    /// With the frame step s, an annotated frame f starts a window if frame f + 20 s (one step beyond the window) is annotated, and somebody
-    /// is in both f and f + 20 s. (That f be at least 20 *raw* frames before the recording's last, which the code asks for too, follows.) Whoever stands at exactly (0, 0) counts as absent at
-    /// that step. A fold's tests also lack the window of its very first frame
-    /// ([`Fold::test_windows`](crate::Fold::test_windows)).
+    /// With the frame step s, an annotated frame f starts a window if frame f + 20 s (one step beyond the window) is
+    /// annotated, and somebody is in both. Whoever stands at exactly (0, 0) counts as absent at that step. A fold's
+    /// tests also lack the window of its very first frame ([`Fold::test_windows`](crate::Fold::test_windows)).
     Published,
     /// Every annotated frame starts a window if anybody is present at all of its 20 steps.
     Complete,
@@ -85,10 +84,8 @@ impl FromStr for WindowRule {
 }
 
 impl Recording {
-    /// All windows of the recording under a rule, in order of their start frame.
-    ///
-    /// [`WindowRule`] defines the rules. The window that the published test loader loses (that of the
-    /// first frame of a *fold*) is still here; [`Fold::test_windows`](crate::Fold::test_windows) drops it.
+    /// All windows of the recording under a rule, in order of their start frame; that of the first frame of a *fold*
+    /// included ([`Fold::test_windows`](crate::Fold::test_windows)).
     #[must_use]
     pub fn windows(&self, rule: WindowRule) -> Vec<Window> {
         let links = Links::new(self, rule);

@@ -21,16 +21,10 @@ pub(crate) const FRAME_LIMIT: i64 = 1 << 53;
 /// Largest frame step allowed.
 pub(crate) const FRAME_STEP_LIMIT: i64 = 1 << 31;
 
-/// Coordinates that are read from files and streams are at most this in size (m): coordinates of UTM, which reach 10,000 km, lie within, those of a world map need not, and
-/// what is computed with such numbers keeps its precision.
+/// Coordinates that are read from files and streams are at most this in size (m); those of UTM reach 10,000 km.
 pub const COORDINATE_LIMIT: f64 = 1e7;
 
 /// The number by which a recording knows a pedestrian; unique within one recording only.
-///
-/// ```
-/// use ddl_data::PedestrianId;
-/// assert_eq!(PedestrianId(7).to_string(), "7");
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct PedestrianId(pub i64);

@@ -10,9 +10,8 @@ use crate::{MadeUp, OBSERVED, PedestrianId, PedestrianName, PedestrianNames, Pos
 /// The pedestrians of one scene over 8 observed steps and, where known, the 12 that follow.
 ///
 /// # Shapes
-/// N pedestrians, each with a track of T = 20 positions ([`WINDOW`]), or of T = 8 ([`OBSERVED`]) when
-/// the future is unknown. Positions are `[x, y]` in metres, one step is 0.4 s. Pedestrians and steps are counted from 0; an index
-/// out of range panics, as that of a slice does.
+/// N pedestrians, each with a track of T = 20 positions ([`WINDOW`]), or of T = 8 ([`OBSERVED`]) when the future is
+/// unknown, `[x, y]` in metres, 0.4 s apart. Pedestrians and steps are counted from 0; an index out of range panics.
 ///
 /// ```
 /// use ddl_data::{PedestrianId, Window};
@@ -44,8 +43,8 @@ impl Window {
     /// `start_frame` is the raw frame of the first position, `frame_step` the raw frames a step.
     ///
     /// # Errors
-    /// Without pedestrians, with ids and tracks of different number, an id twice, tracks that are
-    /// not all of 8 or all of 20 positions, a position that is not finite, or frames out of range.
+    /// Without pedestrians, with ids and tracks of different number, an id twice, tracks that are not all of 8 or all
+    /// of 20 positions, a position that is not finite, or frames out of range.
     pub fn new(
         recording: impl Into<Arc<str>>,
         start_frame: i64,
@@ -103,8 +102,7 @@ impl Window {
         ))
     }
 
-    /// A whole window cut from a recording, whose invariants make every check of
-    /// [`new`](Self::new) superfluous.
+    /// A window cut from a recording, whose invariants make every check of [`new`](Self::new) superfluous.
     pub(crate) fn cut(
         recording: Arc<str>,
         frame_step: i64,
@@ -169,10 +167,8 @@ impl Window {
         self.frames[0]
     }
 
-    /// Raw frame of each position, T of them, ascending.
-    ///
-    /// `frame_step` apart, except in windows of [`WindowRule::SocialGan`](crate::WindowRule), which
-    /// count annotated frames and may reach over a gap.
+    /// Raw frame of each position, T of them, ascending: `frame_step` apart, but for windows of
+    /// [`WindowRule::SocialGan`](crate::WindowRule), which may reach over a gap.
     pub fn frames(&self) -> &[i64] {
         &self.frames
     }
@@ -265,18 +261,6 @@ impl Window {
     }
 
     /// The window with some of its pedestrians alone; `None` if there would be nobody.
-    ///
-    /// ```
-    /// use ddl_data::{PedestrianId, Window};
-    ///
-    /// let stands = vec![[0.0, 0.0]; 8];
-    /// let ids = vec![PedestrianId(1), PedestrianId(2)];
-    /// let window = Window::new("yard", 0, 10, ids, vec![stands; 2])?;
-    /// let alone = window.keeping(|i| i == 1).ok_or("nobody")?;
-    /// assert_eq!(alone.pedestrians(), [PedestrianId(2)]);
-    /// assert!(window.keeping(|_| false).is_none());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn keeping(&self, mut keep: impl FnMut(usize) -> bool) -> Option<Window> {
         let kept: Vec<usize> = (0..self.len()).filter(|&i| keep(i)).collect();
@@ -289,9 +273,7 @@ impl Window {
         Some(window.with_made_up(kept.iter().map(|&i| self.made_up(i)).collect()))
     }
 
-    /// The window with every position replaced by `f(i, step, position)`: pedestrian index, step from
-    /// 0, position (m).
-    ///
+    /// The window with every position replaced by `f(i, step, position)`: pedestrian index, step from 0, position (m).
     /// What `f` returns is not checked; keep it finite.
     #[must_use]
     pub fn map_positions(&self, mut f: impl FnMut(usize, usize, Position) -> Position) -> Window {
@@ -304,14 +286,6 @@ impl Window {
     }
 
     /// The window as if time ran backwards: everybody walks its track from the end to the start, at the same frames.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_data::{Dataset, WindowRule};
-    /// let window = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete).remove(0);
-    /// assert_eq!(window.reversed().track(0)[0], window.track(0)[19]);
-    /// assert_eq!(window.reversed().reversed(), window);
-    /// ```
     #[must_use]
     pub fn reversed(&self) -> Window {
         let mut reversed = self.clone();

@@ -14,24 +14,14 @@ pub use straightening::Straightening;
 
 /// A smooth map `y = psi(x)` of space onto itself with a smooth inverse.
 ///
-/// Seen through it, a straight line may be a path around a corner. With `u` the unit vector from
-/// `psi(p*)` to `psi(x)`, the potential `V(x) = |psi(x) - psi(p*)|` is zero at the goal alone, and
-/// along `v = -P J^T u` it falls at the rate `u^T J P J^T u > 0`, because `J` is invertible.
+/// Seen through it, a straight line may be a path around a corner: the potential `|psi(x) - psi(p*)|` is zero at the
+/// goal alone.
 ///
 /// # What is promised
-/// - `psi` is smooth (all derivatives exist), and one-to-one from the whole space onto the whole
-///   space, so `inverse` has an answer everywhere.
-/// - `det J > 0` everywhere, and above a positive number that each implementation states: the map
-///   neither folds space over nor turns it inside out.
-/// - No panic for any input; and what `apply` and `inverse` give for finite input is a number, or
-///   infinite where it is too large for `T`, never NaN.
-///
-/// # What is not
-/// - Lengths and angles: a determinant says nothing of the single directions, and a composition
-///   multiplies what its parts stretch and squeeze.
-/// - A Jacobian with an entry too large for `T` is not finite. That takes a coordinate that is
-///   close to the largest number of `T` itself, or hundreds of maps at their limit one after the
-///   other.
+/// - `psi` is smooth, and one-to-one from the whole space onto the whole space.
+/// - `det J > 0` everywhere, and above a positive number that each implementation states.
+/// - No panic for any input; what `apply` and `inverse` give for finite input is a number, or infinite where it is too
+///   large for `T`, never NaN. A Jacobian with an entry too large for `T` is not finite.
 pub trait Diffeomorphism<T: Real, const D: usize> {
     /// The image `psi(x)` of `position` (metres).
     fn apply(&self, position: &SVector<T, D>) -> SVector<T, D>;
@@ -42,8 +32,7 @@ pub trait Diffeomorphism<T: Real, const D: usize> {
     /// [`apply`](Self::apply) and [`jacobian`](Self::jacobian) at the cost of one.
     fn apply_with_jacobian(&self, position: &SVector<T, D>) -> (SVector<T, D>, SMatrix<T, D, D>);
 
-    /// The Jacobian `J = d psi / d x` at `position`: row `i`, column `j` is `d y_i / d x_j` (no
-    /// unit).
+    /// The Jacobian `J = d psi / d x` at `position`: row `i`, column `j` is `d y_i / d x_j` (no unit).
     fn jacobian(&self, position: &SVector<T, D>) -> SMatrix<T, D, D> {
         self.apply_with_jacobian(position).1
     }

@@ -7,24 +7,17 @@ use crate::real::Real;
 /// An input that has no meaning for a stable flow; nothing in this crate panics on it.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum DynamicsError {
     /// A number is NaN or infinite.
     #[error("{entry} is {value}: it must be a finite number")]
-    NonFinite {
-        /// Which number: component 1 of the goal, say.
-        entry: String,
-        /// The offending value.
-        value: f64,
-    },
+    NonFinite { entry: String, value: f64 },
 
     /// A number that has to be positive and finite is not.
     #[error("{quantity} is {value}{unit}: it must be positive and finite")]
     NotPositive {
-        /// Which number.
         quantity: &'static str,
-        /// Its unit, after a space.
         unit: &'static str,
-        /// The offending value.
         value: f64,
     },
 
@@ -33,11 +26,8 @@ pub enum DynamicsError {
         "entry ({row}, {column}) of the Cholesky factor is {value}: entries above the diagonal must be 0"
     )]
     NotLowerTriangular {
-        /// Row, from 0.
         row: usize,
-        /// Column, from 0.
         column: usize,
-        /// The offending value.
         value: f64,
     },
 
@@ -62,12 +52,7 @@ pub enum DynamicsError {
         "the flow is too stiff: {steps} inner steps were not enough for {covered} s of a time step; \
          use StableEuler, a larger tolerance or a shorter time step"
     )]
-    TooStiff {
-        /// Inner steps tried.
-        steps: usize,
-        /// How much of the time step they covered (seconds).
-        covered: f64,
-    },
+    TooStiff { steps: usize, covered: f64 },
 
     /// The distance to the goal does not fit into the number type.
     #[error("the distance from the position to the goal overflows; use smaller units or f64")]
@@ -77,32 +62,19 @@ pub enum DynamicsError {
     #[error(
         "the local translation is not invertible: sqrt(2/e) rho |v| is {contraction}, and must be at most {largest}; shorten the translation v or lower the rate rho"
     )]
-    NotInvertible {
-        /// `sqrt(2/e) rho |v|`.
-        contraction: f64,
-        /// The largest value accepted.
-        largest: f64,
-    },
+    NotInvertible { contraction: f64, largest: f64 },
 
     /// A path to be straightened leads nowhere.
     #[error(
         "a path of {points} points and {length} m cannot be straightened: it needs two different points at least, and a length that is a finite number"
     )]
-    InvalidPathLength {
-        /// Number of points given.
-        points: usize,
-        /// Length of the path (metres).
-        length: f64,
-    },
+    InvalidPathLength { points: usize, length: f64 },
 
     /// A path to be straightened runs back along itself, which no invertible map can straighten.
     #[error(
         "the path turns back on itself {along:.2} m after its start: straighten the parts before and after it, or round the turn"
     )]
-    PathTurnsBack {
-        /// Where, along the path (metres).
-        along: f64,
-    },
+    PathTurnsBack { along: f64 },
 
     /// A schedule of metrics holds none.
     #[error("the metric schedule is empty: it needs the metric of at least one step")]
@@ -112,28 +84,18 @@ pub enum DynamicsError {
     #[error(
         "{positions} positions and {metrics} metrics: a rollout of n steps has n + 1 positions and n metrics"
     )]
-    LengthMismatch {
-        /// Number of positions given.
-        positions: usize,
-        /// Number of metrics given.
-        metrics: usize,
-    },
+    LengthMismatch { positions: usize, metrics: usize },
 
     /// A position is not the one that a certificate is of.
     #[error(
         "position {position} is not as far from the goal as the certificate says: it is of another path or goal"
     )]
-    OtherPath {
-        /// Index of the position, from 0.
-        position: usize,
-    },
+    OtherPath { position: usize },
 
     /// A step of a rollout failed.
     #[error("step {step} of the rollout failed: {cause}")]
     Step {
-        /// Index of the step, from 0: the one that leads from position `step` to `step + 1`.
         step: usize,
-        /// What went wrong in it.
         #[source]
         cause: Box<DynamicsError>,
     },

@@ -17,16 +17,15 @@ pub use natural_gradient::NaturalGradientFlow;
 
 /// A velocity field with one attractor, stable by its form.
 ///
-/// A flow is an [`attractor`](Self::attractor) `Phi`, a positive-definite [`metric`](Self::metric) `P`
-/// at every state and, if need be, a [`chart`](Self::chart) `psi`. With `y = psi(p)` (`y = p` without a
-/// chart) it moves as
+/// A flow is an [`attractor`](Self::attractor) `Phi`, a positive-definite [`metric`](Self::metric) `P` at every state
+/// and, if need be, a [`chart`](Self::chart) `psi`. With `y = psi(p)` (`y = p` without a chart) it moves as
 ///
 /// ```text
 /// dy/dt = -P grad Phi(y),      so      d Phi / dt = -(grad Phi)^T P grad Phi < 0 away from the goal
 /// ```
 ///
-/// whatever `P` depends on. What is left of this in steps of finite length is the
-/// [`Integrator`](crate::Integrator)'s part.
+/// whatever `P` depends on. What is left of this in steps of finite length is the [`Integrator`](crate::Integrator)'s
+/// part.
 pub trait Flow<T: Real, const D: usize> {
     /// The attractor that the flow descends, in the coordinates of the [`chart`](Self::chart).
     fn attractor(&self) -> &Attractor<T, D>;
@@ -42,8 +41,8 @@ pub trait Flow<T: Real, const D: usize> {
     /// Whatever keeps the flow from giving a metric, see the implementation.
     fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError>;
 
-    /// The velocity of the walker at `state` (m/s), zero at the goal: `-P grad Phi`, or what becomes of it in
-    /// space where there is a chart. It must agree with [`metric`](Self::metric): integrators use either.
+    /// The velocity of the walker at `state` (m/s): `-P grad Phi`, or what becomes of it in space where there is a
+    /// chart. It must agree with [`metric`](Self::metric): integrators use either.
     ///
     /// # Errors
     /// Those of [`metric`](Self::metric).

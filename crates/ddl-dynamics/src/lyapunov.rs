@@ -23,20 +23,14 @@ pub use violation::Violation;
 
 /// The evidence that a rollout went to its goal: for every step what the theory speaks about.
 ///
-/// It is computed from the positions themselves, whatever integrator made them, so it also judges
-/// rollouts of other programs. [`holds`](Self::holds) gives the verdict. It does not check that the
-/// positions follow from the metrics; a limited step does not, by design.
+/// It is computed from the positions themselves, whatever integrator made them, so it also judges rollouts of other
+/// programs. It does not check that the positions follow from the metrics, that the walker arrived
+/// ([`final_potential`](Self::final_potential) says how near it came), nor that obstacles were kept clear of. With a
+/// [chart](Flow::chart) goal, potentials, eigenvalues and angles are those of the chart, not of space. `Phi` is the
+/// distance to the goal, also for a quadratic attractor.
 ///
-/// It does not say that the walker arrived ([`final_potential`](Self::final_potential) does), nor that
-/// obstacles were kept clear of. With a [chart](Flow::chart) goal, potentials, eigenvalues and angles are
-/// those of the chart, not of space.
-///
-/// To write it as JSON and read it back bit by bit, turn on the feature `float_roundtrip` of `serde_json`:
-/// without it numbers come back off by a rounding, which can change the strict verdict on a walker who
-/// hardly moves.
-///
-/// `Phi` is the distance to the goal throughout, also for a quadratic attractor, whose potential falls
-/// exactly when the distance does.
+/// JSON keeps it bit by bit with the feature `float_roundtrip` of `serde_json`; without it a rounding can change the
+/// strict verdict on a walker who hardly moves.
 ///
 /// # Examples
 /// ```
@@ -68,16 +62,16 @@ pub struct LyapunovCertificate<T> {
 }
 
 impl<T: Real> LyapunovCertificate<T> {
-    /// The same certificate, which also says how fast, how abrupt and how far off the straight way the motion was, and whether it
-    /// arrived, each with the bound that [`MotionBounds`] set to it: [`holds`](Self::holds) judges these too.
+    /// The same certificate with the figures of the [motion](Self::motion), each with the bound that [`MotionBounds`]
+    /// set to it: [`holds`](Self::holds) judges these too.
     ///
     /// # Shapes
-    /// `path`: the positions that the certificate is of (metres), the start first. `alone` unless obstacles were minded, which may hold
-    /// a pedestrian up: only its speed is bounded then.
+    /// `path`: the positions that the certificate is of (metres), the start first. `alone` unless obstacles were
+    /// minded, which may hold a pedestrian up: only its speed is bounded then.
     ///
     /// # Errors
-    /// [`DynamicsError::LengthMismatch`] when there is not one position more than steps, [`DynamicsError::OtherPath`] when the
-    /// distances from the goal are not those that the certificate is of, as with a [chart](Flow::chart).
+    /// [`DynamicsError::LengthMismatch`], or [`DynamicsError::OtherPath`] when the distances from the goal are not
+    /// those that the certificate is of, as with a [chart](Flow::chart).
     pub fn within(
         self,
         path: &[SVector<T, 2>],
@@ -109,9 +103,7 @@ impl<T: Real> LyapunovCertificate<T> {
     pub fn motion(&self) -> Option<&MotionEvidence<T>> {
         self.motion.as_ref()
     }
-}
 
-impl<T: Real> LyapunovCertificate<T> {
     /// The certificate of a rollout with steps of `dt` seconds.
     ///
     /// # Shapes
@@ -160,9 +152,8 @@ impl<T: Real> LyapunovCertificate<T> {
 
     /// The certificate of a rollout of `flow` with steps of `dt` seconds.
     ///
-    /// The metrics are asked of the flow at each position, with the history so far. With a
-    /// [`chart`](Flow::chart) everything is said in its coordinates, those in which `Phi` is a distance:
-    /// goal, potentials, eigenvalues and angles.
+    /// The metrics are asked of the flow at each position, with the history so far. With a [`chart`](Flow::chart)
+    /// everything is said in its coordinates.
     ///
     /// # Errors
     /// Those of [`new`](Self::new), and, inside [`DynamicsError::Step`], those of the flow's metric.

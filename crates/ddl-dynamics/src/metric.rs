@@ -15,14 +15,12 @@ pub const PUBLISHED_SIGMA: f64 = 1e-8;
 
 /// A positive-definite matrix `P = L L^T + sigma I`, given by its lower-triangular factor `L`.
 ///
-/// `P` scales and turns the unit vector towards the goal into a velocity, so its entries, `sigma`
-/// and its eigenvalues are in m/s; those of `L` in (m/s)^(1/2). The smallest eigenvalue is at least
-/// `sigma`, whatever `L` is: this is what makes every flow shaped by such a matrix stable.
+/// `P` turns the unit vector towards the goal into a velocity, so its entries, `sigma` and its eigenvalues are in m/s;
+/// those of `L` in (m/s)^(1/2). The smallest eigenvalue is at least `sigma`, whatever `L` is.
 ///
 /// # Numerics
-/// `P` is never formed to be applied: `P u = L (L^T u) + sigma u` and
-/// `u^T P u = |L^T u|^2 + sigma |u|^2`. Formed in `f32`, a diagonal entry `a * a + 1e-8` rounds to
-/// `a * a` as soon as `|a| >= 0.5`, and a matrix meant to be positive definite is singular.
+/// `P` is never formed to be applied: in `f32` a diagonal entry `a * a + 1e-8` rounds to `a * a` as soon as `|a| >=
+/// 0.5`, and a matrix meant to be positive definite is singular.
 ///
 /// # References
 /// Equations (11) and (12) of the paper.
@@ -56,8 +54,7 @@ impl<T: Real> CholeskyMetric<T, 2> {
         Self::new(SMatrix::<T, 2, 2>::new(a, T::zero(), b, c), sigma)
     }
 
-    /// `axis axis^T + sigma I`: one eigenvalue along `axis` ((m/s)^(1/2)), `sigma` across. Both must be
-    /// finite, and `sigma` positive.
+    /// `axis axis^T + sigma I`, `axis` in (m/s)^(1/2). Both must be finite, and `sigma` positive.
     pub(crate) fn of_axis(axis: SVector<T, 2>, sigma: T) -> Self {
         Self {
             factor: SMatrix::<T, 2, 2>::new(axis.x, T::zero(), axis.y, T::zero()),
@@ -69,8 +66,7 @@ impl<T: Real> CholeskyMetric<T, 2> {
 impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// The metric with the lower-triangular factor `factor` ((m/s)^(1/2)) and `sigma` (m/s).
     ///
-    /// The diagonal of the factor may be zero or negative: `L L^T` is positive semi-definite for
-    /// every `L`, and `sigma` does the rest.
+    /// The diagonal of the factor may be zero or negative.
     ///
     /// # Errors
     /// - [`DynamicsError::NotPositive`]: `sigma` is zero, negative, NaN or infinite.
@@ -123,11 +119,8 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// `P u = L (L^T u) + sigma u`.
     ///
     /// # Numerics
-    /// Exact to rounding of the products. Where `L^T u` almost cancels (a factor far from round,
-    /// seen along its weak direction) the rounding of `L^T u`, magnified by `L`, can exceed
-    /// `sigma u`: the computed `P u` then may fail to point away from the goal although
-    /// [`quadratic_form`](Self::quadratic_form) is positive.
-    /// [`StableEuler`](crate::StableEuler) does not rely on it.
+    /// Where `L^T u` almost cancels (a factor far from round, seen along its weak direction), the computed `P u` may
+    /// fail to point away from the goal although [`quadratic_form`](Self::quadratic_form) is positive.
     #[inline]
     pub fn apply(&self, u: &SVector<T, D>) -> SVector<T, D> {
         let projected = self.transposed_times(u);
@@ -140,12 +133,8 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
         })
     }
 
-    /// `u^T P u = |L^T u|^2 + sigma |u|^2`, the rate at which the distance to the goal falls (m/s)
-    /// when `u` is the unit vector away from it.
-    ///
-    /// # Numerics
-    /// A sum of squares, so never negative as computed, and at least `sigma |u|^2` rounded: for a
-    /// unit vector it is positive in `f32` as in `f64`.
+    /// `u^T P u = |L^T u|^2 + sigma |u|^2`, the rate at which the distance to the goal falls (m/s) when `u` is the unit
+    /// vector away from it. A sum of squares: for a unit vector it is positive in `f32` as in `f64`.
     #[inline]
     pub fn quadratic_form(&self, u: &SVector<T, D>) -> T {
         self.transposed_times(u).norm_squared() + self.sigma * u.norm_squared()
@@ -164,15 +153,11 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
 
     /// The smallest and the largest eigenvalue of `P` (m/s).
     ///
-    /// They are `sigma + s^2` with `s` the singular values of `L`. The flow's speed lies between
-    /// the two, and the distance to the goal falls at least at the smaller one.
+    /// They are `sigma + s^2` with `s` the singular values of `L`.
     ///
     /// # Numerics
-    /// For `D = 1` and `D = 2` in closed form, accurate to a few units in the last place even when
-    /// `L` is nearly singular: with `h± = hypot(|a| ± |c|, b)` the larger singular value is
-    /// `(h+ + h-) / 2`, and the smaller one `|a c|` over it, so nothing cancels. For other `D` by a
-    /// singular value decomposition, with an error of a few `epsilon * |L|` in `s`. The smallest
-    /// eigenvalue is never reported below `sigma`.
+    /// For `D = 1` and `D = 2` in closed form, accurate to a few units in the last place even when `L` is nearly
+    /// singular. For other `D` by a singular value decomposition, with an error of a few `epsilon * |L|` in `s`.
     pub fn eigenvalue_range(&self) -> EigenvalueRange<T> {
         let (small, large) = factor_singular_values(&self.factor);
         EigenvalueRange {

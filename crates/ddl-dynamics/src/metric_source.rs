@@ -11,8 +11,8 @@ use crate::{
 
 /// Gives the metric `P(p(t))` at a state.
 ///
-/// Implemented by a [`CholeskyMetric`] (the same everywhere), by a [`MetricSchedule`] (one per
-/// step, as a network emits them) and by every closure of the state.
+/// Implemented by a [`CholeskyMetric`] (the same everywhere), by a [`MetricSchedule`] (one per step) and by every
+/// closure of the state.
 pub trait MetricSource<T: Real, const D: usize> {
     /// The metric at `state`.
     ///

@@ -4,8 +4,8 @@ use nalgebra::{Vector2, Vector3};
 
 use crate::{metric::CholeskyMetric, polar::polar, real::Real, spectrum::EigenvalueRange};
 
-/// The bounds between which a metric shapes the way of a pedestrian that arrives at its goal in time, and the
-/// motion that is made where nothing shapes it.
+/// The bounds between which a metric shapes the way of a pedestrian that arrives at its goal in time, and the motion
+/// that is made where nothing shapes it.
 ///
 /// With the distance `d` to the goal and `n` steps of `dt` seconds left, the *arriving speed* is
 /// `s = d / (n dt)`: at this constant speed the straight walk ends on the goal. The eigenvalues of `P` are
@@ -23,16 +23,6 @@ use crate::{metric::CholeskyMetric, polar::polar, real::Real, spectrum::Eigenval
 /// If `d <= n dt V` at the start, then for every sequence of metrics: no step is faster than `V`, no step
 /// of the remaining ones passes the goal, and the last one ends on it. `docs/stability.md` has the formulas and the proof.
 ///
-/// # Examples
-/// ```
-/// use ddl_dynamics::MotionBounds;
-/// use nalgebra::Vector2;
-///
-/// let bounds = MotionBounds::new(2.15, Vector2::zeros(), 1.0).expect("a speed, a velocity and a share");
-/// // 4.8 m to go in 12 steps of 0.4 s: 1 m/s arrives in time.
-/// let range = bounds.eigenvalues(4.8, 12, 0.4);
-/// assert!((range.largest - 2.0_f64).abs() < 1e-12 && (range.smallest - 0.25).abs() < 1e-12);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionBounds<T: Real> {
     top_speed: T,
@@ -166,11 +156,8 @@ impl<T: Real> MotionBounds<T> {
         }
     }
 
-    /// What shapes a step of a pedestrian for whom `metric` was given, with the way to the goal `towards` (m).
-    ///
-    /// # Numerics
-    /// The result is `(l1 - l2) w w^T + l2 I` with the unit eigenvector `w` of its larger eigenvalue, and
-    /// `l2` is its `sigma`: the smallest eigenvalue is exact, and positive, also where `metric` is singular.
+    /// What shapes a step of a pedestrian for whom `metric` was given, with the way to the goal `towards` (m). Its
+    /// smallest eigenvalue is exact, and positive, also where `metric` is singular.
     pub fn shape(
         &self,
         metric: &CholeskyMetric<T, 2>,

@@ -14,17 +14,6 @@ use crate::{
 /// # Shapes
 /// Centre with `D` components and radius, in metres.
 ///
-/// # Examples
-/// ```
-/// use ddl_dynamics::Ball;
-/// use nalgebra::Vector3;
-///
-/// let pillar = Ball::new(Vector3::new(1.0, 0.0, 0.0), 0.25)?;
-/// let (gap, away) = pillar.gap_and_normal(&Vector3::zeros());
-/// assert_eq!((gap, away), (0.75, Vector3::new(-1.0, 0.0, 0.0)));
-/// assert!(Ball::new(Vector3::new(1.0, 0.0, 0.0), -0.25).is_err());
-/// # Ok::<(), ddl_dynamics::DynamicsError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball<T, const D: usize> {
     centre: SVector<T, D>,
@@ -64,8 +53,7 @@ impl<T: Real, const D: usize> Ball<T, D> {
 
 /// Which obstacles there are at a state.
 ///
-/// Implemented by arrays and vectors of balls (the same all the time) and by [`ObstacleSchedule`] (others
-/// in each step).
+/// Implemented by arrays and vectors of balls (the same all the time) and by [`ObstacleSchedule`].
 pub trait ObstacleSource<T: Real, const D: usize> {
     /// The obstacles at `state`.
     fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>];

@@ -7,11 +7,9 @@ use crate::real::Real;
 /// Length of `vector` and the unit vector along it; `(0, 0)` for the zero vector.
 ///
 /// # Numerics
-/// Where the sum of squares can be trusted it is used as it is. A very short vector (whose squares
-/// fall below the normal numbers) or a very long one (whose squares overflow) is divided by its
-/// largest component first, so the direction is accurate down to subnormal components. The length
-/// itself may overflow to infinity when no finite number can hold it; the direction still is exact
-/// to rounding. A component that is not finite gives NaN.
+/// A vector whose squares underflow or overflow is divided by its largest component first, so the direction is accurate
+/// down to subnormal components. The length may be infinite; the direction still is exact to rounding. A component that
+/// is not finite gives NaN.
 #[inline]
 pub(crate) fn polar<T: Real, const D: usize>(vector: &SVector<T, D>) -> (T, SVector<T, D>) {
     let square = vector.norm_squared();

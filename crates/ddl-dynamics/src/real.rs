@@ -8,10 +8,8 @@ mod sealed {
     impl Sealed for f64 {}
 }
 
-/// A floating-point number: `f32` or `f64`, nothing else.
-///
-/// The trait is sealed because the guarantees of this crate are proved for IEEE 754 binary numbers
-/// with round-to-nearest and gradual underflow (for instance: `x - y == 0` only when `x == y`).
+/// A floating-point number: `f32` or `f64`. Sealed, because the guarantees of this crate are proved for IEEE 754 binary
+/// numbers with round-to-nearest and gradual underflow.
 pub trait Real: RealField + Copy + sealed::Sealed {
     /// Distance from 1 to the next larger number.
     const EPSILON: Self;

@@ -9,14 +9,6 @@ const ITERATIONS_PER_DIMENSION: usize = 1000;
 
 /// Smallest and largest eigenvalue of a metric (m/s).
 ///
-/// # Examples
-/// ```
-/// use ddl_dynamics::CholeskyMetric;
-///
-/// let range = CholeskyMetric::planar(1.5_f64, 0.0, 0.5, 1.75)?.eigenvalue_range(); // P = diag(4, 2)
-/// assert!((range.largest - 4.0).abs() < 1e-12 && (range.smallest - 2.0).abs() < 1e-12);
-/// # Ok::<(), ddl_dynamics::DynamicsError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EigenvalueRange<T> {
     /// The smallest: the distance to the goal falls at least this fast (m/s).

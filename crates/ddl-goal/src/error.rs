@@ -6,6 +6,7 @@ use thiserror::Error;
 /// A parameter of the goal estimator that makes no sense.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum ParamsError {
     /// No experts are asked for.
     #[error("experts is 0: at least one similar walker must be retrieved (the paper uses 100)")]
@@ -20,10 +21,7 @@ pub enum ParamsError {
     NoRestarts,
     /// The smoothing of soft-DTW is out of range.
     #[error("gamma is {gamma}: it must be finite and not negative (the paper uses 1)")]
-    InvalidGamma {
-        /// The value that was given.
-        gamma: f64,
-    },
+    InvalidGamma { gamma: f64 },
     /// The published query, which reads the future, in a frame it was not published with.
     #[error(
         "query is published-future and frame is heading: the query that reads the future belongs to frame world"
@@ -34,44 +32,26 @@ pub enum ParamsError {
 /// A track that cannot be used.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum TrackError {
     /// The track has too few positions.
     #[error("the track has {found} positions, {needed} are needed")]
-    TooShort {
-        /// Number of positions in the track.
-        found: usize,
-        /// Number of positions that are read.
-        needed: usize,
-    },
+    TooShort { found: usize, needed: usize },
     /// A track of the library has the wrong number of positions.
     #[error("the track has {found} positions, one of the library has exactly {needed}")]
-    WrongLength {
-        /// Number of positions in the track.
-        found: usize,
-        /// Number of positions it should have.
-        needed: usize,
-    },
+    WrongLength { found: usize, needed: usize },
     /// A position that is read is NaN or infinite.
     #[error("position {index} is ({x}, {y}): must be finite")]
-    NonFinite {
-        /// Index of the position in the track, from 0.
-        index: usize,
-        /// First coordinate (m).
-        x: f64,
-        /// Second coordinate (m).
-        y: f64,
-    },
+    NonFinite { index: usize, x: f64, y: f64 },
     /// Two positions are so far apart that their difference is not finite.
     #[error("the step from position {index} is too long for a velocity in the range of f64")]
-    VelocityOverflow {
-        /// Index of the first of the two positions, from 0.
-        index: usize,
-    },
+    VelocityOverflow { index: usize },
 }
 
 /// Why a library of experts could not be made.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum LibraryError {
     /// No tracks were given.
     #[error(
@@ -80,40 +60,25 @@ pub enum LibraryError {
     Empty,
     /// The time between two positions is not a positive number of seconds.
     #[error("the time step is {time_step} s: it must be finite and positive")]
-    InvalidTimeStep {
-        /// The value that was given (s).
-        time_step: f64,
-    },
+    InvalidTimeStep { time_step: f64 },
     /// One of the tracks cannot be used.
     #[error("track {index} of the library: {source}")]
-    Track {
-        /// Position of the track in the list, from 0.
-        index: usize,
-        /// What is wrong with it.
-        source: TrackError,
-    },
+    Track { index: usize, source: TrackError },
 }
 
 /// Why goals could not be estimated.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum GoalError {
     /// Ends that goals cannot be chosen for.
     #[error("goals of given ends: {problem}")]
-    Ends {
-        /// What is wrong with them.
-        problem: String,
-    },
+    Ends { problem: String },
     /// The library holds fewer tracks than experts are to be retrieved.
     #[error(
         "the library holds {tracks} tracks but {experts} experts are to be retrieved: give it more tracks or lower `experts`"
     )]
-    TooFewTracks {
-        /// Number of tracks in the library.
-        tracks: usize,
-        /// Number of experts asked for.
-        experts: usize,
-    },
+    TooFewTracks { tracks: usize, experts: usize },
     /// The library cannot be used.
     #[error(transparent)]
     Library(#[from] LibraryError),
@@ -123,9 +88,7 @@ pub enum GoalError {
     /// One of a batch of observed tracks cannot be used.
     #[error("track {index} of the batch: {source}")]
     BatchTrack {
-        /// Position of the track in the batch, from 0.
         index: usize,
-        /// What is wrong with it.
         source: Box<GoalError>,
     },
     /// Soft-DTW refused its parameters.
@@ -138,12 +101,5 @@ pub enum GoalError {
     #[error(
         "the clustering of the experts' endpoints: point {index} is ({x}, {y}): coordinates must be finite and below 1e150"
     )]
-    EndOutOfRange {
-        /// Place of the expert, from 0.
-        index: usize,
-        /// First coordinate (m).
-        x: f64,
-        /// Second coordinate (m).
-        y: f64,
-    },
+    EndOutOfRange { index: usize, x: f64, y: f64 },
 }

@@ -15,15 +15,12 @@ use crate::retrieve::Retriever;
 ///
 /// In [`RetrievalFrame::Heading`], the default, every walker is described in its [`crate::HeadingFrame`] by its velocities,
 /// divided by its pace; the N tracks of the library, or mirror images of tracks, that moved most alike are the experts,
-/// weighted by likeness; and K goals are chosen among how their ends deviate from going straight on. Nothing is random.
-/// `docs/goals.md` has the formulas.
+/// weighted by likeness; and K goals are chosen among how their ends deviate from going straight on (`docs/goals.md`).
 ///
 /// In [`RetrievalFrame::World`], the published estimator, velocities are compared in the normalised soft-DTW distance
-/// (equations 4 and 5 of the paper), and k-means of the N nearest tracks' ends, each taken relative to its first position
-/// (equation 6), gives K goals, placed at the first observed position.
+/// (equations 4 and 5 of the paper), and k-means of the N nearest tracks' ends (equation 6) gives K goals.
 ///
-/// The result depends on the library, the parameters and the positions that [`crate::QuerySpan`] reads: not on the other
-/// tracks of a batch, nor their order, nor the number of threads.
+/// The result depends on the library, the parameters and the positions that [`crate::QuerySpan`] reads alone.
 ///
 /// # References
 /// Wang, Zhi, Batista, Chandra, *Pedestrian trajectory prediction using dynamics-based deep learning*, ICRA 2024,

@@ -15,10 +15,10 @@ const ROUNDING: f64 = 1e-9;
 /// `points`: at least one; `weights`: as many, not negative, of a positive sum.
 ///
 /// # Numerics
-/// A point whose weight outweighs the pull of all others is the median, to the bit. Otherwise Weiszfeld's steps lead there from the weighted
-/// mean, until one is below 0.1 mm, at most 100. They creep where a point nearly outweighs the others: then that point comes out if it is better. So
-/// no point is better than what comes out, and what is lost is little in the mean distance (below 2 cm in the law of the tests), not always in the place: where
-/// the distance hardly changes, the median may lie elsewhere.
+/// A point whose weight outweighs the pull of all others is the median, to the bit. Otherwise Weiszfeld's steps lead
+/// there from the weighted mean, until one is below 0.1 mm, at most 100. They creep where a point nearly outweighs the
+/// others: then that point comes out if it is better. So no point is better than what comes out, and what is lost is
+/// little in the mean distance, not always in the place.
 ///
 /// # References
 /// E. Weiszfeld, "Sur le point pour lequel la somme des distances de n points donnés est minimum", 1937; H. W. Kuhn, "A note on Fermat's

@@ -35,9 +35,8 @@ impl GoalSet {
         }
     }
 
-    /// The goals (m, in the coordinates of the observed track): always exactly as many as clusters were asked for.
-    ///
-    /// Where the experts ended at fewer distinct places than that (people who stand), goals are repeated.
+    /// The goals (m, in the coordinates of the observed track), as many as clusters were asked for: repeated where the
+    /// experts ended at fewer distinct places.
     pub fn goals(&self) -> &[[f64; 2]] {
         &self.goals
     }
@@ -45,9 +44,8 @@ impl GoalSet {
     /// Estimated probability of each goal to be the one nearest the true end; sums to 1.
     ///
     /// It is the share of the experts whose carried-over end is nearest the goal, each expert counted by its likeness
-    /// ([`crate::RetrievalFrame::Heading`]) or all alike ([`crate::RetrievalFrame::World`]).
-    ///
-    /// Of repeated goals one has the whole share and the others have 0.
+    /// ([`crate::RetrievalFrame::Heading`]) or all alike. Of repeated goals one has the whole share and the others have
+    /// 0.
     pub fn weights(&self) -> &[f64] {
         &self.weights
     }
@@ -68,15 +66,6 @@ impl GoalSet {
     /// The same goals with flatter or steeper weights: each to the `power` (positive), divided by their sum, and then with the share `uniform` (0
     /// to 1) of the probability divided equally among all. Order and [`median`](Self::median) stay as they are.
     ///
-    /// # Examples
-    /// ```
-    /// use ddl_goal::{GoalSet, HeadingFrame};
-    /// let frame = HeadingFrame::new(&[[0.0, 0.0], [1.0, 0.0]])?;
-    /// let set = GoalSet::of_ends(&frame, &[[4.0, 0.0], [9.0, 0.0]], &[0.8, 0.2], 2)?;
-    /// let flatter = set.tempered(0.5, 0.1); // roots are as 2 to 1
-    /// assert!((flatter.weights()[0] - (0.9 * 2.0 / 3.0 + 0.05)).abs() < 1e-12);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn tempered(mut self, power: f64, uniform: f64) -> Self {
         let powers: Vec<f64> = self
@@ -111,13 +100,12 @@ impl GoalSet {
         geometric_median(&self.goals, &sharpened)
     }
 
-    /// Power of the weights in [`median`](Self::median), chosen on validation splits of training recordings for the choice among walks
-    /// (`docs/accuracy.md`) and taken over: whoever stands is likelier to stay than the mean of all ways to leave says.
+    /// Power of the weights in [`median`](Self::median), chosen on validation splits of training recordings
+    /// (`docs/accuracy.md`).
     pub const SHARPNESS: f64 = 1.5;
 
-    /// Index of the goal nearest to `point` (m), the first of equally near ones.
-    ///
-    /// With the true end as `point` this is the oracle choice of the published protocol.
+    /// Index of the goal nearest to `point` (m), the first of equally near ones: with the true end, the oracle choice
+    /// of the published protocol.
     pub fn nearest(&self, point: [f64; 2]) -> usize {
         let distances = self.goals.iter().map(|&goal| squared_distance(goal, point));
         distances
@@ -126,9 +114,8 @@ impl GoalSet {
             .map_or(0, |(index, _)| index)
     }
 
-    /// The walkers of the library the goals come from, most similar first.
-    ///
-    /// In [`crate::RetrievalFrame::Heading`] the first 100 of them.
+    /// The walkers of the library the goals come from, most similar first; in [`crate::RetrievalFrame::Heading`] the
+    /// first 100.
     pub fn experts(&self) -> &[Expert] {
         &self.experts
     }

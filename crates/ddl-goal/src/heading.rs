@@ -16,16 +16,12 @@ const NEGLIGIBLE: f64 = 1e-6;
 /// h = s + max(0, 1 − |s| / 0.2 m) l.
 ///
 /// So a walker heads where its last step led, and the shorter that step, the more the whole observation counts. Whoever
-/// has |h| below 1 µm stands, and keeps the axes of the world. The frame depends continuously on the positions except
-/// at h = 0, where no continuous choice exists.
-///
-/// Turning or moving the scene turns or moves the frame with it: coordinates in it stay the same, but for those who
-/// stand. Mirroring the scene changes the sign of the second coordinate.
-///
-/// # Numerics
-/// [`HeadingFrame::to_world`] undoes [`HeadingFrame::to_frame`] up to rounding: about 1e-16 of the largest coordinate.
+/// has
+/// |h| below 1 µm stands, and keeps the axes of the world. Turning or moving the scene turns or moves the frame with it;
+/// mirroring it changes the sign of the second coordinate.
 ///
 /// # Examples
+///
 /// ```
 /// use ddl_goal::HeadingFrame;
 /// let frame = HeadingFrame::new(&[[2.0, 1.0], [2.0, 1.5], [2.0, 2.0]])?;

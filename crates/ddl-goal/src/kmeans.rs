@@ -18,8 +18,7 @@ use crate::seeding::first_centres;
 /// Equal points count as one with a multiplicity. Where there are fewer distinct points than clusters, each is a centre
 /// and the first of them are repeated until there are enough: always exactly as many centres as asked.
 ///
-/// The result depends on the set of points and the seed, not on the order of the points. Every call draws the same random
-/// numbers, so that points moved by a rounding error give centres moved by as much, short of ties.
+/// The result depends on the set of points and the seed, not on the order of the points.
 #[derive(Clone, Debug)]
 pub(crate) struct KMeans {
     pub(crate) clusters: usize,

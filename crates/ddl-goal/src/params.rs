@@ -17,7 +17,7 @@ pub enum RetrievalFrame {
     Heading,
 }
 
-/// Parameters of a [`crate::GoalEstimator`], to be set one by one and then checked.
+/// Parameters of a [`crate::GoalEstimator`], to be checked.
 ///
 /// | parameter | default | published | |
 /// |---|---|---|---|
@@ -94,13 +94,6 @@ impl GoalEstimatorParams {
         }
     }
 
-    /// Sets [`frame`](Self::frame).
-    #[must_use]
-    pub fn frame(mut self, frame: RetrievalFrame) -> Self {
-        self.frame = frame;
-        self
-    }
-
     /// Sets [`experts`](Self::experts).
     #[must_use]
     pub fn experts(mut self, experts: usize) -> Self {
@@ -112,20 +105,6 @@ impl GoalEstimatorParams {
     #[must_use]
     pub fn clusters(mut self, clusters: usize) -> Self {
         self.clusters = clusters;
-        self
-    }
-
-    /// Sets [`gamma`](Self::gamma).
-    #[must_use]
-    pub fn gamma(mut self, gamma: f64) -> Self {
-        self.gamma = gamma;
-        self
-    }
-
-    /// Sets [`restarts`](Self::restarts).
-    #[must_use]
-    pub fn restarts(mut self, restarts: usize) -> Self {
-        self.restarts = restarts;
         self
     }
 
@@ -192,16 +171,23 @@ mod tests {
         let params = GoalEstimatorParams::default;
         assert_eq!(refused(params().experts(0)), ParamsError::NoExperts);
         assert_eq!(refused(params().clusters(0)), ParamsError::NoClusters);
-        assert_eq!(refused(params().restarts(0)), ParamsError::NoRestarts);
+        let restarts = |restarts| GoalEstimatorParams {
+            restarts,
+            ..params()
+        };
+        assert_eq!(refused(restarts(0)), ParamsError::NoRestarts);
+        let with = |gamma| GoalEstimatorParams { gamma, ..params() };
         for gamma in [-1.0, f64::INFINITY, f64::NAN] {
-            let error = refused(params().gamma(gamma)).to_string();
+            let error = refused(with(gamma)).to_string();
             assert!(error.starts_with("gamma is"), "{error}");
         }
-        assert!(params().gamma(0.0).check().is_ok());
+        assert!(with(0.0).check().is_ok());
         let future = params().query(QuerySpan::PublishedFuture);
         let error = refused(future.clone());
         assert_eq!(error, ParamsError::FutureInHeadingFrame);
-        assert!(future.frame(RetrievalFrame::World).check().is_ok());
+        let frame = RetrievalFrame::World;
+        let future = GoalEstimatorParams { frame, ..future };
+        assert!(future.check().is_ok());
         assert!(
             !params().query.reads_future() && GoalEstimatorParams::published().query.reads_future()
         );
@@ -211,8 +197,12 @@ mod tests {
     fn json_names_what_it_sets_and_nothing_else() {
         let json = r#"{"frame": "world", "experts": 3, "clusters": 4, "gamma": 0.5, "restarts": 6, "seed": 7, "query": "published-future"}"#;
         let params: GoalEstimatorParams = serde_json::from_str(json).unwrap();
-        let set = GoalEstimatorParams::published().experts(3).clusters(4);
-        assert_eq!(params, set.gamma(0.5).restarts(6).seed(7));
+        let set = GoalEstimatorParams {
+            gamma: 0.5,
+            restarts: 6,
+            ..GoalEstimatorParams::published().seed(7)
+        };
+        assert_eq!(params, set.experts(3).clusters(4));
         assert!(serde_json::from_str::<GoalEstimatorParams>(r#"{"expert": 10}"#).is_err());
     }
 }

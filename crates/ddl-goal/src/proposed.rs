@@ -12,9 +12,8 @@ const STEPS: usize = 10;
 impl GoalSet {
     /// `clusters` goals such that the weighted mean distance of an end to the nearest goal is small.
     ///
-    /// The ends are a proposal network's, say, or of any other model of where the walker may go. Cells of ends are cut in
-    /// two, the costliest first, and steps of Lloyd's iteration follow; nothing is random. A goal's weight is the sum of
-    /// the weights of the ends nearest to it.
+    /// Cells of ends are cut in two, the costliest first, and steps of Lloyd's iteration follow; nothing is random. A
+    /// goal's weight is the sum of the weights of the ends nearest to it.
     ///
     /// # Shapes
     /// `ends` (m, in the walker's `frame`) and `weights` (not negative, not all 0): as many of each, at least one. Fewer

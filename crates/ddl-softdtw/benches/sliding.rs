@@ -6,7 +6,8 @@
 
 #[path = "../tests/recorded/mod.rs"]
 mod recorded;
-mod synthetic;
+#[path = "../tests/walks/mod.rs"]
+mod walks;
 
 use std::hint::black_box;
 
@@ -20,15 +21,10 @@ const QUERIES: usize = 30;
 
 fn sliding(criterion: &mut Criterion) {
     let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean).expect("valid gamma");
-    let (source, (queries, tracks)) = match recorded::folder() {
-        Some(folder) => ("real", recorded::split(&folder, "eth")),
-        None => (
-            "synthetic",
-            (
-                synthetic::walkers(400, 5..60, 1),
-                synthetic::walkers(1_800, 5..60, 2),
-            ),
-        ),
+    let synthetic = || [400, 1_800].map(|count| walks::Numbers(count).walkers(count as usize, 60));
+    let (source, [queries, tracks]) = match recorded::dataset() {
+        Some(dataset) => ("real", recorded::split(&dataset, &["eth"])),
+        None => ("synthetic", synthetic()),
     };
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let one_thread = one_thread.expect("a thread");

@@ -1,6 +1,6 @@
-//! Speed of the value, the gradient, the search and the batch.
+//! Speed of the value, the gradient and the batch; `examples/throughput.rs` measures the search.
 //!
-//! The search and the batch report pairs a second on one thread, for each instruction set of the machine. Their windows
+//! The batch reports pairs a second on one thread, for each instruction set of the machine. Its windows
 //! are those of the real recordings where `DDL_DATASETS` names the folder that holds them, synthetic ones otherwise: the
 //! name of the benchmark says which.
 
@@ -9,9 +9,9 @@ mod recordings;
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use ddl_softdtw::{BatchGradients, Cost, InstructionSet, SearchIndex, SoftDtw, SoftDtwBatch};
+use ddl_softdtw::{BatchGradients, Cost, InstructionSet, SoftDtw, SoftDtwBatch};
 use recordings::Windows;
-use recordings::synthetic::walkers;
+use recordings::walks::Numbers;
 
 fn dtw() -> SoftDtw {
     SoftDtw::new(1.0, Cost::SquaredEuclidean).expect("valid gamma")
@@ -39,34 +39,10 @@ fn pair<const D: usize>(criterion: &mut Criterion, x: &[[f64; D]], y: &[[f64; D]
 }
 
 fn pairs(criterion: &mut Criterion) {
-    let walks = walkers(2, 8..9, 1);
-    pair(criterion, &walks[0], &walks[1]);
+    let mut numbers = Numbers(1);
+    pair::<2>(criterion, &numbers.walker(8), &numbers.walker(8));
     pair::<2>(criterion, &wave(64, 0.0), &wave(64, 0.3));
     pair::<8>(criterion, &wave(256, 0.0), &wave(256, 0.3));
-}
-
-fn search(criterion: &mut Criterion) {
-    for steps in [7, 8] {
-        let windows = Windows::load(steps);
-        let queries = windows.some_queries(24);
-        let index = SearchIndex::build(&dtw(), &windows.candidates).expect("valid");
-        let name = format!("search nearest 100, {} windows", windows.source);
-        let mut group = criterion.benchmark_group(name);
-        group.sample_size(20);
-        group.throughput(Throughput::Elements((index.len() * queries.len()) as u64));
-        for set in InstructionSet::available() {
-            let index = index.clone().with_instruction_set(set).expect("available");
-            let id = BenchmarkId::new(format!("{steps} steps"), set);
-            group.bench_function(id, |b| {
-                b.iter(|| {
-                    for query in &queries {
-                        black_box(index.nearest(query, 100)).expect("valid");
-                    }
-                });
-            });
-        }
-        group.finish();
-    }
 }
 
 fn batch(criterion: &mut Criterion) {
@@ -103,5 +79,5 @@ fn batch(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, pairs, search, batch);
+criterion_group!(benches, pairs, batch);
 criterion_main!(benches);

@@ -50,8 +50,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
     /// E(i, j) = E(i+1, j+1) d(i+1, j+1) + E(i+1, j) u(i+1, j) + E(i, j+1) l(i, j+1)
     /// ```
     ///
-    /// with the shares d, u, l of the diagonal, the upper and the left way into a cell: the strips of the forward
-    /// recursion, backwards.
+    /// with the shares d, u, l of the diagonal, the upper and the left way into a cell, strip by strip backwards.
     pub(crate) fn gradients(&self) -> Option<Gradients<D>> {
         let mut shares = Shares {
             steps: Vec::with_capacity(self.steps()),

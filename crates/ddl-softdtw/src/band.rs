@@ -8,10 +8,9 @@ use std::ops::RangeInclusive;
 /// cell (i, j), from 0, is in the band when |i (m − 1) − j (n − 1)| ≤ max(radius, 1/2) · (max(n, m) − 1)
 /// ```
 ///
-/// For sequences of equal length that is |i − j| ≤ radius, and radius 0 is the step by step comparison. For unequal
-/// lengths the diagonal is the straight line from the first pair to the last, and the radius counts steps of the shorter
-/// sequence; half a step is always allowed, which is just enough for a path to exist. So no band is too narrow, a radius of
-/// at least the shorter length less 1 allows every path, and the band of (y, x) is the transposed band of (x, y).
+/// For sequences of equal length that is |i − j| ≤ radius. For unequal lengths the diagonal is the straight line from
+/// the first pair to the last, and the radius counts steps of the shorter sequence. Half a step is always allowed, so
+/// no band is too narrow for a path, and the band of (y, x) is the transposed band of (x, y).
 ///
 /// # References
 /// Sakoe & Chiba, *Dynamic programming algorithm optimization for spoken word recognition*, IEEE TASSP 26 (1978).

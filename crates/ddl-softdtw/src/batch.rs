@@ -14,17 +14,18 @@ mod wide;
 /// Largest proven error of log2 of a score that `f32` may have: beyond it a pair is evaluated in `f64`.
 const WIDEST_ERROR: f64 = 2e-4;
 
-/// Sequences y prepared for `D_γ(x, y)` and its gradient with respect to x, for one x after the other: barycentres, losses
-/// over many sequences.
+/// Sequences y prepared for `D_γ(x, y)` and its gradient with respect to x, for one x after the other: barycentres,
+/// losses.
 ///
 /// # Numerics
 /// Sixteen pairs at once in `f32`, for γ > 0 and the squared cost. The proven error of a value is at most 1.4e-4 γ; for
-/// velocities of walkers (γ = 1 m²/s², eight steps) values and gradients are within 1e-5 of those of [`SoftDtw`]. What
-/// does not fit is evaluated in `f64`: values beyond about 57 γ (39 γ without fused multiplication), sequences of more than 32 steps or too large for the
-/// bound; and by [`SoftDtw`] itself what is beyond that: about 570 γ, 180 steps, a band, the Euclidean cost, γ = 0.
+/// velocities of walkers (γ = 1 m²/s², eight steps) values and gradients are within 1e-5 of those of [`SoftDtw`].
+/// Values beyond about 57 γ (39 γ without fused multiplication), sequences of more than 32 steps or too large for the
+/// bound are evaluated in `f64`; by [`SoftDtw`] itself those beyond about 570 γ or 180 steps, a band, the Euclidean
+/// cost, γ = 0.
 ///
-/// Everything runs on the calling thread. The last bits of a pair depend on the instruction set and, because
-/// all sequences are shifted by their common mean, on the other sequences.
+/// Everything runs on the calling thread. The last bits of a pair depend on the instruction set and on the other
+/// sequences.
 ///
 /// # Examples
 /// A step towards the mean of three sequences (Cuturi & Blondel 2017, section 3.1):
@@ -129,8 +130,8 @@ impl<const D: usize> SoftDtwBatch<D> {
         Ok(results)
     }
 
-    /// [`SoftDtwBatch::values_and_gradients`] into memory that is kept from one x to the next: fresh memory takes longer
-    /// than the computation. After an error `results` holds nothing of use.
+    /// [`SoftDtwBatch::values_and_gradients`] into memory that is kept from one x to the next. After an error `results`
+    /// holds nothing of use.
     ///
     /// # Errors
     /// As [`SoftDtwBatch::values_and_gradients`].

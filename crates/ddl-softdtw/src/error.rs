@@ -27,29 +27,20 @@ impl fmt::Display for SequenceRole {
 /// Why a soft-DTW value or gradient could not be computed.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum SoftDtwError {
     /// The smoothing parameter is negative, infinite or not a number.
     #[error("gamma is {gamma}: it must be finite and not negative (0 is hard DTW)")]
-    InvalidGamma {
-        /// The value that was given.
-        gamma: f64,
-    },
+    InvalidGamma { gamma: f64 },
     /// A sequence has no step.
     #[error("sequence {sequence} is empty: soft-DTW needs at least one step")]
-    EmptySequence {
-        /// The sequence in question.
-        sequence: SequenceRole,
-    },
+    EmptySequence { sequence: SequenceRole },
     /// A sequence holds NaN or an infinity.
     #[error("sequence {sequence}, step {step}, component {component} is {value}: must be finite")]
     NonFinite {
-        /// The sequence in question.
         sequence: SequenceRole,
-        /// Index of the step, from 0.
         step: usize,
-        /// Index of the component within the step, from 0.
         component: usize,
-        /// The value found there.
         value: f64,
     },
     /// The inputs are finite but their distance, or its gradient, is larger than the largest number of their type.
@@ -62,49 +53,27 @@ pub enum SoftDtwError {
 /// Why a search could not be prepared or answered.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum SearchError {
     /// An index needs something to search in.
     #[error("no candidates were given: a search index needs at least one sequence")]
     NoCandidates,
     /// One of the candidates is not a valid sequence.
     #[error("candidate {index}: {source}")]
-    Candidate {
-        /// Position of the candidate in the list that was given, from 0.
-        index: usize,
-        /// What is wrong with it (sequence y).
-        source: SoftDtwError,
-    },
+    Candidate { index: usize, source: SoftDtwError },
     /// A weighted sum needs one weight for each sequence.
     #[error("{weights} weights for {sequences} sequences: give one for each")]
-    Weights {
-        /// Number of weights that were given.
-        weights: usize,
-        /// Number of sequences of the batch.
-        sequences: usize,
-    },
+    Weights { weights: usize, sequences: usize },
     /// A weighted sum needs finite weights.
     #[error("weight {index} is {weight}: must be finite")]
-    Weight {
-        /// Position of the weight, from 0.
-        index: usize,
-        /// Its value.
-        weight: f64,
-    },
+    Weight { index: usize, weight: f64 },
     /// The processor does not have the vector instructions that were asked for.
     #[error("this processor has no {set} instructions: choose one of InstructionSet::available()")]
-    InstructionSet {
-        /// The choice that was refused.
-        set: InstructionSet,
-    },
+    InstructionSet { set: InstructionSet },
     /// The query is not a valid sequence, or no distance to it can be represented.
     #[error("query: {0}")]
     Query(#[from] SoftDtwError),
     /// One of a batch of queries is not a valid sequence.
     #[error("query {index} of the batch: {source}")]
-    BatchQuery {
-        /// Position of the query in the batch, from 0.
-        index: usize,
-        /// What is wrong with it (sequence x).
-        source: SoftDtwError,
-    },
+    BatchQuery { index: usize, source: SoftDtwError },
 }

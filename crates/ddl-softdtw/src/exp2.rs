@@ -30,7 +30,7 @@ const POLYNOMIAL: [f64; 11] = [
 /// (k, 2^−f) with k + f = t, k an integer and |f| ≤ 1/2, for 0 ≤ t < 2^51; exactly (0, 1) for t = 0.
 ///
 /// # Numerics
-/// Relative error of 2^−f: at most 2.3e-16. No number in range gives anything but a normal one.
+/// Relative error of 2^−f: at most 2.3e-16.
 #[inline(always)]
 pub(crate) fn exp2_minus(t: &Lanes) -> (Lanes, Lanes) {
     let mut whole = [0.0; STRIP];

@@ -18,25 +18,13 @@ impl SoftDtw {
     /// As [`SoftDtw::value`]; also [`SoftDtwError::Overflow`] when a component of the gradient leaves the range of `T`.
     ///
     /// # Numerics
-    /// The weights of each smoothed minimum are kept from the forward recursion; the backward recursion only multiplies
-    /// and adds them, none of them negative, so it neither overflows nor cancels: with the bound b on the error of the
-    /// value ([`SoftDtw`]), E(i, j) has a relative error of at most 3 b / γ as long as that is small. The value is that of
-    /// [`SoftDtw::value`] to the last bit. γ = 0 gives the gradient along one best path (a subgradient), and the Euclidean
-    /// cost counts 0 where `x_i = y_j`.
+    /// Nothing cancels: with the bound b on the error of the value ([`SoftDtw`]), E(i, j) has a relative error of at
+    /// most 3 b / γ as long as that is small. The value is that of [`SoftDtw::value`] to the last bit. γ = 0 gives the
+    /// gradient along one best path (a subgradient), and the Euclidean cost counts 0 where `x_i = y_j`.
     ///
     /// # References
     /// Cuturi & Blondel (2017), algorithm 2.
     ///
-    /// # Examples
-    /// ```
-    /// use ddl_softdtw::{Cost, SoftDtw};
-    /// let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean)?;
-    /// // One step against one step: the gradient of (x − y)².
-    /// let (value, gradient) = dtw.value_and_gradient(&[[3.0]], &[[1.0]])?;
-    /// assert!((value - 4.0_f64).abs() < 1e-14);
-    /// assert_eq!(gradient, [[4.0]]);
-    /// # Ok::<(), ddl_softdtw::SoftDtwError>(())
-    /// ```
     pub fn value_and_gradient<T: Scalar, const D: usize>(
         &self,
         x: &[[T; D]],
@@ -78,8 +66,8 @@ impl SoftDtw {
 
     /// The normalised value and its gradient with respect to `x` (see [`SoftDtw::normalised`]).
     ///
-    /// D(x, x) depends on `x` through both of its arguments, which by symmetry contribute equally: its half enters with
-    /// the gradient of the first argument once.
+    /// D(x, x) depends on `x` through both of its arguments: its half enters with the gradient of the first argument
+    /// once.
     ///
     /// # Errors
     /// As [`SoftDtw::value_and_gradient`].

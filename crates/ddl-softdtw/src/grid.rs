@@ -80,8 +80,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
 
     /// The step of the column that `lane` is at in step `d` of a strip; beyond the ends the first or the last one.
     ///
-    /// Cells beyond the ends are computed and not used. Their costs are those of real cells: nothing in them overflows
-    /// unless it does within the grid.
+    /// Cells beyond the ends are computed and not used: nothing in them overflows unless it does within the grid.
     #[inline(always)]
     pub(crate) fn column(&self, d: usize, lane: usize) -> [f64; D] {
         widened(&self.columns[d.saturating_sub(lane).min(self.columns.len() - 1)])

@@ -1,8 +1,7 @@
 //! Values of many pairs in `f64`, eight at a time in the exponential domain.
 //!
-//! What decides a search is computed here. The value of a pair depends on the pair alone: not on its neighbours in the
-//! vector, on the instruction set or on the number of threads, because every operation is rounded by itself and in the
-//! same order everywhere.
+//! The value of a pair depends on the pair alone: not on its neighbours in the vector, on the instruction set or on the
+//! number of threads, because every operation is rounded by itself and in the same order everywhere.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 

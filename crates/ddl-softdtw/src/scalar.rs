@@ -6,10 +6,8 @@ mod sealed {
     impl SealedScalar for f64 {}
 }
 
-/// Component of a step: `f32` or `f64`, nothing else.
-///
-/// Everything is computed in `f64` and rounded once at the end, so an `f32` result is the `f64` result of the same
-/// (widened) sequences to within half a unit in its last place. The trait is sealed: that claim is proved for these two.
+/// Component of a step: `f32` or `f64`. Everything is computed in `f64` and rounded once at the end: sealed, as that
+/// claim is proved for these two.
 pub trait Scalar:
     sealed::SealedScalar + Copy + PartialEq + std::fmt::Debug + Send + Sync + 'static
 {

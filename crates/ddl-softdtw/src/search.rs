@@ -2,9 +2,8 @@
 
 use rayon::prelude::*;
 
-use crate::decision::{Candidates, self_values};
+use crate::decision::{Candidates, Neighbour, self_values};
 use crate::error::{SearchError, SequenceRole, SoftDtwError};
-use crate::neighbour::Neighbour;
 use crate::refine::PairValues;
 use crate::sieve::CandidateSieve;
 use crate::value::{SoftDtw, check, finite};
@@ -84,8 +83,8 @@ impl<const D: usize> SearchIndex<D> {
         Ok(index)
     }
 
-    /// The same index searched with another instruction set than the fastest of the machine, for tests and measurements:
-    /// the results are the same to the last bit.
+    /// The same index searched with another instruction set than the fastest of the machine: the same results to the
+    /// last bit.
     ///
     /// # Errors
     /// [`SearchError::InstructionSet`] when the machine lacks it.
@@ -117,19 +116,18 @@ impl<const D: usize> SearchIndex<D> {
     /// The `n` candidates nearest to `query` (all of them when there are fewer), nearest first, ties by index.
     ///
     /// # Shapes
-    /// `query`: at least one step of `D` components, in the unit of the candidates; it may be longer or shorter than they are.
+    /// `query`: at least one step of `D` components, of any length.
     ///
     /// # Errors
-    /// [`SearchError::Query`] when the query is empty or not finite, or when a distance to be returned leaves the range of
+    /// [`SearchError::Query`] when the query is empty or not finite, or a distance to be returned leaves the range of
     /// `f64`.
     pub fn nearest(&self, query: &[[f64; D]], n: usize) -> Result<Vec<Neighbour>, SearchError> {
         let mut found = self.search(&[query], n);
         Ok(found.pop().unwrap_or(Ok(Vec::new()))?)
     }
 
-    /// [`SearchIndex::nearest`] for many queries, in parallel over the current `rayon` pool.
-    ///
-    /// The result does not depend on the number of threads.
+    /// [`SearchIndex::nearest`] for many queries, in parallel over the current `rayon` pool; the number of threads
+    /// changes nothing.
     ///
     /// # Errors
     /// [`SearchError::BatchQuery`] for the first query that is not valid.

@@ -11,9 +11,8 @@ mod window;
 
 use rayon::prelude::*;
 
-use crate::decision::{Candidates, self_values};
+use crate::decision::{Candidates, Neighbour, self_values};
 use crate::error::{SequenceRole, SoftDtwError};
-use crate::neighbour::Neighbour;
 use crate::refine::PairValues;
 use crate::value::{SoftDtw, check, finite};
 use ddl_simd::{Dispatch, InstructionSet};
@@ -29,18 +28,15 @@ const QUERY_WINDOWS: usize = 64;
 
 /// All windows of one length of many tracks, prepared for repeated search; `D` components a step.
 ///
-/// [`SearchIndex`](crate::SearchIndex) takes its candidates one by one. Here they are the windows of `length` consecutive
-/// steps of tracks that are longer, from every step on, and neighbouring windows share nearly all they are computed from:
-/// 2^(−cost/γ) of a step of the query and a step of a track serves up to `length`² pairs of windows, and so do the sums
-/// over the warping paths before and behind a common cell. A query track with all its windows
-/// ([`SlidingIndex::nearest_windows`]) shares on both sides, a single window ([`SlidingIndex::nearest`]) on one. The answer
-/// is that of a [`SearchIndex`](crate::SearchIndex) of the same windows, many times faster; where candidates do not
-/// overlap, there is nothing to share and that index is the one to use.
+/// The candidates are the windows of `length` consecutive steps of longer tracks, from every step on. Neighbouring
+/// windows share nearly all they are computed from; a query track with all its windows
+/// ([`SlidingIndex::nearest_windows`]) shares on both sides, a single window ([`SlidingIndex::nearest`]) on one. The
+/// answer is that of a [`SearchIndex`](crate::SearchIndex) of the same windows, many times faster.
 ///
 /// # Numerics
-/// Set, order and distances are decided in `f64`, to a relative error of the sum over the paths below 1e-12 (2e-12 for windows
-/// of 180 steps; values beyond 570 γ as [`SoftDtw`] states): results are exact up to ties within that error times γ and do not
-/// depend on the number of threads or the instruction set.
+/// Set, order and distances are decided in `f64`, to a relative error of the sum over the paths below 1e-12 (2e-12 for
+/// windows of 180 steps): results are exact up to ties within that error times γ and do not depend on the number of
+/// threads or the instruction set.
 ///
 /// # Examples
 /// ```
@@ -164,11 +160,10 @@ impl<const D: usize> SlidingIndex<D> {
         self.dtw
     }
 
-    /// The `n` windows nearest to the window `query` (all of them when there are fewer), nearest first, ties by track and
-    /// offset.
+    /// The `n` windows nearest to the window `query` (or all of them), nearest first, ties by track and offset.
     ///
     /// # Errors
-    /// A query that is not finite or not of the length of a window, or a distance to be returned that leaves the range of
+    /// A query that is not finite or not of the length of a window, or a distance to be returned beyond the range of
     /// `f64`.
     pub fn nearest(
         &self,
@@ -187,7 +182,7 @@ impl<const D: usize> SlidingIndex<D> {
 
     /// For every window of the track `query`, from its first step on, the `n` windows nearest to it.
     ///
-    /// A query shorter than a window has none. Long queries are searched in parallel over the current `rayon` pool.
+    /// A query shorter than a window has none.
     ///
     /// # Errors
     /// As [`SlidingIndex::nearest`].
@@ -200,8 +195,6 @@ impl<const D: usize> SlidingIndex<D> {
     }
 
     /// [`SlidingIndex::nearest_windows`] for many tracks, in parallel over the current `rayon` pool.
-    ///
-    /// The result does not depend on the number of threads.
     ///
     /// # Errors
     /// [`SlidingError::BatchQuery`] for the first track that is not valid.

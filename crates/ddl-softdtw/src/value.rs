@@ -25,10 +25,8 @@ use crate::wavefront::Forget;
 /// (D + 2 (n + m)) u |v|               for γ = 0 and where some cost exceeds γ · 3.1e15 / (n + m)
 /// ```
 ///
-/// (and, for `f32`, by the rounding of the result). The first is that of a recursion with exp(−δ/γ) on numbers of
-/// unlimited exponent, where nothing underflows and nothing cancels; the second that of the log domain. No finite input
-/// gives NaN, and the only overflow, a true value beyond the range of the number type, is an error. `D(x, y)` and
-/// `D(y, x)` agree to the last bit.
+/// (and, for `f32`, by the rounding of the result). No finite input gives NaN, and the only overflow, a true value
+/// beyond the range of the number type, is an error. `D(x, y)` and `D(y, x)` agree to the last bit.
 ///
 /// # References
 /// Cuturi & Blondel, *Soft-DTW: a differentiable loss function for time-series*, ICML 2017, algorithm 1; DDL paper,
@@ -68,8 +66,7 @@ impl SoftDtw {
 
     /// The same over the warping paths within `band` only, which takes a time in proportion to its width.
     ///
-    /// The vector kernels of searches and batches know no band: with one, these evaluate pair by pair, which takes up to a
-    /// hundred times as long.
+    /// Searches and batches evaluate pair by pair with a band, which takes up to a hundred times as long.
     #[must_use]
     pub fn with_band(self, band: Band) -> Self {
         Self {
@@ -117,15 +114,6 @@ impl SoftDtw {
     /// # Errors
     /// As [`SoftDtw::value`].
     ///
-    /// # Examples
-    /// ```
-    /// use ddl_softdtw::{Cost, SoftDtw};
-    /// let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean)?;
-    /// let x = [[0.0, 1.0], [0.5, 0.5]];
-    /// assert!(dtw.value(&x, &x)? < 0.0);
-    /// assert_eq!(dtw.normalised(&x, &x)?, 0.0);
-    /// # Ok::<(), ddl_softdtw::SoftDtwError>(())
-    /// ```
     pub fn normalised<T: Scalar, const D: usize>(
         &self,
         x: &[[T; D]],

@@ -6,11 +6,9 @@
 //! R(i, j) = 2^−t(i, j) · ( R(i−1, j−1) + R(i−1, j) + R(i, j−1) ),   t = δ log2(e) / γ,
 //! ```
 //!
-//! so a cell needs one exponential, which no other cell waits for, and no logarithm. R is far out of the range of `f64`
-//! for all but short sequences, so it is held as `significand · 2^exponent` with the exponent in a number of its own: the
-//! sum of the whole parts of t along the cheapest path, an exact integer. Terms are aligned by exact powers of two, all of
-//! them are positive, nothing cancels and nothing underflows: each cell adds a few units of roundoff to the relative error
-//! of R, whatever the range of the costs. Short sequences with small costs do without the exponent, and give the same bits.
+//! so a cell needs one exponential and no logarithm. R is held as `significand · 2^exponent`, the exponent an exact
+//! integer: nothing cancels and nothing underflows. Short sequences with small costs do without the exponent, and give
+//! the same bits.
 //!
 //! # Error
 //! To first order in u = 2^−53, the relative error of R is at most the largest over paths of the sum of those of its cells:
@@ -21,8 +19,7 @@
 //!
 //! # Order
 //! Four consecutive rows (a strip) advance together, each one column behind the row above it: the cells of a step are
-//! independent of each other, which hides the latency of the recursion and lets the compiler use vector instructions. One
-//! row is kept between strips.
+//! independent of each other. One row is kept between strips.
 #![expect(
     clippy::inline_always,
     reason = "the lanes stay in registers only when what works on them is inlined"

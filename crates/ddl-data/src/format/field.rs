@@ -45,8 +45,8 @@ impl Who {
     }
 }
 
-/// A pedestrian: a number as [`integer`] reads it, or a word. A fraction, NaN, an infinite number and an empty field are refused;
-/// whole numbers that are too large, and digits that only look like a number, such as `5e20` among hexadecimal names, are words.
+/// A pedestrian: a number as [`integer`] reads it, or a word. A fraction, NaN, an infinite number and an empty field
+/// are refused; whole numbers that are too large are words.
 pub(super) fn pedestrian(text: &str, name: &'static str) -> Result<Who, FormatProblem> {
     let text = text.trim();
     match integer(text, name) {

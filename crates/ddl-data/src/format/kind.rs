@@ -13,22 +13,21 @@ use crate::unknown_name::UnknownName;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Format {
-    /// Four lines of comma-separated numbers, one field an observation: frame, pedestrian, **y**, **x**
-    /// (m). The files of the `star` convention.
+    /// Four lines of comma-separated numbers, one field an observation: frame, pedestrian, **y**, **x** (m). The files
+    /// of the `star` convention.
     StarCsv,
     /// One observation a line, four fields separated by tabs or blanks: frame, pedestrian, x, y (m).
     /// The files of the `social-gan` convention.
     SocialGan,
-    /// A comma-separated table with a header that names the columns `frame`, `pedestrian`, `x` and `y`
-    /// (m) in any order: the format for one's own tracks.
+    /// A comma-separated table whose header names `frame`, `pedestrian`, `x` and `y` (m) in any order: for one's own
+    /// tracks.
     Table,
-    /// The newline-delimited JSON of TrajNet++: `{"track": {"f", "p", "x", "y"}}` a line (frame, pedestrian,
-    /// metres). Lines of forecasts (with `prediction_number`), of scenes and of anything else are no
-    /// observations.
+    /// The newline-delimited JSON of TrajNet++: `{"track": {"f", "p", "x", "y"}}` a line (frame, pedestrian, metres).
+    /// Lines of forecasts (with `prediction_number`), of scenes and of anything else are no observations.
     #[serde(rename = "trajnet")]
     TrajNet,
-    /// The `obsmat.txt` of the ETH recordings: eight columns separated by blanks, frame, pedestrian, x, z, **y**
-    /// (m) and three velocities, of which the ground plane is x and y.
+    /// The `obsmat.txt` of the ETH recordings: frame, pedestrian, x, z, **y** (m) and three velocities, separated by
+    /// blanks.
     Obsmat,
 }
 
@@ -61,7 +60,7 @@ impl Format {
     /// - anything else: [`StarCsv`](Self::StarCsv) where it is four lines of numbers that are longer than four
     ///   fields, else [`Table`](Self::Table).
     ///
-    /// Extensions count in capital letters too. It is a guess for those who did not say: reading with the format guessed still checks everything.
+    /// Extensions count in capital letters too. Reading with the format guessed still checks everything.
     #[must_use]
     pub fn guess(path: &Path, bytes: &[u8]) -> Self {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
@@ -105,8 +104,7 @@ impl FromStr for Format {
     }
 }
 
-/// Four lines of numbers. Four lines of four numbers may as well be a table whose header was forgotten, which had
-/// better be refused than read the wrong way round.
+/// Four lines of numbers. Four lines of four numbers may as well be a table whose header was forgotten.
 fn is_star(lines: &[&[u8]]) -> bool {
     let filled = lines.iter().filter(|line| !line.trim_ascii().is_empty());
     let number = |field: &[u8]| {

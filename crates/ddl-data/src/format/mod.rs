@@ -1,8 +1,8 @@
 //! File formats of recordings: text in, a checked [`Recording`] out.
 //!
-//! Every reader refuses what it does not understand and says where: file, line, field. Nothing is
-//! skipped, repaired or guessed; the order of the rows does not matter. TrajNet++ alone says that lines and
-//! fields of other kinds may stand between, and that overlapping scenes may repeat a track.
+//! Every reader refuses what it does not understand and says where: file, line, field. The order of the rows does not
+//! matter. In TrajNet++ alone, lines and fields of other kinds may stand between, and overlapping scenes may repeat a
+//! track.
 
 mod blanks;
 mod field;
@@ -26,9 +26,8 @@ use place::FilePlace;
 
 /// Reads one file of tracks; the recording is named after the file, without its extension.
 ///
-/// The files do not say how many raw frames a step of 0.4 s has: taken is the most common difference
-/// of two successive frames (the smaller one of two equally common). Where that is wrong, set it with
-/// [`Recording::with_frame_step`].
+/// The frame step is the most common difference of two successive frames (the smaller one of two equally common). Where
+/// that is wrong, set it with [`Recording::with_frame_step`].
 ///
 /// # Errors
 /// If the file cannot be read, or its content is wrong: see [`FormatError`](crate::FormatError).

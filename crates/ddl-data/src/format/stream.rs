@@ -35,12 +35,12 @@ pub struct Frame {
 
 /// Reads tracks frame by frame, as a tracker writes them: in order of time, one observation a line.
 ///
-/// A frame is whole when a line of a later one comes, when an empty line comes, or at the end. What the lines are is told from
-/// the first: a header (`table`), a JSON object (`trajnet`), or four or eight columns parted by blanks (`social-gan`, `obsmat`). The files of the `star`
-/// convention are of four lines, which do not arrive in order of time.
+/// A frame is whole when a line of a later one comes, when an empty line comes, or at the end. What the lines are is
+/// told from the first: a header (`table`), a JSON object (`trajnet`), or four or eight columns (`social-gan`,
+/// `obsmat`). Files of the `star` convention do not arrive in order of time.
 ///
-/// Pedestrians may be words; a number stays one, also beside words. Memory is bounded by the people of a frame, of whom there may be 100,000, and the last
-/// 200,000 words: whose word was forgotten meanwhile is somebody new. A last line that was cut off is read as far as it goes.
+/// Pedestrians may be words; a number stays one, also beside words. Memory is bounded by the people of a frame, 100,000
+/// at most, and the last 200,000 words: whose word was forgotten is somebody new.
 #[derive(Debug)]
 pub struct FrameReader<R> {
     reader: R,
@@ -97,8 +97,8 @@ impl<R: BufRead> FrameReader<R> {
     /// The next whole frame; waits for it. `None` at the end.
     ///
     /// # Errors
-    /// If nothing can be read any more, or a line is wrong: see [`FormatError`]. What came before has been given out; after an error
-    /// the reader is at the next line.
+    /// If nothing can be read any more, or a line is wrong: see [`FormatError`]. After an error the reader is at the
+    /// next line.
     pub fn next_frame(&mut self) -> Result<Option<Frame>, DataError> {
         while !self.ended {
             let Some(text) = self.line()? else {

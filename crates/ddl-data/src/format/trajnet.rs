@@ -13,10 +13,8 @@ use super::rows::TrackRow;
 use crate::error::{FormatError, FormatProblem};
 use crate::{PedestrianName, Position};
 
-/// The tracks that were observed: those of forecasts, which name a `prediction_number`, are left out.
-///
-/// Scenes say which part of the recording is to be forecast and add no observation. Where they overlap,
-/// files may repeat a track; rows that agree count once.
+/// The tracks that were observed: those of forecasts, which name a `prediction_number`, are left out. Rows that agree
+/// count once.
 #[expect(
     clippy::float_cmp,
     reason = "a repeated track is written with the same digits"

@@ -3,14 +3,15 @@
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::clock::{DT, FRAME_STEP, SUBSTEPS};
 use super::force::{self, BODY, WalkingMotion};
 use super::layout::{Leg, SceneLayout};
 use super::population::{self, Party};
 use super::vector::{add, norm, scale, sub, unit};
-use super::walker::{ARRIVED, SimulatedPedestrian};
+use super::walker::{ARRIVED, DT, SUBSTEPS, SimulatedPedestrian};
 use crate::{Observation, PedestrianId, Position, TIME_STEP};
 
+/// Raw frames in one step of 0.4 s, as in most real recordings.
+pub(super) const FRAME_STEP: i64 = 10;
 /// Time before recording starts, so that the scene is peopled (s).
 const WARM_UP: f64 = 20.0;
 /// Nobody gets faster than this multiple of the desired speed.

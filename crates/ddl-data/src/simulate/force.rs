@@ -9,7 +9,7 @@ pub(super) const BODY: f64 = 0.2;
 /// Time in which a walker adapts its velocity (s).
 const RELAXATION: f64 = 0.5;
 
-// The interaction of two walkers, Moussaïd et al. 2009.
+// The interaction of two walkers, Moussaïd et al. 2009, with their symbols.
 /// How strongly they brake or turn at most (m/s²).
 const STRENGTH: f64 = 4.5;
 /// Reach of the interaction for each unit of the relative motion (m): gamma.
@@ -54,9 +54,9 @@ pub(super) fn driving(walker: WalkingMotion, desired: Position) -> Position {
 
 /// Away from a stranger: brake, and turn aside early when the two will meet.
 ///
-/// With `e` the unit vector to the other and `D = lambda (v_i - v_j) + e`, the force decays with
-/// `exp(-d / B)`, `B = gamma |D|`, along `D` (braking) and across it (turning), the latter away from
-/// the side on which the other is; `d` is counted between the bodies: Moussaïd et al., Proc. R. Soc. B 276 (2009), equations 4 and 5.
+/// With `e` the unit vector to the other and `D = lambda (v_i - v_j) + e`, the force decays with `exp(-d / B)`, `B =
+/// gamma |D|`, along `D` (braking) and across it (turning); `d` is counted between the bodies: Moussaïd et al., Proc.
+/// R. Soc. B 276 (2009), equations 4 and 5.
 pub(super) fn stranger(walker: WalkingMotion, other: WalkingMotion, other_radius: f64) -> Position {
     let apart = sub(other.position, walker.position);
     let distance = norm(apart);

@@ -1,24 +1,17 @@
 //! Simulated crowds: a social-force model, for machines without real recordings.
 //!
-//! Each walker accelerates towards the velocity it likes, brakes and turns aside for those it would
-//! run into, keeps off walls, and stays with its group (Helbing and Molnár, Phys. Rev. E 51 (1995);
-//! the interaction of two walkers after Moussaïd et al., Proc. R. Soc. B 276 (2009); groups after
-//! Moussaïd et al., `PLoS` ONE 5 (2010)). Desired speeds are drawn from N(1.34, 0.26) m/s. Arrivals are
-//! a Poisson process of single walkers, pairs and groups of three; some stop, stand for a while, and
-//! go on. Integrated with dt = 0.05 s, sampled every 0.4 s.
+//! Each walker accelerates towards the velocity it likes, brakes and turns aside for those it would run into, keeps off
+//! walls, and stays with its group (Helbing and Molnár, Phys. Rev. E 51 (1995); Moussaïd et al., Proc. R. Soc. B 276
+//! (2009), and `PLoS` ONE 5 (2010)). Desired speeds are drawn from N(1.34, 0.26) m/s. Arrivals are a Poisson process of
+//! single walkers, pairs and groups of three; some stop for a while. Integrated with dt = 0.05 s, sampled every 0.4 s.
 //!
-//! A simulated crowd is no substitute for real people: numbers measured on it say that a pipeline
-//! works, and nothing about how well real walkers are forecast.
+//! Numbers measured on such a crowd say nothing about how well real walkers are forecast.
 //!
 //! ```
-//! use ddl_data::simulate::CrowdScene;
-//!
-//! let crowd = CrowdScene::Plaza.simulate(7);
-//! assert!(crowd.recording.pedestrians().len() > 50);
-//! assert!(!crowd.groups.is_empty());
+//! let crowd = ddl_data::simulate::CrowdScene::Plaza.simulate(7);
+//! assert!(crowd.recording.pedestrians().len() > 50 && !crowd.groups.is_empty());
 //! ```
 
-mod clock;
 mod engine;
 mod force;
 mod layout;
@@ -35,7 +28,7 @@ pub use obstacle::{Pillar, Wall};
 pub use scene::CrowdScene;
 
 use crate::{PedestrianId, Recording};
-use clock::FRAME_STEP;
+use engine::FRAME_STEP;
 use layout::SceneLayout;
 
 /// Recorded steps of a scene: three minutes.

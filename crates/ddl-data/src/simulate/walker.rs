@@ -1,10 +1,14 @@
 //! One walker: where it wants to go, how fast, and when it has got there.
 
-use super::clock::DT;
 use super::force::WalkingMotion;
 use super::layout::Leg;
 use super::vector::{add, dot, norm, scale, sub, unit};
-use crate::{PedestrianId, Position};
+use crate::{PedestrianId, Position, TIME_STEP};
+
+/// Integration steps in one step of 0.4 s.
+pub(super) const SUBSTEPS: i64 = 8;
+/// One integration step (s).
+pub(super) const DT: f64 = TIME_STEP / SUBSTEPS as f64;
 
 /// Who comes this close to a place to stand at has arrived (m) ...
 pub(super) const ARRIVED: f64 = 0.3;

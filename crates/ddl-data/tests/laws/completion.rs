@@ -10,10 +10,6 @@ use proptest::prelude::*;
 
 const STEP: i64 = 4;
 
-fn completion() -> impl Strategy<Value = Completion> {
-    (2..=8_usize, 0..=2_usize).prop_map(|(least, gap)| Completion::new(least, gap).unwrap())
-}
-
 /// Frames at which somebody is seen: mostly a step apart, with holes, and now and then off the beat.
 fn frames() -> impl Strategy<Value = Vec<i64>> {
     let later = prop_oneof![
@@ -124,26 +120,6 @@ proptest! {
             prop_assert_eq!(found, expected, "frame {}", frame);
         }
         prop_assert!(windows.next().is_none());
-    }
-
-    /// Windows of whole observations are there with completion too, and what was seen is not touched.
-    #[test]
-    fn whole_observations_are_left_as_they_are(
-        tracks in prop::collection::vec(frames(), 1..4),
-        completion in completion(),
-    ) {
-        let tracks: Vec<Vec<(i64, Position)>> = (0..)
-            .zip(tracks)
-            .map(|(id, frames)| frames.into_iter().map(|frame| (frame, [frame as f64, f64::from(id)])).collect())
-            .collect();
-        let recording = recording(&tracks);
-        let whole = recording.observed_windows();
-        let completed = recording.completed_windows(completion);
-        for window in whole {
-            let same = completed.iter().find(|other| other.frames() == window.frames()).unwrap();
-            let seen = same.keeping(|i| same.made_up(i).is_nothing());
-            prop_assert_eq!(seen, Some(window));
-        }
     }
 }
 

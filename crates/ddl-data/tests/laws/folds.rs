@@ -59,39 +59,20 @@ fn training_and_validation_share_no_moment_of_a_simulated_crowd() {
 fn recordings_set_apart_are_validated_on_whole_and_not_trained_on() {
     let dataset = Dataset::simulated(2);
     let rule = WindowRule::Complete;
-    let whole = dataset.recording("crossing").unwrap().windows(rule);
     let fold = dataset.fold("plaza").unwrap();
     let apart = fold.clone().set_apart(&["crossing".to_owned()]).unwrap();
     let split = apart.training_split(rule, 0.25);
-    let of_crossing: Vec<Window> = split
-        .validation
-        .iter()
-        .filter(|w| w.recording() == "crossing")
-        .cloned()
-        .collect();
-    assert_eq!(of_crossing, whole);
-    let training = apart.training_windows(rule);
-    assert!(
-        split
-            .training
-            .iter()
-            .chain(&training)
-            .all(|w| w.recording() != "crossing")
-    );
-    let others = fold
-        .training_split(rule, 0.25)
-        .training
-        .into_iter()
-        .filter(|w| w.recording() != "crossing");
-    assert_eq!(split.training, others.collect::<Vec<_>>());
-    let error = fold
-        .set_apart(&["plaza".to_owned()])
-        .unwrap_err()
-        .to_string();
-    assert!(
-        error.starts_with("\"plaza\" is not one of these recordings: corridor"),
-        "{error}"
-    );
+    let is_crossing = |w: &&Window| w.recording() == "crossing";
+    let of_crossing = split.validation.iter().filter(is_crossing).cloned();
+    let whole = dataset.recording("crossing").unwrap().windows(rule);
+    assert_eq!(of_crossing.collect::<Vec<_>>(), whole);
+    assert!(!apart.training_windows(rule).iter().any(|w| is_crossing(&w)));
+    let mut others = fold.training_split(rule, 0.25).training;
+    others.retain(|w| !is_crossing(&w));
+    assert_eq!(split.training, others);
+    let error = fold.set_apart(&["plaza".to_owned()]).unwrap_err();
+    let expected = "\"plaza\" is not one of these recordings: corridor";
+    assert!(error.to_string().starts_with(expected), "{error}");
 }
 
 /// Rows of the files `NAME_train.txt` and `NAME_val.txt` that Social-GAN publishes, and the first frame of the

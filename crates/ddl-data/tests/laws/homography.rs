@@ -1,6 +1,6 @@
 //! From pixels to metres.
 
-use ddl_data::{Format, Homography, HomographyError, parse_recording};
+use ddl_data::{Format, Homography, parse_recording};
 use proptest::prelude::*;
 
 /// Of a camera above a street, in the notation of `H.txt`.
@@ -29,33 +29,32 @@ fn a_camera_above_a_street() {
 
 #[test]
 fn what_is_no_matrix_is_refused() {
-    let refused = |text: &str| text.parse::<Homography>().unwrap_err();
-    assert_eq!(refused(""), HomographyError::Rows { found: 0 });
-    assert_eq!(
-        refused("1 0 0\n0 1 0\n"),
-        HomographyError::Rows { found: 2 }
-    );
-    for (text, line) in [
-        ("1 0 0\n0 one 0\n0 0 1", 2),
-        ("1 0 0\n0 1\n0 0 1", 2),
-        ("1 0 0 0\n0 1 0\n0 0 1", 1),
-        ("1 0 0\n0 1 0\n0 0 1\n0 0 1", 4),
+    for (text, message) in [
+        ("", "a homography has three rows of three numbers, found 0"),
+        (
+            "1 0 0\n0 1 0\n",
+            "a homography has three rows of three numbers, found 2",
+        ),
+        (
+            "1 0 0\n0 one 0\n0 0 1",
+            "line 2 of the homography must hold",
+        ),
+        ("1 0 0\n0 1\n0 0 1", "line 2 of the homography must hold"),
+        (
+            "1 0 0 0\n0 1 0\n0 0 1",
+            "line 1 of the homography must hold",
+        ),
+        (
+            "1 0 0\n0 1 0\n0 0 1\n0 0 1",
+            "line 4 of the homography must hold",
+        ),
+        ("1 0 0\n0 NaN 0\n0 0 1", "row 2, column 2 of the homography"),
+        ("1 2 3\n1 2 3\n0 0 1", "the homography is singular"),
+        ("0 0 0\n0 0 0\n0 0 0", "the homography is singular"),
+        ("1e200 0 0\n1e200 0 0\n0 0 1", "the homography is singular"),
     ] {
-        let HomographyError::Line { line: found, .. } = refused(text) else {
-            panic!("{text:?}")
-        };
-        assert_eq!(found, line, "{text:?}");
-    }
-    assert_eq!(
-        refused("1 0 0\n0 NaN 0\n0 0 1"),
-        HomographyError::NotFinite { row: 1, column: 1 }
-    );
-    for text in [
-        "1 2 3\n1 2 3\n0 0 1",
-        "0 0 0\n0 0 0\n0 0 0",
-        "1e200 0 0\n1e200 0 0\n0 0 1",
-    ] {
-        assert_eq!(refused(text), HomographyError::Singular, "{text:?}");
+        let error = text.parse::<Homography>().unwrap_err().to_string();
+        assert!(error.starts_with(message), "{text:?}: {error}");
     }
     let commas: Homography = "1,0,2\n\n0,1,3\n0,0,1\n".parse().unwrap();
     assert_eq!(commas.apply([1.0, 1.0]), Some([3.0, 4.0]));
@@ -65,6 +64,9 @@ fn what_is_no_matrix_is_refused() {
 fn the_horizon_is_nowhere() {
     let tilted: Homography = "1 0 0\n0 1 0\n0 -0.01 1".parse().unwrap();
     assert_eq!(tilted.apply([0.0, 100.0]), None);
+    let plain: Homography = "1 0 0\n0 1 0\n0 0 1\n".parse().unwrap();
+    assert_eq!(plain.apply([1e7, -1e7]), Some([1e7, -1e7]));
+    assert_eq!(plain.apply([1.1e7, 0.0]), None);
     let text = b"frame,pedestrian,x,y\n0,1,5,50\n1,1,5,100\n";
     let recording = parse_recording(text, "pixels", Format::Table).unwrap();
     let error = tilted.on_the_ground(&recording).unwrap_err().to_string();
@@ -86,11 +88,4 @@ proptest! {
             prop_assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-9 * far, "{a:?} {b:?}");
         }
     }
-}
-
-#[test]
-fn what_lies_beyond_every_map_is_the_horizon() {
-    let plain: Homography = "1 0 0\n0 1 0\n0 0 1\n".parse().unwrap();
-    assert_eq!(plain.apply([1e7, -1e7]), Some([1e7, -1e7]));
-    assert!(plain.apply([1.1e7, 0.0]).is_none());
 }

@@ -29,6 +29,10 @@ fn errors_change_nothing() {
             assert_eq!(tracks, before);
         }
     }
+    for found in [0, -1, (1 << 31) + 1] {
+        let error = LiveTracks::with_frame_step(found);
+        assert_eq!(error, Err(LiveError::FrameStep { found }));
+    }
 }
 
 /// People come and go for 40,000 frames, more than four hours, each with an id of their own: who left is forgotten at once, with holes to fill a
@@ -49,14 +53,6 @@ fn nobody_is_remembered_who_left() {
         assert!(windows > 39_000, "{windows}");
         assert_eq!(tracks.push(40_000, []), Ok(None));
         assert_eq!(tracks.is_empty(), completion == Completion::NONE);
-    }
-}
-
-#[test]
-fn a_step_of_nothing_is_refused() {
-    for found in [0, -1, (1 << 31) + 1] {
-        let error = LiveTracks::with_frame_step(found);
-        assert_eq!(error, Err(LiveError::FrameStep { found }));
     }
 }
 

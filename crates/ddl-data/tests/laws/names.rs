@@ -2,36 +2,27 @@
 
 use ddl_data::{Completion, Format, FrameReader, PedestrianId, PedestrianName, parse_recording};
 
+/// A line of a file, given the frame and the pedestrian.
+type Row = fn(i64, &str) -> String;
+
 /// The same tracks with words for pedestrians, in every format that may have them.
 #[test]
 fn pedestrians_may_be_words() {
     let names = ["7f3e-aa", "12", "007", "1e3"];
-    let rows: Vec<(i64, &str)> = (0..8).flat_map(|t| names.map(|name| (t, name))).collect();
-    let text = |head: &str, row: fn(i64, &str) -> String| {
-        head.to_owned()
-            + &rows
-                .iter()
-                .map(|&(t, name)| row(t, name))
-                .collect::<String>()
-    };
-    for (format, text) in [
-        (
-            Format::Table,
-            text("frame,pedestrian,x,y\n", |t, name| {
-                format!("{t},{name},{t},0\n")
-            }),
-        ),
-        (
-            Format::SocialGan,
-            text("", |t, name| format!("{t} {name} {t} 0\n")),
-        ),
-        (
-            Format::TrajNet,
-            text("", |t, name| {
-                format!("{{\"track\": {{\"f\": {t}, \"p\": \"{name}\", \"x\": {t}, \"y\": 0}}}}\n")
-            }),
-        ),
-    ] {
+    let formats: [(Format, &str, Row); 3] = [
+        (Format::Table, "frame,pedestrian,x,y\n", |t, name| {
+            format!("{t},{name},{t},0\n")
+        }),
+        (Format::SocialGan, "", |t, name| {
+            format!("{t} {name} {t} 0\n")
+        }),
+        (Format::TrajNet, "", |t, name| {
+            format!("{{\"track\": {{\"f\": {t}, \"p\": \"{name}\", \"x\": {t}, \"y\": 0}}}}\n")
+        }),
+    ];
+    for (format, head, row) in formats {
+        let rows = (0..8).flat_map(|t| names.map(|name| row(t, name)));
+        let text = head.to_owned() + &rows.collect::<String>();
         let recording = parse_recording(text.as_bytes(), "f", format).unwrap();
         let window = &recording.observed_windows()[0];
         let found: Vec<String> = (0..4).map(|i| window.name(i).to_string()).collect();

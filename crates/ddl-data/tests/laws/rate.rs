@@ -18,48 +18,34 @@ fn step_seconds(steps: &InSteps, rate: f64) -> f64 {
     steps.recording.frame_step() as f64 / rate / steps.parts as f64
 }
 
+/// Whole numbers of frames are left alone, others are counted in parts of a frame. By hand: 12 frames a second are 4.8
+/// a step, 4 a second 1.6, 1 a second 0.4; 25 seen every third frame are 10 that are not seen.
 #[test]
-fn whole_numbers_of_frames_are_left_alone() {
-    for (rate, spacing, step) in [
-        (25.0, 1, 10),
-        (30.0, 1, 12),
-        (29.97, 1, 12),
-        (2.5, 1, 1),
-        (25.0, 10, 10),
-        (15.0, 6, 6),
-        (10.0, 2, 4),
-        (1000.0, 100, 400),
+fn a_step_is_a_whole_number_of_frames_or_of_their_parts() {
+    for (rate, spacing, parts, step, resampled) in [
+        (25.0, 1, 1, 10, false),
+        (29.97, 1, 1, 12, false),
+        (2.5, 1, 1, 1, false),
+        (25.0, 10, 1, 10, false),
+        (15.0, 6, 1, 6, false),
+        (10.0, 2, 1, 4, false),
+        (1000.0, 100, 1, 400, false),
+        (12.0, 1, 5, 24, true),
+        (24.0, 1, 5, 48, true),
+        (4.0, 1, 5, 8, true),
+        (1.0, 1, 5, 2, true),
+        (25.0, 3, 1, 10, true),
+        (7.0, 1, 5, 14, true),
     ] {
         let recording = walkers((0..50).map(|t| t * spacing), spacing);
         let steps = recording.in_steps(1.0 / rate).unwrap();
-        assert_eq!((steps.parts, steps.resampled), (1, false), "{rate}");
+        assert_eq!((steps.parts, steps.resampled), (parts, resampled), "{rate}");
         assert_eq!(steps.recording.frame_step(), step, "{rate}");
-        assert_eq!(steps.recording.observations(), recording.observations());
-        assert!((step_seconds(&steps, rate) - 0.4).abs() < 0.002);
-    }
-}
-
-/// By hand: 12 frames a second are 4.8 a step, 4 a second 1.6, 1 a second 0.4; 25 seen every third frame are 10 that are not seen.
-#[test]
-fn other_rates_are_counted_in_parts_of_a_frame() {
-    for (rate, spacing, parts, step) in [
-        (12.0, 1, 5, 24),
-        (24.0, 1, 5, 48),
-        (4.0, 1, 5, 8),
-        (1.0, 1, 5, 2),
-        (25.0, 3, 1, 10),
-        (7.0, 1, 5, 14),
-    ] {
-        let recording = walkers((0..50).map(|t| t * spacing), spacing);
-        let steps = recording.in_steps(1.0 / rate).unwrap();
-        assert_eq!(
-            (steps.parts, steps.recording.frame_step()),
-            (parts, step),
-            "{rate}"
-        );
         let last = 49 * spacing * parts;
         assert_eq!(steps.recording.frames().last(), Some(&last), "{rate}");
-        assert!((step_seconds(&steps, rate) - 0.4).abs() < 1e-4);
+        let same = steps.recording.observations() == recording.observations();
+        assert_eq!(same, !resampled, "{rate}");
+        assert!((step_seconds(&steps, rate) - 0.4).abs() < 0.002);
     }
 }
 

@@ -49,33 +49,6 @@ fn present(recording: &Recording, start: i64) -> Vec<PedestrianId> {
 }
 
 proptest! {
-    /// The observed windows are those of everybody with 8 steps behind them, and contain the
-    /// observed part of every complete window.
-    #[test]
-    fn observed_windows_ask_nothing_of_the_future(rows in recording()) {
-        let recording = Recording::new("r", 6, rows).unwrap();
-        let observed = recording.observed_windows();
-        for window in &observed {
-            prop_assert!(!window.has_future());
-            prop_assert_eq!(window.steps(), OBSERVED);
-        }
-        let expected = recording.observations().iter().filter(|last| {
-            (1..OBSERVED as i64).all(|back| {
-                recording.at(last.frame - 6 * back).iter().any(|o| o.pedestrian == last.pedestrian)
-            })
-        });
-        prop_assert_eq!(observed.iter().map(Window::len).sum::<usize>(), expected.count());
-        for whole in recording.windows(WindowRule::Complete) {
-            let window = observed.iter().find(|w| w.start_frame() == whole.start_frame()).unwrap();
-            for (i, id) in whole.pedestrians().iter().enumerate() {
-                let j = window.pedestrians().iter().position(|other| other == id).unwrap();
-                prop_assert_eq!(window.track(j), whole.observed(i));
-            }
-        }
-    }
-}
-
-proptest! {
     #[test]
     fn tracks_of_windows_are_the_positions_of_the_recording(rows in recording()) {
         let recording = Recording::new("r", 6, rows).unwrap();
@@ -159,34 +132,40 @@ fn ids(range: std::ops::Range<i64>) -> Vec<PedestrianId> {
 #[test]
 fn windows_refuse_what_is_no_window() {
     let track = |length: usize| vec![[0.0, 0.0]; length];
-    let new = |ids, tracks| Window::new("r", 0, 10, ids, tracks).unwrap_err();
-    assert_eq!(new(vec![], vec![]), WindowError::Empty);
-    assert!(matches!(
-        new(ids(0..2), vec![track(20)]),
-        WindowError::Count { .. }
-    ));
-    assert!(matches!(
-        new(ids(0..1), vec![track(9)]),
-        WindowError::Length { found: 9, .. }
-    ));
-    assert!(matches!(
-        new(ids(0..2), vec![track(20), track(8)]),
-        WindowError::Length { .. }
-    ));
     let mut spoiled = track(20);
     spoiled[11] = [0.0, f64::NAN];
-    assert!(matches!(
-        new(ids(0..1), vec![spoiled]),
-        WindowError::NotFinite { index: 11, .. }
-    ));
+    let new = |start, step, ids, tracks| Window::new("r", start, step, ids, tracks).unwrap_err();
     let twice = vec![PedestrianId(1), PedestrianId(1)];
-    assert!(matches!(
-        new(twice, vec![track(8), track(8)]),
-        WindowError::Duplicate { .. }
-    ));
+    for (ids, tracks, message) in [
+        (vec![], vec![], "a window needs at least one pedestrian"),
+        (ids(0..2), vec![track(20)], "2 pedestrian ids but 1 tracks"),
+        (
+            ids(0..1),
+            vec![track(9)],
+            "pedestrian 0: a track of 9 positions",
+        ),
+        (
+            ids(0..2),
+            vec![track(20), track(8)],
+            "pedestrian 1: a track of 8",
+        ),
+        (
+            ids(0..1),
+            vec![spoiled],
+            "pedestrian 0, position 11 of the track",
+        ),
+        (
+            twice,
+            vec![track(8); 2],
+            "pedestrian 1 is in the window twice",
+        ),
+    ] {
+        let error = new(0, 10, ids, tracks).to_string();
+        assert!(error.starts_with(message), "{error}");
+    }
     for (start, step) in [(0, 0), (0, -10), (i64::MAX, 10), (0, i64::MAX)] {
-        let refused = Window::new("r", start, step, ids(0..1), vec![track(20)]);
-        assert!(matches!(refused, Err(WindowError::Frames { .. })));
+        let refused = new(start, step, ids(0..1), vec![track(20)]);
+        assert!(matches!(refused, WindowError::Frames { .. }));
     }
 }
 
@@ -197,6 +176,12 @@ fn changing_positions_changes_those_alone() {
         vec![[5.0, 5.0]; 20],
     ];
     let window = Window::new("r", 100, 6, ids(4..6), tracks).unwrap();
+    let alone = window.keeping(|i| i == 1).unwrap();
+    assert_eq!(alone.pedestrians(), ids(5..6));
+    assert_eq!(
+        (alone.track(0), window.keeping(|_| false)),
+        (window.track(1), None)
+    );
     let later = |_, step, [x, y]: Position| {
         if step >= OBSERVED {
             [x + 1.0, y]
@@ -205,6 +190,8 @@ fn changing_positions_changes_those_alone() {
         }
     };
     let changed = window.map_positions(later);
+    assert_eq!(window.reversed().track(0)[..2], [[19.0, 0.0], [18.0, 0.0]]);
+    assert_eq!(window.reversed().reversed(), window);
     assert_eq!(changed.without_future(), window.without_future());
     assert_ne!(changed.end(0), window.end(0));
     assert_eq!(

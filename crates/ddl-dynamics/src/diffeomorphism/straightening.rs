@@ -13,12 +13,11 @@ use unbending::Unbending;
 /// Points by which a path is known, evenly spaced along it.
 const SAMPLES: usize = 64;
 
-/// Points, spaced as the samples are, by which a path is continued straight at each of its ends: an
-/// end that is fitted from one side only is left with a wrong direction, and walks begin at an end.
+/// Points, spaced as the samples are, by which a path is continued straight at each of its ends: an end that is fitted
+/// from one side only is left with a wrong direction.
 const CONTINUATION: usize = 6;
 
-/// A continuation ends before it comes this near to another part of the path, in units of the
-/// distance of the samples. Two lines that cross have points within 0.71 of each other.
+/// A continuation ends before it comes this near to another part of the path, in units of the distance of the samples.
 const CLEARANCE: f64 = 1.25;
 
 /// The share of the layers that follow the path while it unbends; the others remove what is left.
@@ -44,49 +43,39 @@ impl<T: Real, const D: usize> Chain<T, D> {
     /// A chain of at most `layers` [local translations](LocalTranslation) that carries `path`, a
     /// polygon from a start to a goal, onto a straight line of the same length.
     ///
-    /// The distance of two points of the path along it becomes the distance of their images, so
-    /// `V(x) = |psi(x) - psi(p*)|` is about the length of the way that a walker at `x` on the path
-    /// still has to go, and the flow that descends `V` straight in the image follows the path.
+    /// The distance of two points of the path along it becomes the distance of their images, so the flow that descends
+    /// `V(x) = |psi(x) - psi(p*)|` straight in the image follows the path.
     ///
     /// # How
-    /// The path is unbent like a wire: all its turns are scaled by a factor that goes from 1 to 0
-    /// with the first three quarters of the layers, no side changes its length, and each shape is
-    /// placed over the one before it so that the points move as little as they can. Each layer
-    /// brings the images of the points nearer to the present shape. Its centre is the image of a
-    /// point, its rate one of 26 between 0.3 and 40 per length of the path, its translation
-    /// the best in the sense of least squares, `v = sum k_i r_i / sum k_i^2` over the residuals
-    /// `r_i`, shortened to a [contraction](LocalTranslation::contraction) of at most 1/2. All centres
-    /// and rates are tried and the one that lowers the sum of squared residuals most is taken, so
-    /// no layer raises it. The last quarter of the layers works on the straight line itself. At both
-    /// ends the path is continued straight for a tenth of its length, or until it would
-    /// meet another part of itself, so that the map is right about its direction there too.
+    /// The path is unbent like a wire: all its turns are scaled by a factor that goes from 1 to 0 with the first three
+    /// quarters of the layers, no side changes its length, and each shape is placed over the one before it. Each layer
+    /// brings the images of the points nearer to the present shape: of all centres at such an image and 26 rates
+    /// between 0.3 and 40 per length of the path, each with the translation of least squares, shortened to a
+    /// [contraction](LocalTranslation::contraction) of at most 1/2, the one that lowers the sum of squared residuals
+    /// most is taken. At both ends the path is continued straight for a tenth of its length, or until it would meet
+    /// another part of itself.
     ///
     /// In the method of Perrin and Schlehuber-Caissier the points go to the line between start and goal at once; a path that
     /// comes back to where it started would be crushed onto it. Here it is not, at the price that `psi(p*)` is not `p*`.
     ///
     /// # What is promised, and what is not
-    /// The chain is a diffeomorphism whatever the path. How straight the image is, is reported and
-    /// not promised: with 150 layers the mean residual of corners, hairpins, S-curves and arcs in
-    /// space is below 0.3 % of the length, the largest below 1.5 %. A path that crosses itself, or would while it unbends,
-    /// cannot be straightened so. The same path gives the same chain, at about half a millisecond a layer.
+    /// The chain is a diffeomorphism whatever the path. How straight the image is, is reported and not promised; a path
+    /// that crosses itself, or would while it unbends, cannot be straightened so. The same path gives the same chain.
     ///
     /// # Numerics
     /// Found in `f64` for both number types, in units of the length of the path and from its start.
     ///
     /// # Errors
     /// - [`DynamicsError::NonFinite`]: which component of which point.
-    /// - [`DynamicsError::InvalidPathLength`]: fewer than two different points, or so far apart or
-    ///   so near that the parameters of the layers do not fit into `T`.
-    /// - [`DynamicsError::PathTurnsBack`]: the path turns by 180 degrees on the spot, as every
-    ///   path in one dimension does that goes back by more than the distance of two samples.
+    /// - [`DynamicsError::InvalidPathLength`]: fewer than two different points, or so far apart or so near that the
+    ///   parameters of the layers do not fit into `T`.
+    /// - [`DynamicsError::PathTurnsBack`]: the path turns by 180 degrees on the spot.
     ///
     /// # References
-    /// N. Perrin, P. Schlehuber-Caissier, "Fast diffeomorphic matching to learn globally
-    /// asymptotically stable nonlinear dynamical systems", Systems & Control Letters 96 (2016).
-    /// R. L. Bishop, "There is more than one way to frame a curve", American
-    /// Mathematical Monthly 82 (1975), for the frame in which the turns are scaled. W. Kabsch, "A
-    /// solution for the best rotation to relate two sets of vectors", Acta Crystallographica A 32
-    /// (1976), for the placing.
+    /// N. Perrin, P. Schlehuber-Caissier, "Fast diffeomorphic matching to learn globally asymptotically stable
+    /// nonlinear dynamical systems", Systems & Control Letters 96 (2016). R. L. Bishop, "There is more than one way to
+    /// frame a curve", American Mathematical Monthly 82 (1975). W. Kabsch, "A solution for the best rotation to relate
+    /// two sets of vectors", Acta Crystallographica A 32 (1976).
     pub fn straightening(
         path: &[SVector<T, D>],
         layers: usize,
@@ -181,8 +170,7 @@ fn length<const D: usize>(path: &[SVector<f64, D>]) -> f64 {
     }
 }
 
-/// Whether the layers of a path that starts at `start` fit into `T`: images stay within a few
-/// lengths of the path, and rates are at most 40 per length.
+/// Whether the layers of a path that starts at `start` fit into `T`: images stay within a few lengths of the path.
 fn fits<T: Real, const D: usize>(start: &SVector<f64, D>, length: f64) -> bool {
     let reach = 16.0 * length + 16.0 * start.amax();
     length > 0.0 && T::rounded(reach).is_finite() && T::rounded(FASTEST_RATE / length).is_finite()
@@ -211,8 +199,7 @@ fn resampled<const D: usize>(path: &[SVector<f64, D>], length: f64) -> Vec<SVect
     samples
 }
 
-/// The samples with straight continuations at both ends, and the number of points before the first
-/// sample.
+/// The samples with straight continuations at both ends, and the number of points before the first sample.
 fn continued<const D: usize>(samples: &[SVector<f64, D>]) -> (Vec<SVector<f64, D>>, usize) {
     let spacing = 1.0 / (SAMPLES - 1) as f64;
     let mut points = samples.to_vec();

@@ -15,50 +15,40 @@ use crate::{
 
 /// A [`NaturalGradientFlow`] that slows its approach to obstacles and slides along them.
 ///
-/// At the distance `gap` from the surface of a ball, with the unit vector `n` away from it, a walker that
-/// comes nearer has the share `gap / margin` of its speed along `n` left:
+/// At the distance `gap` from the surface of a ball, with the unit vector `n` away from it, a walker that comes nearer
+/// has the share `gap / margin` of its speed along `n` left:
 ///
 /// ```text
 /// P' = P - (1 - share) q q^T / (n^T q)     q = P n     share = min(1, gap / margin)    n^T v' = share n^T v
 /// ```
 ///
-/// ([`slowed_along`](CholeskyMetric::slowed_along)), for one ball after the other. A walker who moves away
-/// from a ball is not slowed by it; one whom another ball turns back to it is. With one ball near, the
-/// velocity is continuous, because `P' u = P u` where `n^T v = 0`.
+/// ([`slowed_along`](CholeskyMetric::slowed_along)), for one ball after the other; a walker who moves away from a ball
+/// is not slowed by it. With one ball near, the velocity is continuous.
 ///
 /// # What is guaranteed
 /// For balls that stand still (Lemma 6 and Theorem 7 of `docs/stability.md`):
-/// - *The distance to the goal still falls* everywhere off the balls: `P' >= share P` is positive definite
-///   for `share > 0`. So this is a flow like every other, and a
-///   [`LyapunovCertificate`](crate::LyapunovCertificate) of it says so.
+/// - *The distance to the goal still falls* everywhere off the balls: `P' >= share P` is positive definite.
 /// - *No ball is entered*: each is either left or slowed, `|n^T v'| <= sqrt(2 share) lambda_max`.
-/// - *The goal is the only attractor*, if it is outside all balls, the balls do not touch, and the
-///   eigenvalues of `P` stay within `[m, M]`, `m > 0`. There is one more point of rest a ball, a saddle: where the ball
-///   is exactly between it and the goal.
+/// - *The goal is the only attractor*, if it is outside all balls, the balls do not touch, and the eigenvalues of `P`
+///   stay within `[m, M]`, `m > 0`. There is one more point of rest a ball, a saddle straight behind it. Balls that
+///   touch or overlap can form a dead end.
 ///
 /// In steps of finite length with [`StableEuler`](crate::StableEuler) the same holds, because
 /// [`longest_step`](Flow::longest_step) ends a step where half of the gap is used up along `n`.
 ///
 /// # Numerics
-/// The decrease goes first. A walker held up at a saddle still makes the smallest move to the goal that
-/// shows, a rounding a step, and so gets into the ball, rounding by rounding. And on a surface,
-/// where rounding has used up the gap, `epsilon lambda_max` of the approach is left, between several balls up to
-/// `sqrt(2 epsilon) lambda_max`. In `f64` neither shows; in `f32` allow some millimetres.
-///
-/// Balls that touch or overlap can form a dead end, where walkers come to rest. A walker who starts inside
-/// a ball is let out of it, not further in.
+/// The decrease goes first. A walker held up at a saddle still makes the smallest move to the goal that shows, and so
+/// gets into the ball, rounding by rounding. On a surface `epsilon lambda_max` of the approach is left, between several
+/// balls up to `sqrt(2 epsilon) lambda_max`. In `f64` neither shows; in `f32` allow some millimetres.
 ///
 /// # Obstacles that move
-/// Positive definiteness, and with it the decrease of the distance in every step, does not depend on the
-/// obstacles. Keeping clear does: give each step the obstacles as they will be at its end
-/// ([`ObstacleSchedule`](crate::ObstacleSchedule)), and a walker who is clear of them there at the start
-/// of a step is clear of them at its end. One who is in the way of an obstacle is not moved aside: that
-/// could lead away from the goal.
+/// The decrease of the distance does not depend on the obstacles. Keeping clear does: give each step the obstacles as
+/// they will be at its end ([`ObstacleSchedule`](crate::ObstacleSchedule)), and a walker who is clear of them there at
+/// the start of a step is clear of them at its end. One who is in the way of an obstacle is not moved aside.
 ///
 /// # References
-/// In the spirit of Khansari-Zadeh and Billard, "A dynamical system approach to realtime obstacle
-/// avoidance" (Autonomous Robots 2012), who modulate the velocity by a matrix that is not symmetric.
-/// Applied to the metric, the modulation keeps the Lyapunov function as well.
+/// In the spirit of Khansari-Zadeh and Billard, "A dynamical system approach to realtime obstacle avoidance"
+/// (Autonomous Robots 2012), who modulate the velocity by a matrix that is not symmetric.
 ///
 /// # Examples
 /// ```
@@ -94,8 +84,7 @@ where
 {
     /// `flow`, slowed within `margin` (metres) of the surfaces of `obstacles`.
     ///
-    /// With a margin of twice the speed times the time step, or more, no step has to be cut short where
-    /// one obstacle is near.
+    /// With a margin of twice the speed times the time step, no step has to be cut short where one obstacle is near.
     ///
     /// # Errors
     /// [`DynamicsError::NotPositive`] unless the margin is positive and finite.

@@ -21,27 +21,22 @@ use crate::{
 ///
 /// with `J` the Jacobian of `psi` at `p` and `u` the unit vector from `psi(p*)` to `psi(p)`.
 ///
-/// With a positive-definite matrix alone a walker never moves more than 90 degrees away from the
-/// straight line to its goal: `-e^T v = e^T P u > 0`. Here it may, because it is `V` that falls and not
-/// the distance: `psi` unbends space so that the way around the corner becomes a straight one.
+/// A positive-definite matrix alone never turns a walker more than 90 degrees away from the straight line to its goal.
+/// Here it may turn further, because `V` falls and not the distance.
 ///
-/// The metric may be given in space, as here ([`new`](Self::new)), or in the coordinates of the chart
-/// ([`in_chart`](Self::in_chart)): `v = -J^-1 P u`, so `P = (J^T J)^-1` in space. With the identity for `P`
-/// the second goes along the lines that `psi` makes straight: along a path that was shown, if `psi` is its
-/// [straightening](crate::Chain::straightening).
+/// The metric may be given in space ([`new`](Self::new)), or in the coordinates of the chart
+/// ([`in_chart`](Self::in_chart)): `v = -J^-1 P u`. With the identity for `P` the second goes along the lines that
+/// `psi` makes straight: along a path that was shown, if `psi` is its [straightening](crate::Chain::straightening).
 ///
 /// # What is guaranteed
 /// `dV/dt <= -lambda_min(P) s_min(J)^2 < 0` away from the goal, which is the only minimum of `V`: the flow converges to
-/// it from everywhere (Theorem 5 of `docs/stability.md`).
-///
-/// In the coordinates `y = psi(p)`, the [`chart`](Flow::chart), the flow is a
-/// [`NaturalGradientFlow`](crate::NaturalGradientFlow) with the metric `J P J^T`. [`StableEuler`](crate::StableEuler) takes
-/// its steps there, and so keeps its guarantee: `V` falls in every step, for every `dt`.
+/// it from everywhere (Theorem 5 of `docs/stability.md`). In the coordinates `y = psi(p)`, the [`chart`](Flow::chart),
+/// the flow is a [`NaturalGradientFlow`](crate::NaturalGradientFlow) with the metric `J P J^T`.
+/// [`StableEuler`](crate::StableEuler) takes its steps there: `V` falls in every step, for every `dt`.
 ///
 /// # References
-/// The paper names diffeomorphisms as future work (section V). Rana et al., "Euclideanizing flows"
-/// (L4DC 2020), learn such maps from demonstrations; Perrin and Schlehuber-Caissier (2016) fit them in
-/// closed form, see [`Chain::straightening`](crate::Chain::straightening).
+/// The paper names diffeomorphisms as future work (section V). Rana et al., "Euclideanizing flows" (L4DC 2020), learn
+/// such maps from demonstrations.
 ///
 /// # Examples
 /// ```
@@ -66,7 +61,6 @@ pub struct DiffeomorphicFlow<T, const D: usize, Psi, M> {
     given: Given,
 }
 
-/// The coordinates that the metric is given in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Given {
     InSpace,
@@ -125,7 +119,6 @@ where
     Psi: Diffeomorphism<T, D>,
     M: MetricSource<T, D>,
 {
-    /// The distance to `psi(p*)`, in the coordinates of the chart.
     fn attractor(&self) -> &Attractor<T, D> {
         &self.attractor
     }

@@ -19,22 +19,18 @@ const INNER_STEPS: usize = 10_000;
 /// Part of the ideal length that is tried.
 const SAFETY: f64 = 0.9;
 
-/// The Dormand-Prince pair of orders 5 and 4 with adaptive steps inside each time step: the path of the
-/// continuous flow, for offline use.
-///
-/// Each time step is covered by inner steps. One is taken when its estimated error is at most the
-/// tolerance *and* the potential falls in it; otherwise a shorter one is tried.
+/// The Dormand-Prince pair of orders 5 and 4 with adaptive steps inside each time step: the path of the continuous
+/// flow, for offline use. An inner step is taken when its estimated error is at most the tolerance *and* the potential
+/// falls.
 ///
 /// # What is guaranteed
 /// - *Strict decrease* of the computed distance at every step, as for [`StableEuler`], whatever the flow.
-/// - *Error* estimated at no more than the tolerance in each inner step: that of the whole path is of the order of
-///   the tolerance times the number of inner steps, for flows that depend smoothly on the state.
+/// - *Error* estimated at no more than the tolerance in each inner step, for flows that depend smoothly on the state.
 /// - *At the goal*: who is nearer to it than the tolerance (in the [`chart`](Flow::chart), if there is one) is put on it.
 /// - *Time to the goal*: that of the continuous flow, for a distance at most `Phi(0) / lambda_min`.
 ///
 /// Where even a step as short as the tolerance is refused (a metric that jumps), a [`StableEuler`] step of that length
-/// is taken. A state's `step` and `history` are those of the whole time step. An
-/// [`AvoidingFlow`](crate::AvoidingFlow) keeps clear of its obstacles up to the error of the path.
+/// is taken. A state's `step` and `history` are those of the whole time step.
 ///
 /// # References
 /// Dormand and Prince, "A family of embedded Runge-Kutta formulae" (J. Comp. Appl. Math. 1980).
@@ -76,9 +72,8 @@ impl<T: Real> DormandPrince<T> {
 
 impl<T: Real, const D: usize> Integrator<T, D> for DormandPrince<T> {
     /// # Errors
-    /// Those of the flow and of [`StableEuler::advance`]; [`DynamicsError::TooStiff`] when the flow
-    /// changes so fast that ten thousand inner steps do not cover the time step, or an inner step would have to
-    /// be shorter than any number of `T`.
+    /// Those of the flow and of [`StableEuler::advance`]; [`DynamicsError::TooStiff`] when ten thousand inner steps do
+    /// not cover the time step, or an inner step would have to be shorter than any number of `T`.
     fn step<F: Flow<T, D> + ?Sized>(
         &self,
         flow: &F,
@@ -111,11 +106,11 @@ impl<T: Real, const D: usize> Integrator<T, D> for DormandPrince<T> {
             if length.is_zero() {
                 break;
             }
-            let inner = inner_step(flow, &here, velocity, length)?;
-            let relative = inner.error / self.tolerance;
+            let (position, error) = inner_step(flow, &here, velocity, length)?;
+            let relative = error / self.tolerance;
             let precise = relative <= T::one();
-            let next = if precise && self::distance(flow, &inner.position) < distance {
-                inner.position
+            let next = if precise && self::distance(flow, &position) < distance {
+                position
             } else if velocity.amax() * length <= self.tolerance {
                 StableEuler.step(flow, &here, length)?
             } else {
@@ -148,8 +143,8 @@ fn distance<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
     }
 }
 
-/// When a straight line along `velocity` is closest to the goal, in the coordinates of the flow's chart
-/// (seconds); the largest number where it does not come closer.
+/// When a straight line along `velocity` is closest to the goal in the flow's chart (seconds); the largest number where
+/// it does not come closer.
 fn time_to_closest<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
     flow: &F,
     position: &SVector<T, D>,
@@ -183,12 +178,6 @@ fn growth<T: Real>(relative: T) -> T {
     }
 }
 
-struct InnerStep<T, const D: usize> {
-    position: SVector<T, D>,
-    /// Largest component of the difference of the two orders (metres).
-    error: T,
-}
-
 /// Times of stages 2 to 6, in steps.
 const NODES: [f64; 5] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
 /// Weights of the earlier velocities in stages 2 to 6, and in the result of order 5.
@@ -212,12 +201,13 @@ const DIFFERENCE: [f64; 7] = [
     -1.0 / 40.0,
 ];
 
+/// Where a step of `length` seconds ends, and the largest component of the difference of the two orders (metres).
 fn inner_step<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
     flow: &F,
     state: &State<'_, T, D>,
     first: SVector<T, D>,
     length: T,
-) -> Result<InnerStep<T, D>, DynamicsError> {
+) -> Result<(SVector<T, D>, T), DynamicsError> {
     let mut velocities = [first; 7];
     let mut stage = *state;
     for (k, weights) in WEIGHTS.iter().enumerate() {
@@ -226,10 +216,8 @@ fn inner_step<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
         stage.time = state.time + T::rounded(node) * length;
         velocities[k + 1] = flow.velocity(&stage)?;
     }
-    Ok(InnerStep {
-        position: stage.position,
-        error: (combined(&DIFFERENCE, &velocities) * length).amax(),
-    })
+    let error = (combined(&DIFFERENCE, &velocities) * length).amax();
+    Ok((stage.position, error))
 }
 
 fn combined<T: Real, const D: usize>(

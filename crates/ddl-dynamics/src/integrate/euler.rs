@@ -14,9 +14,8 @@ use crate::{
 ///
 /// # What is guaranteed
 /// Not much: with `e = p - p*`, `u = e / |e|` and `v = -P u`, the distance to the goal falls in a step exactly when
-/// `dt < 2 |e| u^T P u / |P u|^2` (Proposition 2 of `docs/stability.md`). On a distance this fails for every fixed `dt` close
-/// to the goal: the pedestrian jumps over it and goes on hopping to and fro. Use [`StableEuler`](super::StableEuler)
-/// to keep the guarantee; a [`LyapunovCertificate`](crate::LyapunovCertificate) names the step that breaks it.
+/// `dt < 2 |e| u^T P u / |P u|^2` (Proposition 2 of `docs/stability.md`). On a distance this fails for every fixed `dt`
+/// close to the goal: the pedestrian hops to and fro over it. [`StableEuler`](super::StableEuler) keeps the guarantee.
 ///
 /// # References
 /// Equation (2) of the paper, with a step of 0.4 s in the published program.

@@ -23,9 +23,8 @@ const ARRIVAL: f64 = 8.0;
 /// p' = p + min(dt, dt*) v        dt* = |e| u^T P u / |P u|^2
 /// ```
 ///
-/// with `e = p - p*`, `u = e / |e|`, `v = -P u` (on a quadratic attractor `v = -P e`: read `|e| P` for `P` in
-/// what follows). While `dt <= dt*` this is the plain Euler step, to
-/// the last bit; at the goal the walker stays.
+/// with `e = p - p*`, `u = e / |e|`, `v = -P u` (on a quadratic attractor `v = -P e`: read `|e| P` for `P` in what
+/// follows). While `dt <= dt*` this is the plain Euler step, to the last bit; at the goal the walker stays.
 ///
 /// # What is guaranteed
 /// - *Strict decrease, for every `dt > 0`*: with `h = min(dt, dt*)`, `Phi' <= Phi - h u^T P u / 2 < Phi`.
@@ -33,26 +32,18 @@ const ARRIVAL: f64 = 8.0;
 ///   `m > 0`: with `r = (M - m) / (M + m)`, `Phi <= tolerance` after at most
 ///   `2 Phi(0) / (dt m) + ln(Phi(0) / tolerance) / ln(1 / r)` steps, rounded up one by one.
 ///
-/// The proofs are Theorems 3 and 4 of `docs/stability.md`. Beyond `dt*` a step would move away from the goal again; short of
-/// it, somebody headed straight at the goal would never arrive. `min(dt, dt*)` is continuous in the state.
+/// The proofs are Theorems 3 and 4 of `docs/stability.md`.
 ///
 /// # Numerics
-/// The guarantee holds for the *computed* distance, [`Attractor::potential`], in `f32` as in `f64`:
-/// every step strictly lowers it until it is 0, for every finite input. The limit is taken as a
-/// length, `min(dt |v|, |e| cos(angle(v, -e)))`, which neither overflows nor divides by a small
-/// square. Rounding could break the decrease in three places, and each step is checked:
-/// - the limited step ends within a few roundings (`8 epsilon max(|p|, |p*|)`) of the goal: the
-///   walker is put on the goal, where it stays;
-/// - the decrease is too small to be seen in `T`, because the flow is slow (`1e-8 m/s` for 0.4 s is
-///   below the spacing of `f32` at 1 m) or almost perpendicular to the direction of the goal: the
-///   walker makes the smallest move straight to the goal that shows in the distance, about
-///   `epsilon max(|p|, |p*|)`, doubled until it does, at most to the goal itself;
-/// - the computed velocity does not approach the goal at all, because the metric is so far from
-///   round that `P u` is all rounding (see [`apply`](crate::CholeskyMetric::apply)), or because a
-///   flow breaks its promise: it is not followed, and the smallest move is made instead.
+/// The guarantee holds for the *computed* distance, [`Attractor::distance`], in `f32` as in `f64`: every step strictly
+/// lowers it until it is 0, for every finite input. Where rounding could break the decrease,
+/// - a limited step that ends within `8 epsilon max(|p|, |p*|)` of the goal puts the walker on the goal;
+/// - a decrease too small to be seen in `T`, or a computed velocity that does not approach the goal (see
+///   [`apply`](crate::CholeskyMetric::apply)), is replaced by the smallest move straight to the goal that shows in the
+///   distance, about `epsilon max(|p|, |p*|)`, doubled until it does.
 ///
-/// As there are finitely many numbers below `Phi(0)`, every computed rollout ends on the goal if it
-/// is run on for long enough. [`StableStep::limit`] tells which case a step was.
+/// So every computed rollout ends on the goal if it is run on for long enough. [`StableStep::limit`] tells which case a
+/// step was.
 ///
 /// # Examples
 /// ```
@@ -96,9 +87,8 @@ impl StableEuler {
     /// One step from `position` (metres) with `velocity` (m/s) for at most `dt` (seconds).
     ///
     /// # Errors
-    /// [`DynamicsError::NotPositive`]; [`DynamicsError::NonFinite`] for a position or a
-    /// velocity that is not finite; [`DynamicsError::DistanceTooLarge`] when the distance to the
-    /// goal overflows.
+    /// [`DynamicsError::NotPositive`]; [`DynamicsError::NonFinite`] for a position or a velocity that is not finite;
+    /// [`DynamicsError::DistanceTooLarge`] when the distance to the goal overflows.
     pub fn advance<T: Real, const D: usize>(
         attractor: &Attractor<T, D>,
         position: &SVector<T, D>,
@@ -126,11 +116,9 @@ fn descend<T: Real, const D: usize>(
     if !distance.is_finite() {
         return Err(DynamicsError::DistanceTooLarge);
     }
+    let ended = |position, limit| Ok(StableStep { position, limit });
     if distance.is_zero() {
-        return Ok(StableStep {
-            position: *position,
-            limit: StepLimit::AtGoal,
-        });
+        return ended(*position, StepLimit::AtGoal);
     }
     // Spacing of the numbers at the coarser of the two points; never 0, so that doubling works.
     let resolution =
@@ -147,41 +135,29 @@ fn descend<T: Real, const D: usize>(
         };
         let left = attractor.distance(&settled(&next));
         if limit == StepLimit::ClosestApproach && left <= T::rounded(ARRIVAL) * resolution {
-            return Ok(StableStep {
-                position: *attractor.goal(),
-                limit,
-            });
+            return ended(*attractor.goal(), limit);
         }
         if left < distance {
-            return Ok(StableStep {
-                position: next,
-                limit,
-            });
+            return ended(next, limit);
         }
     }
-    // The shortest of the moves `resolution * 2^k` straight to the goal that lowers the computed
-    // distance; the goal when none shorter than the distance does. Ends after `log2(1 / epsilon) + 3` or
-    // so doublings, because the distance is at most `2 sqrt(D) resolution / epsilon`.
+    // The shortest of the moves `resolution * 2^k` straight to the goal that lowers the computed distance, or the goal.
+    // Few doublings, because the distance is at most `2 sqrt(D) resolution / epsilon`.
     let mut length = resolution;
-    let next = loop {
+    loop {
         if length >= distance {
-            break *attractor.goal();
+            return ended(*attractor.goal(), StepLimit::Resolution);
         }
         let next = position - away * length;
         if attractor.distance(&settled(&next)) < distance {
-            break next;
+            return ended(next, StepLimit::Resolution);
         }
         length += length;
-    };
-    Ok(StableStep {
-        position: next,
-        limit: StepLimit::Resolution,
-    })
+    }
 }
 
 impl<T: Real, const D: usize> Integrator<T, D> for StableEuler {
-    /// For a flow with a [`chart`](Flow::chart) the step is taken in its coordinates, and is not limited by
-    /// [`longest_step`](Flow::longest_step).
+    /// For a flow with a [`chart`](Flow::chart) the step is taken in its coordinates.
     ///
     /// # Errors
     /// Those of the flow and of [`StableEuler::advance`].

@@ -12,14 +12,13 @@ use crate::{attractor::Attractor, metric::CholeskyMetric, polar::polar, real::Re
 pub struct CertifiedStep<T> {
     /// `Phi`: the distance to the goal at the start of the step (metres).
     pub potential: T,
-    /// `d Phi / dt = -u^T P grad Phi` at the start of the step (m/s): `-u^T P u` where the attractor is
-    /// the distance; 0 at the goal alone, where it is too small for `T` the smallest normal number.
+    /// `d Phi / dt = -u^T P grad Phi` at the start of the step (m/s); 0 at the goal alone, where it is too small for
+    /// `T` the smallest normal number.
     pub rate: T,
     /// The smallest eigenvalue of the step's metric (m/s; 1/s on a quadratic attractor).
     pub min_eigenvalue: T,
-    /// `1 - dt / dt_max`, with `dt_max = -2 Phi (d Phi / dt) / |v|^2` the bound below which a plain
-    /// Euler step lowers `Phi`, for a distance `2 Phi u^T P u / |P u|^2` (no unit): positive when `dt` is
-    /// below its bound, 1 when infinitely far below. `None` at the goal, where every step is too long.
+    /// `1 - dt / dt_max`, with `dt_max = -2 Phi (d Phi / dt) / |v|^2` the bound below which a plain Euler step lowers
+    /// `Phi` (no unit). `None` at the goal, where every step is too long.
     pub step_margin: Option<T>,
     /// Angle between the move and the direction to the goal (radians, 0 to pi); 0 without a move.
     pub angle: T,
@@ -78,9 +77,8 @@ impl<T: Real> CertifiedStep<T> {
     }
 }
 
-/// Angle between two unit vectors (radians); 0 when one of them is the zero vector.
-///
-/// Kahan's form, accurate for small and for straight angles, where the arc cosine is not.
+/// Angle between two unit vectors (radians); 0 when one of them is the zero vector. Kahan's form, accurate for small
+/// and for straight angles.
 fn angle_between<T: Real, const D: usize>(a: &SVector<T, D>, b: &SVector<T, D>) -> T {
     let zero = SVector::<T, D>::zeros();
     if *a == zero || *b == zero {

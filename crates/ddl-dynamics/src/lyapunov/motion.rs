@@ -27,10 +27,8 @@ impl<T: Real> Bounded<T> {
     }
 }
 
-/// Figures of a motion within [`MotionBounds`], each with its bound.
-///
-/// `docs/stability.md` states the theorem whose constants these are. For a motion that minds obstacles, which
-/// may hold it up, `deviation` and `distance_left` have no bound.
+/// Figures of a motion within [`MotionBounds`], each with its bound, by the theorem of `docs/stability.md`. For a
+/// motion that minds obstacles, which may hold it up, `deviation` and `distance_left` have no bound.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionEvidence<T> {

@@ -12,7 +12,6 @@ use crate::{
 impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// `J P J^T`: what becomes of `P` when space is mapped by a matrix `J` that can be inverted.
     ///
-    /// If `v = -P J^T u` is the velocity before the map, `J v = -(J P J^T) u` is the one after it.
     /// The result is positive definite: its smallest eigenvalue is at least `lambda_min(P) s_min(J)^2`.
     ///
     /// # Errors
@@ -45,35 +44,18 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// P' = P - (1 - share) q q^T / (n^T q)        n^T P' u = share n^T P u   for every u
     /// ```
     ///
-    /// so a flow with `P'` instead of `P` moves along `n` with exactly this share of its speed. As
-    /// `q q^T / (n^T q) <= P` (Cauchy-Schwarz), `share P <= P' <= P`: the result is positive definite, and
-    /// with it the distance to a goal falls no faster than with `P`. It depends continuously on `share` and on `direction`, whose length and
-    /// sign do not matter.
+    /// As `q q^T / (n^T q) <= P` (Cauchy-Schwarz), `share P <= P' <= P`: the result is positive definite. It depends
+    /// continuously on `share` and on `direction`, whose length and sign do not matter.
     ///
     /// # Errors
     /// - [`DynamicsError::InvalidShare`] unless `0 < share <= 1`.
-    /// - [`DynamicsError::NoDirection`] when `direction` is zero, [`DynamicsError::NonFinite`] when it is
-    ///   not finite.
+    /// - [`DynamicsError::NoDirection`] when `direction` is zero, [`DynamicsError::NonFinite`] when it is not finite.
     ///
     /// # Numerics
-    /// `P` is not formed: with `A = [L, sqrt(sigma) I]`, `P = A A^T` and `y = A^T n`,
-    /// `P' = A' A'^T` for `A' = A (I - b y y^T)`, `b = (1 - sqrt(share)) / |y|^2`, so that the result is
-    /// positive definite whatever cancels in `A'`; its error is that of a few roundings of `A`, so a share
-    /// below `epsilon^2` times the condition number of `P` is not resolved. The triangular factor of `A'` is found by rotations. The result is `P' (1 + epsilon)`, the
-    /// last term in place of a `sigma`.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_dynamics::CholeskyMetric;
-    /// use nalgebra::Vector2;
-    ///
-    /// let metric = CholeskyMetric::planar(1.0, 0.5, 1.0, 0.1)?;
-    /// let (n, u) = (Vector2::new(0.0, 1.0), Vector2::new(0.6_f64, 0.8));
-    /// let slowed = metric.slowed_along(&n, 0.25)?;
-    /// assert!((n.dot(&slowed.apply(&u)) - 0.25 * n.dot(&metric.apply(&u))).abs() < 1e-15);
-    /// assert!(slowed.eigenvalue_range().smallest >= 0.25 * metric.eigenvalue_range().smallest);
-    /// # Ok::<(), ddl_dynamics::DynamicsError>(())
-    /// ```
+    /// `P` is not formed: with `A = [L, sqrt(sigma) I]`, `P = A A^T` and `y = A^T n`, `P' = A' A'^T` for `A' = A (I - b
+    /// y y^T)`, `b = (1 - sqrt(share)) / |y|^2`, whose triangular factor is found by rotations. A share below
+    /// `epsilon^2` times the condition number of `P` is not resolved. The result is `P' (1 + epsilon)`, the last term
+    /// in place of a `sigma`.
     pub fn slowed_along(&self, direction: &SVector<T, D>, share: T) -> Result<Self, DynamicsError> {
         if !(share > T::zero() && share <= T::one()) {
             return Err(DynamicsError::InvalidShare(share.as_f64()));
@@ -95,8 +77,7 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     }
 }
 
-/// A `sigma` that is a rounding of the smallest eigenvalue: the factor holds the whole of `P`, and what
-/// a [`CholeskyMetric`] is promised to have besides is too little to be seen.
+/// A `sigma` that is a rounding of the smallest eigenvalue: the factor holds the whole of `P`.
 fn remainder<T: Real>(smallest: T) -> T {
     (smallest * T::EPSILON).max(T::MIN_POSITIVE)
 }

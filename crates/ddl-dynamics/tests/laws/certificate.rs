@@ -20,14 +20,8 @@ fn stable_path<T: Real, const D: usize>(
     Vec<CholeskyMetric<T, D>>,
     Attractor<T, D>,
 ) {
-    let path = rollout(
-        &scene.flow(),
-        &StableEuler,
-        scene.start(),
-        scene.dt(),
-        METRICS,
-    )
-    .unwrap();
+    let flow = scene.flow();
+    let path = rollout(&flow, &StableEuler, scene.start(), scene.dt(), METRICS).unwrap();
     (path, scene.metrics(), scene.attractor())
 }
 

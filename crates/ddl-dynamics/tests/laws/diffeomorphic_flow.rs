@@ -8,7 +8,7 @@ use nalgebra::{ComplexField, SVector, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
 
 use crate::{
-    draw::{METRICS, SceneDraw, deviation_sine},
+    draw::{METRICS, SceneDraw},
     for_every_space,
     map_draw::MapDraw,
 };
@@ -69,37 +69,6 @@ fn velocity_and_metric_agree<T: Real, const D: usize>(
     Ok(())
 }
 for_every_space!(velocity_and_metric_agree, any_bent_scene);
-
-/// From every start, after the number of steps of the theorem for a metric in the chart.
-fn converges_from_everywhere<T: Real, const D: usize>(
-    draw: &(MapDraw, SceneDraw),
-) -> TestCaseResult {
-    let metric = draw.1.metrics::<T, D>()[0];
-    let (goal, psi) = (draw.0.positions()[0], draw.0.chain());
-    let flow = DiffeomorphicFlow::in_chart(goal, psi, metric).unwrap();
-    let dt = draw.1.dt::<T>().max(T::one());
-    let range = metric.eigenvalue_range();
-    for start in draw.0.positions::<T, D>() {
-        let distance = flow.potential(&start).as_f64();
-        // Two ways through the chain round some dozen times, at coordinates of up to some hundred.
-        let tolerance = 1e5 * T::EPSILON.as_f64() * (1.0 + distance);
-        if distance <= tolerance {
-            continue;
-        }
-        let full = 2.0 * distance / (dt.as_f64() * range.smallest.as_f64());
-        let shrinking = -deviation_sine(range).as_f64().max(1e-9).ln();
-        let steps =
-            full.ceil() as usize + ((distance / tolerance).ln() / shrinking).ceil() as usize;
-        let path = rollout(&flow, &StableEuler, start, dt, steps).unwrap();
-        let left = flow.potential(&path[steps]).as_f64();
-        prop_assert!(
-            left <= tolerance,
-            "{left} m left of {distance} m after {steps} steps"
-        );
-    }
-    Ok(())
-}
-for_every_space!(converges_from_everywhere, mild_bent_scene);
 
 /// Every finite number: a finite position that is not farther in the chart, or an error.
 fn no_finite_input_breaks_a_bent_flow<T: Real, const D: usize>(

@@ -8,7 +8,7 @@ use nalgebra::{SMatrix, SVector};
 use proptest::{array::uniform3, collection::vec, prelude::*};
 
 pub(crate) use crate::map_draw::{
-    any_bent_scene, any_maps, any_polygon, mild_bent_scene, wild_bent_scene, wild_maps,
+    any_bent_scene, any_maps, any_polygon, wild_bent_scene, wild_maps,
 };
 
 /// Number of random metrics in a scene; a rollout uses one after the other.

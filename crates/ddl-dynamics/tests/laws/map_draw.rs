@@ -5,7 +5,7 @@ use ddl_dynamics::{Chain, LocalTranslation, Real};
 use nalgebra::SVector;
 use proptest::{array::uniform3, collection::vec, prelude::*};
 
-use crate::draw::{SceneDraw, any_scene, vector, well_conditioned_scene, wild, wild_scene};
+use crate::draw::{SceneDraw, any_scene, vector, wild, wild_scene};
 
 /// `sqrt(2/e)`, from a table and not from the formula.
 pub(crate) const STEEPEST: f64 = 0.857_763_884_960_706_8;
@@ -104,11 +104,6 @@ impl PolygonDraw {
 /// Maps, and a scene for walkers in the space that they bend.
 pub(crate) fn any_bent_scene() -> impl Strategy<Value = (MapDraw, SceneDraw)> {
     (any_maps(), any_scene())
-}
-
-/// The same with metrics of moderate condition.
-pub(crate) fn mild_bent_scene() -> impl Strategy<Value = (MapDraw, SceneDraw)> {
-    (any_maps(), well_conditioned_scene())
 }
 
 /// Every finite number there is, in the maps and in the scene.

@@ -110,26 +110,6 @@ fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCa
     Ok(())
 }
 
-/// Whoever already walks at the arriving velocity goes straight on at constant speed, unless a metric has a share.
-fn straight_without_a_share<T: Real>(scene: &SceneDraw, spare: f64, dt: f64) -> TestCaseResult {
-    let way = scene.attractor::<T, 2>().goal() - scene.start::<T, 2>();
-    let arriving = way.map(|x| x.as_f64() / (dt * METRICS as f64));
-    let top_speed = (arriving.norm() * spare).max(1e-3);
-    let arriving = (arriving / top_speed).into();
-    let Some((path, attractor, ..)) = within::<T>(scene, (spare, 0.0, dt, arriving, false)) else {
-        return Ok(());
-    };
-    let far = path.iter().map(|p| p.amax().as_f64()).fold(0.0, f64::max);
-    let way = attractor.goal() - path[0];
-    for (k, p) in path.iter().enumerate() {
-        let right = path[0] + way * T::rounded(k as f64 / METRICS as f64);
-        prop_assert!(
-            (p - right).norm().as_f64() <= 1e3 * T::EPSILON.as_f64() * (far + way.norm().as_f64())
-        );
-    }
-    Ok(())
-}
-
 /// The shaped metric lies within the bounds, keeps its axes, and is the metric itself where that lies within.
 fn shaped_within<T: Real>(scene: &SceneDraw, distance: f64, left: usize) -> TestCaseResult {
     let (distance, dt) = (T::rounded(distance), T::rounded(0.4));
@@ -171,11 +151,6 @@ proptest! {
     #[test]
     fn arrives_within_bounds_f64(scene in any_scene(), draw in any_bounds()) {
         arrives_within_bounds::<f64>(&scene, draw)?;
-    }
-
-    #[test]
-    fn straight_without_a_share_f64(scene in any_scene(), spare in 1.0..4.0_f64, dt in 0.01..2.0_f64) {
-        straight_without_a_share::<f64>(&scene, spare, dt)?;
     }
 
     #[test]

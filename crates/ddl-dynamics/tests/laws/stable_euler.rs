@@ -2,8 +2,8 @@
 
 use approx::assert_relative_eq;
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, Euler, Flow, Integrator, NaturalGradientFlow, Real, StableEuler,
-    State, StepLimit, rollout,
+    Attractor, CholeskyMetric, Euler, Flow, Integrator, LyapunovCertificate, NaturalGradientFlow,
+    Real, StableEuler, State, StepLimit, rollout,
 };
 use nalgebra::{SVector, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -13,32 +13,27 @@ use crate::{
     for_every_space,
 };
 
-/// Strict decrease of the computed distance until it is 0, and rest from then on: for random
-/// factors up to 1e3 that change at every step, starts and goals up to 1e3 m, `dt` from 1 ms to
-/// 100 s.
-fn distance_falls_at_every_step<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+/// Nothing moves at the goal, nothing is NaN there, and a certificate holds.
+fn at_the_goal_nothing_moves<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let attractor = scene.attractor::<T, D>();
-    let path = rollout(
-        &scene.flow(),
-        &StableEuler,
-        scene.start(),
-        scene.dt(),
-        3 * METRICS,
-    )
-    .unwrap();
-    for pair in path.windows(2) {
-        let (before, after) = (attractor.potential(&pair[0]), attractor.potential(&pair[1]));
-        prop_assert!(
-            after < before || (before.is_zero() && pair[0] == pair[1]),
-            "{before} -> {after}"
-        );
+    let goal = *attractor.goal();
+    let flow = scene.flow();
+    let here = State::at(goal);
+    prop_assert_eq!(flow.velocity(&here).unwrap(), SVector::<T, D>::zeros());
+    prop_assert_eq!(Euler.step(&flow, &here, scene.dt()).unwrap(), goal);
+    let path = rollout(&flow, &StableEuler, goal, scene.dt(), METRICS).unwrap();
+    prop_assert!(path.iter().all(|position| *position == goal));
+    let certificate = LyapunovCertificate::of_rollout(&flow, &path, scene.dt()).unwrap();
+    prop_assert_eq!(certificate.holds(), Ok(()));
+    for step in certificate.steps() {
+        prop_assert!(step.rate.is_zero() && step.angle.is_zero() && step.step_margin.is_none());
     }
     Ok(())
 }
-for_every_space!(distance_falls_at_every_step, any_scene);
+for_every_space!(at_the_goal_nothing_moves, any_scene);
 
-/// The same for every finite start, goal, time step and *velocity*, descending or not, subnormal or
-/// huge: a decrease or an error, never a panic or a NaN.
+/// For every finite start, goal, time step and *velocity*, descending or not, subnormal or huge: a decrease or an
+/// error, never a panic or a NaN.
 fn no_finite_input_breaks_it<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let attractor = scene.attractor::<T, D>();
     let start = scene.start::<T, D>();
@@ -142,6 +137,13 @@ fn a_step_below_the_spacing_of_f32_still_shows() {
     let step = StableEuler::advance(&attractor, &start, &velocity, 0.4).unwrap();
     assert_eq!(step.limit, StepLimit::Resolution);
     assert_eq!(step.position, Vector2::new(1.0 - f32::EPSILON, 0.0));
+    // One spacing from the goal: there is nothing in between.
+    let near = Attractor::new(Vector2::new(1.0_f32.next_down(), 0.0)).unwrap();
+    let step = StableEuler::advance(&near, &start, &velocity, 0.4).unwrap();
+    assert_eq!(
+        (step.position, step.limit),
+        (*near.goal(), StepLimit::Resolution)
+    );
 }
 
 #[test]
@@ -187,10 +189,6 @@ fn a_flow_sees_step_time_and_history() {
         CholeskyMetric::new([[1.0]].into(), 1e-8)
     };
     let flow = NaturalGradientFlow::new(attractor, source);
-    assert_eq!(
-        rollout(&flow, &StableEuler, SVector::<f64, 1>::new(9.0), 0.5, 5)
-            .unwrap()
-            .len(),
-        6
-    );
+    let path = rollout(&flow, &StableEuler, SVector::<f64, 1>::new(9.0), 0.5, 5).unwrap();
+    assert_eq!(path.len(), 6);
 }

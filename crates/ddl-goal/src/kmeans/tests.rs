@@ -183,10 +183,4 @@ proptest! {
             prop_assert_eq!(other.labels[place], one.labels[original]);
         }
     }
-
-    #[test]
-    fn more_restarts_are_never_worse(points in points(), clusters in 2..20_usize, seed: u64) {
-        let fit = |restarts| KMeans::new(clusters, restarts).fit(&points, seed);
-        prop_assert!(fit(8)?.inertia <= fit(2)?.inertia);
-    }
 }

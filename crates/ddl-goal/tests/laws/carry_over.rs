@@ -4,25 +4,6 @@ use ddl_goal::GoalEstimatorParams;
 
 use crate::tracks::{distance, estimator, walk};
 
-/// With one expert and one goal, the goal is the end of the expert carried over.
-#[test]
-fn one_expert_is_the_goal() {
-    let walker = walk(1.0, 2.0, -0.04);
-    for params in [
-        GoalEstimatorParams::default().experts(1).clusters(1),
-        GoalEstimatorParams::published().experts(1).clusters(1),
-    ] {
-        let estimator = estimator(params, vec![walk(1.2, 0.3, 0.05)]);
-        let set = estimator.estimate(&walker).unwrap();
-        let carried = estimator.carry_over(&set.experts()[0], &walker).unwrap();
-        assert_eq!(carried.len(), 20);
-        assert!(
-            distance(carried[19], set.goals()[0]) < 1e-9,
-            "{carried:?} {set:?}"
-        );
-    }
-}
-
 /// A walker who is an expert, turned and moved, goes where the expert went; its mirror image mirrored.
 #[test]
 fn the_same_walk_is_carried_onto_itself() {

@@ -17,8 +17,9 @@ fn library() -> Vec<Positions> {
     (0..400).map(track).collect()
 }
 
-fn estimator(params: GoalEstimatorParams) -> GoalEstimator {
-    tracks::estimator(params.restarts(2).experts(100), library())
+fn estimator(mut params: GoalEstimatorParams) -> GoalEstimator {
+    params.restarts = 2;
+    tracks::estimator(params.experts(100), library())
 }
 
 /// The default, and the published estimator without the future.

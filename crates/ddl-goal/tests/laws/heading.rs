@@ -1,9 +1,9 @@
-//! A walker's own frame, and goals in it: what turning, moving and mirroring the scene does to them.
+//! A walker's own frame: what turning, moving and mirroring the scene does to it.
 
-use ddl_goal::{GoalEstimator, GoalEstimatorParams, HeadingFrame, TrackError};
+use ddl_goal::{HeadingFrame, TrackError};
 use proptest::prelude::*;
 
-use crate::tracks::{self, Positions, distance, walk};
+use crate::tracks::{Positions, distance};
 
 /// A turned, then moved scene.
 #[derive(Clone, Copy, Debug)]
@@ -48,28 +48,6 @@ fn has_heading(track: &[[f64; 2]]) -> bool {
     let share = (1.0 - step / 0.2).max(0.0);
     let toward = [0, 1].map(|d| last[d] - before[d] + share * (last[d] - first[d]));
     toward[0].hypot(toward[1]) > 1e-3
-}
-
-/// Goals by walkers of several speeds and turns, in a scene.
-fn estimator(scene: &dyn Fn([f64; 2]) -> [f64; 2]) -> GoalEstimator {
-    let track = |i: u32| -> Positions {
-        let turn = f64::from(i / 25) * 0.013 - 0.1;
-        let track = walk(f64::from(i % 25 + 1) * 0.07, 0.3, turn);
-        track.into_iter().map(scene).collect()
-    };
-    let params = GoalEstimatorParams::default().experts(90).clusters(6);
-    tracks::estimator(params, (0..400).map(track).collect())
-}
-
-/// Whether each goal of one set is within `tolerance` (m) of a goal of the other that weighs the same, and back.
-fn same_goals(a: &[([f64; 2], f64)], b: &[([f64; 2], f64)], tolerance: f64) -> bool {
-    let within = |a: &[([f64; 2], f64)], b: &[([f64; 2], f64)]| {
-        a.iter().all(|&(goal, weight)| {
-            b.iter()
-                .any(|&(other, w)| distance(goal, other) < tolerance && (w - weight).abs() < 1e-4)
-        })
-    };
-    within(a, b) && within(b, a)
 }
 
 proptest! {
@@ -122,29 +100,6 @@ proptest! {
         let (a, b) = (HeadingFrame::new(&track)?.heading(), HeadingFrame::new(&changed)?.heading());
         // |dh| is below 1e-7 · √2 · (2 + |l| / 0.2 m) with |l| below 8 m, and |h| above 1e-3 m.
         prop_assert!(distance(a, b) < 2.0 * 1e-7 * 1.5 * 42.0 / 1e-3);
-    }
-
-    #[test]
-    fn goals_turn_and_move_with_the_scene(
-        speed in 0.3..1.6_f64, bend in -0.1..0.1_f64, motion in motion(),
-    ) {
-        let walk = |i: i32| {
-            let (sin, cos) = (bend * f64::from(i)).sin_cos();
-            [f64::from(i) * 0.4 * speed * cos, f64::from(i) * 0.4 * speed * sin]
-        };
-        let track: Positions = (0..8).map(walk).collect();
-        let moved: Positions = track.iter().map(|&p| motion.of(p)).collect();
-        let mirrored: Positions = track.iter().map(|&[x, y]| [x, -y]).collect();
-        // The direction in the world counts a little, so the library turns with the walker.
-        let pairs = |track: &Positions, scene: &dyn Fn([f64; 2]) -> [f64; 2]| -> Vec<([f64; 2], f64)> {
-            let set = estimator(scene).estimate(track).unwrap();
-            set.goals().iter().copied().zip(set.weights().iter().copied()).collect()
-        };
-        let here = pairs(&track, &|p| p);
-        let turned: Vec<_> = here.iter().map(|&(goal, weight)| (motion.of(goal), weight)).collect();
-        prop_assert!(same_goals(&pairs(&moved, &|p| motion.of(p)), &turned, 1e-3));
-        let image: Vec<_> = here.iter().map(|&([x, y], weight)| ([x, -y], weight)).collect();
-        prop_assert!(same_goals(&pairs(&mirrored, &|[x, y]| [x, -y]), &image, 1e-3));
     }
 }
 

@@ -1,12 +1,12 @@
 //! The published estimator on the real recordings, against what its own code returned.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
 
+use ddl_data::{Dataset, Recording, WindowRule};
 use ddl_goal::{Expert, GoalEstimator, GoalEstimatorParams, QuerySpan};
 use serde::Deserialize;
 
-use crate::star_files::{RECORDINGS, StarTracks, StarWindows, goal_error};
+use crate::star_files::{StarWindows, dataset, goal_error, tracks_of};
 use crate::tracks::estimator;
 
 #[derive(Deserialize)]
@@ -24,53 +24,23 @@ struct PublishedPedestrian {
     goal_error_m: f64,
 }
 
-/// The folder of the recordings, or `None` (with the reason printed) where they may be absent.
-fn folder() -> Option<PathBuf> {
-    let found = std::env::var_os("DDL_DATASETS")
-        .map(PathBuf::from)
-        .and_then(|folder| {
-            [folder.join("star"), folder]
-                .into_iter()
-                .find(|folder| folder.join("eth.csv").is_file())
-        });
-    if found.is_none() {
-        let reason = "DDL_DATASETS does not name a folder with the recordings (eth.csv, ...)";
-        assert!(std::env::var_os("CI").is_none(), "{reason}");
-        println!("not compared with the published estimator: {reason}");
-    }
-    found
+/// The recordings, or `None` (with the reason printed) where they may be absent.
+fn recordings() -> Option<Dataset> {
+    let found = dataset().inspect_err(|error| println!("not compared: {error}"));
+    assert!(found.is_ok() || std::env::var_os("CI").is_none());
+    found.ok()
 }
 
-/// Those of the complete windows that the published code tests on: someone must be there at the start and 20 steps later,
-/// and the start lies 20 raw frame numbers before the last.
-fn published_windows(tracks: &StarTracks) -> StarWindows {
-    let each = || tracks.by_pedestrian.values();
-    let last = each().filter_map(|track| track.keys().last()).max();
-    let last = *last.unwrap();
-    let later = |start: i64| start + 20 * tracks.step;
-    let starts: BTreeSet<i64> = each()
-        .flat_map(|track| {
-            let starts = track.keys();
-            starts.filter(|&&start| track.contains_key(&later(start)))
-        })
-        .copied()
-        .filter(|start| start + 20 <= last)
-        .collect();
-    let mut windows = tracks.complete_windows();
-    windows.retain(|(start, _), _| starts.contains(start));
-    windows
-}
-
-fn windows(folder: &Path, recording: &str) -> StarWindows {
-    StarTracks::read(folder, recording)
-        .unwrap()
-        .complete_windows()
+fn windows(dataset: &Dataset, recording: &str, rule: WindowRule) -> StarWindows {
+    tracks_of(&dataset.recording(recording).unwrap().windows(rule))
 }
 
 /// The published estimator with all complete windows of the other recordings as its library.
-fn published(folder: &Path, test_recording: &str, experts: usize) -> GoalEstimator {
-    let training = RECORDINGS.iter().filter(|&&name| name != test_recording);
-    let tracks = training.flat_map(|name| windows(folder, name).into_values());
+fn published(dataset: &Dataset, test_recording: &str, experts: usize) -> GoalEstimator {
+    let names = dataset.recordings().iter().map(Recording::name);
+    let training = names.filter(|&name| name != test_recording);
+    let tracks =
+        training.flat_map(|name| windows(dataset, name, WindowRule::Complete).into_values());
     let params = GoalEstimatorParams::published().experts(experts).seed(1);
     estimator(params, tracks.collect())
 }
@@ -80,14 +50,16 @@ fn published(folder: &Path, test_recording: &str, experts: usize) -> GoalEstimat
 #[test]
 fn expert_distances_are_the_published_ones() {
     const FURTHER: usize = 8;
-    let Some(folder) = folder() else { return };
+    let Some(dataset) = recordings() else {
+        return;
+    };
     let reference: PublishedGoals =
         serde_json::from_str(include_str!("reference/goals.json")).expect("the fixture is JSON");
     assert_eq!(reference.pedestrians.len(), 100);
     for (fold, recording, tracks) in [("eth", "eth", 36_784), ("zara1", "zara01", 37_042)] {
-        let estimator = published(&folder, recording, 100 + FURTHER);
+        let estimator = published(&dataset, recording, 100 + FURTHER);
         assert_eq!(estimator.library().len(), tracks);
-        let windows = windows(&folder, recording);
+        let windows = windows(&dataset, recording, WindowRule::Complete);
         let (mut same_rank, mut compared) = (0, 0);
         let (mut error, mut published_error) = (0.0, 0.0);
         for walker in reference
@@ -129,11 +101,12 @@ fn expert_distances_are_the_published_ones() {
 
 #[test]
 fn the_mean_goal_error_of_a_test_scene_is_the_published_one() {
-    let Some(folder) = folder() else { return };
-    let estimator = published(&folder, "eth", 100);
-    let windows: Vec<_> = published_windows(&StarTracks::read(&folder, "eth").unwrap())
-        .into_values()
-        .collect();
+    let Some(dataset) = recordings() else {
+        return;
+    };
+    let estimator = published(&dataset, "eth", 100);
+    let windows = windows(&dataset, "eth", WindowRule::Published).into_values();
+    let windows: Vec<_> = windows.collect();
     assert_eq!(windows.len(), 2_511);
     let queries: Vec<&[[f64; 2]]> = windows.iter().map(Vec::as_slice).collect();
     let estimated = estimator.estimate_batch(&queries).unwrap();
@@ -149,10 +122,12 @@ fn the_mean_goal_error_of_a_test_scene_is_the_published_one() {
 /// The library and the walkers are of recordings that meet in no street: students, and shoppers elsewhere.
 #[test]
 fn in_their_own_frame_walkers_of_one_street_tell_about_those_of_another() {
-    let Some(folder) = folder() else { return };
-    let library: Vec<_> = windows(&folder, "students003").into_values().collect();
-    let walkers = windows(&folder, "zara03").into_values().step_by(5);
-    let walkers: Vec<_> = walkers.collect();
+    let Some(dataset) = recordings() else {
+        return;
+    };
+    let tracks = |name| windows(&dataset, name, WindowRule::Complete).into_values();
+    let library: Vec<_> = tracks("students003").collect();
+    let walkers: Vec<_> = tracks("zara03").step_by(5).collect();
     let queries: Vec<&[[f64; 2]]> = walkers.iter().map(|track| &track[..8]).collect();
     let mean_error = |params: GoalEstimatorParams| {
         let estimator = estimator(params, library.clone());

@@ -1,67 +1,25 @@
-//! Files of the `star` convention, read without the crate that knows formats, and goals measured on them.
+//! The real recordings, and goals measured on them.
 
 use std::collections::BTreeMap;
-use std::error::Error;
-use std::path::Path;
 
+use ddl_data::{Convention, DataError, Dataset, Window, locate};
 use ddl_goal::GoalSet;
 
-pub(crate) const RECORDINGS: [&str; 8] = [
-    "eth",
-    "hotel",
-    "zara01",
-    "zara02",
-    "zara03",
-    "students001",
-    "students003",
-    "uni_examples",
-];
+/// The recordings of the `star` convention.
+pub(crate) fn dataset() -> Result<Dataset, DataError> {
+    Dataset::load(Convention::Star, &locate(Convention::Star, None)?)
+}
 
 /// The 20 positions (m) of a pedestrian from a start frame on.
 pub(crate) type StarWindows = BTreeMap<(i64, i64), Vec<[f64; 2]>>;
 
-/// The tracks of one recording by pedestrian and frame.
-pub(crate) struct StarTracks {
-    pub(crate) step: i64,
-    pub(crate) by_pedestrian: BTreeMap<i64, BTreeMap<i64, [f64; 2]>>,
-}
-
-impl StarTracks {
-    /// Reads four lines: frame, pedestrian, y (m), x (m).
-    pub(crate) fn read(folder: &Path, recording: &str) -> Result<Self, Box<dyn Error>> {
-        let text = std::fs::read_to_string(folder.join(format!("{recording}.csv")))?;
-        let numbers = |line: &str| line.split(',').map(|field| field.trim().parse()).collect();
-        let lines = text.lines().map(numbers);
-        let lines: Vec<Vec<f64>> = lines.collect::<Result<_, std::num::ParseFloatError>>()?;
-        let [frames, pedestrians, ys, xs] = lines.as_slice() else {
-            return Err(format!("{recording}.csv: {} lines, 4 expected", lines.len()).into());
-        };
-        let mut by_pedestrian: BTreeMap<i64, BTreeMap<i64, [f64; 2]>> = BTreeMap::new();
-        for ((frame, pedestrian), (y, x)) in frames.iter().zip(pedestrians).zip(ys.iter().zip(xs)) {
-            let track = by_pedestrian.entry(*pedestrian as i64).or_default();
-            track.insert(*frame as i64, [*x, *y]);
-        }
-        let step = if recording == "eth" { 6 } else { 10 };
-        Ok(Self {
-            step,
-            by_pedestrian,
-        })
-    }
-
-    /// Every pedestrian with all 20 frames, from every start.
-    pub(crate) fn complete_windows(&self) -> StarWindows {
-        let mut windows = StarWindows::new();
-        for (&pedestrian, track) in &self.by_pedestrian {
-            for &start in track.keys() {
-                let frames = (0..20).map(|i| start + i * self.step);
-                let positions: Option<Vec<_>> = frames.map(|f| track.get(&f).copied()).collect();
-                if let Some(positions) = positions {
-                    windows.insert((start, pedestrian), positions);
-                }
-            }
-        }
-        windows
-    }
+/// Everybody's track in some complete windows, by start frame and pedestrian.
+pub(crate) fn tracks_of<'a>(windows: impl IntoIterator<Item = &'a Window>) -> StarWindows {
+    let each = |window: &'a Window| {
+        let pedestrians = window.pedestrians().iter().enumerate();
+        pedestrians.map(|(i, id)| ((window.start_frame(), id.0), window.track(i).to_vec()))
+    };
+    windows.into_iter().flat_map(each).collect()
 }
 
 /// Distance from the goal nearest the true end to it (m).

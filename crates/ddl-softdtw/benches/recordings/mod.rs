@@ -2,26 +2,14 @@
 
 #[path = "../../tests/recorded/mod.rs"]
 mod recorded;
-#[path = "../synthetic/mod.rs"]
-pub(crate) mod synthetic;
+#[path = "../../tests/walks/mod.rs"]
+pub(crate) mod walks;
 
-use std::path::Path;
+use ddl_data::{Recording, WindowRule};
 
 pub(crate) type Walk = Vec<[f64; 2]>;
 
-/// Frames of a window: 8 observed and 12 to come.
-const FRAMES: i64 = 20;
-/// Recordings that candidates are taken from.
-const CANDIDATES: [&str; 7] = [
-    "hotel",
-    "zara01",
-    "zara02",
-    "zara03",
-    "students001",
-    "students003",
-    "uni_examples",
-];
-/// The recording that queries are taken from.
+/// The recording that queries are taken from, and candidates from all others.
 const QUERIES: &str = "eth";
 
 /// Candidates, queries and where they come from.
@@ -34,20 +22,25 @@ pub(crate) struct Windows {
 impl Windows {
     /// The first `steps` velocities (m/s) of all complete windows: those of one recording against those of seven others.
     pub(crate) fn load(steps: usize) -> Self {
-        let Some(folder) = recorded::folder() else {
+        let Some(dataset) = recorded::dataset() else {
+            let mut numbers = walks::Numbers(2);
+            let mut synthetic = |count| (0..count).map(|_| numbers.walker(steps)).collect();
             return Self {
                 source: "synthetic",
-                candidates: synthetic::walkers(37_000, steps..steps + 1, 2),
-                queries: synthetic::walkers(400, steps..steps + 1, 3),
+                candidates: synthetic(37_000),
+                queries: synthetic(400),
             };
         };
-        let candidates = CANDIDATES
-            .iter()
-            .flat_map(|name| windows(&folder, name, steps));
+        let is_asked = |recording: &&Recording| recording.name() == QUERIES;
+        let (asked, others): (Vec<_>, Vec<_>) = dataset.recordings().iter().partition(is_asked);
+        let [queries, candidates] = [asked, others].map(|recordings| {
+            let windows = recordings.into_iter().map(|r| windows(r, steps));
+            windows.flatten().collect()
+        });
         Self {
             source: "real",
-            candidates: candidates.collect(),
-            queries: windows(&folder, QUERIES, steps),
+            candidates,
+            queries,
         }
     }
 
@@ -58,17 +51,13 @@ impl Windows {
     }
 }
 
-/// Velocities (m/s) of the complete windows of a recording.
-fn windows(folder: &Path, name: &str, steps: usize) -> Vec<Walk> {
-    let mut windows = Vec::new();
-    for track in recorded::walkers(folder, name).values() {
-        for &start in track.keys() {
-            let frames = (0..FRAMES).map(|i| start + i * recorded::frame_step(name));
-            let positions = frames.map(|frame| track.get(&frame).copied());
-            if let Some(positions) = positions.collect::<Option<Walk>>() {
-                windows.push(recorded::differences(&positions[..=steps]));
-            }
-        }
-    }
-    windows
+/// The first velocities (m/s) of the complete windows of a recording.
+fn windows(recording: &Recording, steps: usize) -> Vec<Walk> {
+    let windows = recording.windows(WindowRule::Complete);
+    let tracks = windows
+        .iter()
+        .flat_map(|w| (0..w.len()).map(|i| w.track(i)));
+    tracks
+        .map(|track| recorded::differences(&track[..=steps]))
+        .collect()
 }

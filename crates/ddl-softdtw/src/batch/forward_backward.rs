@@ -1,8 +1,7 @@
 //! Scores and gradients of a block of sixteen sequences against one, in `f32` and the exponential domain.
 //!
 //! With α(i, j) = R(i, j), the sum over the paths to a cell, and β(i, j), the sum over the paths from it to the end without
-//! its own factor K(i, j), the expected alignment is E(i, j) = α(i, j) β(i, j) / R(n, m). β takes neither an exponential
-//! nor a logarithm: it is the sum of K β over the three cells that follow.
+//! its own factor K(i, j), the expected alignment is E(i, j) = α(i, j) β(i, j) / R(n, m).
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
@@ -121,8 +120,7 @@ impl<const D: usize> ForwardBackward<'_, D> {
 
     /// β of every cell from the last to the first, and with it the gradient.
     ///
-    /// α / R(n, m) times β is E times the seed: far above the numbers that are added to both products, which keep them from
-    /// becoming denormal.
+    /// The numbers added to both products keep them from becoming denormal.
     #[inline(always)]
     fn backward<S: Register>(
         &mut self,

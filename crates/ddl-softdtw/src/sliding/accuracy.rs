@@ -26,8 +26,9 @@ impl Accuracy {
     /// For windows of `length` steps, or `None` when they are too long for `f32`.
     ///
     /// With F(m) the paths from the first cell of a pair to m, the last cell of the row where the pair is cut, and B(m)
-    /// those from there to its last cell, a score is the sum of F(m) B(m) over m. Each factor is raised by at most `FLOOR` times the
-    /// paths between any cell and its far end; the ceiling raises each path by at most 2^−`COST_CEILING`.
+    /// those from there to its last cell, a score is the sum of F(m) B(m) over m. Each factor is raised by at most
+    /// `FLOOR` times the paths between any cell and its far end; the ceiling raises each path by at most
+    /// 2^−`COST_CEILING`.
     pub(super) fn of(length: usize) -> Option<Self> {
         let range = Range::narrow(range::FLOOR, length, length)?;
         let table = PathTable::new(length);

@@ -11,9 +11,8 @@
 //! ```
 //!
 //! (F counts the cells s to m, B those behind m). One recursion from m backwards gives F(j, s) for every first cell s at once,
-//! one forwards gives B(j, t) for every last cell t, and both serve all `length`² pairs of windows that m lies in: a pair of
-//! windows costs two columns of cells and a sum of `length` products, where its own recursion would take `length` columns.
-//! All terms are positive, so that nothing cancels: the relative error is that of the plain recursion.
+//! one forwards gives B(j, t) for every last cell t: a pair of windows costs two columns of cells and a sum of `length`
+//! products. All terms are positive, so that nothing cancels.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 

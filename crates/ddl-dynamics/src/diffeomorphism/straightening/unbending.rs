@@ -10,11 +10,8 @@ const OPPOSITE: f64 = 1e-6;
 /// Iterations of the singular value decomposition granted per dimension; a handful is usual.
 const ITERATIONS_PER_DIMENSION: usize = 1000;
 
-/// A polygon kept as what it is seen from within: the length of each side, and where the next side
-/// points in the frame carried along without twist (Bishop's frame).
-///
-/// With all turns scaled by the same factor it unbends like a wire, from the curve itself (1) to a
-/// straight line (0), and no side changes its length.
+/// A polygon kept as the length of each side, and where the next side points in the frame carried along without twist
+/// (Bishop's frame). With all turns scaled by the same factor it unbends like a wire.
 pub(super) struct Unbending<const D: usize> {
     lengths: Vec<f64>,
     /// Direction of the first side, in the world and in the frame alike.

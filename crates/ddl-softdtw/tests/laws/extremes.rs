@@ -1,18 +1,9 @@
 //! Extreme and wrong input: huge and tiny numbers, long sequences, what is refused.
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use ddl_softdtw::{Band, Cost, SoftDtw, SoftDtwError};
+use ddl_softdtw::{Cost, SoftDtw, SoftDtwError};
 use proptest::prelude::*;
 
-type Sequence = Vec<[f64; 2]>;
-
-fn cost() -> impl Strategy<Value = Cost> {
-    prop_oneof![Just(Cost::SquaredEuclidean), Just(Cost::Euclidean)]
-}
-
-fn dtw(gamma: f64, cost: Cost) -> SoftDtw {
-    SoftDtw::new(gamma, cost).expect("valid gamma")
-}
+use crate::{Sequence, banded, cost, dtw};
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
@@ -24,8 +15,7 @@ proptest! {
         gamma in prop_oneof![Just(0.0), Just(f64::MIN_POSITIVE / 4.0), Just(1e-3), Just(1.0), Just(1e300), Just(f64::MAX)],
         cost in cost(), radius in prop::option::of(0..4_usize), tiny in any::<bool>(),
     ) {
-        let free = dtw(gamma, cost);
-        let dtw = radius.map_or(free, |radius| free.with_band(Band::new(radius)));
+        let dtw = banded(gamma, cost, radius);
         // Components of every size, or all of them small enough for their squares.
         let shrunk = |s: &Sequence| s.iter().map(|p| p.map(|v| if tiny { v % 1e150 } else { v })).collect::<Vec<_>>();
         let (x, y) = (shrunk(&x), shrunk(&y));

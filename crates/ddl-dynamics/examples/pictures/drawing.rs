@@ -1,4 +1,5 @@
-//! What the pictures of the documentation have in common: a sheet of SVG elements, plots on it, and how paths are drawn.
+//! What the pictures of the documentation have in common: a sheet of SVG elements, plots on it, and how paths are
+//! drawn.
 
 use std::fmt::{Arguments, Write as _};
 
@@ -114,8 +115,8 @@ impl Plot {
             .collect()
     }
 
-    /// The heading, lines of the grid with what is written at them, what `content` draws (of which only what lies within the
-    /// frame is seen), and the frame.
+    /// The heading, lines of the grid with what is written at them, what `content` draws (of which only what lies
+    /// within the frame is seen), and the frame.
     pub(crate) fn draw(
         &self,
         sheet: &mut Sheet,

@@ -1,5 +1,5 @@
-//! Above, the way around the end of a wall: what falls is the distance in the chart, not the distance. Below, ways among
-//! pillars: what falls is the distance.
+//! Above, the way around the end of a wall: what falls is the distance in the chart, not the distance. Below, ways
+//! among pillars: what falls is the distance.
 
 use ddl_dynamics::{
     Attractor, AvoidingFlow, Ball, Chain, CholeskyMetric, DiffeomorphicFlow, DynamicsError, Flow,
@@ -10,7 +10,7 @@ use nalgebra::Vector2;
 use crate::drawing::{INK, Pixel, Plot, STABLE, Sheet, ticks};
 
 /// Seconds of a step of the pedestrian who is followed, those of the published program; and of those drawn as lines.
-pub(crate) const TIME_STEP: f64 = 0.4;
+const TIME_STEP: f64 = 0.4;
 const SHORT_STEP: f64 = 0.05;
 /// Seconds after which the last one has arrived by far.
 const LONGEST: f64 = 60.0;
@@ -18,7 +18,7 @@ const LONGEST: f64 = 60.0;
 /// Out to the end of a wall, around it, and back on its other side, to a goal 1 m away (metres).
 const SHOWN: [[f64; 2]; 4] = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]];
 /// Lower left and upper right corner of the wall, which goes on to the left (metres).
-pub(crate) const WALL: [[f64; 2]; 2] = [[-4.0, 0.4], [2.5, 0.6]];
+const WALL: [[f64; 2]; 2] = [[-4.0, 0.4], [2.5, 0.6]];
 /// Centre and radius of each pillar (metres).
 const PILLARS: [([f64; 2], f64); 6] = [
     ([1.5, 0.55], 0.35),
@@ -32,12 +32,12 @@ const PILLARS: [([f64; 2], f64); 6] = [
 const MARGIN: f64 = 0.5;
 
 /// At 87 and 69.6 pixels a metre.
-pub(crate) const WALL_PLANE: Plot = Plot {
+const WALL_PLANE: Plot = Plot {
     frame: [[58.0, 84.0], [545.2, 388.5]],
     x: [-1.1, 4.5],
     y: [-1.2, 2.3],
 };
-pub(crate) const PILLAR_PLANE: Plot = Plot {
+const PILLAR_PLANE: Plot = Plot {
     frame: [[58.0, 460.0], [545.2, 710.56]],
     x: [-0.4, 6.6],
     y: [-1.8, 1.8],
@@ -86,7 +86,7 @@ pub(crate) fn behind_a_wall() -> Result<Arrivals<AroundWall>, DynamicsError> {
     Arrivals::new(flow, SHOWN[0], &others)
 }
 
-pub(crate) fn pillars() -> Result<Vec<Ball<f64, 2>>, DynamicsError> {
+fn pillars() -> Result<Vec<Ball<f64, 2>>, DynamicsError> {
     let pillars = PILLARS.iter();
     pillars
         .map(|(centre, radius)| Ball::new(Vector2::from(*centre), *radius))
@@ -94,7 +94,7 @@ pub(crate) fn pillars() -> Result<Vec<Ball<f64, 2>>, DynamicsError> {
 }
 
 /// Pedestrians who would go straight to their goal at 1.2 m/s, were it not for the pillars.
-pub(crate) fn among_pillars() -> Result<Arrivals<AmongPillars>, DynamicsError> {
+fn among_pillars() -> Result<Arrivals<AmongPillars>, DynamicsError> {
     let metric = CholeskyMetric::planar(1.1, 0.0, 1.1, PUBLISHED_SIGMA)?;
     let straight = NaturalGradientFlow::new(Attractor::new(Vector2::new(6.0, 0.0))?, metric);
     let flow = AvoidingFlow::new(straight, pillars()?, MARGIN)?;
@@ -170,7 +170,8 @@ pub(crate) fn falls(numbers: &[f64]) -> usize {
 }
 
 /// The picture as the text of an SVG file; the same bytes each time.
-pub(crate) fn draw(wall: &Arrivals<AroundWall>, pillars: &Arrivals<AmongPillars>) -> String {
+pub(crate) fn draw() -> Result<String, DynamicsError> {
+    let (wall, pillars) = (behind_a_wall()?, among_pillars()?);
     let [steps, among] = [wall.followed.steps(), pillars.followed.steps()];
     let (_, angle) = wall.followed.largest_angle();
     let rises = steps - falls(&wall.followed.distances);
@@ -184,23 +185,13 @@ pub(crate) fn draw(wall: &Arrivals<AroundWall>, pillars: &Arrivals<AmongPillars>
     let title = "Around the end of a wall, and among pillars";
     let mut sheet = Sheet::new([900.0, 746.0], title, &description);
     draw_legend(&mut sheet);
-    draw_wall(&mut sheet, wall);
-    draw_pillars(&mut sheet, pillars);
-    draw_falling(
-        &mut sheet,
-        "wall",
-        84.0,
-        &wall.followed.potentials,
-        Some(&wall.followed.distances),
-    );
-    draw_falling(
-        &mut sheet,
-        "pillars",
-        460.0,
-        &pillars.followed.distances,
-        None,
-    );
-    sheet.finish()
+    draw_wall(&mut sheet, &wall);
+    draw_pillars(&mut sheet, &pillars);
+    let (v, distances) = (&wall.followed.potentials, &wall.followed.distances);
+    draw_falling(&mut sheet, "wall", 84.0, v, Some(distances));
+    let distances = &pillars.followed.distances;
+    draw_falling(&mut sheet, "pillars", 460.0, distances, None);
+    Ok(sheet.finish())
 }
 
 fn draw_legend(sheet: &mut Sheet) {

@@ -1,5 +1,5 @@
-//! One flow, two integrators: on the left the plane, whole and near the goal, with the region in which a plain Euler step
-//! does not approach the goal; on the right the distance to the goal over time.
+//! One flow, two integrators: on the left the plane, whole and near the goal, with the region in which a plain Euler
+//! step does not approach the goal; on the right the distance to the goal over time.
 
 use ddl_dynamics::{
     Attractor, CholeskyMetric, DynamicsError, Euler, Flow as _, Integrator, LyapunovCertificate,
@@ -10,8 +10,8 @@ use nalgebra::Vector2;
 use crate::drawing::{INK, Pixel, Plot, STABLE, Sheet, ticks};
 
 /// Seconds of a step, those of the published program.
-pub(crate) const TIME_STEP: f64 = 0.4;
-pub(crate) const STEPS: usize = 24;
+const TIME_STEP: f64 = 0.4;
+const STEPS: usize = 24;
 /// Attributes of a region in which something else holds than outside.
 const REGION: &str = "fill='#FBEBCB' stroke='#E69F00'";
 /// Vermilion of Okabe and Ito.
@@ -22,19 +22,19 @@ const NUMBERED: std::ops::RangeInclusive<usize> = 9..=15;
 const NEAR_GOAL: f64 = 18.0;
 
 /// The whole way, at 82 pixels a metre.
-pub(crate) const WHOLE: Plot = Plot {
+const WHOLE: Plot = Plot {
     frame: [[58.0, 84.0], [459.8, 215.2]],
     x: [-0.3, 4.6],
     y: [-0.7, 0.9],
 };
 /// Around the goal, at 279 pixels a metre.
-pub(crate) const NEAR: Plot = Plot {
+const NEAR: Plot = Plot {
     frame: [[58.0, 290.0], [459.76, 569.0]],
     x: [3.1, 4.54],
     y: [-0.58, 0.42],
 };
 /// Decimal logarithms of distances over steps, and a row for 0 below all of them.
-pub(crate) const DISTANCES: Plot = Plot {
+const DISTANCES: Plot = Plot {
     frame: [[540.0, 84.0], [880.0, 569.0]],
     x: [-0.5, STEPS as f64 + 0.5],
     y: [-17.5, 1.0],
@@ -42,13 +42,13 @@ pub(crate) const DISTANCES: Plot = Plot {
 const ZERO: f64 = -16.9;
 
 /// A path of 24 steps, and what its certificate says.
-pub(crate) struct Followed {
-    pub(crate) path: Vec<Vector2<f64>>,
-    pub(crate) certificate: LyapunovCertificate<f64>,
+struct Followed {
+    path: Vec<Vector2<f64>>,
+    certificate: LyapunovCertificate<f64>,
 }
 
 /// To a goal 4 m away at walking pace, 0.8 to 1.7 m/s, leaning to one side of the way.
-pub(crate) fn flow() -> Result<NaturalGradientFlow<f64, 2, CholeskyMetric<f64, 2>>, DynamicsError> {
+fn flow() -> Result<NaturalGradientFlow<f64, 2, CholeskyMetric<f64, 2>>, DynamicsError> {
     let attractor = Attractor::new(Vector2::new(4.0, 0.0))?;
     let metric = CholeskyMetric::planar(1.1, 0.4, 1.1, PUBLISHED_SIGMA)?;
     Ok(NaturalGradientFlow::new(attractor, metric))
@@ -63,12 +63,12 @@ fn followed(integrator: &impl Integrator<f64, 2>) -> Result<Followed, DynamicsEr
 
 /// How close to the goal a plain Euler step no longer approaches it, on the side of the unit vector `away` (metres):
 /// `dt < 2 Phi u^T P u / |P u|^2` solved for `Phi`.
-pub(crate) fn overshoot_radius(metric: &CholeskyMetric<f64, 2>, away: &Vector2<f64>) -> f64 {
+fn overshoot_radius(metric: &CholeskyMetric<f64, 2>, away: &Vector2<f64>) -> f64 {
     TIME_STEP * metric.apply(away).norm_squared() / (2.0 * metric.quadratic_form(away))
 }
 
 /// The first step of a path that does not approach the goal, with the distances before and after it (m).
-pub(crate) fn violation(followed: &Followed) -> Option<(usize, f64, f64)> {
+fn violation(followed: &Followed) -> Option<(usize, f64, f64)> {
     match followed.certificate.holds() {
         Err(Violation::NotDecreasing {
             step,

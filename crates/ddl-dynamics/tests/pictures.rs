@@ -1,0 +1,39 @@
+//! The pictures of `docs/stability.md` are those that the example draws, and its caption says what they show.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+#[path = "../examples/pictures/around.rs"]
+mod around;
+#[path = "../examples/pictures/circling.rs"]
+mod circling;
+#[path = "../examples/pictures/drawing.rs"]
+mod drawing;
+
+use std::fs;
+
+fn committed(file: &str) -> String {
+    fs::read_to_string(format!("{}/../../docs/{file}", env!("CARGO_MANIFEST_DIR"))).unwrap()
+}
+
+#[test]
+fn the_committed_pictures_are_those_drawn() {
+    for (file, svg) in [
+        ("stability.svg", circling::draw().unwrap()),
+        ("around.svg", around::draw().unwrap()),
+    ] {
+        let anew = "draw them anew: cargo run -p ddl-dynamics --example pictures -- docs";
+        assert!(committed(file) == svg, "{file}: {anew}");
+    }
+}
+
+/// The angle of the caption is the largest one, and `V` falls in every step.
+#[test]
+fn the_caption_says_what_is_drawn() {
+    let followed = around::behind_a_wall().unwrap().followed;
+    assert_eq!(around::falls(&followed.potentials), followed.steps());
+    let written = format!("{:.0}\u{B0}", followed.largest_angle().1.to_degrees());
+    let caption = format!("at up to {written} from the direction");
+    assert!(
+        committed("stability.md").contains(&caption),
+        "the caption is to say: {caption}"
+    );
+}
