@@ -38,15 +38,6 @@ impl Forecast {
     /// # Errors
     /// An array has the wrong length, a number is not finite, a weight is negative, or the weights
     /// of a pedestrian do not sum to 1 within 1e-6.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_eval::Forecast;
-    /// let walks_along_x: Vec<_> = (1..=12).map(|t| [0.5 * f64::from(t), 0.0]).collect();
-    /// let forecast = Forecast::new(1, 1, walks_along_x, vec![1.0], None)?;
-    /// assert_eq!(forecast.hypothesis(0, 0)[11], [6.0, 0.0]);
-    /// # Ok::<(), ddl_eval::ForecastShapeError>(())
-    /// ```
     pub fn new(
         pedestrians: usize,
         hypotheses: usize,
@@ -102,11 +93,7 @@ impl Forecast {
         Self::new(pedestrians, hypotheses, positions, weights, None)
     }
 
-    /// The same forecast, with the verdict of a certificate for each hypothesis: whether the evidence
-    /// that it goes to its goal holds. The evidence itself stays with the model.
-    ///
-    /// # Shapes
-    /// `[N][K]`.
+    /// The same forecast with the verdict of a certificate for each hypothesis, `[N][K]`.
     ///
     /// # Errors
     /// The array has the wrong length.
@@ -123,11 +110,8 @@ impl Forecast {
         })
     }
 
-    /// The same forecast with its spread about the positions of the hypotheses, standard deviations in every direction (metres), and
-    /// the table by which its [regions](Self::region) hold a pedestrian with a given probability.
-    ///
-    /// # Shapes
-    /// `[N][12]`.
+    /// The same forecast with its spread about the hypotheses, `[N][12]`: standard deviations in every direction (metres),
+    /// and the table by which its [regions](Self::region) hold a pedestrian with a given probability.
     ///
     /// # Errors
     /// The array has the wrong length, or a deviation is not finite and positive.
@@ -149,10 +133,7 @@ impl Forecast {
         })
     }
 
-    /// The same forecast with the familiarity of each pedestrian's observed motion, 0 to 1.
-    ///
-    /// # Shapes
-    /// `[N]`.
+    /// The same forecast with the familiarity of each pedestrian's observed motion, `[N]`, 0 to 1.
     ///
     /// # Errors
     /// The array has the wrong length, or a number is not above 0 and at most 1.
@@ -170,8 +151,8 @@ impl Forecast {
         })
     }
 
-    /// Standard deviation in every direction of where pedestrian `i` is `t` + 1 steps ahead, about the position of the
-    /// right hypothesis (metres); `None` for forecasts without a spread.
+    /// Standard deviation of pedestrian `i` in every direction, `t` + 1 steps ahead, about the right hypothesis (metres);
+    /// `None` for forecasts without a spread.
     #[must_use]
     pub fn spread(&self, i: usize, t: usize) -> Option<f64> {
         let (spread, _) = self.spread.as_ref()?;

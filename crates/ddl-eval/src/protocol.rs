@@ -8,16 +8,6 @@ use serde::{Deserialize, Serialize};
 use crate::{Forecast, Forecaster, error::ForecastError};
 
 /// How a number was measured. Numbers of different protocols are not comparable.
-///
-/// # Examples
-/// ```
-/// use ddl_eval::Protocol;
-/// let protocol: Protocol = "fair".parse()?;
-/// assert_eq!(protocol, Protocol::Fair);
-/// assert_eq!(protocol.warning(), None);
-/// assert!(Protocol::Published.warning().is_some());
-/// # Ok::<(), ddl_data::UnknownName>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Protocol {
@@ -108,10 +98,7 @@ impl Protocol {
         }
     }
 
-    /// Forecasts the windows as this protocol demands.
-    ///
-    /// Under `fair` and `single` the futures are cut off before the forecaster is called, so that it
-    /// cannot read them; under `single` the representative hypothesis is kept.
+    /// Forecasts the windows as this protocol demands: their futures are cut off first under `fair` and `single`.
     ///
     /// # Errors
     /// The forecaster failed, or made more hypotheses than the protocol allows.
@@ -124,8 +111,8 @@ impl Protocol {
         self.admit(forecasts, &forecaster.name())
     }
 
-    /// Holds forecasts that were made on [visible](Self::visible) windows to the number of hypotheses
-    /// allowed: under `single` the representative one is kept, otherwise too many are an error.
+    /// Holds forecasts of [visible](Self::visible) windows to the number of hypotheses allowed: `single` keeps the
+    /// representative one, otherwise too many are an error.
     ///
     /// # Errors
     /// A forecast has more hypotheses than the protocol allows.

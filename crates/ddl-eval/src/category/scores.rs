@@ -5,8 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::Category;
 use crate::pedestrian_scores::PedestrianScores;
 
-/// The metrics of one category on the test windows of one fold: means over its pedestrians, as the totals
-/// are over all.
+/// The metrics of one category on the test windows of one fold: means over its pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CategoryScores {
     /// Whose they are.

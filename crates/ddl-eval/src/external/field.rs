@@ -15,7 +15,7 @@ pub(super) fn whole(number: f64) -> Option<i64> {
     (number.fract() == 0.0 && number.abs() < LIMIT).then_some(number as i64)
 }
 
-/// Refuses a position beyond every map: what is computed with such numbers ends in infinities, far from the line that is to blame.
+/// Refuses a position beyond every map, with which later computations would end in infinities.
 pub(super) fn within_bounds(
     position: Position,
     field: impl FnOnce() -> String,

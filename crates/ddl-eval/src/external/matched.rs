@@ -19,11 +19,8 @@ pub enum Coverage {
     /// It is an error: the file must forecast exactly the pedestrians of the windows.
     #[default]
     Whole,
-    /// The pedestrians that are in both are scored, and the result says which part of all they are.
-    ///
-    /// They are scored among everybody: the others of their windows are still there for collisions with true futures, for
-    /// interactions, and for baselines that look at others. The collision rate, JADE and JFDE compare forecasts with
-    /// one another, and are among those forecast.
+    /// The pedestrians that are in both are scored, among everybody: the others still count for collisions with true
+    /// futures, interactions and baselines, but not for the collision rate, JADE and JFDE, which compare forecasts.
     Intersection,
 }
 
@@ -63,10 +60,8 @@ impl Matched {
         self.pedestrians
     }
 
-    /// The words by which a result names that it is of a part of the pedestrians; `None` where it is of all.
-    ///
-    /// They name the file, both counts and a digest of who the pedestrians are: such a result is comparable with nothing but
-    /// results of the very same pedestrians.
+    /// The words by which a result names the part of the pedestrians it is of: the file, both counts and a digest of who
+    /// they are. `None` where it is of all.
     #[must_use]
     pub fn test_subset(&self) -> Option<String> {
         let scored = self.forecast_pedestrians();

@@ -8,9 +8,8 @@
 //! ADE@minFDE_K = ADE_k* with k* = argmin_k FDE_k
 //! ```
 //!
-//! The two minima are independent, which is how most of the literature reads "best of 20"; STAR's and
-//! DDL's code prints `FDE@minADE`, which is never smaller than `minFDE`. `ADE@minFDE` is that of works
-//! which choose by the end (`PECNet`, Y-Net); it is never smaller than `minADE`.
+//! The two minima are independent; STAR's and DDL's code prints `FDE@minADE`, works that choose by the end (`PECNet`,
+//! Y-Net) `ADE@minFDE`.
 //!
 //! # References
 //! Pellegrini et al., "You'll never walk alone", ICCV 2009 (displacement errors); Gupta et al.,
@@ -30,13 +29,6 @@ pub fn distance(a: Position, b: Position) -> f64 {
 ///
 /// # Panics
 /// When the two differ in length or are empty.
-///
-/// # Examples
-/// ```
-/// use ddl_eval::metric::displacement::average_displacement;
-/// let error = average_displacement(&[[0.0, 0.0], [3.0, 4.0]], &[[0.0, 0.0], [0.0, 0.0]]);
-/// assert_eq!(error, 2.5);
-/// ```
 #[must_use]
 pub fn average_displacement(forecast: &[Position], truth: &[Position]) -> f64 {
     check(forecast, truth);

@@ -6,8 +6,6 @@
 //! m = sum_k w_k x_k                         metres
 //! C = sum_k w_k (x_k - m) (x_k - m)^T       square metres (not the unbiased estimate)
 //! ```
-//!
-//! What the metrics of a distribution of positions have in common.
 
 use ddl_data::Position;
 

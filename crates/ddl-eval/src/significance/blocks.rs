@@ -45,9 +45,8 @@ impl BlockErrors {
     }
 }
 
-/// Sums the errors of forecasts, one a window, block by block: by recording, then by time.
-///
-/// Windows are measured in parallel and summed in order: the result does not depend on the number of threads.
+/// Sums the errors of forecasts, one a window, by recording, then by time. The result does not depend on the number of
+/// threads.
 ///
 /// # Errors
 /// A window has no future, or a forecast is not of its window's pedestrians.
