@@ -73,7 +73,6 @@ impl Conditions {
     }
 
     /// Forecaster and variant as printed in the first column; the variant `full` goes without saying.
-    #[must_use]
     pub fn label(&self) -> String {
         match self.variant.as_deref() {
             None | Some("full") => self.forecaster.clone(),

@@ -153,73 +153,62 @@ impl Forecast {
 
     /// Standard deviation of pedestrian `i` in every direction, `t` + 1 steps ahead, about the right hypothesis (metres);
     /// `None` for forecasts without a spread.
-    #[must_use]
     pub fn spread(&self, i: usize, t: usize) -> Option<f64> {
         let (spread, _) = self.spread.as_ref()?;
         Some(spread[i * HORIZON..][..HORIZON][t])
     }
 
     /// The table of its regions; `None` for forecasts without a spread.
-    #[must_use]
     pub fn regions(&self) -> Option<&RegionTable> {
         self.spread.as_ref().map(|(_, regions)| regions.as_ref())
     }
 
     /// How much the observed motion of pedestrian `i` is like those that the model was trained on, 0 to 1; `None` for
     /// forecasts of models that do not say.
-    #[must_use]
     pub fn familiarity(&self, i: usize) -> Option<f64> {
         self.familiarity.as_ref().map(|familiarity| familiarity[i])
     }
 
     /// Number of pedestrians, N.
-    #[must_use]
     pub fn pedestrians(&self) -> usize {
         self.pedestrians
     }
 
     /// Number of hypotheses of each pedestrian, K.
-    #[must_use]
     pub fn hypotheses(&self) -> usize {
         self.hypotheses
     }
 
     /// The 12 positions of hypothesis `k` of pedestrian `i`, metres.
-    #[must_use]
     pub fn hypothesis(&self, i: usize, k: usize) -> &[Position] {
         let start = self.pair(i, k) * HORIZON;
         &self.positions[start..start + HORIZON]
     }
 
     /// The weight of hypothesis `k` of pedestrian `i`, in [0, 1].
-    #[must_use]
     pub fn weight(&self, i: usize, k: usize) -> f64 {
         self.weights[self.pair(i, k)]
     }
 
     /// The goal of hypothesis `k` of pedestrian `i`, metres; `None` for forecasts without goals.
-    #[must_use]
     pub fn goal(&self, i: usize, k: usize) -> Option<Position> {
         let pair = self.pair(i, k);
         self.goals.as_ref().map(|goals| goals[pair])
     }
 
     /// Whether every hypothesis names its goal.
-    #[must_use]
     pub fn has_goals(&self) -> bool {
         self.goals.is_some()
     }
 
     /// Whether the certificate of hypothesis `k` of pedestrian `i` holds; `None` for forecasts that
     /// carry no certificates.
-    #[must_use]
     pub fn certified(&self, i: usize, k: usize) -> Option<bool> {
         let pair = self.pair(i, k);
         self.certified.as_ref().map(|certified| certified[pair])
     }
 
     /// Whether every hypothesis has the verdict of a certificate.
-    #[must_use]
     pub fn has_certificates(&self) -> bool {
         self.certified.is_some()
     }
@@ -227,7 +216,6 @@ impl Forecast {
     /// The hypothesis of greatest weight of pedestrian `i`; of equals, the first.
     ///
     /// To act on one hypothesis, take the [representative](Self::representative) one.
-    #[must_use]
     pub fn most_likely(&self, i: usize) -> usize {
         (1..self.hypotheses).fold(0, |best, k| {
             if self.weight(i, k) > self.weight(i, best) {
@@ -262,9 +250,6 @@ impl Forecast {
     }
 
     /// The forecasts of some of the pedestrians alone, in the order asked for; at least one must be.
-    ///
-    /// # Panics
-    /// When one of them is out of range.
     pub(crate) fn keeping(&self, pedestrians: &[usize]) -> Self {
         fn rows<T: Copy>(all: &[T], per_pedestrian: usize, pedestrians: &[usize]) -> Vec<T> {
             let row = |&i: &usize| &all[i * per_pedestrian..(i + 1) * per_pedestrian];

@@ -27,7 +27,6 @@ impl Protocol {
     pub const ALL: [Self; 3] = [Self::Published, Self::Fair, Self::Single];
 
     /// `published`, `fair` or `single`.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Published => "published",
@@ -37,7 +36,6 @@ impl Protocol {
     }
 
     /// What is measured, in one sentence.
-    #[must_use]
     pub const fn description(self) -> &'static str {
         match self {
             Self::Published => {
@@ -59,7 +57,6 @@ impl Protocol {
     }
 
     /// What a reader must be told beside a number of this protocol.
-    #[must_use]
     pub const fn warning(self) -> Option<&'static str> {
         match self {
             Self::Published => Some(
@@ -74,7 +71,6 @@ impl Protocol {
     }
 
     /// The number of hypotheses a pedestrian may have: 20, or 1.
-    #[must_use]
     pub const fn hypotheses(self) -> usize {
         match self {
             Self::Published | Self::Fair => Self::MOST_HYPOTHESES,
@@ -83,13 +79,11 @@ impl Protocol {
     }
 
     /// Whether forecasters are shown the true future of the windows.
-    #[must_use]
     pub const fn shows_future(self) -> bool {
         matches!(self, Self::Published)
     }
 
     /// The windows as a forecaster sees them: under `fair` and `single`, without their futures.
-    #[must_use]
     pub fn visible(self, windows: &[Window]) -> Cow<'_, [Window]> {
         if self.shows_future() {
             Cow::Borrowed(windows)

@@ -90,7 +90,6 @@ impl RegionTable {
     ///
     /// # Shapes
     /// `scores` `[pedestrians][12]`; `levels` rising, in (0, 1), at least one. `None` otherwise.
-    #[must_use]
     pub fn of(scores: &[[f64; HORIZON]], levels: &[f64]) -> Option<Self> {
         let of_step = |t: usize| {
             let mut step: Vec<f64> = scores.iter().map(|scores| scores[t]).collect();
@@ -111,7 +110,6 @@ impl RegionTable {
     }
 
     /// The lowest and the highest level there are quantiles for.
-    #[must_use]
     pub fn range(&self) -> [f64; 2] {
         let levels = &self.0.levels;
         [levels[0], levels[levels.len() - 1]]
@@ -119,7 +117,6 @@ impl RegionTable {
 
     /// The quantile of a level, `t` + 1 steps ahead, linear between the levels of the table; `None` beyond its
     /// [range](Self::range).
-    #[must_use]
     pub fn quantile(&self, level: f64, t: usize) -> Option<f64> {
         let LevelQuantiles { levels, quantiles } = &self.0;
         let [lowest, highest] = self.range();
@@ -142,7 +139,6 @@ impl RegionTable {
 impl Forecast {
     /// The score of the position `at` (m) of pedestrian `i`, `t` + 1 steps ahead; `None` for forecasts without a
     /// [spread](Self::spread).
-    #[must_use]
     pub fn region_score(&self, i: usize, t: usize, at: Position) -> Option<f64> {
         let spread = self.spread(i, t)?;
         let of_hypothesis = |k: usize| {
@@ -160,7 +156,6 @@ impl Forecast {
 
     /// The radius (m) of the disc about hypothesis `k` of pedestrian `i`, `t` + 1 steps ahead, in the region of a level;
     /// `None` where there is none.
-    #[must_use]
     pub fn region_radius(&self, i: usize, k: usize, t: usize, level: f64) -> Option<f64> {
         let quantile = self.regions()?.quantile(level, t)?;
         let left = quantile + self.log_weight(i, k);
@@ -169,7 +164,6 @@ impl Forecast {
 
     /// The region that holds pedestrian `i`, `t` + 1 steps ahead, with the probability `level`: at most one disc a
     /// hypothesis, and one of the likeliest; `None` beyond the range of the table, and without regions.
-    #[must_use]
     pub fn region(&self, i: usize, t: usize, level: f64) -> Option<Vec<Disc>> {
         self.regions()?.quantile(level, t)?;
         let disc = |k: usize| {
@@ -182,13 +176,11 @@ impl Forecast {
 }
 
 /// Whether one of the discs holds the position.
-#[must_use]
 pub fn holds(region: &[Disc], at: Position) -> bool {
     region.iter().any(|disc| disc.holds(at))
 }
 
 /// The radius (m) of the one disc that is as large as all of the region, measured on a grid.
-#[must_use]
 pub fn equal_radius(region: &[Disc]) -> f64 {
     let bound = |axis: usize, side: f64| {
         let ends = region

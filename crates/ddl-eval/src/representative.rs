@@ -25,7 +25,6 @@ const EQUAL: f64 = 1e-9;
 impl Forecast {
     /// The hypothesis of pedestrian `i` that stands for all: of least expected ADE if the truth is one of them, each with
     /// its weight. It is the forecast of the protocol `single`, and what is checked for collisions.
-    #[must_use]
     pub fn representative(&self, i: usize) -> usize {
         let weights: Vec<f64> = (0..self.hypotheses()).map(|k| self.weight(i, k)).collect();
         medoid(&weights, |k, j| {
@@ -38,7 +37,6 @@ impl Forecast {
 ///
 /// # Panics
 /// When there are no weights.
-#[must_use]
 pub fn medoid(weights: &[f64], distance: impl Fn(usize, usize) -> f64) -> usize {
     assert!(!weights.is_empty(), "nothing has no medoid");
     let errors: Vec<f64> = (0..weights.len())

@@ -52,51 +52,43 @@ impl<'a> Scene<'a> {
     }
 
     /// The window.
-    #[must_use]
     pub fn window(&self) -> &'a Window {
         self.window
     }
 
     /// The window with everybody who was there, forecast or not; the [`window`](Self::window) itself, but after
     /// [`among`](Self::among).
-    #[must_use]
     pub fn everybody(&self) -> &'a Window {
         self.everybody
     }
 
     /// Which of [`everybody`](Self::everybody) pedestrian `i` is.
-    #[must_use]
     pub fn place(&self, i: usize) -> usize {
         // `among` has seen that everybody includes them; in the window itself each is at its own place.
         place(self.everybody, self.window.pedestrians()[i]).unwrap_or(i)
     }
 
     /// The forecast.
-    #[must_use]
     pub fn forecast(&self) -> &'a Forecast {
         self.forecast
     }
 
     /// Number of pedestrians, N.
-    #[must_use]
     pub fn pedestrians(&self) -> usize {
         self.forecast.pedestrians()
     }
 
     /// Number of hypotheses, K.
-    #[must_use]
     pub fn hypotheses(&self) -> usize {
         self.forecast.hypotheses()
     }
 
     /// The 12 true positions of pedestrian `i`, metres.
-    #[must_use]
     pub fn truth(&self, i: usize) -> &'a [Position] {
         self.window.future(i)
     }
 
     /// The last observed position of pedestrian `i`, metres.
-    #[must_use]
     pub fn last_observed(&self, i: usize) -> Position {
         self.window.observed(i)[OBSERVED - 1]
     }
@@ -105,7 +97,6 @@ impl<'a> Scene<'a> {
     ///
     /// # Shapes
     /// `[K]`.
-    #[must_use]
     pub fn weights(&self, i: usize) -> Vec<f64> {
         let weights = (0..self.hypotheses()).map(|k| self.forecast.weight(i, k));
         let sum: f64 = weights.clone().sum();
@@ -116,7 +107,6 @@ impl<'a> Scene<'a> {
     ///
     /// # Shapes
     /// `[K]`.
-    #[must_use]
     pub fn positions_at(&self, i: usize, t: usize) -> Vec<Position> {
         (0..self.hypotheses())
             .map(|k| self.forecast.hypothesis(i, k)[t])

@@ -19,13 +19,11 @@ pub struct ConstantAcceleration {
 
 impl ConstantAcceleration {
     /// As defined, whatever comes out.
-    #[must_use]
     pub fn unbounded() -> Self {
         Self { bounded: false }
     }
 
     /// No faster than observed, and no turning back.
-    #[must_use]
     pub fn bounded() -> Self {
         Self { bounded: true }
     }

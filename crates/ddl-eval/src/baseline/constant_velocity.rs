@@ -28,20 +28,17 @@ enum VelocityRule {
 
 impl ConstantVelocity {
     /// v is the last observed step, `p(8) - p(7)`.
-    #[must_use]
     pub fn last_step() -> Self {
         Self(VelocityRule::LastStep)
     }
 
     /// v is the mean of the 7 observed steps, `(p(8) - p(1)) / 7`.
-    #[must_use]
     pub fn mean_observed() -> Self {
         Self(VelocityRule::MeanObserved)
     }
 
     /// Twenty hypotheses of equal weight: the last observed step turned by angles drawn from N(0, (25 degrees)^2), for
     /// every pedestrian and sample. They depend on the seed, the recording and the first frame alone.
-    #[must_use]
     pub fn angular_noise(seed: u64) -> Self {
         Self(VelocityRule::AngularNoise { seed })
     }

@@ -73,7 +73,6 @@ impl Interaction {
     ];
 
     /// The kinds of pedestrian `i`, in the order of [`Interaction::ALL`]; empty without interaction or future.
-    #[must_use]
     pub fn of(window: &Window, i: usize) -> Vec<Self> {
         if !window.has_future() {
             return Vec::new();
@@ -96,7 +95,6 @@ impl Interaction {
 
     /// The kinds of pedestrian `i` with pedestrian `j` alone, but for [`Interaction::Other`]; empty without a future, and
     /// for `i == j`.
-    #[must_use]
     pub fn between(window: &Window, i: usize, j: usize) -> Vec<Self> {
         if i == j || !window.has_future() {
             return Vec::new();

@@ -18,9 +18,6 @@ const TRANSITION: f64 = 1e-5;
 const OBSERVATION: f64 = 0.05 * 0.05;
 
 /// Where the filter expects a pedestrian 12 frames after the last of its observed positions, metres.
-///
-/// # Panics
-/// When `observed` is empty.
 pub(crate) fn expected_end(observed: &[Position]) -> Position {
     let mut position = observed[0];
     let mut velocity = [0.0, 0.0];

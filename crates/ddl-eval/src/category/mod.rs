@@ -41,7 +41,6 @@ impl Category {
     }
 
     /// The categories of pedestrian `i`, in that order; none for windows without a future.
-    #[must_use]
     pub fn of(window: &Window, i: usize) -> Vec<Self> {
         let Some((kind, interactions)) = TrajectoryType::with_interactions(window, i) else {
             return Vec::new();

@@ -64,7 +64,6 @@ impl MotionKind {
 
     /// The kind of motion of a track of 20 positions (m, 0.4 s apart); `None` for other tracks and for
     /// positions that are not finite.
-    #[must_use]
     pub fn of(track: &[Position]) -> Option<Self> {
         if track.len() != WINDOW || !track.iter().flatten().all(|c| c.is_finite()) {
             return None;

@@ -29,7 +29,6 @@ pub struct CategoryScores {
 }
 
 impl CategoryScores {
-    /// One a category that somebody is in.
     pub(crate) fn of<'a>(pedestrians: impl Iterator<Item = &'a PedestrianScores>) -> Vec<Self> {
         let mut groups: Vec<(Category, Vec<&PedestrianScores>)> = Category::all()
             .map(|category| (category, Vec::new()))

@@ -46,13 +46,11 @@ impl TrajectoryType {
     ];
 
     /// The type of pedestrian `i`; `None` for windows without a future.
-    #[must_use]
     pub fn of(window: &Window, i: usize) -> Option<Self> {
         Some(Self::with_interactions(window, i)?.0)
     }
 
     /// The type of pedestrian `i` with the kinds of its interaction, which only type III has.
-    #[must_use]
     pub fn with_interactions(window: &Window, i: usize) -> Option<(Self, Vec<Interaction>)> {
         let end = window.end(i)?;
         let track = window.track(i);

@@ -27,7 +27,6 @@ pub(super) fn within_bounds(
     }
 }
 
-/// The beginning of a text, for messages.
 pub(super) fn quoted(text: &str) -> String {
     match text.char_indices().nth(QUOTED) {
         Some((end, _)) => format!("{}...", &text[..end]),

@@ -43,26 +43,22 @@ impl Matched {
     }
 
     /// The name of the file, without its folder.
-    #[must_use]
     pub fn file(&self) -> &str {
         &self.file
     }
 
     /// Pedestrians who are forecast, counted once for each window.
-    #[must_use]
     pub fn forecast_pedestrians(&self) -> usize {
         self.windows.iter().map(Window::len).sum()
     }
 
     /// Pedestrians that the windows asked for.
-    #[must_use]
     pub fn pedestrians(&self) -> usize {
         self.pedestrians
     }
 
     /// The words by which a result names the part of the pedestrians it is of: the file, both counts and a digest of who
     /// they are. `None` where it is of all.
-    #[must_use]
     pub fn test_subset(&self) -> Option<String> {
         let scored = self.forecast_pedestrians();
         (scored < self.pedestrians).then(|| {
@@ -97,7 +93,6 @@ impl Matched {
 }
 
 impl ExpectedForecasts<'_> {
-    /// The forecasts, once the whole file is read.
     pub(super) fn matched(self, coverage: Coverage) -> Result<Matched, ExternalError> {
         let all: usize = self.windows.iter().map(Window::len).sum();
         let found = self.slots.iter().flatten().flatten().count();
@@ -188,7 +183,6 @@ impl ExpectedForecasts<'_> {
     }
 }
 
-/// One window's forecast from those of its pedestrians.
 fn forecast(slots: Vec<Slot>) -> Result<Forecast, crate::ForecastShapeError> {
     let pedestrians = slots.len();
     let hypotheses = slots.first().map_or(0, |slot| slot.forecast.hypotheses());

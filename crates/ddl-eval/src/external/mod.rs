@@ -54,7 +54,6 @@ impl ExternalFormat {
     pub const ALL: [Self; 3] = [Self::JsonLines, Self::Table, Self::TrajNet];
 
     /// `jsonl`, `csv` or `ndjson`: the extension that files of the format have.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::JsonLines => "jsonl",
@@ -64,7 +63,6 @@ impl ExternalFormat {
     }
 
     /// The format that the extension of a file names, in small letters or capitals; JSON lines where it names none.
-    #[must_use]
     pub fn of_file(path: &Path) -> Self {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
         let named = extension.to_ascii_lowercase().parse();

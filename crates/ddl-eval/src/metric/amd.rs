@@ -40,7 +40,6 @@ pub struct DistributionErrors {
 
 impl DistributionErrors {
     /// Of pedestrian `i`; `None` for forecasts of one hypothesis.
-    #[must_use]
     pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
         if scene.hypotheses() < 2 {
             return None;
@@ -71,7 +70,6 @@ impl DistributionErrors {
 }
 
 /// AMV of a mean covariance: its largest eigenvalue, square metres.
-#[must_use]
 pub fn amv(mean_covariance: Covariance) -> f64 {
     mean_covariance.principal_axes().variances[0]
 }

@@ -26,7 +26,6 @@ pub const DISC_RADIUS: f64 = 0.2;
 /// The least distance of two pedestrians who move straight from frame to frame, metres.
 ///
 /// Infinite when either track is empty. Frames beyond the shorter track are ignored.
-#[must_use]
 pub fn closest_approach(a: &[Position], b: &[Position]) -> f64 {
     let mut apart = a.iter().zip(b).map(|(p, q)| [p[0] - q[0], p[1] - q[1]]);
     let Some(mut before) = apart.next() else {
@@ -56,7 +55,6 @@ fn distance_to_origin(r0: Position, r1: Position) -> f64 {
 ///
 /// # Shapes
 /// one entry a track.
-#[must_use]
 pub fn collides(tracks: &[&[Position]], radius: f64) -> Vec<bool> {
     let mut hit = vec![false; tracks.len()];
     for i in 0..tracks.len() {
@@ -71,7 +69,6 @@ pub fn collides(tracks: &[&[Position]], radius: f64) -> Vec<bool> {
 }
 
 /// The [representative](crate::Forecast::representative) forecast of each pedestrian, metres.
-#[must_use]
 pub fn representative_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
     let forecast = scene.forecast();
     (0..scene.pedestrians())
@@ -83,7 +80,6 @@ pub fn representative_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
 ///
 /// # Shapes
 /// `[N]`.
-#[must_use]
 pub fn collides_truly(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
     let everybody = scene.everybody();
     let tracks: Vec<&[Position]> = (0..everybody.len()).map(|j| everybody.future(j)).collect();

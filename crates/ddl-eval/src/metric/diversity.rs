@@ -24,7 +24,6 @@ pub struct Diversity {
 
 impl Diversity {
     /// Of pedestrian `i`; `None` for forecasts of one hypothesis.
-    #[must_use]
     pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
         let (forecast, k) = (scene.forecast(), scene.hypotheses());
         if k < 2 {

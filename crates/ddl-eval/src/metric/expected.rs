@@ -14,7 +14,6 @@ use crate::Forecast;
 ///
 /// # Panics
 /// When `i` is out of range or there are more errors than hypotheses.
-#[must_use]
 pub fn expected(forecast: &Forecast, i: usize, errors: &[f64]) -> f64 {
     let weighted = errors.iter().enumerate();
     weighted

@@ -11,7 +11,6 @@ use super::displacement::distance;
 use crate::Scene;
 
 /// Distance of the nearest goal of pedestrian `i` from the true end, metres; `None` without goals.
-#[must_use]
 pub fn goal_fde(scene: &Scene<'_>, i: usize) -> Option<f64> {
     let end = scene.window().end(i)?;
     (0..scene.hypotheses())

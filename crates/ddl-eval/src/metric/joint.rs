@@ -14,13 +14,11 @@
 use super::displacement::DisplacementErrors;
 
 /// JADE of a scene, metres.
-#[must_use]
 pub fn joint_ade(errors: &DisplacementErrors) -> f64 {
     least_scene_mean(errors, DisplacementErrors::ade)
 }
 
 /// JFDE of a scene, metres; its hypothesis may differ from that of [`joint_ade`].
-#[must_use]
 pub fn joint_fde(errors: &DisplacementErrors) -> f64 {
     least_scene_mean(errors, DisplacementErrors::fde)
 }

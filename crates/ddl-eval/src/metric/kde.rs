@@ -44,7 +44,6 @@ pub const LEAST_DEVIATION: f64 = 0.01;
 /// # Numerics
 /// The sum of exponentials is taken relative to its largest term. Where all weight is on one point
 /// the covariance is 0/0; it counts as 0.
-#[must_use]
 pub fn log_density(points: &[Position], weights: &[f64], at: Position) -> f64 {
     let moments = Moments::of(points, weights);
     let concentration: f64 = weights.iter().map(|w| w * w).sum();
@@ -87,7 +86,6 @@ fn mixture_log_density(
 
 /// Mean over the frames of -ln of the clipped density at the truth of pedestrian `i`, nats; `None`
 /// for forecasts of one hypothesis.
-#[must_use]
 pub fn kde_nll(scene: &Scene<'_>, i: usize) -> Option<f64> {
     if scene.hypotheses() < 2 {
         return None;

@@ -44,7 +44,6 @@ pub struct RolloutStability {
 impl RolloutStability {
     /// Judges the rollout `path`, which starts from `start`, against `goal`; all in metres. Nothing is
     /// known of a certificate.
-    #[must_use]
     pub fn of(start: Position, path: &[Position], goal: Position) -> Self {
         let mut result = Self {
             decreasing: true,
@@ -86,7 +85,6 @@ pub struct StabilityScores {
 
 impl StabilityScores {
     /// The mean of rollouts; `None` when there are none.
-    #[must_use]
     pub fn mean(rollouts: &[RolloutStability]) -> Option<Self> {
         if rollouts.is_empty() {
             return None;
@@ -109,7 +107,6 @@ impl StabilityScores {
 }
 
 /// Judges every hypothesis of every pedestrian; empty when the forecast has no goals.
-#[must_use]
 pub fn rollouts(scene: &Scene<'_>) -> Vec<RolloutStability> {
     let forecast = scene.forecast();
     (0..scene.pedestrians())

@@ -20,7 +20,6 @@ use crate::Scene;
 ///
 /// # Shapes
 /// `[N]`.
-#[must_use]
 pub fn collides_with_truth(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
     let (forecast, everybody) = (scene.forecast(), scene.everybody());
     let runs_into_another = |i: usize| {

@@ -29,7 +29,6 @@ pub struct BlockErrors {
 
 impl BlockErrors {
     /// The sum of one metric, m.
-    #[must_use]
     pub fn sum(&self, metric: BlockMetric) -> f64 {
         match metric {
             BlockMetric::MinAde => self.min_ade,
@@ -38,7 +37,6 @@ impl BlockErrors {
     }
 
     /// Whether both are of the same windows: place and pedestrians agree.
-    #[must_use]
     pub fn same_windows(&self, other: &Self) -> bool {
         (&self.recording, self.block, self.pedestrians)
             == (&other.recording, other.block, other.pedestrians)
