@@ -1,9 +1,9 @@
 //! TrajNet++ ndjson: scenes of 8 or 9 observed and 12 forecast frames, and the tracks that were forecast in them.
 //!
-//! A scene stands for the window of its recording that starts at its first frame, or of 9 observed frames at the second. Its primary pedestrian is forecast
-//! for its own sake; a neighbour's forecast counts where no scene of the window has that pedestrian as its primary
-//! one. Neighbours who are not in the window (they left before its end) are not scored, and left out. Pedestrians that are
-//! forecast in several scenes have no joint future: hypothesis k of a window is then put together from those scenes.
+//! A scene stands for the window that starts at its first frame or, with 9 observed frames, at its second. Its primary
+//! pedestrian is forecast for its own sake; a neighbour's forecast counts where no scene of the window has that pedestrian
+//! as its primary one. Neighbours who are not in the window are not scored, and left out. Where pedestrians are forecast
+//! in several scenes, hypothesis k of a window is put together from those scenes.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::BufRead;
