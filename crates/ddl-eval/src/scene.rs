@@ -93,20 +93,14 @@ impl<'a> Scene<'a> {
         self.window.observed(i)[OBSERVED - 1]
     }
 
-    /// The weights of pedestrian `i`, divided by their sum.
-    ///
-    /// # Shapes
-    /// `[K]`.
+    /// The weights of pedestrian `i`, divided by their sum; `[K]`.
     pub fn weights(&self, i: usize) -> Vec<f64> {
         let weights = (0..self.hypotheses()).map(|k| self.forecast.weight(i, k));
         let sum: f64 = weights.clone().sum();
         weights.map(|weight| weight / sum).collect()
     }
 
-    /// Where the hypotheses of pedestrian `i` are at forecast frame `t`, counted from 0; metres.
-    ///
-    /// # Shapes
-    /// `[K]`.
+    /// Where the hypotheses of pedestrian `i` are at forecast frame `t`, counted from 0; `[K]`, metres.
     pub fn positions_at(&self, i: usize, t: usize) -> Vec<Position> {
         (0..self.hypotheses())
             .map(|k| self.forecast.hypothesis(i, k)[t])

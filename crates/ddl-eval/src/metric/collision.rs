@@ -51,10 +51,7 @@ fn distance_to_origin(r0: Position, r1: Position) -> f64 {
     (r0[0] + s * d[0]).hypot(r0[1] + s * d[1])
 }
 
-/// Which tracks' discs of radius `radius` metres overlap that of any other track.
-///
-/// # Shapes
-/// one entry a track.
+/// Which tracks' discs of radius `radius` metres overlap that of any other track; one entry a track.
 pub fn collides(tracks: &[&[Position]], radius: f64) -> Vec<bool> {
     let mut hit = vec![false; tracks.len()];
     for i in 0..tracks.len() {
@@ -76,10 +73,7 @@ pub fn representative_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
         .collect()
 }
 
-/// Which pedestrians' true futures collide with that of anybody who was there, forecast or not.
-///
-/// # Shapes
-/// `[N]`.
+/// Which pedestrians' true futures collide with that of anybody who was there, forecast or not; `[N]`.
 pub fn collides_truly(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
     let everybody = scene.everybody();
     let tracks: Vec<&[Position]> = (0..everybody.len()).map(|j| everybody.future(j)).collect();

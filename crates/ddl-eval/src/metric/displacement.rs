@@ -56,10 +56,7 @@ fn check(forecast: &[Position], truth: &[Position]) {
     );
 }
 
-/// ADE and FDE of every hypothesis of every pedestrian of a scene.
-///
-/// # Shapes
-/// two tables `[N][K]`, metres.
+/// ADE and FDE of every hypothesis of every pedestrian of a scene: two tables `[N][K]`, metres.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DisplacementErrors {
     hypotheses: usize,

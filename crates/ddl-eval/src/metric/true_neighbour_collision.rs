@@ -16,10 +16,7 @@
 use super::collision::closest_approach;
 use crate::Scene;
 
-/// Which pedestrians' representative forecasts run into the true future of another.
-///
-/// # Shapes
-/// `[N]`.
+/// Which pedestrians' representative forecasts run into the true future of another; `[N]`.
 pub fn collides_with_truth(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
     let (forecast, everybody) = (scene.forecast(), scene.everybody());
     let runs_into_another = |i: usize| {
