@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Crate, example and arguments, and what its output must hold. One that is given a name of a picture draws it.
-const EXAMPLES: [(&str, &[&str]); 11] = [
+const EXAMPLES: [(&str, &[&str]); 10] = [
     (
         "ddl forecast_csv",
         &[
@@ -56,10 +56,6 @@ const EXAMPLES: [(&str, &[&str]); 11] = [
     (
         "ddl-goal goals_of_a_walker",
         &["300 experts of 3000 walkers", "nearest goal: 0."],
-    ),
-    (
-        "ddl-report score_forecasts",
-        &["2284 walkers of the simulated plaza", "protocol `single`"],
     ),
 ];
 

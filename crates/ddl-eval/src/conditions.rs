@@ -9,8 +9,7 @@ use crate::{
     significance::{BlockErrors, block_errors},
 };
 
-/// How a result came about. Two results are comparable when their convention, window rule, protocol
-/// and test subset are the same; a report never puts others into one table.
+/// How a result came about. Two results are comparable when convention, window rule, protocol and test subset agree.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
     /// Data convention of the recordings.
@@ -40,11 +39,9 @@ pub struct Conditions {
     /// Commit of the project; empty when unknown.
     #[serde(default)]
     pub commit: String,
-    /// Rule by which a part of the training windows was used; `None` for all of them. The same text
-    /// for every fold, or the folds will not share a row.
+    /// Rule by which a part of the training windows was used, the same text for every fold; `None` for all of them.
     pub training_subset: Option<String>,
-    /// Rule by which a part of the test windows was scored; `None` for all of them. The same text for
-    /// every fold, or the folds will not share a table.
+    /// Rule by which a part of the test windows was scored, the same text for every fold; `None` for all of them.
     pub test_subset: Option<String>,
 }
 
@@ -76,7 +73,6 @@ impl Conditions {
     }
 
     /// Forecaster and variant as printed in the first column; the variant `full` goes without saying.
-    #[must_use]
     pub fn label(&self) -> String {
         match self.variant.as_deref() {
             None | Some("full") => self.forecaster.clone(),
@@ -100,8 +96,7 @@ pub struct ResultRow {
 impl ResultRow {
     /// Forecasts the windows under the protocol of the conditions and scores the forecasts.
     ///
-    /// The conditions are taken at their word: that the windows are the fold's, and were cut by the
-    /// rule named, is the caller's to see to.
+    /// The conditions are taken at their word: windows and rule are the caller's to see to.
     ///
     /// # Errors
     /// The forecaster failed, broke the protocol, or its forecasts cannot be scored.
@@ -113,8 +108,7 @@ impl ResultRow {
         Self::measure_among(conditions, forecaster, windows, windows)
     }
 
-    /// The same for windows that are reduced to a part of their pedestrians: the forecaster is shown everybody of the whole
-    /// windows, one each, and what it forecasts of that part is scored among everybody.
+    /// The same for a part of the pedestrians: the forecaster is shown everybody of the whole windows, one each.
     pub(crate) fn measure_among(
         conditions: Conditions,
         forecaster: &(impl Forecaster + ?Sized),
@@ -137,8 +131,6 @@ impl ResultRow {
     }
 
     /// Scores forecasts that are there already, one a window.
-    ///
-    /// The conditions are taken at their word, as by [`ResultRow::measure`].
     ///
     /// # Errors
     /// As [`Scores::evaluate`].

@@ -168,7 +168,6 @@ pub enum WindowProblem {
 
 impl EvaluationError {
     /// What is wrong with a window.
-    #[must_use]
     pub fn of(window: &Window, problem: WindowProblem) -> Self {
         Self::Window {
             recording: window.recording().to_owned(),

@@ -13,7 +13,6 @@ pub(crate) fn window(starts: &[Position], steps: &[Position]) -> Window {
     of_tracks(tracks.collect())
 }
 
-/// A window of these tracks.
 pub(crate) fn of_tracks(tracks: Vec<Vec<Position>>) -> Window {
     let ids = (0..).take(tracks.len()).map(PedestrianId).collect();
     Window::new("made up", 0, 10, ids, tracks).unwrap()

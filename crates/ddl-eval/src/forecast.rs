@@ -38,15 +38,6 @@ impl Forecast {
     /// # Errors
     /// An array has the wrong length, a number is not finite, a weight is negative, or the weights
     /// of a pedestrian do not sum to 1 within 1e-6.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_eval::Forecast;
-    /// let walks_along_x: Vec<_> = (1..=12).map(|t| [0.5 * f64::from(t), 0.0]).collect();
-    /// let forecast = Forecast::new(1, 1, walks_along_x, vec![1.0], None)?;
-    /// assert_eq!(forecast.hypothesis(0, 0)[11], [6.0, 0.0]);
-    /// # Ok::<(), ddl_eval::ForecastShapeError>(())
-    /// ```
     pub fn new(
         pedestrians: usize,
         hypotheses: usize,
@@ -102,11 +93,7 @@ impl Forecast {
         Self::new(pedestrians, hypotheses, positions, weights, None)
     }
 
-    /// The same forecast, with the verdict of a certificate for each hypothesis: whether the evidence
-    /// that it goes to its goal holds. The evidence itself stays with the model.
-    ///
-    /// # Shapes
-    /// `[N][K]`.
+    /// The same forecast with the verdict of a certificate for each hypothesis, `[N][K]`.
     ///
     /// # Errors
     /// The array has the wrong length.
@@ -123,11 +110,8 @@ impl Forecast {
         })
     }
 
-    /// The same forecast with its spread about the positions of the hypotheses, standard deviations in every direction (metres), and
-    /// the table by which its [regions](Self::region) hold a pedestrian with a given probability.
-    ///
-    /// # Shapes
-    /// `[N][12]`.
+    /// The same forecast with its spread about the hypotheses, `[N][12]`: standard deviations in every direction (metres),
+    /// and the table by which its [regions](Self::region) hold a pedestrian with a given probability.
     ///
     /// # Errors
     /// The array has the wrong length, or a deviation is not finite and positive.
@@ -149,10 +133,7 @@ impl Forecast {
         })
     }
 
-    /// The same forecast with the familiarity of each pedestrian's observed motion, 0 to 1.
-    ///
-    /// # Shapes
-    /// `[N]`.
+    /// The same forecast with the familiarity of each pedestrian's observed motion, `[N]`, 0 to 1.
     ///
     /// # Errors
     /// The array has the wrong length, or a number is not above 0 and at most 1.
@@ -170,75 +151,64 @@ impl Forecast {
         })
     }
 
-    /// Standard deviation in every direction of where pedestrian `i` is `t` + 1 steps ahead, about the position of the
-    /// right hypothesis (metres); `None` for forecasts without a spread.
-    #[must_use]
+    /// Standard deviation of pedestrian `i` in every direction, `t` + 1 steps ahead, about the right hypothesis (metres);
+    /// `None` for forecasts without a spread.
     pub fn spread(&self, i: usize, t: usize) -> Option<f64> {
         let (spread, _) = self.spread.as_ref()?;
         Some(spread[i * HORIZON..][..HORIZON][t])
     }
 
     /// The table of its regions; `None` for forecasts without a spread.
-    #[must_use]
     pub fn regions(&self) -> Option<&RegionTable> {
         self.spread.as_ref().map(|(_, regions)| regions.as_ref())
     }
 
     /// How much the observed motion of pedestrian `i` is like those that the model was trained on, 0 to 1; `None` for
     /// forecasts of models that do not say.
-    #[must_use]
     pub fn familiarity(&self, i: usize) -> Option<f64> {
         self.familiarity.as_ref().map(|familiarity| familiarity[i])
     }
 
     /// Number of pedestrians, N.
-    #[must_use]
     pub fn pedestrians(&self) -> usize {
         self.pedestrians
     }
 
     /// Number of hypotheses of each pedestrian, K.
-    #[must_use]
     pub fn hypotheses(&self) -> usize {
         self.hypotheses
     }
 
     /// The 12 positions of hypothesis `k` of pedestrian `i`, metres.
-    #[must_use]
     pub fn hypothesis(&self, i: usize, k: usize) -> &[Position] {
         let start = self.pair(i, k) * HORIZON;
         &self.positions[start..start + HORIZON]
     }
 
     /// The weight of hypothesis `k` of pedestrian `i`, in [0, 1].
-    #[must_use]
     pub fn weight(&self, i: usize, k: usize) -> f64 {
         self.weights[self.pair(i, k)]
     }
 
     /// The goal of hypothesis `k` of pedestrian `i`, metres; `None` for forecasts without goals.
-    #[must_use]
     pub fn goal(&self, i: usize, k: usize) -> Option<Position> {
         let pair = self.pair(i, k);
         self.goals.as_ref().map(|goals| goals[pair])
     }
 
     /// Whether every hypothesis names its goal.
-    #[must_use]
     pub fn has_goals(&self) -> bool {
         self.goals.is_some()
     }
 
     /// Whether the certificate of hypothesis `k` of pedestrian `i` holds; `None` for forecasts that
     /// carry no certificates.
-    #[must_use]
     pub fn certified(&self, i: usize, k: usize) -> Option<bool> {
         let pair = self.pair(i, k);
         self.certified.as_ref().map(|certified| certified[pair])
     }
 
     /// Whether every hypothesis has the verdict of a certificate.
-    #[must_use]
     pub fn has_certificates(&self) -> bool {
         self.certified.is_some()
     }
@@ -246,7 +216,6 @@ impl Forecast {
     /// The hypothesis of greatest weight of pedestrian `i`; of equals, the first.
     ///
     /// To act on one hypothesis, take the [representative](Self::representative) one.
-    #[must_use]
     pub fn most_likely(&self, i: usize) -> usize {
         (1..self.hypotheses).fold(0, |best, k| {
             if self.weight(i, k) > self.weight(i, best) {
@@ -281,9 +250,6 @@ impl Forecast {
     }
 
     /// The forecasts of some of the pedestrians alone, in the order asked for; at least one must be.
-    ///
-    /// # Panics
-    /// When one of them is out of range.
     pub(crate) fn keeping(&self, pedestrians: &[usize]) -> Self {
         fn rows<T: Copy>(all: &[T], per_pedestrian: usize, pedestrians: &[usize]) -> Vec<T> {
             let row = |&i: &usize| &all[i * per_pedestrian..(i + 1) * per_pedestrian];

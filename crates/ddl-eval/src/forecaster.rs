@@ -4,14 +4,11 @@ use ddl_data::Window;
 
 use crate::{Forecast, error::ForecastError};
 
-/// Something that forecasts the people of a window.
-///
-/// Baselines, the DDL model and any later model are interchangeable behind this trait.
+/// Something that forecasts the people of a window: a baseline, the DDL model or any other.
 ///
 /// # Contract
-/// A forecaster reads [`Window::observed`] alone. One that also reads the future when it is there
-/// (the `published` protocol asks for that) must not need it, or must fail with
-/// [`ForecastError::FutureMissing`]. `leak::find` checks it.
+/// A forecaster reads [`Window::observed`] alone, which `leak::find` checks. One that also reads the future where it is
+/// shown (protocol `published`) must not need it, or must fail with [`ForecastError::FutureMissing`].
 pub trait Forecaster {
     /// The name printed in tables, the same for every window.
     fn name(&self) -> String;

@@ -1,10 +1,6 @@
 //! The leak test: does a forecast change when the future does?
 //!
-//! Under the protocols `fair` and `single` every forecast must stay bit-identical when any position
-//! after the last observed frame, of any pedestrian, is changed. [`Protocol::forecast`] guarantees it
-//! by cutting the future off; [`find`] checks the forecaster itself, which a user may call directly.
-//!
-//! [`Protocol::forecast`]: crate::Protocol::forecast
+//! [`Protocol::forecast`](crate::Protocol::forecast) cuts the future off; [`find`] checks the forecaster itself.
 
 use ddl_data::{OBSERVED, Position, WINDOW, Window};
 
@@ -22,33 +18,6 @@ pub struct Leak {
 ///
 /// # Errors
 /// The forecaster failed, for instance because it needs the future: that is a leak by its own word.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{PedestrianId, Window};
-/// use ddl_eval::{Forecast, ForecastError, Forecaster, baseline::ConstantVelocity, leak};
-///
-/// /// Knows where everybody ends.
-/// struct Oracle;
-///
-/// impl Forecaster for Oracle {
-///     fn name(&self) -> String {
-///         "oracle".to_owned()
-///     }
-///
-///     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
-///         let end = |i: usize| window.end(i).unwrap_or_default();
-///         let positions = (0..window.len()).flat_map(|i| [end(i); 12]).collect();
-///         Ok(Forecast::equally_likely(window.len(), 1, positions)?)
-///     }
-/// }
-///
-/// let walk = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect();
-/// let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![walk])?;
-/// assert!(leak::find(&Oracle, &window)?.is_some());
-/// assert!(leak::find(&ConstantVelocity::last_step(), &window)?.is_none());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn find(
     forecaster: &(impl Forecaster + ?Sized),
     window: &Window,

@@ -8,16 +8,6 @@ use serde::{Deserialize, Serialize};
 use crate::{Forecast, Forecaster, error::ForecastError};
 
 /// How a number was measured. Numbers of different protocols are not comparable.
-///
-/// # Examples
-/// ```
-/// use ddl_eval::Protocol;
-/// let protocol: Protocol = "fair".parse()?;
-/// assert_eq!(protocol, Protocol::Fair);
-/// assert_eq!(protocol.warning(), None);
-/// assert!(Protocol::Published.warning().is_some());
-/// # Ok::<(), ddl_data::UnknownName>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Protocol {
@@ -37,7 +27,6 @@ impl Protocol {
     pub const ALL: [Self; 3] = [Self::Published, Self::Fair, Self::Single];
 
     /// `published`, `fair` or `single`.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Published => "published",
@@ -47,7 +36,6 @@ impl Protocol {
     }
 
     /// What is measured, in one sentence.
-    #[must_use]
     pub const fn description(self) -> &'static str {
         match self {
             Self::Published => {
@@ -69,7 +57,6 @@ impl Protocol {
     }
 
     /// What a reader must be told beside a number of this protocol.
-    #[must_use]
     pub const fn warning(self) -> Option<&'static str> {
         match self {
             Self::Published => Some(
@@ -84,7 +71,6 @@ impl Protocol {
     }
 
     /// The number of hypotheses a pedestrian may have: 20, or 1.
-    #[must_use]
     pub const fn hypotheses(self) -> usize {
         match self {
             Self::Published | Self::Fair => Self::MOST_HYPOTHESES,
@@ -93,13 +79,11 @@ impl Protocol {
     }
 
     /// Whether forecasters are shown the true future of the windows.
-    #[must_use]
     pub const fn shows_future(self) -> bool {
         matches!(self, Self::Published)
     }
 
     /// The windows as a forecaster sees them: under `fair` and `single`, without their futures.
-    #[must_use]
     pub fn visible(self, windows: &[Window]) -> Cow<'_, [Window]> {
         if self.shows_future() {
             Cow::Borrowed(windows)
@@ -108,10 +92,7 @@ impl Protocol {
         }
     }
 
-    /// Forecasts the windows as this protocol demands.
-    ///
-    /// Under `fair` and `single` the futures are cut off before the forecaster is called, so that it
-    /// cannot read them; under `single` the representative hypothesis is kept.
+    /// Forecasts the windows as this protocol demands: their futures are cut off first under `fair` and `single`.
     ///
     /// # Errors
     /// The forecaster failed, or made more hypotheses than the protocol allows.
@@ -124,8 +105,8 @@ impl Protocol {
         self.admit(forecasts, &forecaster.name())
     }
 
-    /// Holds forecasts that were made on [visible](Self::visible) windows to the number of hypotheses
-    /// allowed: under `single` the representative one is kept, otherwise too many are an error.
+    /// Holds forecasts of [visible](Self::visible) windows to the number of hypotheses allowed: `single` keeps the
+    /// representative one, otherwise too many are an error.
     ///
     /// # Errors
     /// A forecast has more hypotheses than the protocol allows.

@@ -19,7 +19,6 @@ impl ResultRow {
     /// The errors of each recording, by name; nothing where the row does not know its errors by block.
     ///
     /// The mean over the recordings, weighted by their pedestrians, is that of the row.
-    #[must_use]
     pub fn by_recording(&self) -> Vec<RecordingErrors> {
         let mut recordings: Vec<RecordingErrors> = Vec::new();
         // blocks stand in the order of their recordings

@@ -10,10 +10,7 @@
 //! The region of a level is where the score is at most a quantile `q` of the scores of true positions that the level of them
 //! does not exceed, found on recordings that were kept for this (split-conformal prediction): one disc about each hypothesis,
 //! of the radius `s sqrt(2 (q + ln(w_k / max w)))`, and none where that is no number. A likelier hypothesis has a larger disc, and the
-//! likeliest one always has one.
-//!
-//! What was calibrated on some places holds on average over places like these; in one new place, and more so in one recording, a
-//! region may hold another share.
+//! likeliest one always has one. What was calibrated on some places holds on average over places like these.
 //!
 //! # References
 //! Vovk et al., *Algorithmic Learning in a Random World*, 2005 (split-conformal prediction).
@@ -88,13 +85,11 @@ impl Disc {
 }
 
 impl RegionTable {
-    /// The table of scores of true positions: for each level and step the smallest score that the level of them, and one more of
-    /// them, do not exceed.
+    /// The table of scores of true positions: for each level and step the smallest score that the level of them, and one
+    /// more of them, do not exceed. n scores serve levels up to n / (n + 1).
     ///
     /// # Shapes
-    /// `scores` `[pedestrians][12]`; `levels` rising, in (0, 1), at least one. `None` otherwise, and where a level needs more scores:
-    /// n scores serve levels up to n / (n + 1).
-    #[must_use]
+    /// `scores` `[pedestrians][12]`; `levels` rising, in (0, 1), at least one. `None` otherwise.
     pub fn of(scores: &[[f64; HORIZON]], levels: &[f64]) -> Option<Self> {
         let of_step = |t: usize| {
             let mut step: Vec<f64> = scores.iter().map(|scores| scores[t]).collect();
@@ -115,7 +110,6 @@ impl RegionTable {
     }
 
     /// The lowest and the highest level there are quantiles for.
-    #[must_use]
     pub fn range(&self) -> [f64; 2] {
         let levels = &self.0.levels;
         [levels[0], levels[levels.len() - 1]]
@@ -123,7 +117,6 @@ impl RegionTable {
 
     /// The quantile of a level, `t` + 1 steps ahead, linear between the levels of the table; `None` beyond its
     /// [range](Self::range).
-    #[must_use]
     pub fn quantile(&self, level: f64, t: usize) -> Option<f64> {
         let LevelQuantiles { levels, quantiles } = &self.0;
         let [lowest, highest] = self.range();
@@ -146,7 +139,6 @@ impl RegionTable {
 impl Forecast {
     /// The score of the position `at` (m) of pedestrian `i`, `t` + 1 steps ahead; `None` for forecasts without a
     /// [spread](Self::spread).
-    #[must_use]
     pub fn region_score(&self, i: usize, t: usize, at: Position) -> Option<f64> {
         let spread = self.spread(i, t)?;
         let of_hypothesis = |k: usize| {
@@ -162,10 +154,8 @@ impl Forecast {
         (self.weight(i, k) / self.weight(i, self.most_likely(i))).ln()
     }
 
-    /// The radius (m) of the disc about hypothesis `k` of pedestrian `i`, `t` + 1 steps ahead, in the region of a level; `None`
-    /// where the region has no such disc, for levels beyond the range of the table, and for forecasts
-    /// without regions.
-    #[must_use]
+    /// The radius (m) of the disc about hypothesis `k` of pedestrian `i`, `t` + 1 steps ahead, in the region of a level;
+    /// `None` where there is none.
     pub fn region_radius(&self, i: usize, k: usize, t: usize, level: f64) -> Option<f64> {
         let quantile = self.regions()?.quantile(level, t)?;
         let left = quantile + self.log_weight(i, k);
@@ -173,24 +163,7 @@ impl Forecast {
     }
 
     /// The region that holds pedestrian `i`, `t` + 1 steps ahead, with the probability `level`: at most one disc a
-    /// hypothesis, and one of the likeliest; `None` for levels beyond the range of the table, and for
-    /// forecasts without regions.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_eval::{Forecast, RegionTable};
-    ///
-    /// // True positions had the scores 1 to 9 at every step: nine in ten of more are below 9.
-    /// let scores: Vec<_> = (1..10).map(|score| [f64::from(score); 12]).collect();
-    /// let table = RegionTable::of(&scores, &[0.5, 0.9]).expect("scores and levels");
-    /// let forecast = Forecast::equally_likely(1, 1, vec![[3.0, 4.0]; 12])?
-    ///     .with_spread(vec![0.5; 12], table.into())?;
-    /// let region = forecast.region(0, 11, 0.9).expect("a table");
-    /// assert_eq!((region.len(), region[0].centre), (1, [3.0, 4.0]));
-    /// assert!((region[0].radius - 0.5 * 18.0_f64.sqrt()).abs() < 1e-12); // metres
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[must_use]
+    /// hypothesis, and one of the likeliest; `None` beyond the range of the table, and without regions.
     pub fn region(&self, i: usize, t: usize, level: f64) -> Option<Vec<Disc>> {
         self.regions()?.quantile(level, t)?;
         let disc = |k: usize| {
@@ -203,13 +176,11 @@ impl Forecast {
 }
 
 /// Whether one of the discs holds the position.
-#[must_use]
 pub fn holds(region: &[Disc], at: Position) -> bool {
     region.iter().any(|disc| disc.holds(at))
 }
 
 /// The radius (m) of the one disc that is as large as all of the region, measured on a grid.
-#[must_use]
 pub fn equal_radius(region: &[Disc]) -> f64 {
     let bound = |axis: usize, side: f64| {
         let ends = region

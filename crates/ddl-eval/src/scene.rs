@@ -52,71 +52,55 @@ impl<'a> Scene<'a> {
     }
 
     /// The window.
-    #[must_use]
     pub fn window(&self) -> &'a Window {
         self.window
     }
 
     /// The window with everybody who was there, forecast or not; the [`window`](Self::window) itself, but after
     /// [`among`](Self::among).
-    #[must_use]
     pub fn everybody(&self) -> &'a Window {
         self.everybody
     }
 
     /// Which of [`everybody`](Self::everybody) pedestrian `i` is.
-    #[must_use]
     pub fn place(&self, i: usize) -> usize {
         // `among` has seen that everybody includes them; in the window itself each is at its own place.
         place(self.everybody, self.window.pedestrians()[i]).unwrap_or(i)
     }
 
     /// The forecast.
-    #[must_use]
     pub fn forecast(&self) -> &'a Forecast {
         self.forecast
     }
 
     /// Number of pedestrians, N.
-    #[must_use]
     pub fn pedestrians(&self) -> usize {
         self.forecast.pedestrians()
     }
 
     /// Number of hypotheses, K.
-    #[must_use]
     pub fn hypotheses(&self) -> usize {
         self.forecast.hypotheses()
     }
 
     /// The 12 true positions of pedestrian `i`, metres.
-    #[must_use]
     pub fn truth(&self, i: usize) -> &'a [Position] {
         self.window.future(i)
     }
 
     /// The last observed position of pedestrian `i`, metres.
-    #[must_use]
     pub fn last_observed(&self, i: usize) -> Position {
         self.window.observed(i)[OBSERVED - 1]
     }
 
-    /// The weights of pedestrian `i`, divided by their sum.
-    ///
-    /// # Shapes
-    /// `[K]`.
-    #[must_use]
+    /// The weights of pedestrian `i`, divided by their sum; `[K]`.
     pub fn weights(&self, i: usize) -> Vec<f64> {
         let weights = (0..self.hypotheses()).map(|k| self.forecast.weight(i, k));
         let sum: f64 = weights.clone().sum();
         weights.map(|weight| weight / sum).collect()
     }
 
-    /// Where the hypotheses of pedestrian `i` are at forecast frame `t`, counted from 0; metres.
-    ///
-    /// # Shapes
-    /// `[K]`.
-    #[must_use]
+    /// Where the hypotheses of pedestrian `i` are at forecast frame `t`, counted from 0; `[K]`, metres.
     pub fn positions_at(&self, i: usize, t: usize) -> Vec<Position> {
         (0..self.hypotheses())
             .map(|k| self.forecast.hypothesis(i, k)[t])

@@ -20,10 +20,8 @@ use crate::{
 
 /// The metrics of one forecaster on the test windows of one fold.
 ///
-/// Means are over pedestrians; a pedestrian in several windows counts once for each. The mean over
-/// the five folds is the plain mean of their `Scores`.
-///
-/// Fields that earlier versions did not write are `None` when their files are read.
+/// Means are over pedestrians; a pedestrian in several windows counts once for each. Fields that earlier versions did not
+/// write are `None` when their files are read.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Scores {
     /// Pedestrians scored, over all windows.
@@ -97,8 +95,7 @@ pub struct Scores {
 impl Scores {
     /// Scores one forecast a window, all windows together.
     ///
-    /// Windows are measured in parallel and summed in order: the result does not depend on the number
-    /// of threads.
+    /// The result does not depend on the number of threads.
     ///
     /// # Errors
     /// There is no window, a window has no future, a forecast does not belong to its window, or the
@@ -107,12 +104,10 @@ impl Scores {
         Self::evaluate_among(windows, windows, forecasts)
     }
 
-    /// The same for windows that are reduced to a part of their pedestrians, who are among everybody of the whole windows, one
-    /// each.
+    /// The same for a part of the pedestrians, who are among everybody of the whole windows, one each.
     ///
-    /// Means are over the part alone. Collisions with true futures, and the interactions of the categories, are with
-    /// everybody; what compares forecasts with one another (the collision rate, JADE and JFDE) is among those
-    /// forecast.
+    /// Means are over the part alone. Collisions with true futures and interactions are with everybody; the collision
+    /// rate, JADE and JFDE, which compare forecasts, are among those forecast.
     ///
     /// # Errors
     /// As [`Scores::evaluate`]; or a whole window is not that of the reduced one.

@@ -23,7 +23,6 @@ impl StarConfig {
     /// let published = StarConfig::published(Variant::Full);
     /// assert_eq!(published.forecast_operations(1, 1), 31_117_312);
     /// ```
-    #[must_use]
     pub fn forecast_operations(&self, pedestrians: usize, hypotheses: usize) -> u64 {
         let (n, all) = (pedestrians as u64, hypotheses as u64);
         // Where positions are relative to the goal, the observed frames differ between the hypotheses.
@@ -41,7 +40,6 @@ impl StarConfig {
     ///
     /// Counted as in [`forecast_operations`](Self::forecast_operations), 19 frames a pedestrian, and three times: what is computed
     /// again on the way back is not counted again.
-    #[must_use]
     pub fn training_operations(&self, scenes: &[usize]) -> u64 {
         let steps = WINDOW as u64 - 1;
         let output = self.product(self.output_inputs() + self.noise_width, self.output_width());

@@ -1,7 +1,5 @@
-//! What computes a network: kernels on plain numbers, or another library.
-//!
-//! A backbone is written once, in the operations of a [`Backend`]. [`KernelBackend`] computes them on the CPU in `f32`, forwards
-//! and backwards; the crate `ddl-star` has one on libtorch.
+//! What computes a network. A backbone is written once, in the operations of a [`Backend`]: [`KernelBackend`] computes them
+//! on the CPU in `f32`, forwards and backwards; the crate `ddl-star` has one on libtorch.
 
 mod kernels;
 mod memory;

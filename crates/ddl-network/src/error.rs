@@ -5,49 +5,32 @@ use std::path::{Path, PathBuf};
 /// Errors of `ddl-network`. Messages say what is wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum NetworkError {
     /// A configuration value is outside its range.
     #[error("configuration: {field} = {value} is not allowed: {rule}")]
     Config {
-        /// Name of the field.
         field: &'static str,
-        /// The value given.
         value: String,
-        /// What is allowed.
         rule: &'static str,
     },
     /// Windows, goals or tensors of unexpected size.
     #[error("{operation}: expected {expected}, got {got}")]
     Shape {
-        /// The operation that found it.
         operation: &'static str,
-        /// What the operation needs.
         expected: String,
-        /// What it was given.
         got: String,
     },
     /// A checkpoint that must not be trusted.
     #[error("checkpoint {}: {problem}", path.display())]
-    Checkpoint {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it, and what to do.
-        problem: String,
-    },
+    Checkpoint { path: PathBuf, problem: String },
     /// A learned tensor that cannot be rounded, or does not belong to the network it is given to.
     #[error("weights: {tensor} {problem}")]
-    Weights {
-        /// Name of the tensor.
-        tensor: String,
-        /// What is wrong with it, and what to do.
-        problem: String,
-    },
+    Weights { tensor: String, problem: String },
     /// Reading or writing a file failed.
     #[error("{}: {source}", path.display())]
     Io {
-        /// The file.
         path: PathBuf,
-        /// What the system said.
         source: std::io::Error,
     },
     /// The implementation that computes the network failed.

@@ -7,13 +7,15 @@
 //!   - [`feed_forward`]: the feed-forward block;
 //! - [`linear`]: an affine map between layers.
 //!
-//! A computation is written once, as a `Kernel`, with the arithmetic of any [`ddl_simd::Simd`], sixteen numbers at a time.
-//! `ddl-simd` runs it with the fastest instructions that the machine has; what is `unsafe` lies there.
-//!
-//! Products of bf16 numbers, which the feed-forward block can be asked for, are a second arithmetic, [`ddl_simd::Pairs`], with
-//! instructions of its own.
-//!
-//! All results are the same for every number of threads; between instruction sets they agree to rounding.
+//! A computation is written once, as a `Kernel`, with the arithmetic of any [`ddl_simd::Simd`], sixteen numbers at a time;
+//! products of bf16 numbers are a second arithmetic, [`ddl_simd::Pairs`]. `ddl-simd` runs it with the fastest instructions
+//! that the machine has. Results do not depend on the number of threads; instruction sets agree to rounding.
+
+#![expect(
+    clippy::inline_always,
+    clippy::needless_range_loop,
+    reason = "lanes must stay in registers, and loops over them are of a known count"
+)]
 
 mod add_norm;
 mod affine;

@@ -5,7 +5,6 @@ macro_rules! named {
     ($type:ident, $field:literal, $first:ident => $first_name:literal $(, $value:ident => $name:literal)*) => {
         impl $type {
             /// The name used on the command line and in reports.
-            #[must_use]
             pub fn name(self) -> &'static str {
                 match self {
                     Self::$first => $first_name,

@@ -16,7 +16,6 @@ pub enum Precision {
 
 impl Precision {
     /// Whether this machine has instructions for it.
-    #[must_use]
     pub fn is_native(self) -> bool {
         match self {
             Self::F32 => true,

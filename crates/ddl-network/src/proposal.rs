@@ -1,8 +1,7 @@
 //! A small network that proposes where a pedestrian will be at the end of the horizon.
 //!
-//! It sees what the retrieval of similar pedestrians sees, one pedestrian in its own frame, and the pedestrians nearby. An
-//! ensemble of members, each with K ends, is trained so that the nearest of the K ends comes close to the true one ("winner
-//! takes all"): the K ends then lie where an error that counts only the nearest of them is smallest.
+//! It sees one pedestrian in its own frame and those nearby. An ensemble of members, each with K ends, is trained so that
+//! the nearest of the K ends comes close to the true one ("winner takes all").
 
 mod ends;
 mod layers;

@@ -23,7 +23,6 @@ pub enum Stage {
 }
 
 /// The stream of a stage; `index` separates steps of one stage.
-#[must_use]
 pub fn stream(seed: u64, stage: Stage, index: u64) -> ChaCha8Rng {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(((stage as u64) << 48) | index);

@@ -13,9 +13,7 @@ pub struct StepReport {
     pub steps_per_epoch: usize,
     /// Mean loss (square metres) of the steps whose losses were read with this one; `None` when none was.
     ///
-    /// On the CPU every step reads its own. On CUDA a loss stays on the device, where reading it would have
-    /// to wait for all work ahead of it: every sixteenth step reads those of the last sixteen, and the
-    /// last step of an epoch the rest.
+    /// On CUDA, where reading a loss waits for all work ahead, every sixteenth step and the last of an epoch read several.
     pub loss: Option<f64>,
     /// Set when the step was the last of its epoch.
     pub finished_epoch: Option<EpochReport>,

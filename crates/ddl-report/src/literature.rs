@@ -83,13 +83,11 @@ pub struct MeasuredRow {
 }
 
 /// Table I of the DDL paper, with the source and the convention of each row.
-#[must_use]
 pub fn table_one() -> Table {
     published_table(&LITERATURE.table_one)
 }
 
 /// The best published systems in the `star` convention.
-#[must_use]
 pub fn star_convention_table() -> Table {
     published_table(&LITERATURE.star_convention)
 }
@@ -113,7 +111,6 @@ fn published_table(rows: &[PublishedRow]) -> Table {
 }
 
 /// Table II of the DDL paper: what each component adds.
-#[must_use]
 pub fn ablation_table() -> Table {
     let mut table = table_of_folds(&["variant", "goal shift", "dynamics"], &["mean"])
         .text_column("goal shift")
@@ -133,7 +130,6 @@ impl AblationRow {
 }
 
 /// The measured baselines, with the plain mean of their folds.
-#[must_use]
 pub fn measured_table() -> Table {
     let mut table = table_of_folds(&["baseline"], &["mean", "remark"]).text_column("remark");
     let mean = |values: [f64; 5]| values.iter().sum::<f64>() / 5.0;

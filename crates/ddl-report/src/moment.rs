@@ -119,19 +119,6 @@ impl Moment {
     ///
     /// # Errors
     /// The forecast or `seen` is not of the window's pedestrians, or more than 12 positions of somebody are there.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_data::{PedestrianId, Window};
-    /// use ddl_eval::{Forecaster, baseline::ConstantVelocity};
-    /// use ddl_report::Moment;
-    /// let walk = (0..8).map(|t| [0.4 * f64::from(t), 0.0]).collect();
-    /// let window = Window::new("yard", 0, 10, vec![PedestrianId(7)], vec![walk])?;
-    /// let forecast = ConstantVelocity::last_step().forecast(&window)?;
-    /// let moment = Moment::under_way("constant velocity", &window, &forecast, &[vec![[3.2, 0.0]]])?;
-    /// assert_eq!(moment.pedestrians[0].truth, [[3.2, 0.0]]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn under_way(
         forecaster: impl Into<String>,
         window: &Window,

@@ -4,18 +4,14 @@ use ddl_data::{HORIZON, OBSERVED, Position, Window};
 
 use crate::{Forecast, Forecaster, error::ForecastError, vector::minus};
 
-/// Constant acceleration: `p(8 + t) = p(8) + t v + t (t + 1)/2 a`, with `v = p(8) - p(7)` in metres a frame
-/// and `a = v - (p(7) - p(6))` in metres a frame squared.
+/// Constant acceleration: `p(8 + t) = p(8) + t v + t (t + 1)/2 a`, with `v = p(8) - p(7)` in metres a frame and
+/// `a = v - (p(7) - p(6))` in metres a frame squared.
 ///
-/// The definition of the literature, of the last three positions. Noise of an annotated position counts
-/// 90-fold by the twelfth frame, which is why constant velocity is far better:
-/// [`unbounded`](Self::unbounded) is there to say so. [`bounded`](Self::bounded) lets the same
-/// acceleration is limited: the speed does not exceed that of the fastest of the 7 observed steps, and a pedestrian
-/// that would reverse its direction stops.
+/// [`unbounded`](Self::unbounded) is the literature's definition. [`bounded`](Self::bounded) is no faster than the
+/// fastest of the 7 observed steps, and stops where it would turn back.
 ///
 /// # References
-/// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion prediction",
-/// RA-L 2020 (baseline of the last three positions).
+/// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion prediction", RA-L 2020.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ConstantAcceleration {
     bounded: bool,
@@ -23,13 +19,11 @@ pub struct ConstantAcceleration {
 
 impl ConstantAcceleration {
     /// As defined, whatever comes out.
-    #[must_use]
     pub fn unbounded() -> Self {
         Self { bounded: false }
     }
 
     /// No faster than observed, and no turning back.
-    #[must_use]
     pub fn bounded() -> Self {
         Self { bounded: true }
     }

@@ -14,11 +14,8 @@ const NOISE_DEG: f64 = 25.0;
 
 /// Constant velocity: `p(8 + t) = p(8) + t v`, with v in metres a frame.
 ///
-/// With one hypothesis it is hard to beat, which a best-of-20 table hides; print it beside every model.
-///
 /// # References
-/// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion
-/// prediction", RA-L 2020.
+/// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion prediction", RA-L 2020.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ConstantVelocity(VelocityRule);
 
@@ -31,23 +28,17 @@ enum VelocityRule {
 
 impl ConstantVelocity {
     /// v is the last observed step, `p(8) - p(7)`.
-    #[must_use]
     pub fn last_step() -> Self {
         Self(VelocityRule::LastStep)
     }
 
     /// v is the mean of the 7 observed steps, `(p(8) - p(1)) / 7`.
-    #[must_use]
     pub fn mean_observed() -> Self {
         Self(VelocityRule::MeanObserved)
     }
 
-    /// Twenty hypotheses of equal weight: the last observed step turned by angles drawn from
-    /// N(0, (25 degrees)^2), independently for every pedestrian and sample.
-    ///
-    /// The noise of a window depends on the seed, its recording and its first frame alone, not on the
-    /// order in which windows are forecast.
-    #[must_use]
+    /// Twenty hypotheses of equal weight: the last observed step turned by angles drawn from N(0, (25 degrees)^2), for
+    /// every pedestrian and sample. They depend on the seed, the recording and the first frame alone.
     pub fn angular_noise(seed: u64) -> Self {
         Self(VelocityRule::AngularNoise { seed })
     }
@@ -78,27 +69,20 @@ impl Forecaster for ConstantVelocity {
     }
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
-        let mut angles: Box<dyn FnMut() -> f64> = match self.0 {
-            VelocityRule::AngularNoise { seed } => {
-                let mut random = stream(seed, window);
-                Box::new(move || {
-                    let normal: f64 = StandardNormal.sample(&mut random);
-                    (NOISE_DEG * normal).to_radians()
-                })
-            }
-            _ => Box::new(|| 0.0),
-        };
-        let samples = if matches!(self.0, VelocityRule::AngularNoise { .. }) {
-            SAMPLES
-        } else {
-            1
+        let (mut random, samples) = match self.0 {
+            VelocityRule::AngularNoise { seed } => (Some(stream(seed, window)), SAMPLES),
+            _ => (None, 1),
         };
         let mut positions = Vec::with_capacity(window.len() * samples * HORIZON);
         for i in 0..window.len() {
             let observed = window.observed(i);
             let (start, velocity) = (observed[OBSERVED - 1], self.velocity(observed));
             for _ in 0..samples {
-                let (sin, cos) = angles().sin_cos();
+                let angle = random.as_mut().map_or(0.0, |random| {
+                    let normal: f64 = StandardNormal.sample(random);
+                    (NOISE_DEG * normal).to_radians()
+                });
+                let (sin, cos) = angle.sin_cos();
                 let v = [
                     cos * velocity[0] - sin * velocity[1],
                     sin * velocity[0] + cos * velocity[1],

@@ -19,9 +19,9 @@ pub const NOISE_SEED: u64 = 1;
 
 /// Measures the baselines that a protocol admits on the windows of one fold.
 ///
-/// These are constant velocity (last step, mean observed), with angular noise where the protocol
-/// allows several hypotheses, constant acceleration (bounded), the social force model, and the straight
-/// line to the TRUE end where the protocol shows the future. Of the `conditions` the fold, convention, window rule, protocol, test subset and commit are kept.
+/// These are constant velocity (last step, mean observed, and with angular noise where several hypotheses are allowed),
+/// bounded constant acceleration, the social force model, and the straight line to the TRUE end where the future is
+/// shown. What the `conditions` say of the forecaster and its training is replaced.
 ///
 /// # Errors
 /// The windows cannot be scored.
@@ -33,8 +33,7 @@ pub fn measure(
     measure_among(conditions, windows, windows, noise_seed)
 }
 
-/// The same for windows that are reduced to a part of their pedestrians: the baselines see everybody of the whole windows, one
-/// each, and are scored on that part.
+/// The same, scored on a part of the pedestrians; the baselines see everybody of the whole windows, one each.
 pub(crate) fn measure_among(
     conditions: &Conditions,
     windows: &[Window],

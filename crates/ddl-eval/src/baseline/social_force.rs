@@ -24,7 +24,7 @@ const SUBSTEPS: usize = 8;
 /// Beyond this semi-minor axis a push is below 3e-6 m/s^2, m.
 const NEGLIGIBLE: f64 = 15.0 * REACH;
 
-/// The social force model of Helbing and Molnar, for all pedestrians of a window together.
+/// The social force model of Helbing and Molnar, for all pedestrians of a window together; one hypothesis.
 ///
 /// Each desires the velocity of its last observed step, `v0 = (p(8) - p(7)) / 0.4 s` along `e`, and is
 /// pushed away by every other one, b, whose next step of `s = 2 s * |v_b|` along `e_b` it sees coming:
@@ -36,26 +36,11 @@ const NEGLIGIBLE: f64 = 15.0 * REACH;
 /// w = 1 within 100 degrees of e, else 0.5;  |v| <= 1.3 |v0|
 /// ```
 ///
-/// Integrated by Euler in steps of 0.05 s, first the velocity, then the position. All parameters are
-/// those of the paper and none is tuned. Left out are its walls, which the recordings do not have, its
-/// fluctuations, so that the forecast is one and the same, and its attractions. A pedestrian alone goes on at
-/// constant velocity; who stands keeps standing. One hypothesis.
+/// Integrated by Euler in steps of 0.05 s, first the velocity, then the position. The parameters are the paper's;
+/// its walls, fluctuations and attractions are left out. Who stands keeps standing.
 ///
 /// # References
 /// Helbing and Molnar, "Social force model for pedestrian dynamics", Physical Review E 51 (1995).
-///
-/// # Examples
-/// ```
-/// use ddl_data::{PedestrianId, Window};
-/// use ddl_eval::{Forecaster, baseline::SocialForce};
-/// // Two meet, one a little to the side of the other: they pass, and each gives way to its side.
-/// let east = (0..8).map(|t| [0.5 * f64::from(t), 0.1]).collect();
-/// let west = (0..8).map(|t| [12.0 - 0.5 * f64::from(t), -0.1]).collect();
-/// let window = Window::new("corridor", 0, 10, vec![PedestrianId(1), PedestrianId(2)], vec![east, west])?;
-/// let forecast = SocialForce.forecast(&window)?;
-/// assert!(forecast.hypothesis(0, 0)[11][1] > 0.2 && forecast.hypothesis(1, 0)[11][1] < -0.2);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SocialForce;
 

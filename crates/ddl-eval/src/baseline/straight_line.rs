@@ -38,7 +38,6 @@ impl WeightedGoals {
     }
 
     /// One certain goal (m).
-    #[must_use]
     pub fn certain(goal: Position) -> Self {
         Self {
             goals: vec![goal],
@@ -47,13 +46,11 @@ impl WeightedGoals {
     }
 
     /// The goals, metres.
-    #[must_use]
     pub fn goals(&self) -> &[Position] {
         &self.goals
     }
 
     /// The weights, in the order of the goals.
-    #[must_use]
     pub fn weights(&self) -> &[f64] {
         &self.weights
     }
@@ -111,7 +108,6 @@ pub struct StraightLine<G>(G);
 
 impl<G: GoalSource> StraightLine<G> {
     /// Straight lines to the goals of `source`.
-    #[must_use]
     pub fn to(source: G) -> Self {
         Self(source)
     }

@@ -43,11 +43,10 @@ const GROUP_DEVIATION: f64 = 0.2;
 /// The frames need not follow one another, and the deviation is that of the population.
 ///
 /// # Where this differs
-/// The rules are those of `TrajNet++`'s dataset tool. That observes 9 frames and judges a group over 21;
-/// it takes one border of each sector and leaves the other, here both belong to it, so that mirror images
-/// are alike; and who does not move from t - 3 to t walks along x there, here nobody is ahead of it or
-/// beside it at that frame, and it has no course. It sees everybody present at a frame, here only those
-/// in the window for all 20.
+/// `TrajNet++`'s dataset tool observes 9 frames and judges a group over 21, and takes one border of each sector; here
+/// both borders belong to it, so that mirror images are alike. There, who does not move from t - 3 to t walks along x;
+/// here nobody is ahead of it or beside it, and it has no course. It sees everybody present at a frame, here only
+/// those in the window for all 20.
 ///
 /// # References
 /// Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds", T-ITS 2021, section III.
@@ -73,9 +72,7 @@ impl Interaction {
         Self::Other,
     ];
 
-    /// The kinds of pedestrian `i`, in the order of [`Interaction::ALL`]; empty when there is no interaction,
-    /// and without a future.
-    #[must_use]
+    /// The kinds of pedestrian `i`, in the order of [`Interaction::ALL`]; empty without interaction or future.
     pub fn of(window: &Window, i: usize) -> Vec<Self> {
         if !window.has_future() {
             return Vec::new();
@@ -96,9 +93,8 @@ impl Interaction {
             .collect()
     }
 
-    /// What pedestrian `i` has to do with pedestrian `j` in particular: the kinds but for [`Interaction::Other`]. Empty without a
-    /// future, and of a pedestrian with itself.
-    #[must_use]
+    /// The kinds of pedestrian `i` with pedestrian `j` alone, but for [`Interaction::Other`]; empty without a future, and
+    /// for `i == j`.
     pub fn between(window: &Window, i: usize, j: usize) -> Vec<Self> {
         if i == j || !window.has_future() {
             return Vec::new();
@@ -155,9 +151,7 @@ impl Encounter {
         }
         seen
     }
-}
 
-impl Encounter {
     /// The kinds that this encounter makes, in the order of [`Interaction::ALL`].
     fn kinds(&self, me: &[Position], other: &[Position]) -> Vec<Interaction> {
         let group = self.beside > 0 && keeps_close(me, other);

@@ -7,9 +7,8 @@
 //! s(1) ~ N((z(1), 0), I)                                        the forecast: p(8) + 12 v(8)
 //! ```
 //!
-//! Noises and prior are those of `TrajNet++`'s filter. It then adapts them by ten rounds of EM and
-//! averages five random continuations; here they stay as they are and the continuation is the expected
-//! one, so that the same track always has the same kind.
+//! Noises and prior are those of `TrajNet++`'s filter. That one adapts them by ten rounds of EM and averages five random
+//! continuations; here they stay, and the continuation is the expected one.
 
 use ddl_data::{HORIZON, Position};
 
@@ -19,9 +18,6 @@ const TRANSITION: f64 = 1e-5;
 const OBSERVATION: f64 = 0.05 * 0.05;
 
 /// Where the filter expects a pedestrian 12 frames after the last of its observed positions, metres.
-///
-/// # Panics
-/// When `observed` is empty.
 pub(crate) fn expected_end(observed: &[Position]) -> Position {
     let mut position = observed[0];
     let mut velocity = [0.0, 0.0];

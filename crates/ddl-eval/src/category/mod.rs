@@ -1,12 +1,7 @@
-//! What kind of walk a result is about: the pedestrian's own motion, and what the others had to do with it.
+//! What kind of walk a result is about: the pedestrian's own motion ([`MotionKind`]), and `TrajNet++`'s
+//! [`TrajectoryType`] with the [`Interaction`]s of its third type.
 //!
-//! Two divisions, side by side. [`MotionKind`] looks at the pedestrian alone: standing, straight on, turning,
-//! slowing down, speeding up. [`TrajectoryType`] is `TrajNet++`'s: static, linear, interacting and
-//! non-interacting, with [`Interaction`] for the sub-kinds of the third. Each pedestrian has one motion kind
-//! and one type; it may have several sub-kinds, so that only the sub-kinds add up to more than all.
-//!
-//! All of them read the future. They group results after the forecasts are made; no forecast may depend
-//! on them.
+//! All read the future: for grouping results once forecasts are made. No forecast may depend on them.
 
 mod interaction;
 mod kalman;
@@ -46,7 +41,6 @@ impl Category {
     }
 
     /// The categories of pedestrian `i`, in that order; none for windows without a future.
-    #[must_use]
     pub fn of(window: &Window, i: usize) -> Vec<Self> {
         let Some((kind, interactions)) = TrajectoryType::with_interactions(window, i) else {
             return Vec::new();

@@ -21,9 +21,6 @@ const CHANGE: f64 = 0.3;
 
 /// How a pedestrian of 20 positions moved, seen with its true future.
 ///
-/// For choosing and grouping examples once forecasts are made: it reads the future, so no forecast may
-/// depend on it.
-///
 /// With a = p(8) - p(1) the observed way and b = p(20) - p(8) the true one, the first that holds:
 ///
 /// ```text
@@ -67,14 +64,6 @@ impl MotionKind {
 
     /// The kind of motion of a track of 20 positions (m, 0.4 s apart); `None` for other tracks and for
     /// positions that are not finite.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_eval::MotionKind;
-    /// let track: Vec<_> = (0..20).map(|t| [0.5 * f64::from(t), 0.02 * f64::from(t * t)]).collect();
-    /// assert_eq!(MotionKind::of(&track), Some(MotionKind::TurningLeft));
-    /// ```
-    #[must_use]
     pub fn of(track: &[Position]) -> Option<Self> {
         if track.len() != WINDOW || !track.iter().flatten().all(|c| c.is_finite()) {
             return None;

@@ -5,8 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::Category;
 use crate::pedestrian_scores::PedestrianScores;
 
-/// The metrics of one category on the test windows of one fold: means over its pedestrians, as the totals
-/// are over all.
+/// The metrics of one category on the test windows of one fold: means over its pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CategoryScores {
     /// Whose they are.
@@ -30,7 +29,6 @@ pub struct CategoryScores {
 }
 
 impl CategoryScores {
-    /// One a category that somebody is in.
     pub(crate) fn of<'a>(pedestrians: impl Iterator<Item = &'a PedestrianScores>) -> Vec<Self> {
         let mut groups: Vec<(Category, Vec<&PedestrianScores>)> = Category::all()
             .map(|category| (category, Vec::new()))

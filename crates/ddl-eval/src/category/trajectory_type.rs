@@ -13,23 +13,16 @@ const STATIC: f64 = 1.0;
 /// Who ends nearer to where a Kalman filter expects it is linear, metres.
 const LINEAR: f64 = 0.5;
 
-/// The type of a trajectory in `TrajNet++`'s taxonomy; every pedestrian has one.
-///
-/// The first that holds:
-///
-/// [`Interaction`] has the rules of III and its sub-kinds. It reads the future: for grouping results once
-/// forecasts are made, so no forecast may depend on it.
+/// The type of a trajectory in `TrajNet++`'s taxonomy: the first that holds. [`Interaction`] has the rules of III.
 ///
 /// # Where this differs
-/// `TrajNet++` has 9 observed frames, 21 in all, and one primary pedestrian a scene; here each pedestrian of a
-/// window is judged in turn, over 20. The bound of II is that of the paper; the published tool was found
-/// with 1 m, and its filter first fits its noises by EM and then averages five random continuations, so
-/// that a track near the bound may fall on either side (see `src/category/kalman.rs` for the filter here).
-/// Their data sets keep a tenth of the static scenes; here all count.
+/// `TrajNet++` has 9 observed frames of 21 and one primary pedestrian a scene; here each pedestrian of a window is
+/// judged, over 20. The bound of II is the paper's; the published tool was found with 1 m, and fits its filter first
+/// (see `src/category/kalman.rs`). Its data sets keep a tenth of the static scenes; here all count.
 ///
 /// # References
-/// Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds: A Deep Learning Perspective", T-ITS
-/// 2021, section III; the tool is `trajnetplusplusdataset`.
+/// Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds: A Deep Learning Perspective", T-ITS 2021,
+/// section III; the tool is `trajnetplusplusdataset`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TrajectoryType {
@@ -53,13 +46,11 @@ impl TrajectoryType {
     ];
 
     /// The type of pedestrian `i`; `None` for windows without a future.
-    #[must_use]
     pub fn of(window: &Window, i: usize) -> Option<Self> {
         Some(Self::with_interactions(window, i)?.0)
     }
 
     /// The type of pedestrian `i` with the kinds of its interaction, which only type III has.
-    #[must_use]
     pub fn with_interactions(window: &Window, i: usize) -> Option<(Self, Vec<Interaction>)> {
         let end = window.end(i)?;
         let track = window.track(i);
@@ -129,22 +120,15 @@ mod tests {
 
     #[test]
     fn who_turns_with_somebody_ahead_or_beside_it_interacts() {
-        let with = |other: Position| {
-            let tracks = vec![turning([0.0, 0.0], 0.1), turning(other, 0.1)];
+        let with = |aside: f64, other: Position| {
+            let tracks = vec![turning([0.0, 0.0], aside), turning(other, aside)];
             TrajectoryType::with_interactions(&of_tracks(tracks), 0).unwrap()
         };
-        assert_eq!(
-            with([2.0, 0.2]),
-            (Interacting, vec![Interaction::LeaderFollower])
-        );
-        assert_eq!(with([0.0, 0.7]), (Interacting, vec![Interaction::Group]));
-        assert_eq!(with([-2.0, 0.0]), (NonInteracting, vec![]));
-    }
-
-    #[test]
-    fn a_linear_pedestrian_has_no_interaction_whoever_is_ahead() {
-        let tracks = vec![turning([0.0, 0.0], 0.0), turning([2.0, 0.0], 0.0)];
-        let found = TrajectoryType::with_interactions(&of_tracks(tracks), 0);
-        assert_eq!(found, Some((Linear, vec![])));
+        let leader = vec![Interaction::LeaderFollower];
+        assert_eq!(with(0.1, [2.0, 0.2]), (Interacting, leader));
+        let group = vec![Interaction::Group];
+        assert_eq!(with(0.1, [0.0, 0.7]), (Interacting, group));
+        assert_eq!(with(0.1, [-2.0, 0.0]), (NonInteracting, vec![]));
+        assert_eq!(with(0.0, [2.0, 0.0]), (Linear, vec![]));
     }
 }

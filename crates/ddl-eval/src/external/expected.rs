@@ -44,7 +44,6 @@ impl PedestrianForecast {
 }
 
 /// A forecast that has found its pedestrian.
-#[derive(Debug)]
 pub(super) struct Slot {
     pub(super) forecast: PedestrianForecast,
     pub(super) line: usize,
@@ -55,11 +54,10 @@ pub(super) struct Slot {
 }
 
 /// Windows waiting for the forecasts of a file.
-#[derive(Debug)]
+#[derive(Default)]
 pub(super) struct ExpectedForecasts<'a> {
     pub(super) origin: String,
     pub(super) windows: &'a [Window],
-    /// The recordings of the windows, each once.
     pub(super) recordings: Vec<&'a str>,
     /// Window of a recording's index and a last observed frame.
     by_last: HashMap<(usize, i64), usize>,
@@ -78,13 +76,8 @@ impl<'a> ExpectedForecasts<'a> {
         let mut expected = Self {
             origin: origin.to_owned(),
             windows,
-            recordings: Vec::new(),
-            by_last: HashMap::new(),
             slots: Vec::with_capacity(windows.len()),
-            hypotheses: None,
-            goals: None,
-            forecasts: 0,
-            unknown: Unknown::default(),
+            ..Self::default()
         };
         for (index, window) in windows.iter().enumerate() {
             let name = window.recording();

@@ -15,7 +15,7 @@ pub(super) fn whole(number: f64) -> Option<i64> {
     (number.fract() == 0.0 && number.abs() < LIMIT).then_some(number as i64)
 }
 
-/// Refuses a position beyond every map: what is computed with such numbers ends in infinities, far from the line that is to blame.
+/// Refuses a position beyond every map, with which later computations would end in infinities.
 pub(super) fn within_bounds(
     position: Position,
     field: impl FnOnce() -> String,
@@ -27,7 +27,6 @@ pub(super) fn within_bounds(
     }
 }
 
-/// The beginning of a text, for messages.
 pub(super) fn quoted(text: &str) -> String {
     match text.char_indices().nth(QUOTED) {
         Some((end, _)) => format!("{}...", &text[..end]),

@@ -8,7 +8,6 @@ use super::error::{ExternalError, ExternalProblem};
 const LIMIT: usize = 4 << 20;
 
 /// The lines of a file that hold something, with their numbers.
-#[derive(Debug)]
 pub(super) struct Lines<R> {
     reader: R,
     origin: String,
@@ -19,12 +18,10 @@ pub(super) struct Lines<R> {
 /// A field, where it is one, and what is wrong with it.
 pub(super) type Wrong = (Option<String>, ExternalProblem);
 
-/// Something wrong with a whole line.
 pub(super) fn whole_line(problem: ExternalProblem) -> Wrong {
     (None, problem)
 }
 
-/// Something wrong with a field of that name.
 pub(super) fn in_field(field: impl Into<String>, problem: ExternalProblem) -> Wrong {
     (Some(field.into()), problem)
 }
@@ -71,13 +68,11 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
-    /// The error that something is wrong on a line.
     pub(super) fn wrong(&self, line: usize, what: Wrong) -> ExternalError {
         wrong(&self.origin, line, what)
     }
 }
 
-/// The error that something is wrong on a line of a file.
 pub(super) fn wrong(origin: &str, line: usize, (field, problem): Wrong) -> ExternalError {
     ExternalError::Line {
         origin: origin.to_owned(),

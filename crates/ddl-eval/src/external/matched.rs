@@ -19,11 +19,8 @@ pub enum Coverage {
     /// It is an error: the file must forecast exactly the pedestrians of the windows.
     #[default]
     Whole,
-    /// The pedestrians that are in both are scored, and the result says which part of all they are.
-    ///
-    /// They are scored among everybody: the others of their windows are still there for collisions with true futures, for
-    /// interactions, and for baselines that look at others. The collision rate, JADE and JFDE compare forecasts with
-    /// one another, and are among those forecast.
+    /// The pedestrians that are in both are scored, among everybody: the others still count for collisions with true
+    /// futures, interactions and baselines, but not for the collision rate, JADE and JFDE, which compare forecasts.
     Intersection,
 }
 
@@ -46,28 +43,22 @@ impl Matched {
     }
 
     /// The name of the file, without its folder.
-    #[must_use]
     pub fn file(&self) -> &str {
         &self.file
     }
 
     /// Pedestrians who are forecast, counted once for each window.
-    #[must_use]
     pub fn forecast_pedestrians(&self) -> usize {
         self.windows.iter().map(Window::len).sum()
     }
 
     /// Pedestrians that the windows asked for.
-    #[must_use]
     pub fn pedestrians(&self) -> usize {
         self.pedestrians
     }
 
-    /// The words by which a result names that it is of a part of the pedestrians; `None` where it is of all.
-    ///
-    /// They name the file, both counts and a digest of who the pedestrians are: such a result is comparable with nothing but
-    /// results of the very same pedestrians.
-    #[must_use]
+    /// The words by which a result names the part of the pedestrians it is of: the file, both counts and a digest of who
+    /// they are. `None` where it is of all.
     pub fn test_subset(&self) -> Option<String> {
         let scored = self.forecast_pedestrians();
         (scored < self.pedestrians).then(|| {
@@ -102,7 +93,6 @@ impl Matched {
 }
 
 impl ExpectedForecasts<'_> {
-    /// The forecasts, once the whole file is read.
     pub(super) fn matched(self, coverage: Coverage) -> Result<Matched, ExternalError> {
         let all: usize = self.windows.iter().map(Window::len).sum();
         let found = self.slots.iter().flatten().flatten().count();
@@ -193,7 +183,6 @@ impl ExpectedForecasts<'_> {
     }
 }
 
-/// One window's forecast from those of its pedestrians.
 fn forecast(slots: Vec<Slot>) -> Result<Forecast, crate::ForecastShapeError> {
     let pedestrians = slots.len();
     let hypotheses = slots.first().map_or(0, |slot| slot.forecast.hypotheses());

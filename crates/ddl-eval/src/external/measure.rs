@@ -6,15 +6,12 @@ use crate::{Conditions, Protocol, ResultRow, baseline};
 
 /// Scores forecasts of a file under the protocol of the conditions, then the baselines on the same pedestrians.
 ///
-/// The conditions are taken at their word for the fold and the rule, as by [`ResultRow::measure`]; to their test
-/// subset [`Matched::test_subset`] is added, and the selection is set to where the forecasts are from. Under `single`
-/// the hypothesis of greatest weight is scored, of equals the first. Where a part of the pedestrians is scored, it is
-/// among everybody, as by [`Scores::evaluate_among`](crate::Scores::evaluate_among), and so are the baselines.
+/// [`Matched::test_subset`] is added to the test subset of the conditions; a part of the pedestrians is scored as by
+/// [`Scores::evaluate_among`](crate::Scores::evaluate_among).
 ///
 /// # Errors
-/// [`ExternalError::Published`] under the protocol `published`; [`ExternalError::OutOfPlace`] where half of the forecasts begin
-/// more than 3 m from their pedestrians; more hypotheses than the protocol allows; windows that
-/// cannot be scored.
+/// [`ExternalError::Published`] under the protocol `published`; [`ExternalError::OutOfPlace`] where half of the
+/// forecasts begin more than 3 m from their pedestrians; too many hypotheses; windows that cannot be scored.
 pub fn measure(
     conditions: &Conditions,
     matched: &Matched,

@@ -1,31 +1,9 @@
 //! Forecasts that another program made: read from a file, matched with the windows of a fold, scored.
 //!
-//! A pedestrian of a window is named by three things: the recording, the raw frame number of the **last observed** frame
-//! (`observed_until`), and the pedestrian. [`write_windows`] hands another program what was observed, without the
-//! future; [`read`] takes its forecasts back, in one of three [formats](ExternalFormat), and puts them into the order of
-//! the windows; [`measure`] scores them beside the baselines. `docs/your-model.md` describes the files field by
-//! field.
-//!
-//! A file is read line by line; what is kept are the positions of the pedestrians asked for. Nothing is repaired:
-//! whatever is wrong is an error with its line and field.
-//!
-//! # Examples
-//! ```
-//! use ddl_data::{PedestrianId, Window};
-//! use ddl_eval::external::{self, Coverage, ExternalFormat};
-//!
-//! let walk = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect();
-//! let windows = [Window::new("yard", 0, 10, vec![PedestrianId(7)], vec![walk])?];
-//! let ahead: Vec<[f64; 2]> = (8..20).map(|t| [0.5 * f64::from(t), 0.25]).collect();
-//! let file = format!(
-//!     "{{\"observed_until\": 70, \"pedestrian\": 7, \"hypotheses\": [{{\"positions\": {ahead:?}}}]}}\n"
-//! );
-//! let matched = external::read_from(
-//!     file.as_bytes(), "mine.jsonl", ExternalFormat::JsonLines, &windows, Coverage::Whole,
-//! )?;
-//! assert_eq!(matched.forecasts[0].hypothesis(0, 0)[11], [9.5, 0.25]);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+//! A pedestrian of a window is named by the recording, the raw number of the **last observed** frame (`observed_until`),
+//! and the pedestrian. [`write_windows`] hands out what was observed, [`read`] takes forecasts back in one of three
+//! [formats](ExternalFormat), and [`measure`] scores them beside the baselines. `docs/your-model.md` describes the
+//! files. Nothing is repaired: whatever is wrong is an error with its line and field.
 
 mod error;
 mod expected;
@@ -76,7 +54,6 @@ impl ExternalFormat {
     pub const ALL: [Self; 3] = [Self::JsonLines, Self::Table, Self::TrajNet];
 
     /// `jsonl`, `csv` or `ndjson`: the extension that files of the format have.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::JsonLines => "jsonl",
@@ -86,7 +63,6 @@ impl ExternalFormat {
     }
 
     /// The format that the extension of a file names, in small letters or capitals; JSON lines where it names none.
-    #[must_use]
     pub fn of_file(path: &Path) -> Self {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
         let named = extension.to_ascii_lowercase().parse();

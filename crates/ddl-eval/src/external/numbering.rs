@@ -9,7 +9,7 @@ pub(super) struct HypothesisNumbering {
 }
 
 impl HypothesisNumbering {
-    /// Holds the sorted numbers of a pedestrian to 0, 1 ... K - 1, or to 1, 2 ... K: the same for all pedestrians of the file.
+    /// Holds sorted numbers to 0 ... K - 1 or 1 ... K, the same for all pedestrians of the file.
     pub(super) fn check(
         &mut self,
         sorted: &[i64],

@@ -5,23 +5,19 @@ use ddl_data::{HORIZON, OBSERVED, PedestrianName, Window};
 use super::error::ExternalProblem;
 use crate::Protocol;
 
-/// Whom a forecast is of.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct PedestrianKey {
     pub(super) recording: Option<String>,
-    /// Raw frame number of the last observed frame.
     pub(super) observed_until: i64,
     pub(super) pedestrian: PedestrianName,
 }
 
 impl PedestrianKey {
-    /// The pedestrian, for messages.
     pub(super) fn named(&self) -> String {
         let recording = self.recording.as_deref();
         named(recording, self.observed_until, &self.pedestrian)
     }
 
-    /// That the pedestrian has more hypotheses than any protocol allows.
     pub(super) fn too_many_hypotheses(&self) -> ExternalProblem {
         ExternalProblem::TooManyHypotheses {
             pedestrian: self.named(),
@@ -30,7 +26,6 @@ impl PedestrianKey {
     }
 }
 
-/// A pedestrian, for messages.
 pub(super) fn named(
     recording: Option<&str>,
     observed_until: i64,
@@ -40,7 +35,6 @@ pub(super) fn named(
     format!("{recording}observed until {observed_until} pedestrian {pedestrian}")
 }
 
-/// Raw frame number of a window's last observed frame.
 pub(super) fn last_observed(window: &Window) -> i64 {
     window.frames()[OBSERVED - 1]
 }
@@ -57,7 +51,6 @@ pub(super) fn frames_ahead(window: &Window) -> [Vec<i64>; 2] {
     [own, regular]
 }
 
-/// Frames, for messages.
 pub(super) fn in_short(frames: &[i64]) -> String {
     match frames {
         [] => "none".to_owned(),

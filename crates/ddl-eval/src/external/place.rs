@@ -10,8 +10,7 @@ use crate::metric::displacement::distance;
 const FARTHEST: f64 = 3.0;
 
 impl Matched {
-    /// Refuses files whose forecasts begin elsewhere than their pedestrians stand: half of the likeliest ones more than 3 m from the
-    /// last observed position.
+    /// Refuses files of which half of the likeliest forecasts begin more than 3 m from the last observed position.
     pub(super) fn ensure_in_place(&self) -> Result<(), ExternalError> {
         let starts: Vec<(Position, Position)> = self
             .windows

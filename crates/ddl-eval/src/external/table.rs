@@ -52,8 +52,6 @@ fn put(
     put.map_err(|wrong| (line, wrong))
 }
 
-/// Which column holds what.
-#[derive(Debug)]
 struct TableColumns {
     count: usize,
     required: [usize; REQUIRED.len()],
@@ -62,8 +60,6 @@ struct TableColumns {
     weight: Option<usize>,
 }
 
-/// One position.
-#[derive(Debug)]
 struct TablePosition {
     who: PedestrianKey,
     hypothesis: i64,
@@ -133,16 +129,12 @@ impl TableColumns {
     }
 }
 
-/// The rows of one pedestrian so far.
-#[derive(Debug)]
 struct PedestrianRows {
     who: PedestrianKey,
     line: usize,
-    /// In the order of the file.
     hypotheses: Vec<HypothesisRows>,
 }
 
-#[derive(Debug)]
 struct HypothesisRows {
     hypothesis: i64,
     line: usize,
@@ -205,7 +197,6 @@ impl PedestrianRows {
         Ok(())
     }
 
-    /// The forecast, or what is wrong with it and on which line.
     fn forecast(
         mut self,
         numbering: &mut HypothesisNumbering,

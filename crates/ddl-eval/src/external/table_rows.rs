@@ -22,7 +22,6 @@ pub(super) struct TableRows<R> {
     ends: Vec<usize>,
 }
 
-/// The fields of a row.
 pub(super) struct Fields<'a> {
     text: &'a [u8],
     ends: &'a [usize],
@@ -54,12 +53,10 @@ impl<R: BufRead> TableRows<R> {
         }
     }
 
-    /// Number of the line of the row read last, from 1.
     pub(super) fn number(&self) -> usize {
         self.number
     }
 
-    /// Reads the next row; `None` at the end of the file.
     pub(super) fn next(&mut self) -> Result<Option<Fields<'_>>, ExternalError> {
         if self.at == self.line.len() {
             let Some((number, text)) = self.lines.next_line()? else {
@@ -87,7 +84,6 @@ impl<R: BufRead> TableRows<R> {
         }))
     }
 
-    /// The error that something is wrong with the row just read.
     pub(super) fn wrong(&self, wrong: Wrong) -> ExternalError {
         self.lines.wrong(self.number, wrong)
     }

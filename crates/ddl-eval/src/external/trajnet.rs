@@ -1,9 +1,9 @@
 //! TrajNet++ ndjson: scenes of 8 or 9 observed and 12 forecast frames, and the tracks that were forecast in them.
 //!
-//! A scene stands for the window of its recording that starts at its first frame, or of 9 observed frames at the second. Its primary pedestrian is forecast
-//! for its own sake; a neighbour's forecast counts where no scene of the window has that pedestrian as its primary
-//! one. Neighbours who are not in the window (they left before its end) are not scored, and left out. Pedestrians that are
-//! forecast in several scenes have no joint future: hypothesis k of a window is then put together from those scenes.
+//! A scene stands for the window that starts at its first frame or, with 9 observed frames, at its second. Its primary
+//! pedestrian is forecast for its own sake; a neighbour's forecast counts where no scene of the window has that pedestrian
+//! as its primary one. Neighbours who are not in the window are not scored, and left out. Where pedestrians are forecast
+//! in several scenes, hypothesis k of a window is put together from those scenes.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::BufRead;
@@ -56,10 +56,8 @@ struct NdjsonTrack {
 type Predictions = BTreeMap<i64, Vec<(i64, Position)>>;
 
 /// The scene whose tracks are being read.
-#[derive(Debug)]
 struct OpenScene<'a> {
     scene: NdjsonScene,
-    /// The window it stands for.
     window: Option<&'a Window>,
     /// By pedestrian, with the line of the first row.
     tracks: BTreeMap<PedestrianName, (usize, Predictions)>,
@@ -82,7 +80,6 @@ pub(super) fn read(
     closed.map_err(|(number, wrong)| lines.wrong(number, wrong))
 }
 
-#[derive(Debug)]
 struct Reading<'w, 'a> {
     expected: &'w mut ExpectedForecasts<'a>,
     /// Window of a recording's index and a first frame.
@@ -152,7 +149,6 @@ impl<'w, 'a> Reading<'w, 'a> {
         added.map_err(|wrong| (number, wrong))
     }
 
-    /// Finds the window of a scene.
     fn open(&self, scene: NdjsonScene) -> Result<OpenScene<'a>, Wrong> {
         let recording = self.expected.recording(scene.recording.as_deref())?;
         let starting_at = |frame: i64| -> Option<&'a Window> {
@@ -250,13 +246,11 @@ impl<'w, 'a> Reading<'w, 'a> {
         scene.e.saturating_sub(HORIZON as i64 * self.step())
     }
 
-    /// Raw frames in a step.
     fn step(&self) -> i64 {
         self.expected.windows.first().map_or(1, Window::frame_step)
     }
 }
 
-/// Whether a frame is the last of the 12 to forecast.
 fn ends_at(window: &Window, frame: i64) -> bool {
     let last = frames_ahead(window).map(|frames| frames.last().copied());
     last.contains(&Some(frame))

@@ -33,11 +33,9 @@ struct WrittenHypothesis<'a> {
     positions: &'a [Position],
 }
 
-/// Writes what was observed, and nothing of the future, as JSON lines: an object for each pedestrian of each window.
+/// Writes what was observed as JSON lines, an object for each pedestrian of each window.
 ///
-/// The lines of a window stand together: those who are seen together have the same `recording` and
-/// `observed_until`. Positions are `[x, y]` in metres, 0.4 s apart, the last one at `observed_until`; reading them
-/// back gives the same bits.
+/// Positions are `[x, y]` in metres, 0.4 s apart, the last one at `observed_until`; reading them gives the same bits.
 ///
 /// ```text
 /// {"recording":"zara01","observed_until":70,"pedestrian":3,"observed":[[x,y], ... 8 of them]}

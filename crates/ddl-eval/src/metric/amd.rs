@@ -9,23 +9,13 @@
 //! AMV = largest eigenvalue of the mean over frames and pedestrians of C        square metres
 //! ```
 //!
-//! The two belong together: a wider distribution has a smaller AMD and a larger AMV. Eigenvalues of C
-//! below (1 cm)^2 are raised to it, in both: identical hypotheses, or hypotheses on one line, have no
-//! inverse. A forecast of one hypothesis is no distribution. Where a forecast has a spread about its hypotheses, its variance is part of C.
+//! A wider distribution has a smaller AMD and a larger AMV. Eigenvalues of C below (1 cm)^2 are raised to it. A forecast
+//! of one hypothesis is no distribution. A spread about the hypotheses adds its variance to C.
 //!
 //! # Beside the published code
-//! Social-Implicit draws 1,000 samples and fits a mixture of up to four Gaussians to them, as many as
-//! the Bayesian information criterion says. Twenty weighted hypotheses are the distribution
-//! themselves: here C and m are its own moments, a mixture of one component. That changes nothing in
-//! AMV, because after an M step the total covariance of a mixture with full covariances, within the
-//! components and between their means, is the covariance of the samples, whatever the number of
-//! components. AMD is theirs wherever one component is chosen; with several,
-//! theirs weighs the components along the way from the mean to the truth.
-//!
-//! Their paper writes AMV as the mean of the largest eigenvalues; their code, from which their numbers
-//! are, takes the largest eigenvalue of the mean, and so does this one. It is never the larger of the
-//! two. It adds pedestrians in world axes: of people who walk in all directions it sees a rounder
-//! spread than each has.
+//! Social-Implicit fits a mixture of up to four Gaussians to 1,000 samples; here C and m are the hypotheses' own moments.
+//! AMV does not depend on the number of components; AMD is theirs wherever one is chosen. As in their code, and not their
+//! paper, AMV is the largest eigenvalue of the mean, which adds pedestrians in world axes.
 //!
 //! # References
 //! Mohamed et al., "Social-Implicit: Rethinking Trajectory Prediction Evaluation and The Effectiveness
@@ -50,7 +40,6 @@ pub struct DistributionErrors {
 
 impl DistributionErrors {
     /// Of pedestrian `i`; `None` for forecasts of one hypothesis.
-    #[must_use]
     pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
         if scene.hypotheses() < 2 {
             return None;
@@ -81,16 +70,6 @@ impl DistributionErrors {
 }
 
 /// AMV of a mean covariance: its largest eigenvalue, square metres.
-///
-/// # Examples
-/// ```
-/// use ddl_eval::metric::{amd::amv, gaussian::Moments};
-///
-/// // Two places 2 m apart, equally likely: a deviation of 1 m along x, none along y.
-/// let moments = Moments::of(&[[-1.0, 0.0], [1.0, 0.0]], &[0.5, 0.5]);
-/// assert!((amv(moments.covariance) - 1.0).abs() < 1e-12); // square metres
-/// ```
-#[must_use]
 pub fn amv(mean_covariance: Covariance) -> f64 {
     mean_covariance.principal_axes().variances[0]
 }

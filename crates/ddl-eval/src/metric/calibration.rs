@@ -47,7 +47,6 @@ impl Calibration {
     ///
     /// # Panics
     /// When an index is out of range.
-    #[must_use]
     pub fn of<'a>(sets: impl IntoIterator<Item = (&'a [f64], usize)>) -> Option<Self> {
         let mut all: Vec<(f64, bool)> = Vec::new();
         let (mut count, mut loss, mut uniform) = (0_usize, 0.0, 0.0);

@@ -9,12 +9,9 @@
 //! collision rate = pedestrians who collide with anybody / pedestrians, in [0, 1]
 //! ```
 //!
-//! The minimum is exact: over one step the relative position moves on a segment, and its distance from
-//! the origin has a closed form. Pedestrians alone in their window count in the denominator. Real
-//! people who walk together come closer than this too: compare with the same rate of the true futures.
-//!
-//! Other works take centres closer than 0.2 m (a radius of 0.1 m, `TrajNet++`), pairs instead of
-//! people, or fewer instants: their percentages are not comparable with this one.
+//! The minimum is exact. Pedestrians alone in their window count in the denominator. Real people who walk together come
+//! closer than this too: compare with the rate of the true futures. Other works take centres closer than 0.2 m, pairs
+//! instead of people, or fewer instants: their percentages are not comparable.
 //!
 //! # References
 //! Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds" (`TrajNet++`), T-ITS 2021.
@@ -29,16 +26,6 @@ pub const DISC_RADIUS: f64 = 0.2;
 /// The least distance of two pedestrians who move straight from frame to frame, metres.
 ///
 /// Infinite when either track is empty. Frames beyond the shorter track are ignored.
-///
-/// # Examples
-/// ```
-/// use ddl_eval::metric::collision::closest_approach;
-/// // They swap places in one step: apart at both frames, through each other in between.
-/// let a = [[0.0, 0.0], [2.0, 0.0]];
-/// let b = [[2.0, 0.0], [0.0, 0.0]];
-/// assert_eq!(closest_approach(&a, &b), 0.0);
-/// ```
-#[must_use]
 pub fn closest_approach(a: &[Position], b: &[Position]) -> f64 {
     let mut apart = a.iter().zip(b).map(|(p, q)| [p[0] - q[0], p[1] - q[1]]);
     let Some(mut before) = apart.next() else {
@@ -64,21 +51,7 @@ fn distance_to_origin(r0: Position, r1: Position) -> f64 {
     (r0[0] + s * d[0]).hypot(r0[1] + s * d[1])
 }
 
-/// Which tracks' discs of radius `radius` metres overlap that of any other track.
-///
-/// # Shapes
-/// one entry a track.
-///
-/// # Examples
-/// ```
-/// use ddl_eval::metric::collision::{DISC_RADIUS, collides};
-///
-/// let west = [[0.0, 0.0], [2.0, 0.0]];
-/// let east = [[2.0, 0.3], [0.0, 0.3]]; // passes at 0.3 m: discs of 0.2 m overlap
-/// let far = [[0.0, 5.0], [2.0, 5.0]];
-/// assert_eq!(collides(&[&west, &east, &far], DISC_RADIUS), [true, true, false]);
-/// ```
-#[must_use]
+/// Which tracks' discs of radius `radius` metres overlap that of any other track; one entry a track.
 pub fn collides(tracks: &[&[Position]], radius: f64) -> Vec<bool> {
     let mut hit = vec![false; tracks.len()];
     for i in 0..tracks.len() {
@@ -93,7 +66,6 @@ pub fn collides(tracks: &[&[Position]], radius: f64) -> Vec<bool> {
 }
 
 /// The [representative](crate::Forecast::representative) forecast of each pedestrian, metres.
-#[must_use]
 pub fn representative_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
     let forecast = scene.forecast();
     (0..scene.pedestrians())
@@ -101,11 +73,7 @@ pub fn representative_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
         .collect()
 }
 
-/// Which pedestrians' true futures collide with that of anybody who was there, forecast or not.
-///
-/// # Shapes
-/// `[N]`.
-#[must_use]
+/// Which pedestrians' true futures collide with that of anybody who was there, forecast or not; `[N]`.
 pub fn collides_truly(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
     let everybody = scene.everybody();
     let tracks: Vec<&[Position]> = (0..everybody.len()).map(|j| everybody.future(j)).collect();

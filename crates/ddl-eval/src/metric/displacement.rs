@@ -8,9 +8,8 @@
 //! ADE@minFDE_K = ADE_k* with k* = argmin_k FDE_k
 //! ```
 //!
-//! The two minima are independent, which is how most of the literature reads "best of 20"; STAR's and
-//! DDL's code prints `FDE@minADE`, which is never smaller than `minFDE`. `ADE@minFDE` is that of works
-//! which choose by the end (`PECNet`, Y-Net); it is never smaller than `minADE`.
+//! The two minima are independent; STAR's and DDL's code prints `FDE@minADE`, works that choose by the end (`PECNet`,
+//! Y-Net) `ADE@minFDE`.
 //!
 //! # References
 //! Pellegrini et al., "You'll never walk alone", ICCV 2009 (displacement errors); Gupta et al.,
@@ -21,7 +20,6 @@ use ddl_data::Position;
 use crate::Scene;
 
 /// Euclidean distance of two positions, metres.
-#[must_use]
 pub fn distance(a: Position, b: Position) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
@@ -30,14 +28,6 @@ pub fn distance(a: Position, b: Position) -> f64 {
 ///
 /// # Panics
 /// When the two differ in length or are empty.
-///
-/// # Examples
-/// ```
-/// use ddl_eval::metric::displacement::average_displacement;
-/// let error = average_displacement(&[[0.0, 0.0], [3.0, 4.0]], &[[0.0, 0.0], [0.0, 0.0]]);
-/// assert_eq!(error, 2.5);
-/// ```
-#[must_use]
 pub fn average_displacement(forecast: &[Position], truth: &[Position]) -> f64 {
     check(forecast, truth);
     let sum: f64 = forecast
@@ -52,7 +42,6 @@ pub fn average_displacement(forecast: &[Position], truth: &[Position]) -> f64 {
 ///
 /// # Panics
 /// When the two differ in length or are empty.
-#[must_use]
 pub fn final_displacement(forecast: &[Position], truth: &[Position]) -> f64 {
     check(forecast, truth);
     distance(forecast[forecast.len() - 1], truth[truth.len() - 1])
@@ -67,10 +56,7 @@ fn check(forecast: &[Position], truth: &[Position]) {
     );
 }
 
-/// ADE and FDE of every hypothesis of every pedestrian of a scene.
-///
-/// # Shapes
-/// two tables `[N][K]`, metres.
+/// ADE and FDE of every hypothesis of every pedestrian of a scene: two tables `[N][K]`, metres.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DisplacementErrors {
     hypotheses: usize,
@@ -80,7 +66,6 @@ pub struct DisplacementErrors {
 
 impl DisplacementErrors {
     /// Measures a scene.
-    #[must_use]
     pub fn of(scene: &Scene<'_>) -> Self {
         let hypotheses = scene.hypotheses();
         let table = |error: fn(&[Position], &[Position]) -> f64| {
@@ -97,49 +82,41 @@ impl DisplacementErrors {
     }
 
     /// Number of pedestrians, N.
-    #[must_use]
     pub fn pedestrians(&self) -> usize {
         self.ade.len() / self.hypotheses
     }
 
     /// Number of hypotheses, K.
-    #[must_use]
     pub fn hypotheses(&self) -> usize {
         self.hypotheses
     }
 
     /// ADE of each hypothesis of pedestrian `i`, metres.
-    #[must_use]
     pub fn ade(&self, i: usize) -> &[f64] {
         &self.ade[i * self.hypotheses..(i + 1) * self.hypotheses]
     }
 
     /// FDE of each hypothesis of pedestrian `i`, metres.
-    #[must_use]
     pub fn fde(&self, i: usize) -> &[f64] {
         &self.fde[i * self.hypotheses..(i + 1) * self.hypotheses]
     }
 
     /// minADE of pedestrian `i`, metres.
-    #[must_use]
     pub fn min_ade(&self, i: usize) -> f64 {
         self.ade(i).iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     /// minFDE of pedestrian `i`, metres: independent of [`min_ade`](Self::min_ade).
-    #[must_use]
     pub fn min_fde(&self, i: usize) -> f64 {
         self.fde(i).iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     /// FDE of the hypothesis of least ADE of pedestrian `i` (of equals, the first), metres.
-    #[must_use]
     pub fn fde_at_min_ade(&self, i: usize) -> f64 {
         self.fde(i)[least(self.ade(i))]
     }
 
     /// ADE of the hypothesis of least FDE of pedestrian `i` (of equals, the first), metres.
-    #[must_use]
     pub fn ade_at_min_fde(&self, i: usize) -> f64 {
         self.ade(i)[least(self.fde(i))]
     }

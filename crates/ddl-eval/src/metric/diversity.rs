@@ -5,9 +5,7 @@
 //! FPD_i = mean over pairs k < l of |x_k(T) - x_l(T)|                  metres
 //! ```
 //!
-//! The average pairwise displacement over the whole path, and that of the ends. Weights do not count,
-//! and neither does the truth: diversity is no merit of its own. Random noise has plenty. It says
-//! whether a best of K has K chances or one. A forecast of one hypothesis has none.
+//! Weights and truth do not count: noise is diverse too. A forecast of one hypothesis has none.
 //!
 //! # References
 //! Yuan and Kitani, "`DLow`: Diversifying Latent Flows for Diverse Human Motion Prediction", ECCV 2020
@@ -26,7 +24,6 @@ pub struct Diversity {
 
 impl Diversity {
     /// Of pedestrian `i`; `None` for forecasts of one hypothesis.
-    #[must_use]
     pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
         let (forecast, k) = (scene.forecast(), scene.hypotheses());
         if k < 2 {

@@ -6,8 +6,6 @@
 //! m = sum_k w_k x_k                         metres
 //! C = sum_k w_k (x_k - m) (x_k - m)^T       square metres (not the unbiased estimate)
 //! ```
-//!
-//! What the metrics of a distribution of positions have in common.
 
 use ddl_data::Position;
 
@@ -44,7 +42,6 @@ impl Covariance {
     }
 
     /// Eigenvalues, the larger first, and the unit eigenvector of the larger one.
-    #[must_use]
     pub fn principal_axes(self) -> PrincipalAxes {
         let (mean, half) = (0.5 * (self.xx + self.yy), 0.5 * (self.xx - self.yy));
         let radius = half.hypot(self.xy);
@@ -76,7 +73,6 @@ impl PrincipalAxes {
     }
 
     /// The matrix that has these axes.
-    #[must_use]
     pub fn covariance(self) -> Covariance {
         let ([large, small], [cos, sin]) = (self.variances, self.axis);
         Covariance {
@@ -87,7 +83,6 @@ impl PrincipalAxes {
     }
 
     /// `d^T C^-1 d`: the squared Mahalanobis length of a difference of positions; no unit.
-    #[must_use]
     pub fn mahalanobis_squared(self, d: Position) -> f64 {
         let [cos, sin] = self.axis;
         let (along, across) = (cos * d[0] + sin * d[1], cos * d[1] - sin * d[0]);
@@ -95,7 +90,6 @@ impl PrincipalAxes {
     }
 
     /// `ln det C`, with C in square metres.
-    #[must_use]
     pub fn ln_determinant(self) -> f64 {
         self.variances[0].ln() + self.variances[1].ln()
     }
@@ -115,7 +109,6 @@ impl Moments {
     ///
     /// # Panics
     /// When there is not one weight a point.
-    #[must_use]
     pub fn of(points: &[Position], weights: &[f64]) -> Self {
         assert_eq!(points.len(), weights.len(), "one weight a point");
         let weighted = || points.iter().zip(weights);

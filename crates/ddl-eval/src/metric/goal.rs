@@ -4,15 +4,13 @@
 //! goal FDE_i = min_k |g_{i,k} - p_i(T)|        metres
 //! ```
 //!
-//! It bounds what any model that converges to its goals can reach by then, and is the error of the
-//! goal estimator alone. The goal of a pedestrian still under way lies beyond the 12th frame; here a goal
-//! is compared with the last true position all the same, because that is what estimators are fit to.
+//! The error of the goal estimator alone, and the least that a model which converges to its goals can have. The goal of
+//! a pedestrian still under way lies beyond the 12th frame; it is compared with the last true position all the same.
 
 use super::displacement::distance;
 use crate::Scene;
 
 /// Distance of the nearest goal of pedestrian `i` from the true end, metres; `None` without goals.
-#[must_use]
 pub fn goal_fde(scene: &Scene<'_>, i: usize) -> Option<f64> {
     let end = scene.window().end(i)?;
     (0..scene.hypotheses())

@@ -4,10 +4,8 @@
 //! JADE = min_k 1/N sum_i ADE_{i,k}        JFDE = min_k 1/N sum_i FDE_{i,k}        metres
 //! ```
 //!
-//! Never smaller than the mean of the pedestrians' own minima: choosing one future for the whole
-//! scene is harder than choosing one for each person. It is a fair question only to models whose
-//! hypothesis `k` is one future of the scene; where the hypotheses of two people are unrelated (one
-//! goal each, say) JADE measures the order they happen to be listed in.
+//! Never smaller than the mean of the pedestrians' own minima. It is a fair question only to models whose hypothesis `k`
+//! is one future of the scene; otherwise it measures the order in which hypotheses are listed.
 //!
 //! # References
 //! Weng et al., "Joint Metrics Matter", ICCV 2023. Their averages are over scenes; here a scene counts
@@ -16,13 +14,11 @@
 use super::displacement::DisplacementErrors;
 
 /// JADE of a scene, metres.
-#[must_use]
 pub fn joint_ade(errors: &DisplacementErrors) -> f64 {
     least_scene_mean(errors, DisplacementErrors::ade)
 }
 
 /// JFDE of a scene, metres; its hypothesis may differ from that of [`joint_ade`].
-#[must_use]
 pub fn joint_fde(errors: &DisplacementErrors) -> f64 {
     least_scene_mean(errors, DisplacementErrors::fde)
 }

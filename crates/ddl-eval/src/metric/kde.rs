@@ -15,16 +15,11 @@
 //! A forecast that says how far pedestrians spread about its hypotheses is a mixture of bells already: with that
 //! [spread](crate::Forecast::spread) s, H is s^2 times the identity.
 //!
-//! This is `scipy.stats.gaussian_kde(x, weights=w).logpdf(p)`, clipped as in Trajectron++ and
-//! Social-Implicit, but for the smallest bandwidth: identical hypotheses, or hypotheses on one line,
-//! have a singular C, for which scipy fails and Social-Implicit's code leaves the frame out. Here
-//! eigenvalues of H below (1 cm)^2 are raised to it.
+//! This is `scipy.stats.gaussian_kde(x, weights=w).logpdf(p)`, clipped as in Trajectron++ and Social-Implicit, but for the
+//! smallest bandwidth: eigenvalues of H below (1 cm)^2 are raised to it, where others fail or leave the frame out.
 //!
-//! Lower is better, and it may be negative: a density per square metre exceeds 1. A forecast of one
-//! hypothesis has no density. The number depends strongly on how many hypotheses there are: others
-//! draw 1,000 to 2,000 samples, so that theirs cannot be compared with that of 20 hypotheses. A
-//! bandwidth that suits one cluster blurs several: a forecast of few sharp, well separated futures is
-//! judged as one of a broad cloud.
+//! Lower is better, and it may be negative. A forecast of one hypothesis has no density. The number depends strongly on
+//! how many hypotheses there are: that of 1,000 samples cannot be compared with that of 20.
 //!
 //! # References
 //! Ivanovic and Pavone, "The Trajectron", ICCV 2019 (KDE NLL); Salzmann et al., "Trajectron++", ECCV
@@ -49,15 +44,6 @@ pub const LEAST_DEVIATION: f64 = 0.01;
 /// # Numerics
 /// The sum of exponentials is taken relative to its largest term. Where all weight is on one point
 /// the covariance is 0/0; it counts as 0.
-///
-/// # Examples
-/// ```
-/// use ddl_eval::metric::kde::log_density;
-/// // Two equal points: a round bell of deviation 1 cm, whose height is 1 / (2 pi 0.01^2).
-/// let height = log_density(&[[3.0, 4.0]; 2], &[0.5, 0.5], [3.0, 4.0]);
-/// assert!((height + (std::f64::consts::TAU * 1e-4).ln()).abs() < 1e-12);
-/// ```
-#[must_use]
 pub fn log_density(points: &[Position], weights: &[f64], at: Position) -> f64 {
     let moments = Moments::of(points, weights);
     let concentration: f64 = weights.iter().map(|w| w * w).sum();
@@ -100,7 +86,6 @@ fn mixture_log_density(
 
 /// Mean over the frames of -ln of the clipped density at the truth of pedestrian `i`, nats; `None`
 /// for forecasts of one hypothesis.
-#[must_use]
 pub fn kde_nll(scene: &Scene<'_>, i: usize) -> Option<f64> {
     if scene.hypotheses() < 2 {
         return None;

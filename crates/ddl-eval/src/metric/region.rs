@@ -24,7 +24,6 @@ pub struct RegionScores {
 
 impl RegionScores {
     /// Of pedestrian `i`; `None` for forecasts without regions.
-    #[must_use]
     pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
         let forecast = scene.forecast();
         forecast.regions()?;
@@ -42,7 +41,6 @@ impl RegionScores {
 
 /// -ln of the weight of the hypothesis that leads nearest to the true end: by its goal, or by its last position where it has
 /// none; nats. `None` for forecasts of one hypothesis. Equal weights have ln K.
-#[must_use]
 pub fn weight_log_loss(scene: &Scene<'_>, i: usize) -> Option<f64> {
     let forecast = scene.forecast();
     let truth = scene.truth(i);

@@ -11,12 +11,7 @@
 //! certified      the model's own certificate of the rollout holds, where it gives one
 //! ```
 //!
-//! Steps shorter than 1 mm, and steps that start within 1 mm of the goal, have no direction and count
-//! as no turn. A turn of more than 90 degrees is a step away from the goal, as an Euler step that
-//! overshoots the goal causes one frame later.
-//!
-//! `decreasing` judges any rollout from outside, with a tolerance; `certified` repeats the verdict of a
-//! model that has a theory of its rollouts and checks it without any.
+//! Steps shorter than 1 mm, and steps that start within 1 mm of the goal, have no direction and count as no turn.
 //!
 //! # References
 //! DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section II-E: v = -P grad Phi.
@@ -34,18 +29,6 @@ use crate::{
 pub const AT_GOAL: f64 = 1e-3;
 
 /// What one rollout does about its goal.
-///
-/// # Examples
-/// ```
-/// use ddl_eval::metric::stability::RolloutStability;
-///
-/// let goal = [2.0, 0.0];
-/// let there = RolloutStability::of([0.0, 0.0], &[[1.0, 0.0], [2.0, 0.0]], goal);
-/// assert!(there.decreasing && there.end_distance == 0.0);
-/// // One step too long: past the goal, and back.
-/// let beyond = RolloutStability::of([0.0, 0.0], &[[5.0, 0.0], [2.0, 0.0]], goal);
-/// assert!(!beyond.decreasing);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RolloutStability {
     /// Whether the distance to the goal decreases at every step.
@@ -61,7 +44,6 @@ pub struct RolloutStability {
 impl RolloutStability {
     /// Judges the rollout `path`, which starts from `start`, against `goal`; all in metres. Nothing is
     /// known of a certificate.
-    #[must_use]
     pub fn of(start: Position, path: &[Position], goal: Position) -> Self {
         let mut result = Self {
             decreasing: true,
@@ -103,7 +85,6 @@ pub struct StabilityScores {
 
 impl StabilityScores {
     /// The mean of rollouts; `None` when there are none.
-    #[must_use]
     pub fn mean(rollouts: &[RolloutStability]) -> Option<Self> {
         if rollouts.is_empty() {
             return None;
@@ -126,7 +107,6 @@ impl StabilityScores {
 }
 
 /// Judges every hypothesis of every pedestrian; empty when the forecast has no goals.
-#[must_use]
 pub fn rollouts(scene: &Scene<'_>) -> Vec<RolloutStability> {
     let forecast = scene.forecast();
     (0..scene.pedestrians())
@@ -173,41 +153,21 @@ mod tests {
 
     #[test]
     fn shares_and_means_are_over_rollouts() {
-        let rollout = |decreasing, largest_turn| RolloutStability {
+        let rollout = |decreasing, largest_turn, certified| RolloutStability {
             decreasing,
             end_distance: largest_turn / 100.0,
             largest_turn,
-            certified: None,
+            certified,
         };
-        let mean = StabilityScores::mean(&[rollout(true, 0.0), rollout(false, 120.0)]).unwrap();
+        let first = rollout(true, 0.0, Some(true));
+        let mean = StabilityScores::mean(&[first, rollout(false, 120.0, Some(false))]).unwrap();
         assert_relative_eq!(mean.decreasing, 0.5);
         assert_relative_eq!(mean.end_distance, 0.6);
         assert_relative_eq!(mean.largest_turn, 60.0);
         assert_relative_eq!(mean.reversing, 0.5);
-        assert_eq!(mean.certified, None);
+        assert_eq!(mean.certified, Some(0.5));
+        let unjudged = StabilityScores::mean(&[first, rollout(true, 0.0, None)]).unwrap();
+        assert_eq!(unjudged.certified, None);
         assert_eq!(StabilityScores::mean(&[]), None);
-    }
-
-    #[test]
-    fn the_share_of_certified_rollouts_needs_a_verdict_on_each() {
-        let judged = |certified| RolloutStability {
-            certified,
-            ..RolloutStability::of([0.0, 0.0], &[[0.5, 0.0]], [1.0, 0.0])
-        };
-        let share = |verdicts: &[Option<bool>]| {
-            let rollouts: Vec<_> = verdicts.iter().copied().map(judged).collect();
-            StabilityScores::mean(&rollouts).unwrap().certified
-        };
-        let (yes, no) = (Some(true), Some(false));
-        assert_eq!(share(&[yes, no, yes, yes]), Some(0.75));
-        assert_eq!(share(&[no, no]), Some(0.0));
-        assert_eq!(share(&[yes, None]), None);
-    }
-
-    #[test]
-    fn scores_written_before_there_were_certificates_still_load() {
-        let text = r#"{"rollouts":2,"decreasing":1.0,"end_distance":0.5,"largest_turn":9.0,"reversing":0.0}"#;
-        let scores: StabilityScores = serde_json::from_str(text).unwrap();
-        assert_eq!((scores.rollouts, scores.certified), (2, None));
     }
 }

@@ -29,7 +29,6 @@ pub struct BlockErrors {
 
 impl BlockErrors {
     /// The sum of one metric, m.
-    #[must_use]
     pub fn sum(&self, metric: BlockMetric) -> f64 {
         match metric {
             BlockMetric::MinAde => self.min_ade,
@@ -38,16 +37,14 @@ impl BlockErrors {
     }
 
     /// Whether both are of the same windows: place and pedestrians agree.
-    #[must_use]
     pub fn same_windows(&self, other: &Self) -> bool {
         (&self.recording, self.block, self.pedestrians)
             == (&other.recording, other.block, other.pedestrians)
     }
 }
 
-/// Sums the errors of forecasts, one a window, block by block: by recording, then by time.
-///
-/// Windows are measured in parallel and summed in order: the result does not depend on the number of threads.
+/// Sums the errors of forecasts, one a window, by recording, then by time. The result does not depend on the number of
+/// threads.
 ///
 /// # Errors
 /// A window has no future, or a forecast is not of its window's pedestrians.

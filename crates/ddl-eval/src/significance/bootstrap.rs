@@ -29,7 +29,6 @@ pub struct Interval {
 ///
 /// `folds[f]` are the blocks of fold f. In each of [`RESAMPLES`] resamples every fold draws as many of its blocks as it has, with
 /// replacement; its mean is that of the pedestrians in them. `None` when there is no fold, or one of fewer than [`FEWEST_BLOCKS`].
-#[must_use]
 pub fn mean_interval(folds: &[&[BlockErrors]], metric: BlockMetric) -> Option<Interval> {
     let folds: Vec<Vec<PartialSum>> = folds
         .iter()

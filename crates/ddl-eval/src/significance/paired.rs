@@ -29,9 +29,8 @@ pub struct UnpairedError {
 
 /// Compares two forecasters on the same blocks, fold by fold.
 ///
-/// The test: were the two alike, the difference of every block might as well have the other sign. What is compared is the plain mean
-/// over the folds of the mean difference of their pedestrians. `None` when there is no fold, or one of fewer than
-/// [`FEWEST_BLOCKS`](super::FEWEST_BLOCKS).
+/// The test: were the two alike, the difference of every block might as well have the other sign. `None` when there is no
+/// fold, or one of fewer than [`FEWEST_BLOCKS`](super::FEWEST_BLOCKS).
 ///
 /// # Errors
 /// The blocks of the two differ in number, place or pedestrians.

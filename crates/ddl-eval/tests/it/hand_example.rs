@@ -15,10 +15,7 @@
 //! The mean of s is 6.5: 0.1 * 6.5 = 0.65 and 0.25 * 6.5 = 1.625.
 
 use ddl_data::{PedestrianId, Position, Window};
-use ddl_eval::{
-    Category, CategoryScores, Forecast, MotionKind, Scores, StabilityScores,
-    category::TrajectoryType,
-};
+use ddl_eval::{Category, Forecast, MotionKind, Scores, category::TrajectoryType};
 
 /// A position at frame `s`.
 type Path = fn(f64) -> Position;
@@ -70,7 +67,8 @@ fn scores() -> Scores {
     Scores::evaluate(&[window], &[forecast]).unwrap()
 }
 
-fn check(what: &str, found: f64, expected: f64) {
+fn check(what: &str, found: impl Into<Option<f64>>, expected: f64) {
+    let found = found.into().unwrap();
     assert!(
         (found - expected).abs() < 1e-12,
         "{what}: {found}, by hand {expected}"
@@ -81,41 +79,23 @@ fn check(what: &str, found: f64, expected: f64) {
 fn displacement_errors() {
     let s = scores();
     assert_eq!((s.pedestrians, s.windows, s.hypotheses), (3, 1, 2));
-    // Least ADE: hypotheses 0, 1, 0. Least FDE: 0, 1, 1.
-    check("minADE", s.min_ade, (0.4 + 1.5 + 1.2) / 3.0);
+    // Least ADE: hypotheses 0, 1, 0. Least FDE: 0, 1, 1. The most likely are those of least ADE.
+    let least = (0.4 + 1.5 + 1.2) / 3.0;
+    check("minADE", s.min_ade, least);
     check("minFDE", s.min_fde, (0.4 + 1.5 + 0.0) / 3.0);
-    check("FDE@minADE", s.fde_at_min_ade, (0.4 + 1.5 + 1.2) / 3.0);
-    check(
-        "ADE@minFDE",
-        s.ade_at_min_fde.unwrap(),
-        (0.4 + 1.5 + 17.6 / 12.0) / 3.0,
-    );
+    check("FDE@minADE", s.fde_at_min_ade, least);
+    let at_min_fde = (0.4 + 1.5 + 17.6 / 12.0) / 3.0;
+    check("ADE@minFDE", s.ade_at_min_fde, at_min_fde);
     // Index 0 for all: ADE 3.225, FDE 4.6. Index 1: ADE 3.61666, FDE 2.7.
     check("JADE", s.joint_ade, (0.4 + 1.625 + 1.2) / 3.0);
     check("JFDE", s.joint_fde, (1.2 + 1.5 + 0.0) / 3.0);
     // A 0.3 + 0.1625, B 0.325 + 1.2, C 0.72 + 0.4 * 17.6 / 12.
-    check(
-        "expected ADE",
-        s.expected_ade.unwrap(),
-        (0.4625 + 1.525 + 0.72 + 7.04 / 12.0) / 3.0,
-    );
+    let expected = (0.4625 + 1.525 + 0.72 + 7.04 / 12.0) / 3.0;
+    check("expected ADE", s.expected_ade, expected);
     // A 0.3 + 0.3, B 0.6 + 1.2, C 0.72 + 0.
-    check(
-        "expected FDE",
-        s.expected_fde.unwrap(),
-        (0.6 + 1.8 + 0.72) / 3.0,
-    );
-    // The most likely are the hypotheses 0, 1, 0.
-    check(
-        "most likely ADE",
-        s.most_likely_ade.unwrap(),
-        (0.4 + 1.5 + 1.2) / 3.0,
-    );
-    check(
-        "most likely FDE",
-        s.most_likely_fde.unwrap(),
-        (0.4 + 1.5 + 1.2) / 3.0,
-    );
+    check("expected FDE", s.expected_fde, (0.6 + 1.8 + 0.72) / 3.0);
+    check("most likely ADE", s.most_likely_ade, least);
+    check("most likely FDE", s.most_likely_fde, least);
 }
 
 #[test]
@@ -123,27 +103,24 @@ fn misses_and_collisions() {
     let s = scores();
     // Nearest ends: 0.4, 1.5 and 0 m off.
     check("missed by 0.5 m", s.miss_rate, 1.0 / 3.0);
-    check("missed by 1 m", s.miss_rate_1m.unwrap(), 1.0 / 3.0);
-    check("missed by 2 m", s.miss_rate_2m.unwrap(), 0.0);
-    // The representatives, of two the heavier: A along y = 0.32, B at (10, 1.36), C along y = 1.26 from x = 12.72 to 7.22. C passes B
-    // at 0.1 m; A stays 0.94 m from C and more than 1 m from B.
+    check("missed by 1 m", s.miss_rate_1m, 1.0 / 3.0);
+    check("missed by 2 m", s.miss_rate_2m, 0.0);
+    // The representatives, of two the heavier: A along y = 0.32, B at (10, 1.36), C along y = 1.26 from x = 12.72 to
+    // 7.22. C passes B at 0.1 m; A stays 0.94 m from C and more than 1 m from B.
     check("collisions", s.collision_rate, 2.0 / 3.0);
     // In truth A and C pass each other at 0.3 m, and B is 2.26 m from C.
     check("true collisions", s.true_collision_rate, 2.0 / 3.0);
     // A (y = 0.32) against the true C (0.3): 0.02 m. B (1.36) against the true C: 1.06 m. C (1.26) against the
     // true A (0) and B (2.56): 1.26 and 1.3 m.
-    check(
-        "collisions with the truth",
-        s.true_neighbour_collision_rate.unwrap(),
-        1.0 / 3.0,
-    );
+    let into_truth = s.true_neighbour_collision_rate;
+    check("collisions with the truth", into_truth, 1.0 / 3.0);
 }
 
 /// Goals from the true ends: A 0.4 (the other 2.2), B 0.5 (the other 1.5), C 0 (the other 1.2).
 #[test]
 fn goals_and_stability() {
     let s = scores();
-    check("goal FDE", s.goal_fde.unwrap(), (0.4 + 0.5 + 0.0) / 3.0);
+    check("goal FDE", s.goal_fde, (0.4 + 0.5 + 0.0) / 3.0);
     let found = s.stability.unwrap();
     let degrees = |y: f64, x: f64| (y / x).atan().to_degrees();
     let turns = [
@@ -157,22 +134,15 @@ fn goals_and_stability() {
         // (0.78, -0.96), the goal at (-6, 0).
         180.0 - degrees(0.96, 0.78),
     ];
-    let by_hand = StabilityScores {
-        rollouts: 6,
-        // Both of A, and the second of B, which is at its goal after one step.
-        decreasing: 0.5,
-        // Two steps of sqrt(0.56^2 + 0.08^2) = sqrt(0.32); B's first: 3 m and the 0.5 m behind it.
-        end_distance: (2.0 * 0.32_f64.sqrt() + 3.5) / 6.0,
-        largest_turn: turns.iter().sum::<f64>() / 6.0,
-        reversing: 0.5,
-        certified: Some(4.0 / 6.0),
-    };
-    assert_eq!(found.rollouts, by_hand.rollouts);
-    check("Phi falls", found.decreasing, by_hand.decreasing);
-    check("to goal", found.end_distance, by_hand.end_distance);
-    check("turn", found.largest_turn, by_hand.largest_turn);
-    check("reversing", found.reversing, by_hand.reversing);
-    check("certified", found.certified.unwrap(), 4.0 / 6.0);
+    assert_eq!(found.rollouts, 6);
+    // Both of A, and the second of B, which is at its goal after one step.
+    check("Phi falls", found.decreasing, 0.5);
+    // Two steps of sqrt(0.56^2 + 0.08^2) = sqrt(0.32); B's first: 3 m and the 0.5 m behind it.
+    let to_goal = (2.0 * 0.32_f64.sqrt() + 3.5) / 6.0;
+    check("to goal", found.end_distance, to_goal);
+    check("turn", found.largest_turn, turns.iter().sum::<f64>() / 6.0);
+    check("reversing", found.reversing, 0.5);
+    check("certified", found.certified, 4.0 / 6.0);
 }
 
 #[test]
@@ -181,12 +151,8 @@ fn diversity() {
     // A: |0.4 - 0.1 s| is 4.2 in all; B: |0.25 s - 1.5| is 9 in all; C: right angle, legs 1.2 and 1.6, so 2 m
     // for 11 frames and 1.2 m at the end.
     let path = (4.2 / 12.0 + 9.0 / 12.0 + 23.2 / 12.0) / 3.0;
-    check("diversity", s.diversity.unwrap(), path);
-    check(
-        "of the ends",
-        s.end_diversity.unwrap(),
-        (0.8 + 1.5 + 1.2) / 3.0,
-    );
+    check("diversity", s.diversity, path);
+    check("of the ends", s.end_diversity, (0.8 + 1.5 + 1.2) / 3.0);
 }
 
 /// Numbers of `hand_example()` in `tests/reference/distribution.py` (numpy 2.4.6, scipy 1.17.1), which has the
@@ -194,61 +160,39 @@ fn diversity() {
 #[test]
 fn the_distribution_as_computed_elsewhere() {
     let s = scores();
-    check("KDE NLL", s.kde_nll.unwrap(), 8.296_237_304_878_993);
+    check("KDE NLL", s.kde_nll, 8.296_237_304_878_993);
     // Worked out with 40 digits: across their line two hypotheses are 1 cm wide, which magnifies what 16 digits leave.
-    check("AMD", s.amd.unwrap(), 37.879_277_080_741_79);
-    check("AMV", s.amv.unwrap(), 0.336_472_522_377_543_5);
+    check("AMD", s.amd, 37.879_277_080_741_79);
+    check("AMV", s.amv, 0.336_472_522_377_543_5);
 }
 
 /// A and C walk straight on at one speed, B stands.
 #[test]
 fn categories() {
-    let walking = |category| CategoryScores {
-        category,
-        pedestrians: 2,
-        min_ade: 0.8,
-        min_fde: 0.2,
-        fde_at_min_ade: 0.8,
-        miss_rate: 0.0,
-        most_likely_ade: 0.8,
-        most_likely_fde: 0.8,
-        collision_rate: 0.5,
-    };
-    let standing = |category| CategoryScores {
-        category,
-        pedestrians: 1,
-        min_ade: 1.5,
-        min_fde: 1.5,
-        fde_at_min_ade: 1.5,
-        miss_rate: 1.0,
-        most_likely_ade: 1.5,
-        most_likely_fde: 1.5,
-        collision_rate: 1.0,
-    };
+    // minADE, minFDE, FDE@minADE, missed, most likely ADE and FDE, collisions.
+    let walking = [0.8, 0.2, 0.8, 0.0, 0.8, 0.8, 0.5];
+    let standing = [1.5, 1.5, 1.5, 1.0, 1.5, 1.5, 1.0];
     let by_hand = [
-        standing(Category::Motion(MotionKind::Standing)),
-        walking(Category::Motion(MotionKind::Straight)),
-        standing(Category::Type(TrajectoryType::Static)),
-        walking(Category::Type(TrajectoryType::Linear)),
+        (Category::Motion(MotionKind::Standing), 1, standing),
+        (Category::Motion(MotionKind::Straight), 2, walking),
+        (Category::Type(TrajectoryType::Static), 1, standing),
+        (Category::Type(TrajectoryType::Linear), 2, walking),
     ];
     let found = scores().categories;
     assert_eq!(found.len(), by_hand.len());
-    for (found, by_hand) in found.iter().zip(&by_hand) {
-        assert_eq!(found.category, by_hand.category);
-        assert_eq!(found.pedestrians, by_hand.pedestrians);
-        let numbers = |c: &CategoryScores| {
-            [
-                c.min_ade,
-                c.min_fde,
-                c.fde_at_min_ade,
-                c.miss_rate,
-                c.most_likely_ade,
-                c.most_likely_fde,
-                c.collision_rate,
-            ]
-        };
-        for (a, b) in numbers(found).into_iter().zip(numbers(by_hand)) {
-            check(&found.category.to_string(), a, b);
+    for (c, (category, pedestrians, by_hand)) in found.iter().zip(by_hand) {
+        assert_eq!((c.category, c.pedestrians), (category, pedestrians));
+        let found = [
+            c.min_ade,
+            c.min_fde,
+            c.fde_at_min_ade,
+            c.miss_rate,
+            c.most_likely_ade,
+            c.most_likely_fde,
+            c.collision_rate,
+        ];
+        for (found, by_hand) in found.into_iter().zip(by_hand) {
+            check(&category.to_string(), found, by_hand);
         }
     }
 }

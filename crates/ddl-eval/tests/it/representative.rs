@@ -47,35 +47,6 @@ fn of_four_straight_walks() {
     assert_eq!(single.hypothesis(0, 0), forecast.hypothesis(0, 1));
 }
 
-/// The middle of a path counts, not its end alone: three walks end together, one of them by a detour of 5 m.
-#[test]
-fn paths_are_compared_and_not_ends() {
-    let straight = |aside: f64| (1..=HORIZON).map(move |t| [t as f64, aside]);
-    let detour = (1..=HORIZON).map(|t| [t as f64, if t == HORIZON { 0.1 } else { 5.0 }]);
-    let positions = detour
-        .chain(straight(0.0))
-        .chain(straight(0.2))
-        .chain(straight(0.1))
-        .collect();
-    let forecast = Forecast::new(1, 4, positions, vec![0.28, 0.27, 0.27, 0.18], None).unwrap();
-    let weights = [0.28, 0.27, 0.27, 0.18];
-    let ends = [0.1_f64, 0.0, 0.2, 0.1];
-    assert_eq!(medoid(&weights, |k, j| (ends[k] - ends[j]).abs()), 0);
-    assert_eq!(forecast.most_likely(0), 0);
-    assert_eq!(forecast.representative(0), 2);
-}
-
-/// Without weights all count alike: of the ends 0, 1, 2, 3 and 100 m the median, of the corners of a square the first.
-#[test]
-fn without_weights_all_count_alike() {
-    let row = [3.0, 0.0, 100.0, 2.0, 1.0].map(|x| [x, 0.0]);
-    let forecast = to_ends(&row, &[0.2; 5]);
-    assert_eq!(forecast.most_likely(0), 0);
-    assert_eq!(forecast.representative(0), 3);
-    let corners = [[1.0, 1.0], [1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0]];
-    assert_eq!(to_ends(&corners, &[0.25; 4]).representative(0), 0);
-}
-
 /// Equal but for the last digits of a sum: the heaviest, of equally heavy ones the first.
 #[test]
 fn ties_go_to_the_heaviest_and_then_to_the_first() {

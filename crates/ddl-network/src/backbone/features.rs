@@ -4,12 +4,8 @@ use crate::backend::{Backend, Memory};
 use crate::weights::Linear;
 use std::fmt::Debug;
 
-/// A network that turns what pedestrians see, time step by time step, into features, of which the output layer makes what
-/// shapes the next step.
-///
-/// It is written once in the operations of a [`Backend`], so that kernels compute its forecasts, and another library can check
-/// or train it. The rollout, the output layer, the noise, the dynamics and the loss are shared by all backbones. How one is added:
-/// the guide's chapter on extending.
+/// A network that turns what pedestrians see, time step by time step, into features for the output layer. Rollout, output
+/// layer, noise, dynamics and loss are shared by all. How one is added: the guide's chapter on extending.
 pub trait Backbone<B: Backend>: Debug + Send + Sync {
     /// The output layer that it has declared: [`output_layer`](super::output_layer()).
     fn output(&self) -> Linear;

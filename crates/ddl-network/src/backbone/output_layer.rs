@@ -4,8 +4,7 @@ use crate::StarConfig;
 use crate::config::NetworkFrame;
 use crate::weights::{Initial, Layout, Linear};
 
-/// Declares the output layer: features and noise to (a, b, c), or (x, y). Where the network emits departures from the neutral
-/// motion, it begins near L = I.
+/// Declares the output layer: features and noise to (a, b, c), or (x, y); in the pedestrian's own frame near L = I.
 pub fn output_layer(layout: &mut Layout, config: &StarConfig) -> Linear {
     let inputs = (config.output_inputs() + config.noise_width) as usize;
     let outputs = config.output_width() as usize;

@@ -1,12 +1,8 @@
 //! STAR (Yu et al., ECCV 2020), one time step at a time.
 //!
-//! A pedestrian's position relative to its goal becomes a temporal token, its position relative to the scene becomes a spatial
-//! one; the two are fused, attend to the neighbours, and attend to the pedestrian's earlier tokens. The result is the
-//! pedestrian's token of that step: it is cached for later steps (the "graph memory") and gives, with the noise, the factor of
-//! the metric P.
-//!
-//! Only the newest token's output is used, and earlier tokens never change: so one query a step is computed, and keys and
-//! values of the past are cached. Same function as encoding the whole sequence anew, less work.
+//! A position relative to the goal becomes a temporal token, one relative to the scene a spatial token; the two are fused,
+//! attend to the neighbours and to the pedestrian's earlier tokens. Only the newest token's output is used, and earlier
+//! tokens never change: one query a step is computed, and keys and values of the past are cached.
 
 use super::features::Backbone;
 use super::output_layer::output_layer;

@@ -25,7 +25,6 @@ impl Kernels {
     ///
     /// # Panics
     /// When there are more or fewer numbers than the layout has.
-    #[must_use]
     pub fn new(layout: &Arc<Layout>, numbers: &[f32], precision: Precision) -> Self {
         let linear =
             |layer: &Linear| Arc::new(kernel::LinearKernel::zeros(layer.inputs, layer.outputs));
@@ -56,7 +55,6 @@ impl Kernels {
     }
 
     /// Precision of the products in feed-forward blocks.
-    #[must_use]
     pub fn precision(&self) -> Precision {
         self.precision
     }
@@ -91,7 +89,6 @@ pub struct SeenScenes {
 
 impl KernelBackend {
     /// A pass that no gradient is asked of, without dropout.
-    #[must_use]
     pub fn forward_only(kernels: Arc<Kernels>) -> Self {
         Self {
             kernels,
@@ -103,7 +100,6 @@ impl KernelBackend {
 
     /// A pass whose gradient [`backward`](Self::backward) gives, with dropout by this seed in [`Mode::Train`].
     #[cfg(feature = "training")]
-    #[must_use]
     pub fn training(kernels: Arc<Kernels>, mode: Mode, seed: u64) -> Self {
         Self {
             kernels,
@@ -135,7 +131,6 @@ impl KernelBackend {
     }
 
     /// One batch entry, `[1, P, width]`.
-    #[must_use]
     pub fn entry(&self, x: &Rc<Rows>, entry: usize) -> Rc<Rows> {
         let [_, pedestrians, width] = x.shape();
         let first = entry * pedestrians * width;

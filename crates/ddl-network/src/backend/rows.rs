@@ -25,7 +25,6 @@ impl Rows {
     ///
     /// # Panics
     /// When the numbers are more or fewer.
-    #[must_use]
     pub fn new(shape: [usize; 3], numbers: Buffer) -> Self {
         assert_eq!(
             numbers.len(),
@@ -40,7 +39,6 @@ impl Rows {
     }
 
     /// B, P and the width.
-    #[must_use]
     pub fn shape(&self) -> [usize; 3] {
         self.shape
     }

@@ -49,7 +49,6 @@ impl ProposalConfig {
     ///
     /// # Panics
     /// Where numbers overflow, which [`check`](Self::check) excludes.
-    #[must_use]
     pub fn least_numbers(&self) -> u64 {
         let [members, ends, width, near] =
             [self.members, self.ends, self.width, self.neighbour_width].map(|size| size as u64);
@@ -178,7 +177,6 @@ impl ProposalTraining {
     }
 
     /// How many of the nearest ends share the loss of a step, a fraction counting for the last.
-    #[must_use]
     pub fn relaxed_at(&self, step: u64) -> f64 {
         let done = step as f64 / self.steps as f64;
         let left = if self.relaxed_share > 0.0 {

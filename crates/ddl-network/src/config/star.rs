@@ -63,7 +63,6 @@ const MOST_LAYERS: usize = 64;
 impl StarConfig {
     /// What reports call a network of this configuration: its variant, and its backbone where that is not STAR. The full
     /// method goes without saying beside another backbone.
-    #[must_use]
     pub fn name(&self) -> String {
         match (self.variant, self.backbone) {
             (variant, BackboneKind::Star) => variant.name().to_owned(),
@@ -77,12 +76,11 @@ impl StarConfig {
         self.model_width * (4 * self.model_width + 2 * self.feed_forward_width)
     }
 
-    /// Weights of the largest layers alone (of STAR its spatial encoders): the network has more numbers than these, and a file with fewer is not of it. So a file can
-    /// be refused before there is a network that it would have to fill.
+    /// Weights of the largest layers alone: the network has more numbers than these, so that a file with fewer is refused
+    /// before there is a network to fill.
     ///
     /// # Panics
     /// Where numbers overflow, which [`check`](Self::check) excludes.
-    #[must_use]
     pub fn least_numbers(&self) -> u64 {
         match self.backbone {
             BackboneKind::Star => 2 * self.spatial_layers as u64 * self.layer_numbers() as u64,
@@ -92,7 +90,6 @@ impl StarConfig {
 
     /// The published network: 32-wide tokens, 8 heads, 2048-wide feed-forward blocks, two spatial
     /// layers, 16 noise numbers, sigma = 1e-8, 0.4 s.
-    #[must_use]
     pub fn published(variant: Variant) -> Self {
         Self {
             backbone: BackboneKind::Star,
@@ -112,7 +109,6 @@ impl StarConfig {
 
     /// The network that the protocols `fair` and `single` are measured with by default: narrower feed-forward blocks, and
     /// everything in the pedestrians' own frames where the variant has goals to read (`docs/accuracy.md`).
-    #[must_use]
     pub fn recommended(variant: Variant) -> Self {
         Self {
             frame: if variant.goal_shift() {
@@ -126,7 +122,6 @@ impl StarConfig {
     }
 
     /// Numbers the temporal encoders read of a pedestrian and step: where it is, and in its own frame its velocity too.
-    #[must_use]
     pub fn temporal_inputs(&self) -> i64 {
         match self.frame {
             NetworkFrame::World => 2,
@@ -136,7 +131,6 @@ impl StarConfig {
 
     /// Numbers the output layer reads of a pedestrian and step, without noise: its token and, in its own frame, where it is and how
     /// fast, past the layer normalisations, which forget lengths.
-    #[must_use]
     pub fn output_inputs(&self) -> i64 {
         match self.frame {
             NetworkFrame::World => self.model_width,
@@ -145,7 +139,6 @@ impl StarConfig {
     }
 
     /// Numbers the network emits a pedestrian and step: (a, b, c) of the Cholesky factor, or (x, y).
-    #[must_use]
     pub fn output_width(&self) -> i64 {
         if self.variant.dynamics() { 3 } else { 2 }
     }

@@ -21,7 +21,6 @@ impl LearningRateSchedule {
     const WARM_UP: f64 = 0.05;
 
     /// Factor of the largest step size at step `step` of `total`, counted from 0.
-    #[must_use]
     pub fn factor(self, step: u64, total: u64) -> f64 {
         match self {
             Self::Constant => 1.0,
@@ -88,7 +87,6 @@ pub struct TrainingConfig {
 
 impl TrainingConfig {
     /// The paper's training: 200 epochs of one-step forecasts, batches of 256 pedestrians, step size 1.5e-3.
-    #[must_use]
     pub fn published() -> Self {
         Self {
             objective: Objective::NextStep,
@@ -107,7 +105,6 @@ impl TrainingConfig {
 
     /// The training behind the protocols `fair` and `single`, chosen on validation splits of training recordings
     /// (`docs/accuracy.md`): whole walks to estimated goals, and for plain STAR, which has none, single steps.
-    #[must_use]
     pub fn recommended(variant: Variant) -> Self {
         let (objective, jitter) = if variant.uses_goal() {
             (Objective::Walk, 0.06)

@@ -25,20 +25,17 @@ impl Variant {
 
     /// Whether the temporal encoders read positions relative to the goal (eq. 10) rather than
     /// to the last observed position.
-    #[must_use]
     pub fn goal_shift(self) -> bool {
         matches!(self, Self::Full | Self::NoDynamics)
     }
 
     /// Whether the output is the Cholesky factor of the metric (eq. 12) rather than the next
     /// position itself.
-    #[must_use]
     pub fn dynamics(self) -> bool {
         matches!(self, Self::Full | Self::NoGoalShift)
     }
 
     /// Whether a forecast depends on a goal at all.
-    #[must_use]
     pub fn uses_goal(self) -> bool {
         self != Self::Star
     }

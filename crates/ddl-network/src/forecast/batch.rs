@@ -7,14 +7,12 @@ use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use rand::RngExt as _;
 use rand_distr::StandardNormal;
 
-/// Windows are rolled out together until they hold this many pedestrians: enough to fill the products, few enough for
-/// the tokens of their hypotheses to stay near the processor.
+/// Windows are rolled out together until they hold this many pedestrians: enough to fill the products.
 const PEDESTRIANS_AT_ONCE: usize = 64;
 
 /// Several windows with their goals: P pedestrians, window after window.
 ///
-/// Positions are relative to a point of each window, so that tracks in map coordinates lose nothing in `f32`: networks see
-/// differences of positions only.
+/// Positions are relative to a point of each window, so that tracks in map coordinates lose nothing in `f32`.
 #[derive(Debug)]
 pub struct ForecastBatch<'a> {
     originals: &'a [Window],
@@ -101,13 +99,11 @@ pub(super) fn batches<'a>(
 
 impl ForecastBatch<'_> {
     /// P.
-    #[must_use]
     pub fn pedestrians(&self) -> usize {
         self.windows.iter().map(Window::len).sum()
     }
 
     /// H.
-    #[must_use]
     pub fn hypotheses(&self) -> usize {
         self.goals.len().max(self.noise_vectors)
     }

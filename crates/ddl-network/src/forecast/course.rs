@@ -20,7 +20,6 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 /// Everybody in every hypothesis, metres.
-#[derive(Debug)]
 pub(super) struct BatchCourse {
     /// `[8, P]`.
     observed: Vec<[f32; 2]>,
@@ -105,12 +104,10 @@ impl BatchCourse {
         }
     }
 
-    /// Where everybody is now, `[H, P]`.
     pub(super) fn positions(&self) -> &[[f32; 2]] {
         &self.positions
     }
 
-    /// Who sees whom in observed time steps.
     pub(super) fn seen(&self, steps: Range<usize>) -> SeenScenes {
         SeenScenes {
             scenes: Arc::clone(&self.scenes),
@@ -250,7 +247,6 @@ fn rows(shape: [usize; 3], numbers: Buffer) -> Rc<Rows> {
     Rc::new(Rows::new(shape, numbers))
 }
 
-/// Who sees whom in the observed time steps.
 fn scenes(windows: &[Window], half_box: f64) -> Scenes {
     let sizes: Vec<usize> = windows.iter().map(Window::len).collect();
     Scenes::new(&sizes, &visibility(windows, OBSERVED, half_box))

@@ -14,7 +14,6 @@ const RECENT: usize = 3;
 ///
 /// Its own velocity is that of the last step where the steps are even, and the mean of the last three where they
 /// tremble: with w the mean length of the second differences, the last step has the share exp(-(w / 6 cm)^2).
-#[must_use]
 pub fn motion_bounds(observed: &[Position], time_step: f64, share: f64) -> MotionBounds<f64> {
     let points: Vec<Vector2<f64>> = observed.iter().map(|&p| p.into()).collect();
     let steps: Vec<Vector2<f64>> = points.array_windows().map(|[a, b]| b - a).collect();

@@ -115,7 +115,6 @@ impl MotionNetwork {
     }
 
     /// The learned numbers.
-    #[must_use]
     pub fn weights(&self) -> &Weights {
         &self.weights
     }

@@ -1,8 +1,5 @@
 //! A pedestrian's own frame: the first axis points from where it was last observed to its goal, and lengths are in
-//! its own [unit](super::unit).
-//!
-//! What the network reads and emits in this frame turns with the pedestrian and its goal, so that one walk in one direction
-//! teaches it all directions; and a runner looks to it like somebody who walks fast.
+//! its own [unit](super::unit). So one walk teaches all directions, and a runner looks like a fast walker.
 
 use ddl_data::Position;
 
@@ -46,8 +43,6 @@ impl OwnFrame {
     }
 
     /// The lower-triangular factor of the same metric in the world: L' L'^T = R^T L L^T R.
-    ///
-    /// # Numerics
     /// Where the first row of R^T L vanishes (L singular, its null space along the world's x axis) the square of the first pivot is
     /// raised to 1e-12 m/s and what the second row is worth is lost: the pedestrian stands, and P is still positive definite.
     pub(super) fn factor_to_world(self, [a, b, c]: [f32; 3]) -> [f32; 3] {

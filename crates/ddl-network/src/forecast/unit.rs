@@ -1,8 +1,5 @@
-//! The unit of length of the networks' inputs: one metre for a walking pedestrian, more for a running one.
-//!
-//! With the mean speed `v` of the observed steps, the unit is `(1 + (v / 2 m/s)^4)^(1/4)` metres. Up to walking speed it
-//! is a metre; far above it is v / (2 m/s) metres, so that the network sees a runner as a pedestrian of almost
-//! 2 m/s. It is a smooth function of the speed: so are the forecasts.
+//! The unit of length of the networks' inputs: `(1 + (v / 2 m/s)^4)^(1/4)` metres for the mean observed speed `v`. A metre
+//! up to walking speed, v / (2 m/s) metres far above it: the network sees a runner as a fast walker.
 
 use ddl_data::Position;
 
@@ -17,7 +14,6 @@ const FAST_WALK: f64 = 2.0;
 /// assert!((ddl_network::motion_unit(&at(1.0), 0.4) - 1.0).abs() < 0.02); // walking
 /// assert!((ddl_network::motion_unit(&at(6.0), 0.4) - 3.0).abs() < 0.02); // running
 /// ```
-#[must_use]
 pub fn motion_unit(observed: &[Position], time_step: f64) -> f64 {
     let steps = observed.len().saturating_sub(1).max(1) as f64;
     let way: f64 = observed

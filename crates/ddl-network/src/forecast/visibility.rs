@@ -3,7 +3,6 @@
 use ddl_data::Window;
 
 /// Whether pedestrian i sees pedestrian j: for each of the first `steps` time steps, for each window, `[size, size]`.
-#[must_use]
 pub fn visibility<'a>(
     windows: impl IntoIterator<Item = &'a Window>,
     steps: usize,

@@ -1,11 +1,5 @@
 //! What follows a sublayer: dropout, the residual connection, layer normalisation (Ba et al. 2016).
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-#![expect(
-    clippy::needless_range_loop,
-    reason = "loops of a known count over registers"
-)]
-
 mod decisions;
 mod rows;
 #[cfg(test)]
@@ -30,7 +24,6 @@ pub(super) struct AddNorm {
 }
 
 /// What the backward pass needs of the forward one, row by row.
-#[derive(Debug)]
 pub(super) struct Normal<'a> {
     /// (s − mean) / deviation, `[rows, width]`.
     pub(super) numbers: &'a mut [f32],
@@ -53,8 +46,6 @@ impl AddNorm {
         }
     }
 
-    /// # Panics
-    /// Unless both are as long as a row.
     pub(super) fn update(&mut self, weight: &[f32], bias: &[f32]) {
         assert_eq!(weight.len(), self.width, "entries of the weight");
         assert_eq!(bias.len(), self.width, "entries of the bias");
@@ -65,7 +56,6 @@ impl AddNorm {
         }
     }
 
-    /// # Shapes
     /// `x`, `t` `[rows, width]`, the first of which has number `first` -> `normal` and `y` `[rows, width]`, overwritten.
     #[inline(always)]
     pub(super) fn forward<S: Simd>(
@@ -141,8 +131,6 @@ impl AddNorm {
     }
 
     /// The derivatives with respect to x and t, and those with respect to the weights added to `weight` and `bias`.
-    ///
-    /// # Shapes
     /// `normal` of the forward pass, `gy` `[rows, width]` -> `gx`, `gt` `[rows, width]`, overwritten.
     #[inline(always)]
     pub(super) fn backward<S: Simd>(

@@ -1,7 +1,5 @@
 //! Affine maps of rows: the projections before and after attention, embeddings, the fusion of tokens.
 
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
-
 mod matrix;
 mod product;
 #[cfg(test)]
@@ -26,7 +24,6 @@ pub(super) struct Affine {
 }
 
 impl Affine {
-    /// Zeros.
     pub(super) fn new(inputs: usize, outputs: usize) -> Self {
         assert!(inputs > 0 && outputs > 0, "a width of 0");
         Self {
@@ -38,11 +35,7 @@ impl Affine {
         }
     }
 
-    /// # Shapes
     /// `weight` `[outputs, inputs]`, `bias` `[outputs]`.
-    ///
-    /// # Panics
-    /// When a slice has another length.
     pub(super) fn update(&mut self, weight: &[f32], bias: &[f32]) {
         assert_eq!(weight.len(), self.outputs * self.inputs, "entries of W");
         assert_eq!(bias.len(), self.outputs, "entries of b");
@@ -58,8 +51,6 @@ impl Affine {
     }
 
     /// y for every row of x.
-    ///
-    /// # Shapes
     /// `x` `[rows, inputs]` -> `y` `[rows, outputs]`, overwritten.
     #[inline(always)]
     pub(super) fn forward<S: Simd, const R: usize, const V: usize>(
@@ -72,8 +63,6 @@ impl Affine {
     }
 
     /// W^T gy for every row, which overwrites `gx`, or is added to it.
-    ///
-    /// # Shapes
     /// `gy` `[rows, outputs]` -> `gx` `[rows, inputs]`.
     #[inline(always)]
     pub(super) fn backward<S: Simd, const R: usize, const V: usize>(
@@ -88,8 +77,6 @@ impl Affine {
     }
 
     /// Adds the derivatives with respect to the weights.
-    ///
-    /// # Shapes
     /// `x` `[rows, inputs]`, `gy` `[rows, outputs]` -> `weight` `[outputs, inputs]`, `bias` `[outputs]`.
     #[inline(always)]
     pub(super) fn add_gradients<S: Simd, const R: usize, const V: usize>(

@@ -11,7 +11,7 @@ use super::buffer::Buffer;
 use super::dropout::Dropout;
 use super::heads::Heads;
 use super::scenes::Frames;
-use super::threads::{Buffered, each};
+use super::threads::run_buffered;
 use backward::SceneBackward;
 #[cfg(test)]
 use ddl_simd::InstructionSet;
@@ -27,8 +27,6 @@ const WORK_OF_A_PAIR: usize = 50;
 ///
 /// `mixed_i = Σ_j d_ij softmax_j(q_i · k_j / √head width) v_j` over the j that i sees, for each head alone, where `d_ij`
 /// is 1 or what [`Dropout`] makes of it.
-///
-/// # Numerics
 /// Every number is computed by one thread in a fixed order: results do not depend on the number of threads. The
 /// instruction sets agree to rounding.
 #[derive(Clone, Copy, Debug)]
@@ -53,10 +51,6 @@ impl Attended {
 }
 
 impl AmongPedestrians {
-    /// Attention with the fastest instructions of this machine.
-    ///
-    /// # Panics
-    /// When there are no heads or more than 256, or they have no width.
     pub(crate) fn new(heads: usize, head_width: usize) -> Self {
         Self {
             heads: Heads::new(heads, head_width),
@@ -64,7 +58,6 @@ impl AmongPedestrians {
         }
     }
 
-    /// The same with chosen instructions; `None` when the machine lacks them.
     #[cfg(test)]
     pub(super) fn with_instructions(self, set: InstructionSet) -> Option<Self> {
         let dispatch = Dispatch::new(set)?;
@@ -72,13 +65,8 @@ impl AmongPedestrians {
     }
 
     /// Mixes the values of what each pedestrian sees.
-    ///
-    /// # Shapes
     /// `qkv` `[B, P, 3, heads, head width]`, with the pedestrians P of the scenes; `frames` one or B -> `attended`, whose
     /// buffers are used again.
-    ///
-    /// # Panics
-    /// When a shape does not fit, or the probability of `dropout` does not lie in [0, 1).
     pub(crate) fn forward(
         &self,
         qkv: &[f32],
@@ -106,23 +94,14 @@ impl AmongPedestrians {
                 task,
             });
         }
-        each(
-            jobs,
-            self.work(frames, entries),
-            |job, buffers: &mut SceneBuffers| {
-                self.dispatch.run(Buffered { job, buffers });
-            },
-        );
+        let work = self.work(frames, entries);
+        run_buffered::<_, SceneBuffers>(self.dispatch, jobs, work);
     }
 
     /// The gradient of the inputs of [`AmongPedestrians::forward`] from that of its output.
-    ///
-    /// # Shapes
     /// `mixed_gradient` `[B, P, heads, head width]` -> `qkv_gradient` `[B, P, 3, heads, head width]`, all of which is
     /// overwritten.
-    ///
-    /// # Panics
-    /// When a shape does not fit. The first four arguments must be those of the forward pass.
+    /// The first four arguments must be those of the forward pass.
     pub(crate) fn backward(
         &self,
         qkv: &[f32],
@@ -170,16 +149,10 @@ impl AmongPedestrians {
                 task,
             });
         }
-        each(
-            jobs,
-            self.work(frames, entries),
-            |job, buffers: &mut SceneBuffers| {
-                self.dispatch.run(Buffered { job, buffers });
-            },
-        );
+        let work = self.work(frames, entries);
+        run_buffered::<_, SceneBuffers>(self.dispatch, jobs, work);
     }
 
-    /// What there is to be done, in multiplications.
     fn work(&self, frames: Frames<'_>, entries: usize) -> usize {
         frames.pairs(entries) * self.heads.groups() * self.heads.quads() * WORK_OF_A_PAIR
     }
@@ -190,7 +163,6 @@ impl AmongPedestrians {
         self.heads.groups() * ranges.map(|range| range.len().div_ceil(2)).sum::<usize>()
     }
 
-    /// Batch entries.
     fn check(&self, qkv: &[f32], frames: Frames<'_>) -> usize {
         let entry = frames.scenes().pedestrians() * 3 * self.heads.row();
         assert!(

@@ -5,13 +5,11 @@ use std::ops::{Deref, DerefMut};
 
 use ddl_simd::LANES;
 
-/// Buffers that a thread keeps for the next ones: to ask the system for memory, and to be given it a page at a time, would
-/// take as long as the work on small batches.
+/// Buffers that a thread keeps for the next ones: to ask the system would take as long as the work on small batches.
 const SPARE: usize = 64;
 /// Numbers that all of them may hold together, 32 MiB: what one crowded frame took is given back.
 const SPARE_NUMBERS: usize = 1 << 23;
 
-#[derive(Debug)]
 struct Spares {
     buffers: Vec<Vec<f32>>,
     numbers: usize,
@@ -42,7 +40,7 @@ impl Spares {
 }
 
 /// Numbers that begin where a register's load begins.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Buffer {
     numbers: Vec<f32>,
     first: usize,
@@ -51,7 +49,6 @@ pub struct Buffer {
 
 impl Buffer {
     /// `count` numbers, whatever was there before.
-    #[must_use]
     pub fn any(count: usize) -> Self {
         let mut numbers = SPARES.with_borrow_mut(Spares::take);
         if numbers.len() < count + LANES {
@@ -67,30 +64,22 @@ impl Buffer {
     }
 
     /// `count` numbers, all 0.
-    #[must_use]
     pub fn zeros(count: usize) -> Self {
         let mut buffer = Self::any(count);
         buffer.fill(0.0);
         buffer
     }
 
+    /// So many buffers of zeros.
+    pub(super) fn many_zeros(buffers: usize, count: usize) -> Vec<Self> {
+        (0..buffers).map(|_| Self::zeros(count)).collect()
+    }
+
     /// These numbers.
-    #[must_use]
     pub fn copy(numbers: &[f32]) -> Self {
         let mut buffer = Self::any(numbers.len());
         buffer.copy_from_slice(numbers);
         buffer
-    }
-}
-
-impl Default for Buffer {
-    /// No numbers, and no memory.
-    fn default() -> Self {
-        Self {
-            numbers: Vec::new(),
-            first: 0,
-            count: 0,
-        }
     }
 }
 

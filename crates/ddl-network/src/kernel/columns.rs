@@ -1,7 +1,5 @@
 //! Some columns of matrices that lie row by row, and pieces of rows in registers.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-
 use ddl_simd::{LANES, Simd};
 
 /// Columns of a matrix: all of them, or what stands side by side with others.
@@ -16,7 +14,6 @@ pub(super) struct MatrixColumns<'a> {
 }
 
 /// [`MatrixColumns`] that are written.
-#[derive(Debug)]
 pub(super) struct MatrixColumnsMut<'a> {
     numbers: &'a mut [f32],
     rows: usize,

@@ -2,16 +2,12 @@
 //!
 //! What is decided on, and how a place becomes random bits, is up to each kernel: see its own module of this name.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-
 use ddl_simd::Simd;
 
 /// Sets each number to 0 with probability `p` and scales the others by 1 / (1 - p).
 ///
 /// The decision is a function of `seed` and the place of the number alone: the same in the forward and the backward pass,
 /// on every machine, for every number of threads. Each layer of each step needs a seed of its own.
-///
-/// # Numerics
 /// p is rounded to a multiple of 2^-16 for hidden units, of 2^-24 for attention weights and outputs, and to less than 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Dropout {
@@ -32,9 +28,6 @@ pub(super) struct Threshold {
 
 impl Dropout {
     /// The threshold for `bits` random bits, 24 at most; `None` when nothing is dropped.
-    ///
-    /// # Panics
-    /// Unless 0 <= p < 1.
     pub(super) fn threshold(self, bits: u32) -> Option<Threshold> {
         let p = self.p;
         assert!((0.0..1.0).contains(&p), "dropout of {p}: not in [0, 1)");

@@ -21,12 +21,7 @@ pub use weights::Sizes;
 
 impl EncoderKernel {
     /// The layer with attention among the pedestrians of each scene.
-    ///
-    /// # Shapes
     /// `x` `[B, P, width]`; `frames` one or B -> y `[B, P, width]`.
-    ///
-    /// # Panics
-    /// When a shape does not fit.
     pub(crate) fn among_pedestrians(
         &self,
         x: &[f32],
@@ -43,12 +38,8 @@ impl EncoderKernel {
     }
 
     /// The gradients of [`among_pedestrians`](Self::among_pedestrians).
-    ///
-    /// # Shapes
     /// `gy` like `x` -> the gradient of x; those of the learned numbers are added to `of_weights`, [`Sizes::count`].
-    ///
-    /// # Panics
-    /// When a shape does not fit. The other arguments must be those of the forward pass.
+    /// The other arguments must be those of the forward pass.
     pub(crate) fn among_pedestrians_backward(
         &self,
         x: &[f32],
@@ -77,13 +68,8 @@ impl EncoderKernel {
     }
 
     /// The layer with attention of the newest token over remembered ones and itself.
-    ///
-    /// # Shapes
     /// `x` `[rows, width]`; `memory` of as many rows each, or a divisor, as [`OverMemory::forward`] has it
     /// -> y `[rows, width]`.
-    ///
-    /// # Panics
-    /// When a shape does not fit.
     pub(crate) fn over_memory(
         &self,
         x: &[f32],
@@ -101,13 +87,9 @@ impl EncoderKernel {
     }
 
     /// The gradients of [`over_memory`](Self::over_memory).
-    ///
-    /// # Shapes
     /// `gy` like `x` -> the gradient of x; those of the memory are added to `of_memory`, which has as many rows each as
     /// `x`, as `memory` must have here; those of the learned numbers to `of_weights`, [`Sizes::count`].
-    ///
-    /// # Panics
-    /// When a shape does not fit. The other arguments must be those of the forward pass.
+    /// The other arguments must be those of the forward pass.
     #[expect(
         clippy::too_many_arguments,
         reason = "all of the forward pass, and its gradients"
@@ -142,12 +124,7 @@ impl EncoderKernel {
     }
 
     /// Keys and values of tokens, for later queries.
-    ///
-    /// # Shapes
     /// `x` `[rows, width]`.
-    ///
-    /// # Panics
-    /// When a shape does not fit.
     pub(crate) fn remember(&self, x: &[f32]) -> Remembered {
         let [mut key, mut value] = [0; 2].map(|_| Buffer::any(x.len()));
         self.project(1, x, Targets::Apart(vec![&mut key, &mut value]));
@@ -155,9 +132,6 @@ impl EncoderKernel {
     }
 
     /// The gradients of [`remember`](Self::remember): that of x; those of the learned numbers are added to `of_weights`.
-    ///
-    /// # Panics
-    /// When a shape does not fit.
     pub(crate) fn remember_backward(
         &self,
         x: &[f32],

@@ -1,7 +1,5 @@
 //! The activation of the proposal network: x Φ(x), with Φ the normal distribution (Hendrycks and Gimpel 2016).
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-
 use ddl_simd::{Dispatch, Kernel, LANES, Simd};
 
 /// erfc(z) = t (a₁ + t (a₂ + …)) exp(−z²) for z ≥ 0, t = 1 / (1 + p z), within 1.5e-7 (Abramowitz and Stegun 7.1.26).
@@ -15,8 +13,6 @@ const A: [f32; 5] = [
 ];
 
 /// x Φ(x) of every number, in place.
-///
-/// # Numerics
 /// Off by less than 1e-6 at |x| up to 6, and by less than the rounding of x beyond. NaN stays NaN.
 pub(crate) fn gelu(numbers: &mut [f32]) {
     Dispatch::detect().run(Gelu(numbers));

@@ -1,7 +1,5 @@
 //! Rows of heads in lanes: eight heads each of two pedestrians, four of their numbers (a quad) at a time.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-
 use ddl_simd::{DEPTH, LANES, Simd, Vectors};
 
 /// Heads of a pedestrian that are computed together.
@@ -15,8 +13,6 @@ pub(super) struct Heads {
 }
 
 impl Heads {
-    /// # Panics
-    /// When there are no heads or more than 256, or they have no width.
     pub(super) fn new(count: usize, width: usize) -> Self {
         assert!(
             (1..=256).contains(&count) && width > 0,
@@ -25,12 +21,10 @@ impl Heads {
         Self { count, width }
     }
 
-    /// Numbers in a row.
     pub(super) fn row(self) -> usize {
         self.count * self.width
     }
 
-    /// Groups of heads in a row.
     pub(super) fn groups(self) -> usize {
         self.count.div_ceil(GROUP)
     }

@@ -1,19 +1,15 @@
 //! An affine map as a kernel of its own: embeddings, and the fusion of tokens.
 
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
-
 use super::affine::Affine;
 use super::buffer::Buffer;
 use super::columns::{MatrixColumns, MatrixColumnsMut};
-use super::threads::each;
+use super::threads::run_each;
 use ddl_simd::{Dispatch, Simd, TiledKernel};
 
 /// Rows that are computed together. Always the same, so that sums over rows are.
 const ROWS: usize = 512;
 
 /// y = W x + b.
-///
-/// # Numerics
 /// Nothing depends on the number of threads.
 #[derive(Clone, Debug)]
 pub(crate) struct LinearKernel {
@@ -24,10 +20,6 @@ pub(crate) struct LinearKernel {
 }
 
 impl LinearKernel {
-    /// A map whose weights are all 0.
-    ///
-    /// # Panics
-    /// When a width is 0.
     pub(crate) fn zeros(inputs: usize, outputs: usize) -> Self {
         Self {
             inputs,
@@ -38,19 +30,12 @@ impl LinearKernel {
     }
 
     /// Takes over the weights: W `[outputs, inputs]` by rows, then b.
-    ///
-    /// # Panics
-    /// When there are more or fewer numbers.
     pub(crate) fn update(&mut self, weights: &[f32]) {
         let (weight, bias) = weights.split_at(self.outputs * self.inputs);
         self.map.update(weight, bias);
     }
 
-    /// # Shapes
     /// `x` `[rows, inputs]` -> `[rows, outputs]`.
-    ///
-    /// # Panics
-    /// When `x` is not made of rows.
     pub(crate) fn forward(&self, x: &[f32]) -> Buffer {
         let mut y = Buffer::any(x.len() / self.inputs * self.outputs);
         let inputs = x.chunks(ROWS * self.inputs);
@@ -61,25 +46,15 @@ impl LinearKernel {
             y: MatrixColumnsMut::whole(y, self.outputs),
         });
         let work = x.len() * self.outputs;
-        each(
-            jobs.collect(),
-            work,
-            |job: LinearForward<'_>, (): &mut ()| {
-                self.dispatch.run(job);
-            },
-        );
+        run_each(self.dispatch, jobs, work);
         y
     }
 
     /// The gradient of x; that of the weights is added to `of_weights`.
-    ///
-    /// # Panics
-    /// When a shape does not fit.
     pub(crate) fn backward(&self, x: &[f32], gy: &[f32], of_weights: &mut [f32]) -> Buffer {
         let mut gx = Buffer::any(x.len());
-        let mut sums: Vec<Buffer> = Vec::new();
         let pieces = x.len().div_ceil(ROWS * self.inputs);
-        sums.resize_with(pieces, || Buffer::zeros(of_weights.len()));
+        let mut sums = Buffer::many_zeros(pieces, of_weights.len());
         let inputs = x.chunks(ROWS * self.inputs);
         let inputs = inputs.zip(gy.chunks(ROWS * self.outputs));
         let outputs = gx.chunks_mut(ROWS * self.inputs).zip(&mut sums);
@@ -93,13 +68,7 @@ impl LinearKernel {
                 of_weights: sums.split_at_mut(self.outputs * self.inputs).into(),
             });
         let work = 2 * x.len() * self.outputs;
-        each(
-            jobs.collect(),
-            work,
-            |job: LinearBackward<'_>, (): &mut ()| {
-                self.dispatch.run(job);
-            },
-        );
+        run_each(self.dispatch, jobs, work);
         for sums in &sums {
             for (sum, term) in of_weights.iter_mut().zip(sums.iter()) {
                 *sum += term;

@@ -7,7 +7,7 @@ mod tests;
 mod tokens;
 
 use super::heads::Heads;
-use super::threads::{Buffered, each};
+use super::threads::run_buffered;
 use backward::MemoryBackward;
 use ddl_simd::Dispatch;
 #[cfg(test)]
@@ -25,8 +25,6 @@ const WORK_OF_A_NUMBER: usize = 8;
 /// Multi-head attention of one query a row over t remembered tokens and its own.
 ///
 /// `mixed = Σ_e softmax_e(q · k_e / √head width) v_e` over the t + 1 tokens e, for each row and head alone.
-///
-/// # Numerics
 /// Every number is computed by one thread in a fixed order: results do not depend on the number of threads. The
 /// instruction sets agree to rounding.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +34,6 @@ pub(crate) struct OverMemory {
 }
 
 /// Where [`OverMemory::backward`] adds gradients.
-#[derive(Debug)]
 pub(crate) struct OverMemoryGradients<'a, 'b> {
     /// `[rows, heads, head width]`.
     pub(crate) query: &'a mut [f32],
@@ -47,10 +44,6 @@ pub(crate) struct OverMemoryGradients<'a, 'b> {
 }
 
 impl OverMemory {
-    /// Attention with the fastest instructions of this machine.
-    ///
-    /// # Panics
-    /// When there are no heads or more than 256, or they have no width.
     pub(crate) fn new(heads: usize, head_width: usize) -> Self {
         Self {
             heads: Heads::new(heads, head_width),
@@ -58,7 +51,6 @@ impl OverMemory {
         }
     }
 
-    /// The same with chosen instructions; `None` when the machine lacks them.
     #[cfg(test)]
     pub(super) fn with_instructions(self, set: InstructionSet) -> Option<Self> {
         let dispatch = Dispatch::new(set)?;
@@ -69,13 +61,8 @@ impl OverMemory {
     ///
     /// A remembered token of fewer rows stands for all repetitions of them: row r of the query meets its row
     /// r mod its number of rows, as when one memory serves many hypotheses.
-    ///
-    /// # Shapes
     /// `query` and `own` `[rows, heads, head width]`; each of `memory` the same, or a divisor of the rows
     /// -> `mixed` `[rows, heads, head width]`, all of which is overwritten.
-    ///
-    /// # Panics
-    /// When a shape does not fit.
     pub(crate) fn forward(
         &self,
         query: &[f32],
@@ -109,22 +96,11 @@ impl OverMemory {
                 mixed,
             })
             .collect();
-        each(
-            jobs,
-            work(query, memory),
-            |job, buffers: &mut MemoryBuffers| {
-                self.dispatch.run(Buffered { job, buffers });
-            },
-        );
+        run_buffered::<_, MemoryBuffers>(self.dispatch, jobs, work(query, memory));
     }
 
     /// Adds the gradients of the inputs of [`OverMemory::forward`], from that of its output.
-    ///
-    /// # Shapes
     /// All `[rows, heads, head width]`, also the remembered tokens.
-    ///
-    /// # Panics
-    /// When a shape does not fit.
     pub(crate) fn backward(
         &self,
         query: &[f32],
@@ -183,13 +159,7 @@ impl OverMemory {
                 token_gradients: tokens.map(|token| token.split_off(count)).collect(),
             });
         }
-        each(
-            jobs,
-            work(query, memory),
-            |job, buffers: &mut MemoryBuffers| {
-                self.dispatch.run(Buffered { job, buffers });
-            },
-        );
+        run_buffered::<_, MemoryBuffers>(self.dispatch, jobs, work(query, memory));
     }
 
     fn check(&self, query: &[f32], own: KeyValue<'_>, mixed: &[f32]) {
@@ -210,7 +180,6 @@ impl OverMemory {
     }
 }
 
-/// What there is to be done, in multiplications.
 fn work(query: &[f32], memory: &[KeyValue<'_>]) -> usize {
     query.len() * (memory.len() + 1) * WORK_OF_A_NUMBER
 }

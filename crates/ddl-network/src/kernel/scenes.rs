@@ -40,7 +40,6 @@ impl Scenes {
     /// # Panics
     /// When there is no scene or an empty one, when `visible` is not a whole number of frames (at least one), or when
     /// a pedestrian does not see itself.
-    #[must_use]
     pub fn new(sizes: &[usize], visible: &[bool]) -> Self {
         assert!(!sizes.is_empty(), "at least one scene is needed");
         assert!(
@@ -87,19 +86,16 @@ impl Scenes {
     }
 
     /// Pedestrians in all scenes together.
-    #[must_use]
     pub fn pedestrians(&self) -> usize {
         self.ranges.last().map_or(0, |last| last.end)
     }
 
     /// The pedestrians of each scene.
-    #[must_use]
     pub fn ranges(&self) -> &[Range<usize>] {
         &self.ranges
     }
 
     /// Frames with visibility of their own.
-    #[must_use]
     pub fn frames(&self) -> usize {
         self.frames
     }
@@ -108,7 +104,6 @@ impl Scenes {
     ///
     /// # Panics
     /// When the frames are none or not there.
-    #[must_use]
     pub fn during(&self, frames: Range<usize>) -> Frames<'_> {
         assert!(
             frames.start < frames.end && frames.end <= self.frames,
@@ -122,7 +117,6 @@ impl Scenes {
         }
     }
 
-    /// Who sees whom in all frames.
     #[cfg(test)]
     pub(super) fn throughout(&self) -> Frames<'_> {
         self.during(0..self.frames)
@@ -130,7 +124,6 @@ impl Scenes {
 }
 
 impl<'a> Frames<'a> {
-    /// The scenes.
     pub(super) fn scenes(self) -> &'a Scenes {
         self.scenes
     }

@@ -1,12 +1,12 @@
 //! Work on several threads, where it is worth waking them.
 
+use ddl_simd::{Dispatch, Kernel};
 use rayon::prelude::*;
 
 /// Multiplications (or what takes as long) below which other threads are not worth waking: some ten microseconds.
 pub(super) const WORTH_WAKING: usize = 1_000_000;
 
 /// A job, and room for what it computes that its thread keeps for the next one.
-#[derive(Debug)]
 pub(super) struct Buffered<'b, J, B> {
     pub(super) job: J,
     pub(super) buffers: &'b mut B,
@@ -27,4 +27,25 @@ pub(super) fn each<J: Send, B: Default>(
         jobs.into_par_iter()
             .for_each_init(B::default, |buffers, job| run(job, buffers));
     }
+}
+
+/// Does all jobs, each of which is a kernel.
+pub(super) fn run_each<K: Kernel + Send>(
+    dispatch: Dispatch,
+    jobs: impl Iterator<Item = K>,
+    work: usize,
+) {
+    each(jobs.collect(), work, |job: K, (): &mut ()| {
+        dispatch.run(job);
+    });
+}
+
+/// Does all jobs, each of which is a kernel with room for what it computes.
+pub(super) fn run_buffered<J: Send, B: Default>(dispatch: Dispatch, jobs: Vec<J>, work: usize)
+where
+    for<'b> Buffered<'b, J, B>: Kernel,
+{
+    each(jobs, work, |job, buffers| {
+        dispatch.run(Buffered { job, buffers });
+    });
 }

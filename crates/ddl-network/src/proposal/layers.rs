@@ -42,7 +42,6 @@ impl MemberAffine {
     }
 
     /// The number of its weight among the tensors of the layout; its bias is the next one.
-    #[must_use]
     pub fn tensor(self) -> usize {
         self.tensor
     }
@@ -122,7 +121,6 @@ impl ProposalLayers {
 
 impl ProposalConfig {
     /// Numbers learned in all.
-    #[must_use]
     pub fn parameter_count(&self) -> usize {
         let mut layout = Layout::default();
         ProposalLayers::new(&mut layout, self);

@@ -16,10 +16,6 @@ const CHUNK: usize = 64;
 
 /// The ensemble, computed by kernels on the CPU in `f32`.
 ///
-/// A pedestrian's positions and velocities pass one layer; its code then asks the codes of its neighbours (attention, with
-/// the choice to look at none), and further layers with short cuts give K ends relative to where the present velocity leads,
-/// and a probability for each.
-///
 /// # Numerics
 /// A pedestrian's proposals have the same bits alone and among others, and with every number of threads.
 #[derive(Debug)]
@@ -30,7 +26,6 @@ pub struct ProposalNetwork {
     members: Vec<MemberKernels>,
 }
 
-/// The kernels of one member.
 #[derive(Debug)]
 struct MemberKernels {
     own: LinearKernel,
@@ -90,7 +85,6 @@ impl ProposalNetwork {
     }
 
     /// The learned numbers.
-    #[must_use]
     pub fn weights(&self) -> &Weights {
         &self.weights
     }

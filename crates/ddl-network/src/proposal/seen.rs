@@ -10,6 +10,7 @@ pub const RECENT: usize = 3;
 pub const NEIGHBOUR_FEATURES: usize = 9;
 
 /// What some pedestrians see, as rows.
+#[derive(Default)]
 pub(super) struct SeenRows {
     /// `[B, 30]`: positions and velocities.
     pub(super) own: Vec<f32>,
@@ -29,12 +30,7 @@ impl SeenRows {
             let (now, then) = (track[OBSERVED - 1], track[OBSERVED - 1 - RECENT]);
             [0, 1].map(|axis| (now[axis] - then[axis]) / seconds)
         };
-        let mut seen = Self {
-            own: Vec::new(),
-            counts: Vec::new(),
-            neighbours: Vec::new(),
-            onward: Vec::new(),
-        };
+        let mut seen = Self::default();
         for view in views {
             let own = &view.own;
             let halves = own.as_flattened().iter().map(|x| (x * 0.5) as f32);

@@ -6,19 +6,6 @@ use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
 
 /// SHA-256 of tensors, in hexadecimal: of each one's name, kind, shape and bytes, by name.
-///
-/// # Examples
-/// ```
-/// use ddl_network::weights::numbers_digest;
-/// use safetensors::tensor::{Dtype, TensorView};
-///
-/// let [one, other] = [[0_u8; 8], [1; 8]];
-/// let of = |bytes| TensorView::new(Dtype::F32, vec![2], bytes).map(|view| numbers_digest([("a", view)]));
-/// assert_eq!(of(&one)?.len(), 64);
-/// assert_ne!(of(&one)?, of(&other)?);
-/// # Ok::<(), safetensors::SafeTensorError>(())
-/// ```
-#[must_use]
 pub fn numbers_digest<'a>(tensors: impl IntoIterator<Item = (&'a str, TensorView<'a>)>) -> String {
     let mut tensors: Vec<_> = tensors.into_iter().collect();
     tensors.sort_by(|one, other| one.0.cmp(other.0));
@@ -53,7 +40,6 @@ pub struct DamagedNumbers;
 /// # Errors
 /// [`DamagedNumbers`] when they are not. Files of earlier versions have no digest, and pass.
 pub fn check_numbers(file: &SafeTensors<'_>, expected: Option<&str>) -> Result<(), DamagedNumbers> {
-    // Earlier versions wrote none.
     let Some(expected) = expected else {
         return Ok(());
     };

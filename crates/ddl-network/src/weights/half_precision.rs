@@ -26,19 +26,6 @@ impl Weights {
     /// # Numerics
     /// A number is rounded to 11 significant bits: off by at most 2^-11 of its size, or by 2^-25 where it is smaller than 2^-14.
     /// Rounding rounded numbers again changes nothing.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_network::weights::Weights;
-    /// use ddl_network::{MotionNetwork, StarConfig, Variant};
-    ///
-    /// let config = StarConfig { feed_forward_width: 16, ..StarConfig::published(Variant::Full) };
-    /// let learned = MotionNetwork::new(config, 1)?;
-    /// let packed = learned.weights().to_half()?;
-    /// let again = Weights::from_half(learned.weights().layout(), &packed)?;
-    /// assert_eq!(again.to_half()?, packed);
-    /// # Ok::<(), ddl_network::NetworkError>(())
-    /// ```
     pub fn to_half(&self) -> Result<Vec<HalfTensor>, NetworkError> {
         self.iter()
             .map(|(tensor, numbers)| {

@@ -32,19 +32,16 @@ pub struct TensorLayout {
 
 impl TensorLayout {
     /// Its name in files.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
     /// Its shape; numbers lie row by row.
-    #[must_use]
     pub fn shape(&self) -> &[usize] {
         &self.shape
     }
 
     /// Where its numbers stand among those of all tensors.
-    #[must_use]
     pub fn span(&self) -> Range<usize> {
         self.first..self.first + self.shape.iter().product::<usize>()
     }
@@ -80,7 +77,6 @@ pub struct Linear {
 
 impl Linear {
     /// Where its numbers stand among all learned ones.
-    #[must_use]
     pub fn span(self) -> Range<usize> {
         self.first..self.first + self.outputs * (self.inputs + 1)
     }
@@ -104,7 +100,6 @@ pub struct EncoderLayer {
 
 impl EncoderLayer {
     /// Where its numbers stand among all learned ones.
-    #[must_use]
     pub fn span(self) -> Range<usize> {
         self.first..self.first + self.sizes.count()
     }
@@ -112,25 +107,21 @@ impl EncoderLayer {
 
 impl Layout {
     /// All tensors, in order.
-    #[must_use]
     pub fn tensors(&self) -> &[TensorLayout] {
         &self.tensors
     }
 
     /// All affine maps outside encoder layers, in order.
-    #[must_use]
     pub fn linears(&self) -> &[Linear] {
         &self.linears
     }
 
     /// All encoder layers, in order.
-    #[must_use]
     pub fn encoder_layers(&self) -> &[EncoderLayer] {
         &self.encoder_layers
     }
 
     /// How many numbers there are in all.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.count
     }
@@ -227,7 +218,6 @@ impl Layout {
     }
 
     /// Initial numbers, drawn in the order of the tensors; the same on every machine.
-    #[must_use]
     pub fn initial(&self, mut rng: ChaCha8Rng) -> Vec<f64> {
         let mut numbers = Vec::with_capacity(self.count);
         for tensor in &self.tensors {

@@ -17,14 +17,12 @@ impl Weights {
     ///
     /// # Panics
     /// When there are more or fewer numbers than the layout has.
-    #[must_use]
     pub fn new(layout: Arc<Layout>, numbers: Vec<f32>) -> Self {
         assert_eq!(numbers.len(), layout.count(), "numbers of this layout");
         Self { layout, numbers }
     }
 
     /// Initial numbers, drawn in the order of the tensors; the same on every machine.
-    #[must_use]
     pub fn initial(layout: &Arc<Layout>, rng: ChaCha8Rng) -> Self {
         let numbers = layout.initial(rng).into_iter().map(|x| x as f32);
         Self::new(Arc::clone(layout), numbers.collect())
@@ -47,19 +45,16 @@ impl Weights {
     }
 
     /// Names, shapes and places.
-    #[must_use]
     pub fn layout(&self) -> &Arc<Layout> {
         &self.layout
     }
 
     /// How many numbers there are.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.numbers.len()
     }
 
     /// All numbers, tensor after tensor.
-    #[must_use]
     pub fn numbers(&self) -> &[f32] {
         &self.numbers
     }
@@ -71,7 +66,6 @@ impl Weights {
     }
 
     /// The numbers of the tensor of that name.
-    #[must_use]
     pub fn get(&self, name: &str) -> Option<&[f32]> {
         let mut tensors = self.iter();
         tensors.find_map(|(tensor, numbers)| (tensor.name() == name).then_some(numbers))

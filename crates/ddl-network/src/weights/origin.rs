@@ -6,16 +6,6 @@ use std::collections::{BTreeMap, HashMap};
 ///
 /// They are written into the header of the file. A file of another origin is refused, also where all its
 /// shapes would fit: weights of another fold, seed or variant would give forecasts that look right.
-///
-/// # Examples
-/// ```
-/// use ddl_network::weights::Origin;
-///
-/// let eth = Origin::from_iter([("fold", "eth"), ("seed", "1")]);
-/// let zara = Origin::from_iter([("fold", "zara1"), ("seed", "1")]);
-/// assert_eq!(eth.difference(&eth), None);
-/// assert_eq!(eth.difference(&zara).unwrap(), "fold is eth, not zara1");
-/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Origin(BTreeMap<String, String>);
 
@@ -32,7 +22,6 @@ impl<N: Into<String>, V: Into<String>> FromIterator<(N, V)> for Origin {
 
 impl Origin {
     /// The first fact, by name, in which this origin is not `other`, in words; `None` when they agree.
-    #[must_use]
     pub fn difference(&self, other: &Self) -> Option<String> {
         let names = self.0.keys().chain(other.0.keys());
         let name = names
@@ -51,7 +40,6 @@ impl Origin {
 
     /// As the header of a safetensors file holds it, with the SHA-256 of the file's numbers ([`numbers_digest`](super::numbers_digest)):
     /// one entry, so that the same origin and numbers are always the same bytes.
-    #[must_use]
     pub fn to_header(&self, digest: &str) -> HashMap<String, String> {
         let facts = self
             .0
@@ -65,7 +53,6 @@ impl Origin {
 
     /// What the header of a safetensors file says, and the SHA-256 of its numbers; nothing, when it is not a header of ours. Files of
     /// earlier versions have no SHA-256.
-    #[must_use]
     pub fn of_header(header: Option<&HashMap<String, String>>) -> (Self, Option<String>) {
         let facts = header.and_then(|header| header.get(HEADER));
         let mut origin = Self(

@@ -1,7 +1,7 @@
 //! A window's forecast has the same bits alone and among others, and with every number of threads.
 
 use super::scenes::{Question, WINDOWS, configs, with_threads};
-use ddl_data::{Dataset, Window, WindowRule};
+use ddl_data::Window;
 use ddl_network::{MotionNetwork, Noise, Precision, StarConfig, StepRule, Variant, WindowRollout};
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -68,36 +68,5 @@ fn a_crowd_with_any_number_of_threads() {
         for threads in [2, 3] {
             assert_eq!(ask(threads), one, "{threads} threads");
         }
-    }
-}
-
-/// The windows of either half of a recording are forecast as those of the whole.
-#[test]
-fn a_window_cut_from_a_longer_recording() {
-    let dataset = Dataset::simulated(2);
-    let recording = &dataset.recordings()[1];
-    let (first, second) = recording.parts(0.5);
-    let halves = [first.unwrap(), second.unwrap()];
-    let whole = recording.windows(WindowRule::Complete);
-    let whole: Vec<&Window> = whole.iter().collect();
-    for config in configs()
-        .into_iter()
-        .filter(|config| config.variant == Variant::Full)
-    {
-        let network = MotionNetwork::new(config, 5).unwrap();
-        let question = Question::bounded(1);
-        let of_whole = question.ask(&network, &whole);
-        let mut compared = 0;
-        for half in &halves {
-            let cut = half.windows(WindowRule::Complete);
-            let cut: Vec<&Window> = cut.iter().collect();
-            for (window, rollout) in cut.iter().zip(question.ask(&network, &cut)) {
-                let same = |other: &&Window| other.start_frame() == window.start_frame();
-                let place = whole.iter().position(same).unwrap();
-                assert_eq!(bits(&rollout), bits(&of_whole[place]));
-                compared += 1;
-            }
-        }
-        assert!(compared > 20, "{compared} windows");
     }
 }

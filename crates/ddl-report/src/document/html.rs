@@ -17,7 +17,6 @@ pub(crate) struct ContentsEntry {
 impl Document {
     /// HTML for the body of a page: lead, title and parts, each section with an `id` made of its heading. Text is
     /// escaped.
-    #[must_use]
     pub fn to_html(&self) -> String {
         format!(
             "<header>\n<h1>{}</h1>\n<p class=\"lead\">{}</p>\n</header>\n{}",

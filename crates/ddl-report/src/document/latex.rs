@@ -4,54 +4,48 @@ use super::parts::{Document, Part, Span, spans, unfolded};
 use super::table::Table;
 
 impl Document {
-    /// The tables for a paper, each a `table*` with its caption, to be included with `\input`; needs the packages `booktabs` and
-    /// `adjustbox`.
-    /// The warnings of a section stand in the captions of its tables, so that they are copied with them.
-    #[must_use]
+    /// The tables for a paper, each a `table*` with its caption and the warnings of its section, to be included with
+    /// `\input`; needs the packages `booktabs` and `adjustbox`.
     pub fn to_latex(&self) -> String {
-        tables(self)
-    }
-}
-
-fn tables(document: &Document) -> String {
-    let mut text = format!(
-        "% {}\n% {}\n% Needs \\usepackage{{booktabs,adjustbox}}.\n",
-        one_line(&document.title),
-        one_line(&document.lead)
-    );
-    let mut headings: Vec<&str> = Vec::new();
-    let mut warning = None;
-    let mut count = 0;
-    let mut parts = unfolded(&document.parts).peekable();
-    while let Some(part) = parts.next() {
-        match part {
-            Part::Heading { level, text: words } => {
-                if *level == 1 {
-                    warning = None;
+        let mut text = format!(
+            "% {}\n% {}\n% Needs \\usepackage{{booktabs,adjustbox}}.\n",
+            one_line(&self.title),
+            one_line(&self.lead)
+        );
+        let mut headings: Vec<&str> = Vec::new();
+        let mut warning = None;
+        let mut count = 0;
+        let mut parts = unfolded(&self.parts).peekable();
+        while let Some(part) = parts.next() {
+            match part {
+                Part::Heading { level, text: words } => {
+                    if *level == 1 {
+                        warning = None;
+                    }
+                    headings.truncate(level - 1);
+                    headings.push(words);
                 }
-                headings.truncate(level - 1);
-                headings.push(words);
+                Part::Warning(words) => warning = Some(words.as_str()),
+                Part::Table(table) => {
+                    let caption = match table.caption() {
+                        Some(caption) => caption.to_owned(),
+                        None => format!("{}.", headings.join(": ")),
+                    };
+                    let comment = one_line(&headings.join(": "));
+                    // What follows a table at once is under which conditions its lines came about.
+                    let notes = match parts.peek() {
+                        Some(Part::List(items)) => items.join(" "),
+                        _ => String::new(),
+                    };
+                    count += 1;
+                    let float = float(table, &caption, warning, &notes, count);
+                    text.extend(["\n% ", &comment, "\n", &float]);
+                }
+                Part::Paragraph(_) | Part::List(_) | Part::Details { .. } => {}
             }
-            Part::Warning(words) => warning = Some(words.as_str()),
-            Part::Table(table) => {
-                let caption = match table.caption() {
-                    Some(caption) => caption.to_owned(),
-                    None => format!("{}.", headings.join(": ")),
-                };
-                let comment = one_line(&headings.join(": "));
-                // What follows a table at once is under which conditions its lines came about.
-                let notes = match parts.peek() {
-                    Some(Part::List(items)) => items.join(" "),
-                    _ => String::new(),
-                };
-                count += 1;
-                let float = float(table, &caption, warning, &notes, count);
-                text.extend(["\n% ", &comment, "\n", &float]);
-            }
-            Part::Paragraph(_) | Part::List(_) | Part::Details { .. } => {}
         }
+        text
     }
-    text
 }
 
 fn float(

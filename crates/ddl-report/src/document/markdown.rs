@@ -4,7 +4,6 @@ use super::parts::{Document, Part, unfolded};
 
 impl Document {
     /// Markdown that reads well both as text and rendered; tables of pipes.
-    #[must_use]
     pub fn to_markdown(&self) -> String {
         let head = format!("{}\n\n# {}\n", self.lead, self.title);
         let parts = unfolded(&self.parts).map(render);

@@ -5,21 +5,6 @@ use super::table::Table;
 /// Headings, paragraphs, warnings and tables in the order in which they are read.
 ///
 /// In every text, `words between backticks` are code; nothing else is marked up.
-///
-/// # Examples
-/// ```
-/// use ddl_report::document::{Document, Part, Table};
-/// let mut table = Table::new(["method", "eth"]);
-/// table.row(["STAR", "0.36/0.65"]);
-/// let document = Document {
-///     lead: "Data convention: `star`.".to_owned(),
-///     title: "Results".to_owned(),
-///     parts: vec![Part::heading("Published"), Part::Table(table.captioned("ADE/FDE in metres, `star`."))],
-/// };
-/// assert!(document.to_markdown().contains("| STAR   | 0.36/0.65 |"));
-/// assert!(document.to_html().contains("<td>0.36/0.65</td>"));
-/// assert!(document.to_latex().contains(r"STAR & 0.36/0.65 \\"));
-/// ```
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Document {
     /// What must be known before anything else is read: the first line.

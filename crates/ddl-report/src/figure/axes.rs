@@ -109,7 +109,6 @@ impl Axes {
         ]
     }
 
-    /// Draws grid, frame and numbers.
     pub(super) fn draw(&self, drawing: &mut Drawing) {
         let [[left, top], [right, bottom]] = self.frame();
         let span = (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]);
@@ -168,16 +167,5 @@ mod tests {
                 assert!((2..=most).contains(&count), "{count} ticks");
             }
         }
-    }
-
-    #[test]
-    fn panels_are_of_one_size_wherever_they_are() {
-        let size = |points: &[Position], by| {
-            let size = Axes::around(points, &PANEL).moved(by).size();
-            size.map(|side| (side * 1e6).round() as i64)
-        };
-        let one = size(&[[0.0, 0.0], [30.0, 2.0]], [0.0, 0.0]);
-        assert_eq!(one, size(&[[0.0, 0.0], [1.0, 50.0]], [640.0, 1300.0]));
-        assert_eq!(one, size(&[], [20.0, 0.0]));
     }
 }

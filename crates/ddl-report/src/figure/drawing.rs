@@ -21,7 +21,6 @@ pub(crate) struct Drawing {
 }
 
 impl Drawing {
-    /// An empty picture; the title is what is read out instead of it.
     pub(crate) fn new(width: f64, height: f64, title: impl Into<String>) -> Self {
         Self {
             width,

@@ -9,20 +9,6 @@ use ddl_eval::{Forecast, baseline::WeightedGoals, metric::displacement::distance
 const FARTHEST: f64 = 1e6;
 
 /// What was seen of a pedestrian, how it went on, and where it was thought to be going.
-///
-/// # Examples
-/// ```
-/// use ddl_eval::baseline::WeightedGoals;
-/// use ddl_report::figure::{self, GoalCase};
-/// let track: Vec<_> = (0..20).map(|t| [0.4 * f64::from(t), 0.0]).collect();
-/// let goals = WeightedGoals::new(vec![[7.6, 0.3], [6.0, 2.0]], vec![0.8, 0.2])?;
-/// let case = GoalCase::new("corridor, frame 120, pedestrian 7: straight on", &track, goals)?;
-/// assert_eq!(case.nearest_goal(), 0);
-/// assert!((case.error() - 0.3).abs() < 1e-12);
-/// let svg = figure::goals("Estimated goals", &[case])?;
-/// assert!(svg.contains("nearest goal 0.30 m off"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct GoalCase {
     title: String,
@@ -89,25 +75,21 @@ impl GoalCase {
     }
 
     /// The title.
-    #[must_use]
     pub fn title(&self) -> &str {
         &self.title
     }
 
     /// The goals with their weights.
-    #[must_use]
     pub fn goals(&self) -> &WeightedGoals {
         &self.goals
     }
 
     /// Index of the goal nearest the true end: of equally near ones the likeliest, of these the first.
-    #[must_use]
     pub fn nearest_goal(&self) -> usize {
         self.nearest
     }
 
     /// Distance of the nearest goal from the true end, metres.
-    #[must_use]
     pub fn error(&self) -> f64 {
         distance(self.goals.goals()[self.nearest], self.track[WINDOW - 1])
     }

@@ -36,9 +36,6 @@ const TITLE_LINES: usize = 2;
 ///
 /// # Errors
 /// There is no case or there are more than 9.
-///
-/// # Examples
-/// See [`GoalCase`].
 pub fn goals(title: &str, cases: &[GoalCase]) -> Result<String, FigureError> {
     if !(1..=MOST_CASES).contains(&cases.len()) {
         let (found, most) = (cases.len(), MOST_CASES);

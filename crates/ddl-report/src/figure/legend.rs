@@ -114,7 +114,6 @@ pub(super) fn draw_column(drawing: &mut Drawing, [left, top]: [f64; 2], entries:
 }
 
 /// Entries in rows that fill a width.
-#[derive(Debug)]
 pub(super) struct LegendRows<'a> {
     entries: &'a [LegendEntry],
     /// Upper left corner of each entry, from that of the legend.
@@ -137,7 +136,6 @@ impl<'a> LegendRows<'a> {
         Self { entries, places }
     }
 
-    /// Height of all rows, pixels.
     pub(super) fn height(&self) -> f64 {
         self.places.last().map_or(0.0, |[_, y]| y + ENTRY)
     }

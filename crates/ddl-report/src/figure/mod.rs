@@ -1,13 +1,11 @@
 //! Pictures as SVG, which need neither a display nor a font file.
 //!
-//! - One scene ([`scene()`], [`SceneFigure`]): what was observed (dark dots), what then happened (a solid line to a full dot), the
-//!   hypotheses (the more likely the clearer; the representative one dashed and bold, a star at its end) and their goals (rings).
-//! - Estimated goals ([`goals()`], [`GoalCase`]): a pedestrian in each panel, with the goals (rings, the more likely the larger; the
-//!   one nearest the true end bold) and how the similar pedestrians went on whom they come from (pale lines). [`typical_pedestrians`]
-//!   picks pedestrians worth showing.
+//! - One scene ([`scene()`], [`SceneFigure`]): what was observed (dark dots), what then happened (a solid line to a full
+//!   dot), the hypotheses (the likelier the clearer; the representative one dashed, a star at its end), their goals (rings).
+//! - Estimated goals ([`goals()`], [`GoalCase`]): a pedestrian a panel, with goals (rings, the likelier the larger; the
+//!   nearest bold) and how the similar pedestrians went on (pale lines), chosen by [`typical_pedestrians`].
 //!
-//! Metres on both axes, at one scale. Colours are those of the [page](crate::page): blue for what is forecast, orange for what
-//! happened, which every kind of colour vision tells apart; roles differ in shape as well as in colour.
+//! Metres on both axes, at one scale. Colours are those of the [page](crate::page); roles differ in shape too.
 
 mod axes;
 pub(crate) mod drawing;

@@ -21,19 +21,6 @@ pub fn scene(window: &Window, forecast: &Forecast) -> Result<String, FigureError
 }
 
 /// A picture of one window and its forecast.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{PedestrianId, Window};
-/// use ddl_eval::{Forecaster, baseline::ConstantVelocity};
-/// use ddl_report::figure::SceneFigure;
-/// let walk = (0..20).map(|t| [0.4 * f64::from(t), 0.02 * f64::from(t * t)]).collect();
-/// let window = Window::new("corridor", 0, 10, vec![PedestrianId(7)], vec![walk])?;
-/// let forecast = ConstantVelocity::angular_noise(1).forecast(&window)?;
-/// let svg = SceneFigure::new(&window, &forecast).title("A curve ahead").to_svg()?;
-/// assert!(svg.contains("<svg") && svg.contains("A curve ahead"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct SceneFigure<'a> {
     window: &'a Window,
@@ -43,7 +30,6 @@ pub struct SceneFigure<'a> {
 
 impl<'a> SceneFigure<'a> {
     /// A picture of everybody, titled with the recording and the first frame.
-    #[must_use]
     pub fn new(window: &'a Window, forecast: &'a Forecast) -> Self {
         Self {
             window,

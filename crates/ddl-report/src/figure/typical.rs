@@ -4,22 +4,9 @@ use ddl_eval::MotionKind;
 
 /// Picks a pedestrian of each kind of motion whose error is the median of its kind.
 ///
-/// A picture of the best results says nothing about a method, so the rule leaves no choice: the pedestrians of a
-/// kind are ordered by their error, and the middle one is picked, the lower of the two middle ones where
-/// their number is even. Of equal errors the pedestrian that comes first in `pedestrians` is picked.
-///
-/// `pedestrians` holds the kind of motion of each pedestrian and its error (m), such as the distance of the nearest
-/// goal from the true end. The result holds indices into it, in the order of [`MotionKind::ALL`]; kinds that
-/// nobody has are left out, and so are pedestrians whose error is not finite.
-///
-/// # Examples
-/// ```
-/// use ddl_eval::MotionKind::{SpeedingUp, Standing};
-/// use ddl_report::figure::typical_pedestrians;
-/// let pedestrians = [(SpeedingUp, 0.9), (SpeedingUp, 0.1), (Standing, 0.02), (SpeedingUp, 0.4)];
-/// assert_eq!(typical_pedestrians(&pedestrians), [2, 3]);
-/// ```
-#[must_use]
+/// The pedestrians of a kind are ordered by their error (m), and the middle one is picked, the lower of two, the first of
+/// equals: nothing is picked by hand. The result holds indices into `pedestrians`, in the order of [`MotionKind::ALL`];
+/// kinds that nobody has and errors that are not finite are left out.
 pub fn typical_pedestrians(pedestrians: &[(MotionKind, f64)]) -> Vec<usize> {
     MotionKind::ALL
         .into_iter()

@@ -228,17 +228,3 @@ fn steps(from: Position, path: &[Position]) -> Vec<i64> {
 fn mm(value: f64) -> i64 {
     (value * 1e3).round() as i64
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn steps_add_up_to_the_positions() {
-        let path = [[0.1, -0.2], [0.3, -0.2], [0.299, 7.0]];
-        let steps = steps([0.0, 0.05], &path);
-        assert_eq!(steps, [100, -250, 200, 0, -1, 7200]);
-        let x: i64 = steps.iter().step_by(2).sum();
-        assert_eq!((x as f64 / 1000.0).to_bits(), 0.299_f64.to_bits());
-    }
-}

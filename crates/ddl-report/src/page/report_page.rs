@@ -36,7 +36,6 @@ pub struct Page<'a> {
 
 impl<'a> Page<'a> {
     /// A page of the report alone.
-    #[must_use]
     pub fn new(report: &'a Report) -> Self {
         let (moments, curves) = (&[], &[]);
         Self {
@@ -109,7 +108,6 @@ impl<'a> Page<'a> {
     }
 }
 
-/// A line of the list of tables.
 fn item(entry: &ContentsEntry) -> String {
     let class = if entry.warned {
         " class=\"warned\""

@@ -19,20 +19,16 @@ pub(super) struct Standing {
     pub(super) folds: Vec<String>,
     /// Whether these are all folds of the convention.
     pub(super) all_folds: bool,
-    /// Lines, the best first.
     pub(super) lines: Vec<StandingLine>,
 }
 
 /// One forecaster in a [`Standing`].
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct StandingLine {
-    /// Its name, numbered as in the tables where names repeat.
     pub(super) label: String,
-    /// Conditions of its first row.
     pub(super) conditions: Conditions,
     /// Under what conditions it came about, in words.
     pub(super) settings: String,
-    /// Hypotheses a pedestrian.
     pub(super) hypotheses: usize,
     /// minADE and minFDE on each fold, m, mean over seeds; `None` where it was not measured.
     pub(super) folds: Vec<Option<[f64; 2]>>,
@@ -43,8 +39,8 @@ pub(super) struct StandingLine {
 }
 
 impl Standing {
-    /// The forecaster that the report is about: the best trained one, as it is where it is there with something changed ("DDL" for
-    /// "DDL without an expert library"); else that of another program; else the best of all.
+    /// The forecaster that the report is about: the best trained one, without its variations ("DDL" for "DDL without an
+    /// expert library"); else that of another program; else the best of all.
     pub(super) fn subject(&self) -> Option<&StandingLine> {
         let trained = |line: &&StandingLine| line.conditions.epochs.is_some();
         let foreign = |line: &&StandingLine| line.conditions.selection.is_some();
@@ -62,10 +58,9 @@ impl Standing {
     /// The lines that can be ranked against one: as many hypotheses, and every fold measured; the best first.
     pub(super) fn comparable(&self, to: &StandingLine) -> impl Iterator<Item = &StandingLine> {
         let hypotheses = to.hypotheses;
-        let mut lines = self.lines.iter();
-        std::iter::from_fn(move || {
-            lines.find(|line| line.mean.is_some() && line.hypotheses == hypotheses)
-        })
+        let is_comparable =
+            move |line: &&StandingLine| line.mean.is_some() && line.hypotheses == hypotheses;
+        self.lines.iter().filter(is_comparable)
     }
 }
 

@@ -1,9 +1,6 @@
 //! Texts with `{{slots}}`, filled once, and what JSON must look like to stand in one.
 
 /// Replaces every `{{name}}` that `slots` knows; what is filled in is never looked at again.
-///
-/// # Panics
-/// When a slot of the template is not among `slots`: both are part of this crate.
 pub(super) fn fill(template: &str, slots: &[(&str, &str)]) -> String {
     let mut filled = String::with_capacity(template.len());
     let mut rest = template;
@@ -21,10 +18,8 @@ pub(super) fn fill(template: &str, slots: &[(&str, &str)]) -> String {
     filled
 }
 
-/// JSON that can stand in a `<script type="application/json">`: the same value to a parser, and nothing in it that ends
-/// the element or that older scripts take for the end of a line.
-///
-/// `<` occurs in JSON inside strings alone, so that its escape `\u003c` means the same.
+/// JSON that can stand in a `<script type="application/json">`: the same value to a parser, with nothing that ends the
+/// element or, to older scripts, a line.
 pub(super) fn json_in_script(json: &str) -> String {
     let mut escaped = String::with_capacity(json.len());
     let mut rest = json;

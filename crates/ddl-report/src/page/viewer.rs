@@ -11,22 +11,6 @@ use crate::{Moment, document::escape};
 const TEMPLATE: &str = include_str!("viewer.html");
 
 /// A page that plays forecasts of somebody's own tracks: one file that needs nothing else, no network, no other file.
-///
-/// # Examples
-/// ```
-/// use ddl_data::{PedestrianId, Window};
-/// use ddl_eval::{Forecaster, baseline::ConstantVelocity};
-/// use ddl_report::{Moment, page::Viewer};
-/// let walk = (0..8).map(|t| [0.4 * f64::from(t), 0.0]).collect();
-/// let window = Window::new("yard", 0, 10, vec![PedestrianId(7)], vec![walk])?;
-/// let forecast = ConstantVelocity::last_step().forecast(&window)?;
-/// let moment = Moment::under_way("constant velocity", &window, &forecast, &[vec![]])?;
-///
-/// let (title, lead) = ("yard.csv", "One pedestrian, seen for 3.2 s.");
-/// let html = Viewer { title, lead, notes: &[], moments: &[moment] }.to_html()?;
-/// assert!(html.starts_with("<!doctype html>") && html.contains("yard.csv"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Viewer<'a> {
     /// The title.

@@ -16,8 +16,8 @@ const NOTE: &str = "The same windows and folds in every line, from the published
     hypotheses. The other lines under `fair` go to the forecaster's own goals, and under `single` to one that stands for them. Which \
     training each line had stands beside the tables above.";
 
-/// For each convention, window rule and scored part that has results under `published` and another protocol, the lines
-/// of trained forecasters and of straight lines to goals, protocol by protocol.
+/// The lines of trained forecasters and of straight lines to goals, protocol by protocol, where `published` and another
+/// protocol have results on the same windows.
 pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
     let mut parts = Vec::new();
     for oracle in groups.iter().filter(|g| g.protocol == Protocol::Published) {

@@ -86,7 +86,6 @@ impl ResultGroup<'_> {
             == (other.convention, other.window_rule, other.test_subset)
     }
 
-    /// What the table is of.
     pub(crate) fn title(&self) -> String {
         format!(
             "Protocol `{}`, window rule `{}`, convention `{}`",
@@ -165,7 +164,6 @@ impl<'a> TableLine<'a> {
         &self.rows[0].conditions
     }
 
-    /// The rows of one fold, one a seed.
     pub(crate) fn on<'b>(&'b self, fold: &'b str) -> impl Iterator<Item = &'a ResultRow> + 'b {
         self.rows
             .iter()
@@ -198,7 +196,6 @@ impl<'a> TableLine<'a> {
         (!mean.is_empty()).then_some(mean)
     }
 
-    /// The seeds, sorted; `None` stands for results that have no seed.
     pub(crate) fn seeds(&self) -> Vec<Option<u64>> {
         let mut seeds: Vec<_> = self.rows.iter().map(|row| row.conditions.seed).collect();
         seeds.sort_unstable();

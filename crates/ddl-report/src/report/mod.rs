@@ -81,25 +81,21 @@ impl Report {
     }
 
     /// The title.
-    #[must_use]
     pub fn title(&self) -> &str {
         &self.title
     }
 
     /// The rows, in the order they were given.
-    #[must_use]
     pub fn rows(&self) -> &[ResultRow] {
         &self.rows
     }
 
     /// The report as a page of markdown; its first line names the data convention of the numbers.
-    #[must_use]
     pub fn to_markdown(&self) -> String {
         self.document().to_markdown()
     }
 
     /// The report as a document, to be rendered as markdown, HTML or LaTeX.
-    #[must_use]
     pub fn document(&self) -> Document {
         content::document(&self.title, &self.rows)
     }

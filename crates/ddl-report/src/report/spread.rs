@@ -22,10 +22,7 @@ impl SeedSpread {
         let deviation = (values.len() > 1).then(|| (squares / (n - 1.0)).sqrt());
         Some(Self { mean, deviation })
     }
-}
 
-impl SeedSpread {
-    /// The mean alone.
     pub(crate) fn mean(self) -> f64 {
         self.mean
     }
@@ -39,19 +36,5 @@ impl fmt::Display for SeedSpread {
             Some(deviation) => write!(f, "±{deviation:.precision$}"),
             None => Ok(()),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// 1, 2, 3, 4: mean 2.5, squares 5, variance 5/3, deviation 1.291.
-    #[test]
-    fn mean_and_sample_deviation() {
-        let spread = SeedSpread::of(&[1.0, 2.0, 3.0, 4.0]).unwrap();
-        assert_eq!(spread.to_string(), "2.500±1.291");
-        assert_eq!(format!("{:.1}", SeedSpread::of(&[2.0]).unwrap()), "2.0");
-        assert_eq!(SeedSpread::of(&[]), None);
     }
 }

@@ -123,12 +123,3 @@ fn forecasts_without_goals_converge_nowhere_and_few_windows_are_all_shown() {
     assert!(gallery::moments("corridor", "CV", &windows, &forecasts).is_err());
     assert!(gallery::moments("c", "CV", &[windows[0].without_future()], &forecasts[..1]).is_err());
 }
-
-#[test]
-fn moments_survive_json() {
-    let windows = windows();
-    let moments = gallery::moments("corridor", "oracle", &windows, &oracle(&windows)).unwrap();
-    let text = serde_json::to_string(&moments).unwrap();
-    let read: Vec<Moment> = serde_json::from_str(&text).unwrap();
-    assert_eq!(read, moments);
-}

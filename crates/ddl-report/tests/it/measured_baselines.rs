@@ -41,41 +41,25 @@ fn deterministic_baselines_agree_to_the_printed_decimals() {
         return;
     };
     let pedestrians = [2511, 1026, 24_254, 2324, 5900];
-    let rows: [(&str, Box<dyn Forecaster>); 6] = [
-        (
-            "constant velocity (last step)",
-            Box::new(ConstantVelocity::last_step()),
-        ),
-        (
-            "constant velocity (mean observed)",
-            Box::new(ConstantVelocity::mean_observed()),
-        ),
-        (
-            "constant acceleration",
-            Box::new(ConstantAcceleration::unbounded()),
-        ),
-        (
-            "constant acceleration (bounded)",
-            Box::new(ConstantAcceleration::bounded()),
-        ),
-        ("social force", Box::new(SocialForce)),
-        (
-            "straight line to the TRUE end",
-            Box::new(StraightLine::to(TrueEnd)),
-        ),
+    let forecasters: [Box<dyn Forecaster>; 6] = [
+        Box::new(ConstantVelocity::last_step()),
+        Box::new(ConstantVelocity::mean_observed()),
+        Box::new(ConstantAcceleration::unbounded()),
+        Box::new(ConstantAcceleration::bounded()),
+        Box::new(SocialForce),
+        Box::new(StraightLine::to(TrueEnd)),
     ];
     for (f, fold) in literature::FOLDS.iter().enumerate() {
         let windows = dataset.windows(fold);
-        for (name, forecaster) in &rows {
-            let conditions = conditions(Protocol::Published, fold);
-            let scores = ResultRow::measure(conditions, forecaster, &windows)
-                .unwrap()
-                .scores;
-            let expected = measured(name);
+        for forecaster in &forecasters {
+            let (name, conditions) = (forecaster.name(), conditions(Protocol::Published, fold));
+            let row = ResultRow::measure(conditions, forecaster, &windows).unwrap();
+            let (scores, expected) = (row.scores, measured(&name));
             assert_eq!(scores.pedestrians, pedestrians[f], "{fold}");
+            let expected_ade = expected.ade.unwrap()[f];
             assert_printed(
                 scores.min_ade,
-                expected.ade.unwrap()[f],
+                expected_ade,
                 &format!("{name}, {fold}, ADE"),
             );
             assert_printed(

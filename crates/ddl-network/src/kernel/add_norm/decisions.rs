@@ -1,7 +1,5 @@
 //! Dropout before the residual connection.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-
 use crate::kernel::dropout::{Dropout, RowKey, Threshold, mixed};
 use ddl_simd::Simd;
 
@@ -15,9 +13,6 @@ pub(in crate::kernel) struct Decisions {
 
 impl Decisions {
     /// `None` when nothing is dropped.
-    ///
-    /// # Panics
-    /// Unless 0 <= p < 1.
     pub(in crate::kernel) fn new(dropout: Dropout) -> Option<Self> {
         let Threshold { least, scale } = dropout.threshold(24)?;
         Some(Self {

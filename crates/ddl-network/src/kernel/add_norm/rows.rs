@@ -1,18 +1,11 @@
 //! Four rows at a time, which makes sums over a row a matter of few instructions.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-#![expect(
-    clippy::needless_range_loop,
-    reason = "loops of a known count over registers"
-)]
-
 use ddl_simd::{DEPTH, Lanes, Simd, Vectors};
 
 /// The usual width of a row, in vectors: loops over it are spelled out.
 pub(super) const USUAL: usize = 2;
 
 /// Numbers of four rows, in the first-level cache.
-#[derive(Debug)]
 pub(super) struct Four {
     usual: [[Lanes; USUAL]; DEPTH],
     /// For rows of any other width.
@@ -21,7 +14,6 @@ pub(super) struct Four {
 }
 
 impl Four {
-    /// Zeros.
     #[inline(always)]
     pub(super) fn new(vectors: usize) -> Self {
         Self {

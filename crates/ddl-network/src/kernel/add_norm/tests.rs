@@ -1,6 +1,4 @@
 //! Against the formula in double precision, and what dropout decides.
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
 
 use super::{AddNorm, Decisions, Normal};
 use crate::kernel::dropout::Dropout;

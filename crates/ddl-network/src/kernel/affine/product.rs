@@ -1,11 +1,5 @@
 //! Products of matrices of plain rows.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-#![expect(
-    clippy::needless_range_loop,
-    reason = "loops of a known count over registers, written as the matrices are"
-)]
-
 use super::matrix::{Matrix, Start};
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
 use ddl_simd::{LANES, Lanes, Simd, Tile};
@@ -14,8 +8,6 @@ use ddl_simd::{LANES, Lanes, Simd, Tile};
 const BLOCK: usize = 32;
 
 /// y = start + A B.
-///
-/// # Shapes
 /// A `[rows, t]`, B `[t, columns]`, y `[rows, columns]`.
 #[inline(always)]
 pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
@@ -121,8 +113,6 @@ fn add_block<S: Simd, const R: usize, const V: usize>(
 }
 
 /// Adds A^T B.
-///
-/// # Shapes
 /// A `[t, rows]`, B `[t, columns]`, sum `[rows, columns]`.
 #[inline(always)]
 pub(super) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(

@@ -1,6 +1,4 @@
 //! Against the formula in double precision.
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
 
 use super::Affine;
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};

@@ -5,15 +5,11 @@
 //! `w_ij (d_ij g_i · v_j − g_i · mixed_i)`.
 //! The powers are made anew from the scores: that is faster than to fetch them from where they would have to be kept.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-
 use super::queries::{SceneBuffers, SceneTask, UNSEEN, dot};
 use crate::kernel::heads::HeadPart;
 use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, Lanes, Simd, Vectors, ZERO_QUAD};
 
-/// The rows of one scene.
-#[derive(Debug)]
 pub(super) struct SceneBackward<'a> {
     pub(super) task: SceneTask<'a>,
     pub(super) qkv: &'a [f32],
@@ -27,12 +23,10 @@ pub(super) struct SceneBackward<'a> {
 impl Kernel for Buffered<'_, SceneBackward<'_>, SceneBuffers> {
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) {
-        for group in 0..self.job.task.heads.groups() {
+        let task = self.job.task;
+        for group in 0..task.heads.groups() {
             // The number of quads is spelled out for the usual one, which takes the loops over quads away.
-            match (
-                self.job.task.heads.quads(),
-                self.job.task.decisions.is_some(),
-            ) {
+            match (task.heads.quads(), task.decisions.is_some()) {
                 (1, false) => self.group::<S, false>(simd, group, 1),
                 (1, true) => self.group::<S, true>(simd, group, 1),
                 (quads, false) => self.group::<S, false>(simd, group, quads),

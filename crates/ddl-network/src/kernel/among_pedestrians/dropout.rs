@@ -1,7 +1,5 @@
 //! Which attention weights are dropped: a function of (seed, batch entry, query, key, head) alone, of 24 random bits.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-
 use crate::kernel::dropout::{Dropout, Threshold, mixed};
 use crate::kernel::heads::{head_of, row_of};
 use ddl_simd::{LANES, Lanes};
@@ -18,9 +16,6 @@ pub(super) struct WeightDecisions {
 
 impl WeightDecisions {
     /// `None` when nothing is dropped.
-    ///
-    /// # Panics
-    /// Unless 0 <= p < 1.
     pub(super) fn new(dropout: Dropout) -> Option<Self> {
         let Threshold { least, scale } = dropout.threshold(24)?;
         Some(Self {
@@ -73,7 +68,6 @@ impl WeightDecisions {
     }
 }
 
-/// Random bits of a query.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct QueryBits {
     low: u32,

@@ -1,14 +1,10 @@
 //! From queries, keys and values to mixed values.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-
 use super::queries::{LARGE, SceneBuffers, SceneTask, UNSEEN, dot};
 use crate::kernel::heads::HeadPart;
 use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, Lanes, Quad, Simd};
 
-/// The rows of one scene.
-#[derive(Debug)]
 pub(super) struct SceneForward<'a> {
     pub(super) task: SceneTask<'a>,
     pub(super) qkv: &'a [f32],
@@ -20,12 +16,10 @@ pub(super) struct SceneForward<'a> {
 impl Kernel for Buffered<'_, SceneForward<'_>, SceneBuffers> {
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) {
-        for group in 0..self.job.task.heads.groups() {
+        let task = self.job.task;
+        for group in 0..task.heads.groups() {
             // The number of quads is spelled out for the usual one, which takes the loops over quads away.
-            match (
-                self.job.task.heads.quads(),
-                self.job.task.decisions.is_some(),
-            ) {
+            match (task.heads.quads(), task.decisions.is_some()) {
                 (1, false) => self.group::<S, false>(simd, group, 1),
                 (1, true) => self.group::<S, true>(simd, group, 1),
                 (quads, false) => self.group::<S, false>(simd, group, quads),

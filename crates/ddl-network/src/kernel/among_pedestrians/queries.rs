@@ -1,13 +1,10 @@
 //! What the forward and the backward kernel share: a scene's rows in lanes, and room for what is computed of them.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-
 use super::dropout::{LaneBits, WeightDecisions};
 use crate::kernel::heads::{GROUP, HeadPart, Heads, row_of};
 use crate::kernel::scenes::SceneCodes;
 use ddl_simd::{LANES, Lanes, Quad, Simd, ZERO_QUAD};
 
-/// One scene in one batch entry.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SceneTask<'a> {
     pub(super) scene: SceneCodes<'a>,
@@ -51,8 +48,7 @@ pub(super) struct SceneBuffers {
     pub(super) seen: SeenKeys,
 }
 
-/// Scenes with more pedestrians are gone through by who is seen. Nobody sees far, and in a crowd of thousands most are far; smaller scenes
-/// are faster to go through whole.
+/// Scenes with more pedestrians are gone through by who is seen; smaller ones are faster to go through whole.
 pub(super) const LARGE: usize = 128;
 
 /// The keys and values that at least one of two queries sees, in the order of the scene.

@@ -2,8 +2,6 @@
 //!
 //! Each piece of rows adds up gradients of weights of its own; these are added in the order of the rows.
 
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
-
 use super::forward::ROWS;
 use super::keep::{Kept, KeptRows};
 use super::layer::{Dropouts, EncoderKernel};
@@ -13,11 +11,10 @@ use crate::kernel::buffer::Buffer;
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
 use crate::kernel::dropout::Dropout;
 use crate::kernel::feed_forward::Gradients;
-use crate::kernel::threads::each;
+use crate::kernel::threads::run_each;
 use ddl_simd::{Simd, TiledKernel};
 
 /// Gradients of projections.
-#[derive(Debug)]
 pub(super) enum Parts<'a> {
     /// Side by side in every row.
     Together(&'a [f32]),
@@ -98,8 +95,7 @@ impl EncoderKernel {
             .zip(layer.normal.scales.chunks(ROWS))
             .zip(gy.chunks(piece));
         let outputs = of_x.chunks_mut(piece).zip(of_t.chunks_mut(piece));
-        let mut sums: Vec<Buffer> = Vec::new();
-        sums.resize_with(gy.len().div_ceil(piece), || Buffer::zeros(count));
+        let mut sums = Buffer::many_zeros(gy.len().div_ceil(piece), count);
         let jobs = inputs.zip(outputs).zip(&mut sums).enumerate();
         let jobs = jobs.map(|(i, (((normal, gy), (of_x, of_t)), sums))| NormBackward {
             norm: layer.norm,
@@ -113,13 +109,7 @@ impl EncoderKernel {
             sums,
         });
         let work = gy.len() * layer.map.map_or(20, |_| 2 * width);
-        each(
-            jobs.collect(),
-            work,
-            |job: NormBackward<'_>, (): &mut ()| {
-                self.dispatch.run(job);
-            },
-        );
+        run_each(self.dispatch, jobs, work);
         add_up(&sums, of_weights);
     }
 
@@ -138,9 +128,8 @@ impl EncoderKernel {
             &mut weight[first * width * width..],
             &mut bias[first * width..],
         );
-        let mut sums: Vec<Buffer> = Vec::new();
         let count = weight.len() + bias.len();
-        sums.resize_with(x.len().div_ceil(ROWS * width), || Buffer::zeros(count));
+        let mut sums = Buffer::many_zeros(x.len().div_ceil(ROWS * width), count);
         let rows = x.chunks(ROWS * width).zip(gx.chunks_mut(ROWS * width));
         let jobs = rows.zip(&mut sums).enumerate();
         let jobs = jobs.map(|(i, ((x, gx), sums))| {
@@ -157,13 +146,7 @@ impl EncoderKernel {
             }
         });
         let work = 2 * x.len() * count / width;
-        each(
-            jobs.collect(),
-            work,
-            |job: ProjectBackward<'_>, (): &mut ()| {
-                self.dispatch.run(job);
-            },
-        );
+        run_each(self.dispatch, jobs, work);
         add_up(&sums, [weight, bias]);
     }
 }
@@ -189,7 +172,6 @@ struct Sublayer<'a> {
     dropout: Option<Dropout>,
 }
 
-/// Some rows of it.
 struct NormBackward<'a> {
     norm: &'a AddNorm,
     map: Option<(&'a Affine, &'a [f32])>,
@@ -233,7 +215,6 @@ impl TiledKernel for NormBackward<'_> {
     }
 }
 
-/// Some rows of the projections.
 struct ProjectBackward<'a> {
     parts: Vec<(&'a Affine, MatrixColumns<'a>)>,
     width: usize,

@@ -1,7 +1,5 @@
 //! From the input of a layer to its output, a few rows at a time.
 
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
-
 use super::keep::{Kept, KeptAttention, KeptRows};
 use super::layer::{Dropouts, EncoderKernel};
 use crate::kernel::add_norm::{AddNorm, Decisions, Normal};
@@ -9,14 +7,13 @@ use crate::kernel::affine::Affine;
 use crate::kernel::buffer::Buffer;
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
 use crate::kernel::dropout::Dropout;
-use crate::kernel::threads::each;
+use crate::kernel::threads::run_each;
 use ddl_simd::{Simd, TiledKernel};
 
 /// Rows that are computed together. Always the same, so that sums over rows are.
 pub(super) const ROWS: usize = 256;
 
 /// Where projections of rows go.
-#[derive(Debug)]
 pub(super) enum Targets<'a> {
     /// Side by side in every row.
     Together(&'a mut [f32]),
@@ -66,9 +63,7 @@ impl EncoderKernel {
             targets: targets.split_off(projections.len(), x.len()),
         });
         let work = x.len() * width * projections.len();
-        each(jobs.collect(), work, |job: Project<'_>, (): &mut ()| {
-            self.dispatch.run(job);
-        });
+        run_each(self.dispatch, jobs, work);
     }
 
     /// What follows attention.
@@ -78,11 +73,7 @@ impl EncoderKernel {
         attention: KeptAttention,
         dropouts: Dropouts,
     ) -> (Buffer, Kept) {
-        let (mut z, mut fed, mut y) = (
-            Buffer::any(x.len()),
-            Buffer::any(x.len()),
-            Buffer::any(x.len()),
-        );
+        let [mut z, mut fed, mut y] = [0; 3].map(|_| Buffer::any(x.len()));
         let mixed = attention.mixed();
         let normal1 = self.add_norm(
             &self.norm1,
@@ -134,14 +125,11 @@ impl EncoderKernel {
             y,
         });
         let work = x.len() * map.map_or(10, |_| width);
-        each(jobs.collect(), work, |job: NormForward<'_>, (): &mut ()| {
-            self.dispatch.run(job);
-        });
+        run_each(self.dispatch, jobs, work);
         normal
     }
 }
 
-/// Projections of some rows.
 struct Project<'a> {
     projections: &'a [Affine],
     width: usize,
@@ -161,7 +149,6 @@ impl TiledKernel for Project<'_> {
     }
 }
 
-/// Some rows after a sublayer.
 struct NormForward<'a> {
     norm: &'a AddNorm,
     map: Option<&'a Affine>,

@@ -5,16 +5,13 @@ use crate::kernel::buffer::Buffer;
 use crate::kernel::over_memory::{KeyValue, KeyValueMut};
 
 /// What the gradient of an encoder layer needs of its forward pass.
-#[derive(Debug)]
 pub(crate) struct Kept {
     pub(super) attention: KeptAttention,
     pub(super) normal1: KeptRows,
-    /// The output of the first normalisation.
     pub(super) z: Buffer,
     pub(super) normal2: KeptRows,
 }
 
-#[derive(Debug)]
 pub(super) enum KeptAttention {
     Among {
         qkv: Buffer,
@@ -37,7 +34,6 @@ impl KeptAttention {
 }
 
 /// Rows that were normalised, and by what.
-#[derive(Debug)]
 pub(super) struct KeptRows {
     pub(super) numbers: Buffer,
     pub(super) scales: Buffer,
@@ -53,7 +49,6 @@ pub(crate) struct Remembered {
 }
 
 impl Remembered {
-    /// Of `count` numbers each.
     pub(crate) fn zeros(count: usize) -> Self {
         Self {
             key: Buffer::zeros(count),

@@ -14,8 +14,6 @@ use ddl_simd::InstructionSet;
 
 /// z = norm(x + d(W mixed + b)), y = norm(z + d(f(z))): `mixed` by attention from queries, keys and values, which are
 /// affine in x, f the feed-forward block.
-///
-/// # Numerics
 /// Results and gradients do not depend on the number of threads, results neither on the other rows that are computed
 /// along (attention among pedestrians aside). The instruction sets agree to rounding.
 #[derive(Clone, Debug)]
@@ -47,9 +45,6 @@ pub(crate) struct Dropouts {
 
 impl EncoderKernel {
     /// A layer whose learned numbers are all 0.
-    ///
-    /// # Panics
-    /// When a size is 0, or the heads are more than 256 or do not divide the width.
     pub(crate) fn zeros(sizes: Sizes) -> Self {
         let Sizes {
             width,
@@ -73,7 +68,6 @@ impl EncoderKernel {
         }
     }
 
-    /// The same with chosen instructions; `None` when the machine lacks them.
     #[cfg(test)]
     pub(in crate::kernel) fn with_instructions(self, set: InstructionSet) -> Option<Self> {
         Some(Self {
@@ -87,9 +81,6 @@ impl EncoderKernel {
 
     /// Takes over learned numbers, in the order of [`Sizes`], for a feed-forward block in that precision. There is no backward
     /// pass in bf16.
-    ///
-    /// # Panics
-    /// When there are more or fewer than [`Sizes::count`].
     pub(crate) fn update(&mut self, weights: &[f32], precision: Precision) {
         let width = self.sizes.width;
         let [w, b, wo, bo, w1, b1, w2, b2, n1, c1, n2, c2] = self.sizes.pieces(weights);

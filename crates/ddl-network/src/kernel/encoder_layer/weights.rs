@@ -20,7 +20,6 @@ const PIECES: usize = 12;
 
 impl Sizes {
     /// Learned numbers in all.
-    #[must_use]
     pub fn count(self) -> usize {
         self.lengths().iter().sum()
     }
@@ -44,9 +43,6 @@ impl Sizes {
     }
 
     /// The pieces of a layer's learned numbers.
-    ///
-    /// # Panics
-    /// When there are more or fewer than [`Sizes::count`].
     pub(super) fn pieces(self, mut numbers: &[f32]) -> [&[f32]; PIECES] {
         self.check(numbers);
         self.lengths()

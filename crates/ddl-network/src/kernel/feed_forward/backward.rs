@@ -3,8 +3,6 @@
 //! The derivatives of a unit's weights belong to one group alone, so that nothing has to be added up over threads but
 //! gx, which is small: `rows * width` for each group. The groups are always the same, and so are the sums.
 
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
-
 use std::ops::DerefMut;
 
 use super::block::{BLOCK, Block, Panel, tile_mut};
@@ -30,14 +28,7 @@ impl FeedForward {
     /// The derivative with respect to x, and those with respect to the weights added to `grads`.
     ///
     /// With the same dropout as in [`Self::forward`], whose decisions are made again.
-    ///
-    /// # Shapes
     /// `x`, `gy` `[rows, width]` -> `gx` `[rows, width]`, overwritten.
-    ///
-    /// # Panics
-    /// As in [`Self::forward`]; when `grads` was made for other widths; in bf16.
-    ///
-    /// # Numerics
     /// An entry differs from the exact one by at most (width + hidden + 16) 2^-24 (for gx), (width + rows + 16) 2^-24 (for
     /// the others) times the formula with the absolute values of all its terms; where W1 x + b1 is 0 to rounding the
     /// derivative of `ReLU` may be taken as 0 or 1. Nothing depends on the number of threads.

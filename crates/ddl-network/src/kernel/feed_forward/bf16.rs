@@ -3,12 +3,6 @@
 //! A product A B takes two numbers of a row of A and two rows of B at a time. So A is held with neighbours in a row paired,
 //! B with neighbours in a column.
 
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
-#![expect(
-    clippy::needless_range_loop,
-    reason = "loops of a known count over registers, written as the matrices are"
-)]
-
 use super::block::{BLOCK, Block, PARTS, Panel, tile_mut};
 use super::product::{load_tile, store_tile};
 use super::tile::Tile;
@@ -86,7 +80,6 @@ impl Squares {
     }
 }
 
-/// Rows, two by two.
 struct Round<'a> {
     from: &'a [Block],
     into: &'a mut [TwoRows],

@@ -1,7 +1,5 @@
 //! Thirty-two numbers, the unit that matrices are cut into.
 
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
-
 use ddl_simd::LANES;
 
 /// Numbers in a [`Block`].

@@ -16,7 +16,6 @@ thread_local! {
 }
 
 /// All first blocks of the rows, then all second ones, and so on.
-#[derive(Debug)]
 pub(super) struct BlockRows {
     blocks: Vec<Block>,
     rows: usize,
@@ -44,7 +43,6 @@ impl BlockRows {
         result
     }
 
-    /// Rows, padding included.
     pub(super) fn rows(&self) -> usize {
         self.rows
     }

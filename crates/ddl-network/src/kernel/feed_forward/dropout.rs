@@ -1,7 +1,5 @@
 //! Which hidden activations are dropped: a function of (seed, row, unit) alone, of 16 random bits.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-
 use super::block::Block;
 use super::block_rows::ROWS;
 use crate::kernel::dropout::{Dropout, RowKey, Threshold, mixed};
@@ -20,9 +18,6 @@ pub(super) struct UnitDecisions {
 
 impl UnitDecisions {
     /// Those of the rows 0 .. `rows`; `None` when nothing is dropped.
-    ///
-    /// # Panics
-    /// Unless 0 <= p < 1.
     pub(super) fn new(dropout: Dropout, rows: usize) -> Option<Self> {
         let Threshold { least, scale } = dropout.threshold(16)?;
         // Seeds that follow one another must not give the rows of one another.

@@ -13,14 +13,7 @@ const TILE: usize = 256;
 
 impl FeedForward {
     /// y for every row of x.
-    ///
-    /// # Shapes
     /// `x` `[rows, width]` -> `y` `[rows, width]`, overwritten.
-    ///
-    /// # Panics
-    /// When `y` is not as long as `x` or this is no multiple of the width; unless 0 <= p < 1.
-    ///
-    /// # Numerics
     /// For finite sums, an entry differs from the exact one by at most (width + hidden + 8) 2^-24 times the same formula
     /// with the absolute values of all its terms and without `ReLU`. It does not depend on the number of threads nor on the other rows.
     ///

@@ -19,7 +19,6 @@ pub(crate) struct Gradients<N = Vec<f32>> {
 
 #[cfg(test)]
 impl Gradients {
-    /// Zeros.
     pub(crate) fn zeros(width: usize, hidden: usize) -> Self {
         Self {
             w1: vec![0.0; hidden * width],

@@ -1,11 +1,5 @@
 //! One block of hidden units of a few rows.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-#![expect(
-    clippy::needless_range_loop,
-    reason = "loops of a known count over registers"
-)]
-
 use super::block::{Block, PARTS, tile};
 use super::block_rows::BlockRows;
 use super::product::{multiply, store_tile};

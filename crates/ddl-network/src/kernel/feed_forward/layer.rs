@@ -22,9 +22,6 @@ pub(crate) struct FeedForward {
 
 impl FeedForward {
     /// A block whose weights are all 0. Any width and hidden width will do; both are padded to multiples of 32.
-    ///
-    /// # Panics
-    /// When a width is 0.
     pub(crate) fn zeros(width: usize, hidden: usize) -> Self {
         Self {
             weights: BlockWeights::new(width, hidden),
@@ -35,12 +32,7 @@ impl FeedForward {
     }
 
     /// Arranges weights for the kernels, in bf16 for the forward pass alone.
-    ///
-    /// # Shapes
     /// W1 `[hidden, width]`, b1 `[hidden]`, W2 `[width, hidden]`, b2 `[width]`, by rows.
-    ///
-    /// # Panics
-    /// When a slice has another length.
     pub(crate) fn update(&mut self, weights: [&[f32]; 4], precision: Precision) {
         self.weights.update(weights);
         self.rounded = (precision == Precision::Bf16)

@@ -1,17 +1,9 @@
 //! Products of small matrices whose result stays in registers.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-#![expect(
-    clippy::needless_range_loop,
-    reason = "loops of a known count over registers, written as the matrices are"
-)]
-
 use super::block::{BLOCK, Block, PARTS, Panel, tile_mut};
 use ddl_simd::{Simd, Tile};
 
 /// sum + A B for R rows of A and V parts of the columns of B, from part `part`.
-///
-/// # Shapes
 /// A `[R, 32]`, B `[32, 32]`.
 #[inline(always)]
 pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
@@ -37,8 +29,6 @@ pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
 }
 
 /// A^T B for R columns of A, from column `first`, and V parts of the columns of B, from part `part`.
-///
-/// # Shapes
 /// A `[t, 32]`, B `[t, 32]`.
 #[inline(always)]
 pub(super) fn multiply_transposed<S: Simd, const R: usize, const V: usize>(
@@ -97,8 +87,6 @@ pub(super) fn store_tile<S: Simd, const R: usize, const V: usize>(
 }
 
 /// sum + A B, the sum in memory.
-///
-/// # Shapes
 /// `sum` and A `[R, 32]`, B `[32, 32]`.
 #[inline(always)]
 pub(super) fn add_product<S: Simd, const R: usize, const V: usize>(
@@ -115,8 +103,6 @@ pub(super) fn add_product<S: Simd, const R: usize, const V: usize>(
 }
 
 /// sum + A^T B, the sum in memory.
-///
-/// # Shapes
 /// `sum` `[32, 32]`, A and B `[t, 32]`.
 #[inline(always)]
 pub(super) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(

@@ -1,7 +1,5 @@
 //! The forward pass of a few rows.
 
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
-
 use super::block::{Block, tile_mut};
 use super::block_rows::BlockRows;
 use super::dropout::UnitDecisions;
@@ -10,7 +8,6 @@ use super::product::add_product;
 use super::weights::BlockWeights;
 use ddl_simd::{Simd, TiledKernel};
 
-/// Some rows.
 pub(super) struct Tile<'a> {
     pub(super) weights: &'a BlockWeights,
     pub(super) decisions: Option<&'a UnitDecisions>,

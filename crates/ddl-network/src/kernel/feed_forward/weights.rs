@@ -21,7 +21,6 @@ pub(super) struct BlockWeights {
 }
 
 impl BlockWeights {
-    /// Zeros.
     pub(super) fn new(width: usize, hidden: usize) -> Self {
         assert!(width > 0 && hidden > 0, "a width of 0");
         let (columns, units) = (width.div_ceil(BLOCK), hidden.div_ceil(BLOCK));

@@ -3,8 +3,6 @@
 //! With weights `w_e` and the gradient g of mixed values: `dv_e = w_e g`, and the gradient of score e is
 //! `w_e (g · v_e − Σ_f w_f g · v_f)`.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-
 use super::tokens::{
     KeyValue, KeyValueMut, MemoryBuffers, SixteenHeads, accumulate, dot, soften, weighted,
 };
@@ -12,8 +10,6 @@ use crate::kernel::heads::Heads;
 use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, LANES, Lanes, Simd, ZERO_QUAD};
 
-/// Some of the rows.
-#[derive(Debug)]
 pub(super) struct MemoryBackward<'a> {
     pub(super) heads: Heads,
     /// Where the rows start in the whole.

@@ -1,14 +1,10 @@
 //! From queries, keys and values to mixed values.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-
 use super::tokens::{KeyValue, MemoryBuffers, SixteenHeads, accumulate, soften, weighted};
 use crate::kernel::heads::Heads;
 use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, LANES, Simd, ZERO_QUAD};
 
-/// Some of the rows.
-#[derive(Debug)]
 pub(super) struct MemoryForward<'a> {
     pub(super) heads: Heads,
     /// Where the rows start in the whole.

@@ -1,5 +1,4 @@
 //! Against the formula in double precision.
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::{KeyValue, KeyValueMut, OverMemory, OverMemoryGradients};
 use crate::kernel::tests::attention::Attention;

@@ -3,8 +3,6 @@
 //! Rows and heads make one index here, since every row has a memory of its own. What there is one of for each head (a
 //! score, a weight) lies where transposing pieces of four lanes brings it: head 4 k + i in lane 4 i + k.
 
-#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-
 use ddl_simd::{DEPTH, LANES, Lanes, Quad, Simd, Vectors, ZERO_QUAD};
 
 /// Keys and values of one token a row, `[rows, heads, head width]` each.
@@ -17,11 +15,8 @@ pub(crate) struct KeyValue<'a> {
 }
 
 /// Gradients of a [`KeyValue`], of the same shapes.
-#[derive(Debug)]
 pub(crate) struct KeyValueMut<'a> {
-    /// Of the keys.
     pub(crate) key: &'a mut [f32],
-    /// Of the values.
     pub(crate) value: &'a mut [f32],
 }
 
@@ -36,7 +31,6 @@ impl KeyValueMut<'_> {
 }
 
 impl<'a> KeyValueMut<'a> {
-    /// Takes `count` numbers each off the front.
     pub(super) fn split_off(&mut self, count: usize) -> KeyValueMut<'a> {
         KeyValueMut {
             key: self.key.split_off_mut(..count).unwrap_or_default(),

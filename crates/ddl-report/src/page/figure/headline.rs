@@ -50,10 +50,8 @@ pub(crate) fn headline_chart(standing: &Standing, shape: Shape) -> Drawing {
     }
 }
 
-/// What is drawn.
 struct Chart<'a> {
     lines: &'a [StandingLine],
-    /// The line that the page is about, by its label.
     subject: Option<&'a str>,
     /// Every value drawn, from which the axis is made.
     values: Vec<f64>,

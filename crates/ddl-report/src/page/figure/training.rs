@@ -18,18 +18,15 @@ const COLOURS: usize = 5;
 /// One chart of training curves.
 #[derive(Debug, Clone)]
 pub(crate) struct TrainingPanel {
-    /// The fold.
     pub(crate) fold: String,
     /// What is drawn: the name of the loss, or the validation error.
     pub(crate) quantity: String,
-    /// The picture.
     pub(crate) drawing: Drawing,
 }
 
 /// What the second kind of panel shows.
 const VALIDATION: &str = "error on the validation split, m";
 
-/// One line of a panel.
 struct Series<'a> {
     curve: &'a TrainingCurve,
     colour: usize,
@@ -212,10 +209,7 @@ mod tests {
     #[test]
     fn ticks_are_few_and_whole() {
         assert_eq!(epoch_ticks(1, 6), [1, 2, 3, 4, 5, 6]);
-        assert_eq!(
-            epoch_ticks(1, 30),
-            [1, 5, 10, 15, 20, 25, 30].map(|t| t).to_vec()
-        );
+        assert_eq!(epoch_ticks(1, 30), [1, 5, 10, 15, 20, 25, 30]);
         assert_eq!(epoch_ticks(3, 3), [3]);
     }
 }
