@@ -23,7 +23,7 @@ const EMPTY_NAMES: [&str; 9] = [
     "utils", "util", "common", "helpers", "helper", "misc", "stuff", "tools", "shared",
 ];
 /// What may lie in `datasets/`.
-const DESCRIPTIONS: [&str; 3] = ["README.md", "manifest.toml", "folds.toml"];
+const DESCRIPTIONS: [&str; 3] = ["README.md", "manifest.toml", "folds.json"];
 // Spelled in pieces, so that this file does not find itself.
 const HOME_FOLDERS: [&str; 3] = [
     concat!("/ho", "me/"),
@@ -182,7 +182,7 @@ mod tests {
     fn a_recording_is_found_by_place_by_name_and_by_contents() {
         let fault =
             |file: &str, sha256| recording_fault(Path::new(file), sha256, &[("eth.csv", "abc")]);
-        assert_eq!(fault("datasets/folds.toml", "x"), None);
+        assert_eq!(fault("datasets/folds.json", "x"), None);
         assert!(
             fault("datasets/new.csv", "x")
                 .unwrap()

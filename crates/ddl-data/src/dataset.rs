@@ -9,7 +9,7 @@ use crate::format::read_recording;
 use crate::recording::Recording;
 use crate::simulate;
 
-/// All recordings of one data convention, in the order of `folds.toml`.
+/// All recordings of one data convention, in the order of `folds.json`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dataset {
     convention: Convention,
@@ -106,7 +106,7 @@ impl Dataset {
         self.convention
     }
 
-    /// The recordings, in the order of `folds.toml`.
+    /// The recordings, in the order of `folds.json`.
     pub fn recordings(&self) -> &[Recording] {
         &self.recordings
     }

@@ -57,7 +57,9 @@ impl Convention {
     }
 }
 
-/// One convention of `folds.toml`.
+/// One convention of `folds.json`: which recordings it has, and which ones each leave-one-out fold tests on.
+///
+/// A fold trains on every recording that it does not test on, in the order listed.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ConventionPlan {
@@ -65,7 +67,7 @@ pub(crate) struct ConventionPlan {
     pub(crate) folds: Vec<FoldPlan>,
 }
 
-/// One recording of `folds.toml`.
+/// One recording of `folds.json`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RecordingPlan {
@@ -74,7 +76,7 @@ pub(crate) struct RecordingPlan {
     pub(crate) frame_step: i64,
 }
 
-/// One fold of `folds.toml`.
+/// One fold of `folds.json`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct FoldPlan {
@@ -97,7 +99,8 @@ static NOTHING_PLANNED: ConventionPlan = ConventionPlan {
 
 static PLANS: LazyLock<Plans> = LazyLock::new(|| {
     // Compiled in, so wrong only if this crate itself is; the tests below read it.
-    toml::from_str(include_str!("../folds.toml")).expect("the compiled-in folds.toml is valid")
+    serde_json::from_str(include_str!("../folds.json"))
+        .expect("the compiled-in folds.json is valid")
 });
 
 #[cfg(test)]

@@ -119,17 +119,17 @@ impl Evaluate {
         };
         // Results on other recordings than those of the run's convention are not the run's.
         let kept = model.run().filter(|_| convention == trained_on);
+        let mut dataset = self.recordings.dataset_for(model.config(), convention)?;
+        if let (Convention::Own, Some(name)) = (convention, &windows.fold) {
+            dataset = Dataset::own(vec![dataset.recording(name)?.clone()])?;
+        }
         if let Some(run) = kept
-            && ddl::is_evaluated(&model, &request)
+            && ddl::is_evaluated(&model, &dataset, &request)
         {
             self.save_elsewhere(|| Results::of(&title, &[run.path()]))?;
             return self
                 .reporting
                 .print(&Report::load(&run.report())?, &self.written(kept));
-        }
-        let mut dataset = self.recordings.dataset_for(model.config(), convention)?;
-        if let (Convention::Own, Some(name)) = (convention, &windows.fold) {
-            dataset = Dataset::own(vec![dataset.recording(name)?.clone()])?;
         }
         let progress = Progress::new("evaluate", self.reporting.telling.progress);
         let evaluation = ddl::evaluate(&model, &dataset, &request, |now| {
@@ -140,7 +140,7 @@ impl Evaluate {
         drop(progress);
         let report = Report::new(&title, evaluation.rows)?;
         if let Some(run) = kept {
-            ddl::save_evaluation(&model, &request, &report, &evaluation.moments)?;
+            ddl::save_evaluation(&model, &dataset, &request, &report, &evaluation.moments)?;
             self.save_elsewhere(|| Results::of(&title, &[run.path()]))?;
         } else {
             self.save_elsewhere(|| Ok(Results::new(report.clone(), evaluation.moments)))?;

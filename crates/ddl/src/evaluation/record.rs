@@ -7,17 +7,20 @@ use crate::model::ddl::Ddl;
 use crate::run::directory::RunDirectory;
 use crate::run::directory::{read_json, write_json};
 use crate::run::lock::RunLock;
+use crate::run::training_data::digest_of_recording;
 use crate::trust::calibration::Calibration;
-use ddl_data::Convention;
+use ddl_data::{Dataset, Recording};
 use ddl_report::{Moment, Report};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// What the results depend on besides the run itself and the recordings, which are pinned by hash
-/// wherever the benchmark gets them.
+/// What the results depend on besides the run itself.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 struct Record {
     request: EvaluationRequest,
+    /// Name and SHA-256 of each recording.
+    #[serde(default)]
+    recordings: Vec<(String, String)>,
     device: String,
     #[serde(default)]
     clearance: Option<Clearance>,
@@ -34,9 +37,12 @@ struct Record {
 const ROWS: u32 = 4;
 
 impl Record {
-    fn new(model: &Ddl, request: &EvaluationRequest) -> Self {
+    fn new(model: &Ddl, dataset: &Dataset, request: &EvaluationRequest) -> Self {
+        let digest =
+            |recording: &Recording| (recording.name().into(), digest_of_recording(recording));
         Self {
             request: request.clone(),
+            recordings: dataset.recordings().iter().map(digest).collect(),
             device: model.computed_on(),
             clearance: model.clearance(),
             rows: ROWS,
@@ -45,17 +51,13 @@ impl Record {
     }
 }
 
-/// Whether the model's run already holds the results of exactly this evaluation, on the recordings of its convention; a packed model holds none.
-///
-/// Own recordings may be others than last time: of those it is never known.
+/// Whether the model's run already holds the results of exactly this evaluation on these recordings; a packed model
+/// holds none.
 #[must_use]
-pub fn is_evaluated(model: &Ddl, request: &EvaluationRequest) -> bool {
+pub fn is_evaluated(model: &Ddl, dataset: &Dataset, request: &EvaluationRequest) -> bool {
     let Some(run) = model.run() else {
         return false;
     };
-    if model.config().data.convention == Convention::Own {
-        return false;
-    }
     let record = record_file(run);
     if ![&record, &run.report(), &run.moments()]
         .iter()
@@ -64,15 +66,16 @@ pub fn is_evaluated(model: &Ddl, request: &EvaluationRequest) -> bool {
         return false;
     }
     // a record that cannot be read, of another version perhaps, vouches for nothing
-    read_json::<Record>(&record).is_ok_and(|done| done == Record::new(model, request))
+    read_json::<Record>(&record).is_ok_and(|done| done == Record::new(model, dataset, request))
 }
 
-/// Writes `report.json` and `moments.json` of the model's run, on recordings of the run's convention, then the record of what was asked for.
+/// Writes `report.json` and `moments.json` of the model's run, then the record of what was asked for.
 ///
 /// # Errors
 /// When a file cannot be written, or the model is packed and has no run.
 pub fn save_evaluation(
     model: &Ddl,
+    dataset: &Dataset,
     request: &EvaluationRequest,
     report: &Report,
     moments: &[Moment],
@@ -91,7 +94,7 @@ pub fn save_evaluation(
     let json = report.to_json()?;
     crate::write_atomically(&run.report(), json.as_bytes())?;
     run.write_moments(moments)?;
-    write_json(&record, &Record::new(model, request))
+    write_json(&record, &Record::new(model, dataset, request))
 }
 
 fn record_file(run: &RunDirectory) -> PathBuf {

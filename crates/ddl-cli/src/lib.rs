@@ -1,0 +1,92 @@
+//! The program `ddl` as a library, for programs that bring it along: argument parsing and glue; the work is done by the
+//! crate `ddl`.
+
+mod clock;
+mod command;
+mod interrupt;
+mod output;
+mod progress;
+mod recordings;
+mod result_lines;
+mod telling;
+mod tracks;
+mod units;
+
+use clap::{CommandFactory as _, Parser, Subcommand};
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// Forecasts of walking people that converge to their goals.
+// It fits a screen of 24 lines of 80 columns, which a test measures.
+#[derive(Debug, Parser)]
+#[command(
+    name = "ddl",
+    version,
+    arg_required_else_help = true,
+    disable_help_subcommand = true,
+    help_template = "{about}\n\n{usage-heading} {usage}\n\n{subcommands}{after-help}",
+    after_help = "Trained models come with the program: `ddl forecast tracks.csv` works at once.\n\
+    `ddl COMMAND --help` lists options. Exit codes: 0 done, or whoever read the\n\
+    output has gone, 1 failed, 2 wrong arguments, 130 interrupted (a training is\n\
+    saved: the same command goes on)."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Forecast(command::forecast::Forecast),
+    View(command::view::View),
+    Goals(command::goals::Goals),
+    Data(command::data::Data),
+    Train(command::train::Train),
+    Evaluate(command::evaluate::Evaluate),
+    Report(command::report::Report),
+    Baselines(command::baselines::Baselines),
+    Benchmark(Box<command::benchmark::Benchmark>),
+    Windows(command::windows::Windows),
+    Pack(command::pack::Pack),
+    Info(command::info::Info),
+    Completions(command::completions::Completions),
+    Man(command::man::Man),
+}
+
+/// Runs the program `ddl` with `arguments`, of which the first is the program's name, and returns its exit code: 0 done,
+/// 1 failed, 130 interrupted.
+///
+/// Writes to the process's standard output and standard error. Arguments that cannot be parsed end the process with
+/// exit code 2, `--help` and `--version` with 0.
+pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> ExitCode {
+    let result = match Cli::parse_from(arguments).command {
+        Command::Forecast(command) => command.run(),
+        Command::View(command) => command.run(),
+        Command::Goals(command) => command.run(),
+        Command::Data(command) => command.run(),
+        Command::Train(command) => command.run(),
+        Command::Evaluate(command) => command.run(),
+        Command::Report(command) => command.run(),
+        Command::Baselines(command) => command.run(),
+        Command::Benchmark(command) => command.run(),
+        Command::Windows(command) => command.run(),
+        Command::Pack(command) => command.run(),
+        Command::Info(command) => command.run(),
+        Command::Completions(command) => command.run(Cli::command()),
+        Command::Man(command) => command.run(Cli::command()),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        // as in `ddl info | head -1`
+        Err(error) if telling::reader_has_gone(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            let interrupted = matches!(
+                error.downcast_ref::<ddl::DdlError>(),
+                Some(ddl::DdlError::Interrupted)
+            );
+            let who = if interrupted { "ddl" } else { "error" };
+            telling::tell(format_args!("{who}: {}", telling::words(&error)));
+            ExitCode::from(if interrupted { 130 } else { 1 })
+        }
+    }
+}
