@@ -3,8 +3,8 @@
 use ddl_tests::folder_contents::{assert_same, half_written};
 use ddl_tests::mount::Mount;
 use ddl_tests::place::Place;
-use ddl_tests::trained_model::{TRAIN, finish};
-use ddl_tests::{figures, offline, processes, training_result};
+use ddl_tests::trained_model::{TRAIN, finish, result};
+use ddl_tests::{figures, offline, processes};
 use std::io::{BufRead as _, BufReader};
 
 /// A run takes some 8 MiB.
@@ -97,7 +97,7 @@ fn training_needs_no_network() {
     let Some(way) = offline::way() else { return };
     let (place, elsewhere) = (Place::empty(), Place::empty());
     let _ = offline::run(way, &place, TRAIN).succeeds();
-    assert_same(&finish(&elsewhere), &training_result::of(&place.at("run")));
+    assert_same(&finish(&elsewhere), &result(&place.at("run")));
     figures::tell(
         "no network while training",
         "1 training in a network namespace without interfaces",

@@ -24,26 +24,6 @@ fn a_missing_model_is_named() {
     place.fails(FORECAST, &["not finished", "ddl train"]);
 }
 
-/// Whichever file of the run ends too early, it is named and nothing is forecast from it.
-#[test]
-fn half_a_file_is_named() {
-    let place = Place::with_model();
-    for file in [
-        "model.safetensors",
-        "proposal.safetensors",
-        "experts.safetensors",
-        "config.json",
-    ] {
-        let name = format!("run/{file}");
-        let whole = place.read(&name);
-        for kept in [whole.len() / 2, whole.len() - 1, 0] {
-            place.write(&name, &whole[..kept]);
-            place.fails(FORECAST, &[file]);
-        }
-        place.write(&name, whole);
-    }
-}
-
 /// Weights of another variant, and weights of the same shapes and goals of another fold, copied over those of the run.
 #[test]
 fn files_of_another_run_are_refused() {
@@ -139,31 +119,6 @@ fn recordings_that_cannot_be_trained_on_are_refused() {
 }
 
 #[test]
-fn a_bad_line_of_tracks_is_named() {
-    let place = Place::with_model();
-    let good = own_tracks::csv(&own_tracks::three_people(9));
-    let lines: Vec<&str> = good.lines().collect();
-    for (bad, needle) in [
-        ("10,1,left,2.0", "\"left\""),
-        ("10,1,2.0", "3 fields"),
-        ("10,1,NaN,2.0", "finite"),
-        ("10,1,1e999,2.0", "finite"),
-        ("ten,1,2.0,2.0", "\"ten\""),
-        ("0,1,5.0,5.0", "already"),
-    ] {
-        let mut lines = lines.clone();
-        lines[4] = bad;
-        place.write("tracks.csv", lines.join("\n"));
-        place.fails(FORECAST, &["tracks.csv", "line 5", needle]);
-    }
-    let headless = lines[1..].join("\n");
-    for (text, needle) in [("", "empty"), (lines[0], "empty"), (&headless, "header")] {
-        place.write("tracks.csv", text);
-        place.fails(FORECAST, &["tracks.csv", "line 1", needle]);
-    }
-}
-
-#[test]
 fn tracks_that_cannot_be_forecast_are_refused() {
     let place = Place::with_model();
     let nowhere = "view tracks.csv --output nowhere/page.html";
@@ -191,14 +146,8 @@ fn a_homography_or_a_rate_that_is_none_is_named() {
     let place = Place::with_model();
     let options = format!("{FORECAST} --homography H.txt");
     place.fails(&options, &["H.txt", "No such file"]);
-    for (text, needle) in [
-        ("1 0 0\n0 1 0\n", "three rows"),
-        ("1 0 0\n0 1 zero\n0 0 1\n", "line 2"),
-        ("1 0 0\n1 0 0\n0 0 1\n", "singular"),
-    ] {
-        place.write("H.txt", text);
-        place.fails(&options, &["H.txt", needle]);
-    }
+    place.write("H.txt", "1 0 0\n1 0 0\n0 0 1\n");
+    place.fails(&options, &["H.txt", "singular"]);
     place.write("H.txt", "0 0 1\n0 1 0\n1 0 0\n"); // x = 0 is the horizon
     place.fails(
         &options,

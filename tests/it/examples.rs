@@ -61,11 +61,10 @@ const EXAMPLES: [(&str, &[&str]); 10] = [
 
 /// Those that are not run here: `cargo xtask page` runs `report_page`; the others measure recordings for
 /// minutes, some of other places, or draw a run's own test scene.
-const ELSEWHERE: [&str; 6] = [
+const ELSEWHERE: [&str; 5] = [
     "ddl calibrate",
     "ddl elsewhere",
     "ddl draw_forecast",
-    "ddl one_forecast",
     "ddl-report report_page",
     "ddl-goal goal_validation",
 ];
@@ -104,12 +103,6 @@ fn every_example_runs_and_keeps_its_promise() {
             );
         }
     }
-}
-
-#[test]
-fn an_example_names_the_file_that_it_cannot_read() {
-    let finished = example::run("ddl", "forecast_csv", Path::new("."), "none.csv");
-    assert!(finished.stderr.contains("none.csv: "), "{finished:?}");
 }
 
 /// An example that is added is run from then on.

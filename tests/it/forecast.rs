@@ -298,27 +298,6 @@ fn regions_are_written_as_radii_and_as_discs() {
     );
 }
 
-/// One hypothesis a pedestrian, which comes nearer to its goal at every step.
-#[test]
-fn one_forecast_of_a_file() {
-    let place = Place::with_model();
-    let text = place.ok("forecast --model run tracks.csv --whole --last --one --format jsonl");
-    let lines: Vec<JsonLine> = json_lines(&text);
-    assert_eq!(lines.len(), 3);
-    for line in lines {
-        let [one] = &line.hypotheses[..] else {
-            panic!("{line:?}");
-        };
-        assert!((one.weight - 1.0).abs() < 1e-15);
-        let left: Vec<f64> = one
-            .positions
-            .iter()
-            .map(|&p| distance(p, one.goal))
-            .collect();
-        assert!(left.windows(2).all(|pair| pair[1] < pair[0]) && left[11] < 1e-6);
-    }
-}
-
 #[derive(Deserialize)]
 struct Goal {
     observed_until: i64,

@@ -99,30 +99,3 @@ fn built_in_models_forecast_as_libtorch_did() {
         check(model, golden, &forecast, &one[0]);
     }
 }
-
-/// Alone or among other windows, on one thread or two, from a longer recording or a shorter one: the same bits, goals and certificates
-/// included.
-#[test]
-fn a_forecast_has_the_same_bits_in_any_company() {
-    let crowd = ddl_tests::crowd::windows(3, 40);
-    let pool = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        pool.build().unwrap()
-    };
-    for model in BuiltinModel::ALL {
-        let model = Ddl::builtin(model, DeviceChoice::Cpu).unwrap();
-        let together = pool(1)
-            .install(|| model.forecast_certified(&crowd))
-            .unwrap();
-        let threads = pool(2)
-            .install(|| model.forecast_certified(&crowd))
-            .unwrap();
-        assert_eq!(together, threads);
-        for (window, among) in crowd.iter().zip(&together) {
-            for alone in [window.clone(), window.without_future()] {
-                let alone = model.forecast_certified(&[alone]).unwrap();
-                assert_eq!(&alone[0], among);
-            }
-        }
-    }
-}

@@ -1,16 +1,5 @@
-//! What the guarantee costs: how far real walkers would have to be moved for their distance to the place
-//! where they end to fall at every step.
-//!
-//! A walker here is a pedestrian of a test window: its last observed position and the 12 that follow, with
-//! the last of them as its end `p*`. `d_t = |p_t - p*|`, t = 0..12. The walker who keeps to the guarantee
-//! instead is at
-//!
-//! ```text
-//! p'_t = p* + (d'_t / d_t) (p_t - p*),     d'_t = min(d_0, ..., d_t)
-//! ```
-//!
-//! the largest distances that never grow and are nowhere above the true ones; the direction from the end is
-//! the true one.
+//! What the guarantee costs: how far real walkers would have to be moved for their distance to the place where they end
+//! to fall at every step (`docs/stability.md`).
 
 use ddl_data::{Convention, Dataset, HORIZON, OBSERVED, Position, TIME_STEP, WindowRule};
 use ddl_dynamics::{Attractor, CholeskyMetric, LyapunovCertificate, PUBLISHED_SIGMA};
@@ -140,16 +129,4 @@ fn the_guarantee_moves_real_walkers_by_millimetres() {
         let found = [moved.round(), certified.round(), turning_back];
         assert_eq!(found, expected, "{name}");
     }
-}
-
-/// Steps away from the end at 0 are cut to the 3 m and the 1 m reached before them, and the direction from the end is kept.
-#[test]
-fn steps_away_from_the_end_are_cut_to_the_nearest_so_far() {
-    let line = [5.0, 3.0, 4.0, 1.0, -2.0, 0.5, 0.0].map(|x| [x, 0.0]);
-    let kept = never_further_from_its_end(&line);
-    assert_eq!(kept, [5.0, 3.0, 3.0, 1.0, -1.0, 0.5, 0.0].map(|x| [x, 0.0]));
-    // A quarter of a turn about the end at 2 m; what follows at 4 m is brought to 2 m, where it is seen.
-    let path = [[3.0, 1.0], [1.0, 3.0], [1.0, 5.0], [1.0, 1.0]];
-    let kept = never_further_from_its_end(&path);
-    assert_eq!(kept, [[3.0, 1.0], [1.0, 3.0], [1.0, 3.0], [1.0, 1.0]]);
 }

@@ -8,7 +8,7 @@ use ddl::{
     CertificateError, Clearance, Ddl, DdlError, Forecast, Forecaster as _, LiveForecaster, Variant,
 };
 use ddl_tests::place::Place;
-use ddl_tests::{bits, crowd, drawn_model};
+use ddl_tests::{crowd, drawn_model};
 
 /// Pairs of walkers in one window whose most likely forecasts come nearer than `distance`.
 fn near_pairs(windows: &[Window], forecasts: &[Forecast], distance: f64) -> usize {
@@ -62,19 +62,6 @@ fn fewer_come_near_and_all_still_arrive() {
                 }
             }
         }
-    }
-}
-
-/// Somebody alone in the window walks as before, to the last bit.
-#[test]
-fn nobody_near_changes_nothing() {
-    let [free, careful] = free_and_careful();
-    for window in crowd::windows(6, 12) {
-        let id = vec![window.pedestrians()[0]];
-        let track = vec![window.track(0).to_vec()];
-        let alone = Window::new("alone", 0, window.frame_step(), id, track).unwrap();
-        let [free, clear] = [&free, &careful].map(|model| model.forecast(&alone).unwrap());
-        assert_eq!(bits::of(&free), bits::of(&clear));
     }
 }
 

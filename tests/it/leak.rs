@@ -1,10 +1,11 @@
-//! Forecasts and the future: whatever it is, they have the same bits under `fair` and `single`; and whoever looks ahead is caught.
+//! Forecasts and the future: whatever it is, they have the same bits under `fair` and `single`; and whoever needs it is
+//! refused.
 
 use ddl::data::{OBSERVED, Position, WINDOW, Window};
 use ddl::eval::baseline::{ConstantVelocity, GoalSource, StraightLine, TrueEnd, WeightedGoals};
 use ddl::eval::{ForecastError, leak};
 use ddl::goal::{GoalEstimator, GoalEstimatorParams};
-use ddl::{Forecast, Forecaster, Protocol, Variant};
+use ddl::{Forecaster, Protocol, Variant};
 use ddl_tests::one_forecast::One;
 use ddl_tests::{bits, crowd, drawn_model};
 
@@ -113,74 +114,6 @@ fn no_variant_of_the_model_sees_the_future() {
         let model = drawn_model::of(variant);
         never_sees_the_future(&model);
         never_sees_the_future(&One(&model));
-    }
-}
-
-/// The observation does change it: the tests compare more than constants.
-#[test]
-fn the_last_observed_position_changes_a_forecast() {
-    let model = drawn_model::of(Variant::Full);
-    let window = &crowd::windows(1, 3)[0];
-    let nudged = window.map_positions(|i, t, p| {
-        if (i, t) == (0, 7) {
-            [p[0] + 0.01, p[1]]
-        } else {
-            p
-        }
-    });
-    for forecaster in [&model as &dyn Forecaster, &One(&model)] {
-        let [reference, changed] = [window, &nudged].map(|w| forecaster.forecast(w).unwrap());
-        assert_ne!(bits::of(&reference), bits::of(&changed));
-    }
-}
-
-/// The published query, behind a forecaster that does without it when it must: only the changed
-/// future gives it away.
-struct PublishedWhenItCan {
-    published: EstimatedGoals,
-    fair: EstimatedGoals,
-}
-
-impl Forecaster for PublishedWhenItCan {
-    fn name(&self) -> String {
-        "published goals when it can".to_owned()
-    }
-
-    fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
-        let source = if window.has_future() {
-            &self.published
-        } else {
-            &self.fair
-        };
-        StraightLine::to(source).forecast(window)
-    }
-}
-
-#[test]
-fn the_published_goal_query_is_caught() {
-    let forecaster = PublishedWhenItCan {
-        published: EstimatedGoals::with(GoalEstimatorParams::published()),
-        fair: EstimatedGoals::with(GoalEstimatorParams::default()),
-    };
-    let windows = crowd::windows(1, 4);
-    assert!(leak::find(&forecaster, &windows[0]).unwrap().is_some());
-    let bits = |forecasts: Vec<Forecast>| bits::of_all(&forecasts);
-    let reference = bits(forecaster.forecast_all(&windows).unwrap());
-    for (future, changed) in wild(&windows[0]) {
-        // a NaN that is read makes no forecast, and rounding no difference between experts
-        let changed = [changed];
-        let seen = forecaster.forecast_all(&changed).map(bits);
-        assert!(
-            seen.is_ok_and(|seen| seen != reference) || ["NaN", "a hair off"].contains(&future),
-            "{future}"
-        );
-        // the protocols cut the future off before it can be read: even this one is honest under them
-        for protocol in [Protocol::Fair, Protocol::Single] {
-            let [shown, again] = [&windows[..], &changed];
-            let forecasts =
-                [shown, again].map(|w| bits(protocol.forecast(&forecaster, w).unwrap()));
-            assert_eq!(forecasts[0], forecasts[1], "{protocol}");
-        }
     }
 }
 

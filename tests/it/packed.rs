@@ -3,7 +3,7 @@
 use ddl::data::Convention;
 use ddl::eval::ResultRow;
 use ddl::report::Report;
-use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _, ModelSource, Protocol, Variant};
+use ddl::{BuiltinModel, Protocol, Variant};
 use ddl_tests::place::Place;
 use ddl_tests::{crowd, drawn_model, folder_contents, recordings};
 use serde::Deserialize;
@@ -114,30 +114,6 @@ fn what_a_packed_model_cannot_do_is_said() {
         "evaluate --model packed --fold plaza => ",
         "evaluate --model zara1 --fold eth => ",
     ]);
-}
-
-#[test]
-fn the_network_comes_back_in_every_variant() {
-    let windows = crowd::windows(3, 6);
-    for variant in Variant::ALL {
-        let place = Place::with_variant(variant);
-        let _ = place.ok("pack --model run --out packed");
-        let [run, packed] =
-            ["run", "packed"].map(|name| Ddl::load(&place.at(name), DeviceChoice::Cpu).unwrap());
-        assert_eq!(packed.config(), run.config());
-        assert_eq!(packed.source(), &ModelSource::Packed(place.at("packed")));
-        let [of_run, of_packed] = [run, packed].map(|m| m.forecast_all(&windows).unwrap());
-        if variant == Variant::Star {
-            // It reads no goals: only the rounding of its weights is left.
-            for (one, other) in of_run.iter().zip(&of_packed) {
-                for (i, k) in (0..one.pedestrians()).flat_map(|i| (0..20).map(move |k| (i, k))) {
-                    for (a, b) in one.hypothesis(i, k).iter().zip(other.hypothesis(i, k)) {
-                        assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 0.02, "{a:?}, {b:?}");
-                    }
-                }
-            }
-        }
-    }
 }
 
 /// What is reported of a built-in model, beside its weights.

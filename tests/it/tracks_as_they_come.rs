@@ -67,27 +67,6 @@ fn late_comers_and_holes_are_forecast_and_flagged() {
     assert!(told.contains(missing), "{told}");
 }
 
-/// The same walks filmed at 25 frames a second say the same at the frames that both have.
-#[test]
-fn a_faster_camera_forecasts_at_every_frame() {
-    let walks = own_tracks::three_people(9);
-    let at = |frame: i64| walks.iter().filter(move |row| row.0 == frame);
-    let filmed = |frame: i64| {
-        let (before, share) = (frame / 10 * 10, (frame % 10) as f64 / 10.0);
-        let between = move |a: f64, b: f64| a + share * (b - a);
-        let pairs = at(before).zip(at((before + 10).min(80)));
-        pairs.map(move |(a, b)| (frame, a.1, between(a.2, b.2), between(a.3, b.3)))
-    };
-    let rows: Vec<Row> = (0..=80).flat_map(filmed).collect();
-    let slow = forecast(&walks, "--whole --fps 25").0;
-    let mut fast = forecast(&rows, "--whole --fps 25").0;
-    assert_eq!(fast.len(), 11 * 3);
-    let ends = [&fast[0], &fast[32]].map(|line| made_up(line)[0]);
-    assert_eq!(ends, [70, 80]);
-    fast.retain(|line| made_up(line)[0] % 10 == 0);
-    assert_eq!(slow, fast);
-}
-
 #[test]
 fn a_rate_that_meets_no_step_is_resampled_and_said() {
     let rows: Vec<Row> = (0..=72)
@@ -220,21 +199,6 @@ fn the_rate_of_scenes_is_used() {
         assert_eq!(of_rate, told);
         assert_eq!(finished.succeeds(), ask(same_as).succeeds());
     }
-    // line by line as well, where it makes whole frames
-    for (file, told) in [
-        (
-            "usual.ndjson",
-            "10 apart in 0.4 s, by the fps of the scenes, 2.5",
-        ),
-        (
-            "two.ndjson",
-            "8 apart in 0.4 s, by the fps of the scenes, 2",
-        ),
-    ] {
-        let live = place.run_on(&place.text(file), "forecast - --threads 1 --one");
-        assert_eq!(live.code, Some(0), "{live:?}");
-        assert!(live.stderr.contains(told), "{live:?}");
-    }
 }
 
 /// Options say what numbers mean, then the file, then the run.
@@ -323,19 +287,6 @@ fn rate_and_homography_of_a_run_are_used() {
     let message = "the run was trained with --fps 23.98: 0.4 s are 9.592 frames";
     assert_eq!(live.code, Some(1), "{live:?}");
     assert!(live.stderr.contains(message), "{live:?}");
-
-    place.write(
-        "two.ndjson",
-        SCENE.to_owned() + &ndjson(&own_tracks::three_people(40)),
-    );
-    let measure = "evaluate --model film-run --data two.ndjson --protocol single --threads 1 --homography none";
-    let of_file = place.run(measure);
-    assert!(
-        of_file.stderr.contains(": read as --fps 20\n"),
-        "{of_file:?}"
-    );
-    assert!(!of_file.stderr.contains("training"), "{of_file:?}");
-    assert_eq!(of_file.succeeds(), place.ok(&format!("{measure} --fps 20")));
 }
 
 /// Recordings in pixels, or of a camera that is too near, are doubted aloud, and in the facts for programs too.

@@ -38,4 +38,3 @@ pub mod safetensors_file;
 pub mod skip;
 #[cfg(feature = "torch")]
 pub mod trained_model;
-pub mod training_result;

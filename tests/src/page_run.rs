@@ -196,6 +196,9 @@ mod tests {
             (&[], 1, "", "error: e\n", "exit code 1, not 0"),
             (&["error: e"], 0, "", "", "exit code 0, not 1"),
             (&["b"], 0, "a\n", "", "no line `b`"),
+            (&["c", "a"], 0, "a\nb\nc\n", "", "no line `a`"),
+            (&["a...b...c"], 0, "a1b2c3\n", "", "no line `a...b...c`"),
+            (&["a...b...c"], 0, "a1b2b3c\n", "", ""),
         ] {
             let problem = judged(shown, (code, stdout, stderr), Depth::Whole);
             assert_eq!(problem.is_empty(), wrong.is_empty(), "{shown:?}");

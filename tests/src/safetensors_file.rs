@@ -40,19 +40,3 @@ pub fn join(header: &Value, numbers: &[u8]) -> Vec<u8> {
     let length = (header.len() as u64).to_le_bytes();
     [&length[..], header.as_bytes(), numbers].concat()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{join, parts};
-    use serde_json::json;
-
-    #[test]
-    fn what_was_joined_is_parted_and_half_of_it_is_not_whole() {
-        let header = json!({"a": {"dtype": "F32", "shape": [1], "data_offsets": [0, 4]}});
-        let whole = join(&header, &[1, 2, 3, 4]);
-        assert_eq!(parts(&whole), Ok((header, &[1, 2, 3, 4][..])));
-        for length in 0..whole.len() {
-            assert!(parts(&whole[..length]).is_err(), "{length}");
-        }
-    }
-}

@@ -2,14 +2,14 @@
 
 use crate::folder_contents::{self, Contents};
 use crate::place::Place;
-use crate::{crowd, drawn_model, training_result};
+use crate::{crowd, drawn_model};
 use ddl::network::TrainingConfig;
 use ddl::{
     DdlError, DeviceChoice, RunDirectory, TrainingProgress, TrainingRequest, TrainingStage,
     TrainingStep, Variant,
 };
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, Once, OnceLock};
 
 /// libtorch has one generator of random numbers: runs side by side would draw from each other's.
@@ -27,7 +27,27 @@ pub const TRAIN: &str = "train --convention simulated --fold doorway --epochs 3 
 /// Runs [`TRAIN`] to its end; what it leaves, as far as it is the same every time.
 pub fn finish(place: &Place) -> Contents {
     let _ = place.ok(TRAIN);
-    training_result::of(&place.at("run"))
+    result(&place.at("run"))
+}
+
+/// The files of a run, byte for byte, but for what holds seconds: of `metrics.jsonl` the losses are compared, and
+/// `optimizer.safetensors` holds the weights of the model.
+pub fn result(run: &Path) -> Contents {
+    let mut files = folder_contents::read(run);
+    let metrics = files.remove(&PathBuf::from("metrics.jsonl")).flatten();
+    let metrics = String::from_utf8(metrics.expect("there are metrics")).expect("JSON is text");
+    let epochs: Vec<_> = metrics.lines().map(losses).collect();
+    files.insert(PathBuf::from("losses"), Some(epochs.concat().into_bytes()));
+    files.remove(&PathBuf::from("optimizer.safetensors"));
+    files
+}
+
+/// A line of `metrics.jsonl` without its seconds.
+fn losses(line: &str) -> String {
+    let mut epoch: serde_json::Value = serde_json::from_str(line).expect("a line is JSON");
+    let fields = epoch.as_object_mut().expect("a line is an object");
+    fields.remove("seconds").expect("an epoch takes seconds");
+    epoch.to_string()
 }
 
 /// One thread for tensors in this process, where tests run side by side already: sums are then in one

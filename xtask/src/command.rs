@@ -12,12 +12,12 @@ mod package;
 mod page;
 mod setup;
 mod test;
-mod tidy;
 
 use anyhow::Result;
 use clap::Subcommand;
 
 use crate::libtorch::{self, Origin, Request};
+use crate::tidy;
 use crate::workspace::Workspace;
 
 /// What `cargo xtask` can do.

@@ -1,7 +1,5 @@
-//! libtorch: which one is pinned, where it lies, how to get it, how cargo is told.
-//!
-//! [`ensure`] is called first by every command that builds. When all is in place it reads three
-//! small files and returns.
+//! libtorch: which one is pinned, where it lies, how to get it, how cargo is told. [`ensure`] comes first in every
+//! command that builds.
 
 mod config;
 mod fetch;
@@ -65,10 +63,6 @@ pub(crate) struct Ready {
 }
 
 /// Makes sure that plain `cargo build`, `test`, `run`, `bench` and `doc` work from here on.
-///
-/// # Errors
-/// In one line each: a missing C++ compiler, Python or pip; an unsupported platform; a `LIBTORCH`
-/// of another version; a failed download; a wheel that is not the pinned one; a full disk.
 pub(crate) fn ensure(workspace: &Workspace, request: &Request) -> Result<Ready> {
     require_compiler()?;
     let generated = workspace.path(config::GENERATED);

@@ -1,18 +1,8 @@
-//! `cargo xtask`: set-up, recordings, benchmark, tests and tidy checks of this workspace.
+//! `cargo xtask`: set-up, recordings, benchmark, tests and tidy checks of this workspace; one command, one file under
+//! `command/`.
 //!
-//! Of the `ddl` crates the program depends on `ddl-data` alone, and not on libtorch, so it builds on a bare machine
-//! within seconds and can bring in the rest. One command, one file under `command/`; what the
-//! commands share lies in the rooms beside it:
-//!
-//! | room | what it knows |
-//! |---|---|
-//! | `libtorch` | which libtorch is pinned, where it lies, how to get it, how cargo is told |
-//! | `data` | which recordings are pinned, where they lie, how to get them |
-//! | `site` | the documentation site: what it is made of, and that its links lead somewhere |
-//! | `cache` | what is kept from one call to the next |
-//! | `browser` | where a browser is or how to get one, and what drives it |
-//! | `cargo_tool` | programs of other people that checks run, one pinned version each |
-//! | `tidy` | house rules that no other tool checks |
+//! Of the `ddl` crates the program depends on `ddl-data` alone, and not on libtorch: it builds on a bare machine and
+//! brings in the rest.
 #![allow(
     clippy::print_stdout,
     reason = "a command-line program answers on standard output"

@@ -8,7 +8,7 @@ mod links;
 
 use std::path::Path;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 
 use crate::data::{Manifest, RECORDED};
 use crate::digest::measure;
@@ -33,15 +33,31 @@ const HOME_FOLDERS: [&str; 3] = [
 
 /// What the checks found.
 #[derive(Debug, Default)]
-pub(crate) struct Findings {
+struct Findings {
     /// Broken rules.
-    pub(crate) faults: Vec<String>,
+    faults: Vec<String>,
     /// Things to keep an eye on.
-    pub(crate) notes: Vec<String>,
+    notes: Vec<String>,
+}
+
+/// `cargo xtask tidy`.
+pub(crate) fn run(workspace: &Workspace) -> Result<()> {
+    let Findings { faults, notes } = check(workspace)?;
+    for note in &notes {
+        println!("note: {note}");
+    }
+    for fault in &faults {
+        println!("fault: {fault}");
+    }
+    if !faults.is_empty() {
+        bail!("tidy: {} faults (above)", faults.len());
+    }
+    println!("tidy: no faults, {} notes", notes.len());
+    Ok(())
 }
 
 /// Every check, over everything that git tracks or would track.
-pub(crate) fn check(workspace: &Workspace) -> Result<Findings> {
+fn check(workspace: &Workspace) -> Result<Findings> {
     let manifest = Manifest::load(workspace)?;
     let recordings: Vec<(&str, &str)> = RECORDED
         .into_iter()

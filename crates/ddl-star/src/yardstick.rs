@@ -5,15 +5,6 @@ use tch::{Device, Kind, Tensor};
 
 /// A product of two square matrices in `f32` on the CPU, to be timed: the yardstick for everything else that is mostly
 /// multiplications and additions.
-///
-/// # Examples
-/// ```
-/// use ddl_star::MatrixProduct;
-/// let mut product = MatrixProduct::new(64)?;
-/// product.multiply()?; // time this
-/// assert_eq!(product.operations(), 2 * 64 * 64 * 64);
-/// # Ok::<(), ddl_star::StarError>(())
-/// ```
 #[derive(Debug)]
 pub struct MatrixProduct {
     size: usize,

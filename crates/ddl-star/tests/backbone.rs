@@ -153,16 +153,3 @@ fn a_third_backbone_is_trained_and_forecasts_without_libtorch() {
     let change = apart(&ours, &before);
     assert!(change > 1e-2, "{change} m");
 }
-
-#[test]
-fn weights_of_another_backbone_are_refused() {
-    let star = MotionNetwork::new(config(), 1).unwrap();
-    let error = torch(Kind::Float)
-        .parameters()
-        .set(star.weights())
-        .unwrap_err();
-    assert!(error.to_string().contains("of another one"), "{error}");
-    let plain = MotionNetwork::with_backbone(config(), 7, Recurrent::new).unwrap();
-    let error = plain.with_weights(star.weights().clone()).unwrap_err();
-    assert!(matches!(error, NetworkError::Shape { .. }), "{error}");
-}

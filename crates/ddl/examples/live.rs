@@ -6,23 +6,9 @@ use ddl::{Ddl, DeviceChoice, LiveForecaster};
 use std::error::Error;
 use std::io::Write as _;
 use std::path::Path;
-use std::process::ExitCode;
 use std::time::Instant;
 
-fn main() -> ExitCode {
-    let Err(error) = play() else {
-        return ExitCode::SUCCESS;
-    };
-    eprintln!("live: {error}");
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        eprintln!("  because {error}");
-        cause = error.source();
-    }
-    ExitCode::FAILURE
-}
-
-fn play() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (run, file, step) = match arguments.as_slice() {
         [run, file] => (run, file, None),

@@ -27,28 +27,19 @@ impl Device {
     ///
     /// # Errors
     /// When CUDA is asked for and cannot be had, or the program is built without libtorch.
-    #[cfg(feature = "torch")]
     pub fn open(choice: DeviceChoice) -> Result<Self, DdlError> {
-        let device = match choice {
-            DeviceChoice::Cpu => return Ok(Self::CPU),
-            DeviceChoice::Auto | DeviceChoice::Cuda => ddl_star::ComputeDevice::open(choice)?,
-        };
-        Ok(match device.name() {
-            "cuda" => Self(Opened::Cuda(device)),
-            _ => Self::CPU,
-        })
-    }
-
-    /// Opens the device.
-    ///
-    /// # Errors
-    /// When CUDA is asked for: the program is built without libtorch.
-    #[cfg(not(feature = "torch"))]
-    pub fn open(choice: DeviceChoice) -> Result<Self, DdlError> {
-        match choice {
-            DeviceChoice::Cpu | DeviceChoice::Auto => Ok(Self::CPU),
-            DeviceChoice::Cuda => Err(DdlError::WithoutLibtorch { what: "CUDA" }),
+        #[cfg(feature = "torch")]
+        if choice != DeviceChoice::Cpu {
+            let device = ddl_star::ComputeDevice::open(choice)?;
+            if device.name() == "cuda" {
+                return Ok(Self(Opened::Cuda(device)));
+            }
         }
+        #[cfg(not(feature = "torch"))]
+        if choice == DeviceChoice::Cuda {
+            return Err(DdlError::WithoutLibtorch { what: "CUDA" });
+        }
+        Ok(Self::CPU)
     }
 
     /// "cpu" or "cuda", as reports print it.
@@ -71,9 +62,6 @@ impl Device {
     }
 
     /// A forecasting network with the weights that `read` gives for its layout.
-    ///
-    /// # Errors
-    /// When the configuration is out of range, or the weights cannot be read.
     pub(crate) fn forecasting(
         self,
         config: &StarConfig,
@@ -92,9 +80,6 @@ impl Device {
     }
 
     /// A proposal network with the weights that `read` gives for its layout.
-    ///
-    /// # Errors
-    /// When the configuration is out of range, or the weights cannot be read.
     pub(crate) fn proposing(
         self,
         config: &ProposalConfig,
@@ -113,10 +98,8 @@ impl Device {
     }
 }
 
-/// Opens the device and sets the number of threads (all cores when `None`) of the kernels and of goal
-/// search. libtorch itself uses one: what is left to it on the CPU are small tensors, over which several
-/// threads would mostly wait for each other. Call it once, before anything else: CUDA can only be opened before the first
-/// tensor is made.
+/// Opens the device and sets the number of threads (all cores when `None`) of the kernels and of goal search; libtorch
+/// itself uses one. Call it once, before anything else: CUDA can only be opened before the first tensor is made.
 ///
 /// # Errors
 /// When the device cannot be had.

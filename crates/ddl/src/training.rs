@@ -35,11 +35,11 @@ pub struct TrainingRequest {
     pub validation_recordings: Vec<String>,
     /// What the goals come from.
     pub goals: GoalRecipe,
-    /// The model whose weights both networks begin with; `None`: random ones. With [`patience`](Self::patience) it is an epoch like the others, number 0, so that
-    /// no epoch is taken that is worse on the validation part than the first weights. Goals and familiarity are the run's own from the start.
+    /// The model whose weights both networks begin with; `None`: random ones. With [`patience`](Self::patience) it is
+    /// an epoch like the others, number 0.
     pub from: Option<ModelSource>,
     /// End early when the validation error has not fallen for so many epochs, and take the best epoch for the model; `None`: all epochs, and the
-    /// last is the model.
+    /// last.
     pub patience: Option<usize>,
     /// What the numbers of own recordings mean, for the record; `None` where nothing was said.
     pub units: Option<TrackUnits>,

@@ -77,20 +77,3 @@ fn install() -> Result<()> {
     let install = ["install", "-y", "--no-install-recommends"];
     apt(&[&install[..], &PACKAGES[..]].concat())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_named_browser_must_be_there() {
-        assert!(named_one(OsStr::new("sh")).unwrap().is_absolute());
-        let error = named_one(OsStr::new("/nowhere/chromium"))
-            .unwrap_err()
-            .to_string();
-        assert!(
-            error.contains("/nowhere/chromium") && error.contains("apt install"),
-            "{error}"
-        );
-    }
-}

@@ -1,7 +1,5 @@
-//! The Python package that drives the browser, of one pinned version, in the user's cache.
-//!
-//! It is put into a folder of its own (`pip --target`) and not into a virtual environment: Debian's Python makes none
-//! without a further package, and refuses to change what the system has installed.
+//! The Python package that drives the browser, of one pinned version, in the user's cache: in a folder of its own (`pip
+//! --target`), because Debian's Python makes no virtual environment without a further package.
 
 use std::path::{Path, PathBuf};
 use std::process::Stdio;

@@ -5,7 +5,8 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use ddl_data::Convention;
 
-use super::{benchmark, data, deny, docs, package, page, set_up, test, tidy};
+use super::{benchmark, data, deny, docs, package, page, set_up, test};
+use crate::tidy;
 use crate::workspace::{Workspace, step};
 
 /// A named check of `ci`.

@@ -10,13 +10,8 @@ use super::manifest::{Entry, PinnedFile};
 use super::source;
 use crate::python::Python;
 
-/// Puts every file of a convention that is missing or wrong into `folder`.
-///
-/// Sources are tried in the manifest's order; `say` hears about each attempt. Returns the name of
-/// the source that gave the last missing file, or none if nothing was missing.
-///
-/// # Errors
-/// Every source's own reason, in one line.
+/// Puts every file of a convention that is missing or wrong into `folder`, from the first source of the manifest that
+/// has it; the source's name, or none if nothing was missing. `say` hears about each attempt.
 pub(crate) fn fetch<'a>(
     convention: Convention,
     entry: &'a Entry,

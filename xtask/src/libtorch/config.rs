@@ -1,7 +1,5 @@
-//! The generated cargo configuration: where libtorch lies, and the path to its libraries.
-//!
-//! `.cargo/config.toml` includes it, so plain cargo, an editor and this program all build with the
-//! same flags, and none of them undoes the other's work.
+//! The generated cargo configuration, which `.cargo/config.toml` includes: where libtorch lies, and the path to its
+//! libraries.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,9 +11,7 @@ use crate::whole_file;
 /// Relative to the workspace root; git ignores it.
 pub(super) const GENERATED: &str = ".cargo/config.generated.toml";
 
-/// Writes the configuration, unless it is there already; whether it was written.
-///
-/// An unchanged file keeps its time stamp, so that nothing is rebuilt.
+/// Writes the configuration, unless it is there already, so that nothing is rebuilt; whether it was written.
 pub(super) fn write(file: &Path, libtorch: &Path) -> Result<bool> {
     let text = render(libtorch)?;
     let is_there = fs::read_to_string(file).is_ok_and(|present| present == text);

@@ -31,9 +31,8 @@ struct Library {
     bytes: u64,
 }
 
-/// Whether the folder was finished from the wheels pinned today and still has its libraries.
-///
-/// Sizes are compared, not hashes: this runs before every build.
+/// Whether the folder was finished from the wheels pinned today and still has its libraries, by their sizes: this runs
+/// before every build.
 pub(super) fn is_complete(folder: &Path) -> bool {
     let Ok(complete) = read_mark(folder) else {
         return false;

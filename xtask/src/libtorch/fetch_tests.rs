@@ -16,47 +16,39 @@ fn laid_out() -> tempfile::TempDir {
 }
 
 #[test]
-fn only_a_finished_folder_is_trusted() {
+fn what_was_finished_from_these_wheels_and_is_still_whole_is_trusted() {
     let folder = laid_out();
-    assert!(!is_complete(folder.path()));
+    let at = |file: &str| folder.path().join(file);
+    let is_trusted = || is_complete(folder.path());
+    assert!(!is_trusted());
     finish(folder.path()).unwrap();
-    assert!(is_complete(folder.path()));
+    assert!(is_trusted());
     verify(folder.path()).unwrap();
-}
 
-#[test]
-fn a_missing_or_cut_library_is_seen() {
-    let folder = laid_out();
-    finish(folder.path()).unwrap();
-    fs::write(folder.path().join("lib/libc10.so"), "cut").unwrap();
-    assert!(!is_complete(folder.path()));
-    fs::remove_file(folder.path().join("lib/libc10.so")).unwrap();
-    assert!(!is_complete(folder.path()));
-}
-
-#[test]
-fn a_library_with_other_contents_of_the_same_size_is_found_by_its_hash() {
-    let folder = laid_out();
-    finish(folder.path()).unwrap();
-    fs::write(folder.path().join("lib/libc10.so"), "LIB/LIBC10.SO").unwrap();
-    assert!(is_complete(folder.path()));
+    let library = at("lib/libc10.so");
+    let whole = fs::read(&library).unwrap();
+    // Other contents of the same size are found by their hash alone.
+    fs::write(&library, "LIB/LIBC10.SO").unwrap();
+    assert!(is_trusted());
     let message = format!("{:#}", verify(folder.path()).unwrap_err());
     assert!(
         message.contains("libc10.so") && message.contains("wrong contents"),
         "{message}"
     );
-}
+    fs::write(&library, "cut").unwrap();
+    assert!(!is_trusted());
+    fs::remove_file(&library).unwrap();
+    assert!(!is_trusted());
 
-#[test]
-fn a_mark_of_other_wheels_or_a_damaged_one_is_not_trusted() {
-    let folder = laid_out();
-    finish(folder.path()).unwrap();
-    let mark = folder.path().join(MARK);
-    let text = fs::read_to_string(&mark).unwrap();
-    fs::write(&mark, text.replace(WHEELS[0].sha256, WHEELS[1].sha256)).unwrap();
-    assert!(!is_complete(folder.path()));
-    fs::write(&mark, &text[..text.len() / 2]).unwrap();
-    assert!(!is_complete(folder.path()));
+    fs::write(&library, whole).unwrap();
+    let mark = fs::read_to_string(at(MARK)).unwrap();
+    let of_others = mark.replace(WHEELS[0].sha256, WHEELS[1].sha256);
+    for damaged in [&of_others, &mark[..mark.len() / 2]] {
+        fs::write(at(MARK), damaged).unwrap();
+        assert!(!is_trusted());
+    }
+    fs::write(at(MARK), mark).unwrap();
+    assert!(is_trusted());
 }
 
 #[test]

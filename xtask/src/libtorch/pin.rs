@@ -1,8 +1,5 @@
-//! The pinned libtorch: one version, three wheels, and the files of them that are needed.
-//!
-//! The programs link the CPU libraries only. Those of the wheel also need CUDA's runtime and
-//! profiling libraries to load (a graphics card is not needed); everything else of the wheels, some
-//! gigabytes, is left out.
+//! The pinned libtorch: one version, three wheels, and the files of them that are needed: the CPU libraries, and CUDA's
+//! runtime and profiling libraries, which those of the wheel need to load.
 
 /// Version of libtorch that the binding in `Cargo.lock` is made for.
 pub(crate) const VERSION: &str = "2.11.0";
@@ -110,36 +107,14 @@ mod tests {
         }
     }
 
-    /// What runs record as their libtorch.
+    /// What is fetched, and what runs record as their libtorch.
     #[test]
     fn the_version_that_runs_record_is_the_pinned_one() {
         let device = Workspace::find()
             .unwrap()
             .path("crates/ddl-star/src/device.rs");
         let text = std::fs::read_to_string(device).unwrap();
-        assert!(text.contains(&format!("LIBTORCH_VERSION: &str = \"{VERSION}\"")));
-    }
-
-    #[test]
-    fn every_wheel_is_pinned_whole() {
-        for wheel in &WHEELS {
-            assert_eq!(wheel.sha256.len(), 64, "{}", wheel.file);
-            assert!(wheel.sha256.bytes().all(|byte| byte.is_ascii_hexdigit()));
-            let (name, version) = wheel.requirement.split_once("==").unwrap();
-            let expected = format!("{}-{version}-", name.replace('-', "_"));
-            assert!(wheel.file.starts_with(&expected), "{}", wheel.file);
-            assert!(
-                PLATFORMS.iter().any(|tag| wheel.file.contains(tag)),
-                "{}",
-                wheel.file
-            );
-            assert!(
-                wheel
-                    .members
-                    .iter()
-                    .all(|rule| rule.matches('=').count() == 1)
-            );
-        }
         assert_eq!(WHEELS[0].requirement, format!("torch=={VERSION}"));
+        assert!(text.contains(&format!("LIBTORCH_VERSION: &str = \"{VERSION}\"")));
     }
 }

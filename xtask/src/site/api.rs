@@ -22,8 +22,12 @@ pub(super) fn libraries(metadata: &Value) -> Vec<Library> {
     let packages = metadata["packages"].as_array().into_iter().flatten();
     let published = packages.filter(|package| {
         let targets = package["targets"].as_array().into_iter().flatten();
-        let mut kinds = targets.flat_map(|target| target["kind"].as_array().into_iter().flatten());
-        package["publish"].is_null() && kinds.any(|kind| kind == "lib")
+        let kinds: Vec<&Value> = targets
+            .flat_map(|target| target["kind"].as_array().into_iter().flatten())
+            .collect();
+        // The library of a program is there for the program alone.
+        let has = |name: &str| kinds.iter().any(|kind| **kind == name);
+        package["publish"].is_null() && has("lib") && !has("bin")
     });
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     published

@@ -1,8 +1,6 @@
-//! Links between files of the repository.
-//!
-//! A page of `docs/` is read here and on the site, a crate's README in a registry and in its documentation: their links
-//! out of `docs/` or of the crate are whole addresses, so that they hold everywhere. Links inside `docs/` are checked on the
-//! site (`cargo xtask docs`).
+//! Links between files of the repository. A page of `docs/` is read here and on the site, a crate's README in a
+//! registry too: their links out of `docs/` or of the crate are whole addresses. Links inside `docs/` are checked on
+//! the site (`cargo xtask docs`).
 
 use std::path::{Component, Path, PathBuf};
 

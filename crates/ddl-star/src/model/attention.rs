@@ -6,9 +6,7 @@ use std::rc::Rc;
 use tch::Tensor;
 
 /// Attention of every pedestrian over those that it sees.
-///
-/// # Shapes
-/// `qkv` `[B, P, 3 * width]`; `seen` during one time step or B -> `[B, P, width]`.
+/// Shapes: `qkv` `[B, P, 3 * width]`; `seen` during one time step or B -> `[B, P, width]`.
 pub(super) fn among_pedestrians(
     qkv: &Tensor,
     heads: i64,
@@ -38,9 +36,7 @@ pub(super) fn among_pedestrians(
 }
 
 /// Attention of the newest token over itself and the cached ones.
-///
-/// # Shapes
-/// `newest` and each of `cache` `[B, P, 3 * width]` -> `[B, P, width]`.
+/// Shapes: `newest` and each of `cache` `[B, P, 3 * width]` -> `[B, P, width]`.
 pub(super) fn over_cache(newest: &Tensor, heads: i64, cache: &[Rc<Tensor>]) -> Tensor {
     let (batch, pedestrians, width) = (newest.size()[0], newest.size()[1], newest.size()[2] / 3);
     let cached = cache.iter().map(|token| &**token);

@@ -39,9 +39,7 @@ impl TorchBackend {
     }
 
     /// y = x W^T + b with the weight of that number and the bias after it.
-    ///
-    /// # Shapes
-    /// `x` `[.., inputs]` -> `[.., outputs]`.
+    /// Shapes: `x` `[.., inputs]` -> `[.., outputs]`.
     fn affine(&self, x: &Tensor, weight: usize) -> Tensor {
         let [weight, bias] = [weight, weight + 1].map(|number| &self.tensors[number]);
         match &self.shared {

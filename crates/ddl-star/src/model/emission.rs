@@ -68,9 +68,7 @@ impl<'a> Emission<'a> {
     }
 
     /// What the tokens mean: (a, b, c), or (x, y), a walker. Noise is shared by all walkers.
-    ///
-    /// # Shapes
-    /// `tokens` `[B, P, width]` -> `[B, P, outputs]`.
+    /// Shapes: `tokens` `[B, P, width]` -> `[B, P, outputs]`.
     pub(crate) fn of(&self, tokens: &Tensor) -> Tensor {
         let (batch, walkers) = (tokens.size()[0], tokens.size()[1]);
         let bias = Some(self.bias);
@@ -99,8 +97,7 @@ struct NoiseCovariance {
 }
 
 impl NoiseCovariance {
-    /// # Shapes
-    /// `weight` `[3, noise]`, the columns of the output layer for the noise.
+    /// Shapes: `weight` `[3, noise]`, the columns of the output layer for the noise.
     fn of(weight: &Tensor) -> Self {
         let covariance = weight.matmul(&weight.transpose(0, 1));
         let c = |i: i64, j: i64| covariance.get(i).get(j);
@@ -116,9 +113,7 @@ impl NoiseCovariance {
     /// The output is linear in the noise, so E[L L^T] = L0 L0^T + E[D D^T] with D built from W n: the mean
     /// velocity of the noisy walkers, in closed form. The noise-free L0 alone would be too slow: P is
     /// quadratic in L, and the noise's share of it is not small.
-    ///
-    /// # Shapes
-    /// `mean` `[.., 3]` -> `[.., 3]`.
+    /// Shapes: `mean` `[.., 3]` -> `[.., 3]`.
     fn expected_factor(&self, mean: &Tensor) -> Tensor {
         let l = |i: i64| mean.narrow(-1, i, 1);
         let (a, b, d) = (l(0), l(1), l(2));

@@ -1,8 +1,5 @@
-//! A pedestrian's own frame: the first axis points from where it was last observed to its goal, and lengths are in
-//! its own [unit](ddl_network::motion_unit).
-//!
-//! What the network reads and emits in this frame turns with the pedestrian and its goal, so that one walk in one direction
-//! teaches it all directions; and a runner looks to it like somebody who walks fast.
+//! A pedestrian's own frame: the first axis points from where it was last observed to its goal, and lengths are in its
+//! own [unit](ddl_network::motion_unit), so that one walk teaches the network all directions and speeds.
 
 use super::own_motion;
 use ddl_data::OBSERVED;
@@ -14,9 +11,7 @@ const SMALLEST_DISTANCE: f64 = 1e-6;
 const SMALLEST_PIVOT: f64 = 1e-12;
 
 /// The first axis of every pedestrian in every hypothesis, as cosine and sine, and its unit.
-///
-/// # Shapes
-/// `[G, P, 1]`, the unit `[1, P, 1]` (no unit: metres a metre).
+/// Shapes: `[G, P, 1]`, the unit `[1, P, 1]` (no unit: metres a metre).
 #[derive(Debug)]
 pub(crate) struct GoalFrame {
     cos: Tensor,
@@ -25,8 +20,7 @@ pub(crate) struct GoalFrame {
 }
 
 impl GoalFrame {
-    /// # Shapes
-    /// `observed` `[8, P, 2]`; `goals` `[G, P, 2]`; `time_step` in seconds.
+    /// Shapes: `observed` `[8, P, 2]`; `goals` `[G, P, 2]`; `time_step` in seconds.
     pub(crate) fn new(observed: &Tensor, goals: &Tensor, time_step: f64) -> Self {
         let towards = goals - observed.narrow(0, OBSERVED as i64 - 1, 1);
         let distance = towards.norm_scalaropt_dim(2, [-1i64].as_slice(), true);
@@ -42,9 +36,7 @@ impl GoalFrame {
     }
 
     /// Vectors of the world in the pedestrians' axes and units.
-    ///
-    /// # Shapes
-    /// `[.., P, 2]`, broadcast with `[G, P, 1]`.
+    /// Shapes: `[.., P, 2]`, broadcast with `[G, P, 1]`.
     pub(crate) fn of_world(&self, vectors: &Tensor) -> Tensor {
         let (x, y) = (vectors.narrow(-1, 0, 1), vectors.narrow(-1, 1, 1));
         let ahead = &self.cos * &x + &self.sin * &y;
@@ -61,9 +53,7 @@ impl GoalFrame {
     }
 
     /// The lower-triangular factor of the same metric in the world: L' L'^T = R^T L L^T R.
-    ///
-    /// # Shapes
-    /// `factors` `[.., P, 3]` holds (a, b, c) of L = [[a, 0], [b, c]]; the same of L' comes back.
+    /// Shapes: `factors` `[.., P, 3]` holds (a, b, c) of L = [[a, 0], [b, c]]; the same of L' comes back.
     ///
     /// # Numerics
     /// Where the first row of R^T L vanishes (L singular, its null space along the world's x axis) the square of the first pivot is raised to 1e-12 m/s and

@@ -20,9 +20,7 @@ pub(super) struct Guidance {
 
 impl Guidance {
     /// Positions as the temporal encoder reads them, with the velocity since the positions `before` where there is a frame.
-    ///
-    /// # Shapes
-    /// `[.., P, 2]` -> `[.., P, inputs]`, broadcast with the reference.
+    /// Shapes: `[.., P, 2]` -> `[.., P, inputs]`, broadcast with the reference.
     pub(super) fn seen(&self, positions: &Tensor, before: &Tensor) -> Tensor {
         let relative = positions - &self.reference;
         match &self.frame {

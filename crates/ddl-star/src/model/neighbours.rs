@@ -22,8 +22,7 @@ pub(crate) struct Neighbours {
 }
 
 impl Neighbours {
-    /// # Shapes
-    /// `sizes`: walkers of each scene; `visible`: for each frame, for each scene, `[size, size]`.
+    /// Shapes: `sizes`: walkers of each scene; `visible`: for each frame, for each scene, `[size, size]`.
     pub(crate) fn new(sizes: &[usize], visible: Vec<bool>, device: Device, kind: Kind) -> Self {
         Self {
             scenes: Arc::new(Scenes::new(sizes, &visible)),
@@ -110,9 +109,7 @@ pub struct SeenNeighbours {
 
 impl SeenNeighbours {
     /// Walkers in rows of one length, for libtorch.
-    ///
-    /// # Shapes
-    /// `x` `[B, P, n]` -> `[B * R, L, n]`.
+    /// Shapes: `x` `[B, P, n]` -> `[B * R, L, n]`.
     pub(crate) fn in_rows(&self, x: &Tensor) -> Tensor {
         let rows = self.neighbours.rows();
         let length = rows.mask.size()[3];
@@ -121,9 +118,7 @@ impl SeenNeighbours {
     }
 
     /// Undoes [`in_rows`](Self::in_rows).
-    ///
-    /// # Shapes
-    /// `x` `[B * R, L, n]` -> `[B, P, n]`.
+    /// Shapes: `x` `[B * R, L, n]` -> `[B, P, n]`.
     pub(crate) fn out_of_rows(&self, x: &Tensor) -> Tensor {
         let rows = self.neighbours.rows();
         let (places, width) = (rows.walkers.size()[0], x.size()[2]);

@@ -12,9 +12,7 @@ const JITTER: f64 = 0.06;
 const RECENT: usize = 3;
 
 /// Units of length of everybody in a batch, metres.
-///
-/// # Shapes
-/// `observed` `[T, P, 2]` -> `[1, P, 1]`.
+/// Shapes: `observed` `[T, P, 2]` -> `[1, P, 1]`.
 pub(crate) fn units(observed: &Tensor, time_step: f64) -> Tensor {
     let steps = step_lengths(observed);
     let relative = steps.mean_dim([0i64].as_slice(), true, None::<Kind>) / (time_step * FAST_WALK);
@@ -25,9 +23,7 @@ pub(crate) fn units(observed: &Tensor, time_step: f64) -> Tensor {
 }
 
 /// Lengths of the steps between positions, metres.
-///
-/// # Shapes
-/// `[T, P, 2]` -> `[T - 1, P, 1]`.
+/// Shapes: `[T, P, 2]` -> `[T - 1, P, 1]`.
 pub(crate) fn step_lengths(positions: &Tensor) -> Tensor {
     let steps = positions.size()[0] - 1;
     let moved = positions.narrow(0, 1, steps) - positions.narrow(0, 0, steps);
@@ -35,9 +31,7 @@ pub(crate) fn step_lengths(positions: &Tensor) -> Tensor {
 }
 
 /// Top speeds of all pedestrians in a batch, m/s.
-///
-/// # Shapes
-/// `observed` `[T, P, 2]` -> `[1, P, 1]`.
+/// Shapes: `observed` `[T, P, 2]` -> `[1, P, 1]`.
 pub(crate) fn top_speeds(observed: &Tensor, time_step: f64) -> Tensor {
     let fastest = step_lengths(observed).amax([0i64].as_slice(), true) / time_step;
     (fastest * MotionBounds::<f64>::SPEEDING_UP + MotionBounds::<f64>::SPEED_MARGIN)
@@ -45,9 +39,7 @@ pub(crate) fn top_speeds(observed: &Tensor, time_step: f64) -> Tensor {
 }
 
 /// Own velocities of all pedestrians in a batch, m/s.
-///
-/// # Shapes
-/// `observed` `[T, P, 2]`, T at least 4 -> `[1, P, 2]`.
+/// Shapes: `observed` `[T, P, 2]`, T at least 4 -> `[1, P, 2]`.
 pub(crate) fn velocities(observed: &Tensor, time_step: f64) -> Tensor {
     let frames = observed.size()[0];
     let steps = observed.narrow(0, 1, frames - 1) - observed.narrow(0, 0, frames - 1);

@@ -6,11 +6,8 @@ use std::ops::Range;
 /// Rows are a multiple of this long: what libtorch's fused attention on CUDA takes without copying the mask.
 const ALIGNMENT: usize = 8;
 
-/// Where the walkers of some scenes stand in rows of one length.
-///
-/// A row is about as long as the largest scene and holds as many scenes as fit, each in one piece. Batches of
-/// real recordings have one scene of forty walkers and thirty small ones: a row for each scene would be empty
-/// for the most part.
+/// Where the walkers of some scenes stand in rows of one length: about that of the largest scene, each with as many
+/// whole scenes as fit. A row for each scene would mostly be empty.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Packing {
     rows: usize,

@@ -67,18 +67,6 @@ impl Parameters {
     ///
     /// # Errors
     /// [`StarError::Torch`] when they cannot be fetched from their device.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_network::{DeviceChoice, StarConfig, Variant};
-    /// use ddl_star::{ComputeDevice, TorchNetwork};
-    ///
-    /// let device = ComputeDevice::open(DeviceChoice::Cpu)?;
-    /// let network = TorchNetwork::new(StarConfig::recommended(Variant::Full), 1, device)?;
-    /// let weights = network.parameters().to_weights()?;
-    /// assert_eq!(weights.count(), network.parameters().count());
-    /// # Ok::<(), ddl_star::StarError>(())
-    /// ```
     pub fn to_weights(&self) -> Result<Weights, StarError> {
         let here = self.flat.detach().f_to_device(Device::Cpu)?;
         let numbers = Vec::try_from(here.f_to_kind(Kind::Float)?)?;

@@ -200,11 +200,8 @@ impl TorchNetwork {
         }
     }
 
-    /// Where the walkers are led, as this network reads it.
-    ///
-    /// # Shapes
-    /// `batch` of at least 8 frames, unless the network reads positions relative to the goal in the world's frame; `goals`
-    /// `[.., P, 2]`.
+    /// Where the walkers are led, as this network reads it. Shapes: `batch` of at least 8 frames, unless the network
+    /// reads positions relative to the goal in the world's frame; `goals` `[.., P, 2]`.
     fn course(&self, batch: &SceneBatch, goals: &Tensor, rule: StepRule) -> Guidance {
         let config = self.config();
         let time_step = config.time_step;
@@ -245,9 +242,7 @@ impl TorchNetwork {
 }
 
 /// Positions relative to the mean over all walkers of the scene and all frames so far.
-///
-/// # Shapes
-/// `positions` `[T, P, 2]` -> the same.
+/// Shapes: `positions` `[T, P, 2]` -> the same.
 fn centre(batch: &SceneBatch, positions: &Tensor) -> Tensor {
     let frames = positions.size()[0];
     let count = Tensor::arange_start(1, frames + 1, (positions.kind(), positions.device()))

@@ -3,10 +3,8 @@
 use std::ops::Range;
 use tch::{Device, Kind, Tensor};
 
-/// Averages over scenes whose walkers stand one after the other.
-///
-/// Scenes are laid side by side, filled up to the size of the largest, and summed: the same order of
-/// additions whenever it is computed, which sums by index do not have on CUDA.
+/// Averages over scenes whose walkers stand one after the other: laid side by side and summed, in the same order
+/// whenever it is computed, which sums by index do not have on CUDA.
 #[derive(Debug)]
 pub(crate) struct SceneMeans {
     scenes: i64,
@@ -47,9 +45,7 @@ impl SceneMeans {
     }
 
     /// For every walker, the mean of `x` over its scene.
-    ///
-    /// # Shapes
-    /// `x` `[B, P, n]` -> the same.
+    /// Shapes: `x` `[B, P, n]` -> the same.
     pub(crate) fn of(&self, x: &Tensor) -> Tensor {
         let (batch, width) = (x.size()[0], x.size()[2]);
         let side_by_side =

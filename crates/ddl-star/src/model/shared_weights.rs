@@ -1,9 +1,8 @@
 //! Affine maps that are applied many times in a pass: the gradients of their weights from all uses at once.
 //!
-//! A frame of the network applies some twenty maps to a few hundred walkers. Left alone, libtorch computes a
-//! gradient of each weight and bias at each of 19 frames and adds them up: four small operations a use, which on
-//! CUDA cost their launch and little else. Here the weights are constants of libtorch's graph; what comes back
-//! to the output of every use is kept, and dW = G^T X is one product over the rows of all uses.
+//! libtorch would compute a gradient at each of 19 frames and add them up, which on CUDA costs launches and little
+//! else. Here the weights are constants of its graph; what comes back to the output of every use is kept, and dW = G^T
+//! X is one product over the rows of all uses.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -37,9 +36,7 @@ struct UsedRows {
 
 impl SharedWeights {
     /// y = x W^T + b, to be differentiated by [`gradient`](Self::gradient) alone.
-    ///
-    /// # Shapes
-    /// `x` `[.., inputs]`, `weight` `[outputs, inputs]`, `bias` `[outputs]` -> `[.., outputs]`.
+    /// Shapes: `x` `[.., inputs]`, `weight` `[outputs, inputs]`, `bias` `[outputs]` -> `[.., outputs]`.
     pub(crate) fn linear(&self, x: &Tensor, weight: &Tensor, bias: &Tensor) -> Tensor {
         let output = x.linear(&weight.detach(), Some(&bias.detach()));
         let output = if output.requires_grad() {

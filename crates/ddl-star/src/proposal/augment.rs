@@ -1,7 +1,5 @@
-//! Changes to a batch that leave a plausible scene: mirrored, turned, enlarged, observed less well.
-//!
-//! A fold's windows overlap: 15,000 to 38,000 of them show 900 to 1500 different walkers. What identifies
-//! a walker must therefore change from visit to visit, or it is learned by heart.
+//! Changes to a batch that leave a plausible scene: mirrored, turned, enlarged, observed less well. A fold's windows
+//! overlap: what identifies a walker must change from visit to visit, or it is learned by heart.
 
 use super::data::Views;
 use ddl_network::ProposalTraining;
@@ -11,9 +9,7 @@ use tch::{Kind, Tensor};
 const NEIGHBOUR_NOISE: f64 = 0.02;
 
 /// Augments a batch with numbers from libtorch's generator.
-///
-/// # Shapes
-/// `views` `[M, B, ..]`, `future` `[M, B, 12, 2]`; the same come back.
+/// Shapes: `views` `[M, B, ..]`, `future` `[M, B, 12, 2]`; the same come back.
 pub(crate) fn augment(
     views: &Views,
     future: &Tensor,

@@ -7,9 +7,7 @@ use ddl_network::{PedestrianView, ProposalConfig};
 use tch::{Device, Kind, Tensor};
 
 /// Views as tensors.
-///
-/// # Shapes
-/// `own` `[.., T, 2]`, `neighbours` `[.., J, T, 2]`, `present` `[.., J]` (1 or 0), with T = 8.
+/// Shapes: `own` `[.., T, 2]`, `neighbours` `[.., J, T, 2]`, `present` `[.., J]` (1 or 0), with T = 8.
 #[derive(Debug)]
 pub(crate) struct Views {
     pub(crate) own: Tensor,
@@ -46,9 +44,7 @@ impl Views {
     }
 
     /// The views of the given rows, in the shape of `rows`.
-    ///
-    /// # Shapes
-    /// `rows` `[M, B]` -> tensors `[M, B, ..]`.
+    /// Shapes: `rows` `[M, B]` -> tensors `[M, B, ..]`.
     pub(crate) fn rows(&self, rows: &Tensor) -> Self {
         let take = |tensor: &Tensor| rows_of(tensor, rows);
         Self {

@@ -16,9 +16,7 @@ pub(crate) struct LossWeights {
 
 /// Mean over walkers of the (relaxed) distance of the nearest proposal, plus the cross-entropy of
 /// the nearest one's probability; summed over members, which learn apart.
-///
-/// # Shapes
-/// `future` `[M, B, 12, 2]` -> the loss to descend, and the distance part as the mean over members
+/// Shapes: `future` `[M, B, 12, 2]` -> the loss to descend, and the distance part as the mean over members
 /// (metres), both scalar.
 pub(crate) fn winner_takes_all(
     proposals: &Proposals,

@@ -18,9 +18,7 @@ use tch::{Kind, Tensor};
 const CHUNK: usize = 2048;
 
 /// What the network says of a batch.
-///
-/// # Shapes
-/// `ends` `[M, B, K, 2]`, `waypoints` `[M, B, K, 3, 2]` (metres), `logits` `[M, B, K]`.
+/// Shapes: `ends` `[M, B, K, 2]`, `waypoints` `[M, B, K, 3, 2]` (metres), `logits` `[M, B, K]`.
 #[derive(Debug)]
 pub(crate) struct Proposals {
     pub(crate) ends: Tensor,
@@ -77,9 +75,7 @@ impl TorchProposals {
     }
 
     /// y = x W + b of every member.
-    ///
-    /// # Shapes
-    /// `x` `[M, B, inputs]` -> `[M, B, outputs]`.
+    /// Shapes: `x` `[M, B, inputs]` -> `[M, B, outputs]`.
     fn affine(&self, layer: MemberAffine, x: &Tensor) -> Tensor {
         let tensors = &self.parameters.tensors()[layer.tensor()..];
         tensors[1].baddbmm(x, &tensors[0], 1.0, 1.0)
@@ -137,8 +133,7 @@ impl TorchProposals {
         Ok(proposed)
     }
 
-    /// # Shapes
-    /// `views` `[M, B, ..]` -> `[M, B, K, ..]`.
+    /// Shapes: `views` `[M, B, ..]` -> `[M, B, K, ..]`.
     pub(crate) fn forward(&self, views: &Views) -> Proposals {
         let size = views.own.size();
         let (m, b) = (size[0], size[1]);
@@ -179,9 +174,7 @@ impl TorchProposals {
     }
 
     /// What the walker makes of its neighbours, and how many there are.
-    ///
-    /// # Shapes
-    /// `code` `[M, B, width]` -> `[M, B, neighbour_width]`, `[M, B, 1]`.
+    /// Shapes: `code` `[M, B, width]` -> `[M, B, neighbour_width]`, `[M, B, 1]`.
     fn look_around(&self, code: &Tensor, views: &Views) -> (Tensor, Tensor) {
         let size = views.present.size();
         let (m, b, slots) = (size[0], size[1], size[2]);
@@ -211,8 +204,7 @@ impl TorchProposals {
         (context, count)
     }
 
-    /// # Shapes
-    /// -> `[M, B, J, 9]` and distances `[M, B, J]` (metres) at the last observed step.
+    /// Shapes: -> `[M, B, J, 9]` and distances `[M, B, J]` (metres) at the last observed step.
     fn neighbour_features(&self, views: &Views) -> (Tensor, Tensor) {
         let last = views.neighbours.select(-2, OBSERVED as i64 - 1);
         let here = views.own.select(-2, OBSERVED as i64 - 1).unsqueeze(2);

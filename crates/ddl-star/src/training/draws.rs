@@ -44,9 +44,6 @@ pub(crate) struct StepDraw {
 
 impl StepDraws {
     /// Draws for `steps`; `turned` and `mirrored` where batches are to be.
-    ///
-    /// # Errors
-    /// [`StarError::Torch`] when the device cannot hold the numbers.
     pub(crate) fn new(
         steps: Range<u64>,
         schedule: &Schedule,

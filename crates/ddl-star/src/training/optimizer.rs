@@ -32,9 +32,7 @@ impl Adam {
 
     /// One step against `gradient`, whose norm is `norm`, clipped to norm `clip`. Behind a shut gate neither the
     /// parameters nor the moments change, whatever the gradient is; the step is counted all the same.
-    ///
-    /// # Shapes
-    /// `gradient`: as many numbers as [`Parameters::count`]; `norm`: scalar.
+    /// Shapes: `gradient`: as many numbers as [`Parameters::count`]; `norm`: scalar.
     ///
     /// # Numerics
     /// m / (1 - b1^n) / (sqrt(v / (1 - b2^n)) + e) is computed as c m / (sqrt(v) + e'), with both corrections in the
@@ -129,7 +127,10 @@ mod tests {
             [parameters.flat(), &adam.first_moment, &adam.second_moment].map(Tensor::copy)
         };
         let before = state(&adam);
-        gate.watch(&Tensor::from_slice(&[f64::NAN]));
+        gate.watch(&Tensor::from_slice(&[0.0, 1e308]));
+        assert_eq!(gate.shut().int64_value(&[]), 0);
+        gate.watch(&Tensor::from_slice(&[1.0, f64::INFINITY]));
+        gate.watch(&Tensor::from_slice(&[1.0]));
         for bad in [f64::NAN, f64::INFINITY, 1.0] {
             let gradient = &gradient * bad;
             adam.step(&parameters, &gradient, &gradient.norm(), 1.0, 0.01, &gate);

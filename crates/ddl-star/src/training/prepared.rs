@@ -6,11 +6,8 @@ use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
 use std::cell::OnceCell;
 use tch::{Device, Kind, Tensor};
 
-/// Training windows as batches that stay where the network computes.
-///
-/// A schedule shuffles its windows once, so that every window belongs to one batch for good: a batch is
-/// laid out (positions, who sees whom) and copied to the device at its first visit, and found there at
-/// every later one.
+/// Training windows as batches that stay where the network computes: every window belongs to one batch for good, which
+/// is laid out at its first visit and found at every later one.
 #[derive(Debug)]
 pub(crate) struct PreparedBatches {
     windows: Vec<Window>,
@@ -93,12 +90,7 @@ impl PreparedBatches {
     }
 
     /// The batch of that number, which consists of `windows`, the same at every call.
-    ///
-    /// # Shapes
-    /// All 20 frames, with neighbours of the first 19.
-    ///
-    /// # Errors
-    /// Those of [`SceneBatch::new`].
+    /// Shapes: All 20 frames, with neighbours of the first 19.
     pub(crate) fn batch(
         &self,
         index: usize,

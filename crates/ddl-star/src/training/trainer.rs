@@ -280,9 +280,6 @@ impl Trainer {
     }
 
     /// Reads the losses that are not read yet: their mean, if there are any. Waits for the device.
-    ///
-    /// # Errors
-    /// [`StarError::NonFinite`] for the first step that has none; training is then back before that step.
     fn read(&mut self) -> Result<Option<f64>, StarError> {
         let unread = std::mem::take(&mut self.unread);
         if unread.is_empty() {

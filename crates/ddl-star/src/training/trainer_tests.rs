@@ -121,29 +121,6 @@ fn saving_reads_what_is_not_read_yet() {
     ));
 }
 
-/// Saved halfway between two readings, resumed, and trained on: as one that was never stopped.
-#[test]
-fn a_resumed_training_goes_on_alike() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("state.safetensors");
-    for kind in [Kind::Float, Kind::Double] {
-        let (mut whole, mut first) = (trainer(kind, 16), trainer(kind, 16));
-        for _ in 0..3 {
-            first.step().unwrap();
-        }
-        first.save(&Origin::default(), &path).unwrap();
-        let mut second = trainer(kind, 16);
-        second.resume(&Origin::default(), &path).unwrap();
-        while !second.is_finished() {
-            second.step().unwrap();
-        }
-        while !whole.is_finished() {
-            whole.step().unwrap();
-        }
-        assert_eq!(state(&second), state(&whole), "{kind:?}");
-    }
-}
-
 /// What Adam would make NaN of, and steps that are not the run's.
 #[test]
 fn a_state_that_cannot_be_is_refused() {

@@ -70,7 +70,7 @@ pub fn evaluate(
     observe: impl FnMut(&EvaluationProgress) -> ControlFlow<()>,
 ) -> Result<Evaluation, DdlError> {
     let part = (request.on, request.validation_recordings.as_slice());
-    let test = TestSet::of_run_with(model.goal_model(), dataset, part, request.test_walkers)?;
+    let test = TestSet::of_run(model.goal_model(), dataset, part, request.test_walkers)?;
     let passes = usize::from(request.protocols.contains(&Protocol::Published))
         + usize::from(
             request
@@ -175,7 +175,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 |forecasts: &[Forecast], name: &str| protocol.admit(forecasts.to_vec(), name);
             let mut forecasted = Vec::new();
             for (manner, forecasts) in manners.iter().zip(&forecasts.model) {
-                if manner.protocols.contains(&protocol) {
+                if manner.protocol == protocol {
                     let admitted = admit(forecasts, &model.name())?;
                     forecasted.push(Forecasted::model(
                         &model.name(),

@@ -87,7 +87,7 @@ pub fn evaluate_goals(
     dataset: &Dataset,
     on: EvaluationSplit,
 ) -> Result<MeasuredGoals, DdlError> {
-    let test = TestSet::of_run(model, dataset, on, None)?;
+    let test = TestSet::of_run(model, dataset, (on, &[]), None)?;
     let rule = test.rules.first().map(|(rule, _)| *rule);
     let windows: Vec<Window> = test.headline().cloned().collect();
     let observed: Vec<Window> = windows.iter().map(Window::without_future).collect();

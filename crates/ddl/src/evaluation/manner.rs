@@ -14,7 +14,7 @@ pub(crate) struct Manner {
     pub(crate) way: Way,
     /// What is different from the model as it is; `None` for that one.
     pub(crate) change: Option<String>,
-    pub(crate) protocols: &'static [Protocol],
+    pub(crate) protocol: Protocol,
 }
 
 /// Which goals the model is given.
@@ -51,73 +51,52 @@ impl Manner {
         }
     }
 
-    /// The model as it is; what the published steps would make of the same flow, what is left of it without its expert library, and
-    /// where `published` is measured too, what that protocol's goals are worth when none of them is chosen with the truth, all told
-    /// once, in the headline protocol; in `single`, what its network would make of the way to the one goal; and, where asked for, keeping
-    /// clear of others.
+    /// The model as it is and, where asked for, keeping clear of others. Once each: by the published steps, without its
+    /// expert library, and to the published goals; in `single`, on the way that its network would make.
     pub(crate) fn all(model: &Ddl, asked: &[Protocol]) -> Vec<Self> {
-        let asked = |protocol| asked.contains(&protocol);
         let variant = model.config().star.variant;
         let mut manners = Vec::new();
-        let mut as_it_walks = |clearance: Option<Clearance>, change: Option<String>| {
-            if asked(Protocol::Fair) {
+        let mut add = |protocol: Protocol, goals: GivenGoals, way: Way, change: Option<String>| {
+            if asked.contains(&protocol) {
                 manners.push(Self {
-                    goals: GivenGoals::Own,
-                    way: Way::Shaped(Gait::Stable(clearance)),
-                    change: change.clone(),
-                    protocols: &[Protocol::Fair],
-                });
-            }
-            if asked(Protocol::Single) {
-                manners.push(Self {
-                    goals: GivenGoals::Central,
-                    way: Way::Neutral(clearance),
+                    goals,
+                    way,
                     change,
-                    protocols: &[Protocol::Single],
+                    protocol,
                 });
             }
         };
-        as_it_walks(None, None);
-        if let Some(clearance) = model.clearance() {
-            as_it_walks(
-                Some(clearance),
-                Some(format!("minding others within {} m", clearance.distance())),
-            );
+        let stable = Way::Shaped(Gait::Stable(None));
+        let minding = |clearance: Clearance| {
+            let change = format!("minding others within {} m", clearance.distance());
+            (Some(clearance), Some(change))
+        };
+        let careful = model.clearance().map(minding);
+        for (clearance, change) in [(None, None)].into_iter().chain(careful) {
+            let shaped = Way::Shaped(Gait::Stable(clearance));
+            add(Protocol::Fair, GivenGoals::Own, shaped, change.clone());
+            let neutral = Way::Neutral(clearance);
+            add(Protocol::Single, GivenGoals::Central, neutral, change);
         }
+        let said = |change: &str| Some(change.to_owned());
         // A network that has learned whole stable walks has never seen where plain steps would lead it: they diverge.
         let learned_on_plain_steps = model.config().training.objective == Objective::NextStep;
-        if asked(Protocol::Fair) && variant.dynamics() && learned_on_plain_steps {
-            manners.push(Self {
-                goals: GivenGoals::Own,
-                way: Way::Shaped(Gait::PlainEuler),
-                change: Some("with plain Euler steps".to_owned()),
-                protocols: &[Protocol::Fair],
-            });
+        if variant.dynamics() && learned_on_plain_steps {
+            let plain = Way::Shaped(Gait::PlainEuler);
+            let change = said("with plain Euler steps");
+            add(Protocol::Fair, GivenGoals::Own, plain, change);
         }
-        if asked(Protocol::Single) && variant.uses_goal() {
-            manners.push(Self {
-                goals: GivenGoals::Central,
-                way: Way::Shaped(Gait::Stable(None)),
-                change: Some("on the way that its network shapes".to_owned()),
-                protocols: &[Protocol::Single],
-            });
-        }
-        let has_library = model.goal_model().has_library_beside_network();
-        if asked(Protocol::Fair) && has_library && variant.uses_goal() {
-            manners.push(Self {
-                goals: GivenGoals::WithoutLibrary,
-                way: Way::Shaped(Gait::Stable(None)),
-                change: Some(WITHOUT_LIBRARY.to_owned()),
-                protocols: &[Protocol::Fair],
-            });
-        }
-        if asked(Protocol::Fair) && asked(Protocol::Published) && variant.uses_goal() {
-            manners.push(Self {
-                goals: GivenGoals::Published,
-                way: Way::Shaped(Gait::Stable(None)),
-                change: Some("with the published goals, all 20 kept".to_owned()),
-                protocols: &[Protocol::Fair],
-            });
+        if variant.uses_goal() {
+            let change = said("on the way that its network shapes");
+            add(Protocol::Single, GivenGoals::Central, stable, change);
+            if model.goal_model().has_library_beside_network() {
+                let change = said(WITHOUT_LIBRARY);
+                add(Protocol::Fair, GivenGoals::WithoutLibrary, stable, change);
+            }
+            if asked.contains(&Protocol::Published) {
+                let change = said("with the published goals, all 20 kept");
+                add(Protocol::Fair, GivenGoals::Published, stable, change);
+            }
         }
         manners
     }

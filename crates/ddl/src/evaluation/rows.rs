@@ -12,7 +12,10 @@ use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, baseline};
 #[derive(Debug)]
 pub(crate) struct Forecasted {
     forecaster: String,
-    made_by: MadeBy,
+    /// By the trained model, or by straight lines to goals, which depend on the run's seed alone.
+    by_model: bool,
+    /// Where its goals come from, in words.
+    goals: String,
     forecasts: Vec<Forecast>,
 }
 
@@ -31,7 +34,8 @@ impl Forecasted {
                 Some(change) if name == name::NAME => format!("{name} {change}"),
                 Some(change) => format!("{name}, {change}"),
             },
-            made_by: MadeBy::Model { goals },
+            by_model: true,
+            goals,
             forecasts,
         }
     }
@@ -40,19 +44,11 @@ impl Forecasted {
     pub(crate) fn lines_to(goal: &str, recipe: String, forecasts: Vec<Forecast>) -> Self {
         Self {
             forecaster: format!("straight line to {goal}"),
-            made_by: MadeBy::Goals { recipe },
+            by_model: false,
+            goals: recipe,
             forecasts,
         }
     }
-}
-
-/// What decided the forecasts, and so what their conditions must name.
-#[derive(Debug)]
-enum MadeBy {
-    /// The trained model, and where its goals come from.
-    Model { goals: String },
-    /// The run's goals alone, which depend on its seed.
-    Goals { recipe: String },
 }
 
 /// What the conditions of all rows of a protocol have in common.
@@ -84,12 +80,11 @@ impl ResultRows<'_> {
                 let of_rule: Vec<Forecast> =
                     indices.iter().map(|&i| one.forecasts[i].clone()).collect();
                 let mut conditions = plain.clone();
-                match &one.made_by {
-                    MadeBy::Model { goals } => conditions = self.of_the_model(conditions, goals),
-                    MadeBy::Goals { recipe } => {
-                        conditions.seed = Some(self.model.config().training.seed);
-                        conditions.recipe = Some(recipe.clone());
-                    }
+                if one.by_model {
+                    conditions = self.of_the_model(conditions, &one.goals);
+                } else {
+                    conditions.seed = Some(self.model.config().training.seed);
+                    conditions.recipe = Some(one.goals.clone());
                 }
                 conditions.forecaster.clone_from(&one.forecaster);
                 rows.push(ResultRow::score(conditions, &windows, &of_rule)?);

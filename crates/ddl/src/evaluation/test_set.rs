@@ -29,24 +29,9 @@ pub(crate) struct TestSet {
 }
 
 impl TestSet {
-    /// The windows that the run may be measured on.
-    ///
-    /// # Errors
-    /// When the data is not what the run was trained on, or it kept no window for validation.
+    /// The windows that the run may be measured on; `whole` names the validation part of own recordings, if not the
+    /// usual ones.
     pub(crate) fn of_run(
-        goals: &GoalModel,
-        dataset: &Dataset,
-        on: EvaluationSplit,
-        walkers: Option<usize>,
-    ) -> Result<Self, DdlError> {
-        Self::of_run_with(goals, dataset, (on, &[]), walkers)
-    }
-
-    /// The same, where other recordings than the usual ones may be taken for the validation part of own recordings.
-    ///
-    /// # Errors
-    /// As [`of_run`](Self::of_run).
-    pub(crate) fn of_run_with(
         goals: &GoalModel,
         dataset: &Dataset,
         (on, whole): (EvaluationSplit, &[String]),
@@ -89,9 +74,6 @@ impl TestSet {
     }
 
     /// What the run kept for validation, which may hold no window.
-    ///
-    /// # Errors
-    /// When it kept nothing, or these are other recordings than it was trained on.
     pub(crate) fn kept_by(
         goals: &GoalModel,
         dataset: &Dataset,
@@ -142,9 +124,6 @@ impl TestSet {
     }
 
     /// Somebody's own recordings: the one that the model was trained without, where it is there, else all of them.
-    ///
-    /// # Errors
-    /// When the model has learned from one of them, or nobody in them was seen for 20 steps.
     fn of_own(
         goals: &GoalModel,
         dataset: &Dataset,
@@ -307,44 +286,32 @@ impl TestSet {
     }
 
     /// A seeded part of the windows, in their order, with at least `walkers` walkers.
-    fn part(mut self, walkers: usize) -> Self {
+    fn part(self, walkers: usize) -> Self {
         let mut order: Vec<usize> = (0..self.windows.len()).collect();
         let mut rng = ChaCha8Rng::seed_from_u64(SUBSET_SEED);
         for last in (1..order.len()).rev() {
             order.swap(last, rng.random_range(0..=last));
         }
-        let mut taken = vec![false; self.windows.len()];
         let mut count = 0;
-        for index in order {
-            if count >= walkers {
-                break;
-            }
-            taken[index] = true;
+        let wanted = order.into_iter().take_while(|&index| {
+            let wanted = count < walkers;
             count += self.windows[index].len();
-        }
-        let mut new_index = vec![None; taken.len()];
-        let mut windows = Vec::new();
-        for (index, window) in std::mem::take(&mut self.windows).into_iter().enumerate() {
-            if taken[index] {
-                new_index[index] = Some(windows.len());
-                windows.push(window);
-            }
-        }
-        let rules = std::mem::take(&mut self.rules)
-            .into_iter()
-            .map(|(rule, indices)| {
-                (
-                    rule,
-                    indices
-                        .into_iter()
-                        .filter_map(|index| new_index[index])
-                        .collect(),
-                )
-            })
-            .collect();
+            wanted
+        });
+        let mut taken: Vec<usize> = wanted.collect();
+        taken.sort_unstable();
+        let of_part = |indices: Vec<usize>| {
+            let places = indices.into_iter();
+            places
+                .filter_map(|i| taken.binary_search(&i).ok())
+                .collect()
+        };
+        let rules = self.rules.into_iter();
         Self {
-            windows,
-            rules,
+            windows: taken.iter().map(|&i| self.windows[i].clone()).collect(),
+            rules: rules
+                .map(|(rule, indices)| (rule, of_part(indices)))
+                .collect(),
             subset: None,
             ..self
         }

@@ -10,11 +10,8 @@ use ddl_network::{NetworkFrame, StarConfig, Variant, motion_bounds};
 
 /// A forecast whose every hypothesis carries a Lyapunov certificate.
 ///
-/// The certificate of a hypothesis speaks of exactly the positions that the forecast holds, from the
-/// last observed position on: the distance to the goal before each step and after the last, the
-/// smallest eigenvalue of the metric P, how far the time step is below the bound of a plain Euler
-/// step, and by how much the step turns from the goal. [`LyapunovCertificate::holds`] judges it anew
-/// from these numbers.
+/// The certificate speaks of exactly the positions that the forecast holds, from the last observed one on;
+/// [`LyapunovCertificate::holds`] judges it anew from its numbers.
 ///
 /// # Shapes
 /// One certificate for each pedestrian and hypothesis, `[N][K]`, of 12 steps each.

@@ -9,51 +9,22 @@ use std::borrow::Borrow;
 
 /// A forecaster that is fed one frame at a time, 0.4 s apart or faster, and remembers what it has to.
 ///
-/// Once somebody has been seen for 8 steps in a row (or as often as a [`Completion`] asks for), every [`push`](Self::push) forecasts
-/// everybody of whom that is true, and says who they are. The numbers are those of [`Forecaster::forecast`] on the window that
-/// [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far, bit for bit. What counts as
-/// a frame in a row, and what a gap or a walker who leaves does, is that of [`LiveTracks`].
-///
-/// The forecaster is owned, or borrowed: `LiveForecaster::new(&model)` watches several places with one model.
+/// Once somebody has been seen for 8 steps in a row (or as often as a [`Completion`] asks for), every
+/// [`push`](Self::push) forecasts everybody of whom that is true, with the bits of [`Forecaster::forecast`] on the
+/// window that [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far; of
+/// gaps, see [`LiveTracks`]. The forecaster is owned, or borrowed: `LiveForecaster::new(&model)` watches several places
+/// with one model.
 ///
 /// # What is kept from frame to frame
-/// What was seen of those who are there during the last 8 steps, and the model as it was loaded: its networks, its expert library and the index that
-/// is searched for similar walkers. A walker who leaves is forgotten after a step (or the longest hole that is filled), so that memory is bounded by the
-/// people present.
-///
-/// The network's *tokens* of past frames, with their keys and values, are not kept, because they are not the same numbers one
-/// frame later. A token is made of the walker's position relative to its goal (the goal shift), and the goals are estimated
-/// anew at every frame; without goal shift, it is relative to the last observed position, which moves on. It is also made of the
-/// position relative to the mean of the scene, which runs over the frames and the walkers of the window, both others one frame
-/// later. Whoever carried tokens over would compute another function than the one that was trained. Within a
-/// forecast, where goals and window stand still, they are kept. Nor is who was near whom: it is judged
-/// relative to a point that moves with the scene, and finding it anew takes less than a thousandth of a forecast.
+/// What was seen during the last 8 steps of those who are there, so that memory is bounded by the people present.
+/// Nothing of the networks: their tokens are relative to goals and to the scene, which are others at every frame.
 ///
 /// # Errors
 /// After an error of [`push`](Self::push) or [`push_certified`](LiveForecaster::push_certified) nothing has changed: the same
 /// frame may be pushed again, without whatever was wrong with it. A frame never pushed is a gap.
 ///
 /// # Examples
-/// ```no_run
-/// use ddl::data::PedestrianId;
-/// use ddl::{Ddl, DeviceChoice, LiveForecaster};
-///
-/// # fn tracker() -> Vec<Vec<(PedestrianId, [f64; 2])>> { Vec::new() }
-/// ddl::prepare(DeviceChoice::Cpu, None)?;
-/// let mut live = LiveForecaster::new(Ddl::load("runs/zara1".as_ref(), DeviceChoice::Cpu)?);
-/// for (frame, people) in (0..).zip(tracker()) {
-///     // every 0.4 s: who is where, in metres
-///     let Some(now) = live.push(frame, people)? else { continue };
-///     for (i, pedestrian) in now.window.pedestrians().iter().enumerate() {
-///         let k = now.forecast.representative(i);
-///         let [x, y] = now.forecast.hypothesis(i, k)[11]; // in 4.8 s
-///         println!("{pedestrian}: ({x:.1}, {y:.1}) m");
-///     }
-/// }
-/// # Ok::<(), ddl::DdlError>(())
-/// ```
-///
-/// Any [`Forecaster`] can be fed so, such as constant velocity, which needs no model:
+/// Any [`Forecaster`] can be fed so, a loaded model or constant velocity, which needs none:
 /// ```
 /// use ddl::LiveForecaster;
 /// use ddl::data::PedestrianId;

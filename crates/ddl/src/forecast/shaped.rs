@@ -77,14 +77,11 @@ pub(crate) fn without_goals(
         count: NOISE_HYPOTHESES,
         seed,
     };
+    // A goal for everybody, which this variant does not read.
+    let unused = |window: &Window| vec![vec![[0.0; 2]]; window.len()];
+    let goals: Vec<_> = windows.iter().map(unused).collect();
     network
-        .forecast_windows(
-            windows,
-            &unused_goals(windows),
-            noise,
-            StepRule::Bounded,
-            None,
-        )
+        .forecast_windows(windows, &goals, noise, StepRule::Bounded, None)
         .map_err(|error| ForecastError::model(NAME, error))?
         .into_iter()
         .map(equally_likely)
@@ -98,12 +95,4 @@ pub(crate) fn equally_likely(rollout: WindowRollout) -> Result<Forecast, Forecas
         rollout.hypotheses,
         rollout.positions,
     )?)
-}
-
-/// A goal for everybody, for the variant that reads none.
-pub(crate) fn unused_goals(windows: &[Window]) -> Vec<Vec<Vec<Position>>> {
-    windows
-        .iter()
-        .map(|window| vec![vec![[0.0; 2]]; window.len()])
-        .collect()
 }

@@ -19,9 +19,6 @@ const MEND: &str = "copy it again, or delete it and run the same training again"
 const HEADER_BYTES: u64 = 1 << 20;
 
 /// The library of all walkers of the training windows.
-///
-/// # Errors
-/// When there is no walker.
 pub(crate) fn library(windows: &[Window]) -> Result<ExpertLibrary, DdlError> {
     let tracks: Vec<Vec<Position>> = windows
         .iter()
@@ -47,9 +44,6 @@ pub(crate) fn save(library: &ExpertLibrary, origin: &Origin, path: &Path) -> Res
 }
 
 /// The library of a run of this origin, with as many tracks as its configuration says.
-///
-/// # Errors
-/// When the file is broken, or belongs to another run.
 pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<ExpertLibrary, DdlError> {
     // Nothing more is read, and no room made, than the library of the run takes.
     let most = (tracks as u64)
@@ -96,28 +90,16 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         );
         return Err(DdlError::run(path, problem));
     }
-    let tracks: Vec<Vec<Position>> = view
-        .data()
-        .chunks_exact(TRACK_BYTES)
-        .map(|track| {
-            track
-                .chunks_exact(16)
-                .map(|bytes| [number(bytes), number(&bytes[8..])])
-                .collect()
-        })
-        .collect();
+    let (numbers, _) = view.data().as_chunks::<8>();
+    let numbers: Vec<f64> = numbers.iter().map(|&of| f64::from_le_bytes(of)).collect();
+    let (positions, _) = numbers.as_chunks::<2>();
+    let tracks = positions.chunks_exact(WINDOW).map(<[_]>::to_vec).collect();
     ExpertLibrary::new(tracks, TIME_STEP).map_err(|error| unusable(&error, path))
 }
 
 /// The error about a library of the right shape that goals cannot be retrieved from: tracks that nobody can have walked, or too few.
 pub(crate) fn unusable(error: &dyn std::error::Error, path: &Path) -> DdlError {
     DdlError::run(path, format!("cannot be used: {error}; {MEND}"))
-}
-
-fn number(bytes: &[u8]) -> f64 {
-    let mut eight = [0; 8];
-    eight.copy_from_slice(&bytes[..8]);
-    f64::from_le_bytes(eight)
 }
 
 #[cfg(test)]

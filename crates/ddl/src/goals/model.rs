@@ -257,9 +257,6 @@ impl GoalModel {
     }
 
     /// The goals that the model would have without its expert library; its own where none of them are proposed.
-    ///
-    /// # Errors
-    /// As [`GoalModel::goals`].
     pub(crate) fn goals_without_library(
         &self,
         windows: &[Window],
@@ -331,12 +328,9 @@ impl GoalModel {
             .collect())
     }
 
-    /// Where walkers whose future is known are led in training: to the proposed goal nearest the true end, or to the true
-    /// end where nothing is proposed. What is retrieved is left out: the library holds the very walkers that are learned from. The
-    /// proposals have learned from them too, which costs less: they know nobody by heart (`docs/goals.md`, training).
-    ///
-    /// # Errors
-    /// When libtorch fails.
+    /// Where walkers whose future is known are led in training: to the proposed goal nearest the true end, or to the
+    /// true end where nothing is proposed. What is retrieved is left out: the library holds the very walkers that are
+    /// learned from (`docs/goals.md`, training).
     pub(crate) fn lessons(&self, windows: &[Window]) -> Result<Vec<Vec<Position>>, ForecastError> {
         let end = |window: &Window, i: usize| window.track(i)[WINDOW - 1];
         if self.proposal_network().is_none() {
@@ -360,9 +354,6 @@ impl GoalModel {
     }
 
     /// The published estimator: under the protocol `published` its query reads the first future frame.
-    ///
-    /// # Errors
-    /// When there is no expert library.
     pub(crate) fn published_estimator(&self, query: QuerySpan) -> Result<GoalEstimator, DdlError> {
         let Some(estimator) = self.estimator() else {
             return Err(self.source.wrong(

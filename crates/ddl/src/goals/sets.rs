@@ -9,9 +9,6 @@ use ddl_goal::{GoalEstimator, GoalSet};
 ///
 /// The estimator sees the observed positions alone, unless it is the published one, whose query
 /// reads one future position.
-///
-/// # Errors
-/// When a window is shorter than the estimator's query.
 pub(crate) fn retrieved(
     estimator: &GoalEstimator,
     windows: &[Window],

@@ -14,9 +14,6 @@ pub(crate) struct Seen {
 }
 
 /// Every pedestrian of a window with its `neighbours` nearest others, from the observed frames, `time_step` seconds apart.
-///
-/// # Errors
-/// When positions are too far apart for their differences to be finite.
 pub(crate) fn of_window(
     window: &Window,
     neighbours: usize,
@@ -38,9 +35,6 @@ pub(crate) fn of_window(
 }
 
 /// Every pedestrian of the windows with its future, to learn from; windows without one are left out.
-///
-/// # Errors
-/// As [`of_window`].
 pub(crate) fn examples(
     windows: &[Window],
     neighbours: usize,

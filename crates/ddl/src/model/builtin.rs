@@ -8,16 +8,6 @@ use std::str::FromStr;
 ///
 /// The five are those of the benchmark, in the `star` convention, packed: goals are proposed, there is no expert library. What each
 /// reached on the scene that it has not seen stands in `models/reported.json` of this crate.
-///
-/// # Examples
-/// ```
-/// use ddl::BuiltinModel;
-///
-/// let default = BuiltinModel::default();
-/// assert_eq!(default, "hotel".parse()?);
-/// assert_eq!(default.config()?.data.fold, "hotel"); // never seen in training
-/// # Ok::<(), ddl::DdlError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum BuiltinModel {
     /// Trained without the scene `eth`.

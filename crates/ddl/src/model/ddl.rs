@@ -25,10 +25,9 @@ use ddl_network::{ForecastWindows, MotionNetwork, NetworkError, Precision};
 /// goal falls at every step. Under `single` it is asked for [one forecast](Self::forecast_one) alone. It reads the 8 observed frames and nothing else.
 ///
 /// # Numerics
-/// The network computes in `f32` and shapes the metric P of each step; the variants with dynamics then
-/// walk in `f64`, by [`StableEuler`](ddl_dynamics::StableEuler), whose guarantee holds for the computed
-/// numbers: what is forecast comes nearer to its goal at every step, exactly.
-/// [`forecast_certified`](Self::forecast_certified) hands out the evidence.
+/// The network computes in `f32` and shapes the metric P of each step; the variants with dynamics walk in `f64`, by
+/// steps whose guarantee holds for the computed numbers. [`forecast_certified`](Self::forecast_certified) hands out the
+/// evidence.
 ///
 /// # Examples
 /// ```
@@ -139,9 +138,6 @@ impl Ddl {
     }
 
     /// The weights of the network that forecasts and of the one that proposes goals, where there is one.
-    ///
-    /// # Errors
-    /// When they cannot be fetched from their device.
     pub(crate) fn weights(&self) -> Result<(Weights, Option<Weights>), DdlError> {
         let proposal = self.goals.proposal_network();
         let proposal = proposal.map(ddl_network::ProposeEnds::copy_weights);
@@ -156,18 +152,6 @@ impl Ddl {
     /// `no-dynamics`, [`CertificateError::NoFlow`](crate::CertificateError::NoFlow), and
     /// [`CertificateError::Walk`](crate::CertificateError::Walk) where what the network emitted shapes
     /// no flow, both inside [`ForecastError::Model`].
-    ///
-    /// # Examples
-    /// ```no_run
-    /// use ddl::{Ddl, DeviceChoice};
-    /// # fn example(window: ddl::data::Window) -> Result<(), Box<dyn std::error::Error>> {
-    /// let model = Ddl::load("runs/eth".as_ref(), DeviceChoice::Cpu)?;
-    /// let certified = model.forecast_certified(&[window])?.remove(0);
-    /// let certificate = certified.certificate(0, 0); // the first pedestrian to its likeliest goal
-    /// assert!(certificate.holds().is_ok());
-    /// let left: Vec<f64> = certificate.potentials().collect(); // 13 distances to the goal, metres
-    /// # Ok(()) }
-    /// ```
     pub fn forecast_certified(
         &self,
         windows: &[Window],
@@ -180,10 +164,9 @@ impl Ddl {
             .collect()
     }
 
-    /// One forecast a pedestrian: the neutral motion to the central goal of its goal set
-    /// ([`GoalSet::central`]). The forecasting network has no part in it: what it knows is how people go to a goal that is sure
-    /// (`docs/accuracy.md`). So all variants with goals go the same way; that without makes its noise samples. The flow is as stable as those to the
-    /// goals, and `Forecast::certified` holds the verdict of each walk.
+    /// One forecast a pedestrian: the neutral motion to the central goal of its goal set ([`GoalSet::central`]), in
+    /// which the forecasting network has no part; the variant without goals makes noise samples. `Forecast::certified`
+    /// holds the verdict of each walk.
     ///
     /// # Shapes
     /// A forecast a window: one hypothesis of 12 positions (m) a pedestrian.

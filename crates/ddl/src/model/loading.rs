@@ -30,23 +30,6 @@ impl Ddl {
     ///
     /// # Errors
     /// When the device cannot be had.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl::data::{PedestrianId, Window};
-    /// use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _};
-    ///
-    /// let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
-    /// // Somebody who walks along x at 1.25 m/s, seen for 8 frames, 0.4 s apart.
-    /// let seen = (0..8).map(|t| [0.5 * f64::from(t), 0.0]).collect();
-    /// let window = Window::new("here", 0, 1, vec![PedestrianId(1)], vec![seen])?;
-    ///
-    /// let forecast = model.forecast(&window)?;
-    /// assert_eq!(forecast.hypotheses(), 20);
-    /// let [x, y] = forecast.hypothesis(0, forecast.most_likely(0))[11]; // in 4.8 s, metres
-    /// assert!(x > 3.5 && y.abs() < x - 3.5, "ahead: ({x}, {y})");
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn builtin(model: BuiltinModel, device: DeviceChoice) -> Result<Self, DdlError> {
         Self::open(&ModelSource::Builtin(model), device)
     }
@@ -137,14 +120,6 @@ impl ModelSource {
     ///
     /// # Errors
     /// When there is no run, or the file is no whole packed model.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl::{BuiltinModel, ModelSource};
-    /// let config = ModelSource::Builtin(BuiltinModel::Zara1).config()?;
-    /// assert_eq!(config.data.fold, "zara1");
-    /// # Ok::<(), ddl::DdlError>(())
-    /// ```
     pub fn config(&self) -> Result<RunConfig, DdlError> {
         match self {
             Self::Run(run) => run.config(),

@@ -1,8 +1,6 @@
-//! A model in one small file: what it takes to forecast, without the tracks it was trained on.
-//!
-//! The file is a safetensors file. It holds the learned tensors of both networks in half precision, each under the name of its
-//! network, and in its header, as one entry, the whole `config.json` of the run with a SHA-256 of configuration and tensors.
-//! The expert library is trajectory data and stays where it is.
+//! A model in one small safetensors file: the learned tensors of both networks in half precision, each under the name
+//! of its network, and in the header, as one entry, the `config.json` of the run with a SHA-256 of all of it. The
+//! expert library is trajectory data and stays where it is.
 
 use crate::device::Device;
 use crate::error::DdlError;
@@ -53,9 +51,6 @@ pub(crate) struct Unpacked {
 }
 
 /// The bytes of a packed model.
-///
-/// # Errors
-/// When its file cannot be read, or is longer than any packed model.
 pub(crate) fn bytes(source: &ModelSource) -> Result<Cow<'static, [u8]>, DdlError> {
     match source {
         ModelSource::Builtin(model) => Ok(Cow::Borrowed(model.bytes())),
@@ -165,9 +160,6 @@ pub(crate) fn motions(
 }
 
 /// The networks of a packed model.
-///
-/// # Errors
-/// When the file is damaged, of another version, or its tensors are not those of the networks it describes.
 pub(crate) fn unpack(
     bytes: &[u8],
     source: &ModelSource,

@@ -9,9 +9,6 @@ use safetensors::tensor::{Dtype, TensorView};
 use std::collections::HashMap;
 
 /// The bytes of the file.
-///
-/// # Errors
-/// When the goals come from the expert library alone, or a weight is out of the range of half precision.
 pub(crate) fn pack(network: &dyn ForecastWindows, goals: &GoalModel) -> Result<Vec<u8>, DdlError> {
     let source = goals.source();
     let Some(proposal) = goals.proposal_network() else {

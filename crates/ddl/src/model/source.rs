@@ -48,9 +48,6 @@ impl ModelSource {
     }
 
     /// Checks what the networks and goals of the model are made by.
-    ///
-    /// # Errors
-    /// Naming the model, and the first field that is out of range.
     pub(crate) fn check(&self, config: &RunConfig) -> Result<(), DdlError> {
         let star = config.star.check().map_err(DdlError::from);
         star.and_then(|()| config.goals.check()).map_err(|error| {

@@ -154,54 +154,20 @@ pub struct TrainingData {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use ddl_network::Variant;
-
-    fn config(seed: u64, commit: &str) -> RunConfig {
-        RunConfig {
-            format: FORMAT,
-            star: StarConfig::published(Variant::Full),
-            training: TrainingConfig {
-                seed,
-                ..TrainingConfig::published()
-            },
-            goals: GoalRecipe::proposed(1),
-            data: TrainingData {
-                convention: Convention::Star,
-                fold: "eth".to_owned(),
-                window_rule: WindowRule::Complete,
-                validation: 0.0,
-                validation_recordings: Vec::new(),
-                windows: 3,
-                walkers: 9,
-                sha256: "00".to_owned(),
-                recordings: BTreeMap::new(),
-            },
-            keep_every: 1,
-            patience: None,
-            from: None,
-            units: None,
-            commit: commit.to_owned(),
-            libtorch: "2".to_owned(),
-            device: "cpu".to_owned(),
-        }
-    }
+    use crate::BuiltinModel;
 
     #[test]
     fn the_origin_is_what_decides_the_numbers() {
-        let origin = config(1, "a").origin();
-        assert_eq!(origin.difference(&config(1, "b").origin()), None);
-        let goals = config(1, "a").goals_origin();
-        assert_eq!(goals.difference(&config(2, "b").goals_origin()), None);
+        let first = BuiltinModel::default().config().unwrap();
+        let mut other = first.clone();
+        other.commit = "another".to_owned();
+        assert_eq!(first.origin().difference(&other.origin()), None);
+        other.training.seed += 1;
+        assert_eq!(first.goals_origin().difference(&other.goals_origin()), None);
+        let seeds = [&first, &other].map(|config| config.training.seed);
         assert_eq!(
-            origin.difference(&config(2, "a").origin()).unwrap(),
-            "training.seed is 1, not 2"
-        );
-        let mut wider = config(1, "a");
-        wider.star.feed_forward_width = 64;
-        assert_eq!(
-            wider.origin().difference(&origin).unwrap(),
-            "star.feed_forward_width is 64, not 2048"
+            first.origin().difference(&other.origin()).unwrap(),
+            format!("training.seed is {}, not {}", seeds[0], seeds[1])
         );
     }
 }

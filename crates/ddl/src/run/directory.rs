@@ -107,9 +107,6 @@ impl RunDirectory {
     }
 
     /// Reads `moments.json`; empty when there is none.
-    ///
-    /// # Errors
-    /// When the file is damaged.
     pub(crate) fn read_moments(&self) -> Result<Vec<Moment>, DdlError> {
         let path = self.moments();
         if path.is_file() {
@@ -159,9 +156,6 @@ impl RunDirectory {
     }
 
     /// The weights of the epoch that metrics.jsonl says is the best.
-    ///
-    /// # Errors
-    /// When they are not there.
     pub(crate) fn best_epoch(&self, epoch: usize) -> Result<PathBuf, DdlError> {
         let best = self.epoch(epoch);
         if best.is_file() {
@@ -172,9 +166,6 @@ impl RunDirectory {
     }
 
     /// Removes the weights of all epochs but one.
-    ///
-    /// # Errors
-    /// When a file cannot be removed.
     pub(crate) fn remove_epochs_but(&self, epoch: usize) -> Result<(), DdlError> {
         let others = self.kept_epochs()?;
         for other in others.into_iter().filter(|&other| other != epoch) {
@@ -186,9 +177,6 @@ impl RunDirectory {
 
     /// Claims the directory for a run: makes it, or checks that what it holds is the same run. It is claimed until what is
     /// returned is dropped, or the process ends.
-    ///
-    /// # Errors
-    /// [`DdlError::Run`] when another run lives there, or another process works there.
     pub(crate) fn claim(&self, config: &RunConfig) -> Result<RunLock, DdlError> {
         let epochs = self.0.join("epochs");
         std::fs::create_dir_all(&epochs).map_err(|error| DdlError::io(&epochs, error))?;

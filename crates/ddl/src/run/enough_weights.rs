@@ -8,9 +8,6 @@ use std::path::Path;
 const BYTES: u64 = 4;
 
 /// Refuses a file that is too short for so many weights. Whether one is there at all is for its reader to say.
-///
-/// # Errors
-/// [`DdlError::Run`] with both sizes.
 pub(crate) fn require(path: &Path, least_numbers: u64) -> Result<(), DdlError> {
     let Ok(file) = std::fs::metadata(path) else {
         return Ok(());

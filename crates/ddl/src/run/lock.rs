@@ -8,10 +8,8 @@ use std::path::Path;
 /// Name of the file that is locked. It stays, empty: whoever removed it would take it from under one who waits.
 const FILE: &str = ".lock";
 
-/// The right to write into the directory of a run, given back when dropped.
-///
-/// The system holds the lock for the process: it does not outlive it, however that ends. `None` inside is a directory in which
-/// nothing can be written anyway, or a file system that knows no locks.
+/// The right to write into the directory of a run, given back when dropped; the system holds it for the process. `None`
+/// inside is a directory in which nothing can be written anyway, or a file system that knows no locks.
 #[derive(Debug)]
 pub struct RunLock(#[expect(dead_code, reason = "held, never read")] Option<File>);
 
@@ -35,9 +33,6 @@ impl RunLock {
     }
 
     /// Takes the directory as soon as nobody else has it, to write results of work that is done.
-    ///
-    /// # Errors
-    /// When the directory cannot be written to.
     pub(crate) fn wait(folder: &Path) -> Result<Self, DdlError> {
         let file = open(folder)?;
         Ok(Self(file.filter(|file| file.lock().is_ok())))

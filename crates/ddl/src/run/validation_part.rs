@@ -19,8 +19,8 @@ pub struct ValidationPart {
 }
 
 impl ValidationPart {
-    /// What is kept of own recordings unless it is said: the last fifth of each. Where these ends hold next to no windows, because the recordings are
-    /// short, a fifth of the recordings whole, at least one, spread evenly over those that hold windows.
+    /// What is kept of own recordings unless it is said: the last fifth of each; where these ends hold next to no
+    /// windows, a fifth of the recordings whole, at least one, spread evenly over those that hold windows.
     ///
     /// # Examples
     /// ```

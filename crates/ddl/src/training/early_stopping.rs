@@ -32,9 +32,6 @@ pub(crate) struct EarlyStopping {
 
 impl EarlyStopping {
     /// With the validation windows of the fold, or a seeded part of them; `None` where the run trains all epochs.
-    ///
-    /// # Errors
-    /// When the goals of the windows cannot be estimated.
     pub(crate) fn of(goals: &GoalModel, fold: &Fold<'_>) -> Result<Option<Self>, DdlError> {
         let config = goals.config();
         let (data, Some(patience)) = (&config.data, config.patience) else {
@@ -82,11 +79,9 @@ impl EarlyStopping {
     }
 }
 
-/// The better proposal network for a training that begins with the weights of another model: that model's own, or what has become of it. Better is whose
-/// goals the forecasting network comes nearer the truth by, which has not been trained yet; without early stopping the trained one is taken.
-///
-/// # Errors
-/// As [`EarlyStopping::of`] and [`EarlyStopping::min_ade`].
+/// The better proposal network for a training that begins with another model's weights: that model's own, or what has
+/// become of it, by which the untrained forecasting network comes nearer the truth; without early stopping the trained
+/// one.
 pub(crate) fn better_goals(
     start: StartingWeights,
     trained: Weights,

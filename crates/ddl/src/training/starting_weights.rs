@@ -22,9 +22,6 @@ pub(crate) struct StartingWeights {
 
 impl StartingWeights {
     /// The weights of a model, for networks of these sizes.
-    ///
-    /// # Errors
-    /// When the model cannot be loaded, or its networks are of other sizes than those to be trained.
     pub(crate) fn of(
         source: &ModelSource,
         (star, goals): (&StarConfig, &GoalRecipe),

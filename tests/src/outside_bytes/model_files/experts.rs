@@ -1,48 +1,26 @@
-//! The expert library of a run.
+//! The expert library of a run whose goals come from it alone.
 
-use ddl::{DeviceChoice, GoalModel, GoalRecipe, RunDirectory};
-use tempfile::TempDir;
+use ddl::{DeviceChoice, GoalModel, GoalRecipe};
 
-use super::digested::Digested;
-use super::{names_file, smallest, with_file};
+use super::smallest;
+use super::sound::Sound;
 use crate::drawn_model;
-
-/// A run whose goals come from its library alone, and its sound file.
-struct Sound {
-    run: RunDirectory,
-    file: Digested,
-    _folder: TempDir,
-}
-
-impl Sound {
-    fn make() -> Result<Self, Box<dyn std::error::Error>> {
-        let mut config = smallest::config();
-        config.goals = GoalRecipe::retrieved(1);
-        let positions: Vec<f64> = (0..2 * 20 * 2).map(|i| 0.25 * f64::from(i)).collect();
-        let folder = tempfile::tempdir()?;
-        let run = RunDirectory::new(folder.path());
-        let text = serde_json::to_string(&config)?;
-        std::fs::write(run.path().join("config.json"), text)?;
-        Ok(Self {
-            run,
-            file: Digested::new(drawn_model::experts(&config, &positions)),
-            _folder: folder,
-        })
-    }
-}
 
 /// Edits of a sound file.
 pub fn read(bytes: &[u8]) {
     thread_local! {
-        static SOUND: Sound = Sound::make().expect("the sound file can be made");
+        static SOUND: Sound<()> = Sound::new("experts.safetensors", |path| {
+            let mut config = smallest::config();
+            config.goals = GoalRecipe::retrieved(1);
+            let positions: Vec<f64> = (0..2 * 20 * 2).map(|i| 0.25 * f64::from(i)).collect();
+            let text = serde_json::to_string(&config).expect("a configuration can be written");
+            std::fs::write(path.with_file_name("config.json"), text).expect("a file can be written");
+            let library = drawn_model::experts(&config, &positions);
+            std::fs::write(path, library).expect("a file can be written");
+        });
     }
     SOUND.with(|sound| {
-        let read = with_file(&sound.run.experts(), &sound.file.edited(bytes), |_| {
-            GoalModel::load(sound.run.path(), DeviceChoice::Cpu)
-        });
-        if let Err(error) = read {
-            assert!(bytes.len() > 1, "a sound file: {error}");
-            names_file(&error, &sound.run.experts().display().to_string());
-        }
+        let run = sound.path.parent().expect("the file lies in a run");
+        drop(sound.read(bytes, |(), _| GoalModel::load(run, DeviceChoice::Cpu)));
     });
 }

@@ -1,11 +1,11 @@
 //! The files of a model: a run's `config.json`, `metrics.jsonl` and safetensors files, and the packed model.
 
-mod digested;
 pub mod experts;
 pub mod json;
 mod packed_file;
 pub mod packed_model;
 mod smallest;
+mod sound;
 #[cfg(feature = "torch")]
 pub mod training_state;
 pub mod weights;
