@@ -16,7 +16,7 @@ pub struct Device(Opened);
 enum Opened {
     Cpu,
     #[cfg(feature = "torch")]
-    Cuda(ddl_star::ComputeDevice),
+    Torch(ddl_star::ComputeDevice),
 }
 
 impl Device {
@@ -32,7 +32,7 @@ impl Device {
         if choice != DeviceChoice::Cpu {
             let device = ddl_star::ComputeDevice::open(choice)?;
             if device.name() == "cuda" {
-                return Ok(Self(Opened::Cuda(device)));
+                return Ok(Self(Opened::Torch(device)));
             }
         }
         #[cfg(not(feature = "torch"))]
@@ -42,13 +42,23 @@ impl Device {
         Ok(Self::CPU)
     }
 
+    /// libtorch on the CPU: what the kernels are held to.
+    ///
+    /// # Errors
+    /// When libtorch cannot compute.
+    #[cfg(feature = "torch")]
+    pub(crate) fn libtorch_on_cpu() -> Result<Self, DdlError> {
+        let device = ddl_star::ComputeDevice::open(DeviceChoice::Cpu)?;
+        Ok(Self(Opened::Torch(device)))
+    }
+
     /// "cpu" or "cuda", as reports print it.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self.0 {
             Opened::Cpu => "cpu",
             #[cfg(feature = "torch")]
-            Opened::Cuda(_) => "cuda",
+            Opened::Torch(device) => device.name(),
         }
     }
 
@@ -57,7 +67,7 @@ impl Device {
     pub(crate) fn torch(self) -> Result<ddl_star::ComputeDevice, DdlError> {
         match self.0 {
             Opened::Cpu => Ok(ddl_star::ComputeDevice::open(DeviceChoice::Cpu)?),
-            Opened::Cuda(device) => Ok(device),
+            Opened::Torch(device) => Ok(device),
         }
     }
 
@@ -70,7 +80,7 @@ impl Device {
         match self.0 {
             Opened::Cpu => Ok(Box::new(MotionNetwork::reading(config.clone(), read)?)),
             #[cfg(feature = "torch")]
-            Opened::Cuda(device) => {
+            Opened::Torch(device) => {
                 let network = ddl_star::TorchNetwork::new(config.clone(), 0, device)?;
                 let weights = read(network.parameters().layout())?;
                 network.parameters().set(&weights)?;
@@ -88,7 +98,7 @@ impl Device {
         match self.0 {
             Opened::Cpu => Ok(Box::new(ProposalNetwork::reading(config.clone(), read)?)),
             #[cfg(feature = "torch")]
-            Opened::Cuda(device) => {
+            Opened::Torch(device) => {
                 let network = ddl_star::TorchProposals::new(config.clone(), 0, device)?;
                 let weights = read(network.parameters().layout())?;
                 network.parameters().set(&weights)?;

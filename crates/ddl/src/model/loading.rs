@@ -39,15 +39,28 @@ impl Ddl {
     /// # Errors
     /// When there is no finished run, one of its files is broken, or the device cannot be had.
     pub fn open(source: &ModelSource, device: DeviceChoice) -> Result<Self, DdlError> {
+        Self::on(Device::open(device)?, source)
+    }
+
+    /// Loads a model whose networks libtorch computes on the CPU: the reference that the kernels are held to. Its
+    /// forecasts differ from those of [`Ddl::open`] by rounding.
+    ///
+    /// # Errors
+    /// As [`Ddl::open`].
+    #[cfg(feature = "torch")]
+    pub fn reference(source: &ModelSource) -> Result<Self, DdlError> {
+        Self::on(Device::libtorch_on_cpu()?, source)
+    }
+
+    fn on(device: Device, source: &ModelSource) -> Result<Self, DdlError> {
         match source.run() {
             Some(run) => Self::of_run(run.clone(), device),
             None => Self::of_packed(source, device),
         }
     }
 
-    fn of_packed(source: &ModelSource, device: DeviceChoice) -> Result<Self, DdlError> {
+    fn of_packed(source: &ModelSource, device: Device) -> Result<Self, DdlError> {
         let bytes = packed::bytes(source)?;
-        let device = Device::open(device)?;
         let unpacked = packed::unpack(&bytes, source, device)?;
         let (goals, network) = GoalModel::of_packed(source, unpacked)?;
         Self::with(goals, device, network)
@@ -67,7 +80,7 @@ impl Ddl {
         })
     }
 
-    fn of_run(run: RunDirectory, device: DeviceChoice) -> Result<Self, DdlError> {
+    fn of_run(run: RunDirectory, device: Device) -> Result<Self, DdlError> {
         let config = run.config()?;
         if !run.is_trained() {
             let problem = if run.has_goals(&config.goals) {
@@ -80,7 +93,6 @@ impl Ddl {
             return Err(DdlError::run(run.path(), problem));
         }
         ModelSource::Run(run.clone()).check(&config)?;
-        let device = Device::open(device)?;
         let network = load_network(&config, device, &run.model())?;
         Self::with(GoalModel::of_run(run, config, device)?, device, network)
     }
