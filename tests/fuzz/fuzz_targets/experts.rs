@@ -1,2 +1,3 @@
+//! Fuzz target of the reader `model_files::experts::read`.
 #![no_main]
 ddl_fuzz::target!(model_files::experts::read);

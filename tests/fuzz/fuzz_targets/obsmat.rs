@@ -1,2 +1,3 @@
+//! Fuzz target of the reader `tracks::obsmat`.
 #![no_main]
 ddl_fuzz::target!(tracks::obsmat);

@@ -1,2 +1,3 @@
+//! Fuzz target of the reader `own_tracks::read`.
 #![no_main]
 ddl_fuzz::target!(own_tracks::read);

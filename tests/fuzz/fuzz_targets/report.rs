@@ -1,2 +1,3 @@
+//! Fuzz target of the reader `report::read`.
 #![no_main]
 ddl_fuzz::target!(report::read);

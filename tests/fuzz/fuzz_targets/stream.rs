@@ -1,2 +1,3 @@
+//! Fuzz target of the reader `stream::read`.
 #![no_main]
 ddl_fuzz::target!(stream::read);
