@@ -70,7 +70,7 @@ fn stop(child: &mut Child, at_once: bool) {
     #[cfg(unix)]
     if !at_once {
         use rustix::process::{Pid, Signal, kill_process};
-        if kill_process(Pid::from_child(child), Signal::INT).is_err() {
+        if kill_process(Pid::from_child(child), Signal::TERM).is_err() {
             tell(format_args!(
                 "warning: process {} could not be asked to stop",
                 child.id()

@@ -27,7 +27,7 @@ if [ "$verb" = train ]; then
   mkdir -p "$run"
   [ "$fold" = broken ] && { echo "error: the loss is not a number" >&2; exit 1; }
   stopped=
-  [ "$fold" = stubborn ] && trap '' INT || trap 'stopped=1' INT
+  [ "$fold" = stubborn ] && trap '' TERM || trap 'stopped=1' TERM
   epoch=$(cat "$run/epoch" 2>/dev/null || echo 0)
   begun=$epoch
   echo "from epoch $epoch" >&2
