@@ -62,6 +62,17 @@ impl Device {
         }
     }
 
+    /// The device, and libtorch where it computes in place of the kernels, as results name them.
+    pub(crate) fn words(self) -> &'static str {
+        match self.0 {
+            Opened::Cpu => "cpu",
+            #[cfg(feature = "torch")]
+            Opened::Torch(device) if device.name() == "cpu" => "cpu, libtorch",
+            #[cfg(feature = "torch")]
+            Opened::Torch(_) => "cuda",
+        }
+    }
+
     /// The device as libtorch opens it.
     #[cfg(feature = "torch")]
     pub(crate) fn torch(self) -> Result<ddl_star::ComputeDevice, DdlError> {

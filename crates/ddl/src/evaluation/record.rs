@@ -18,9 +18,8 @@ use std::path::PathBuf;
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 struct Record {
     request: EvaluationRequest,
-    /// Name and SHA-256 of each recording.
     #[serde(default)]
-    recordings: Vec<(String, String)>,
+    recordings: Vec<Measured>,
     device: String,
     #[serde(default)]
     clearance: Option<Clearance>,
@@ -32,17 +31,28 @@ struct Record {
     calibration: String,
 }
 
+/// A recording that was measured on.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Measured {
+    name: String,
+    frame_step: i64,
+    sha256: String,
+}
+
 /// 1: with the row without an expert library. 2: the central goal is drawn towards where the last step leads.
 /// 3: the one forecast walks straight. 4: motion is bounded.
 const ROWS: u32 = 4;
 
 impl Record {
     fn new(model: &Ddl, dataset: &Dataset, request: &EvaluationRequest) -> Self {
-        let digest =
-            |recording: &Recording| (recording.name().into(), digest_of_recording(recording));
+        let measured = |recording: &Recording| Measured {
+            name: recording.name().to_owned(),
+            frame_step: recording.frame_step(),
+            sha256: digest_of_recording(recording),
+        };
         Self {
             request: request.clone(),
-            recordings: dataset.recordings().iter().map(digest).collect(),
+            recordings: dataset.recordings().iter().map(measured).collect(),
             device: model.computed_on(),
             clearance: model.clearance(),
             rows: ROWS,

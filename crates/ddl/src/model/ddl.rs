@@ -115,7 +115,7 @@ impl Ddl {
 
     /// Device and precision, as reports name them.
     pub(crate) fn computed_on(&self) -> String {
-        let device = self.device.name();
+        let device = self.device.words();
         match self.network.precision() {
             Precision::F32 => device.to_owned(),
             Precision::Bf16 => format!("{device}, bf16"),

@@ -15,7 +15,7 @@ pub(super) const BEAT: Duration = Duration::from_millis(20);
 /// Runs a process to its end, and hears each line of its standard output.
 ///
 /// It runs in a process group of its own: in a terminal Ctrl-C reaches the whole foreground group, and it would hear of that twice. The
-/// first wish to stop reaches it as an interrupt, which lets it save, any further one as a kill.
+/// first wish to stop reaches it as SIGTERM, which lets it save, any further one as a kill.
 pub(super) fn run(
     command: &mut Command,
     interrupt: &Interrupt,
