@@ -37,7 +37,6 @@ fn commit() -> String {
     .unwrap_or_else(unknown)
 }
 
-/// What git answers, in one line.
 fn git(arguments: &[&str]) -> Option<String> {
     let output = Command::new("git").args(arguments).output().ok()?;
     let answer = String::from_utf8(output.stdout).ok()?;

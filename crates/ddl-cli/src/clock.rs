@@ -3,7 +3,6 @@
 use ddl::data::Doubt;
 use serde::Serialize;
 
-/// How frames of windows are numbered in the tracks.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Clock {
     /// Parts of a frame that windows count.
@@ -22,12 +21,10 @@ impl Clock {
     /// Windows count frames as the tracks do.
     pub(crate) const WHOLE: Self = Self { parts: 1 };
 
-    /// Windows count so many parts of a frame.
     pub(crate) fn of_parts(parts: i64) -> Self {
         Self { parts }
     }
 
-    /// The frame nearest to one of a window.
     pub(crate) fn nearest(self, frame: i64) -> i64 {
         match self.number(frame) {
             FrameNumber::Whole(frame) => frame,
@@ -35,7 +32,6 @@ impl Clock {
         }
     }
 
-    /// The doubt with its frame numbered so.
     pub(crate) fn of_doubt(self, doubt: Doubt) -> Doubt {
         match doubt {
             Doubt::Jump(mut fastest) => {

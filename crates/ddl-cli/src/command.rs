@@ -2,14 +2,12 @@
 
 pub(crate) mod baselines;
 pub(crate) mod benchmark;
-pub(crate) mod completions;
 pub(crate) mod data;
 pub(crate) mod evaluate;
 pub(crate) mod forecast;
+pub(crate) mod generated;
 pub(crate) mod goals;
 pub(crate) mod info;
-pub(crate) mod man;
-mod model;
 pub(crate) mod pack;
 mod recipe;
 pub(crate) mod report;
@@ -26,11 +24,41 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{Convention, Dataset, locate};
 use ddl::report::Report;
-use ddl::{Clearance, Ddl, DdlError, DeviceChoice, Precision, RunConfig};
+use ddl::{
+    BuiltinModel, Clearance, Ddl, DdlError, DeviceChoice, GoalModel, ModelSource, Precision,
+    RunConfig,
+};
 use std::path::{Path, PathBuf};
 
 /// Seed of the simulated crowds: one data set for everybody.
 const SIMULATION_SEED: u64 = 1;
+
+/// A model by name, the program's own where none is named.
+#[derive(Debug, Args)]
+pub(crate) struct ModelChoice {
+    /// Model: the directory of a run, a packed file (`ddl pack`), or a built-in model by the scene it was trained without:
+    /// eth, hotel, univ, zara1 or zara2 [default: hotel, the built-in one that was trained on the most walkers]
+    #[arg(long)]
+    model: Option<PathBuf>,
+}
+
+impl ModelChoice {
+    fn source(&self) -> ModelSource {
+        match &self.model {
+            None => ModelSource::Builtin(BuiltinModel::default()),
+            Some(name) => ModelSource::named(name),
+        }
+    }
+
+    pub(crate) fn load(&self, device: DeviceChoice) -> Result<Ddl, DdlError> {
+        Ddl::open(&self.source(), device)
+    }
+
+    /// What goals come from alone: a run's may be there before its network is trained.
+    pub(crate) fn load_goals(&self, device: DeviceChoice) -> Result<GoalModel, DdlError> {
+        GoalModel::open(&self.source(), device)
+    }
+}
 
 /// Where to compute and how to tell progress.
 #[derive(Debug, Args)]
@@ -95,7 +123,6 @@ pub(crate) struct KeepClear {
 }
 
 impl KeepClear {
-    /// The model, keeping clear where asked to.
     pub(crate) fn of(&self, model: Ddl) -> Result<Ddl, DdlError> {
         match self.keep_clear {
             None => Ok(model),
@@ -160,12 +187,10 @@ pub(crate) struct RecordingsAt {
 }
 
 impl RecordingsAt {
-    /// Whether a place was named.
     fn is_named(&self) -> bool {
         self.data.is_some()
     }
 
-    /// What another command takes to read the same.
     fn as_options(&self) -> String {
         let data = self.data.as_ref();
         let data = data.map_or_else(String::new, |data| {
@@ -180,7 +205,6 @@ impl RecordingsAt {
         asked.unwrap_or_else(|| convention_of(self.data.as_deref(), of_model))
     }
 
-    /// The recordings of a convention, from a folder or simulated.
     fn dataset(&self, convention: Convention) -> anyhow::Result<Dataset> {
         dataset(convention, self.data.as_deref(), &self.units)
     }
@@ -236,13 +260,11 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
     Ok(Dataset::load(convention, &folder(convention, data)?)?)
 }
 
-/// The folder of a convention's recordings.
 fn folder(convention: Convention, data: Option<&Path>) -> anyhow::Result<PathBuf> {
     locate(convention, data)
         .context("no recordings; `cargo xtask data fetch` gets them, or use --convention simulated")
 }
 
-/// A number that must not be 0.
 pub(crate) fn at_least_one(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(0) => Err("must be at least 1".to_owned()),

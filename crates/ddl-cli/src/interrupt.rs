@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// How often the user has asked to stop.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Interrupt(Arc<AtomicUsize>);
 
@@ -40,7 +39,6 @@ impl Interrupt {
         self.0.load(Ordering::SeqCst)
     }
 
-    /// Whether to go on.
     pub(crate) fn flow(&self) -> ControlFlow<()> {
         if self.wishes() > 0 {
             ControlFlow::Break(())

@@ -49,8 +49,8 @@ enum Command {
     Windows(command::windows::Windows),
     Pack(command::pack::Pack),
     Info(command::info::Info),
-    Completions(command::completions::Completions),
-    Man(command::man::Man),
+    Completions(command::generated::Completions),
+    Man(command::generated::Man),
 }
 
 /// Runs the program `ddl` with `arguments`, of which the first is the program's name, and returns its exit code: 0 done,

@@ -15,7 +15,6 @@ pub(crate) fn write_output(path: Option<&Path>, text: &str) -> anyhow::Result<()
     }
 }
 
-/// Writes to standard output.
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     out.write_all(text.as_bytes())
@@ -42,7 +41,6 @@ pub(crate) fn shell_word(path: &Path) -> String {
     shlex::try_quote(&path).map_or_else(|_| path.clone(), Into::into)
 }
 
-/// Writes facts to standard output as JSON for programs.
 pub(crate) fn print_json(facts: &impl serde::Serialize) -> anyhow::Result<()> {
     print(&(serde_json::to_string_pretty(facts)? + "\n"))
 }

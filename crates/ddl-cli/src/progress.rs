@@ -23,7 +23,6 @@ pub(crate) enum ProgressMode {
     None,
 }
 
-/// Tells how far a stage has come.
 #[derive(Debug)]
 pub(crate) struct Progress {
     stage: &'static str,
@@ -33,7 +32,6 @@ pub(crate) struct Progress {
     told: Cell<Instant>,
 }
 
-/// A line of progress for programs.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct ProgressLine<'a> {
     pub(crate) stage: Cow<'a, str>,

@@ -49,9 +49,6 @@ fn in_folder(folder: &Path, units: &Units) -> anyhow::Result<Vec<PathBuf>> {
 }
 
 /// Reads them all in steps of 0.4 s.
-///
-/// # Errors
-/// As [`all_read`], when there are some that cannot be read.
 pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<InSteps>> {
     let (read, errors) = read_each(files, units);
     all_read(errors, files.len())?;
@@ -75,7 +72,6 @@ fn tell_grouped<'a>(kind: &str, of: impl IntoIterator<Item = (&'a str, String)>)
     }
 }
 
-/// Says what was found out about the rates of recordings.
 pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a InSteps>) {
     let notes = read.into_iter().flat_map(|of| {
         let notes = of.notes.iter();
@@ -101,9 +97,6 @@ pub(crate) fn read_each<'f>(
 }
 
 /// Tells why some of `files` could not be read, together, so that they can be mended together.
-///
-/// # Errors
-/// When there is one.
 pub(crate) fn all_read(mut errors: Vec<anyhow::Error>, files: usize) -> anyhow::Result<()> {
     if errors.len() < 2 {
         return errors.pop().map_or(Ok(()), Err);

@@ -9,7 +9,6 @@ pub(crate) fn tell(line: Arguments<'_>) {
     let _ = writeln!(stderr(), "{line}");
 }
 
-/// A duration as a person says it.
 pub(crate) fn human(duration: Duration) -> String {
     let seconds = duration.as_secs();
     match (seconds / 3600, seconds / 60 % 60, seconds % 60) {

@@ -21,7 +21,7 @@ pub(crate) struct Tracks {
     #[arg(value_name = "TRACKS")]
     file: Option<PathBuf>,
     #[command(flatten)]
-    units: Units,
+    pub(crate) units: Units,
     /// Only who was seen at each of the last 8 steps
     ///
     /// Otherwise who was seen at 2 of them or more is forecast too: holes of up to 2 steps are filled on a straight line, and what begins late is
@@ -33,7 +33,6 @@ pub(crate) struct Tracks {
     last: bool,
 }
 
-/// So many frames, in words.
 fn frames(count: FrameNumber) -> String {
     match count {
         FrameNumber::Whole(1) => "1 frame".to_owned(),
@@ -41,7 +40,6 @@ fn frames(count: FrameNumber) -> String {
     }
 }
 
-/// What can be forecast from.
 #[derive(Debug)]
 pub(crate) struct Observed {
     /// The tracks in steps of 0.4 s.
@@ -56,27 +54,18 @@ pub(crate) struct Observed {
 }
 
 impl Tracks {
-    /// Whether they come from standard input.
     pub(crate) fn are_live(&self) -> bool {
         self.file().as_os_str() == "-"
     }
 
-    /// Where they are read from.
     pub(crate) fn file(&self) -> &Path {
         self.file.as_deref().unwrap_or(Path::new(""))
     }
 
-    /// Whether a file was named.
     pub(crate) fn are_named(&self) -> bool {
         self.file.is_some()
     }
 
-    /// What their numbers mean.
-    pub(crate) fn units(&self) -> &Units {
-        &self.units
-    }
-
-    /// What is made up of observations that are not whole.
     pub(crate) fn completion(&self) -> Completion {
         if self.whole {
             Completion::NONE
@@ -85,7 +74,6 @@ impl Tracks {
         }
     }
 
-    /// What the numbers of live tracks mean, to a run.
     pub(crate) fn live_units(&self, run: &RunConfig) -> anyhow::Result<Units> {
         if self.last {
             bail!(
@@ -167,7 +155,6 @@ impl Observed {
         }
     }
 
-    /// Tells how many pedestrians of the last frame are not forecast because they have just appeared.
     fn tell_who_is_missing(&self) {
         let Some(window) = self.windows.last() else {
             return;

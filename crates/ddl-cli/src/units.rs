@@ -62,7 +62,6 @@ impl Units {
         Ok((told != TrackUnits::default()).then_some(told))
     }
 
-    /// The rate that options give.
     fn rate(&self) -> TrackUnits {
         TrackUnits {
             fps: self.fps,
@@ -72,12 +71,10 @@ impl Units {
         }
     }
 
-    /// Whether any of them was given.
     pub(crate) fn are_given(&self) -> bool {
         self.rate().say_the_rate() || self.homography.is_some()
     }
 
-    /// What another command takes for the same.
     pub(crate) fn as_options(&self) -> String {
         let homography = self.homography.as_ref();
         let homography = homography.map(|file| format!(" --homography {}", shell_word(file)));
@@ -211,7 +208,6 @@ impl Units {
         }
     }
 
-    /// From pixels to metres, where positions are pixels.
     pub(crate) fn homography(&self) -> anyhow::Result<Option<Homography>> {
         let path = match &self.homography {
             None => return Ok(self.remembered.homography),
@@ -240,7 +236,6 @@ impl Units {
     }
 }
 
-/// The option that gives this rate; `None` where there is none.
 fn rate_option(rate: &TrackUnits) -> Option<String> {
     let fps = rate.fps.map(|fps| format!("--fps {fps}"));
     let dt = rate.dt.map(|dt| format!("--dt {dt}"));
@@ -267,7 +262,6 @@ pub(crate) fn live_step(frame_time: f64) -> anyhow::Result<i64> {
     Ok(step)
 }
 
-/// To four decimals, for people.
 fn rounded(number: f64) -> f64 {
     (1e4 * number).round() / 1e4
 }

@@ -1,18 +1,9 @@
-//! The program starts, names itself and its commands. That this test exists also makes `cargo test
+//! The program starts, and refuses what it cannot do. That this test exists also makes `cargo test
 //! --workspace` build the program, which the tests of the workspace run.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::process::Command;
-
-fn ddl(argument: &str) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_ddl"))
-        .arg(argument)
-        .output()
-        .unwrap();
-    assert!(output.status.success());
-    String::from_utf8(output.stdout).unwrap()
-}
 
 /// Options that only a model heeds are refused beside a file of forecasts, and not ignored.
 #[test]
@@ -54,18 +45,4 @@ fn without_libtorch_a_benchmark_says_where_to_get_it() {
         .starts_with("error: training needs libtorch, which this program is built without");
     assert!(said && complaint.lines().count() == 1, "{complaint}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
-}
-
-#[test]
-fn it_names_its_version_and_commands() {
-    assert_eq!(
-        ddl("--version"),
-        format!("ddl {}\n", env!("CARGO_PKG_VERSION"))
-    );
-    let help = ddl("--help");
-    for command in [
-        "train", "evaluate", "report", "forecast", "goals", "windows", "info",
-    ] {
-        assert!(help.contains(command), "{command}");
-    }
 }

@@ -11,7 +11,6 @@ use crate::Position;
 /// Training draws one angle in [0, pi) for each batch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotation {
-    angle: f64,
     sine: f64,
     cosine: f64,
 }
@@ -21,32 +20,13 @@ impl Rotation {
     #[must_use]
     pub fn new(angle_rad: f64) -> Self {
         let (sine, cosine) = angle_rad.sin_cos();
-        Self {
-            angle: angle_rad,
-            sine,
-            cosine,
-        }
+        Self { sine, cosine }
     }
 
     /// By an angle drawn uniformly from [0, pi).
     #[must_use]
     pub fn random(rng: &mut impl Rng) -> Self {
         Self::new(rng.random_range(0.0..PI))
-    }
-
-    /// The angle (rad), counter-clockwise.
-    pub fn angle(&self) -> f64 {
-        self.angle
-    }
-
-    /// The rotation that undoes this one.
-    #[must_use]
-    pub fn inverse(&self) -> Self {
-        Self {
-            angle: -self.angle,
-            sine: -self.sine,
-            cosine: self.cosine,
-        }
     }
 
     /// Where a position (m) comes to lie.

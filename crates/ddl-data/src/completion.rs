@@ -131,10 +131,8 @@ impl MadeUp {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum CompletionError {
-    /// Too few positions, or more than there are.
     #[error("a forecast needs 2 to 8 positions that were seen, not {found}")]
     LeastSeen { found: usize },
-    /// A hole in which anything may have happened.
     #[error("holes of up to 2 frames can be filled, not of {found}")]
     LongestGap { found: usize },
 }

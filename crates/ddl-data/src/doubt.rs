@@ -26,34 +26,28 @@ const OFTEN: f64 = 0.03;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum Doubt {
-    /// Nobody was seen at two frames so far apart, which are taken for 0.4 s.
     #[error(
         "nobody was seen at two frames {frame_step} apart, which are taken for 0.4 s: give the rate of the frames"
     )]
     NoSteps { frame_step: i64 },
-    /// The median speed is no walker's: pixels, or another rate.
     #[error(
         "half of the steps are faster than {median:.1} m/s; are the positions in metres, and the rows of a pedestrian 0.4 s apart?"
     )]
     Fast { median: f64 },
-    /// The 90 % quantile of the speeds of those who walk is too low: another frame rate.
     #[error(
         "nine in ten steps of those who walk are slower than {brisk:.2} m/s; are the rows of a pedestrian 0.4 s apart, or those of a faster camera?"
     )]
     Slow { brisk: f64 },
-    /// Nobody ever leaves the place, over many steps: degrees, kilometres.
     #[error(
         "nobody comes farther than {farthest:.3} m; are the positions in metres, or in degrees or kilometres?"
     )]
     Still { farthest: f64 },
-    /// The share of the frames between somebody's first and last at which that person is not seen is large.
     #[error(
         "people are not seen in {:.0} % of the frames between their first and their last; a step counts where somebody is seen at its very frame, so \
          fill short gaps where the tracker can",
         100.0 * .share
     )]
     Unseen { share: f64 },
-    /// A track goes on somewhere else.
     #[error(
         "pedestrian {} jumps at frame {}, {:.1} m/s over one step; does the track go on with somebody else?",
         .0.pedestrian,
@@ -61,7 +55,6 @@ pub enum Doubt {
         .0.speed
     )]
     Jump(Fastest),
-    /// No window of 20 steps: forecasts are possible, training and measuring are not.
     #[error(
         "nobody was seen at 20 steps in a row: nothing can be trained on these tracks, or measured with them"
     )]
@@ -80,7 +73,6 @@ pub struct Fastest {
     pub frame: i64,
 }
 
-/// How people move, step by step.
 pub(crate) struct Speeds {
     pub(crate) frame_step: i64,
     pub(crate) steps: usize,
@@ -93,7 +85,6 @@ pub(crate) struct Speeds {
 }
 
 impl Speeds {
-    /// What looks wrong with them.
     pub(crate) fn doubt(&self) -> Option<Doubt> {
         let (Some(median), Some(fastest)) = (self.median, &self.fastest) else {
             let frame_step = self.frame_step;
@@ -153,7 +144,6 @@ impl Recording {
     }
 }
 
-/// The doubt about frames at which people are not seen between others at which they are.
 pub(crate) fn unseen(share: f64) -> Option<Doubt> {
     (share >= OFTEN).then_some(Doubt::Unseen { share })
 }

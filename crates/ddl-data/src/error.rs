@@ -20,7 +20,6 @@ pub struct FormatError {
     pub problem: String,
 }
 
-/// What can be wrong at one place of a file of tracks.
 #[derive(Debug, PartialEq, Eq, Error)]
 pub(crate) enum FormatProblem {
     #[error("the file holds no observation; is it empty or cut off?")]
@@ -102,7 +101,6 @@ pub(crate) enum FormatProblem {
     Table { detail: String },
 }
 
-/// What a field of whole numbers may hold.
 fn wanted(name: &str) -> &'static str {
     match name {
         "pedestrian" => "a whole number or a word",
@@ -121,7 +119,6 @@ fn advice_on_integer(name: &str, found: &str) -> &'static str {
     }
 }
 
-/// What to do about text that is no number.
 fn advice_on_number(found: &str) -> &'static str {
     if found.is_empty() || found.eq_ignore_ascii_case("nan") {
         "; where somebody was not seen, write no row"
@@ -137,26 +134,21 @@ fn advice_on_number(found: &str) -> &'static str {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum RecordingError {
-    /// No observation.
     #[error("a recording needs at least one observation")]
     Empty,
-    /// The frame step is not positive, or absurdly large.
     #[error("the frame step must lie in 1..=2^31 raw frames, found {found}")]
     FrameStep { found: i64 },
-    /// A frame number too large to count on from.
     #[error("pedestrian {pedestrian}: frame {frame} is not below 2^53 in size")]
     FrameOutOfRange {
         pedestrian: PedestrianId,
         frame: i64,
     },
-    /// A coordinate is infinite or NaN.
     #[error("pedestrian {pedestrian}, frame {frame}: position {position:?} is not finite")]
     NotFinite {
         pedestrian: PedestrianId,
         frame: i64,
         position: crate::Position,
     },
-    /// One pedestrian twice in one frame.
     #[error("pedestrian {pedestrian} is in frame {frame} twice")]
     Duplicate {
         pedestrian: PedestrianId,
@@ -169,13 +161,10 @@ pub enum RecordingError {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum WindowError {
-    /// No pedestrian.
     #[error("a window needs at least one pedestrian")]
     Empty,
-    /// Ids and tracks differ in number.
     #[error("{pedestrians} pedestrian ids but {tracks} tracks; give one track for each id")]
     Count { pedestrians: usize, tracks: usize },
-    /// A track is of a wrong length.
     #[error(
         "pedestrian {pedestrian}: a track of {found} positions; every track of a window must have \
          {observed} (observation only) or every one {whole} (with the future)",
@@ -186,17 +175,14 @@ pub enum WindowError {
         pedestrian: PedestrianId,
         found: usize,
     },
-    /// A coordinate is infinite or NaN.
     #[error("pedestrian {pedestrian}, position {index} of the track: {position:?} is not finite")]
     NotFinite {
         pedestrian: PedestrianId,
         index: usize,
         position: crate::Position,
     },
-    /// One id twice.
     #[error("pedestrian {pedestrian} is in the window twice")]
     Duplicate { pedestrian: PedestrianId },
-    /// The frame step or the frame numbers are out of range.
     #[error(
         "start frame {start_frame} with a step of {frame_step}: the step must lie in 1..=2^31 and frames below 2^53"
     )]
@@ -208,22 +194,18 @@ pub enum WindowError {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum DataError {
-    /// A file cannot be read from the disk.
     #[error("cannot read {}: {source}", .path.display())]
     Read {
         path: PathBuf,
         source: std::io::Error,
     },
-    /// A file's content is wrong.
     #[error(transparent)]
     Format(#[from] FormatError),
-    /// Observations that do not make a recording.
     #[error("recording {name}: {source}")]
     Recording {
         name: String,
         source: RecordingError,
     },
-    /// The convention's files were not found.
     #[error(
         "the {convention} recordings are not there; looked in {}. Put the files there, or name \
          their folder in the environment variable {variable}",
@@ -234,29 +216,24 @@ pub enum DataError {
         convention: Convention,
         searched: Vec<String>,
     },
-    /// A convention without files of fixed names was asked for them.
     #[error(
         "the {0} convention has no files of fixed names; use `Dataset::simulated` or `Dataset::own`"
     )]
     NoFiles(Convention),
-    /// Own recordings that do not make a data set.
     #[error("{problem}")]
     Own { problem: String },
-    /// No recording of this name.
     #[error("no recording {name:?} in the {convention} convention; it has {}", .known.join(", "))]
     UnknownRecording {
         convention: Convention,
         name: String,
         known: Vec<String>,
     },
-    /// A recording to set apart that the fold does not train on.
     #[error("{name:?} is not one of these recordings: {}", .known.join(", "))]
     NotATrainingRecording {
         fold: String,
         name: String,
         known: Vec<String>,
     },
-    /// No fold of this name.
     #[error("no fold {name:?} in the {convention} convention; it has {}", .known.join(", "))]
     UnknownFold {
         convention: Convention,

@@ -10,7 +10,6 @@ pub struct Fold<'a> {
     name: &'a str,
     test: Vec<&'a Recording>,
     training: Vec<&'a Recording>,
-    /// Training recordings that are kept for validation whole.
     set_apart: Vec<&'a Recording>,
 }
 

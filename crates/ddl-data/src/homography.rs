@@ -135,21 +135,16 @@ impl std::str::FromStr for Homography {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum HomographyError {
-    /// An entry is infinite or NaN.
     #[error("row {}, column {} of the homography is not finite", .row + 1, .column + 1)]
     NotFinite { row: usize, column: usize },
-    /// All pixels would lie on a line.
     #[error("the homography is singular: it squeezes the plane into a line; is a row there twice?")]
     Singular,
-    /// A line that is no row.
     #[error(
         "line {line} of the homography must hold three numbers, and be one of three such lines, found {found:?}"
     )]
     Line { line: usize, found: String },
-    /// Too few rows.
     #[error("a homography has three rows of three numbers, found {found}")]
     Rows { found: usize },
-    /// A pixel at which the camera sees no ground.
     #[error(
         "pedestrian {pedestrian}, frame {frame}: pixel {pixel:?} lies on the horizon of the homography; is it of this \
          camera, and from pixels to metres?"
@@ -159,7 +154,6 @@ pub enum HomographyError {
         frame: i64,
         pixel: [f64; 2],
     },
-    /// What came out is no recording.
     #[error(transparent)]
     Recording(#[from] RecordingError),
 }

@@ -13,7 +13,6 @@ mod live;
 mod locate;
 mod names;
 mod neighbours;
-mod plan;
 mod rate;
 mod recording;
 mod rule;

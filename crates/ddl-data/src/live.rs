@@ -41,7 +41,6 @@ const NAME: &str = "live";
 pub struct LiveTracks {
     /// What windows name as their recording.
     name: Arc<str>,
-    /// How the recording names its pedestrians.
     names: PedestrianNames,
     frame_step: i64,
     completion: Completion,
@@ -92,7 +91,6 @@ impl LiveTracks {
         })
     }
 
-    /// Nobody seen yet of a recording.
     pub(crate) fn of(recording: &Recording) -> Self {
         Self {
             name: recording.shared_name(),
@@ -106,11 +104,6 @@ impl LiveTracks {
     #[must_use]
     pub fn completing(self, completion: Completion) -> Self {
         Self { completion, ..self }
-    }
-
-    /// What is made up of observations that are not whole.
-    pub fn completion(&self) -> Completion {
-        self.completion
     }
 
     /// Forgets everybody and the last frame: any frame may come next, as when a tracker starts anew.
@@ -293,26 +286,21 @@ impl LivePedestrian {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum LiveError {
-    /// The frame step is not positive, or absurdly large.
     #[error("the frame step must lie in 1..=2^31 raw frames, found {found}")]
     FrameStep { found: i64 },
-    /// A frame number too large to count on from.
     #[error("frame {frame} is not below 2^53 in size")]
     FrameOutOfRange { frame: i64 },
-    /// A frame that goes back in time.
     #[error(
         "frame {frame} comes after frame {last}; push frames in order of time, each once, and clear the tracks when the tracker \
          starts anew"
     )]
     TooEarly { frame: i64, last: i64 },
-    /// A coordinate is infinite or NaN.
     #[error("frame {frame}, pedestrian {pedestrian}: {position:?} is not finite")]
     NotFinite {
         pedestrian: PedestrianId,
         frame: i64,
         position: Position,
     },
-    /// One pedestrian twice in one frame.
     #[error("pedestrian {pedestrian} is in frame {frame} twice; keep one")]
     Duplicate {
         pedestrian: PedestrianId,

@@ -29,7 +29,6 @@ pub fn locate(convention: Convention, explicit: Option<&Path>) -> Result<PathBuf
     locate_among(convention, roots(explicit, variable.as_deref(), &here))
 }
 
-/// The folders to look in or beside.
 fn roots(explicit: Option<&Path>, variable: Option<&Path>, here: &Path) -> Vec<PathBuf> {
     if let Some(only) = explicit {
         return vec![only.to_owned()];

@@ -90,7 +90,6 @@ impl Recording {
         Some(1.0 / (self.rate()? * self.frame_step() as f64))
     }
 
-    /// Whether frames keep time.
     fn is_even(&self) -> bool {
         let differences = self.frames().windows(2).map(|pair| pair[1] - pair[0]);
         let whole = differences.filter(|difference| difference % self.frame_step() == 0);
@@ -148,21 +147,17 @@ fn fits(found: f64, wanted: f64, tolerance: f64) -> bool {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum RateError {
-    /// The time of a frame is no time.
     #[error(
         "a frame must take more than 0 s, and 0.4 s be no more than 2^31 frames; found {found} s a frame"
     )]
     FrameTime { found: f64 },
-    /// Observations too far apart.
     #[error(
         "observations are {apart:.2} s apart, more than 1.2 s: too few to see how somebody walks; is the rate right, and are the frame \
          numbers those of this rate?"
     )]
     TooSlow { apart: f64 },
-    /// Frame numbers too large to be divided.
     #[error("frame {last} is too large to be counted in {parts} parts; count frames from 0")]
     Frames { last: i64, parts: i64 },
-    /// What came out is no recording.
     #[error(transparent)]
     Recording(#[from] RecordingError),
 }

@@ -90,7 +90,6 @@ impl Recording {
         })
     }
 
-    /// Other observations of the same recording.
     pub(crate) fn with_observations(
         &self,
         frame_step: i64,
@@ -103,12 +102,10 @@ impl Recording {
         })
     }
 
-    /// The same recording, whose file says how many of its frames follow each other in a second.
     pub(crate) fn with_rate(self, rate: Option<f64>) -> Self {
         Self { rate, ..self }
     }
 
-    /// The same recording, whose file names pedestrians so.
     pub(crate) fn with_names(self, names: PedestrianNames) -> Self {
         Self { names, ..self }
     }
@@ -148,7 +145,6 @@ impl Recording {
         &self.name
     }
 
-    /// The name, shared with the windows of this recording.
     pub(crate) fn shared_name(&self) -> Arc<str> {
         Arc::clone(&self.name)
     }
@@ -173,7 +169,6 @@ impl Recording {
         &self.observations[self.range_at(frame)]
     }
 
-    /// Everybody's observations in order of time.
     pub(crate) fn tracks(&self) -> BTreeMap<PedestrianId, Vec<&Observation>> {
         let mut tracks: BTreeMap<PedestrianId, Vec<&Observation>> = BTreeMap::new();
         for seen in &self.observations {
@@ -232,7 +227,6 @@ impl Recording {
         cut.min(self.frames.len())
     }
 
-    /// Some annotated frames in a row, by their indices.
     fn part(&self, frames: Range<usize>) -> Option<Self> {
         if frames.is_empty() {
             return None;

@@ -141,7 +141,6 @@ impl<'a> Links<'a> {
         }
     }
 
-    /// Whether an observation counts as presence.
     fn counts(&self, observation: usize) -> bool {
         self.rule != WindowRule::Published
             || self.recording.observations()[observation].position != [0.0, 0.0]

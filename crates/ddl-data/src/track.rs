@@ -58,17 +58,14 @@ impl Observation {
     }
 }
 
-/// Whether a raw frame number can be counted on from.
 pub(crate) fn is_frame(frame: i64) -> bool {
     frame.unsigned_abs() < FRAME_LIMIT.unsigned_abs()
 }
 
-/// Whether so many raw frames may be a step.
 pub(crate) fn is_frame_step(step: i64) -> bool {
     (1..=FRAME_STEP_LIMIT).contains(&step)
 }
 
-/// Whether a position is a place.
 pub(crate) fn is_finite(position: Position) -> bool {
     position.iter().all(|coordinate| coordinate.is_finite())
 }

@@ -140,7 +140,6 @@ impl Window {
         ids.position(|&id| self.names.names(id, name))
     }
 
-    /// The same with what of each pedestrian's observation was made up.
     pub(crate) fn with_made_up(mut self, made_up: Vec<MadeUp>) -> Self {
         debug_assert!(made_up.is_empty() || made_up.len() == self.len());
         let whole = made_up.iter().all(|made_up| made_up.is_nothing());
@@ -248,7 +247,6 @@ impl Window {
         window.with_made_up(self.made_up.clone())
     }
 
-    /// A window of the same recording.
     fn of_same(
         &self,
         frames: Vec<i64>,

@@ -1,15 +1,17 @@
 //! The goal estimator: retrieve similar walkers, and place goals among where they ended.
 
+use ddl_softdtw::{Cost, Neighbour, SearchIndex, SoftDtw};
 use rayon::prelude::*;
 
 use crate::analogues::Analogues;
-use crate::error::GoalError;
+use crate::error::{GoalError, TrackError};
 use crate::expert::Expert;
 use crate::goal_set::GoalSet;
 use crate::kmeans::KMeans;
-use crate::library::ExpertLibrary;
+use crate::library::{ExpertLibrary, TRACK_LENGTH};
+use crate::motion::Motion;
 use crate::params::{RetrievalFrame, ValidGoalEstimatorParams};
-use crate::retrieve::Retriever;
+use crate::span::{QuerySpan, velocities};
 
 /// Estimates where walkers are heading from how similar walkers of a library went on.
 ///
@@ -50,7 +52,6 @@ pub struct GoalEstimator {
     method: Preparation,
 }
 
-/// What the frame of the retrieval calls for.
 #[derive(Clone, Debug)]
 enum Preparation {
     World(Box<Retriever>, KMeans),
@@ -147,5 +148,77 @@ impl GoalEstimator {
                 })
             })
             .collect()
+    }
+
+    /// The track of an expert carried over to the walker of `track`, as its end is for the goals: to be drawn, say.
+    ///
+    /// In [`RetrievalFrame::World`] it is moved to the walker's first position. In [`RetrievalFrame::Heading`] its deviation
+    /// from repeating the last observed step is added to the walker's own last step, repeated.
+    ///
+    /// # Shapes
+    /// `track`: as for [`GoalEstimator::estimate`]; the result has [`TRACK_LENGTH`] positions (m).
+    ///
+    /// # Errors
+    /// As [`GoalEstimator::estimate`].
+    ///
+    /// # Panics
+    /// When `expert` is not of this estimator's library.
+    pub fn carry_over(
+        &self,
+        expert: &Expert,
+        track: &[[f64; 2]],
+    ) -> Result<Vec<[f64; 2]>, GoalError> {
+        let (library, observed) = (self.library(), QuerySpan::Observed.positions());
+        let other = &library.tracks()[expert.index];
+        if track.len() < observed {
+            let (found, needed) = (track.len(), observed);
+            return Err(TrackError::TooShort { found, needed }.into());
+        }
+        if self.params().frame == RetrievalFrame::World {
+            let moved = |p: &[f64; 2]| [0, 1].map(|d| track[0][d] + p[d] - other[0][d]);
+            return Ok(other.iter().map(moved).collect());
+        }
+        let walker = Motion::new(track, library.time_step())?;
+        let expert_motion = Motion::new(other, library.time_step())?;
+        let mirror = if expert.mirrored { -1.0 } else { 1.0 };
+        let horizon = (TRACK_LENGTH - observed) as f64;
+        let carried = |(step, &position): (usize, &[f64; 2])| {
+            let share = (step as f64 - (observed - 1) as f64) / horizon;
+            let [ahead, left] = expert_motion.deviation(position, share);
+            walker.place([ahead, mirror * left], share)
+        };
+        Ok(other.iter().enumerate().map(carried).collect())
+    }
+}
+
+/// Finds the tracks of a library whose velocities are nearest in the normalised soft-DTW distance.
+///
+/// # References
+/// DDL paper, equations 4 and 5. The cost is the squared Euclidean distance, as in the published code (the text of the
+/// paper says Euclidean).
+#[derive(Clone, Debug)]
+struct Retriever {
+    index: SearchIndex<2>,
+    time_step: f64,
+    span: QuerySpan,
+}
+
+impl Retriever {
+    /// Prepares a library for retrieval with smoothing `gamma` (m²/s²), comparing what `span` reads.
+    fn new(library: &ExpertLibrary, gamma: f64, span: QuerySpan) -> Result<Self, GoalError> {
+        let dtw = SoftDtw::new(gamma, Cost::SquaredEuclidean)?;
+        let time_step = library.time_step();
+        let sequences = library.of_each(|track| velocities(track, time_step, span))?;
+        Ok(Self {
+            index: SearchIndex::build(&dtw, &sequences)?,
+            time_step,
+            span,
+        })
+    }
+
+    /// The `experts` tracks of the library nearest to `track`, nearest first, ties by their place in the library.
+    fn nearest(&self, track: &[[f64; 2]], experts: usize) -> Result<Vec<Neighbour>, GoalError> {
+        let velocities = velocities(track, self.time_step, self.span)?;
+        Ok(self.index.nearest(&velocities, experts)?)
     }
 }

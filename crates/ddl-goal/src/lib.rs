@@ -1,7 +1,6 @@
 #![doc = include_str!("../README.md")]
 
 mod analogues;
-mod carry_over;
 mod central_goal;
 mod choice;
 mod error;
@@ -17,11 +16,8 @@ mod motion;
 mod motion_index;
 mod params;
 mod points;
-mod proposed;
-mod retrieve;
 mod seeding;
 mod span;
-mod split;
 
 pub use error::{GoalError, LibraryError, ParamsError, TrackError};
 pub use estimator::GoalEstimator;

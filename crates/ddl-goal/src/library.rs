@@ -26,7 +26,6 @@ pub struct ExpertLibrary {
     tracks: Vec<Vec<[f64; 2]>>,
 }
 
-/// A library as it was read, before it is checked.
 #[derive(Deserialize)]
 #[serde(rename = "ExpertLibrary", deny_unknown_fields)]
 struct UncheckedLibrary {

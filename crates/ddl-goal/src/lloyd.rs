@@ -5,12 +5,10 @@
 use crate::points::{Points, squared_distance};
 use ddl_simd::{Dispatch, Register, RegisterKernel};
 
-/// One run of Lloyd's iteration.
 #[derive(Debug)]
 pub(crate) struct Lloyd {
     pub(crate) centres: Vec<[f64; 2]>,
     pub(crate) labels: Vec<u64>,
-    /// Squared distance of each point to its centre.
     nearest: Vec<f64>,
     pub(crate) inertia: f64,
 }
@@ -96,7 +94,6 @@ impl Lloyd {
     }
 }
 
-/// The nearest centre of each point.
 struct Assign<'a> {
     points: &'a Points,
     centres: &'a [[f64; 2]],

@@ -21,10 +21,8 @@ const DIRECTION: f64 = 0.2;
 /// Speed (m/s) from which on the direction counts in full.
 const WALKING: f64 = 1.0;
 
-/// The observed motion of one walker.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion {
-    /// The walker's own coordinates.
     pub(crate) frame: HeadingFrame,
     /// Velocities in the frame, divided by the pace, earlier ones scaled down; and the direction in the world.
     pub(crate) components: [f32; COMPONENTS],

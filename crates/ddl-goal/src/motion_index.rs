@@ -20,7 +20,6 @@ pub(crate) struct Alike {
     pub(crate) distance: f32,
 }
 
-/// Motions prepared for an exhaustive search.
 #[derive(Clone, Debug)]
 pub(crate) struct MotionIndex {
     blocks: Vec<Block>,

@@ -53,7 +53,6 @@ impl Points {
         [self.x[index], self.y[index]]
     }
 
-    /// Mean of the variances of the two coordinates.
     pub(crate) fn mean_variance(&self) -> f64 {
         let total: f64 = self.weight.iter().sum();
         let weighted_sum = |values: &mut dyn Iterator<Item = f64>| -> f64 {

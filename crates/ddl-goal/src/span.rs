@@ -29,11 +29,6 @@ impl QuerySpan {
     pub fn positions(self) -> usize {
         self.velocities() + 1
     }
-
-    /// Whether the first position to be forecast is read.
-    pub fn reads_future(self) -> bool {
-        self == Self::PublishedFuture
-    }
 }
 
 /// Forward differences (m/s) of the positions that `span` may read; later positions are not looked at.
@@ -63,7 +58,6 @@ pub(crate) fn velocities(
         .collect()
 }
 
-/// The first position that is not finite, as an error.
 pub(crate) fn check_finite(positions: &[[f64; 2]]) -> Result<(), TrackError> {
     match positions
         .iter()
@@ -83,7 +77,6 @@ mod tests {
     #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
     use super::{QuerySpan, velocities};
-    use crate::error::TrackError;
 
     fn walk(positions: usize) -> Vec<[f64; 2]> {
         (0..positions)
@@ -100,28 +93,5 @@ mod tests {
         let published = velocities(&walk(9), 0.5, QuerySpan::PublishedFuture).unwrap();
         assert_eq!(published[..7], observed[..]);
         assert_eq!(published[7], [1.0, -30.0]);
-    }
-
-    #[test]
-    fn positions_beyond_the_span_are_not_even_checked() {
-        let mut track = walk(20);
-        track[8] = [f64::NAN, 0.0];
-        assert!(velocities(&track, 0.4, QuerySpan::Observed).is_ok());
-        let refused = |track: &[[f64; 2]], span| velocities(track, 0.4, span).unwrap_err();
-        let message = |track: &[[f64; 2]], span| refused(track, span).to_string();
-        let (observed, future) = (QuerySpan::Observed, QuerySpan::PublishedFuture);
-        assert!(message(&track, future).starts_with("position 8 is (NaN, 0)"));
-        let (found, needed) = (8, 9);
-        assert_eq!(
-            refused(&walk(8), future),
-            TrackError::TooShort { found, needed }
-        );
-        track[3] = [0.0, f64::INFINITY];
-        assert!(message(&track, observed).starts_with("position 3 is (0, inf)"));
-        let far = [[-1e308, 0.0], [1e308, 0.0]].repeat(4);
-        assert_eq!(
-            refused(&far, observed),
-            TrackError::VelocityOverflow { index: 0 }
-        );
     }
 }

@@ -173,7 +173,6 @@ impl PairDispatch {
     }
 }
 
-/// Runs a kernel on whole groups.
 struct OnSixteen<K>(K);
 
 impl<K: Kernel> RegisterKernel for OnSixteen<K> {
@@ -185,7 +184,6 @@ impl<K: Kernel> RegisterKernel for OnSixteen<K> {
     }
 }
 
-/// Asks whether products are fused.
 struct AskFused;
 
 impl RegisterKernel for AskFused {

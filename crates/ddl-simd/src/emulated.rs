@@ -11,7 +11,6 @@ use crate::simd::Simd;
 #[derive(Clone, Copy, Debug)]
 struct Emulated<S>(S);
 
-/// Runs a kernel on emulated instructions.
 pub(crate) struct OnEmulated<K>(pub(crate) K);
 
 impl<K: PairKernel> RegisterKernel for OnEmulated<K> {

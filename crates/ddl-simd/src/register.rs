@@ -8,7 +8,8 @@ use crate::simd::{Simd, TiledKernel};
 /// Arithmetic on one register at a time, of `f32`, of `f64` and of words of 32 bits.
 ///
 /// Sixteen numbers of `f32` (eight of `f64`) are a group, which fills [`PARTS`](Self::PARTS) registers. A kernel that
-/// needs many registers goes through a group part by part; the others take [`Simd`], a whole group at a time.
+/// needs many registers goes through a group part by part; the others take [`Simd`], a whole group at a time. Operations
+/// without words are those of [`Simd`], on one register or, called `wide_`, on `f64`; `part` counts the registers of a group.
 ///
 /// A value of a type that implements it is the proof that the machine has the instructions, so that all methods are safe
 /// to call. Loads and stores panic when `part >= PARTS`, a check that disappears in a loop over `0..PARTS`.
@@ -16,6 +17,10 @@ use crate::simd::{Simd, TiledKernel};
 /// # Numerics
 /// Operations on `f64` are rounded one by one (there is no fused multiplication), so that every instruction set gives the
 /// same bits. Those on `f32` may be fused.
+#[expect(
+    missing_docs,
+    reason = "operations without words are those of `Simd`, on one register or on f64"
+)]
 pub trait Register: Copy + Send + Sync {
     /// `WIDTH` numbers of `f32`.
     type Floats: Copy;
@@ -39,31 +44,21 @@ pub trait Register: Copy + Send + Sync {
     /// Runs `kernel`, within one that runs already, with the [`Tile`](crate::Tile) that the registers hold.
     fn run_tiled<K: TiledKernel>(self, kernel: K);
 
-    /// `value` in every lane.
     fn splat(self, value: f32) -> Self::Floats;
     /// The lanes `part * WIDTH ..` of a group.
     fn load(self, from: &[f32; LANES], part: usize) -> Self::Floats;
-    /// Writes the lanes `part * WIDTH ..` of a group.
     fn store(self, value: Self::Floats, into: &mut [f32; LANES], part: usize);
-    /// a + b.
     fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// a − b.
     fn sub(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// a b.
     fn mul(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// a / b.
     fn div(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// √a.
     fn sqrt(self, a: Self::Floats) -> Self::Floats;
-    /// The larger of each two numbers; `b` where one is NaN.
     fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// a b + c, rounded once or twice.
     fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
     /// c − a b, rounded once or twice.
     fn neg_mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
     /// Bit l is set where a >= b in lane l.
     fn at_least(self, a: Self::Floats, b: Self::Floats) -> u32;
-    /// 0 where `condition` <= 0, `a` elsewhere (also where `condition` is NaN).
     fn zero_unless_positive(self, condition: Self::Floats, a: Self::Floats) -> Self::Floats;
     /// Adds the low bits of `exponent`'s representation to the exponent of `power`.
     fn scale(self, power: Self::Floats, exponent: Self::Floats) -> Self::Floats;
@@ -89,36 +84,21 @@ pub trait Register: Copy + Send + Sync {
     /// Lane 4 i + j of the result is the sum of the lanes 4 k + j over k, the farthest ones first.
     fn sum_of_fours(self, a: Self::Floats) -> Self::Floats;
 
-    /// Lane l is `first` xor l.
     fn count_from(self, first: u32) -> Self::Bits;
-    /// a xor b.
     fn xor(self, a: Self::Bits, b: u32) -> Self::Bits;
-    /// a xor (a >> `N`).
     fn xor_shift<const N: u32>(self, a: Self::Bits) -> Self::Bits;
-    /// a << `N`.
     fn shift_left<const N: u32>(self, a: Self::Bits) -> Self::Bits;
-    /// The low 32 bits of the product.
     fn mul_low(self, a: Self::Bits, b: u32) -> Self::Bits;
-    /// `a` where `bits` >= `least`, 0 elsewhere.
     fn keep(self, a: Self::Floats, bits: Self::Bits, least: u32) -> Self::Floats;
 
-    /// `value` in every lane.
     fn wide_splat(self, value: f64) -> Self::Wide;
-    /// The lanes `part * WIDTH / 2 ..` of a group.
     fn wide_load(self, from: &[f64; WIDE_LANES], part: usize) -> Self::Wide;
-    /// Writes the lanes `part * WIDTH / 2 ..` of a group.
     fn wide_store(self, value: Self::Wide, into: &mut [f64; WIDE_LANES], part: usize);
-    /// a + b.
     fn wide_add(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
-    /// a − b.
     fn wide_sub(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
-    /// a b.
     fn wide_mul(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
-    /// The larger of each two numbers; `b` where one is NaN.
     fn wide_max(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
-    /// √a.
     fn wide_sqrt(self, a: Self::Wide) -> Self::Wide;
-    /// Adds the low bits of `exponent`'s representation to the exponent of `power`.
     fn wide_scale(self, power: Self::Wide, exponent: Self::Wide) -> Self::Wide;
 }
 

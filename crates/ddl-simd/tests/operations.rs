@@ -4,7 +4,7 @@
 
 use ddl_simd::{
     DEPTH, Dispatch, InstructionSet, Kernel, LANES, Lanes, Quad, Register, RegisterKernel, Simd,
-    TiledKernel, WIDE_LANES, ZERO_QUAD,
+    WIDE_LANES, ZERO_QUAD,
 };
 use proptest::prelude::*;
 
@@ -230,26 +230,6 @@ fn quads() {
                 assert_eq!(found[d].0[l], expected, "{dispatch:?}");
             }
         }
-    }
-}
-
-/// Notes the size of the tile that it is run with.
-struct Sizes<'a>(&'a mut Option<(usize, usize)>);
-
-impl TiledKernel for Sizes<'_> {
-    #[inline(always)]
-    fn run<S: Simd, const R: usize, const V: usize>(self, _: S) {
-        *self.0 = Some((R, V));
-    }
-}
-
-#[test]
-fn tiles_are_of_the_sizes_that_are_promised() {
-    for dispatch in each_set() {
-        let mut size = None;
-        dispatch.run(Sizes(&mut size));
-        let (rows, vectors) = size.expect("the kernel is run");
-        assert!(8 % rows == 0 && (1..=2).contains(&vectors), "{dispatch:?}");
     }
 }
 

@@ -152,25 +152,13 @@ proptest! {
 /// By hand: 1 + 2^-8 lies between two bf16 numbers, and 1 is the even one; 1 + 3 2^-8 goes up.
 #[test]
 fn known_numbers() {
-    let mut numbers = [[0.0; LANES]; 2];
-    numbers[0][..8].copy_from_slice(&[
-        1.0 + 1.0 / 256.0,
-        1.0 + 3.0 / 256.0,
-        std::f32::consts::PI,
-        -0.0,
-        f32::MAX,
-        f32::NEG_INFINITY,
-        1e-40,
-        -1.0 / 3.0,
-    ]);
-    let halves = [
-        0x3f80, 0x3f82, 0x4049, 0x8000, 0x7f80, 0xff80, 0x0000, 0xbeab,
-    ];
+    let numbers = [1.0 + 1.0 / 256.0, 1.0 + 3.0 / 256.0, -1.0 / 3.0, 1e-40];
+    let halves = [0x3f80, 0x3f82, 0xbeab, 0];
     for way in ways() {
-        let found = all(way, &numbers, &[[0; LANES]; 2]);
-        for (l, half) in halves.into_iter().enumerate() {
-            assert_eq!(found.neighbours[l / 2] >> (16 * (l % 2)) & 0xffff, half);
-            assert_eq!(found.across[l], half);
+        for (number, half) in numbers.into_iter().zip(halves) {
+            let found = all(way, &[[number; LANES]; 2], &[[0; LANES]; 2]);
+            assert_eq!(found.neighbours, [half | half << 16; LANES], "{way:?}");
+            assert_eq!(found.across, found.neighbours, "{way:?}");
         }
     }
     // (1 + 2^24) - 2^24, where the first sum is half way between two numbers and rounds to 2^24.

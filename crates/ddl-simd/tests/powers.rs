@@ -10,10 +10,9 @@ use ddl_simd::{
 type Narrow = [f32; LANES];
 type Wide = [f64; WIDE_LANES];
 
-fn each_set(mut test: impl FnMut(Dispatch)) {
-    for set in InstructionSet::available() {
-        test(Dispatch::new(set).unwrap());
-    }
+fn each_set(test: impl FnMut(Dispatch)) {
+    let sets = InstructionSet::available().into_iter();
+    sets.map(|set| Dispatch::new(set).unwrap()).for_each(test);
 }
 
 /// 2^x of sixteen and of eight numbers.

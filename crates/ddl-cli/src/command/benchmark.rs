@@ -10,7 +10,6 @@ mod plan;
 mod profile;
 mod publish;
 mod readme;
-mod record;
 mod report;
 mod work;
 
@@ -164,7 +163,6 @@ impl Benchmark {
         Ok(())
     }
 
-    /// The data convention, and the folder of its recordings where it has some.
     fn recordings(&self) -> anyhow::Result<(Convention, Option<PathBuf>)> {
         let data = self.data.as_deref();
         let convention = match self.convention {
@@ -288,7 +286,6 @@ impl Benchmark {
     }
 }
 
-/// Which of the known names it is.
 fn one_of(what: &str, name: &str, known: &[&str]) -> anyhow::Result<usize> {
     let index = known.iter().position(|known| *known == name);
     index.with_context(|| {

@@ -85,7 +85,6 @@ fn warn_of_unfamiliar<'r>(recordings: impl Iterator<Item = &'r Recording>) -> an
 /// Share of unfamiliar motions (%) above which there is something to say: five times what training recordings have.
 const MANY_UNFAMILIAR: f64 = 5.0;
 
-/// What all recordings hold together.
 #[derive(Debug, Default, Serialize)]
 struct Total {
     recordings: usize,
@@ -129,7 +128,6 @@ fn many(count: usize, one: &str, more: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { more })
 }
 
-/// The summary with frames numbered as the tracks number them.
 fn facts(file: &Path, summary: &Summary, clock: Clock) -> serde_json::Result<Value> {
     let mut facts = serde_json::to_value(summary)?;
     facts["file"] = file.display().to_string().into();

@@ -148,7 +148,6 @@ impl Evaluate {
         self.reporting.print(&report, &self.written(kept))
     }
 
-    /// Writes the whole report to the folder asked for, if any.
     fn save_elsewhere(
         &self,
         results: impl FnOnce() -> Result<Results, DdlError>,
@@ -161,7 +160,6 @@ impl Evaluate {
         Ok(())
     }
 
-    /// Where the rest of the results is.
     fn written(&self, kept: Option<&RunDirectory>) -> String {
         match (kept, &self.other.out) {
             (Some(run), None) => {

@@ -4,8 +4,7 @@ mod json_lines;
 mod live;
 mod table;
 
-use super::model::ModelChoice;
-use super::{Exactness, KeepClear, Machine};
+use super::{Exactness, KeepClear, Machine, ModelChoice};
 use crate::clock::{Clock, FrameNumber};
 use crate::output::write_output;
 use crate::telling::tell;
@@ -155,7 +154,10 @@ impl Forecast {
         };
         warn_of_violation(&moments);
         *warned = *warned || self.warn_of_unfamiliar(&moments);
-        self.format.text(&moments, headed, &self.region)
+        match self.format {
+            OutputFormat::Csv => table::csv(&moments, headed, &self.region),
+            OutputFormat::Jsonl => json_lines::json_lines(&moments, &self.region),
+        }
     }
 
     /// Warns of motions unlike those of the training, whose forecasts are less certain; whether there are any.
@@ -188,7 +190,6 @@ impl Forecast {
     }
 }
 
-/// A probability that the table of regions reaches.
 fn probability(text: &str) -> Result<f64, String> {
     let [low, high] = Calibration::fitted().regions.range();
     let level: f64 = text.trim().parse().map_err(|error| format!("{error}"))?;
@@ -196,15 +197,6 @@ fn probability(text: &str) -> Result<f64, String> {
         return Ok(level);
     }
     Err(format!("a region has a probability of {low} to {high}"))
-}
-
-impl OutputFormat {
-    fn text(self, moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyhow::Result<String> {
-        match self {
-            Self::Csv => table::csv(moments, headed, regions),
-            Self::Jsonl => json_lines::json_lines(moments, regions),
-        }
-    }
 }
 
 impl<'a> Moment<'a> {
@@ -235,7 +227,6 @@ impl<'a> Moment<'a> {
         self.clock.number(self.window.frames()[OBSERVED - 1])
     }
 
-    /// The frames that are forecast.
     fn frames(&self) -> Vec<FrameNumber> {
         let (last, step) = (self.window.frames()[OBSERVED - 1], self.window.frame_step());
         let frames = (1..=HORIZON as i64).map(|t| self.clock.number(last + t * step));

@@ -1,7 +1,6 @@
 //! `ddl goals`.
 
-use super::model::ModelChoice;
-use super::{Machine, Telling, convention_of, dataset};
+use super::{Machine, ModelChoice, Telling, convention_of, dataset};
 use crate::clock::FrameNumber;
 use crate::output::{table_metres, write_output};
 use crate::tracks::{Observed, Tracks};
@@ -45,7 +44,6 @@ pub(crate) struct Goals {
     machine: Machine,
 }
 
-/// What to measure on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Measure {
     /// The scene left out of training
@@ -100,7 +98,7 @@ impl Goals {
         let model = self.model.load_goals(self.machine.device)?;
         let data = self.data.as_deref();
         let convention = convention_of(data, model.config().data.convention);
-        let units = self.tracks.units().or_those_of(model.config());
+        let units = self.tracks.units.or_those_of(model.config());
         let dataset = dataset(convention, data, &units)?;
         let on = match measure {
             Measure::Test => EvaluationSplit::Test,
@@ -144,7 +142,6 @@ fn csv(observed: &Observed, sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
     Ok(String::from_utf8(bytes)?)
 }
 
-/// The measurement for people.
 fn words(evaluation: &GoalEvaluation) -> String {
     let mut lines = vec![
         format!(

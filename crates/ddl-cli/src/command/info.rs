@@ -61,7 +61,6 @@ impl Info {
     }
 }
 
-/// Version, and what this machine can do.
 fn of_program() -> serde_json::Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"),
@@ -71,7 +70,6 @@ fn of_program() -> serde_json::Value {
     })
 }
 
-/// What a model is, to be read before its facts.
 fn summary(goals: &GoalModel, trained: &str) -> String {
     let config = goals.config();
     let data = &config.data;
@@ -108,7 +106,6 @@ fn facts_of(
     }))
 }
 
-/// Nested facts as indented lines.
 fn write_facts(out: &mut String, facts: &serde_json::Value, depth: usize) -> std::fmt::Result {
     let Some(map) = facts.as_object() else {
         return Ok(());

@@ -40,7 +40,6 @@ impl TestWindows {
         Ok(())
     }
 
-    /// The rule asked for, or the headline's.
     pub(crate) fn rule(&self, convention: Convention) -> WindowRule {
         self.window_rule
             .unwrap_or_else(|| convention.headline_rule())

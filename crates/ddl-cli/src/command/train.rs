@@ -1,7 +1,6 @@
 //! `ddl train`.
 
 mod bars;
-mod compared;
 mod finished;
 
 use super::recipe::Recipe;
@@ -182,7 +181,8 @@ impl Train {
                 .context(format!("{}, {stood}", request.out.path().display())),
             error => error.into(),
         })?;
-        let compared = compared::with_builtin(&request, &dataset, &self.reporting, &interrupt)?;
+        let compared =
+            finished::compare_with_builtin(&request, &dataset, &self.reporting, &interrupt)?;
         finished::print(
             &request,
             compared.as_ref(),
@@ -191,7 +191,6 @@ impl Train {
         )
     }
 
-    /// What is kept for validation.
     fn validation_part(&self, dataset: &Dataset, fold: &str) -> anyhow::Result<ValidationPart> {
         let recordings = &self.validation_recordings;
         let part = ValidationPart {
@@ -256,7 +255,6 @@ impl Train {
         Ok(Some(ModelSource::Builtin(model)))
     }
 
-    /// The convention and the fold to train.
     fn scene(&self) -> anyhow::Result<(Convention, String)> {
         match (self.convention, &self.fold) {
             (Some(convention), Some(fold)) => Ok((convention, fold.clone())),
@@ -276,7 +274,6 @@ impl Train {
         }
     }
 
-    /// Network and training of the recipe, with what the options change of it.
     fn recipe(&self, further: bool) -> (StarConfig, TrainingConfig) {
         let (mut star, mut training) = match self.recipe {
             Recipe::Recommended => (

@@ -1,7 +1,6 @@
 //! `ddl view`.
 
-use super::model::ModelChoice;
-use super::{KeepClear, Machine};
+use super::{KeepClear, Machine, ModelChoice};
 use crate::output;
 use crate::tracks::{Observed, Tracks};
 use anyhow::{Context as _, bail};
@@ -65,7 +64,6 @@ impl View {
     }
 }
 
-/// Opens the page in the user's browser, which is not waited for.
 fn open(path: &Path) -> anyhow::Result<()> {
     open::that_detached(path).with_context(|| {
         format!(
@@ -83,7 +81,6 @@ fn spread(windows: &[Window], most: usize) -> Vec<Window> {
         .collect()
 }
 
-/// The page of these windows, which are some of those observed.
 fn page(
     model: &Ddl,
     windows: &[Window],

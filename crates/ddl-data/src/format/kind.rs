@@ -2,15 +2,9 @@
 
 use std::fmt;
 use std::path::Path;
-use std::str::FromStr;
-
-use serde::{Deserialize, Serialize};
-
-use crate::unknown_name::UnknownName;
 
 /// How a file of tracks is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Format {
     /// Four lines of comma-separated numbers, one field an observation: frame, pedestrian, **y**, **x** (m). The files
@@ -24,7 +18,6 @@ pub enum Format {
     Table,
     /// The newline-delimited JSON of TrajNet++: `{"track": {"f", "p", "x", "y"}}` a line (frame, pedestrian, metres).
     /// Lines of forecasts (with `prediction_number`), of scenes and of anything else are no observations.
-    #[serde(rename = "trajnet")]
     TrajNet,
     /// The `obsmat.txt` of the ETH recordings: frame, pedestrian, x, z, **y** (m) and three velocities, separated by
     /// blanks.
@@ -92,15 +85,6 @@ impl Format {
 impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
-    }
-}
-
-impl FromStr for Format {
-    type Err = UnknownName;
-
-    fn from_str(word: &str) -> Result<Self, UnknownName> {
-        let expected = "star-csv, social-gan, table, trajnet, obsmat";
-        UnknownName::find(word, &Self::ALL, Self::name, "format", expected)
     }
 }
 

@@ -6,7 +6,6 @@
 
 mod blanks;
 mod field;
-mod json_section;
 mod kind;
 mod place;
 mod rows;

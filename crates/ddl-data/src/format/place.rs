@@ -10,18 +10,15 @@ pub(super) struct FilePlace {
 }
 
 impl FilePlace {
-    /// A whole line.
     pub(super) fn line(line: usize) -> Self {
         Self { line, field: None }
     }
 
-    /// One field of a line.
     pub(super) fn field(line: usize, field: usize) -> Self {
         let field = Some(field);
         Self { line, field }
     }
 
-    /// The error that something is wrong at this place.
     #[expect(clippy::needless_pass_by_value, reason = "a problem is told once")]
     pub(super) fn wrong(self, origin: &str, problem: FormatProblem) -> FormatError {
         let Self { line, field } = self;
@@ -33,7 +30,6 @@ impl FilePlace {
         }
     }
 
-    /// What was read at this place, or the error that it is wrong.
     pub(super) fn read<T>(
         self,
         origin: &str,

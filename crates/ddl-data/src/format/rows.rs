@@ -126,30 +126,3 @@ fn infer_frame_step(sorted: &[Placed]) -> i64 {
         .max_by_key(|&(_, count)| count)
         .map_or(1, |(difference, _)| difference)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn step_of(frames: &[i64]) -> i64 {
-        let place = FilePlace::line(1);
-        let rows = frames
-            .iter()
-            .map(|&frame| TrackRow {
-                frame,
-                who: Who::Number(1, None),
-                position: [0.0, 0.0],
-                place,
-            })
-            .collect();
-        into_recording(rows, "t").unwrap().frame_step()
-    }
-
-    #[test]
-    fn the_most_common_difference_is_the_step() {
-        assert_eq!(step_of(&[0, 6, 12, 150, 156]), 6);
-        assert_eq!(step_of(&[0, 10, 30]), 10);
-        assert_eq!(step_of(&[7]), 1);
-        assert_eq!(step_of(&[-(1 << 52), 1 << 52]), 1);
-    }
-}

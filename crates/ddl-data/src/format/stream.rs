@@ -52,23 +52,19 @@ pub struct FrameReader<R> {
     words: Numbering,
     /// Pedestrians' numbers that are not written as plain digits, such as `17.0`: the first 200,000 of them.
     numbers: BTreeSet<Box<str>>,
-    /// The frame that is being read.
     current: Option<Growing>,
     /// The last frame that was given out.
     last: Option<i64>,
     ended: bool,
 }
 
-/// A frame that is not whole yet.
 #[derive(Debug)]
 struct Growing {
     frame: Frame,
-    /// The line of everybody in it.
     lines: BTreeMap<PedestrianId, usize>,
     words: BTreeMap<PedestrianId, Arc<str>>,
 }
 
-/// What the lines are.
 #[derive(Debug)]
 enum Kind {
     Table(TrackColumns),
@@ -155,7 +151,6 @@ impl<R: BufRead> FrameReader<R> {
         }
     }
 
-    /// Leaves out what is left of a line.
     fn skip_line(&mut self) -> Result<(), DataError> {
         loop {
             let (skipped, ended) = match self.reader.fill_buf() {
@@ -178,7 +173,6 @@ impl<R: BufRead> FrameReader<R> {
         DataError::Read { path, source }
     }
 
-    /// The observation of a line, if it holds one.
     fn row(&mut self, text: &str) -> Result<Option<TrackRow>, FormatError> {
         let (line, origin) = (self.lines, self.origin.as_str());
         let Some(kind) = &self.kind else {
@@ -261,7 +255,6 @@ impl<R: BufRead> FrameReader<R> {
         Ok(before)
     }
 
-    /// The frame that has been read, which is over.
     fn whole(&mut self) -> Option<Frame> {
         let growing = self.current.take()?;
         self.last = Some(growing.frame.number);
@@ -271,7 +264,6 @@ impl<R: BufRead> FrameReader<R> {
         })
     }
 
-    /// The error that something is wrong with the last line.
     fn wrong(&self, problem: FormatProblem) -> FormatError {
         FilePlace::line(self.lines).wrong(&self.origin, problem)
     }

@@ -40,7 +40,6 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatErr
     Ok(rows)
 }
 
-/// Which column holds what.
 #[derive(Debug)]
 pub(super) struct TrackColumns {
     places: [usize; 4],
@@ -48,12 +47,10 @@ pub(super) struct TrackColumns {
 }
 
 impl TrackColumns {
-    /// The columns that a header line names.
     pub(super) fn of_line(text: &str, line: usize, origin: &str) -> Result<Self, FormatError> {
         Self::of(&record(text, line, origin)?, line, origin)
     }
 
-    /// A row on a line of its own.
     pub(super) fn row_of_line(
         &self,
         text: &str,
@@ -119,7 +116,6 @@ impl TrackColumns {
     }
 }
 
-/// What to do about a column that is none of the four.
 fn advice(name: &str, header: &StringRecord) -> String {
     let known = |column: &str| header.iter().any(|name| name.eq_ignore_ascii_case(column));
     let letters = name.chars().filter(char::is_ascii_alphanumeric);
@@ -154,7 +150,6 @@ fn advice(name: &str, header: &StringRecord) -> String {
     }
 }
 
-/// The fields of one line.
 fn record(text: &str, line: usize, origin: &str) -> Result<StringRecord, FormatError> {
     // A reader of tables is costly to make for every line of a stream, and without quotes there is nothing that it knows better.
     let plain = text.trim_end_matches(['\r', '\n']);

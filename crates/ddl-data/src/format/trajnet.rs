@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
+use serde_json::value::RawValue;
 
 use super::field::{self, Who};
-use super::json_section::Section;
 use super::place::FilePlace;
 use super::rows::TrackRow;
 use crate::error::{FormatError, FormatProblem};
@@ -60,13 +60,11 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, Rate), F
 /// How many frames follow each other in a second, as the scenes of a file say it.
 #[derive(Debug, Default)]
 pub(super) struct Rate {
-    /// The line that was the first to say it.
     line: usize,
     pub(super) frames_a_second: Option<f64>,
 }
 
 impl Rate {
-    /// Takes what the scene on a line says.
     #[expect(clippy::float_cmp, reason = "one rate is written with the same digits")]
     fn take(&mut self, scene: &SceneFields, line: usize) -> Result<(), FormatProblem> {
         let Some(told) = scene.fps.as_ref().filter(|fps| !fps.is_null()) else {
@@ -92,21 +90,19 @@ impl Rate {
 
 /// The parts of a line that are read; others may stand beside them. A part that is there twice is refused.
 #[derive(Deserialize)]
-struct TrajnetLine {
-    #[serde(default)]
-    scene: Option<Section<SceneFields>>,
-    #[serde(default)]
-    track: Option<Section<TrackFields>>,
+struct TrajnetLine<'a> {
+    #[serde(borrow, default)]
+    scene: Option<&'a RawValue>,
+    #[serde(borrow, default)]
+    track: Option<&'a RawValue>,
 }
 
-/// What is read of a scene, as it is written.
 #[derive(Deserialize)]
 struct SceneFields {
     #[serde(default)]
     fps: Option<Value>,
 }
 
-/// The fields of a track, as they are written.
 #[derive(Deserialize)]
 struct TrackFields {
     #[serde(default, deserialize_with = "as_written")]
@@ -142,17 +138,20 @@ fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>
         return Ok(None);
     }
     let not_one = |detail: String| FormatProblem::Json { detail };
-    let line: Section<TrajnetLine> =
-        serde_json::from_str(text).map_err(|error| not_one(error.to_string()))?;
-    let line = match line {
-        Section::Fields(line) => line,
-        Section::Other(found) => return Err(not_one(format!("found {found}"))),
-    };
+    let wrong = |error: serde_json::Error| not_one(error.to_string());
+    if !text.trim_start().starts_with('{') {
+        let other: Value = serde_json::from_str(text).map_err(wrong)?;
+        return Err(not_one(format!(
+            "found {}",
+            field::quoted(&other.to_string())
+        )));
+    }
+    let line: TrajnetLine<'_> = serde_json::from_str(text).map_err(wrong)?;
     // One that is no object shows that the file is not what it seems.
-    if let Some(scene) = fields(line.scene, "scene")? {
+    if let Some(scene) = fields::<SceneFields>(line.scene, "scene")? {
         rate.take(&scene, place.line)?;
     }
-    let Some(track) = fields(line.track, "track")? else {
+    let Some(track) = fields::<TrackFields>(line.track, "track")? else {
         return Ok(None);
     };
     if track.prediction_number.is_some() {
@@ -184,10 +183,19 @@ fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>
 }
 
 /// The fields of a part; none where there is none, or null.
-fn fields<T>(section: Option<Section<T>>, name: &'static str) -> Result<Option<T>, FormatProblem> {
-    match section {
-        None => Ok(None),
-        Some(Section::Fields(fields)) => Ok(Some(fields)),
-        Some(Section::Other(found)) => Err(FormatProblem::NotObject { name, found }),
+fn fields<'a, T: Deserialize<'a>>(
+    part: Option<&'a RawValue>,
+    name: &'static str,
+) -> Result<Option<T>, FormatProblem> {
+    let Some(text) = part.map(RawValue::get) else {
+        return Ok(None);
+    };
+    if !text.starts_with('{') {
+        let found = field::quoted(text);
+        return Err(FormatProblem::NotObject { name, found });
     }
+    let fields = serde_json::from_str(text);
+    fields.map(Some).map_err(|error| FormatProblem::Json {
+        detail: format!("{name}: {error}"),
+    })
 }

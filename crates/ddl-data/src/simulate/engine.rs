@@ -21,11 +21,9 @@ const RESTLESSNESS: f64 = 0.12;
 /// An entry is free when nobody is within this distance (m).
 const ENTRY_CLEARANCE: f64 = 0.7;
 
-/// What a simulation leaves behind.
 #[derive(Debug)]
 pub(super) struct Trace {
     pub(super) observations: Vec<Observation>,
-    /// The members of every party of two and more that entered.
     pub(super) groups: Vec<Vec<PedestrianId>>,
 }
 
@@ -67,13 +65,11 @@ struct Engine<'a> {
     /// Parties whose time has come, by index, that found their entry taken.
     waiting: Vec<usize>,
     walkers: Vec<SimulatedPedestrian>,
-    /// The first party whose time has not come.
     next: usize,
     last_id: i64,
 }
 
 impl Engine<'_> {
-    /// Lets in whose time has come and whose entry is free.
     fn admit(&mut self, time: f64, groups: &mut Vec<Vec<PedestrianId>>) {
         while self
             .parties
@@ -203,7 +199,6 @@ impl Engine<'_> {
         total
     }
 
-    /// Moves bodies apart that overlap, each half of the way.
     fn separate_bodies(&mut self) {
         for i in 1..self.walkers.len() {
             let (earlier, later) = self.walkers.split_at_mut(i);

@@ -92,18 +92,4 @@ mod tests {
         assert!(!wall.blocks([1.0, -1.0], [1.0, 0.0]));
         assert!(!wall.blocks([2.0, 1.0], [2.0, -1.0]));
     }
-
-    #[test]
-    fn a_body_is_pushed_out_of_a_wall_to_the_side_it_is_on() {
-        let wall = Wall::new([0.0, 0.0], [2.0, 0.0]);
-        let near = |a: Position, b: Position| norm(sub(a, b)) < 1e-12;
-        assert!(near(wall.nearest([3.0, 4.0]), [2.0, 0.0]));
-        assert!(near(wall.nearest([0.5, -4.0]), [0.5, 0.0]));
-        let point = Wall::new([1.0, 2.0], [1.0, 2.0]);
-        assert!(near(point.nearest([3.0, 4.0]), [1.0, 2.0]));
-        assert!(near(wall.push_out([1.0, -0.1], 0.25), [1.0, -0.25]));
-        assert!(near(wall.push_out([1.0, 0.5], 0.25), [1.0, 0.5]));
-        let pillar = Pillar::new([0.0, 0.0], 1.0);
-        assert!(near(pillar.push_out([0.5, 0.0], 0.2), [1.2, 0.0]));
-    }
 }

@@ -21,19 +21,16 @@ const GATE_MARGIN: f64 = 0.5;
 /// Shortest and longest rest of who stands (s).
 const REST: (f64, f64) = (8.0, 28.0);
 
-/// A person or a group that arrives together.
 #[derive(Debug, Clone)]
 pub(super) struct Party {
     /// When it wants to enter (s).
     pub(super) time: f64,
-    /// Route, as an index into the layout.
     pub(super) route: usize,
     /// Speed that all of it like (m/s).
     pub(super) speed: f64,
     pub(super) members: Vec<PartyMember>,
 }
 
-/// One of a party.
 #[derive(Debug, Clone)]
 pub(super) struct PartyMember {
     /// Where it enters (m).

@@ -14,4 +14,3 @@ mod simulated_crowd;
 mod summary;
 mod window_counts;
 mod windows;
-mod written;

@@ -56,17 +56,6 @@ fn pedestrians_may_be_words() {
     }
 }
 
-#[test]
-fn numbers_stay_numbers_however_they_are_written() {
-    let text = b"frame,pedestrian,x,y\n0,3.0,0,0\n0,1e1,0,0\n0,-2,0,0\n";
-    let recording = parse_recording(text, "f", Format::Table).unwrap();
-    let ids = recording.pedestrians();
-    assert_eq!(ids, [PedestrianId(-2), PedestrianId(3), PedestrianId(10)]);
-    for id in ids {
-        assert_eq!(recording.names().of(id), PedestrianName::Number(id.0));
-    }
-}
-
 /// A word among the pedestrians of a stream changes nothing for those who are there.
 #[test]
 fn a_number_of_a_stream_stays_one_when_words_come() {

@@ -137,10 +137,10 @@ fn every_mistake_of_a_trajnet_file_is_named_with_its_place() {
 [1, 2] => 1: the line must be one JSON object
 {"track": {"f": 0, " => 1: the line must be one JSON object
 {"track": {"f": 0, "p": 2, "x": NaN, "y": 3.0}} => 1: the line must be one JSON object (which has no NaN
-{"track": {"f": 0, "f": 1, "p": 1, "x": 0, "y": 0}} => 1: the line must be one JSON object (which has no NaN and no Infinity): duplicate field
+{"track": {"f": 0, "f": 1, "p": 1, "x": 0, "y": 0}} => 1: the line must be one JSON object (which has no NaN and no Infinity): track: duplicate field
 {"track": {"f": 0}, "track": {"f": 1}} => 1: the line must be one JSON object (which has no NaN and no Infinity): duplicate field
 {"track": {"p": 2, "x": 1, "y": 3.0}} => 1: track.f is missing
-{"track": [1, 2, 3, 4]} => 1: track must be a JSON object, found [1,2,3,4]
+{"track": [1, 2, 3, 4]} => 1: track must be a JSON object, found [1, 2, 3, 4]
 {"scene": "crowded"} => 1: scene must be a JSON object, found "crowded"
 {"track": {"f": 1.5, "p": 2, "x": 1, "y": 3.0}} => 1: track.f must be a whole number
 {"track": {"f": 1, "p": " ", "x": 1, "y": 3.0}} => 1: track.p must be a whole number
@@ -172,13 +172,32 @@ fn every_mistake_of_an_obsmat_file_is_named_with_its_place() {
 }
 
 #[test]
-fn text_that_is_not_utf8_is_refused_at_its_line() {
+fn the_most_common_difference_is_the_step() {
+    let step = |frames: &[i64]| {
+        let rows = frames.iter().map(|frame| format!("{frame} 1 0 0\n"));
+        let text: String = rows.collect();
+        parse_recording(text.as_bytes(), "f", Format::SocialGan)
+            .unwrap()
+            .frame_step()
+    };
+    assert_eq!(step(&[0, 6, 12, 150, 156]), 6);
+    assert_eq!(step(&[0, 10, 30]), 10);
+    assert_eq!(step(&[7]), 1);
+    assert_eq!(step(&[-(1 << 52), 1 << 52]), 1);
+}
+
+#[test]
+fn what_is_no_text_is_refused() {
     for format in Format::ALL {
-        let complaint = complaint(b"0 1 0 0\n1 1 \xff 0\n", format);
+        let told = complaint(b"0 1 0 0\n1 1 \xff 0\n", format);
         assert!(
-            complaint.starts_with("f, line 2: the text is not UTF-8"),
-            "{complaint}"
+            told.starts_with("f, line 2: the text is not UTF-8"),
+            "{told}"
         );
+    }
+    for bytes in [&b"\x1f\x8b\x08\x00"[..], b"PK\x03\x04\x14"] {
+        let told = complaint(bytes, Format::Table);
+        assert!(told.contains("is compressed"), "{told}");
     }
 }
 
@@ -245,13 +264,5 @@ fn rows_as_others_write_them() {
         let text = format!("frame,pedestrian,x,y\n{}\n", parts.next().unwrap());
         let message = complaint(text, Format::Table);
         assert!(parts.all(|part| message.contains(part)), "{message}");
-    }
-}
-
-#[test]
-fn compressed_files_are_known() {
-    for bytes in [&b"\x1f\x8b\x08\x00"[..], b"PK\x03\x04\x14"] {
-        let complaint = complaint(bytes, Format::Table);
-        assert!(complaint.contains("is compressed"), "{complaint}");
     }
 }

@@ -224,3 +224,18 @@ fn bad_input_is_refused_by_name() {
     );
     assert_eq!(estimator.params().query, QuerySpan::Observed);
 }
+
+/// In the frame of the world an expert's track is moved to the first position and nothing else.
+#[test]
+fn in_the_world_a_track_is_carried_to_where_the_pedestrian_was_first_seen() {
+    let (other, walker) = (walk(1.2, 0.3, 0.05), walk(1.0, 2.0, -0.04));
+    let params = GoalEstimatorParams::published().experts(1).clusters(1);
+    let estimator = tracks::estimator(params, vec![other.clone()]);
+    let expert = estimator.estimate(&walker).unwrap().experts()[0];
+    assert!(estimator.carry_over(&expert, &walker[..7]).is_err());
+    let carried = estimator.carry_over(&expert, &walker[..8]).unwrap();
+    let by = [0, 1].map(|axis| walker[0][axis] - other[0][axis]);
+    for (carried, [x, y]) in carried.into_iter().zip(other) {
+        assert!(distance(carried, [x + by[0], y + by[1]]) < 1e-12);
+    }
+}

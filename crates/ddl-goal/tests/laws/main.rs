@@ -7,7 +7,6 @@
 )]
 
 mod analogues;
-mod carry_over;
 mod estimator;
 mod heading;
 mod of_ends;

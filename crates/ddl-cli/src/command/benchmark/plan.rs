@@ -15,7 +15,6 @@ use std::path::{Path, PathBuf};
 /// Layout of `plan.json`; 3: `single` scores another hypothesis than before, and plans name their protocols and recipe.
 const FORMAT: u32 = 3;
 
-/// Everything to do, independent of who does it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Plan {
     format: u32,
@@ -30,7 +29,6 @@ struct Layout {
     format: u32,
 }
 
-/// What all tasks of a plan share.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Settings {
     pub(crate) profile: Profile,
@@ -77,18 +75,15 @@ impl Task {
         self.train_cost + self.evaluate_cost
     }
 
-    /// Where the program keeps the model and its scores.
     pub(crate) fn run_folder(&self, out: &Path) -> PathBuf {
         self.folder(out).join("run")
     }
 
-    /// Where everything about the task lies.
     pub(super) fn folder(&self, out: &Path) -> PathBuf {
         out.join(&self.id)
     }
 }
 
-/// Words of a command line.
 struct Words(Vec<String>);
 
 impl Words {
@@ -96,7 +91,6 @@ impl Words {
         Self(vec![command.to_owned()])
     }
 
-    /// An option, where it has a value.
     fn option(mut self, name: &str, value: Option<impl ToString>) -> Self {
         if let Some(value) = value {
             self.0.extend([name.to_owned(), value.to_string()]);
@@ -115,7 +109,6 @@ impl Words {
 }
 
 impl Plan {
-    /// Every fold with every method and seed, each combination once.
     pub(crate) fn new(
         settings: Settings,
         folds: &[String],
@@ -160,7 +153,6 @@ impl Plan {
         })
     }
 
-    /// Arguments with which the program trains the task's model.
     pub(super) fn train_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
         let settings = &self.settings;
         let optimiser = settings.recipe.optimiser.as_ref();
@@ -186,7 +178,6 @@ impl Plan {
             .0
     }
 
-    /// Arguments with which the program scores it.
     pub(super) fn evaluate_arguments(
         &self,
         task: &Task,
@@ -207,7 +198,6 @@ impl Plan {
             .0
     }
 
-    /// Arguments with which the program measures and draws the goals it forecasts towards.
     pub(super) fn goals_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
         let data = self.settings.data.as_ref().map(|data| data.display());
         let words = Words::of("goals")
@@ -259,7 +249,6 @@ impl Plan {
         write_whole(&file, &text).with_context(|| format!("cannot write {}", file.display()))
     }
 
-    /// Reads the plan of a benchmark folder.
     pub(crate) fn read(folder: &Path) -> anyhow::Result<Self> {
         let file = folder.join("plan.json");
         let text = fs::read(&file).with_context(|| {

@@ -6,7 +6,6 @@ use ddl::network::{LearningRateSchedule, TrainingConfig};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A named amount of work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Profile {
@@ -23,16 +22,10 @@ pub(crate) enum Profile {
 
 impl fmt::Display for Profile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Smoke => "smoke",
-            Self::Quick => "quick",
-            Self::Evening => "evening",
-            Self::Paper => "paper",
-        })
+        f.write_str(self.to_possible_value().ok_or(fmt::Error)?.get_name())
     }
 }
 
-/// What a profile makes of a recipe.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Work {
     /// The first so many folds of a convention.
@@ -48,10 +41,8 @@ pub(super) struct Work {
     pub(super) optimiser: Option<Optimiser>,
 }
 
-/// How the optimiser goes about it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Optimiser {
-    /// Walkers a batch.
     pub(super) batch_walkers: usize,
     /// Largest step size of Adam.
     pub(super) learning_rate: f64,
@@ -59,7 +50,6 @@ pub(super) struct Optimiser {
 }
 
 impl Optimiser {
-    /// The paper's.
     fn published() -> Self {
         let training = TrainingConfig::published();
         Self {

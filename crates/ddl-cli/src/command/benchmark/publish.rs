@@ -18,11 +18,9 @@ use time::OffsetDateTime;
 const HEADLINE: &str = "docs/benchmark.md";
 const README: &str = "README.md";
 
-/// What made a report, beside its plan.
 pub(super) struct Making<'a> {
     pub(super) commit: &'a str,
     pub(super) took: Duration,
-    /// When it was done.
     pub(super) at: OffsetDateTime,
 }
 
@@ -90,13 +88,11 @@ fn is_whole(plan: &Plan) -> bool {
             .all(|task| [Method::FULL, Method::PERCEPTRON].contains(&task.variant))
 }
 
-/// When it was made.
 fn time(making: &Making<'_>) -> String {
     let at = making.at;
     format!("{} {:02}:{:02} UTC", at.date(), at.hour(), at.minute())
 }
 
-/// What made the tables of the README, in words.
 fn made_by(plan: &Plan, making: &Making<'_>) -> String {
     let settings = &plan.settings;
     format!(
@@ -118,7 +114,6 @@ fn made_by(plan: &Plan, making: &Making<'_>) -> String {
     )
 }
 
-/// The seeds of the tasks, each once, in order.
 fn seeds(plan: &Plan) -> Vec<String> {
     let mut seeds: Vec<u64> = plan.tasks.iter().map(|task| task.seed).collect();
     seeds.sort_unstable();
@@ -126,7 +121,6 @@ fn seeds(plan: &Plan) -> Vec<String> {
     seeds.iter().map(u64::to_string).collect()
 }
 
-/// The report with its origin below the title.
 fn page(report: &str, plan: &Plan, making: &Making<'_>) -> String {
     // The report opens with its data convention, then comes its title: the origin goes below both.
     let before: usize = report
@@ -218,29 +212,27 @@ mod tests {
     use super::super::fixture::{plan, settings};
     use super::*;
 
-    fn of(recipe: Recipe) -> Settings {
-        let mut settings = settings(recipe);
-        settings.proposal_steps = None;
-        settings
-    }
-
     #[test]
     fn a_convention_a_recipe_and_a_profile_have_a_page_of_their_own() {
-        use Convention::{Simulated, SocialGan, Star};
-        use Profile::{Paper, Quick, Smoke};
-        use Recipe::{Published, Recommended};
         for (convention, recipe, profile, expected) in [
-            (Star, Recommended, Paper, ""),
-            (Star, Recommended, Quick, "-quick"),
-            (Star, Published, Paper, "-published"),
-            (Star, Published, Quick, "-published-quick"),
-            (SocialGan, Recommended, Paper, "-social-gan"),
-            (Simulated, Published, Smoke, "-simulated-published-smoke"),
+            (Convention::Star, Recipe::Recommended, Profile::Paper, ""),
+            (
+                Convention::Star,
+                Recipe::Published,
+                Profile::Quick,
+                "-published-quick",
+            ),
+            (
+                Convention::SocialGan,
+                Recipe::Recommended,
+                Profile::Paper,
+                "-social-gan",
+            ),
         ] {
             let settings = Settings {
                 profile,
                 convention,
-                ..of(recipe)
+                ..settings(recipe)
             };
             assert_eq!(file(&settings), format!("docs/benchmark{expected}.md"));
         }
@@ -252,7 +244,7 @@ mod tests {
         let all = || Settings {
             train_walkers: None,
             test_walkers: None,
-            ..of(Recipe::Recommended)
+            ..settings(Recipe::Recommended)
         };
         let folds: Vec<&str> = Convention::Star.fold_names().collect();
         let whole = |settings, folds: &[&str], methods: &[Method]| {
@@ -264,14 +256,16 @@ mod tests {
         assert!(!whole(all(), &folds, &[perceptron]));
         assert!(!whole(all(), &folds[1..], &[full]));
         assert!(!whole(all(), &folds, &[full, Method::ALL[3]]));
-        let with = |change: fn(&mut Settings)| {
+        let changes: [fn(&mut Settings); 3] = [
+            |settings| settings.train_walkers = Some(800),
+            |settings| settings.test_walkers = Some(50),
+            |settings| settings.protocols.truncate(1),
+        ];
+        for change in changes {
             let mut settings = all();
             change(&mut settings);
-            whole(settings, &folds, &[full])
-        };
-        assert!(!with(|settings| settings.train_walkers = Some(800)));
-        assert!(!with(|settings| settings.test_walkers = Some(50)));
-        assert!(!with(|settings| settings.protocols.truncate(1)));
+            assert!(!whole(settings, &folds, &[full]));
+        }
     }
 
     const REPORT: &str = "convention\n\n# Title\n\n| a | table |\n";
@@ -284,60 +278,39 @@ mod tests {
         }
     }
 
-    fn made(settings: Settings) -> String {
-        let plan = plan(settings, &["hotel", "eth"], &[Method::FULL], &[2, 1]).unwrap();
-        page(REPORT, &plan, &making())
-    }
-
     #[test]
     fn the_page_says_what_made_it_and_names_no_folder() {
-        let short = Settings {
-            train_walkers: Some(800),
-            ..of(Recipe::Recommended)
-        };
-        let text = made(short);
-        assert!(
-            text.starts_with("convention\n\n# Title\n\n<!-- Gen"),
-            "{text}"
-        );
-        assert!(text.ends_with("\n\n| a | table |\n"), "{text}");
-        let whole_epochs = Settings {
-            train_walkers: None,
-            ..of(Recipe::Recommended)
-        };
-        let published = Settings {
-            train_walkers: None,
-            test_walkers: Some(50),
-            ..of(Recipe::Published)
-        };
         let walkers = "| walkers trained on in an epoch / scored |";
-        for (text, pieces) in [
+        for (recipe, train_walkers, test_walkers, pieces) in [
             (
-                text,
+                Recipe::Recommended,
+                Some(800),
+                None,
                 [
                     "`cargo xtask benchmark --profile quick --convention star --folds eth,hotel --variants full --protocol \
                      fair,single --seeds 1,2 --epochs 4 --device cpu --cargo-profile release --train-walkers 800 --publish`",
-                    "| commit | 0123456789ab |",
                     "| time | 1970-01-01 00:00 UTC, took 1 min 1 s |",
                     "| recipe | recommended |",
                     &format!("{walkers} 800 / all |"),
                 ],
             ),
             (
-                made(whole_epochs),
+                Recipe::Recommended,
+                None,
+                None,
                 [
                     "--cargo-profile release --publish`",
                     &format!("{walkers} the recipe's / all |"),
                     "| walkers a batch / largest step of Adam | the recipe's |",
-                    "| epochs | 4 |",
                     "| seeds | 1, 2 |",
                 ],
             ),
             (
                 // The paper's epochs are of all walkers.
-                made(published),
+                Recipe::Published,
+                None,
+                Some(50),
                 [
-                    "| recipe | published |",
                     &format!("{walkers} all / 50 |"),
                     "| walkers a batch / largest step of Adam | 256 / 0.0015 (constant) |",
                     "--protocol published,fair,single",
@@ -345,10 +318,22 @@ mod tests {
                 ],
             ),
         ] {
+            let settings = Settings {
+                proposal_steps: None,
+                train_walkers,
+                test_walkers,
+                ..settings(recipe)
+            };
+            let plan = plan(settings, &["hotel", "eth"], &[Method::FULL], &[2, 1]).unwrap();
+            let text = page(REPORT, &plan, &making());
+            assert!(
+                text.starts_with("convention\n\n# Title\n\n<!-- Gen"),
+                "{text}"
+            );
+            assert!(text.ends_with("\n\n| a | table |\n") && !text.contains("recordings"));
             for piece in pieces {
                 assert!(text.contains(piece), "{piece} is not in {text}");
             }
-            assert!(!text.contains("recordings"), "{text}");
         }
     }
 
@@ -360,27 +345,20 @@ mod tests {
         fs::write(checkout.path().join(README), marks).unwrap();
         let report =
             "# Title\n\n## Protocol `fair`, x\n\n| f |\n\n## Protocol `single`, x\n\n| s |\n";
-        let headline = || Settings {
-            profile: Profile::Paper,
-            train_walkers: None,
-            ..of(Recipe::Recommended)
-        };
         let folds: Vec<&str> = Convention::Star.fold_names().collect();
         let publish = |folds: &[&str]| {
-            let plan = plan(headline(), folds, &[Method::FULL], &[0]).unwrap();
+            let headline = Settings {
+                profile: Profile::Paper,
+                train_walkers: None,
+                ..settings(Recipe::Recommended)
+            };
+            let plan = plan(headline, folds, &[Method::FULL], &[0]).unwrap();
             publish(checkout.path(), &plan, report, &making()).unwrap()
         };
         assert_eq!(publish(&folds[..1]), [HEADLINE]);
-        assert_eq!(
-            fs::read_to_string(checkout.path().join(README)).unwrap(),
-            marks
-        );
         assert_eq!(publish(&folds), [HEADLINE, README]);
         let readme = fs::read_to_string(checkout.path().join(README)).unwrap();
-        assert!(
-            readme.contains("| s |") && readme.contains("in 1 min 1 s. All of it"),
-            "{readme}"
-        );
+        assert!(readme.contains("| s |") && readme.contains("in 1 min 1 s. All of it"));
         let page = fs::read_to_string(checkout.path().join(HEADLINE)).unwrap();
         assert!(page.contains("| commit | 0123456789ab |"), "{page}");
     }

@@ -44,7 +44,6 @@ pub(super) fn with_results(
     Ok(format!("{before}{BEGIN}{results}{END}{after}"))
 }
 
-/// The first table below the heading of a protocol.
 fn first_table(report: &str, protocol: Protocol) -> Option<String> {
     let heading = format!("## Protocol `{protocol}`");
     let lines = report

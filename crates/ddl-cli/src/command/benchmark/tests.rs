@@ -39,7 +39,10 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
     };
     let all = "--protocol published,fair,single --profile";
     for (words, expected) in [
-        ("", "star-quick 5 2500: --epochs 10 --recipe recommended"),
+        (
+            "--protocol single,fair --protocol fair",
+            "star-quick 5 2500: --epochs 10 --recipe recommended",
+        ),
         (
             "--profile smoke",
             "star-smoke 2 150: --epochs 1 --train-walkers 600 --proposal-steps 40 --recipe recommended",
@@ -79,15 +82,6 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
     ] {
         assert_eq!(planned(words), expected, "{words}");
     }
-}
-
-#[test]
-fn protocols_are_taken_once_in_the_usual_order() {
-    let chosen = |words: &str| plan_of(words).unwrap().settings.protocols;
-    let usual = [Protocol::Fair, Protocol::Single];
-    assert_eq!(chosen(""), usual);
-    assert_eq!(chosen("--protocol single,fair --protocol fair"), usual);
-    assert_eq!(chosen("--protocol single,fair,published"), Protocol::ALL);
 }
 
 #[test]

@@ -2,12 +2,12 @@
 
 use super::child::{self, BEAT};
 use super::plan::{Plan, Task};
-use super::record;
 use crate::interrupt::Interrupt;
 use crate::progress::ProgressLine;
 use anyhow::Context as _;
 use ddl::DeviceChoice;
-use ddl::data::remove_half_written;
+use ddl::data::{remove_half_written, write_whole};
+use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::Write as _;
@@ -39,7 +39,6 @@ pub(super) struct Workers {
     pub(super) commit: String,
 }
 
-/// How a task ended.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum End {
     /// Trained and scored now.
@@ -52,7 +51,6 @@ pub(super) enum End {
     Interrupted,
 }
 
-/// How a task gets on.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Event<'a> {
     Started,
@@ -121,7 +119,7 @@ impl Workers {
         watch: Watch<'_>,
         interrupt: &Interrupt,
     ) -> End {
-        if record::is_finished(task, out) {
+        if Record::is_of(task, out) {
             return End::Kept;
         }
         watch(task, Event::Started);
@@ -169,7 +167,7 @@ impl Workers {
             }
         }
         let seconds = start.elapsed().as_secs_f64();
-        match record::write(task, out, seconds) {
+        match Record::write(task, out, seconds) {
             Ok(()) => End::Finished { seconds },
             Err(error) => failure(task, out, &format!("{error:#}")),
         }
@@ -235,6 +233,32 @@ fn failure(task: &Task, out: &Path, what: &str) -> End {
     let end = last.join("\n    ");
     End::Failed {
         reason: format!("{what}; the end of {}:\n    {end}", log.display()),
+    }
+}
+
+/// What is remembered of a finished task, so that a second run leaves it out: written when training and scoring have succeeded.
+#[derive(Debug, Serialize, Deserialize)]
+struct Record {
+    task: String,
+    seconds: f64,
+}
+
+impl Record {
+    const FILE: &str = "finished.json";
+
+    /// Whether the task was finished and its scores are still there.
+    fn is_of(task: &Task, out: &Path) -> bool {
+        let text = fs::read(task.folder(out).join(Self::FILE)).ok();
+        let record = text.and_then(|text| serde_json::from_slice::<Self>(&text).ok());
+        record.is_some_and(|record| record.task == task.id)
+            && task.run_folder(out).join("report.json").is_file()
+    }
+
+    fn write(task: &Task, out: &Path, seconds: f64) -> anyhow::Result<()> {
+        let file = task.folder(out).join(Self::FILE);
+        let task = task.id.clone();
+        let text = serde_json::to_vec(&Self { task, seconds })?;
+        write_whole(&file, &text).with_context(|| format!("cannot write {}", file.display()))
     }
 }
 

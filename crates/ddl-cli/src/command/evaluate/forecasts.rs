@@ -50,7 +50,6 @@ impl OtherProgram {
         Ok(fold.parse()?)
     }
 
-    /// Where the rest of the results is.
     pub(crate) fn written(&self) -> String {
         match &self.out {
             Some(folder) => format!("all metrics: {}", folder.join("report.html").display()),

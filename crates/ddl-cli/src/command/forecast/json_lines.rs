@@ -6,7 +6,6 @@ use ddl::data::{HORIZON, PedestrianName};
 use ddl::dynamics::{LyapunovCertificate, Violation};
 use serde::Serialize;
 
-/// All hypotheses of a pedestrian.
 #[derive(Serialize)]
 struct Line<'a> {
     observed_until: FrameNumber,
@@ -54,7 +53,6 @@ struct Hypothesis<'a> {
     certificate: Option<Certificate<'a>>,
 }
 
-/// The verdict of a certificate, its figures in short, and the certificate itself.
 #[derive(Serialize)]
 struct Certificate<'a> {
     holds: bool,

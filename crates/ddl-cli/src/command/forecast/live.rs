@@ -75,7 +75,6 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Where forecasts go.
 struct Output {
     /// Standard output where there is none.
     file: Option<File>,

@@ -7,7 +7,6 @@ use anyhow::Context as _;
 use ddl::data::PedestrianName;
 use serde::Serialize;
 
-/// A forecast position.
 #[derive(Serialize)]
 struct Row {
     observed_until: FrameNumber,
@@ -27,7 +26,6 @@ struct Row {
     familiarity: Option<f64>,
 }
 
-/// The columns of [`Row`].
 const COLUMNS: [&str; 12] = [
     "observed_until",
     "pedestrian",

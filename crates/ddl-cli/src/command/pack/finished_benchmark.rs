@@ -23,12 +23,10 @@ struct Reported {
     protocol: Protocol,
     min_ade: f64,
     min_fde: f64,
-    /// Walkers scored.
     walkers: usize,
     /// `--test-walkers` of that evaluation; none is all.
     test_walkers: Option<usize>,
     seed: u64,
-    /// Commit that measured it.
     commit: String,
 }
 
@@ -79,7 +77,6 @@ pub(super) fn pack(
     Ok(files.map(|(file, _, numbers)| (file, numbers)).collect())
 }
 
-/// The task of each fold.
 fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
     let settings = &plan.settings;
     ensure!(
@@ -118,7 +115,6 @@ fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
         .collect()
 }
 
-/// The headline number of the run without its expert library.
 fn reported(report: &Report, task: &Task, test_walkers: Option<usize>) -> anyhow::Result<Reported> {
     let (convention, protocol) = (Convention::Star, Protocol::Fair);
     let window_rule = convention.headline_rule();

@@ -3,7 +3,6 @@
 use crate::progress::{Progress, ProgressMode};
 use ddl::{TrainingProgress, TrainingStep};
 
-/// The bars of both stages, each from its first step on.
 pub(super) struct TrainingBars {
     mode: ProgressMode,
     goals: Option<Progress>,
@@ -24,7 +23,6 @@ impl TrainingBars {
         }
     }
 
-    /// Shows a step.
     pub(super) fn tell(&mut self, now: &TrainingProgress) {
         let (done, total) = now.steps;
         let mode = self.mode;

@@ -1,10 +1,31 @@
-//! `ddl man`.
+//! `ddl completions` and `ddl man`: what is generated from the definition of the command line.
 
 use crate::output;
 use anyhow::Context as _;
 use clap::{Args, Command};
+use clap_complete::{Shell, generate};
 use clap_mangen::Man as Page;
 use std::path::PathBuf;
+
+/// Print what completes ddl's commands and options in a shell
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+        ddl completions bash > ~/.local/share/bash-completion/completions/ddl\n  \
+        ddl completions zsh > ~/.zfunc/_ddl\n  \
+        ddl completions fish > ~/.config/fish/completions/ddl.fish")]
+pub(crate) struct Completions {
+    /// The shell
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+impl Completions {
+    pub(crate) fn run(self, mut program: Command) -> anyhow::Result<()> {
+        let mut script = Vec::new();
+        generate(self.shell, &mut program, "ddl", &mut script);
+        output::print(std::str::from_utf8(&script)?)
+    }
+}
 
 /// Write the manual pages: ddl(1) and one a command
 #[derive(Debug, Args)]
