@@ -6,7 +6,6 @@ use ddl_tests::mount::Mount;
 use ddl_tests::place::Place;
 use ddl_tests::{figures, program};
 
-/// An earlier output stays as it was.
 #[test]
 fn an_earlier_output_stays() {
     let place = Place::with_model();

@@ -11,7 +11,6 @@ use ddl_tests::{bits, crowd, drawn_model};
 use proptest::prelude::*;
 use std::sync::LazyLock;
 
-/// Cases of the law.
 const CASES: u32 = 1000;
 /// Pedestrians forecast together: a case is one of them.
 const TOGETHER: usize = 25;
@@ -34,7 +33,6 @@ fn limit(observed: &[Position]) -> f64 {
     (1.3 * fastest + 0.5).max(2.2)
 }
 
-/// Speeds of steps, m/s.
 fn steps(path: &[Position]) -> impl Iterator<Item = f64> + '_ {
     path.windows(2)
         .map(|pair| distance(pair[0], pair[1]) / TIME_STEP)

@@ -101,7 +101,6 @@ fn what_needs_libtorch_says_how_to_get_it() {
     assert!(cuda.as_str().unwrap().contains("libtorch"), "{cuda}");
 }
 
-/// Recordings are read before anything is trained.
 #[test]
 fn recordings_that_cannot_be_trained_on_are_refused() {
     let place = Place::empty();

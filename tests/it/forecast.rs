@@ -11,7 +11,6 @@ use serde_json::Value;
 const HYPOTHESES: usize = 20;
 const FRAMES: usize = 12;
 
-/// A row of the csv.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CsvRow {
@@ -33,7 +32,6 @@ struct CsvRow {
     certified: Option<bool>,
 }
 
-/// A line of the JSON lines.
 #[derive(Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct JsonLine {
@@ -245,17 +243,6 @@ fn forecasts_move_with_the_origin_of_the_map() {
             );
         }
     }
-}
-
-#[test]
-fn output_goes_to_the_file_named_and_nowhere_else() {
-    let place = Place::with_model();
-    let line = "forecast --model run tracks.csv --whole";
-    let printed = place.ok(line);
-    let mut before = ddl_tests::folder_contents::read(place.path());
-    assert_eq!(place.ok(&format!("{line} --output out.csv")), "");
-    before.insert("out.csv".into(), Some(printed.into_bytes()));
-    place.assert_unchanged_since(&before);
 }
 
 /// Regions: a radius a row in csv and discs in JSON lines, the same ones; the region of 90 % is the larger, and grows with time.

@@ -81,7 +81,6 @@ fn percent(walkers: &[&Walker], has: impl Fn(&Walker) -> bool) -> f64 {
     100.0 * count as f64 / walkers.len() as f64
 }
 
-/// Mean displacement (mm).
 fn displacement<'a>(walkers: impl ExactSizeIterator<Item = &'a Walker>) -> f64 {
     let count = walkers.len() as f64;
     1e3 * walkers.map(|walker| walker.displacement).sum::<f64>() / count

@@ -42,7 +42,6 @@ fn an_error_changes_nothing() {
     }
 }
 
-/// The program at work.
 struct Live {
     child: Child,
     input: ChildStdin,

@@ -4,7 +4,6 @@ use ddl_tests::own_tracks;
 use ddl_tests::place::{Place, json};
 use serde_json::Value;
 
-/// A folder with the recordings `mine`.
 fn with_recordings() -> Place {
     let place = Place::empty();
     own_tracks::write_recordings(&place);

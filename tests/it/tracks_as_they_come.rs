@@ -13,7 +13,6 @@ use std::fmt::Write as _;
 const SCENE: &str = "{\"scene\": {\"id\": 0, \"p\": 1, \"s\": 0, \"e\": 200, \"fps\": 2}}\n";
 const WORDS: [&str; 3] = ["7f3e-aa41", "007", "b, \"the guard\""];
 
-/// Moment, pedestrian, positions padded and filled.
 fn made_up(line: &Value) -> [i64; 4] {
     ["observed_until", "pedestrian", "padded", "filled"].map(|name| line[name].as_i64().unwrap())
 }
@@ -142,29 +141,6 @@ fn words_come_back_as_they_were_written() {
         "forecast twice.csv",
         &["pedestrian 7f3e-aa41 is in frame 90 already"],
     );
-}
-
-/// Another program forecasts recordings with words, and is scored.
-#[test]
-fn windows_of_words_are_forecast_by_another_program() {
-    let place = Place::empty();
-    place.write("yard.csv", in_words(&own_tracks::three_people(24)));
-    let of = "--convention own --data yard.csv --fold yard";
-    let mut forecasts = String::new();
-    for line in json_lines::<Value>(&place.ok(&format!("windows {of}"))) {
-        let word = line["pedestrian"].as_str().unwrap();
-        assert!(WORDS.contains(&word), "{word}");
-        let still = json!({
-            "recording": line["recording"], "observed_until": line["observed_until"], "pedestrian": word,
-            "hypotheses": [{"positions": vec![&line["observed"][7]; 12]}],
-        });
-        forecasts += &(still.to_string() + "\n");
-    }
-    place.write("still.jsonl", forecasts);
-    let scores = place.ok(&format!(
-        "evaluate --forecasts still.jsonl {of} --name still"
-    ));
-    assert!(scores.contains("pedestrian-windows"), "{scores}");
 }
 
 /// A step of 0.4 s is taken by the scenes' rate, unless another is given, and that is said.

@@ -18,7 +18,6 @@ const BUILD: [(&str, &str); 5] = [
     ("CARGO_PROFILE_RELEASE_STRIP", "true"),
 ];
 
-/// A program that cargo can install.
 pub(crate) struct CargoTool {
     /// Its package, which is also what it is called.
     pub(crate) name: &'static str,
@@ -57,7 +56,6 @@ impl CargoTool {
         folder.join(format!("bin/{}{suffix}", self.name))
     }
 
-    /// Whether a program says of itself that it is the pinned version.
     fn is_pinned(&self, program: &Path) -> bool {
         let output = Command::new(program)
             .args(self.version_call)

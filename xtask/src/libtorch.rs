@@ -21,7 +21,6 @@ use crate::workspace::{Workspace, absolute, program_on_path};
 /// Where set-up may look and put things, beyond its defaults.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Request {
-    /// Folder that holds the kept libraries instead of the user's cache.
     pub(crate) cache: Option<PathBuf>,
     /// Folder that holds the pinned wheels, for machines without a package index.
     pub(crate) wheel_dir: Option<PathBuf>,
@@ -32,7 +31,6 @@ pub(crate) struct Request {
 /// Where the libraries in use come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Origin {
-    /// The variable `LIBTORCH`.
     Variable,
     /// An earlier set-up, as the generated configuration remembers it.
     Configured,

@@ -19,14 +19,12 @@ pub(crate) const EXTRACT_ZIP: &str = include_str!("python/extract_zip.py");
 /// Copies chosen members of a tar archive.
 pub(crate) const EXTRACT_TAR: &str = include_str!("python/extract_tar.py");
 
-/// A Python 3 interpreter.
 #[derive(Debug, Clone)]
 pub(crate) struct Python {
     program: OsString,
 }
 
 impl Python {
-    /// `$PYTHON`, or `python3` on the search path.
     pub(crate) fn find() -> Result<Self> {
         let program = env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
         if !program_on_path(&program) {
@@ -39,7 +37,6 @@ impl Python {
         Ok(Self { program })
     }
 
-    /// The interpreter, if it also has pip.
     pub(crate) fn with_pip() -> Result<Self> {
         let python = Self::find()?;
         let has_pip = python
@@ -58,7 +55,6 @@ impl Python {
         Ok(python)
     }
 
-    /// A command that runs a script with arguments.
     pub(crate) fn script<I>(&self, script: &str, arguments: I) -> Command
     where
         I: IntoIterator,
@@ -73,14 +69,12 @@ impl Python {
         command
     }
 
-    /// A command that runs a script file.
     pub(crate) fn file(&self, script: &Path) -> Command {
         let mut command = Command::new(&self.program);
         command.arg(script).stdin(Stdio::null());
         command
     }
 
-    /// A command that runs a module of Python's.
     pub(crate) fn module(&self, module: &str) -> Command {
         let mut command = Command::new(&self.program);
         command.args(["-m", module]).stdin(Stdio::null());

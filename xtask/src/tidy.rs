@@ -31,16 +31,12 @@ const HOME_FOLDERS: [&str; 3] = [
     concat!("/Use", "rs/"),
 ];
 
-/// What the checks found.
 #[derive(Debug, Default)]
 struct Findings {
-    /// Broken rules.
     faults: Vec<String>,
-    /// Things to keep an eye on.
     notes: Vec<String>,
 }
 
-/// `cargo xtask tidy`.
 pub(crate) fn run(workspace: &Workspace) -> Result<()> {
     let Findings { faults, notes } = check(workspace)?;
     for note in &notes {

@@ -29,7 +29,6 @@ const LEAKING_PREFIXES: [&str; 4] = [
     "CARGO_CRATE_",
 ];
 
-/// The checked-out workspace.
 #[derive(Debug, Clone)]
 pub(crate) struct Workspace {
     root: PathBuf,
@@ -37,7 +36,6 @@ pub(crate) struct Workspace {
 }
 
 impl Workspace {
-    /// The workspace this program belongs to.
     pub(crate) fn find() -> Result<Self> {
         let manifest_dir = env::var_os("CARGO_MANIFEST_DIR")
             .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
@@ -53,7 +51,6 @@ impl Workspace {
         Self::at(root)
     }
 
-    /// The workspace at a known root.
     pub(crate) fn at(root: &Path) -> Result<Self> {
         let shell = Shell::new().context("the current folder cannot be read")?;
         shell.change_dir(root);
@@ -94,7 +91,6 @@ impl Workspace {
         command
     }
 
-    /// What `cargo metadata` says of the workspace's own packages.
     pub(crate) fn metadata(&self) -> Result<Value> {
         let text = self
             .cargo(["metadata", "--no-deps", "--format-version", "1"])

@@ -56,7 +56,6 @@ pub struct LyapunovCertificate<T> {
     time_step: T,
     steps: Vec<CertifiedStep<T>>,
     final_potential: T,
-    /// Of motions within bounds.
     #[serde(default = "Option::default", skip_serializing_if = "Option::is_none")]
     motion: Option<MotionEvidence<T>>,
 }

@@ -24,18 +24,6 @@ pub const PUBLISHED_SIGMA: f64 = 1e-8;
 ///
 /// # References
 /// Equations (11) and (12) of the paper.
-///
-/// # Examples
-/// ```
-/// use ddl_dynamics::CholeskyMetric;
-/// use nalgebra::Vector2;
-///
-/// // L = [1 0; 2 3], sigma = 0.5, so P = [1.5 2; 2 13.5].
-/// let metric = CholeskyMetric::planar(1.0, 2.0, 3.0, 0.5)?;
-/// assert_eq!(metric.apply(&Vector2::new(1.0, -1.0)), Vector2::new(-0.5, -11.5));
-/// assert_eq!(metric.quadratic_form(&Vector2::new(1.0, -1.0)), 11.0);
-/// # Ok::<(), ddl_dynamics::DynamicsError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CholeskyMetric<T, const D: usize> {
     factor: SMatrix<T, D, D>,

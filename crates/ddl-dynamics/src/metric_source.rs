@@ -70,25 +70,6 @@ impl<T: Real, const D: usize> MetricSource<T, D> for MetricSchedule<T, D> {
 
 /// One metric per step, each brought within the bounds of a motion that arrives at its goal with the last of
 /// them ([`MotionBounds::shape`]). What the bounds are depends on where the pedestrian is by then.
-///
-/// # Examples
-/// ```
-/// use ddl_dynamics::{
-///     ArrivingSchedule, Attractor, CholeskyMetric, MotionBounds, NaturalGradientFlow, StableEuler, rollout,
-/// };
-/// use nalgebra::Vector2;
-///
-/// // Far too fast, and askew: 9 m/s and more for somebody who has 4 m to go in 4.8 s.
-/// let metrics = vec![CholeskyMetric::planar(3.0, 2.0, 4.0, 1e-8)?; 12];
-/// let goal = Attractor::new(Vector2::new(4.0, 0.0))?;
-/// let bounds = MotionBounds::new(2.0, Vector2::zeros(), 1.0).expect("numbers in range");
-/// let schedule = ArrivingSchedule::new(metrics, goal, bounds, 0.4)?;
-/// let flow = NaturalGradientFlow::new(goal, schedule);
-/// let path = rollout(&flow, &StableEuler, Vector2::zeros(), 0.4, 12)?;
-/// assert!(path.windows(2).all(|step| (step[1] - step[0]).norm() <= 0.4 * 2.0 + 1e-12));
-/// assert!((path[12] - goal.goal()).norm() < 1e-12);
-/// # Ok::<(), ddl_dynamics::DynamicsError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ArrivingSchedule<T: Real> {
     metrics: MetricSchedule<T, 2>,

@@ -218,7 +218,6 @@ fn axes<T: Real>(p: &Vector3<T>) -> (T, T, [T; 2]) {
     (mean, radius, [double.x, double.y])
 }
 
-/// The same eigenvectors, eigenvalues clamped.
 fn within<T: Real>(p: &Vector3<T>, range: &EigenvalueRange<T>) -> Vector3<T> {
     let (mean, radius, [cos, sin]) = axes(p);
     let (first, second) = clamped(mean, radius, range);

@@ -69,26 +69,6 @@ impl<T: Real, const D: usize, O: AsRef<[Ball<T, D>]>> ObstacleSource<T, D> for O
 ///
 /// Give each step the obstacles as they will be at its *end*; see
 /// [`AvoidingFlow`](crate::AvoidingFlow#obstacles-that-move).
-///
-/// # Examples
-/// ```
-/// use ddl_dynamics::{
-///     Attractor, AvoidingFlow, Ball, CholeskyMetric, NaturalGradientFlow, ObstacleSchedule,
-///     StableEuler, rollout,
-/// };
-/// use nalgebra::Vector2;
-///
-/// // Somebody crosses the way from below; at the end of step k he is at `at(k + 1)`.
-/// let at = |k: u8| Ball::new(Vector2::new(2.0, 0.5 * f64::from(k) - 2.0), 0.4);
-/// let crossing = ObstacleSchedule::new((1..=12).map(|k| at(k).map(|ball| vec![ball])).collect::<Result<_, _>>()?);
-/// let attractor = Attractor::new(Vector2::new(4.0, 0.0))?;
-/// let straight_on = NaturalGradientFlow::new(attractor, CholeskyMetric::planar(1.1, 0.0, 1.1, 1e-8)?);
-/// let path = rollout(&AvoidingFlow::new(straight_on, crossing, 0.5)?, &StableEuler, Vector2::zeros(), 0.4, 12)?;
-/// for (k, position) in (0..).zip(&path) {
-///     assert!(at(k)?.gap_and_normal(position).0 > 0.0);
-/// }
-/// # Ok::<(), ddl_dynamics::DynamicsError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ObstacleSchedule<T, const D: usize> {
     steps: Vec<Vec<Ball<T, D>>>,

@@ -18,18 +18,6 @@ use crate::{
 /// # Errors
 /// [`DynamicsError::NotPositive`], [`DynamicsError::NonFinite`] for the start, and
 /// [`DynamicsError::Step`] naming the step in which the flow or the integrator failed.
-///
-/// # Examples
-/// ```
-/// use ddl_dynamics::{Attractor, Euler, NaturalGradientFlow, rollout};
-/// use nalgebra::Vector2;
-///
-/// let flow = NaturalGradientFlow::straight(Attractor::new(Vector2::new(0.0, 8.0))?);
-/// let path = rollout(&flow, &Euler, Vector2::zeros(), 0.5, 12)?;
-/// assert_eq!(path.len(), 13);
-/// assert_eq!(path[12], Vector2::new(0.0, 6.0));
-/// # Ok::<(), ddl_dynamics::DynamicsError>(())
-/// ```
 pub fn rollout<T, const D: usize, F, I>(
     flow: &F,
     integrator: &I,

@@ -26,7 +26,6 @@ thread_local! {
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// The system's allocator, counting.
 struct Counting;
 
 // SAFETY: every call is handed on to the system's allocator unchanged, which keeps the contract.
@@ -52,7 +51,6 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
-/// Allocations that `run` makes on this thread.
 fn allocations(run: impl FnOnce()) -> u64 {
     let before = ALLOCATIONS.get();
     run();
@@ -83,7 +81,6 @@ fn no_step_allocates() {
     allocates_nothing::<f64, 3>(&Euler);
 }
 
-/// Among obstacles, several of them near at once.
 #[test]
 fn around_obstacles() {
     let hypotheses: Vec<MadeUpWalk<f64, 2>> = drawn(300, 7);

@@ -10,6 +10,8 @@ mod drawing;
 
 use std::fs;
 
+use ddl_dynamics::Flow as _;
+
 fn committed(file: &str) -> String {
     fs::read_to_string(format!("{}/../../docs/{file}", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
@@ -28,10 +30,17 @@ fn the_committed_pictures_are_those_drawn() {
 /// The angle of the caption is the largest one, and `V` falls in every step.
 #[test]
 fn the_caption_says_what_is_drawn() {
-    let followed = around::behind_a_wall().unwrap().followed;
-    assert_eq!(around::falls(&followed.potentials), followed.steps());
-    let written = format!("{:.0}\u{B0}", followed.largest_angle().1.to_degrees());
-    let caption = format!("at up to {written} from the direction");
+    let followed = around::behind_a_wall().unwrap();
+    assert!(
+        followed
+            .potentials()
+            .is_sorted_by(|before, after| before > after)
+    );
+    let goal = followed.flow.goal();
+    let steps = followed.path.windows(2);
+    let angles = steps.map(|pair| (pair[1] - pair[0]).angle(&(goal - pair[0])));
+    let largest = angles.fold(0.0, f64::max).to_degrees();
+    let caption = format!("at up to {largest:.0}\u{B0} from the direction");
     assert!(
         committed("stability.md").contains(&caption),
         "the caption is to say: {caption}"

@@ -83,7 +83,6 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         Some((value, gathered.of_rows, gathered.of_columns))
     }
 
-    /// Steps of all strips together.
     fn steps(&self) -> usize {
         let steps = |index| {
             let strip = self.strip(index);

@@ -26,21 +26,6 @@ const WIDEST_ERROR: f64 = 2e-4;
 ///
 /// Everything runs on the calling thread. The last bits of a pair depend on the instruction set and on the other
 /// sequences.
-///
-/// # Examples
-/// A step towards the mean of three sequences (Cuturi & Blondel 2017, section 3.1):
-/// ```
-/// use ddl_softdtw::{Cost, SoftDtw, SoftDtwBatch};
-/// let dtw = SoftDtw::new(0.5, Cost::SquaredEuclidean)?;
-/// let batch = SoftDtwBatch::build(&dtw, &[vec![[0.0], [1.0]], vec![[0.2], [1.0]], vec![[0.1], [1.2], [1.2]]])?;
-/// let mut x = vec![[0.5], [0.5]];
-/// let (before, gradient) = batch.weighted_sum(&x, &[1.0, 1.0, 1.0])?;
-/// for (x, slope) in x.iter_mut().zip(&gradient) {
-///     x[0] -= 0.05 * slope[0];
-/// }
-/// assert!(batch.weighted_sum(&x, &[1.0, 1.0, 1.0])?.0 < before);
-/// # Ok::<(), ddl_softdtw::SearchError>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct SoftDtwBatch<const D: usize> {
     dtw: SoftDtw,
@@ -270,14 +255,11 @@ impl<const D: usize> SoftDtwBatch<D> {
 #[derive(Clone, Copy, Debug)]
 struct Accurate {
     start: f32,
-    /// What the backward recursion starts from.
     seed: f32,
-    /// The smallest such score.
     smallest: f32,
 }
 
 impl Accurate {
-    /// `None` when no score would do.
     fn new(
         dispatch: Dispatch,
         n: usize,

@@ -17,7 +17,6 @@ pub(crate) struct Narrowing<const D: usize> {
 }
 
 impl<const D: usize> Narrowing<D> {
-    /// What suits `steps` and γ.
     pub(crate) fn new<'a>(gamma: f64, steps: impl Iterator<Item = &'a [f64; D]> + Clone) -> Self {
         let count = steps.clone().count() as f64;
         let mut shift = [0.0; D];
@@ -32,7 +31,6 @@ impl<const D: usize> Narrowing<D> {
         }
     }
 
-    /// A sequence shifted, scaled and rounded.
     pub(crate) fn narrow(&self, steps: &[[f64; D]]) -> Vec<[f32; D]> {
         steps.iter().map(|step| self.step(step)).collect()
     }
@@ -50,7 +48,6 @@ impl<const D: usize> Narrowing<D> {
     }
 }
 
-/// One step of sixteen sequences.
 pub(crate) type Step<const D: usize> = [Lanes; D];
 
 /// Sequences by length, sixteen to a block.

@@ -9,13 +9,6 @@ use crate::scalar::{Scalar, widened};
 /// Distance between two steps, the entries of the cost matrix Δ(x, y).
 ///
 /// For sequences in metres (or m/s) the squared cost is in m² (or m²/s²), and gamma has the unit of the cost.
-///
-/// # Examples
-/// ```
-/// use ddl_softdtw::Cost;
-/// assert_eq!(Cost::SquaredEuclidean.between(&[0.0, 0.0], &[3.0, 4.0]), 25.0);
-/// assert_eq!(Cost::Euclidean.between(&[0.0, 0.0], &[3.0, 4.0]), 5.0);
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Cost {
@@ -40,18 +33,15 @@ impl Cost {
 
 /// A cost as a type, so that the loops over cells know it.
 pub(crate) trait Metric: Copy {
-    /// Cost of two steps.
     fn between<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> f64;
 
     /// Derivative of the cost with respect to `a`; that with respect to `b` is its negative.
     fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D];
 }
 
-/// |a − b|².
 #[derive(Clone, Copy)]
 pub(crate) struct Squared;
 
-/// |a − b|.
 #[derive(Clone, Copy)]
 pub(crate) struct Length;
 

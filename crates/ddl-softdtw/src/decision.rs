@@ -19,9 +19,7 @@ pub struct Neighbour {
 /// Candidates with their values.
 #[derive(Clone, Copy)]
 pub(crate) struct Candidates<'a, F> {
-    /// Evaluates pairs.
     pub(crate) values: PairValues,
-    /// The candidate of an index.
     pub(crate) sequence: F,
     /// D(y, y) of every candidate.
     pub(crate) self_values: &'a [f64],

@@ -29,13 +29,10 @@ impl fmt::Display for SequenceRole {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum SoftDtwError {
-    /// The smoothing parameter is negative, infinite or not a number.
     #[error("gamma is {gamma}: it must be finite and not negative (0 is hard DTW)")]
     InvalidGamma { gamma: f64 },
-    /// A sequence has no step.
     #[error("sequence {sequence} is empty: soft-DTW needs at least one step")]
     EmptySequence { sequence: SequenceRole },
-    /// A sequence holds NaN or an infinity.
     #[error("sequence {sequence}, step {step}, component {component} is {value}: must be finite")]
     NonFinite {
         sequence: SequenceRole,
@@ -43,7 +40,6 @@ pub enum SoftDtwError {
         component: usize,
         value: f64,
     },
-    /// The inputs are finite but their distance, or its gradient, is larger than the largest number of their type.
     #[error(
         "the soft-DTW value or gradient leaves the range of the number type: scale the sequences (or gamma) down, or use f64"
     )]
@@ -55,25 +51,18 @@ pub enum SoftDtwError {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum SearchError {
-    /// An index needs something to search in.
     #[error("no candidates were given: a search index needs at least one sequence")]
     NoCandidates,
-    /// One of the candidates is not a valid sequence.
     #[error("candidate {index}: {source}")]
     Candidate { index: usize, source: SoftDtwError },
-    /// A weighted sum needs one weight for each sequence.
     #[error("{weights} weights for {sequences} sequences: give one for each")]
     Weights { weights: usize, sequences: usize },
-    /// A weighted sum needs finite weights.
     #[error("weight {index} is {weight}: must be finite")]
     Weight { index: usize, weight: f64 },
-    /// The processor does not have the vector instructions that were asked for.
     #[error("this processor has no {set} instructions: choose one of InstructionSet::available()")]
     InstructionSet { set: InstructionSet },
-    /// The query is not a valid sequence, or no distance to it can be represented.
     #[error("query: {0}")]
     Query(#[from] SoftDtwError),
-    /// One of a batch of queries is not a valid sequence.
     #[error("query {index} of the batch: {source}")]
     BatchQuery { index: usize, source: SoftDtwError },
 }

@@ -43,15 +43,6 @@ impl SoftDtw {
     ///
     /// # Errors
     /// As [`SoftDtw::value_and_gradient`].
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl_softdtw::{Cost, SoftDtw};
-    /// let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean)?;
-    /// let (_, of_x, of_y) = dtw.value_and_gradients(&[[3.0]], &[[1.0]])?;
-    /// assert_eq!((of_x, of_y), (vec![[4.0]], vec![[-4.0]]));
-    /// # Ok::<(), ddl_softdtw::SoftDtwError>(())
-    /// ```
     #[expect(clippy::type_complexity, reason = "a value and two gradients")]
     pub fn value_and_gradients<T: Scalar, const D: usize>(
         &self,
@@ -133,7 +124,6 @@ impl SoftDtw {
     }
 }
 
-/// The gradient in the number type of its sequences.
 fn narrowed<T: Scalar, const D: usize>(gradient: &[[f64; D]]) -> Result<Vec<[T; D]>, SoftDtwError> {
     let narrow = gradient.iter().map(|step| step.map(T::rounded));
     let narrow: Vec<[T; D]> = narrow.collect();

@@ -42,7 +42,6 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         self.band.map_or(0..=m - 1, |band| band.columns(row, n, m))
     }
 
-    /// Number of strips.
     pub(crate) fn strips(&self) -> usize {
         self.rows.len().div_ceil(STRIP)
     }
@@ -86,7 +85,6 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         widened(&self.columns[d.saturating_sub(lane).min(self.columns.len() - 1)])
     }
 
-    /// [`Grid::column`] for every lane.
     pub(crate) fn window(&self, d: usize) -> [[f64; D]; STRIP] {
         let mut window = [[0.0; D]; STRIP];
         for (lane, y) in window.iter_mut().enumerate() {

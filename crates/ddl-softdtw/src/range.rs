@@ -73,7 +73,6 @@ impl Range {
         Self::of(Format { floor, ..NARROW }, n, m)
     }
 
-    /// The range in `f64`.
     pub(crate) fn wide(n: usize, m: usize) -> Option<Self> {
         Self::of(WIDE, n, m)
     }
@@ -93,7 +92,6 @@ impl Range {
         })
     }
 
-    /// log2 of the value the recursion starts from.
     pub(crate) fn start_log2(&self) -> i16 {
         self.start_log2
     }

@@ -89,7 +89,6 @@ impl PairValues {
         pairs.iter().zip(known).map(value).collect()
     }
 
-    /// The value of a pair that is beyond the exponential domain.
     pub(crate) fn beyond<const D: usize>(&self, x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
         self.dtw.value_unchecked(x, y)
     }
@@ -136,7 +135,6 @@ impl PairValues {
     }
 }
 
-/// Writes a sequence into one lane.
 pub(crate) fn spread<const D: usize>(steps: &[[f64; D]], lane: usize, into: &mut [[WideLanes; D]]) {
     for (step, into) in steps.iter().zip(into) {
         for (value, lanes) in step.iter().zip(into) {

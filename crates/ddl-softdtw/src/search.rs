@@ -13,18 +13,6 @@ use ddl_simd::{Dispatch, InstructionSet};
 const TOGETHER: usize = 8;
 
 /// Candidates prepared for repeated search; `D` components a step.
-///
-/// # Examples
-/// ```
-/// use ddl_softdtw::{Cost, SearchIndex, SoftDtw};
-/// let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean)?;
-/// let candidates = [vec![[0.0], [0.0]], vec![[1.0], [2.0]], vec![[5.0], [5.0]]];
-/// let index = SearchIndex::build(&dtw, &candidates)?;
-/// let nearest = index.nearest(&[[1.0], [1.9]], 2)?;
-/// assert_eq!(nearest[0].index, 1);
-/// assert!(nearest[0].distance <= nearest[1].distance);
-/// # Ok::<(), ddl_softdtw::SearchError>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct SearchIndex<const D: usize> {
     dtw: SoftDtw,
@@ -152,7 +140,6 @@ impl<const D: usize> SearchIndex<D> {
             .collect()
     }
 
-    /// The answers to a few queries that go through the candidates together.
     fn search(
         &self,
         queries: &[&[[f64; D]]],
@@ -180,7 +167,6 @@ impl<const D: usize> SearchIndex<D> {
         queries.iter().zip(checked).map(answer).collect()
     }
 
-    /// The `wanted` nearest of some candidates, evaluated in `f64`.
     fn rank(
         &self,
         query: &[[f64; D]],

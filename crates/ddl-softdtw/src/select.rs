@@ -32,12 +32,10 @@ impl Selection {
         }
     }
 
-    /// What a score must reach to be worth offering.
     pub(crate) fn threshold(&self) -> f32 {
         self.threshold
     }
 
-    /// Takes a score in if it reaches the threshold.
     pub(crate) fn offer(&mut self, score: f32, candidate: usize) {
         if score < self.threshold {
             return;
@@ -109,12 +107,5 @@ mod tests {
         let mut kept: Vec<f32> = selection.finish(0.001).iter().map(|s| s.score).collect();
         kept.sort_by(f32::total_cmp);
         assert_eq!(kept, [4994.0, 4995.0, 4996.0, 4997.0, 4998.0, 4999.0]);
-    }
-
-    #[test]
-    fn ties_are_all_kept() {
-        let mut selection = Selection::new(2, 0.1);
-        (0..3000).for_each(|i| selection.offer(1.0, i));
-        assert_eq!(selection.finish(0.1).len(), 3000);
     }
 }

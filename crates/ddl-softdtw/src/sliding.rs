@@ -37,20 +37,6 @@ const QUERY_WINDOWS: usize = 64;
 /// Set, order and distances are decided in `f64`, to a relative error of the sum over the paths below 1e-12 (2e-12 for
 /// windows of 180 steps): results are exact up to ties within that error times γ and do not depend on the number of
 /// threads or the instruction set.
-///
-/// # Examples
-/// ```
-/// use ddl_softdtw::{Cost, SlidingIndex, SoftDtw};
-/// let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean)?;
-/// // Velocities (m/s) of someone who walks, then stops, and of someone who walks on.
-/// let tracks = [vec![[1.2], [1.2], [1.1], [0.3], [0.0], [0.0]], vec![[1.4], [1.4], [1.4], [1.4]]];
-/// let index = SlidingIndex::build(&dtw, &tracks, 3, 0)?;
-/// assert_eq!(index.len(), 4 + 2);
-/// let nearest = index.nearest(&[[1.1], [0.4], [0.0]], 2)?;
-/// assert_eq!((nearest[0].track, nearest[0].offset), (0, 2));
-/// assert!(nearest[0].distance <= nearest[1].distance);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct SlidingIndex<const D: usize> {
     dtw: SoftDtw,

@@ -189,7 +189,6 @@ pub(crate) fn finite(value: f64) -> Result<f64, SoftDtwError> {
     rounded(value)
 }
 
-/// The nearest number of type `T`.
 pub(crate) fn rounded<T: Scalar>(value: f64) -> Result<T, SoftDtwError> {
     let rounded = T::rounded(value);
     if rounded.widened().is_finite() {

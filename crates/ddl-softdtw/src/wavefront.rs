@@ -228,27 +228,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    fn plain_numbers_reach_to_their_limit() {
-        // One row: R is 2^−t to the power of the number of columns.
-        let (x, y) = ([[1.0]], [[0.0]; 26]);
-        let (gamma, cost, band) = (1.0, Cost::SquaredEuclidean, None);
-        let grid = Grid {
-            rows: &x,
-            columns: &y,
-            gamma,
-            cost,
-            band,
-        };
-        let limit = PLAIN / 27.0;
-        let run = |scale| {
-            let row = &mut [Plain::NONE_ONE; SHORT];
-            grid.run::<Plain>(scale, limit, row, &mut Forget)
-        };
-        let (significand, exponent) = run(limit).expect("just within");
-        let log2 = significand.log2() + exponent;
-        assert!((log2 + 26.0 * limit).abs() < 1e-11, "{log2}");
-        assert!(run(limit * 1.001).is_none());
-    }
 }

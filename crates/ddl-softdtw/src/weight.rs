@@ -31,7 +31,6 @@ pub(crate) trait Weight: Copy {
     /// The lanes moved down by one row, `top` above them.
     fn below(&self, top: Self::One) -> Self;
 
-    /// The last lane.
     fn last(&self) -> Self::One;
 
     /// 2^−t times the sum of the three ways into each cell.
@@ -46,7 +45,6 @@ pub(crate) trait Weight: Copy {
     /// [`Weight::normalised`] for one cell.
     fn normalised_one(one: Self::One) -> Self::One;
 
-    /// Significand in [1, 2) and exponent.
     fn parts(one: Self::One) -> (f64, f64);
 }
 

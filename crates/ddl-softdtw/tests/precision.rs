@@ -4,7 +4,6 @@
 use ddl_softdtw::{Band, Cost, SoftDtw};
 use serde::Deserialize;
 
-/// Unit roundoff of `f64`.
 const UNIT: f64 = f64::EPSILON / 2.0;
 
 #[derive(Deserialize)]

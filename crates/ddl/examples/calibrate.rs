@@ -16,7 +16,6 @@ use std::path::Path;
 
 mod places;
 
-/// Levels of the table.
 const LEVELS: [f64; 12] = [
     0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99,
 ];

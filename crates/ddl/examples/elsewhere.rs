@@ -18,7 +18,6 @@ use std::error::Error;
 
 /// Pedestrian-windows of a folder, about: evenly spread where there are more.
 const PEDESTRIANS: usize = 3000;
-/// Windows forecast at a time.
 const CHUNK: usize = 64;
 /// Who is faster than this (m/s) runs or rides.
 const FAST: f64 = 3.0;
@@ -249,7 +248,6 @@ fn runners(
     })
 }
 
-/// Metres a second.
 fn mean_speed(observed: &[Position]) -> f64 {
     let steps = observed
         .array_windows()

@@ -73,7 +73,6 @@ impl Device {
         }
     }
 
-    /// The device as libtorch opens it.
     #[cfg(feature = "torch")]
     pub(crate) fn torch(self) -> Result<ddl_star::ComputeDevice, DdlError> {
         match self.0 {
@@ -82,7 +81,6 @@ impl Device {
         }
     }
 
-    /// A forecasting network with the weights that `read` gives for its layout.
     pub(crate) fn forecasting(
         self,
         config: &StarConfig,
@@ -100,7 +98,6 @@ impl Device {
         }
     }
 
-    /// A proposal network with the weights that `read` gives for its layout.
     pub(crate) fn proposing(
         self,
         config: &ProposalConfig,

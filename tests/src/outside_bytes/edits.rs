@@ -30,7 +30,6 @@ impl<'a> Choices<'a> {
     }
 
     /// As many edits of `whole` as there are choices for.
-    // Only readers of models take their input so.
     pub(super) fn edited(bytes: &'a [u8], whole: &[u8]) -> Vec<u8> {
         let mut edited = whole.to_vec();
         let mut choices = Self::new(bytes);
@@ -57,8 +56,6 @@ impl<'a> Choices<'a> {
         bytes
     }
 
-    /// Everything that is left.
-    // Only readers of models take their input so.
     pub(super) fn rest(&mut self) -> &'a [u8] {
         std::mem::take(&mut self.0)
     }

@@ -34,7 +34,6 @@ impl Arguments {
     }
 }
 
-/// Builds the program and runs the benchmark, when everything is there that it needs.
 fn benchmark(workspace: &Workspace, mut options: Vec<String>) -> Result<Command> {
     let cargo_profile = take(&mut options, "--cargo-profile")?;
     let asked = take(&mut options, "--convention")?;
@@ -66,7 +65,6 @@ fn benchmark(workspace: &Workspace, mut options: Vec<String>) -> Result<Command>
     Ok(cargo)
 }
 
-/// The arguments of `ddl benchmark`.
 fn handed_over(root: &Path, chosen: &Chosen, options: Vec<String>) -> Vec<String> {
     let mut words = vec!["--convention".to_owned(), chosen.convention.to_string()];
     if let Some(folder) = &chosen.folder {

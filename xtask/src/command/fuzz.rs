@@ -174,7 +174,6 @@ fn run(command: &mut Command) -> Result<(String, bool)> {
     Ok((log, passed))
 }
 
-/// The targets of a manifest, in its order.
 fn targets(manifest: &str) -> Result<Vec<Target>> {
     let table: toml::Table = manifest.parse().context("its Cargo.toml is damaged")?;
     let bins = table.get("bin").and_then(toml::Value::as_array);

@@ -9,11 +9,9 @@ use super::fetch::{check, fetch};
 use super::{FETCHED, Manifest, RECORDED};
 use crate::workspace::{Workspace, absolute};
 
-/// A convention that can be had.
 #[derive(Debug, Clone)]
 pub(crate) struct Chosen {
     pub(crate) convention: Convention,
-    /// Folder of its recordings; none for the simulated one.
     pub(crate) folder: Option<PathBuf>,
     /// Why this one: a clause.
     pub(crate) reason: String,

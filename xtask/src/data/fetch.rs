@@ -39,7 +39,6 @@ pub(crate) fn fetch<'a>(
     )
 }
 
-/// Hashes every file of a convention in a folder; the error names every wrong file.
 pub(crate) fn check(folder: &Path, entry: &Entry) -> Result<()> {
     let complaint = |file: &PinnedFile| {
         let error = file.pin().check(&folder.join(&file.name)).err()?;

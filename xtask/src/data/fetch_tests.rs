@@ -104,18 +104,6 @@ fn the_next_source_gives_what_the_first_does_not() {
 }
 
 #[test]
-fn without_any_source_every_one_is_named_in_one_line() {
-    let [from, to] = [0, 1].map(|_| tempfile::tempdir().unwrap());
-    let error = try_fetch(&entry(from.path(), &[None, None]), to.path()).unwrap_err();
-    let message = format!("{error:#}");
-    for part in ["source 0", "source 1", "No such file"] {
-        assert!(message.contains(part), "{message}");
-    }
-    // Not even an empty folder.
-    assert!(!to.path().exists());
-}
-
-#[test]
 fn members_of_an_archive_are_checked_one_by_one() {
     let folder = tempfile::tempdir().unwrap();
     let archive = folder.path().join("package.tar.gz");

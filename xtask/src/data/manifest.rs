@@ -12,7 +12,6 @@ use crate::workspace::Workspace;
 
 const FILE: &str = "datasets/manifest.toml";
 
-/// The whole manifest.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Manifest {
@@ -22,7 +21,6 @@ pub(crate) struct Manifest {
     citation: BTreeMap<String, String>,
 }
 
-/// One convention: its files, and where to get them.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Entry {
@@ -37,7 +35,6 @@ pub(crate) struct Entry {
     pub(crate) files: Vec<PinnedFile>,
 }
 
-/// A file, pinned to the byte.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PinnedFile {
@@ -58,13 +55,13 @@ impl PinnedFile {
     }
 }
 
-/// Where files come from.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Source {
-    /// Each file at an address of its own.
-    Address { name: String, address: String },
-    /// All files in one archive on the package index.
+    Address {
+        name: String,
+        address: String,
+    },
     Package {
         name: String,
         package: String,

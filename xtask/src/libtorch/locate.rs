@@ -49,7 +49,6 @@ mod tests {
     use super::*;
     use crate::whole_file;
 
-    /// What is said of a folder with everything, but for `missing`, and the given version.
     fn reason(version_file: &str, contents: &str, missing: &str) -> Result<(), String> {
         let folder = tempfile::tempdir().unwrap();
         let libraries = ["torch", "torch_cpu", "c10"];

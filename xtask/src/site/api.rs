@@ -8,7 +8,6 @@ use serde_json::Value;
 
 use crate::workspace::{Workspace, step};
 
-/// A crate that others can depend on.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Library {
     pub(super) package: String,

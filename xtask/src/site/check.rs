@@ -11,7 +11,6 @@ use super::page::{Page, Reference};
 /// Addresses that are no places.
 const OTHER_SCHEMES: [&str; 3] = ["data:", "javascript:", "mailto:"];
 
-/// What the check found.
 #[derive(Debug, Default)]
 pub(super) struct Checked {
     pub(super) pages: usize,
@@ -158,7 +157,6 @@ fn decoded(address: &str) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// Every file below a folder.
 pub(super) fn files_below(folder: &Path) -> Result<Vec<PathBuf>> {
     let failed = || format!("{} cannot be read", folder.display());
     let mut files = Vec::new();

@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 
 use html5gum::{DefaultEmitter, Token, Tokenizer};
 
-/// A reference of a page.
 #[derive(Debug)]
 pub(super) struct Reference {
     pub(super) target: String,
@@ -12,7 +11,6 @@ pub(super) struct Reference {
     pub(super) loaded: bool,
 }
 
-/// What a page refers to, and what can be referred to on it.
 #[derive(Debug, Default)]
 pub(super) struct Page {
     pub(super) references: Vec<Reference>,

@@ -7,7 +7,6 @@ use std::path::{Component, Path, PathBuf};
 /// Where the repository is read, before a path in it; `workspace.package.repository` says the same.
 const REPOSITORY: &str = "https://github.com/ddl-forecast/ddl/blob/main/";
 
-/// What is wrong with the links of a file.
 pub(super) fn faults(file: &Path, text: &str, files: &[PathBuf]) -> Vec<String> {
     if file.extension().is_none_or(|extension| extension != "md") {
         return Vec::new();

@@ -54,10 +54,6 @@ impl<T: Real, const D: usize> Chain<T, D> {
     /// [contraction](LocalTranslation::contraction) of at most 1/2, the one that lowers the sum of squared residuals
     /// most is taken. At both ends the path is continued straight for a tenth of its length, or until it would meet
     /// another part of itself.
-    ///
-    /// In the method of Perrin and Schlehuber-Caissier the points go to the line between start and goal at once; a path that
-    /// comes back to where it started would be crushed onto it. Here it is not, at the price that `psi(p*)` is not `p*`.
-    ///
     /// # What is promised, and what is not
     /// The chain is a diffeomorphism whatever the path. How straight the image is, is reported and not promised; a path
     /// that crosses itself, or would while it unbends, cannot be straightened so. The same path gives the same chain.

@@ -49,26 +49,6 @@ use crate::{
 /// # References
 /// In the spirit of Khansari-Zadeh and Billard, "A dynamical system approach to realtime obstacle avoidance"
 /// (Autonomous Robots 2012), who modulate the velocity by a matrix that is not symmetric.
-///
-/// # Examples
-/// ```
-/// use ddl_dynamics::{
-///     Attractor, AvoidingFlow, Ball, CholeskyMetric, LyapunovCertificate, NaturalGradientFlow,
-///     StableEuler, rollout,
-/// };
-/// use nalgebra::Vector2;
-///
-/// let attractor = Attractor::new(Vector2::new(6.0, 0.0))?;
-/// let metric = CholeskyMetric::planar(1.1, 0.0, 1.1, 1e-8)?;
-/// let pillar = Ball::new(Vector2::new(3.0, 0.2), 0.5)?;
-/// let flow = AvoidingFlow::new(NaturalGradientFlow::new(attractor, metric), [pillar], 1.0)?;
-///
-/// let path = rollout(&flow, &StableEuler, Vector2::zeros(), 0.4, 40)?;
-/// assert!(path.iter().all(|p| pillar.gap_and_normal(p).0 > 0.0));
-/// assert_eq!(path[40], *attractor.goal());
-/// assert!(LyapunovCertificate::of_rollout(&flow, &path, 0.4)?.holds().is_ok());
-/// # Ok::<(), ddl_dynamics::DynamicsError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AvoidingFlow<T, const D: usize, M, O> {
     flow: NaturalGradientFlow<T, D, M>,
@@ -100,7 +80,6 @@ where
         })
     }
 
-    /// The distance from the surface of each obstacle at `state`, and the normal there.
     fn surfaces<'a>(
         &'a self,
         state: &'a State<'_, T, D>,
@@ -156,7 +135,6 @@ where
         Ok(-metric.apply(&self.attractor().gradient(&state.position)))
     }
 
-    /// Half of the time to the nearest tangent plane.
     fn longest_step(&self, state: &State<'_, T, D>, velocity: &SVector<T, D>) -> Option<T> {
         self.surfaces(state)
             .filter_map(|(gap, normal)| {

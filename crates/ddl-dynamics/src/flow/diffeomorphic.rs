@@ -37,21 +37,6 @@ use crate::{
 /// # References
 /// The paper names diffeomorphisms as future work (section V). Rana et al., "Euclideanizing flows" (L4DC 2020), learn
 /// such maps from demonstrations.
-///
-/// # Examples
-/// ```
-/// use ddl_dynamics::{CholeskyMetric, DiffeomorphicFlow, LocalTranslation, StableEuler, rollout};
-/// use nalgebra::Vector2;
-///
-/// // Space is pushed up around (1, 0): the way from (2, 0) to the origin bends downwards there.
-/// let push = LocalTranslation::new(Vector2::new(1.0, 0.0), 1.0, Vector2::new(0.0, 0.8))?;
-/// let metric = CholeskyMetric::planar(1.0, 0.0, 1.0, 1e-8)?;
-/// let flow = DiffeomorphicFlow::new(Vector2::zeros(), push, metric)?;
-/// let path = rollout(&flow, &StableEuler, Vector2::new(2.0, 0.0), 0.1, 40)?;
-/// assert!(path.iter().any(|p| p.y < -0.2));
-/// assert!(path[40].norm() < 1e-9);
-/// # Ok::<(), ddl_dynamics::DynamicsError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiffeomorphicFlow<T, const D: usize, Psi, M> {
     goal: SVector<T, D>,

@@ -16,18 +16,6 @@ use crate::{
 ///
 /// # References
 /// Equation (9) of the paper, with `P` of equation (11); equation (8) is [`straight`](NaturalGradientFlow::straight).
-///
-/// # Examples
-/// ```
-/// use ddl_dynamics::{Attractor, CholeskyMetric, Flow, NaturalGradientFlow, State};
-/// use nalgebra::Vector2;
-///
-/// let metric = CholeskyMetric::planar(1.0, 0.5, 0.75, 0.25)?; // P = [1.25 0.5; 0.5 1.0625]
-/// let flow = NaturalGradientFlow::new(Attractor::new(Vector2::zeros())?, metric);
-/// let velocity = flow.velocity(&State::at(Vector2::new(2.0, 0.0)))?;
-/// assert_eq!(velocity, Vector2::new(-1.25, -0.5));
-/// # Ok::<(), ddl_dynamics::DynamicsError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NaturalGradientFlow<T, const D: usize, M> {
     attractor: Attractor<T, D>,

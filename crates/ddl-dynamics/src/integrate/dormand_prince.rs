@@ -34,21 +34,6 @@ const SAFETY: f64 = 0.9;
 ///
 /// # References
 /// Dormand and Prince, "A family of embedded Runge-Kutta formulae" (J. Comp. Appl. Math. 1980).
-///
-/// # Examples
-/// ```
-/// use ddl_dynamics::{Attractor, DormandPrince, NaturalGradientFlow, CholeskyMetric, rollout};
-/// use nalgebra::Vector2;
-///
-/// // On a quadratic attractor with a constant metric the path is known: p(t) = exp(-P t) p(0).
-/// let metric = CholeskyMetric::planar(1.0, 0.0, 0.5_f64.sqrt(), 0.5)?; // P = diag(1.5, 1)
-/// let flow = NaturalGradientFlow::new(Attractor::quadratic(Vector2::zeros())?, metric);
-/// let precise = DormandPrince::new(1e-10)?;
-/// let path = rollout(&flow, &precise, Vector2::new(2.0, 1.0), 0.5, 4)?;
-/// let known = Vector2::new(2.0 * (-3.0_f64).exp(), (-2.0_f64).exp());
-/// assert!((path[4] - known).norm() < 1e-9);
-/// # Ok::<(), ddl_dynamics::DynamicsError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DormandPrince<T> {
     tolerance: T,
@@ -132,7 +117,6 @@ impl<T: Real, const D: usize> Integrator<T, D> for DormandPrince<T> {
     }
 }
 
-/// Distance to the goal in the coordinates of the flow's chart.
 fn distance<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
     flow: &F,
     position: &SVector<T, D>,
@@ -163,7 +147,6 @@ fn time_to_closest<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
     if time > T::zero() { time } else { T::MAX }
 }
 
-/// By how much the next step is longer (or shorter), given its error over the tolerance.
 fn growth<T: Real>(relative: T) -> T {
     let (least, most) = (T::rounded(SHRINKAGE), T::rounded(GROWTH));
     if relative.is_zero() {

@@ -44,17 +44,6 @@ const ARRIVAL: f64 = 8.0;
 ///
 /// So every computed rollout ends on the goal if it is run on for long enough. [`StableStep::limit`] tells which case a
 /// step was.
-///
-/// # Examples
-/// ```
-/// use ddl_dynamics::{Attractor, NaturalGradientFlow, StableEuler, rollout};
-/// use nalgebra::Vector1;
-///
-/// let flow = NaturalGradientFlow::straight(Attractor::new(Vector1::new(0.0))?);
-/// let path = rollout(&flow, &StableEuler, Vector1::new(1.25), 0.5, 4)?;
-/// assert_eq!(path, [1.25, 0.75, 0.25, 0.0, 0.0].map(Vector1::new));
-/// # Ok::<(), ddl_dynamics::DynamicsError>(())
-/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct StableEuler;
 

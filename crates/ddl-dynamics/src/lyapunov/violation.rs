@@ -9,7 +9,6 @@ use thiserror::Error;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum Violation {
-    /// The walker was on its way and did not come closer to the goal.
     #[error(
         "step {step} does not approach the goal: {before} m away before it, {after} m after it"
     )]
@@ -18,7 +17,6 @@ pub enum Violation {
         before: f64,
         after: f64,
     },
-    /// The walker had arrived and left again.
     #[error("step {step} leaves the goal: {after} m away after it")]
     LeftGoal { step: usize, after: f64 },
     /// The metric of the step is not positive definite; only a certificate read from elsewhere may say so.
@@ -29,7 +27,6 @@ pub enum Violation {
     /// The potential does not fall along the flow; only a certificate read from elsewhere may say so.
     #[error("the flow does not descend in step {step}: the distance changes at {rate} m/s")]
     NotDescending { step: usize, rate: f64 },
-    /// A figure of the motion exceeds the bound that was set to it.
     #[error("the {figure} is {value}, more than its bound {bound}")]
     OutOfBounds {
         figure: String,

@@ -2,10 +2,10 @@
 
 use approx::assert_relative_eq;
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, DynamicsError, LyapunovCertificate, MetricSchedule,
+    Attractor, CholeskyMetric, DynamicsError, Euler, LyapunovCertificate, MetricSchedule,
     NaturalGradientFlow, Real, StableEuler, Violation, rollout,
 };
-use nalgebra::{SVector, Vector2};
+use nalgebra::{SVector, Vector1, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
 
 use crate::{
@@ -48,7 +48,6 @@ fn holds_for_every_stable_rollout<T: Real, const D: usize>(scene: &SceneDraw) ->
 }
 for_every_space!(holds_for_every_stable_rollout, any_scene);
 
-/// A violation planted at a random step is found there.
 fn names_a_planted_violation<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let (mut path, metrics, attractor) = stable_path::<T, D>(scene);
     // The time step, random itself, picks the place.
@@ -72,7 +71,6 @@ fn names_a_planted_violation<T: Real, const D: usize>(scene: &SceneDraw) -> Test
 }
 for_every_space!(names_a_planted_violation, any_scene);
 
-/// The same on a quadratic attractor, whose velocities fade near the goal.
 fn holds_on_a_quadratic_attractor<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let attractor = Attractor::quadratic(*scene.attractor::<T, D>().goal()).unwrap();
     let metrics = MetricSchedule::new(scene.metrics()).unwrap();
@@ -83,20 +81,6 @@ fn holds_on_a_quadratic_attractor<T: Real, const D: usize>(scene: &SceneDraw) ->
     Ok(())
 }
 for_every_space!(holds_on_a_quadratic_attractor, any_scene);
-
-/// Down to the last subnormal distance, where the rate itself is too small for a number.
-#[test]
-fn holds_until_a_quadratic_attractor_is_reached() {
-    let attractor = Attractor::quadratic(Vector2::<f64>::zeros()).unwrap();
-    let flow = NaturalGradientFlow::new(
-        attractor,
-        CholeskyMetric::planar(0.3, 0.06, 0.3, 0.1).unwrap(),
-    );
-    let path = rollout(&flow, &StableEuler, Vector2::new(3.0, 1.0), 5.0, 1000).unwrap();
-    assert_eq!(path[1000], Vector2::zeros());
-    let certificate = LyapunovCertificate::of_rollout(&flow, &path, 5.0).unwrap();
-    assert_eq!(certificate.holds(), Ok(()));
-}
 
 /// P = [1 1; 1 2] and e = (0.3, -0.4): the figures of a step, worked out by hand.
 fn by_hand() -> LyapunovCertificate<f64> {
@@ -182,5 +166,29 @@ fn positions_and_metrics_must_belong_together() {
     assert!(
         broken.starts_with("step 1 of the rollout failed"),
         "{broken}"
+    );
+}
+
+#[test]
+fn plain_euler_circles_the_goal_and_the_certificate_names_the_step() {
+    // At 1 m/s in steps of 0.5 s from 1.25 m: 0.75, 0.25, then to and fro over the goal for ever.
+    let attractor = Attractor::new(Vector1::new(0.0)).unwrap();
+    let flow = NaturalGradientFlow::straight(attractor);
+    let path = rollout(&flow, &Euler, Vector1::new(1.25), 0.5, 6).unwrap();
+    assert_eq!(
+        path,
+        [1.25, 0.75, 0.25, -0.25, 0.25, -0.25, 0.25].map(Vector1::new)
+    );
+    let metric = CholeskyMetric::new([[1.0]].into(), 1e-8).unwrap();
+    let certificate = LyapunovCertificate::new(&path, &[metric; 6], &attractor, 0.5).unwrap();
+    let violation = Violation::NotDecreasing {
+        step: 2,
+        before: 0.25,
+        after: 0.25,
+    };
+    assert_eq!(certificate.holds(), Err(violation.clone()));
+    assert_eq!(
+        violation.to_string(),
+        "step 2 does not approach the goal: 0.25 m away before it, 0.25 m after it"
     );
 }

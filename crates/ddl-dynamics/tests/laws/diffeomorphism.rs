@@ -140,29 +140,6 @@ fn space_is_never_folded<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseRes
 }
 for_every_space!(space_is_never_folded, any_maps);
 
-/// The bound is attained at `c + v / (sqrt(2) rho |v|)`, so no larger one would be true.
-fn the_bound_of_a_translation_is_attained<T: Real, const D: usize>(
-    draw: &MapDraw,
-) -> TestCaseResult {
-    for map in draw.translations::<T, D>() {
-        let length = map.translation().norm();
-        if length.as_f64() > 1e-3 {
-            let offset = map.translation() / (length * map.rate() * T::rounded(2_f64.sqrt()));
-            let determinant = general(&map.jacobian(&(map.centre() + offset))).determinant();
-            let bound = map.determinant_lower_bound().as_f64();
-            // The position is rounded at 10 m, and felt at up to 10 per metre.
-            let rounding = 2e3 * T::EPSILON.as_f64();
-            prop_assert!(
-                (determinant - bound).abs() <= rounding,
-                "{determinant} {bound}"
-            );
-        }
-    }
-    Ok(())
-}
-for_every_space!(the_bound_of_a_translation_is_attained, any_maps);
-
-/// No finite position gives NaN, whatever the parameters; and a translation's Jacobian is finite.
 fn no_finite_input_gives_nan<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
     let number = |vector: SVector<T, D>| vector.iter().all(|x| !x.as_f64().is_nan());
     for position in draw.positions::<T, D>() {
@@ -192,7 +169,6 @@ proptest! {
     }
 }
 
-/// Maps that would fold space over, or have no meaning, are refused by name.
 #[test]
 fn what_cannot_be_inverted_is_refused() {
     let new = |x: f64, rate: f64, v: f64| {

@@ -96,7 +96,6 @@ pub(crate) fn wild_scene() -> impl Strategy<Value = SceneDraw> {
     })
 }
 
-/// Every finite number there is.
 pub(crate) fn wild() -> impl Strategy<Value = f64> + Copy {
     use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
     POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO
@@ -123,7 +122,6 @@ impl SceneDraw {
         self.metrics.iter().map(metric).collect()
     }
 
-    /// The flow of the metrics, one after the other.
     pub(crate) fn flow<T: Real, const D: usize>(
         &self,
     ) -> NaturalGradientFlow<T, D, MetricSchedule<T, D>> {
@@ -141,7 +139,6 @@ impl SceneDraw {
         vector::<T, D>(&self.direction).try_normalize(T::rounded(1e-30))
     }
 
-    /// A random vector, of any length.
     pub(crate) fn direction<T: Real, const D: usize>(&self) -> SVector<T, D> {
         vector(&self.direction)
     }

@@ -13,7 +13,6 @@ mod diffeomorphic_flow;
 mod diffeomorphism;
 mod dormand_prince;
 mod draw;
-mod euler;
 mod map_draw;
 mod metric;
 mod motion_bounds;

@@ -43,7 +43,6 @@ pub(crate) fn any_maps() -> impl Strategy<Value = MapDraw> {
     maps(translation, vec(uniform3(-20.0..=20.0), 2))
 }
 
-/// Every finite number there is: subnormal and huge ones included.
 pub(crate) fn wild_maps() -> impl Strategy<Value = MapDraw> {
     use proptest::num::f64::{NORMAL, POSITIVE, SUBNORMAL};
     let any = || prop_oneof![wild(), -2.0..=2.0, Just(f64::MAX), Just(-f64::MAX)];
@@ -106,7 +105,6 @@ pub(crate) fn any_bent_scene() -> impl Strategy<Value = (MapDraw, SceneDraw)> {
     (any_maps(), any_scene())
 }
 
-/// Every finite number there is, in the maps and in the scene.
 pub(crate) fn wild_bent_scene() -> impl Strategy<Value = (MapDraw, SceneDraw)> {
     (wild_maps(), wild_scene())
 }

@@ -87,23 +87,6 @@ fn step_is_as_long_as_proved<T: Real, const D: usize>(scene: &SceneDraw) -> Test
 }
 for_every_space!(step_is_as_long_as_proved, any_scene);
 
-/// A velocity that leads away from the goal is not followed.
-fn a_false_flow_is_not_followed<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
-    let attractor = scene.attractor::<T, D>();
-    let start = scene.start::<T, D>();
-    let (before, away) = attractor.potential_and_gradient(&start);
-    let step = StableEuler::advance(&attractor, &start, &away, scene.dt()).unwrap();
-    let after = attractor.potential(&step.position);
-    let smallest = T::EPSILON * start.amax().max(attractor.goal().amax());
-    prop_assert!(after < before || before.is_zero());
-    prop_assert!(
-        after >= before - T::rounded(16.0) * smallest,
-        "a smallest move, not a leap"
-    );
-    Ok(())
-}
-for_every_space!(a_false_flow_is_not_followed, any_scene);
-
 #[test]
 fn a_limited_step_by_hand() {
     // L = [1 0; 1 1]: P = [1 1; 1 2]. e = (0.3, -0.4): u = (0.6, -0.8), P u = (-0.2, -1),

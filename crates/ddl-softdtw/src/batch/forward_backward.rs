@@ -34,7 +34,6 @@ impl<const D: usize> Working<D> {
         }
     }
 
-    /// Makes room for sequences of `n` steps against `m`.
     fn resize(&mut self, n: usize, m: usize) {
         self.gradient.resize(n, [Lanes::ZERO; D]);
         self.k.resize(n * m, Lanes::ZERO);
@@ -42,7 +41,6 @@ impl<const D: usize> Working<D> {
     }
 }
 
-/// One sequence against a block.
 pub(super) struct ForwardBackward<'a, const D: usize> {
     pub(super) x: &'a [[f32; D]],
     pub(super) block: &'a [Step<D>],

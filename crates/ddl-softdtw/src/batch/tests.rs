@@ -1,7 +1,6 @@
 use super::{BatchGradients, SoftDtwBatch};
 use crate::{Cost, InstructionSet, SoftDtw};
 
-/// Velocities of walkers (m/s) of different lengths.
 fn walks(count: usize, lengths: &[usize], scale: f64) -> Vec<Vec<[f64; 2]>> {
     let walk = |i: usize| {
         let (sin, cos) = (0.7 * i as f64).sin_cos();

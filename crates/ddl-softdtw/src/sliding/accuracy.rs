@@ -83,7 +83,6 @@ impl Accuracy {
         self.smallest_log2
     }
 
-    /// Bound on the error of log2(score), as [`Range::error_log2`].
     #[cfg(test)]
     pub(super) fn error_log2(&self, score_log2: f64, largest: f64, dimension: usize) -> f64 {
         self.range.error_log2(score_log2, largest, dimension) + self.extra_log2

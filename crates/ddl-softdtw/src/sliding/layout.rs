@@ -116,7 +116,6 @@ impl<const D: usize> WindowLayout<D> {
         });
     }
 
-    /// Steps of a window.
     pub(super) fn length(&self) -> usize {
         self.length
     }
@@ -155,25 +154,4 @@ fn pieces(windows: &[usize]) -> Vec<Piece> {
         first_window += windows;
     }
     pieces
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{LONGEST_PIECE, pieces};
-
-    #[test]
-    fn pieces_cover_every_window_once() {
-        let windows = [0, 1, LONGEST_PIECE, LONGEST_PIECE + 1, 0, 1000, 7];
-        let pieces = pieces(&windows);
-        let mut seen = vec![0; windows.iter().sum()];
-        for piece in &pieces {
-            assert!((1..=LONGEST_PIECE).contains(&piece.windows), "{piece:?}");
-            let before: usize = windows[..piece.track].iter().sum();
-            assert_eq!(piece.first_window, before + piece.offset);
-            seen[piece.first_window..][..piece.windows]
-                .iter_mut()
-                .for_each(|count| *count += 1);
-        }
-        assert!(seen.iter().all(|&count| count == 1));
-    }
 }

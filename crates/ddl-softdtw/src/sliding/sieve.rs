@@ -162,32 +162,4 @@ mod tests {
             assert!(worst > 1e-3, "{set}: the bound is far too wide: {worst}");
         }
     }
-
-    #[test]
-    fn few_survive_where_f32_can_tell_and_nothing_is_decided_where_it_cannot() {
-        let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean).expect("valid");
-        let near = walks(700, 13, 0.0);
-        let (sieve_of_near, windows, _) = sieve(dtw, &near, 8);
-        let sieve_of_near = sieve_of_near.expect("fits f32");
-        let survivors =
-            |query: &[[f64; 2]]| sieve_of_near.survivors(Dispatch::detect(), query, 100);
-        for (x, survivors) in near[7].windows(8).zip(survivors(&near[7])) {
-            let survivors = survivors.expect("near");
-            assert!((100..400).contains(&survivors.len()), "{}", survivors.len());
-            let itself = windows
-                .iter()
-                .position(|window| window == x)
-                .expect("a window");
-            assert!(survivors.contains(&itself));
-        }
-        // The hundred nearest are too far for the range, and gamma is too small for the data.
-        assert!(survivors(&walks(1, 12, 6.0)[0]).iter().all(Option::is_none));
-        let narrow = SoftDtw::new(1e-13, Cost::SquaredEuclidean).expect("valid");
-        assert!(sieve(narrow, &near, 8).0.is_none());
-        // A common offset is no obstacle: it is subtracted before rounding.
-        let offset = walks(700, 13, 1e5);
-        let sieve_of_offset = sieve(dtw, &offset, 8).0.expect("fits f32");
-        let survivors = sieve_of_offset.survivors(Dispatch::detect(), &offset[7], 100);
-        assert!(survivors.iter().all(Option::is_some));
-    }
 }

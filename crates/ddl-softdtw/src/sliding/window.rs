@@ -11,7 +11,6 @@ pub struct WindowNeighbour {
     pub distance: f64,
 }
 
-/// Where a window is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WindowPlace {
     pub(super) track: usize,

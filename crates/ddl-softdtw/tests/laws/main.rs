@@ -163,24 +163,6 @@ proptest! {
         let (_, own) = dtw.normalised_and_gradient(&x, &x)?;
         prop_assert!(own.as_flattened().iter().all(|&g| g == 0.0));
     }
-
-    #[test]
-    fn the_gradients_of_a_translation_invariant_value_sum_to_0(
-        x in sequence(3.0, 9), y in sequence(3.0, 9), gamma in 0.0..3.0_f64, cost in cost(),
-    ) {
-        let dtw = dtw(gamma, cost);
-        let (value, of_x, of_y) = dtw.value_and_gradients(&x, &y)?;
-        prop_assert_eq!((value, of_x.clone()), dtw.value_and_gradient(&x, &y)?);
-        for d in 0..2 {
-            let total: f64 = of_x.iter().chain(&of_y).map(|g| g[d]).sum();
-            prop_assert!(total.abs() < 1e-9, "{}", total);
-        }
-        // With several best paths (gamma = 0) the two orders may follow different ones; generic inputs have one.
-        let (_, swapped) = dtw.value_and_gradient(&y, &x)?;
-        for (a, b) in of_y.as_flattened().iter().zip(swapped.as_flattened()) {
-            prop_assert!((a - b).abs() < 1e-9, "{} {}", a, b);
-        }
-    }
 }
 
 /// By hand: the cheapest path matches the last step of x with the last two of y, at the costs 0 and 4.

@@ -6,13 +6,11 @@ use ddl_data::{Convention, Dataset, Recording, TIME_STEP, locate};
 
 pub(crate) type Track = Vec<[f64; 2]>;
 
-/// The recordings, or `None` where they may be absent.
 pub(crate) fn dataset() -> Option<Dataset> {
     let folder = locate(Convention::Star, None).ok()?;
     Some(Dataset::load(Convention::Star, &folder).expect("recordings as published"))
 }
 
-/// Forward differences (m/s).
 pub(crate) fn differences(positions: &[[f64; 2]]) -> Track {
     let velocity = |pair: &[[f64; 2]]| [0, 1].map(|d| (pair[1][d] - pair[0][d]) / TIME_STEP);
     positions.windows(2).map(velocity).collect()

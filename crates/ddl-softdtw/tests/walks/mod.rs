@@ -10,7 +10,6 @@ pub(crate) fn squared(gamma: f64) -> SoftDtw {
     SoftDtw::new(gamma, Cost::SquaredEuclidean).expect("valid")
 }
 
-/// All steps scaled, then moved.
 pub(crate) fn mapped(tracks: &[Track<2>], scale: f64, by: f64) -> Vec<Track<2>> {
     let map = |step: &[f64; 2]| step.map(|v| v * scale + by);
     tracks.iter().map(|t| t.iter().map(map).collect()).collect()

@@ -7,7 +7,6 @@ use rustix::time::{ClockId, clock_gettime};
 /// Rows and columns of the matrices of the yardstick.
 const MATRIX: usize = 1024;
 
-/// Which time counts.
 #[derive(Clone, Copy)]
 pub(crate) enum Clock {
     /// That of the processor, of all threads of the process together.

@@ -3,7 +3,6 @@
 use crate::Result;
 use ddl::data::{Dataset, Window};
 
-/// Pedestrians of the scene.
 const PEDESTRIANS: usize = 25;
 
 /// The first moment of the simulated recordings at which so many people can be forecast, and so many of these.

@@ -4,7 +4,6 @@ use ddl::data::{Format, Recording, Window, WindowRule, parse_recording};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// Which recordings of a folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(dead_code, reason = "each example takes one part")]
 pub(crate) enum Part {
@@ -14,7 +13,6 @@ pub(crate) enum Part {
     Rest,
 }
 
-/// A folder's windows.
 pub(crate) struct Place {
     pub(crate) name: String,
     #[allow(dead_code, reason = "for tables")]

@@ -11,7 +11,6 @@ use ddl_eval::significance::{
 use serde::Serialize;
 use std::ops::ControlFlow;
 
-/// Windows forecast between two questions whether to stop.
 const WINDOWS_AT_ONCE: usize = 64;
 
 /// Errors of the best of 20 hypotheses, means over pedestrians, metres.

@@ -94,7 +94,6 @@ impl ResultRows<'_> {
         Ok(rows)
     }
 
-    /// Conditions of what is not trained.
     fn conditions(&self, rule: WindowRule) -> Conditions {
         Conditions {
             device: "cpu".to_owned(),

@@ -17,7 +17,6 @@ pub(crate) fn straight_lines(
         .collect()
 }
 
-/// The goals of one window.
 struct KnownGoals<'a> {
     name: &'static str,
     goals: &'a [WeightedGoals],

@@ -274,12 +274,10 @@ impl TestSet {
         self.windows.iter().map(Window::len).sum()
     }
 
-    /// Windows of the headline rule.
     pub(crate) fn headline(&self) -> impl Iterator<Item = &Window> {
         self.headline_indices().map(|i| &self.windows[i])
     }
 
-    /// Indices of the windows of the headline rule.
     pub(crate) fn headline_indices(&self) -> impl Iterator<Item = usize> {
         let headline = self.rules.iter().take(1);
         headline.flat_map(|(_, indices)| indices).copied()

@@ -15,23 +15,6 @@ use ddl_network::{NetworkFrame, StarConfig, Variant, motion_bounds};
 ///
 /// # Shapes
 /// One certificate for each pedestrian and hypothesis, `[N][K]`, of 12 steps each.
-///
-/// # Examples
-/// ```
-/// use ddl::data::{PedestrianId, Window};
-/// use ddl::{BuiltinModel, Ddl, DeviceChoice};
-///
-/// let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
-/// let walk = (0..8).map(|t| [0.5 * f64::from(t), 0.0]).collect(); // metres, 0.4 s apart
-/// let window = Window::new("yard", 0, 1, vec![PedestrianId(1)], vec![walk])?;
-/// let certified = model.forecast_certified(&[window])?.remove(0);
-/// assert_eq!(certified.certificates.len(), 20);
-/// let certificate = certified.certificate(0, 0); // the first pedestrian, the likeliest goal
-/// certificate.holds()?;
-/// let distances: Vec<f64> = certificate.potentials().collect(); // metres, 13 of them
-/// assert!(distances.is_sorted_by(|before, after| after <= before));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct CertifiedForecast {
@@ -74,31 +57,22 @@ impl CertifiedForecast {
 /// Why a forecast carries no certificates.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum CertificateError {
-    /// The model has no dynamics, so that no theory speaks of where its walkers go.
     #[error(
         "the variant `{variant}` has no flow to certify: its network emits positions; use a model of the \
          variant `full` or `no-goal-shift`, or forecast without certificates"
     )]
-    NoFlow {
-        /// The variant of the model.
-        variant: Variant,
-    },
-    /// What the network emitted shapes no flow, or the walk leaves the range of the numbers.
+    NoFlow { variant: Variant },
     #[error(
         "window of `{recording}` starting at frame {start_frame}, pedestrian {pedestrian}, hypothesis \
          {hypothesis}: {cause}; has the model diverged, or are the positions no metres?"
     )]
     Walk {
-        /// Name of the recording.
         recording: String,
-        /// First frame of the window.
         start_frame: i64,
-        /// The pedestrian, as the recording names it.
         pedestrian: PedestrianName,
-        /// Index of the hypothesis.
         hypothesis: usize,
-        /// What is wrong, and in which step.
         cause: DynamicsError,
     },
 }
@@ -109,7 +83,6 @@ pub(crate) struct Walked<'a> {
     pub(crate) config: &'a StarConfig,
     pub(crate) gait: Gait,
     pub(crate) window: &'a Window,
-    /// K
     pub(crate) hypotheses: usize,
     /// `[N][K][12]`: what the network itself walked, metres; empty where it had no part in it.
     pub(crate) rolled_out: Vec<Position>,
@@ -119,9 +92,7 @@ pub(crate) struct Walked<'a> {
     pub(crate) shares: Vec<f64>,
     /// N: how familiar the observed motions are; `None` where that is not asked.
     pub(crate) familiarity: Option<Vec<f64>>,
-    /// `[N][K]`
     pub(crate) weights: Vec<f64>,
-    /// `[N][K]`
     pub(crate) goals: Vec<Position>,
 }
 

@@ -14,23 +14,6 @@ use serde::{Deserialize, Serialize};
 /// # What is guaranteed
 /// The distance to the goal still falls at every step. Keeping clear is not: the others move, and a walker is not moved
 /// aside where one of them walks into it.
-///
-/// # Examples
-/// ```
-/// use ddl::data::{PedestrianId, Window};
-/// use ddl::{BuiltinModel, Clearance, Ddl, DeviceChoice};
-///
-/// let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
-/// let careful = model.keeping_clear(Clearance::new(0.4)?)?;
-/// let east = (0..8).map(|t| [0.5 * f64::from(t), 0.0]).collect();
-/// let west = (0..8).map(|t| [9.0 - 0.5 * f64::from(t), 0.1]).collect();
-/// let people = vec![PedestrianId(1), PedestrianId(2)];
-/// let window = Window::new("corridor", 0, 1, people, vec![east, west])?;
-/// let certified = careful.forecast_certified(&[window])?.remove(0);
-/// assert_eq!(certified.first_violation(), None); // still nearer to their goals at every step
-/// assert!(Clearance::new(-1.0).is_err());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Clearance(f64);

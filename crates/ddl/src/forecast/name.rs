@@ -1,6 +1,5 @@
 //! What tables and errors call the model.
 
-/// The name of the model in tables.
 pub(crate) const NAME: &str = "DDL";
 /// What is different without the tracks that goals are retrieved from.
 pub(crate) const WITHOUT_LIBRARY: &str = "without an expert library";

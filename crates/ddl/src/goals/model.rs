@@ -23,21 +23,6 @@ use rayon::prelude::*;
 use std::path::Path;
 
 /// Estimates where the walkers of a window are going, from the 8 observed frames and nothing else.
-///
-/// # Examples
-/// ```
-/// use ddl::data::{PedestrianId, Window};
-/// use ddl::{BuiltinModel, DeviceChoice, GoalModel, ModelSource};
-///
-/// let source = ModelSource::Builtin(BuiltinModel::default());
-/// let model = GoalModel::open(&source, DeviceChoice::Cpu)?;
-/// let walk = (0..8).map(|t| [0.5 * f64::from(t), 0.0]).collect(); // metres, 0.4 s apart
-/// let window = Window::new("yard", 0, 1, vec![PedestrianId(1)], vec![walk])?;
-/// let goals = model.goals(&[window])?.remove(0).remove(0);
-/// assert_eq!(goals.goals().len(), 20);
-/// assert!((goals.weights().iter().sum::<f64>() - 1.0).abs() < 1e-9);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug)]
 pub struct GoalModel {
     source: ModelSource,
@@ -194,7 +179,6 @@ impl GoalModel {
         }
     }
 
-    /// The network that proposes ends, where there is one.
     pub(crate) fn proposal_network(&self) -> Option<&dyn ProposeEnds> {
         match &self.origin {
             GoalOrigin::Retrieved(_) => None,
@@ -251,7 +235,6 @@ impl GoalModel {
         TrainingMotions::of_window(self.motions(), window, self.config.star.time_step)
     }
 
-    /// The training motions, as a packed model holds them.
     pub(crate) fn motions(&self) -> Option<&TrainingMotions> {
         self.motions.as_ref()
     }

@@ -48,7 +48,6 @@ pub struct Ddl {
     pub(super) goals: GoalModel,
     pub(super) device: Device,
     pub(super) network: Box<dyn ForecastWindows>,
-    /// Numbers learned by the network.
     pub(super) parameters: usize,
     pub(super) clearance: Option<Clearance>,
 }
@@ -113,7 +112,6 @@ impl Ddl {
         self.device
     }
 
-    /// Device and precision, as reports name them.
     pub(crate) fn computed_on(&self) -> String {
         let device = self.device.words();
         match self.network.precision() {

@@ -20,7 +20,6 @@ use std::path::Path;
 
 /// Version of the file's layout.
 pub(super) const LAYOUT: u32 = 2;
-/// Name of the header's entry.
 pub(super) const ENTRY: &str = "ddl";
 /// Heads the names of the forecasting network's tensors.
 pub(super) const NETWORK: &str = "network.";
@@ -29,7 +28,6 @@ pub(super) const PROPOSAL: &str = "proposal.";
 /// More than any network takes whose configuration is allowed and that anybody would want to hand on.
 const MOST_BYTES: u64 = 1 << 28;
 
-/// The entry of the file's header.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Header {
@@ -50,7 +48,6 @@ pub(crate) struct Unpacked {
     pub(crate) motions: Option<TrainingMotions>,
 }
 
-/// The bytes of a packed model.
 pub(crate) fn bytes(source: &ModelSource) -> Result<Cow<'static, [u8]>, DdlError> {
     match source {
         ModelSource::Builtin(model) => Ok(Cow::Borrowed(model.bytes())),

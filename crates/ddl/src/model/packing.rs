@@ -8,7 +8,6 @@ use ddl_network::weights::HalfTensor;
 use safetensors::tensor::{Dtype, TensorView};
 use std::collections::HashMap;
 
-/// The bytes of the file.
 pub(crate) fn pack(network: &dyn ForecastWindows, goals: &GoalModel) -> Result<Vec<u8>, DdlError> {
     let source = goals.source();
     let Some(proposal) = goals.proposal_network() else {

@@ -31,13 +31,6 @@ impl ModelSource {
     }
 
     /// What a user calls so: what lies at that path or, where nothing does, the built-in model of that name.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl::{BuiltinModel, ModelSource};
-    /// let zara1 = ModelSource::named("zara1".as_ref());
-    /// assert_eq!(zara1, ModelSource::Builtin(BuiltinModel::Zara1));
-    /// ```
     #[must_use]
     pub fn named(name: &Path) -> Self {
         let builtin = name.to_str().and_then(|name| name.parse().ok());
@@ -66,7 +59,6 @@ impl ModelSource {
         }
     }
 
-    /// An error about the model.
     pub(crate) fn wrong(&self, problem: impl Into<String>) -> DdlError {
         match self {
             Self::Run(run) => DdlError::run(run.path(), problem),

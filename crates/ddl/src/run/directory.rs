@@ -71,7 +71,6 @@ impl RunDirectory {
         self.0.join("proposal.safetensors")
     }
 
-    /// State of the proposal network's training under way.
     pub(crate) fn proposal_state(&self) -> PathBuf {
         self.0.join("proposal-state.safetensors")
     }
@@ -101,7 +100,6 @@ impl RunDirectory {
         self.0.join("metrics.jsonl")
     }
 
-    /// Whether there is a run at all.
     pub(crate) fn has_config(&self) -> bool {
         self.config_file().is_file()
     }
@@ -263,7 +261,6 @@ impl RunDirectory {
             .collect()
     }
 
-    /// Writes `metrics.jsonl`.
     pub(crate) fn write_metrics(&self, epochs: &[EpochReport]) -> Result<(), DdlError> {
         let mut text = String::new();
         for epoch in epochs {
@@ -290,7 +287,6 @@ fn read_text(path: &Path) -> Result<String, DdlError> {
     Ok(text)
 }
 
-/// Reads a JSON file.
 pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, DdlError> {
     let text = read_text(path)?;
     serde_json::from_str(&text).map_err(|error| {

@@ -39,7 +39,6 @@ impl RunLock {
     }
 }
 
-/// Opens the file, which is made if need be.
 fn open(folder: &Path) -> Result<Option<File>, DdlError> {
     let path = folder.join(FILE);
     let file = OpenOptions::new()

@@ -3,7 +3,6 @@
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
 
-/// The digest of what was fed to the hasher, in hexadecimal.
 pub(crate) fn in_hex(hasher: Sha256) -> String {
     let digest = hasher.finalize();
     digest.iter().fold(String::new(), |mut text, byte| {

@@ -21,22 +21,6 @@ pub struct ValidationPart {
 impl ValidationPart {
     /// What is kept of own recordings unless it is said: the last fifth of each; where these ends hold next to no
     /// windows, a fifth of the recordings whole, at least one, spread evenly over those that hold windows.
-    ///
-    /// # Examples
-    /// ```
-    /// use ddl::ValidationPart;
-    /// use ddl::data::{Dataset, Observation, PedestrianId, Recording};
-    ///
-    /// let walk = |name: &str, steps: i64| {
-    ///     let seen = (0..steps).map(|t| Observation::new(t, PedestrianId(1), [0.5 * t as f64, 0.0]));
-    ///     Recording::new(name, 1, seen.collect())
-    /// };
-    /// let long = Dataset::own(vec![walk("lobby", 500)?, walk("yard", 500)?])?;
-    /// assert_eq!(ValidationPart::of_own(&long.whole()).share, 0.2);
-    /// let short = Dataset::own(vec![walk("a", 25)?, walk("b", 25)?, walk("c", 25)?])?;
-    /// assert_eq!(ValidationPart::of_own(&short.whole()).recordings, ["b"]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn of_own(fold: &Fold<'_>) -> Self {
         let ends = Self {

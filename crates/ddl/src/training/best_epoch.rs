@@ -48,15 +48,4 @@ mod tests {
         assert!(!is_over(&epochs, 4));
         assert!(!is_over(&epochs[..2], 1));
     }
-
-    #[test]
-    fn without_measurements_it_goes_on() {
-        let mut epochs = epochs(&[0.5, 0.4]);
-        for epoch in &mut epochs {
-            epoch.validation = None;
-        }
-        assert_eq!(best_epoch(&epochs), None);
-        assert!(!is_over(&epochs, 1));
-        assert!(!is_over(&[], 1));
-    }
 }

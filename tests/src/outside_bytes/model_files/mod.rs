@@ -12,7 +12,6 @@ pub mod weights;
 
 use std::path::Path;
 
-/// Writes a file and hands it to a reader.
 fn with_file<T>(path: &Path, bytes: &[u8], read: impl FnOnce(&Path) -> T) -> T {
     std::fs::write(path, bytes).expect("the file can be written");
     read(path)

@@ -12,7 +12,6 @@ use crate::outside_bytes::edits::Choices;
 /// Tensors of a file that no network is made of.
 const FEW: usize = 4;
 
-/// A sound file and its parts.
 pub(super) struct PackedFile {
     config: String,
     /// Of both networks.

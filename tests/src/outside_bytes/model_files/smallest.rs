@@ -32,12 +32,10 @@ pub(super) fn config() -> RunConfig {
     config
 }
 
-/// The forecasting network.
 pub(super) fn network(config: &RunConfig) -> MotionNetwork {
     MotionNetwork::new(config.star.clone(), 1).expect("a sound configuration")
 }
 
-/// The network that proposes goals.
 pub(super) fn proposal(config: &RunConfig) -> ProposalNetwork {
     let recipe = config.goals.proposal.clone().expect("goals are proposed");
     ProposalNetwork::new(recipe.network, 1).expect("a sound configuration")

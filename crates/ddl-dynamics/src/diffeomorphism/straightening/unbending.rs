@@ -181,15 +181,4 @@ mod tests {
             assert!((turn[(2, 2)] - 1.0).abs() < 1e-12, "{turn}");
         }
     }
-
-    #[test]
-    fn turning_back_and_staying_are_named() {
-        let at = |xs: &[f64]| {
-            let points: Vec<_> = xs.iter().map(|x| Vector2::new(*x, 0.0)).collect();
-            Unbending::new(&points).err()
-        };
-        assert_eq!(at(&[0.0, 1.0, 2.0]), None);
-        assert_eq!(at(&[0.0, 1.0, 2.0, 1.0]), Some(2));
-        assert_eq!(at(&[0.0, 1.0, 1.0]), Some(1));
-    }
 }
