@@ -24,6 +24,18 @@ fn a_missing_model_is_named() {
     place.fails(FORECAST, &["not finished", "ddl train"]);
 }
 
+#[test]
+fn the_file_that_is_read_is_not_written_over() {
+    let place = Place::with_model();
+    for command in ["forecast", "view", "goals"] {
+        let line = format!("{command} tracks.csv --output ./tracks.csv");
+        place.fails(
+            &line,
+            &["tracks.csv", "the file that is read", "name another"],
+        );
+    }
+}
+
 /// Weights of another variant, and weights of the same shapes and goals of another fold, copied over those of the run.
 #[test]
 fn files_of_another_run_are_refused() {

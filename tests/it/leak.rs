@@ -3,7 +3,7 @@
 
 use ddl::data::{OBSERVED, Position, WINDOW, Window};
 use ddl::eval::baseline::{ConstantVelocity, GoalSource, StraightLine, TrueEnd, WeightedGoals};
-use ddl::eval::{ForecastError, leak};
+use ddl::eval::{Forecast, ForecastError, leak};
 use ddl::goal::{GoalEstimator, GoalEstimatorParams};
 use ddl::{Forecaster, Protocol, Variant};
 use ddl_tests::one_forecast::One;
@@ -115,6 +115,32 @@ fn no_variant_of_the_model_sees_the_future() {
         never_sees_the_future(&model);
         never_sees_the_future(&One(&model));
     }
+}
+
+/// The published goals where there is a future to read, others where there is none: only what it forecasts tells.
+struct PublishedWhenItCan([EstimatedGoals; 2]);
+
+impl Forecaster for PublishedWhenItCan {
+    fn name(&self) -> String {
+        "published goals when it can".to_owned()
+    }
+
+    fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
+        let [published, fair] = &self.0;
+        let source = if window.has_future() { published } else { fair };
+        StraightLine::to(source).forecast(window)
+    }
+}
+
+#[test]
+fn who_reads_the_future_is_found() {
+    let params = [
+        GoalEstimatorParams::published(),
+        GoalEstimatorParams::default(),
+    ];
+    let forecaster = PublishedWhenItCan(params.map(EstimatedGoals::with));
+    let window = &crowd::windows(1, 4)[0];
+    assert!(leak::find(&forecaster, window).unwrap().is_some());
 }
 
 /// Who cannot forecast without the future says so, and is refused under `fair` and `single`.

@@ -1,15 +1,50 @@
 //! Forecasts frame by frame, of `ddl forecast -`, which a tracker writes to, are those of the windows cut from the
 //! whole recording.
 
-use ddl::data::{PedestrianId, Position};
-use ddl::{DdlError, LiveForecaster, Variant};
+use ddl::data::{Observation, PedestrianId, Position, Recording};
+use ddl::{DdlError, Forecaster as _, LiveForecaster, Variant};
 use ddl_tests::own_tracks::{self, Row};
 use ddl_tests::place::{Place, json, json_lines};
 use ddl_tests::program::Finished;
-use ddl_tests::{drawn_model, program};
+use ddl_tests::{bits, drawn_model, program};
 use serde_json::Value;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
+
+/// Plays three people, of whom one is missing for a while and nobody is seen at frame 180, plainly and certified.
+#[test]
+fn every_frame_is_forecast_as_its_window_is() {
+    let model = drawn_model::of(Variant::Full);
+    let there =
+        |&(frame, id, ..): &Row| frame != 180 && !(id == 2 && (frame == 60 || frame >= 160));
+    let rows = own_tracks::three_people(24).into_iter().filter(there);
+    let seen = rows.map(|(frame, id, x, y)| Observation::new(frame, PedestrianId(id), [x, y]));
+    let recording = Recording::new("live", own_tracks::FRAME_STEP, seen.collect()).unwrap();
+    let mut live = LiveForecaster::with_frame_step(&model, own_tracks::FRAME_STEP).unwrap();
+    let mut certified = live.clone();
+    let mut windows = recording.observed_windows().into_iter().peekable();
+    let mut forecasts = 0;
+    for &frame in recording.frames() {
+        let people = recording.at(frame).iter();
+        let people: Vec<_> = people.map(|o| (o.pedestrian, o.position)).collect();
+        let now = live.push(frame, people.iter().copied()).unwrap();
+        let evidence = certified.push_certified(frame, people).unwrap();
+        let window = windows.next_if(|window| window.frames()[7] == frame);
+        assert_eq!(now.is_some(), window.is_some(), "frame {frame}");
+        let (Some(now), Some(evidence), Some(window)) = (now, evidence, window) else {
+            continue;
+        };
+        forecasts += 1;
+        let forecast = bits::of(&model.forecast(&window).unwrap());
+        assert_eq!(bits::of(&now.forecast), forecast);
+        let windows = std::slice::from_ref(&window);
+        let expected = model.forecast_certified(windows).unwrap().remove(0);
+        assert_eq!(bits::of(&evidence.forecast.forecast), forecast);
+        assert_eq!(evidence.forecast.certificates, expected.certificates);
+    }
+    // Windows from frame 70 on; not at 180, and after it not before 260.
+    assert_eq!(forecasts, 11);
+}
 
 #[test]
 fn an_error_changes_nothing() {

@@ -4,6 +4,18 @@ use anyhow::Context as _;
 use std::io::Write as _;
 use std::path::Path;
 
+/// Refuses to write over a file that is read: recordings are not to be had again.
+pub(crate) fn ensure_not_input(output: Option<&Path>, input: &Path) -> anyhow::Result<()> {
+    let place = |path: &Path| path.canonicalize().ok();
+    match output.and_then(place) {
+        Some(file) if file.is_file() && Some(&file) == place(input).as_ref() => anyhow::bail!(
+            "--output {} is the file that is read: it would be lost; name another one",
+            input.display()
+        ),
+        _ => Ok(()),
+    }
+}
+
 /// Writes a whole output: to standard output, or to a file under a temporary name that is renamed.
 pub(crate) fn write_output(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
     match path {

@@ -6,7 +6,7 @@ mod table;
 
 use super::{Exactness, KeepClear, Machine, ModelChoice};
 use crate::clock::{Clock, FrameNumber};
-use crate::output::write_output;
+use crate::output::{ensure_not_input, write_output};
 use crate::telling::tell;
 use crate::tracks::Tracks;
 use anyhow::bail;
@@ -91,6 +91,7 @@ impl Forecast {
         if self.tracks.are_live() {
             return live::run(&self);
         }
+        ensure_not_input(self.output.as_deref(), self.tracks.file())?;
         let model = self.model()?;
         let observed = self.tracks.observed(model.config())?;
         let told = (true, &mut false);

@@ -2,7 +2,7 @@
 
 use super::{Machine, ModelChoice, Telling, convention_of, dataset};
 use crate::clock::FrameNumber;
-use crate::output::{table_metres, write_output};
+use crate::output::{ensure_not_input, table_metres, write_output};
 use crate::tracks::{Observed, Tracks};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
@@ -80,6 +80,7 @@ impl Goals {
                         "goals are estimated for a file of tracks; `ddl forecast - --format jsonl` tells those of live ones"
                     );
                 }
+                ensure_not_input(self.output.as_deref(), tracks.file())?;
                 self.machine.prepare_for_little()?;
                 let model = self.model.load_goals(self.machine.device)?;
                 let observed = tracks.observed(model.config())?;

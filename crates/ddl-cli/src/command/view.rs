@@ -46,6 +46,7 @@ impl View {
         if self.tracks.are_live() {
             bail!("a page is made of a file of tracks; `ddl forecast -` forecasts live ones");
         }
+        output::ensure_not_input(self.output.as_deref(), self.tracks.file())?;
         self.machine.prepare_for_little()?;
         let model = self.clear.of(self.model.load(self.machine.device)?)?;
         let observed = self.tracks.observed(model.config())?;

@@ -140,6 +140,18 @@ fn space_is_never_folded<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseRes
 }
 for_every_space!(space_is_never_folded, any_maps);
 
+/// Thirty times its width away, a translation is the identity to the last bit.
+fn far_away_nothing_moves<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
+    for map in draw.translations::<T, D>() {
+        let mut far = *map.centre();
+        far[0] += T::rounded(30.0) / map.rate();
+        prop_assert_eq!(map.apply(&far), far);
+        prop_assert_eq!(map.inverse(&far), far);
+    }
+    Ok(())
+}
+for_every_space!(far_away_nothing_moves, any_maps);
+
 fn no_finite_input_gives_nan<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
     let number = |vector: SVector<T, D>| vector.iter().all(|x| !x.as_f64().is_nan());
     for position in draw.positions::<T, D>() {

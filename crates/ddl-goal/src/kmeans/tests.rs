@@ -20,6 +20,15 @@ struct ClusteredPoints {
     inertia_of_seeds: Vec<f64>,
 }
 
+/// One run.
+fn single(clusters: usize, tolerance: f64, max_iterations: usize) -> KMeans {
+    KMeans {
+        max_iterations,
+        tolerance,
+        ..KMeans::new(clusters, 1)
+    }
+}
+
 fn points() -> impl Strategy<Value = Vec<[f64; 2]>> {
     // Coarse numbers now and then: equal points and ties.
     let coordinate = prop_oneof![-10.0..10.0_f64, (-3..3_i32).prop_map(f64::from)];
@@ -107,8 +116,18 @@ proptest! {
     }
 
     #[test]
+    fn iterating_never_increases_the_inertia(points in points(), clusters in 1..12_usize, seed: u64) {
+        let mut last = f64::INFINITY;
+        for iterations in 0..12 {
+            let inertia = single(clusters, 0.0, iterations).fit(&points, seed)?.inertia;
+            prop_assert!(inertia <= last * (1.0 + 1e-12) + 1e-12, "{} after {}", inertia, last);
+            last = inertia;
+        }
+    }
+
+    #[test]
     fn converged_centres_are_means(points in points(), clusters in 1..12_usize, seed: u64) {
-        let clustering = KMeans { tolerance: 0.0, ..KMeans::new(clusters, 1) }.fit(&points, seed)?;
+        let clustering = single(clusters, 0.0, 300).fit(&points, seed)?;
         let sizes = clustering.sizes();
         for (k, centre) in clustering.centres.iter().enumerate().filter(|&(k, _)| sizes[k] > 0) {
             for d in 0..2 {
@@ -117,6 +136,32 @@ proptest! {
                 prop_assert!((centre[d] - mean).abs() < 1e-9);
             }
         }
+    }
+
+    /// A run ends at the first iteration in which the centres together move by no more than the tolerance says: the squared distances are summed,
+    /// and divided by the mean of the variances of the two coordinates.
+    #[test]
+    fn a_run_ends_where_the_tolerance_says(
+        points in prop::collection::vec(prop::array::uniform2(-10.0..10.0_f64), 60..120),
+        clusters in 2..8_usize,
+        tolerance in prop_oneof![0.0..0.03_f64, 0.03..1.0_f64],
+        seed: u64,
+    ) {
+        let after = |iterations| single(clusters, 0.0, iterations).fit(&points, seed).unwrap().centres;
+        let variance = |axis: usize| {
+            let values = || points.iter().map(|point| point[axis]);
+            let mean = values().sum::<f64>() / points.len() as f64;
+            values().map(|value| (value - mean).powi(2)).sum::<f64>() / points.len() as f64
+        };
+        let enough = tolerance * (variance(0) + variance(1)) / 2.0;
+        let moved = |k: usize| {
+            let pairs = after(k).into_iter().zip(after(k - 1));
+            pairs.map(|(a, b)| squared_distance(a, b)).sum::<f64>()
+        };
+        let last = (1..300).find(|&k| moved(k) <= enough).unwrap();
+        prop_assume!((moved(last) - enough).abs() > 1e-9 || enough < 1e-9);
+        let ended = single(clusters, tolerance, 300).fit(&points, seed)?;
+        prop_assert_eq!(ended.centres, after(last));
     }
 
     #[test]

@@ -99,6 +99,26 @@ fn expert_distances_are_the_published_ones() {
     }
 }
 
+#[test]
+fn the_mean_goal_error_of_a_test_scene_is_the_published_one() {
+    let Some(dataset) = recordings() else {
+        return;
+    };
+    let estimator = published(&dataset, "eth", 100);
+    let windows = windows(&dataset, "eth", WindowRule::Published).into_values();
+    let windows: Vec<_> = windows.collect();
+    assert_eq!(windows.len(), 2_511);
+    let queries: Vec<&[[f64; 2]]> = windows.iter().map(Vec::as_slice).collect();
+    let estimated = estimator.estimate_batch(&queries).unwrap();
+    let errors = estimated
+        .iter()
+        .zip(&queries)
+        .map(|(goals, track)| goal_error(goals, track));
+    let mean = errors.sum::<f64>() / queries.len() as f64;
+    assert!((mean - 0.548).abs() < 0.01, "{mean} m");
+    println!("mean goal error of {} walkers: {mean:.4} m", queries.len());
+}
+
 /// The library and the walkers are of recordings that meet in no street: students, and shoppers elsewhere.
 #[test]
 fn in_their_own_frame_walkers_of_one_street_tell_about_those_of_another() {
