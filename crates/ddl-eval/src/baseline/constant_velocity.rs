@@ -7,7 +7,6 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::{Forecast, Forecaster, error::ForecastError};
 
-/// Samples of the noisy variant.
 const SAMPLES: usize = 20;
 /// Standard deviation of the noisy variant's angle, degrees.
 const NOISE_DEG: f64 = 25.0;

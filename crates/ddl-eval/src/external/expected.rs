@@ -43,7 +43,6 @@ impl PedestrianForecast {
     }
 }
 
-/// A forecast that has found its pedestrian.
 pub(super) struct Slot {
     pub(super) forecast: PedestrianForecast,
     pub(super) line: usize,
@@ -53,7 +52,6 @@ pub(super) struct Slot {
     pub(super) conflict: Option<usize>,
 }
 
-/// Windows waiting for the forecasts of a file.
 #[derive(Default)]
 pub(super) struct ExpectedForecasts<'a> {
     pub(super) origin: String,
@@ -107,7 +105,6 @@ impl<'a> ExpectedForecasts<'a> {
         self.recordings.iter().position(|&name| name == recording)
     }
 
-    /// The window that is observed until a frame of a recording.
     pub(super) fn window(&self, recording: usize, observed_until: i64) -> Option<usize> {
         self.by_last.get(&(recording, observed_until)).copied()
     }
@@ -169,7 +166,6 @@ impl<'a> ExpectedForecasts<'a> {
         Ok(())
     }
 
-    /// What must hold of every forecast, also of those of nobody.
     fn check(&mut self, forecast: &PedestrianForecast, line: usize) -> Result<(), Wrong> {
         let found = forecast.hypotheses();
         if found == 0 {

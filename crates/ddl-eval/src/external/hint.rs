@@ -2,10 +2,8 @@
 
 use super::pedestrian_key::{PedestrianKey, named};
 
-/// How many are named in a message.
 pub(super) const NAMED: usize = 3;
 
-/// Forecasts that belong to no pedestrian of the windows.
 #[derive(Debug, Default)]
 pub(super) struct Unknown {
     pub(super) count: usize,
