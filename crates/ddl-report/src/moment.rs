@@ -10,7 +10,6 @@ use ddl_eval::{
     representative::medoid,
 };
 
-/// Decimals of the positions and weights kept: a millimetre, a thousandth.
 const KEPT: f64 = 1e3;
 /// Probability of the region that is shown.
 const REGION: f64 = 0.9;

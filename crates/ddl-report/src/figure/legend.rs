@@ -2,8 +2,7 @@
 
 use super::{
     drawing::{Drawing, text_width},
-    goal_ring,
-    marks::star,
+    marks::{goal_ring, nearest_goal, star},
     pedestrian::hypothesis_style,
 };
 
@@ -20,7 +19,6 @@ const LETTERS: f64 = 12.0;
 /// Probabilities whose rings are shown as samples, and where, from the left.
 const PROBABILITIES: [(f64, f64); 3] = [(0.01, 3.0), (0.05, 14.0), (0.2, 32.0)];
 
-/// One line of a legend.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum LegendEntry {
     Observed,
@@ -92,10 +90,10 @@ impl LegendEntry {
             Self::Goals(_) => drawing.circle("goal", [middle, y], 6.0),
             Self::WeightedGoals => {
                 for (weight, x) in PROBABILITIES {
-                    goal_ring::draw(drawing, [left + x, y], weight);
+                    goal_ring(drawing, [left + x, y], weight);
                 }
             }
-            Self::NearestGoal => goal_ring::draw_nearest(drawing, [middle, y], 0.05),
+            Self::NearestGoal => nearest_goal(drawing, [middle, y], 0.05),
             Self::Experts => {
                 for rise in [-6.0, 0.0, 6.0] {
                     drawing.path("expert", &[[left, y], [right, y + rise]]);
@@ -140,7 +138,6 @@ impl<'a> LegendRows<'a> {
         self.places.last().map_or(0.0, |[_, y]| y + ENTRY)
     }
 
-    /// Draws them from the upper left corner on.
     pub(super) fn draw(&self, drawing: &mut Drawing, [left, top]: [f64; 2]) {
         for (entry, [x, y]) in self.entries.iter().zip(&self.places) {
             let at = [left + x, top + y + 0.5 * ENTRY];

@@ -21,7 +21,6 @@ fn from_last<'a>(
     observed[OBSERVED - 1..].iter().chain(path)
 }
 
-/// Somebody whom the picture is not about.
 pub(crate) fn bystander(drawing: &mut Drawing, plan: &PlanView, pedestrian: &MomentPedestrian) {
     drawing.path("bystander", &plan.path(&pedestrian.observed));
     let ahead = plan.path(from_last(&pedestrian.observed, &pedestrian.truth));

@@ -13,16 +13,13 @@ use ddl_eval::{Conditions, Scores};
 pub(super) struct Standing {
     /// What all lines share; fold and forecaster are those of one row.
     pub(super) shared: Conditions,
-    /// The same in words.
     pub(super) in_words: String,
     /// The folds measured, in the order of the convention.
     pub(super) folds: Vec<String>,
-    /// Whether these are all folds of the convention.
     pub(super) all_folds: bool,
     pub(super) lines: Vec<StandingLine>,
 }
 
-/// One forecaster in a [`Standing`].
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct StandingLine {
     pub(super) label: String,

@@ -189,7 +189,6 @@ fn dumbbell(drawing: &mut Drawing, scale: &Scale, pair: Option<[f64; 2]>, subjec
     drawing.text(class, [b + 9.0, y + 4.0], format!("{ade:.3}"));
 }
 
-/// At most so many characters.
 fn shortened(words: &str, most: usize) -> String {
     if words.chars().count() <= most {
         return words.to_owned();
