@@ -129,7 +129,6 @@ struct GalleryCase {
     min_ade: f64,
 }
 
-/// One pick of each kind that occurs, with the index of its window.
 fn picks(
     windows: &[Window],
     forecasts: &[Forecast],
@@ -204,7 +203,6 @@ fn shows(scene: &Scene<'_>, i: usize) -> Vec<(Show, Vec<usize>)> {
     shows
 }
 
-/// Whether the representative hypothesis goes a way and arrives.
 fn converges(scene: &Scene<'_>, i: usize) -> bool {
     let k = scene.forecast().representative(i);
     let end = scene.forecast().hypothesis(i, k)[HORIZON - 1];

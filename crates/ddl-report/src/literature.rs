@@ -123,7 +123,6 @@ pub fn ablation_table() -> Table {
 }
 
 impl AblationRow {
-    /// Whether the variant has the goal shift and the dynamics, in words.
     pub(crate) fn components(&self) -> [String; 2] {
         [self.goal_shift, self.dynamics].map(|has| if has { "yes" } else { "no" }.to_owned())
     }
@@ -146,7 +145,6 @@ pub fn measured_table() -> Table {
     table
 }
 
-/// A table without rows: a column a fold between these.
 fn table_of_folds(start: &[&str], end: &[&str]) -> Table {
     Table::new([start, &FOLDS, end].concat())
 }

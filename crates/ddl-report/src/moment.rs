@@ -11,7 +11,6 @@ use ddl_eval::{
 };
 
 const KEPT: f64 = 1e3;
-/// Probability of the region that is shown.
 const REGION: f64 = 0.9;
 
 /// What was observed, what was forecast and what then happened, at one moment of a recording.

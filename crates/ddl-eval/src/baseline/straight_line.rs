@@ -186,7 +186,6 @@ mod tests {
     use super::*;
     use crate::{Protocol, fixture::window};
 
-    /// Two corners for each of so many pedestrians.
     struct Corners(usize);
     impl GoalSource for Corners {
         fn name(&self) -> String {

@@ -48,7 +48,6 @@ pub(super) struct Slot {
     pub(super) line: usize,
     /// Whether it was made of this pedestrian for its own sake: always, but for neighbours of TrajNet++.
     primary: bool,
-    /// Line of another forecast of this neighbour that says otherwise.
     pub(super) conflict: Option<usize>,
 }
 
@@ -61,9 +60,7 @@ pub(super) struct ExpectedForecasts<'a> {
     by_last: HashMap<(usize, i64), usize>,
     /// `[window][pedestrian]`.
     pub(super) slots: Vec<Vec<Option<Slot>>>,
-    /// K and the line that decided it.
     hypotheses: Option<(usize, usize)>,
-    /// Whether there are goals, and the line that decided it.
     goals: Option<(bool, usize)>,
     pub(super) forecasts: usize,
     pub(super) unknown: Unknown,

@@ -8,7 +8,6 @@ pub(super) const NAMED: usize = 3;
 pub(super) struct Unknown {
     pub(super) count: usize,
     pub(super) first: Vec<String>,
-    /// The first recordings that the windows do not have.
     recordings: Vec<String>,
     /// How many would fit if the frame named were the first of the window.
     as_first_frame: usize,

@@ -99,7 +99,6 @@ impl Matched {
     }
 }
 
-/// The middle value, of an even number the lower of the two; 0 of none.
 fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);

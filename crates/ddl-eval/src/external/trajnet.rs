@@ -50,13 +50,11 @@ struct NdjsonTrack {
     scene_id: Option<Whole>,
 }
 
-/// What one pedestrian of a scene is forecast to do: for each prediction number, frames and positions.
 type Predictions = BTreeMap<i64, Vec<(i64, Position)>>;
 
 struct OpenScene<'a> {
     scene: NdjsonScene,
     window: Option<&'a Window>,
-    /// By pedestrian, with the line of the first row.
     tracks: BTreeMap<PedestrianName, (usize, Predictions)>,
 }
 
@@ -237,7 +235,6 @@ impl<'w, 'a> Reading<'w, 'a> {
         Ok(())
     }
 
-    /// The last observed frame of a scene that is no window, for messages.
     fn unknown_last(&self, scene: &NdjsonScene) -> i64 {
         scene.e.saturating_sub(HORIZON as i64 * self.step())
     }

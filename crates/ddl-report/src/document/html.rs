@@ -69,7 +69,6 @@ impl Document {
     }
 }
 
-/// A part that neither begins a section nor holds others.
 fn plain(part: &Part, used: &mut Vec<String>) -> String {
     match part {
         Part::Heading { level, text } => {
@@ -136,7 +135,6 @@ fn render(table: &Table) -> String {
     )
 }
 
-/// Text with its code marked up, and nothing else taken for markup.
 pub(crate) fn inline(text: &str) -> String {
     let rendered = spans(text).into_iter().map(|span| match span {
         Span::Plain(text) => escape(text),
@@ -161,7 +159,6 @@ pub(crate) fn escape(text: &str) -> String {
     escaped
 }
 
-/// Small letters and digits of the words, joined by dashes.
 pub(crate) fn identifier(words: &str) -> String {
     let words = words
         .split(|c: char| !c.is_ascii_alphanumeric())

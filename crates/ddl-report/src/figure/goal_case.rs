@@ -102,7 +102,6 @@ impl GoalCase {
         &self.track[..OBSERVED]
     }
 
-    /// The true path after the last observed position.
     pub(super) fn truth(&self) -> &[Position] {
         &self.track[OBSERVED..]
     }

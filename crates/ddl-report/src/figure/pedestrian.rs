@@ -9,7 +9,6 @@ use super::{
 };
 use crate::{MomentHypothesis, MomentPedestrian};
 
-/// Steps between two arrows.
 const ARROW_EVERY: usize = 3;
 /// An arrow is as long as the way of this time, s: its length is proportional to the speed.
 const ARROW_SECONDS: f64 = 0.8;
@@ -61,7 +60,6 @@ pub(super) fn hypothesis_style(share: f64) -> String {
     format!("opacity:{opacity:.2};stroke-width:{width:.1}")
 }
 
-/// The goal of the hypothesis that stands for all.
 pub(crate) fn representative_goal(
     drawing: &mut Drawing,
     plan: &PlanView,

@@ -24,7 +24,6 @@ pub(super) fn wrapped(text: &str, size: f64, width: f64, most: usize) -> Vec<Str
     lines
 }
 
-/// Fills line after line; all that is left goes into the last.
 fn broken(text: &str, fits: impl Fn(&str) -> bool, most: usize, at_pauses: bool) -> Vec<String> {
     let (mut lines, mut line) = (Vec::new(), String::new());
     for word in text.split_whitespace() {

@@ -16,7 +16,6 @@ use crate::{
     gallery::{Pick, Show},
 };
 
-/// Width and height of the scene, px.
 const SCENE: [f64; 2] = [360.0, 300.0];
 /// Free space around what must be seen, px.
 const MARGIN: f64 = 22.0;
@@ -100,7 +99,6 @@ fn is_seen(plan: &PlanView, place: Position, above: f64) -> bool {
         && (above - slack..=above + SCENE[1] + slack).contains(&y)
 }
 
-/// The pedestrian's number, behind where it was first seen.
 fn label(drawing: &mut Drawing, plan: &PlanView, pedestrian: &MomentPedestrian, above: f64) {
     let [first, last] =
         [pedestrian.observed[0], pedestrian.observed[OBSERVED - 1]].map(|p| plan.px(p));

@@ -149,7 +149,6 @@ fn facts(standing: &Standing, subject: &StandingLine) -> String {
     html + "</dl>\n"
 }
 
-/// 14968 as 14,968.
 fn grouped(count: usize) -> String {
     let digits = count.to_string();
     let mut words = String::new();

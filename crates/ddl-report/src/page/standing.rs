@@ -14,7 +14,6 @@ pub(super) struct Standing {
     /// What all lines share; fold and forecaster are those of one row.
     pub(super) shared: Conditions,
     pub(super) in_words: String,
-    /// The folds measured, in the order of the convention.
     pub(super) folds: Vec<String>,
     pub(super) all_folds: bool,
     pub(super) lines: Vec<StandingLine>,
@@ -24,7 +23,6 @@ pub(super) struct Standing {
 pub(super) struct StandingLine {
     pub(super) label: String,
     pub(super) conditions: Conditions,
-    /// Under what conditions it came about, in words.
     pub(super) settings: String,
     pub(super) hypotheses: usize,
     /// minADE and minFDE on each fold, m, mean over seeds; `None` where it was not measured.

@@ -21,12 +21,10 @@ const COLOURS: usize = 5;
 #[derive(Debug, Clone)]
 struct TrainingPanel {
     fold: String,
-    /// What is drawn: the name of the loss, or the validation error.
     quantity: String,
     drawing: Drawing,
 }
 
-/// What the second kind of panel shows.
 const VALIDATION: &str = "error on the validation split, m";
 
 struct Series<'a> {
@@ -204,7 +202,6 @@ fn epoch_ticks(first: usize, last: usize) -> Vec<usize> {
     ticks
 }
 
-/// Checks that epochs ascend.
 pub(super) fn check(curves: &[TrainingCurve]) -> Result<(), PageError> {
     for (index, curve) in curves.iter().enumerate() {
         for pair in curve.epochs.windows(2) {
