@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Crate, example and arguments, and what its output must hold. One that is given a name of a picture draws it.
-const EXAMPLES: [(&str, &[&str]); 10] = [
+const EXAMPLES: [(&str, &[&str]); 9] = [
     (
         "ddl forecast_csv",
         &[

@@ -7,9 +7,8 @@ use crate::Protocol;
 /// The numbers given for a [`Forecast`](crate::Forecast) do not make one.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
+#[expect(missing_docs, reason = "the messages say what they mean")]
 pub enum ForecastShapeError {
-    /// A forecast needs at least one pedestrian and one hypothesis.
     #[error(
         "a forecast needs at least one pedestrian and one hypothesis, found {pedestrians} x {hypotheses}"
     )]
@@ -17,7 +16,6 @@ pub enum ForecastShapeError {
         pedestrians: usize,
         hypotheses: usize,
     },
-    /// A flat array has the wrong length.
     #[error("`{field}` must hold {expected} entries ({layout}), found {found}")]
     Length {
         field: &'static str,
@@ -25,7 +23,6 @@ pub enum ForecastShapeError {
         expected: usize,
         found: usize,
     },
-    /// A coordinate or a weight is NaN or infinite.
     #[error(
         "`{field}` of pedestrian {pedestrian}, hypothesis {hypothesis} is not finite; \
          a model that diverged must be reported as such, not scored"
@@ -35,21 +32,18 @@ pub enum ForecastShapeError {
         pedestrian: usize,
         hypothesis: usize,
     },
-    /// A weight is below zero.
     #[error("the weight of pedestrian {pedestrian}, hypothesis {hypothesis} is {weight}, below 0")]
     NegativeWeight {
         pedestrian: usize,
         hypothesis: usize,
         weight: f64,
     },
-    /// A spread is not positive, or a familiarity not in (0, 1].
     #[error("the {field} of pedestrian {pedestrian} is {value}, out of range")]
     OutOfRange {
         field: &'static str,
         pedestrian: usize,
         value: f64,
     },
-    /// The weights of a pedestrian do not sum to 1.
     #[error(
         "the weights of pedestrian {pedestrian} sum to {sum}, not to 1; divide them by their sum"
     )]
@@ -59,12 +53,10 @@ pub enum ForecastShapeError {
 /// A forecaster could not make its forecast.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
+#[expect(missing_docs, reason = "the messages say what they mean")]
 pub enum ForecastError {
-    /// The numbers produced do not make a forecast.
     #[error(transparent)]
     Shape(#[from] ForecastShapeError),
-    /// The forecaster reads the true future and the window has none.
     #[error(
         "`{forecaster}` reads the true future, which the window of `{recording}` starting at frame \
          {start_frame} does not show (protocols `fair` and `single` never show it)"
@@ -74,13 +66,11 @@ pub enum ForecastError {
         recording: String,
         start_frame: i64,
     },
-    /// A goal source gave goals for the wrong number of pedestrians, or sets of different sizes.
     #[error("goal source `{goal_source}`: {problem}")]
     Goals {
         goal_source: String,
         problem: String,
     },
-    /// More hypotheses than the protocol allows.
     #[error(
         "protocol `{protocol}` allows {allowed} hypotheses a pedestrian, `{forecaster}` made {found}"
     )]
@@ -90,7 +80,6 @@ pub enum ForecastError {
         allowed: usize,
         found: usize,
     },
-    /// The model itself failed.
     #[error("`{forecaster}` failed")]
     Model {
         forecaster: String,
@@ -114,23 +103,18 @@ impl ForecastError {
 /// Forecasts cannot be scored.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
+#[expect(missing_docs, reason = "the messages say what they mean")]
 pub enum EvaluationError {
-    /// Nothing to score.
     #[error("there is no window to score; is the test set empty?")]
     NoWindows,
-    /// Not one forecast a window.
     #[error("{windows} windows but {forecasts} forecasts; there must be one forecast a window")]
     Count { windows: usize, forecasts: usize },
-    /// More was seen of a pedestrian's future than a forecast covers.
     #[error(
         "{longest} positions were given as seen after the observation; a forecast covers {HORIZON}"
     )]
     Seen { longest: usize },
-    /// Not one whole window for each reduced one.
     #[error("{windows} windows but {everybody} whole ones; there must be one each")]
     EverybodyCount { windows: usize, everybody: usize },
-    /// A window cannot be scored with its forecast.
     #[error("window of `{recording}` starting at frame {start_frame}{problem}")]
     Window {
         recording: String,
@@ -142,26 +126,20 @@ pub enum EvaluationError {
 /// Why a window cannot be scored with its forecast; what follows the name of the window in messages.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
+#[expect(missing_docs, reason = "the messages say what they mean")]
 pub enum WindowProblem {
-    /// The forecast is of other people than the window holds.
     #[error(" holds {expected} pedestrians, its forecast {found}")]
     Pedestrians { expected: usize, found: usize },
-    /// A reduced window is not a part of the whole one it is scored among.
     #[error(": the whole window given is of other frames or lacks some of its pedestrians")]
     Everybody,
-    /// The window has no future to compare with.
     #[error(" has no true future: it can be forecast but not scored")]
     NoFuture,
-    /// Windows were forecast with different numbers of hypotheses.
     #[error(
         " was forecast with {found} hypotheses, the windows before it with {expected}; the best of K needs one K"
     )]
     Hypotheses { expected: usize, found: usize },
-    /// Only some of the forecasts have certificates.
     #[error(": either every forecast of a test set carries certificates or none does")]
     CertificatesOfSome,
-    /// Only some of the forecasts have goals.
     #[error(": either every forecast of a test set has goals or none has")]
     GoalsOfSome,
 }

@@ -26,7 +26,6 @@ pub(crate) fn walking(all: &[(Position, Position)], frames: usize) -> Window {
     of_tracks(all.iter().map(track).collect())
 }
 
-/// A straight walk of 12 frames that leaves `start` by `step` a frame.
 pub(crate) fn walk(start: Position, step: Position) -> Vec<Position> {
     (1..=HORIZON).map(|t| at(start, step, t as f64)).collect()
 }

@@ -63,7 +63,6 @@ fn moved(p: Position) -> Position {
     [17.0 - 3.0 * p[1], 5.0 + 2.0 * p[0]]
 }
 
-/// Every number and every verdict of a forecast, bit by bit.
 fn bits(forecast: &Forecast) -> Vec<u64> {
     let mut bits = vec![forecast.pedestrians() as u64, forecast.hypotheses() as u64];
     for i in 0..forecast.pedestrians() {
@@ -111,10 +110,7 @@ mod tests {
         let still = [0.0, 0.0];
         let window = window(&[still; 3], &[still; 3]);
         for frame in OBSERVED..WINDOW {
-            assert!(
-                find(&Peeks { frame }, &window).unwrap().is_some(),
-                "frame {frame}"
-            );
+            assert!(find(&Peeks { frame }, &window).unwrap().is_some());
         }
         let frame = OBSERVED - 1;
         assert_eq!(find(&Peeks { frame }, &window).unwrap(), None);

@@ -5,17 +5,16 @@ use crate::{
     category::Category,
     metric::{
         amd::DistributionErrors,
-        collision::{self, DISC_RADIUS, collides},
-        displacement::DisplacementErrors,
+        collision::{self, DISC_RADIUS, collides, collides_with_truth},
+        displacement::{DisplacementErrors, expected, goal_fde},
         diversity::Diversity,
-        expected::expected,
-        goal::goal_fde,
         kde::kde_nll,
-        miss::MISS_DISTANCES,
         region::{RegionScores, weight_log_loss},
-        true_neighbour_collision::collides_with_truth,
     },
 };
+
+/// An end is missed where no hypothesis ends nearer than 0.5 m, and by the distances of other works; metres.
+const MISS_DISTANCES: [f64; 3] = [0.5, 1.0, 2.0];
 
 /// Lengths in metres.
 pub(crate) struct PedestrianScores {
@@ -44,7 +43,6 @@ pub(crate) struct PedestrianScores {
 }
 
 impl PedestrianScores {
-    /// Those of every pedestrian of a scene, in its order.
     pub(crate) fn of(scene: &Scene<'_>, errors: &DisplacementErrors) -> Vec<Self> {
         let forecast = scene.forecast();
         let collides_forecast = collides(&collision::representative_tracks(scene), DISC_RADIUS);

@@ -28,7 +28,6 @@ const CELLS: usize = 24;
 #[serde(try_from = "LevelQuantiles", into = "LevelQuantiles")]
 pub struct RegionTable(LevelQuantiles);
 
-/// The table as it is written, before it is checked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LevelQuantiles {

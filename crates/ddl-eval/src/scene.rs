@@ -112,7 +112,6 @@ fn place(window: &Window, pedestrian: PedestrianId) -> Option<usize> {
     window.pedestrians().iter().position(|&p| p == pedestrian)
 }
 
-/// Which pedestrians of `everybody` those of a window are; `None` if one of them is not there.
 pub(crate) fn places(window: &Window, everybody: &Window) -> Option<Vec<usize>> {
     let pedestrians = window.pedestrians().iter();
     pedestrians.map(|&p| place(everybody, p)).collect()

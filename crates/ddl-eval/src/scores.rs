@@ -10,9 +10,8 @@ use crate::{
     error::{EvaluationError, WindowProblem},
     metric::{
         amd::amv,
-        displacement::DisplacementErrors,
+        displacement::{DisplacementErrors, joint_ade, joint_fde},
         gaussian::Covariance,
-        joint::{joint_ade, joint_fde},
         stability::{self, RolloutStability, StabilityScores},
     },
     pedestrian_scores::PedestrianScores,
@@ -195,7 +194,6 @@ impl Scores {
     }
 }
 
-/// The mean of what all pedestrians have; `None` where one has none.
 fn of_all<const N: usize>(
     scenes: &[SceneScores],
     total: f64,
@@ -237,7 +235,6 @@ fn check_alike(
     Err(EvaluationError::of(window, problem))
 }
 
-/// What one window adds.
 struct SceneScores {
     pedestrians: Vec<PedestrianScores>,
     /// JADE times the pedestrians, metres.

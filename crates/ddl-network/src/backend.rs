@@ -2,13 +2,10 @@
 //! on the CPU in `f32`, forwards and backwards; the crate `ddl-star` has one on libtorch.
 
 mod kernels;
-mod memory;
 mod operations;
 mod rows;
-mod tape;
 
 pub use crate::kernel::{Buffer, Scenes};
 pub use kernels::{KernelBackend, Kernels, RowKeyValues, SeenScenes};
-pub use memory::Memory;
-pub use operations::{Backend, Mode};
+pub use operations::{Backend, Memory, Mode};
 pub use rows::Rows;

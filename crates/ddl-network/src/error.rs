@@ -5,35 +5,29 @@ use std::path::{Path, PathBuf};
 /// Errors of `ddl-network`. Messages say what is wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
+#[expect(missing_docs, reason = "the messages say what they mean")]
 pub enum NetworkError {
-    /// A configuration value is outside its range.
     #[error("configuration: {field} = {value} is not allowed: {rule}")]
     Config {
         field: &'static str,
         value: String,
         rule: &'static str,
     },
-    /// Windows, goals or tensors of unexpected size.
     #[error("{operation}: expected {expected}, got {got}")]
     Shape {
         operation: &'static str,
         expected: String,
         got: String,
     },
-    /// A checkpoint that must not be trusted.
     #[error("checkpoint {}: {problem}", path.display())]
     Checkpoint { path: PathBuf, problem: String },
-    /// A learned tensor that cannot be rounded, or does not belong to the network it is given to.
     #[error("weights: {tensor} {problem}")]
     Weights { tensor: String, problem: String },
-    /// Reading or writing a file failed.
     #[error("{}: {source}", path.display())]
     Io {
         path: PathBuf,
         source: std::io::Error,
     },
-    /// The implementation that computes the network failed.
     #[error("{0}")]
     Backend(Box<dyn std::error::Error + Send + Sync>),
 }

@@ -8,13 +8,12 @@ mod motion_bounds;
 mod network;
 mod own_frame;
 mod rollout;
-mod unit;
 mod visibility;
 
 pub use batch::{BatchRollout, ForecastBatch};
 pub use forecast_windows::ForecastWindows;
 pub use motion_bounds::motion_bounds;
 pub use network::MotionNetwork;
+pub use own_frame::motion_unit;
 pub use rollout::{Noise, StepRule, WindowRollout};
-pub use unit::motion_unit;
 pub use visibility::visibility;

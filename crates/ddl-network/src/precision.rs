@@ -1,6 +1,7 @@
-//! How exactly the heavy products of the network are computed.
+//! Where a network shall compute, and how exactly its heavy products.
 
 use crate::names::named;
+use serde::{Deserialize, Serialize};
 
 /// Precision of the products in the feed-forward blocks of forecasts, on the CPU.
 ///
@@ -25,3 +26,17 @@ impl Precision {
 }
 
 named!(Precision, "precision", F32 => "f32", Bf16 => "bf16");
+
+/// The device asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DeviceChoice {
+    /// CUDA when it can be had, else the CPU.
+    Auto,
+    /// The CPU.
+    Cpu,
+    /// The first CUDA device; its absence is an error.
+    Cuda,
+}
+
+named!(DeviceChoice, "device", Auto => "auto", Cpu => "cpu", Cuda => "cuda");

@@ -7,10 +7,8 @@ mod ends;
 mod layers;
 mod network;
 mod seen;
-mod view;
 
-pub use ends::{END_UNIT, ProposeEnds, ProposedEnds};
+pub use ends::{END_UNIT, PedestrianView, ProposalExample, ProposeEnds, ProposedEnds};
 pub use layers::{MemberAffine, ProposalLayers, WAYPOINTS};
 pub use network::ProposalNetwork;
 pub use seen::{NEIGHBOUR_FEATURES, RECENT};
-pub use view::{PedestrianView, ProposalExample};

@@ -141,17 +141,13 @@ fn rows(
             commit: "example".to_owned(),
             ..Conditions::new(Convention::Simulated, rule, protocol, fold, forecaster)
         };
-        rows.push(ResultRow::measure(
-            named(Bending.name()),
-            &Bending,
-            windows,
-        )?);
-        let straight = StraightLine::to(Fan);
-        rows.push(ResultRow::measure(
-            named(straight.name()),
-            &straight,
-            windows,
-        )?);
+        for forecaster in [&Bending as &dyn Forecaster, &StraightLine::to(Fan)] {
+            rows.push(ResultRow::measure(
+                named(forecaster.name()),
+                forecaster,
+                windows,
+            )?);
+        }
         // Two seeds of what is random; what is not is the same twice, and kept once.
         for seed in [1, 2] {
             rows.extend(baseline::measure(&named(String::new()), windows, seed)?);
@@ -188,34 +184,28 @@ fn under_way(windows: &[Window]) -> Result<Vec<Moment>, Box<dyn Error>> {
 /// Curves that look like a training's. Nothing was trained.
 fn made_up(folds: &[&str]) -> Vec<TrainingCurve> {
     let mut curves = Vec::new();
-    for (f, fold) in folds.iter().enumerate() {
-        for (v, variant) in ["full", "no-dynamics", "no-goal-shift"]
-            .into_iter()
-            .enumerate()
-        {
-            for seed in [1, 2] {
-                let floor = 0.02 + 0.006 * f as f64 + 0.012 * v as f64;
-                let wobble = |epoch: usize| (TAU * (0.37 * epoch as f64 + 0.3 * seed as f64)).sin();
-                let point = |epoch: usize| {
-                    let descent = (-(epoch as f64) / (4.0 + v as f64)).exp();
-                    EpochPoint {
-                        epoch,
-                        loss: floor * (1.0 + 0.04 * wobble(epoch)) + 0.3 * descent,
-                        validation: Some(
-                            5.0 * floor * (1.0 + 0.05 * wobble(epoch + 3)) + 0.5 * descent,
-                        ),
-                        seconds: 12.0,
-                    }
-                };
-                curves.push(TrainingCurve {
-                    fold: (*fold).to_owned(),
-                    variant: variant.to_owned(),
-                    seed,
-                    loss: "made-up loss for this example (nothing was trained), m²".to_owned(),
-                    epochs: (1..=30).map(point).collect(),
-                });
+    let variants = ["full", "no-dynamics", "no-goal-shift"];
+    let all = (0..folds.len()).flat_map(|f| (0..variants.len()).map(move |v| (f, v)));
+    for ((f, v), seed) in all.flat_map(|of| [(of, 1), (of, 2)]) {
+        let floor = 0.02 + 0.006 * f as f64 + 0.012 * v as f64;
+        let wobble = |epoch: usize| (TAU * (0.37 * epoch as f64 + 0.3 * seed as f64)).sin();
+        let point = |epoch: usize| {
+            let descent = (-(epoch as f64) / (4.0 + v as f64)).exp();
+            let error = 5.0 * floor * (1.0 + 0.05 * wobble(epoch + 3)) + 0.5 * descent;
+            EpochPoint {
+                epoch,
+                loss: floor * (1.0 + 0.04 * wobble(epoch)) + 0.3 * descent,
+                validation: Some(error),
+                seconds: 12.0,
             }
-        }
+        };
+        curves.push(TrainingCurve {
+            fold: folds[f].to_owned(),
+            variant: variants[v].to_owned(),
+            seed,
+            loss: "made-up loss for this example (nothing was trained), m²".to_owned(),
+            epochs: (1..=30).map(point).collect(),
+        });
     }
     curves
 }
@@ -234,13 +224,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let complete = fold.test_windows(WindowRule::Complete);
         results.extend(rows(fold.name(), &complete, WindowRule::Complete)?);
         let forecasts = Protocol::Fair.forecast(&Bending, &windows)?;
-        let forecaster = Bending.name();
-        shown.extend(gallery::moments(
-            fold.name(),
-            &forecaster,
-            &windows,
-            &forecasts,
-        )?);
+        let name = Bending.name();
+        shown.extend(gallery::moments(fold.name(), &name, &windows, &forecasts)?);
     }
     let report = Report::new("Stand-in forecasters on simulated crowds", results)?;
     let curves = made_up(&dataset.fold_names());

@@ -5,9 +5,8 @@ use std::path::PathBuf;
 /// A report cannot be put together or read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
+#[expect(missing_docs, reason = "the messages say what they mean")]
 pub enum ReportError {
-    /// Two rows name the same conditions and hold different numbers.
     #[error(
         "two results of `{row}` on fold `{fold}` name the same conditions but differ \
          (minADE {first} and {second}); remove one of the runs, or give them different seeds"
@@ -18,13 +17,10 @@ pub enum ReportError {
         first: f64,
         second: f64,
     },
-    /// The file format is newer than this crate.
     #[error("the report has format {found}; this version reads format {supported}")]
     Format { found: u32, supported: u32 },
-    /// The text is not a report.
     #[error("not a report: {0}")]
     Json(#[from] serde_json::Error),
-    /// A file cannot be read.
     #[error("{path}: {source}", path = path.display())]
     File {
         path: PathBuf,

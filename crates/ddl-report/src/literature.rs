@@ -123,7 +123,6 @@ pub fn ablation_table() -> Table {
 }
 
 impl AblationRow {
-    /// Whether the variant has the goal shift and the dynamics, in words.
     pub(crate) fn components(&self) -> [String; 2] {
         [self.goal_shift, self.dynamics].map(|has| if has { "yes" } else { "no" }.to_owned())
     }
@@ -146,7 +145,6 @@ pub fn measured_table() -> Table {
     table
 }
 
-/// A table without rows: a column a fold between these.
 fn table_of_folds(start: &[&str], end: &[&str]) -> Table {
     Table::new([start, &FOLDS, end].concat())
 }
@@ -174,63 +172,42 @@ mod tests {
         {
             for (error, printed) in mean.into_iter().enumerate() {
                 let found = folds.iter().map(|fold| fold[error]).sum::<f64>() / 5.0;
-                assert!(
-                    (found - printed).abs() < 0.0101,
-                    "{name}: {found} against {printed}"
-                );
+                assert!((found - printed).abs() < 0.0101, "{name}: {found}");
             }
-            assert!(
-                folds.iter().all(|[ade, fde]| ade < fde),
-                "{name}: ADE and FDE swapped?"
-            );
+            assert!(folds.iter().all(|[ade, fde]| ade < fde), "{name}");
         }
     }
 
     /// The number of rows of each table, and of those in each convention; the sums of all cells, typed in anew from the papers.
     #[test]
     fn the_file_holds_the_rows_of_the_papers() {
-        let Literature {
-            table_one,
-            star_convention,
-            ablation,
-            measured,
-        } = &*LITERATURE;
-        let rows = [
-            table_one.len(),
-            star_convention.len(),
-            ablation.len(),
-            measured.len(),
-        ];
-        assert_eq!(rows, [11, 5, 4, 12]);
-        let conventions = |convention| {
-            table_one
-                .iter()
-                .filter(|row| row.convention == convention)
-                .count()
-        };
-        assert_eq!(
-            [Some(Convention::Star), Some(Convention::SocialGan), None].map(conventions),
-            [2, 3, 6]
-        );
-        // Sums over all cells of each table.
+        let all = &*LITERATURE;
         let published = |rows: &[PublishedRow]| -> f64 {
             rows.iter().flat_map(|row| row.folds).flatten().sum()
         };
-        let sums = [
-            (published(table_one), 51.82),
-            (published(star_convention), 11.752),
+        let ablation = all.ablation.iter().flat_map(|row| row.folds).flatten();
+        let ade = all.measured.iter().filter_map(|row| row.ade).flatten();
+        let fde = all.measured.iter().flat_map(|row| row.fde);
+        for (rows, expected_rows, sum, expected) in [
+            (all.table_one.len(), 11, published(&all.table_one), 51.82),
             (
-                ablation.iter().flat_map(|row| row.folds).flatten().sum(),
-                13.8,
+                all.star_convention.len(),
+                5,
+                published(&all.star_convention),
+                11.752,
             ),
-            (
-                measured.iter().filter_map(|row| row.ade).flatten().sum(),
-                25.374,
-            ),
-            (measured.iter().flat_map(|row| row.fde).sum(), 59.57),
-        ];
-        for (found, expected) in sums {
-            assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+            (all.ablation.len(), 4, ablation.sum(), 13.8),
+            (all.measured.len(), 12, ade.sum(), 25.374),
+            (all.measured.len(), 12, fde.sum(), 59.57),
+        ] {
+            assert_eq!(rows, expected_rows);
+            assert!((sum - expected).abs() < 1e-9, "{sum} {expected}");
         }
+        let of = |convention| {
+            let rows = all.table_one.iter();
+            rows.filter(|row| row.convention == convention).count()
+        };
+        let conventions = [Some(Convention::Star), Some(Convention::SocialGan), None];
+        assert_eq!(conventions.map(of), [2, 3, 6]);
     }
 }

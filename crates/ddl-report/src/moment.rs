@@ -10,9 +10,7 @@ use ddl_eval::{
     representative::medoid,
 };
 
-/// Decimals of the positions and weights kept: a millimetre, a thousandth.
 const KEPT: f64 = 1e3;
-/// Probability of the region that is shown.
 const REGION: f64 = 0.9;
 
 /// What was observed, what was forecast and what then happened, at one moment of a recording.

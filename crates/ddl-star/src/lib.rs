@@ -5,7 +5,6 @@ mod error;
 mod model;
 mod proposal;
 mod training;
-mod yardstick;
 
 pub use device::{ComputeDevice, LIBTORCH_VERSION, set_threads};
 pub use error::StarError;
@@ -15,4 +14,3 @@ pub use model::{
 };
 pub use proposal::{ProposalTrainer, TorchProposals};
 pub use training::{Trainer, mean_distance, mean_squared_distance};
-pub use yardstick::MatrixProduct;

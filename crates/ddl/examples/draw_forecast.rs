@@ -3,7 +3,7 @@
 //! exactly so many pedestrians. The picture of the README is of a simulated crowd.
 
 use ddl::data::{Convention, Dataset, Window, WindowRule, locate};
-use ddl::report::figure::SceneFigure;
+use ddl::report::figure;
 use ddl::{Ddl, DeviceChoice, Forecaster as _};
 use std::error::Error;
 use std::path::Path;
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .max_by(|one, other| walked(one).total_cmp(&walked(other)))
         .ok_or("no test window has that many pedestrians")?;
     let forecast = model.forecast(&window.without_future())?;
-    std::fs::write(file, SceneFigure::new(window, &forecast).to_svg()?)?;
+    std::fs::write(file, figure::scene(window, &forecast)?)?;
     Ok(())
 }
 

@@ -39,13 +39,7 @@ const NUMERIC: [(&str, &[&str]); 7] = [
     ),
     (
         "ddl-network",
-        &[
-            "arithmetic",
-            "backbone/**",
-            "forecast/**",
-            "kernel/**",
-            "proposal/**",
-        ],
+        &["backbone/**", "forecast/**", "kernel/**", "proposal/**"],
     ),
     (
         "ddl-eval",

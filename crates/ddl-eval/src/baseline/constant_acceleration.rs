@@ -2,7 +2,7 @@
 
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 
-use crate::{Forecast, Forecaster, error::ForecastError, vector::minus};
+use crate::{Forecast, Forecaster, error::ForecastError, metric::displacement::minus};
 
 /// Constant acceleration: `p(8 + t) = p(8) + t v + t (t + 1)/2 a`, with `v = p(8) - p(7)` in metres a frame and
 /// `a = v - (p(7) - p(6))` in metres a frame squared.
@@ -74,50 +74,40 @@ fn length(v: Position) -> f64 {
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
-    use ddl_data::PedestrianId;
 
     use super::*;
+    use crate::fixture::of_tracks;
 
-    /// 8 positions whose steps are given, from the origin.
-    fn window(steps: [Position; 7]) -> Window {
-        let mut track = vec![[0.0, 0.0]];
-        for (t, step) in steps.into_iter().enumerate() {
-            track.push([track[t][0] + step[0], track[t][1] + step[1]]);
-        }
-        Window::new("corridor", 0, 10, vec![PedestrianId(1)], vec![track]).unwrap()
-    }
-
-    /// By hand, `(unbounded, bounded)` where 12 frames lead: from (7, -0.1) with v = (1, 0) and a = (0, 0.1) 12 m along x and
-    /// 0.1 * 12 * 13 / 2 = 7.8 m along y, which bounded is no faster than 1 m a frame; steps of 1 m, the last of 0.75 m, turn back
-    /// by 12 * 0.75 - 0.25 * 78 = -10.5 m, and bounded 0.5, 0.25 and 0 m follow; steps of 0.5 m, once 0.6 m, the last 0.55 m, get faster,
-    /// bounded by 0.6 m; who walks evenly goes on, who stands stands.
+    /// By hand, where 12 frames lead: from (7, -0.1) with v = (1, 0) and a = (0, 0.1) 12 m along x and 0.1 * 12 * 13 /
+    /// 2 = 7.8 m along y; steps of 1 m, the last of 0.75 m, turn back by 12 * 0.75 - 0.25 * 78 = -10.5 m, and bounded
+    /// 0.5, 0.25 and 0 m follow; steps of 0.5 m, once 0.6 m, the last 0.55 m, get faster, bounded by 0.6 m.
     #[test]
     fn ends_by_hand() {
-        let with = |step: Position, changes: &[(usize, Position)]| {
-            let mut steps = [step; 7];
-            for &(t, step) in changes {
-                steps[t] = step;
-            }
-            window(steps)
-        };
-        let turning = with([1.0, 0.0], &[(5, [1.0, -0.1])]);
-        let braking = with([1.0, 0.0], &[(6, [0.75, 0.0])]);
-        let hurrying = with([0.5, 0.0], &[(2, [0.6, 0.0]), (6, [0.55, 0.0])]);
-        let (even, standing) = (with([0.5, -0.25], &[]), with([0.0; 2], &[]));
-        let [unbounded, bounded] = [
+        let (free, bounded) = (
             ConstantAcceleration::unbounded(),
             ConstantAcceleration::bounded(),
-        ];
-        for (forecaster, window, expected) in [
-            (unbounded, &turning, [19.0, 7.7]),
-            (unbounded, &braking, [6.75 - 10.5, 0.0]),
-            (bounded, &braking, [7.5, 0.0]),
-            (bounded, &hurrying, [3.65 + 12.0 * 0.6, 0.0]),
-            (unbounded, &even, [9.5, -4.75]),
-            (bounded, &even, [9.5, -4.75]),
-            (bounded, &standing, [0.0, 0.0]),
+        );
+        for (forecaster, usual, (at, other), last, expected) in [
+            (free, 1.0, (5, [1.0, -0.1]), 1.0, [19.0, 7.7]),
+            (free, 1.0, (5, [1.0, 0.0]), 0.75, [6.75 - 10.5, 0.0]),
+            (bounded, 1.0, (5, [1.0, 0.0]), 0.75, [7.5, 0.0]),
+            (
+                bounded,
+                0.5,
+                (2, [0.6, 0.0]),
+                0.55,
+                [3.65 + 12.0 * 0.6, 0.0],
+            ),
+            (bounded, 0.0, (5, [0.0, 0.0]), 0.0, [0.0, 0.0]),
         ] {
-            let found = forecaster.forecast(window).unwrap().hypothesis(0, 0)[11];
+            let mut track = vec![[0.0, 0.0]];
+            for t in 0..7 {
+                let along = if t == 6 { last } else { usual };
+                let step = if t == at { other } else { [along, 0.0] };
+                track.push([track[t][0] + step[0], track[t][1] + step[1]]);
+            }
+            let window = of_tracks(vec![track]);
+            let found = forecaster.forecast(&window).unwrap().hypothesis(0, 0)[11];
             assert_relative_eq!(found[0], expected[0], epsilon = 1e-9);
             assert_relative_eq!(found[1], expected[1], epsilon = 1e-9);
         }

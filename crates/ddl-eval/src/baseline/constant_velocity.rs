@@ -7,7 +7,6 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::{Forecast, Forecaster, error::ForecastError};
 
-/// Samples of the noisy variant.
 const SAMPLES: usize = 20;
 /// Standard deviation of the noisy variant's angle, degrees.
 const NOISE_DEG: f64 = 25.0;
@@ -97,7 +96,6 @@ impl Forecaster for ConstantVelocity {
     }
 }
 
-/// One stream a window: the seed and the recording's name give the key, the first frame the stream.
 fn stream(seed: u64, window: &Window) -> ChaCha8Rng {
     // FNV-1a, so that the key does not depend on the standard library's hasher.
     let key = window

@@ -179,28 +179,10 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::{baseline::ConstantVelocity, fixture::walking, metric::displacement::distance};
+    use crate::{fixture::walking, metric::displacement::distance};
 
     fn pedestrians(all: &[(Position, Position)]) -> Window {
         walking(all, 8)
-    }
-
-    /// One stands at the origin; the other stands 0.3 m from it, so that s = 0 and B = |r| = 0.3 m: the
-    /// push is V0 / sigma exp(-1) = 7 / e m/s^2, straight away.
-    #[test]
-    fn the_push_of_who_stands_by_hand() {
-        let at = |position| ForcedPedestrian {
-            position,
-            velocity: [0.0, 0.0],
-            desired: [0.0, 0.0],
-            direction: [0.0, 0.0],
-            top_speed: 1.0,
-            stride: 0.0,
-        };
-        let push = at([0.18, 0.24]).push_of(&at([0.0, 0.0]));
-        let expected = 7.0 * (-1.0_f64).exp();
-        assert_relative_eq!(push[0], 0.6 * expected, epsilon = 1e-12);
-        assert_relative_eq!(push[1], 0.8 * expected, epsilon = 1e-12);
     }
 
     /// The push is the slope of the potential, here by differences of 1e-6 m.
@@ -227,47 +209,6 @@ mod tests {
             let slope_y = (potential([p[0], p[1] + h]) - potential([p[0], p[1] - h])) / (2.0 * h);
             assert_relative_eq!(push[0], -slope_x, epsilon = 1e-7);
             assert_relative_eq!(push[1], -slope_y, epsilon = 1e-7);
-        }
-    }
-
-    #[test]
-    fn alone_it_is_constant_velocity() {
-        let far = [
-            ([0.0, 0.0], [0.5, 0.1]),
-            ([100.0, 0.0], [0.0, -0.4]),
-            ([0.0, 90.0], [0.0, 0.0]),
-        ];
-        let window = pedestrians(&far);
-        let forced = SocialForce.forecast(&window).unwrap();
-        let free = ConstantVelocity::last_step().forecast(&window).unwrap();
-        for i in 0..3 {
-            for (p, q) in forced.hypothesis(i, 0).iter().zip(free.hypothesis(i, 0)) {
-                assert!(distance(*p, *q) < 1e-9, "{p:?} {q:?}");
-            }
-        }
-    }
-
-    /// 20 people at one place and around it, some of them standing: finite, and nobody faster than 1.3
-    /// times before.
-    #[test]
-    fn nothing_runs_away() {
-        let crowd: Vec<_> = (0..20)
-            .map(|i| {
-                let (x, y) = (f64::from(i % 5), f64::from(i / 5));
-                (
-                    [0.01 * x, 0.01 * y * f64::from(i % 3)],
-                    [0.1 * (x - 2.0), 0.1 * y],
-                )
-            })
-            .collect();
-        let window = pedestrians(&crowd);
-        let forecast = SocialForce.forecast(&window).unwrap();
-        for (i, (_, step)) in crowd.iter().enumerate() {
-            let mut here = window.observed(i)[7];
-            for next in forecast.hypothesis(i, 0) {
-                assert!(distance(here, *next) <= TOP_SPEED * length(*step) + 1e-9);
-                here = *next;
-            }
         }
     }
 

@@ -186,28 +186,33 @@ mod tests {
     use super::*;
     use crate::{Protocol, fixture::window};
 
-    struct Corners;
+    struct Corners(usize);
     impl GoalSource for Corners {
         fn name(&self) -> String {
             "two corners".to_owned()
         }
-        fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
+        fn goals(&self, _: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
             let corners = vec![[12.0, 0.0], [0.0, -24.0]];
-            Ok(vec![
-                WeightedGoals::new(corners, vec![0.25, 0.75])?;
-                window.len()
-            ])
+            Ok(vec![WeightedGoals::new(corners, vec![0.25, 0.75])?; self.0])
         }
     }
 
     #[test]
     fn one_line_a_goal_with_its_weight() {
-        let window = window(&[[0.0, 0.0]], &[[1.0, 0.0]]);
-        let forecast = StraightLine::to(Corners).forecast(&window).unwrap();
+        let windows = [window(&[[0.0, 0.0]], &[[1.0, 0.0]])];
+        let straight = StraightLine::to(Corners(1));
+        let forecast = straight.forecast(&windows[0]).unwrap();
         assert_eq!(forecast.hypothesis(0, 0)[2], [3.0, 0.0]);
         assert_eq!(forecast.hypothesis(0, 1)[11], [0.0, -24.0]);
         assert_eq!(forecast.goal(0, 1), Some([0.0, -24.0]));
         assert_eq!(forecast.most_likely(0), 1);
+        let single = Protocol::Single.forecast(&straight, &windows).unwrap();
+        assert_eq!(single, [forecast.single()]);
+        let error = StraightLine::to(Corners(0))
+            .forecast(&windows[0])
+            .unwrap_err();
+        let expected = "goal source `two corners`: 0 goal sets for 1 pedestrians";
+        assert_eq!(error.to_string(), expected);
     }
 
     #[test]
@@ -219,24 +224,5 @@ mod tests {
             let error = protocol.forecast(&oracle, &windows).unwrap_err();
             assert!(matches!(error, ForecastError::FutureMissing { .. }));
         }
-    }
-
-    #[test]
-    fn goals_must_fit_the_window() {
-        struct TooFew;
-        impl GoalSource for TooFew {
-            fn name(&self) -> String {
-                "nothing".to_owned()
-            }
-            fn goals(&self, _: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
-                Ok(Vec::new())
-            }
-        }
-        let window = window(&[[0.0, 0.0]], &[[1.0, 0.0]]);
-        let error = StraightLine::to(TooFew).forecast(&window).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "goal source `nothing`: 0 goal sets for 1 pedestrians"
-        );
     }
 }

@@ -5,10 +5,7 @@ use std::fmt;
 use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    metric::displacement::distance,
-    vector::{minus, turn},
-};
+use crate::metric::displacement::{distance, minus, turn};
 
 /// Velocities are taken over this many frames.
 const STRIDE: usize = 3;
@@ -18,7 +15,6 @@ const REACH: f64 = 5.0;
 const NARROW: f64 = 15.0;
 /// Half the width of "at the side"; degrees.
 const SIDE: f64 = 45.0;
-/// Frames for which a leader must be followed.
 const FOLLOWED: usize = 5;
 /// Mean distance below which pedestrians may be a group, metres.
 const GROUP_DISTANCE: f64 = 0.8;
@@ -152,7 +148,6 @@ impl Encounter {
         seen
     }
 
-    /// The kinds that this encounter makes, in the order of [`Interaction::ALL`].
     fn kinds(&self, me: &[Position], other: &[Position]) -> Vec<Interaction> {
         let group = self.beside > 0 && keeps_close(me, other);
         [
@@ -166,7 +161,6 @@ impl Encounter {
     }
 }
 
-/// Whether two stay near each other over all frames, at much the same distance.
 fn keeps_close(me: &[Position], other: &[Position]) -> bool {
     let apart = || me.iter().zip(other).map(|(p, q)| distance(*p, *q));
     let mean = apart().sum::<f64>() / WINDOW as f64;
@@ -177,88 +171,41 @@ fn keeps_close(me: &[Position], other: &[Position]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixture::{of_tracks, walking};
+    use crate::fixture::walking;
     use Interaction::{CollisionAvoidance, Group, LeaderFollower, Other};
 
-    fn pedestrians(all: &[(Position, Position)]) -> Window {
-        walking(all, 20)
-    }
-
     const EAST: Position = [0.5, 0.0];
-    const ME: (Position, Position) = ([0.0, 0.0], EAST);
 
+    /// Somebody from the origin to the east, and others. Ahead is within 15 degrees and 5 m; who comes from 16 m is
+    /// nearer than that at the forecast frames alone; a group walks 0.8 m apart at most, and not from 0.1 m to 1.05 m;
+    /// who stands has no course.
     #[test]
-    fn who_walks_two_metres_ahead_leads_and_does_not_follow() {
-        let window = pedestrians(&[ME, ([2.0, 0.0], EAST)]);
-        assert_eq!(Interaction::of(&window, 0), [LeaderFollower]);
-        assert_eq!(Interaction::of(&window, 1), []);
-        assert_eq!(Interaction::of(&window.without_future(), 0), []);
-    }
-
-    /// 5 m is too far, and so is 16 degrees to the side.
-    #[test]
-    fn the_sector_ahead_is_narrow_and_short() {
+    fn each_kind_by_hand() {
         let aside = |degrees: f64, metres: f64| {
             let (sin, cos) = degrees.to_radians().sin_cos();
-            Interaction::of(&pedestrians(&[ME, ([metres * cos, metres * sin], EAST)]), 0)
+            ([metres * cos, metres * sin], EAST)
         };
-        assert_eq!(aside(14.0, 4.9), [LeaderFollower]);
-        assert_eq!(aside(-14.0, 4.9), [LeaderFollower]);
-        assert_eq!(aside(16.0, 4.9), []);
-        assert_eq!(aside(14.0, 5.0), []);
-    }
-
-    /// 16 m apart at frame 0 and nearing by 1 m a frame: 5 m at frame 11 (too far), 4 m at frame 12.
-    #[test]
-    fn who_comes_towards_it_is_avoided() {
-        let window = pedestrians(&[ME, ([16.0, 0.0], [-0.5, 0.0])]);
-        assert_eq!(Interaction::of(&window, 0), [CollisionAvoidance]);
-        assert_eq!(Interaction::of(&window, 1), [CollisionAvoidance]);
-    }
-
-    #[test]
-    fn side_by_side_is_a_group_up_to_80_centimetres() {
-        let pair = |gap| Interaction::of(&pedestrians(&[ME, ([0.0, gap], EAST)]), 0);
-        assert_eq!(pair(0.7), [Group]);
-        assert_eq!(pair(-0.7), [Group]);
-        assert_eq!(pair(0.9), []);
-        // From 0.1 m to 1.05 m apart: 0.575 m on average, with a deviation of 0.29 m.
-        let parting = pedestrians(&[ME, ([0.0, 0.1], [0.5, 0.05])]);
-        assert_eq!(Interaction::of(&parting, 0), []);
-    }
-
-    /// Somebody stands 9 m ahead, of no course: ahead at frames 9 to 17, and no more than that.
-    #[test]
-    fn who_stands_in_the_way_is_another_interaction() {
-        let window = pedestrians(&[ME, ([9.0, 0.0], [0.0, 0.0])]);
-        assert_eq!(Interaction::of(&window, 0), [Other]);
-        // Who stands has no heading, so that nobody is ahead of it.
-        assert_eq!(Interaction::of(&window, 1), []);
-    }
-
-    /// Four frames are no following: the leader, 2 m ahead, turns off by a right angle at frame 11 or 12.
-    #[test]
-    fn following_takes_five_frames() {
-        let leader = |turns: i32| {
-            let at = |t: i32| {
-                [
-                    2.0 + 0.5 * f64::from(t.min(turns)),
-                    0.5 * f64::from((t - turns).max(0)),
-                ]
-            };
-            (0..20).map(at).collect::<Vec<Position>>()
-        };
-        let me: Vec<Position> = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect();
-        let kinds = |turns| Interaction::of(&of_tracks(vec![me.clone(), leader(turns)]), 0);
-        // Course 0 at frames 8 to `turns`, counted from 0; one frame later 0.5 m aside for 1 m ahead.
-        assert_eq!(kinds(11), [Other]);
-        assert_eq!(kinds(12), [LeaderFollower]);
-    }
-
-    /// Behind a pair of which one walks beside it: follower and group at once.
-    #[test]
-    fn a_pedestrian_may_be_of_several_kinds() {
-        let window = pedestrians(&[ME, ([0.0, 0.6], EAST), ([1.5, 0.0], EAST)]);
-        assert_eq!(Interaction::of(&window, 0), [LeaderFollower, Group]);
+        let beside = |gap: f64| ([0.0, gap], EAST);
+        for (others, expected) in [
+            (vec![aside(0.0, 2.0)], vec![LeaderFollower]),
+            (vec![aside(14.0, 4.9)], vec![LeaderFollower]),
+            (vec![aside(-14.0, 4.9)], vec![LeaderFollower]),
+            (vec![aside(16.0, 4.9)], vec![]),
+            (vec![aside(14.0, 5.0)], vec![]),
+            (vec![aside(180.0, 2.0)], vec![]),
+            (vec![([16.0, 0.0], [-0.5, 0.0])], vec![CollisionAvoidance]),
+            (vec![beside(-0.7)], vec![Group]),
+            (vec![beside(0.9)], vec![]),
+            (vec![([0.0, 0.1], [0.5, 0.05])], vec![]),
+            (vec![([9.0, 0.0], [0.0, 0.0])], vec![Other]),
+            (
+                vec![beside(0.6), ([1.5, 0.0], EAST)],
+                vec![LeaderFollower, Group],
+            ),
+        ] {
+            let window = walking(&[vec![([0.0, 0.0], EAST)], others].concat(), 20);
+            assert_eq!(Interaction::of(&window, 0), expected, "{window:?}");
+            assert_eq!(Interaction::of(&window.without_future(), 0), []);
+        }
     }
 }

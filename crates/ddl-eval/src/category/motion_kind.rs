@@ -5,10 +5,7 @@ use std::fmt;
 use ddl_data::{HORIZON, OBSERVED, Position, TIME_STEP, WINDOW};
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    metric::displacement::distance,
-    vector::{minus, turn},
-};
+use crate::metric::displacement::{distance, minus, turn};
 
 /// Who stays this near to the first position stands (m).
 const STANDING: f64 = 1.0;
@@ -160,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn who_walks_a_circle_does_not_stand() {
+    fn a_circle_is_no_standing_and_other_tracks_have_no_kind() {
         let circle: Vec<Position> = (0..WINDOW)
             .map(|t| {
                 let (sin, cos) = (t as f64 / (WINDOW - 1) as f64 * std::f64::consts::TAU).sin_cos();
@@ -168,14 +165,9 @@ mod tests {
             })
             .collect();
         assert_eq!(MotionKind::of(&circle), Some(TurningLeft));
-    }
-
-    #[test]
-    fn other_tracks_have_no_kind() {
-        assert_eq!(MotionKind::of(&track([0.5, 0.0], [0.5, 0.0])[1..]), None);
-        let mut broken = track([0.5, 0.0], [0.5, 0.0]);
+        assert_eq!(MotionKind::of(&circle[1..]), None);
+        let mut broken = circle;
         broken[10][1] = f64::NAN;
         assert_eq!(MotionKind::of(&broken), None);
-        assert_eq!(MotionKind::of(&[]), None);
     }
 }

@@ -45,11 +45,6 @@ impl TrajectoryType {
         Self::NonInteracting,
     ];
 
-    /// The type of pedestrian `i`; `None` for windows without a future.
-    pub fn of(window: &Window, i: usize) -> Option<Self> {
-        Some(Self::with_interactions(window, i)?.0)
-    }
-
     /// The type of pedestrian `i` with the kinds of its interaction, which only type III has.
     pub fn with_interactions(window: &Window, i: usize) -> Option<(Self, Vec<Interaction>)> {
         let end = window.end(i)?;
@@ -84,51 +79,36 @@ impl fmt::Display for TrajectoryType {
 
 #[cfg(test)]
 mod tests {
-    use TrajectoryType::{Interacting, Linear, NonInteracting, Static};
+    use TrajectoryType::{Linear, NonInteracting, Static};
     use ddl_data::Position;
 
     use super::*;
     use crate::fixture::of_tracks;
 
     /// 0.5 m a frame along x, and `aside` a frame along y after the eighth.
-    fn turning(start: Position, aside: f64) -> Vec<Position> {
-        let at = |t: i32| {
-            [
-                start[0] + 0.5 * f64::from(t),
-                start[1] + aside * f64::from((t - 7).max(0)),
-            ]
-        };
+    fn turning(aside: f64) -> Vec<Position> {
+        let at = |t: i32| [0.5 * f64::from(t), aside * f64::from((t - 7).max(0))];
         (0..20).map(at).collect()
     }
 
     #[test]
     fn each_type_by_hand() {
-        let of = |tracks| TrajectoryType::of(&of_tracks(tracks), 0).unwrap();
+        let of = |tracks| {
+            TrajectoryType::with_interactions(&of_tracks(tracks), 0)
+                .unwrap()
+                .0
+        };
         // 19 steps of 5 cm are 0.95 m, of 6 cm 1.14 m.
         let slow = |step: f64| (0..20).map(|t| [step * f64::from(t), 0.0]).collect();
         assert_eq!(of(vec![slow(0.05)]), Static);
         assert_eq!(of(vec![slow(0.06)]), Linear);
         // 12 steps aside of 4 cm are 0.48 m, of 5 cm 0.6 m.
-        assert_eq!(of(vec![turning([0.0, 0.0], 0.04)]), Linear);
-        assert_eq!(of(vec![turning([0.0, 0.0], 0.05)]), NonInteracting);
+        assert_eq!(of(vec![turning(0.04)]), Linear);
+        assert_eq!(of(vec![turning(0.05)]), NonInteracting);
         // Who comes back to where it began is static, however far it went.
         let back = (0..20)
             .map(|t: i32| [0.5 * f64::from(10 - (t - 10).abs()), 0.0])
             .collect();
         assert_eq!(of(vec![back]), Static);
-    }
-
-    #[test]
-    fn who_turns_with_somebody_ahead_or_beside_it_interacts() {
-        let with = |aside: f64, other: Position| {
-            let tracks = vec![turning([0.0, 0.0], aside), turning(other, aside)];
-            TrajectoryType::with_interactions(&of_tracks(tracks), 0).unwrap()
-        };
-        let leader = vec![Interaction::LeaderFollower];
-        assert_eq!(with(0.1, [2.0, 0.2]), (Interacting, leader));
-        let group = vec![Interaction::Group];
-        assert_eq!(with(0.1, [0.0, 0.7]), (Interacting, group));
-        assert_eq!(with(0.1, [-2.0, 0.0]), (NonInteracting, vec![]));
-        assert_eq!(with(0.0, [2.0, 0.0]), (Linear, vec![]));
     }
 }

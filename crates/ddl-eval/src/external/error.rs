@@ -9,21 +9,18 @@ use crate::error::{EvaluationError, ForecastError, ForecastShapeError, MeasureEr
 /// Forecasts of another program cannot be read, matched or scored.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
+#[expect(missing_docs, reason = "the messages say what they mean")]
 pub enum ExternalError {
-    /// The file cannot be opened.
     #[error("cannot read {}: {source}", path.display())]
     File {
         path: PathBuf,
         source: std::io::Error,
     },
-    /// Reading stopped, or writing failed.
     #[error("{origin}: {source}")]
     Io {
         origin: String,
         source: std::io::Error,
     },
-    /// A line is wrong.
     #[error("{origin}, line {line}{}: {problem}", field.as_deref().map(|f| format!(", {f}")).unwrap_or_default())]
     Line {
         origin: String,
@@ -31,7 +28,6 @@ pub enum ExternalError {
         field: Option<String>,
         problem: String,
     },
-    /// Pedestrians of the windows that the file does not forecast.
     #[error(
         "{origin} forecasts {} of the {pedestrians} walkers in the windows; {missing} are missing, the first of them \
          {}; forecast them too, or score the intersection alone",
@@ -43,7 +39,6 @@ pub enum ExternalError {
         pedestrians: usize,
         first: Vec<String>,
     },
-    /// Forecasts of pedestrians that are in none of the windows.
     #[error(
         "{origin}: {unknown} of {forecasts} forecasts are of nobody in the windows, the first of {}; {hint}",
         first.join(", ")
@@ -55,7 +50,6 @@ pub enum ExternalError {
         first: Vec<String>,
         hint: String,
     },
-    /// The forecasts begin elsewhere than their pedestrians stand.
     #[error(
         "{origin}: half of the forecasts begin {metres:.1} m or more from the walker's last observed position; {hint}"
     )]
@@ -64,7 +58,6 @@ pub enum ExternalError {
         metres: f64,
         hint: &'static str,
     },
-    /// Two windows end their observation at the same frame of the same recording.
     #[error(
         "two windows of `{recording}` are observed until frame {observed_until}: give the windows of one rule"
     )]
@@ -72,26 +65,21 @@ pub enum ExternalError {
         recording: String,
         observed_until: i64,
     },
-    /// The protocol `published` was asked for.
     #[error(
         "forecasts of a file cannot be measured under the protocol `published`: there the goal is chosen with the \
          TRUE end inside the forecaster, before it forecasts; a file's hypotheses are scored as they are, so ask for \
          `fair` or `single`"
     )]
     Published,
-    /// What was read does not make a forecast.
     #[error("{origin}: {source}")]
     Shape {
         origin: String,
         source: ForecastShapeError,
     },
-    /// The forecasts break the rules of the protocol.
     #[error(transparent)]
     Forecast(#[from] ForecastError),
-    /// The forecasts cannot be scored.
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
-    /// A baseline cannot be measured.
     #[error(transparent)]
     Measure(#[from] MeasureError),
 }

@@ -43,17 +43,14 @@ impl PedestrianForecast {
     }
 }
 
-/// A forecast that has found its pedestrian.
 pub(super) struct Slot {
     pub(super) forecast: PedestrianForecast,
     pub(super) line: usize,
     /// Whether it was made of this pedestrian for its own sake: always, but for neighbours of TrajNet++.
     primary: bool,
-    /// Line of another forecast of this neighbour that says otherwise.
     pub(super) conflict: Option<usize>,
 }
 
-/// Windows waiting for the forecasts of a file.
 #[derive(Default)]
 pub(super) struct ExpectedForecasts<'a> {
     pub(super) origin: String,
@@ -63,9 +60,7 @@ pub(super) struct ExpectedForecasts<'a> {
     by_last: HashMap<(usize, i64), usize>,
     /// `[window][pedestrian]`.
     pub(super) slots: Vec<Vec<Option<Slot>>>,
-    /// K and the line that decided it.
     hypotheses: Option<(usize, usize)>,
-    /// Whether there are goals, and the line that decided it.
     goals: Option<(bool, usize)>,
     pub(super) forecasts: usize,
     pub(super) unknown: Unknown,
@@ -107,7 +102,6 @@ impl<'a> ExpectedForecasts<'a> {
         self.recordings.iter().position(|&name| name == recording)
     }
 
-    /// The window that is observed until a frame of a recording.
     pub(super) fn window(&self, recording: usize, observed_until: i64) -> Option<usize> {
         self.by_last.get(&(recording, observed_until)).copied()
     }
@@ -169,7 +163,6 @@ impl<'a> ExpectedForecasts<'a> {
         Ok(())
     }
 
-    /// What must hold of every forecast, also of those of nobody.
     fn check(&mut self, forecast: &PedestrianForecast, line: usize) -> Result<(), Wrong> {
         let found = forecast.hypotheses();
         if found == 0 {

@@ -2,15 +2,12 @@
 
 use super::pedestrian_key::{PedestrianKey, named};
 
-/// How many are named in a message.
 pub(super) const NAMED: usize = 3;
 
-/// Forecasts that belong to no pedestrian of the windows.
 #[derive(Debug, Default)]
 pub(super) struct Unknown {
     pub(super) count: usize,
     pub(super) first: Vec<String>,
-    /// The first recordings that the windows do not have.
     recordings: Vec<String>,
     /// How many would fit if the frame named were the first of the window.
     as_first_frame: usize,

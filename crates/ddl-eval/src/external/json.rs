@@ -8,8 +8,7 @@ use serde_json::{Number, Value};
 use serde_path_to_error::{Path, Segment};
 
 use super::error::ExternalProblem;
-use super::field::{self, quoted};
-use super::lines::{Wrong, in_field, whole_line};
+use super::lines::{self, Wrong, in_field, quoted, whole_line};
 
 /// Words for numbers that JSON does not have and several programs write all the same.
 const NO_NUMBERS: [&str; 3] = ["NaN", "-Infinity", "Infinity"];
@@ -23,7 +22,7 @@ impl TryFrom<Number> for Whole {
     type Error = &'static str;
 
     fn try_from(number: Number) -> Result<Self, Self::Error> {
-        let whole = number.as_i64().or_else(|| field::whole(number.as_f64()?));
+        let whole = number.as_i64().or_else(|| lines::whole(number.as_f64()?));
         whole.map(Self).ok_or("no whole number")
     }
 }
@@ -78,7 +77,6 @@ fn read_with_path<T: DeserializeOwned>(text: &str) -> Result<T, Wrong> {
     })
 }
 
-/// That the value at a path is not what it must be there.
 fn problem(value: &Value, path: &Path) -> Option<ExternalProblem> {
     let (mut found, mut name, mut depth) = (value, "", 0);
     for segment in path {

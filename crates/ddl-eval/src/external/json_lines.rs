@@ -7,9 +7,8 @@ use serde::{Deserialize, Deserializer};
 
 use super::error::{ExternalError, ExternalProblem};
 use super::expected::{ExpectedForecasts, PedestrianForecast};
-use super::field::within_bounds;
 use super::json::{self, Whole};
-use super::lines::{Lines, Wrong, in_field};
+use super::lines::{Lines, Wrong, in_field, within_bounds};
 use super::pedestrian_key::PedestrianKey;
 use crate::Protocol;
 

@@ -1,11 +1,17 @@
-//! A file, one line at a time, however large it is.
+//! A file, one line at a time, however large it is, and what its fields may hold.
 
 use std::io::{BufRead, Read as _};
+
+use ddl_data::{COORDINATE_LIMIT, Position};
 
 use super::error::{ExternalError, ExternalProblem};
 
 /// Longest line, bytes: 20 hypotheses with certificates take twenty times less.
 const LIMIT: usize = 4 << 20;
+/// Longest piece of a file that an error message quotes, in characters.
+const QUOTED: usize = 40;
+/// Whole numbers are below this in size: exact in an `f64`.
+const WHOLE_LIMIT: f64 = 9_007_199_254_740_992.0;
 
 /// The lines of a file that hold something, with their numbers.
 pub(super) struct Lines<R> {
@@ -79,5 +85,28 @@ pub(super) fn wrong(origin: &str, line: usize, (field, problem): Wrong) -> Exter
         line,
         field,
         problem: problem.to_string(),
+    }
+}
+
+pub(super) fn whole(number: f64) -> Option<i64> {
+    (number.fract() == 0.0 && number.abs() < WHOLE_LIMIT).then_some(number as i64)
+}
+
+/// Refuses a position beyond every map, with which later computations would end in infinities.
+pub(super) fn within_bounds(
+    position: Position,
+    field: impl FnOnce() -> String,
+) -> Result<(), Wrong> {
+    let far = position.into_iter().find(|c| c.abs() > COORDINATE_LIMIT);
+    match far {
+        None => Ok(()),
+        Some(found) => Err(in_field(field(), ExternalProblem::TooFar { found })),
+    }
+}
+
+pub(super) fn quoted(text: &str) -> String {
+    match text.char_indices().nth(QUOTED) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
     }
 }

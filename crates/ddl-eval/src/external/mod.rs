@@ -7,16 +7,13 @@
 
 mod error;
 mod expected;
-mod field;
 mod hint;
 mod json;
 mod json_lines;
 mod lines;
 mod matched;
 mod measure;
-mod numbering;
 mod pedestrian_key;
-mod place;
 mod table;
 mod table_rows;
 mod trajnet;

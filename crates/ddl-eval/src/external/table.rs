@@ -5,12 +5,10 @@ use std::io::BufRead;
 use ddl_data::{HORIZON, PedestrianName, Position};
 
 use super::error::{ExternalError, ExternalProblem};
-use super::field::{self, quoted, within_bounds};
-use super::lines::{Lines, Wrong, in_field, whole_line};
-use super::numbering::HypothesisNumbering;
+use super::lines::{self, Lines, Wrong, in_field, quoted, whole_line, within_bounds};
 
 use super::expected::{ExpectedForecasts, PedestrianForecast};
-use super::pedestrian_key::{PedestrianKey, in_short};
+use super::pedestrian_key::{HypothesisNumbering, PedestrianKey, in_short};
 use super::table_rows::{AtLine, Fields, TableRows};
 use crate::Protocol;
 
@@ -233,7 +231,7 @@ impl PedestrianRows {
 
 fn whole(text: &str, name: &'static str) -> Result<i64, Wrong> {
     let number = text.parse().ok();
-    let number = number.or_else(|| field::whole(text.parse().ok()?));
+    let number = number.or_else(|| lines::whole(text.parse().ok()?));
     number.ok_or_else(|| {
         let (expected, found) = ("a whole number", format!("{:?}", quoted(text)));
         in_field(name, ExternalProblem::Kind { expected, found })

@@ -7,7 +7,6 @@ use csv_core::{ReadRecordResult, Reader};
 use super::error::{ExternalError, ExternalProblem};
 use super::lines::{Lines, Wrong, whole_line};
 
-/// A value with the number of its line.
 pub(super) type AtLine<T> = (usize, T);
 
 /// The rows of a table. Each is taken from one line, so that an open quote does not swallow the file.

@@ -10,11 +10,9 @@ use std::io::BufRead;
 
 use super::error::{ExternalError, ExternalProblem};
 use super::expected::{ExpectedForecasts, PedestrianForecast};
-use super::field::within_bounds;
 use super::json::{self, Whole};
-use super::lines::{Lines, Wrong, in_field, whole_line};
-use super::numbering::HypothesisNumbering;
-use super::pedestrian_key::{PedestrianKey, frames_ahead, in_short};
+use super::lines::{Lines, Wrong, in_field, whole_line, within_bounds};
+use super::pedestrian_key::{HypothesisNumbering, PedestrianKey, frames_ahead, in_short};
 use crate::Protocol;
 use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
 use serde::Deserialize;
@@ -52,14 +50,11 @@ struct NdjsonTrack {
     scene_id: Option<Whole>,
 }
 
-/// What one pedestrian of a scene is forecast to do: for each prediction number, frames and positions.
 type Predictions = BTreeMap<i64, Vec<(i64, Position)>>;
 
-/// The scene whose tracks are being read.
 struct OpenScene<'a> {
     scene: NdjsonScene,
     window: Option<&'a Window>,
-    /// By pedestrian, with the line of the first row.
     tracks: BTreeMap<PedestrianName, (usize, Predictions)>,
 }
 
@@ -217,7 +212,6 @@ impl<'w, 'a> Reading<'w, 'a> {
         }
     }
 
-    /// Hands over the pedestrians of the open scene, whose tracks are complete.
     fn close(&mut self) -> Result<(), (usize, Wrong)> {
         let Some(open) = self.open.take() else {
             return Ok(());
@@ -241,7 +235,6 @@ impl<'w, 'a> Reading<'w, 'a> {
         Ok(())
     }
 
-    /// The last observed frame of a scene that is no window, for messages.
     fn unknown_last(&self, scene: &NdjsonScene) -> i64 {
         scene.e.saturating_sub(HORIZON as i64 * self.step())
     }
@@ -266,7 +259,6 @@ fn wrong_end(window: &Window, scene: &NdjsonScene) -> Wrong {
     in_field(format!("scene {}", scene.id), problem)
 }
 
-/// All hypotheses of a pedestrian, by their numbers.
 fn forecast(
     predictions: Predictions,
     window: Option<&Window>,

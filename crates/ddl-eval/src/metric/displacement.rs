@@ -6,18 +6,29 @@
 //! ADE_k = 1/T sum_t |p_k(t) - p(t)|        FDE_k = |p_k(T) - p(T)|        metres
 //! minADE_K = min_k ADE_k    minFDE_K = min_k FDE_k    FDE@minADE_K = FDE_k* with k* = argmin_k ADE_k
 //! ADE@minFDE_K = ADE_k* with k* = argmin_k FDE_k
+//! expected ADE = sum_k w_k ADE_k            most likely ADE = ADE_k* with k* = argmax_k w_k (of equals, the first)
+//! JADE = min_k 1/N sum_i ADE_{i,k}          JFDE = min_k 1/N sum_i FDE_{i,k}        one index for everybody
+//! goal FDE = min_k |g_k - p(T)|             with the goals g_k
 //! ```
 //!
 //! The two minima are independent; STAR's and DDL's code prints `FDE@minADE`, works that choose by the end (`PECNet`,
-//! Y-Net) `ADE@minFDE`.
+//! Y-Net) `ADE@minFDE`. The expected error is that of a hypothesis drawn with its weight; the most likely hypothesis is
+//! not the one of the protocol `single`, the [representative](Forecast::representative) one.
+//!
+//! JADE and JFDE are never smaller than the mean of the pedestrians' own minima, and a fair question only to models
+//! whose hypothesis `k` is one future of the scene. The averages of "Joint Metrics Matter" are over scenes; here a
+//! scene counts with its number of pedestrians, so that JADE and minADE are means over the same people. The goal FDE is
+//! the error of the goal estimator alone, and the least that a model which converges to its goals can have; the goal of
+//! a pedestrian still under way lies beyond the 12th frame, and is compared with the last true position all the same.
 //!
 //! # References
 //! Pellegrini et al., "You'll never walk alone", ICCV 2009 (displacement errors); Gupta et al.,
-//! "Social GAN", CVPR 2018 (best of K); DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section III-A.
+//! "Social GAN", CVPR 2018 (best of K); DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section III-A; Weng et al.,
+//! "Joint Metrics Matter", ICCV 2023.
 
 use ddl_data::Position;
 
-use crate::Scene;
+use crate::{Forecast, Scene};
 
 /// Euclidean distance of two positions, metres.
 pub fn distance(a: Position, b: Position) -> f64 {
@@ -122,18 +133,58 @@ impl DisplacementErrors {
     }
 }
 
-/// Index of the least of some numbers; of equals, the first.
 fn least(errors: &[f64]) -> usize {
     (1..errors.len()).fold(0, |best, k| if errors[k] < errors[best] { k } else { best })
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// `sum_k w_k e_k` of pedestrian `i`, metres, for its errors `e`, one a hypothesis.
+///
+/// # Panics
+/// When `i` is out of range or there are more errors than hypotheses.
+pub fn expected(forecast: &Forecast, i: usize, errors: &[f64]) -> f64 {
+    let weighted = errors.iter().enumerate();
+    weighted
+        .map(|(k, error)| forecast.weight(i, k) * error)
+        .sum()
+}
 
-    #[test]
-    #[should_panic(expected = "a forecast of 1 positions cannot be compared with 2 true ones")]
-    fn lengths_must_agree() {
-        let _ = average_displacement(&[[0.0, 0.0]], &[[0.0, 0.0], [1.0, 0.0]]);
-    }
+/// JADE of a scene, metres.
+pub fn joint_ade(errors: &DisplacementErrors) -> f64 {
+    least_scene_mean(errors, DisplacementErrors::ade)
+}
+
+/// JFDE of a scene, metres; its hypothesis may differ from that of [`joint_ade`].
+pub fn joint_fde(errors: &DisplacementErrors) -> f64 {
+    least_scene_mean(errors, DisplacementErrors::fde)
+}
+
+fn least_scene_mean(
+    errors: &DisplacementErrors,
+    of: fn(&DisplacementErrors, usize) -> &[f64],
+) -> f64 {
+    let n = errors.pedestrians();
+    (0..errors.hypotheses())
+        .map(|k| (0..n).map(|i| of(errors, i)[k]).sum::<f64>() / n as f64)
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Distance of the nearest goal of pedestrian `i` from the true end, metres; `None` without goals.
+pub fn goal_fde(scene: &Scene<'_>, i: usize) -> Option<f64> {
+    let end = scene.window().end(i)?;
+    (0..scene.hypotheses())
+        .map(|k| scene.forecast().goal(i, k).map(|goal| distance(goal, end)))
+        .try_fold(f64::INFINITY, |least, d| d.map(|d| least.min(d)))
+}
+
+pub(crate) fn minus(a: Position, b: Position) -> Position {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+/// Angle from one direction to another, degrees; positive to the left, from x to y.
+pub(crate) fn turn(from: Position, to: Position) -> f64 {
+    let (cross, dot) = (
+        from[0] * to[1] - from[1] * to[0],
+        from[0] * to[0] + from[1] * to[1],
+    );
+    cross.atan2(dot).to_degrees()
 }

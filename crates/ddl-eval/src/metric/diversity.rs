@@ -56,26 +56,3 @@ impl Diversity {
         })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use approx::assert_relative_eq;
-
-    use super::*;
-    use crate::fixture::{forecast, walk, window};
-
-    /// Three hypotheses from one place: standing, 0.3 m a frame along x, 0.4 m a frame along y. They
-    /// part by 0.3, 0.4 and 0.5 m a frame: 0.4 m on average, times a mean of 6.5 frames, 12 at the end.
-    #[test]
-    fn pairs_of_a_right_triangle() {
-        let still = [0.0, 0.0];
-        let window = window(&[still], &[still]);
-        let three = [still, [0.3, 0.0], [0.0, 0.4]].map(|step| walk(still, step));
-        let three = forecast(1, &three);
-        let diversity = Diversity::of(&Scene::new(&window, &three).unwrap(), 0).unwrap();
-        assert_relative_eq!(diversity.path, 0.4 * 6.5, epsilon = 1e-12);
-        assert_relative_eq!(diversity.ends, 0.4 * 12.0, epsilon = 1e-12);
-        let one = forecast(1, &[walk(still, still)]);
-        assert_eq!(Diversity::of(&Scene::new(&window, &one).unwrap(), 0), None);
-    }
-}

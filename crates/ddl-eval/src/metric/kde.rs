@@ -63,7 +63,6 @@ pub fn log_density(points: &[Position], weights: &[f64], at: Position) -> f64 {
     mixture_log_density((points, weights), bandwidth, at)
 }
 
-/// `ln f(at)` of a mixture of bells of one shape about weighted points.
 fn mixture_log_density(
     (points, weights): (&[Position], &[f64]),
     bandwidth: PrincipalAxes,

@@ -1,4 +1,4 @@
-//! One metric a file, each with its formula, unit and source.
+//! The metrics, each with its formula, unit and source.
 //!
 //! All are functions of a [`Scene`](crate::Scene): N pedestrians, K hypotheses, 12 frames, metres.
 
@@ -7,12 +7,7 @@ pub mod calibration;
 pub mod collision;
 pub mod displacement;
 pub mod diversity;
-pub mod expected;
 pub mod gaussian;
-pub mod goal;
-pub mod joint;
 pub mod kde;
-pub mod miss;
 pub mod region;
 pub mod stability;
-pub mod true_neighbour_collision;

@@ -19,11 +19,8 @@
 use ddl_data::Position;
 use serde::{Deserialize, Serialize};
 
-use super::displacement::distance;
-use crate::{
-    Scene,
-    vector::{minus, turn},
-};
+use super::displacement::{distance, minus, turn};
+use crate::Scene;
 
 /// Within this distance a pedestrian is at the goal, and a shorter step has no direction; metres.
 pub const AT_GOAL: f64 = 1e-3;
@@ -149,25 +146,5 @@ mod tests {
             assert_relative_eq!(judged.end_distance, end_distance, epsilon = 1e-12);
             assert_relative_eq!(judged.largest_turn, largest_turn, epsilon = 1e-9);
         }
-    }
-
-    #[test]
-    fn shares_and_means_are_over_rollouts() {
-        let rollout = |decreasing, largest_turn, certified| RolloutStability {
-            decreasing,
-            end_distance: largest_turn / 100.0,
-            largest_turn,
-            certified,
-        };
-        let first = rollout(true, 0.0, Some(true));
-        let mean = StabilityScores::mean(&[first, rollout(false, 120.0, Some(false))]).unwrap();
-        assert_relative_eq!(mean.decreasing, 0.5);
-        assert_relative_eq!(mean.end_distance, 0.6);
-        assert_relative_eq!(mean.largest_turn, 60.0);
-        assert_relative_eq!(mean.reversing, 0.5);
-        assert_eq!(mean.certified, Some(0.5));
-        let unjudged = StabilityScores::mean(&[first, rollout(true, 0.0, None)]).unwrap();
-        assert_eq!(unjudged.certified, None);
-        assert_eq!(StabilityScores::mean(&[]), None);
     }
 }

@@ -42,7 +42,6 @@ pub fn mean_interval(folds: &[&[BlockErrors]], metric: BlockMetric) -> Option<In
     interval(&folds)
 }
 
-/// A sum over some pedestrians.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PartialSum {
     pub(super) sum: f64,
@@ -92,7 +91,6 @@ pub(super) fn generator() -> ChaCha8Rng {
     ChaCha8Rng::seed_from_u64(SEED)
 }
 
-/// Mean error of the pedestrians of some blocks; `None` without any.
 pub(super) fn mean(parts: impl Iterator<Item = PartialSum>) -> Option<f64> {
     let (sum, pedestrians) = parts.fold((0.0, 0), |(sum, count), part| {
         (sum + part.sum, count + part.pedestrians)
@@ -146,15 +144,5 @@ mod tests {
         assert_relative_eq!(two.mean, 1.5, epsilon = 1e-12);
         let ratio = (one.high - one.low) / (two.high - two.low);
         assert_relative_eq!(ratio, std::f64::consts::SQRT_2, epsilon = 0.1);
-    }
-
-    #[test]
-    fn few_blocks_have_no_interval() {
-        assert_eq!(mean_interval(&[], BlockMetric::MinAde), None);
-        let fold = blocks(&[0.1; 10]);
-        assert!(mean_interval(&[&fold], BlockMetric::MinAde).is_some());
-        for few in [&fold[..9], &[]] {
-            assert_eq!(mean_interval(&[&fold, few], BlockMetric::MinAde), None);
-        }
     }
 }

@@ -124,14 +124,6 @@ mod tests {
         assert_relative_eq!(compared.p_value, 2.0 / 1024.0, epsilon = 1.5e-3);
     }
 
-    /// Differences +1, -1, +1, -1: their mean is 0, which every pattern reaches.
-    #[test]
-    fn differences_that_cancel_are_chance() {
-        let compared = compare(&[1.0, 0.0].repeat(5), &[0.0, 1.0].repeat(5));
-        assert_relative_eq!(compared.p_value, 1.0);
-        assert!(compared.difference.low < 0.0 && compared.difference.high > 0.0);
-    }
-
     #[test]
     fn swapping_the_two_changes_the_sign_alone() {
         let (a, b) = ([0.2, 0.4, 0.3, 0.6, 0.1], [0.3, 0.3, 0.5, 0.6, 0.4]);
@@ -150,8 +142,7 @@ mod tests {
         assert!(
             error
                 .to_string()
-                .contains("block 1 of a with 4 pedestrians against"),
-            "{error}"
+                .contains("block 1 of a with 4 pedestrians against")
         );
         let error = paired_difference(&[&a], &[&b[..1]], BlockMetric::MinFde).unwrap_err();
         assert!(error.to_string().contains("2 blocks against 1"), "{error}");

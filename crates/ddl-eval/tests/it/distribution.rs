@@ -22,40 +22,22 @@ struct Case {
     eigenvalue: f64,
 }
 
-fn cases() -> Vec<Case> {
-    let text = include_str!("../reference/distribution.json");
-    serde_json::from_str::<Reference>(text).unwrap().cases
-}
-
 #[test]
-fn densities_agree_with_scipy() {
-    let cases = cases();
+fn densities_and_distances_in_deviations_agree_with_scipy_and_numpy() {
+    let text = include_str!("../reference/distribution.json");
+    let Reference { cases } = serde_json::from_str(text).unwrap();
     assert_eq!(cases.len(), 21);
+    let agree = |found: f64, expected: f64| {
+        assert_relative_eq!(found, expected, epsilon = 1e-10, max_relative = 1e-10);
+    };
     for case in cases {
         let found = log_density(&case.points, &case.weights, case.at);
-        assert_relative_eq!(
-            found,
-            case.log_density,
-            epsilon = 1e-10,
-            max_relative = 1e-10
-        );
-    }
-}
-
-#[test]
-fn distances_in_deviations_agree_with_numpy() {
-    for case in cases() {
+        agree(found, case.log_density);
         let moments = Moments::of(&case.points, &case.weights);
         let axes = moments.covariance.principal_axes();
         let axes = axes.raised_to(LEAST_DEVIATION * LEAST_DEVIATION);
         let off = [case.at[0] - moments.mean[0], case.at[1] - moments.mean[1]];
-        let found = axes.mahalanobis_squared(off).sqrt();
-        assert_relative_eq!(
-            found,
-            case.mahalanobis,
-            epsilon = 1e-10,
-            max_relative = 1e-10
-        );
-        assert_relative_eq!(axes.variances[0], case.eigenvalue, max_relative = 1e-10);
+        agree(axes.mahalanobis_squared(off).sqrt(), case.mahalanobis);
+        agree(axes.variances[0], case.eigenvalue);
     }
 }

@@ -8,29 +8,6 @@ fn constant(at: &[Position]) -> Vec<Position> {
 }
 
 #[test]
-fn layout_is_pedestrian_hypothesis_frame() {
-    let ends = [[0.0, 1.0], [0.0, 2.0], [0.0, 3.0], [0.0, 4.0]];
-    let forecast = Forecast::new(
-        2,
-        2,
-        constant(&ends),
-        vec![0.25, 0.75, 0.5, 0.5],
-        Some(ends.to_vec()),
-    )
-    .unwrap();
-    assert_eq!(forecast.hypothesis(1, 0), &[[0.0, 3.0]; HORIZON]);
-    assert_eq!(forecast.goal(0, 1), Some([0.0, 2.0]));
-    assert_eq!((forecast.most_likely(0), forecast.most_likely(1)), (1, 0));
-    let single = forecast.single();
-    assert_eq!((single.pedestrians(), single.hypotheses()), (2, 1));
-    assert_eq!(single.hypothesis(0, 0), &[[0.0, 2.0]; HORIZON]);
-    assert_eq!(single.goal(1, 0), Some([0.0, 3.0]));
-    assert_eq!(single.single(), single);
-    let without = Forecast::equally_likely(1, 2, constant(&ends[..2])).unwrap();
-    assert!(!without.single().has_goals());
-}
-
-#[test]
 fn wrong_shapes_and_weights_are_named() {
     let one = constant(&[[0.0, 0.0]]);
     let twice = constant(&[[0.0, 0.0], [0.0, 0.0]]);
@@ -58,25 +35,28 @@ fn wrong_shapes_and_weights_are_named() {
 }
 
 #[test]
-fn certificates_are_one_a_hypothesis_and_follow_it() {
+fn layout_is_pedestrian_hypothesis_frame_and_the_heavier_of_two_stays() {
     let ends = [[0.0, 1.0], [0.0, 2.0], [0.0, 3.0], [0.0, 4.0]];
-    let weights = vec![0.25, 0.75, 0.5, 0.5];
-    let forecast = Forecast::new(2, 2, constant(&ends), weights, None).unwrap();
-    assert!(!forecast.has_certificates());
-    assert_eq!(forecast.certified(1, 1), None);
-    assert!(!forecast.single().has_certificates());
+    let (weights, goals) = (vec![0.25, 0.75, 0.5, 0.5], Some(ends.to_vec()));
+    let forecast = Forecast::new(2, 2, constant(&ends), weights, goals).unwrap();
+    assert_eq!(forecast.hypothesis(1, 0), &[[0.0, 3.0]; HORIZON]);
+    assert_eq!(forecast.goal(0, 1), Some([0.0, 2.0]));
+    assert_eq!((forecast.most_likely(0), forecast.most_likely(1)), (1, 0));
+    assert_eq!(forecast.single().certified(1, 0), None);
     for found in [0, 3, 5] {
         let refused = forecast.clone().with_certified(vec![true; found]);
         let complaint = refused.unwrap_err().to_string();
         let expected = "`certified` must hold 4 entries (pedestrian, hypothesis), found";
         assert_eq!(complaint, format!("{expected} {found}"));
     }
-    let verdicts = [true, false, true, false];
-    let forecast = forecast.with_certified(verdicts.to_vec()).unwrap();
-    let certified = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(i, k)| forecast.certified(i, k));
-    assert_eq!(certified, verdicts.map(Some));
-    // of two the heavier: hypothesis 1 of the first pedestrian and 0 of the second
-    let single = forecast.single();
+    let verdicts = vec![true, false, true, false];
+    let single = forecast.with_certified(verdicts).unwrap().single();
+    assert_eq!((single.pedestrians(), single.hypotheses()), (2, 1));
+    assert_eq!(single.hypothesis(0, 0), &[[0.0, 2.0]; HORIZON]);
+    assert_eq!(single.goal(1, 0), Some([0.0, 3.0]));
     let kept = (single.certified(0, 0), single.certified(1, 0));
     assert_eq!(kept, (Some(false), Some(true)));
+    assert_eq!(single.single(), single);
+    let without = Forecast::equally_likely(1, 2, constant(&ends[..2])).unwrap();
+    assert!(!without.single().has_goals());
 }

@@ -2,7 +2,7 @@
 
 use ddl_data::{PedestrianId, Position, Rotation, WINDOW, Window};
 use ddl_eval::{
-    Category, EvaluationError, Forecast, Protocol, Scores, WindowProblem,
+    Category, EvaluationError, Forecast, Scores, WindowProblem,
     metric::{collision::closest_approach, displacement::distance},
 };
 use proptest::{collection::vec, prelude::*};
@@ -302,26 +302,5 @@ proptest! {
         // A relative step is shorter than 160 m: 1/800 of it on either side of a sample.
         prop_assert!(exact <= sampled + 1e-12 && sampled <= exact + 0.2, "{exact} {sampled}");
         prop_assert!(all_agree(&[exact], &[closest_approach(&b, &a)]));
-    }
-
-    /// The single protocol keeps the representative hypothesis and nothing else.
-    #[test]
-    fn single_is_the_representative((window, forecast) in any_scene()) {
-        struct Fixed(Forecast);
-        impl ddl_eval::Forecaster for Fixed {
-            fn name(&self) -> String {
-                "fixed".to_owned()
-            }
-            fn forecast(&self, window: &Window) -> Result<Forecast, ddl_eval::ForecastError> {
-                assert!(!window.has_future(), "the future was shown");
-                Ok(self.0.clone())
-            }
-        }
-        let single = Protocol::Single.forecast(&Fixed(forecast.clone()), &[window]).unwrap();
-        for i in 0..forecast.pedestrians() {
-            let best = forecast.representative(i);
-            prop_assert_eq!(single[0].hypothesis(i, 0), forecast.hypothesis(i, best));
-            prop_assert_eq!(single[0].goal(i, 0), forecast.goal(i, best));
-        }
     }
 }

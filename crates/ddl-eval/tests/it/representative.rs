@@ -75,12 +75,6 @@ fn the_extremes() {
     assert_eq!(to_ends(&far[..1], &[1.0]).representative(0), 0);
 }
 
-#[test]
-#[should_panic(expected = "nothing has no medoid")]
-fn nothing_has_none() {
-    let _ = medoid(&[], |_, _| 0.0);
-}
-
 proptest! {
     /// No hypothesis has a smaller expected error, the heaviest least of all.
     #[test]

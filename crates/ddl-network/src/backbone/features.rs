@@ -1,13 +1,19 @@
-//! From what pedestrians see to features, whatever the network is made of.
+//! From what pedestrians see to features, whatever the network is made of, and from these and noise to what shapes a
+//! step.
 
+use crate::StarConfig;
 use crate::backend::{Backend, Memory};
-use crate::weights::Linear;
+use crate::config::NetworkFrame;
+use crate::weights::{Initial, Layout, Linear};
 use std::fmt::Debug;
+
+/// How much smaller the first weights of an output layer are that begins near L = I.
+const NEAR_NEUTRAL: f64 = 0.1;
 
 /// A network that turns what pedestrians see, time step by time step, into features for the output layer. Rollout, output
 /// layer, noise, dynamics and loss are shared by all. How one is added: the guide's chapter on extending.
 pub trait Backbone<B: Backend>: Debug + Send + Sync {
-    /// The output layer that it has declared: [`output_layer`](super::output_layer()).
+    /// The output layer that it has declared: [`output_layer`].
     fn output(&self) -> Linear;
 
     /// What everybody makes of the scene in whole time steps, before its own way is looked at.
@@ -30,4 +36,20 @@ pub trait Backbone<B: Backend>: Debug + Send + Sync {
         scene: &B::Tokens,
         seen: &B::Seen,
     ) -> B::Tokens;
+}
+
+/// Declares the output layer: features and noise to (a, b, c), or (x, y); in the pedestrian's own frame near L = I.
+pub fn output_layer(layout: &mut Layout, config: &StarConfig) -> Linear {
+    let inputs = (config.output_inputs() + config.noise_width) as usize;
+    let outputs = config.output_width() as usize;
+    let bound = 1.0 / (inputs as f64).sqrt();
+    let neutral = config.variant.dynamics() && config.frame == NetworkFrame::Goal;
+    let scale = if neutral { NEAR_NEUTRAL } else { 1.0 };
+    let weight = Initial::Uniform { bound, scale };
+    let bias = if neutral {
+        Initial::DrawnAway(vec![1.0, 0.0, 1.0])
+    } else {
+        Initial::Uniform { bound, scale: 1.0 }
+    };
+    layout.linear_beginning("output_layer", [inputs, outputs], weight, bias)
 }

@@ -1,7 +1,6 @@
 //! A small perceptron: what shapes a step depends on the goal offset and the observed motion, on nobody else.
 
-use super::features::Backbone;
-use super::output_layer::output_layer;
+use super::features::{Backbone, output_layer};
 use crate::StarConfig;
 use crate::backend::{Backend, Memory};
 use crate::config::NetworkFrame;

@@ -4,8 +4,7 @@
 //! attend to the neighbours and to the pedestrian's earlier tokens. Only the newest token's output is used, and earlier
 //! tokens never change: one query a step is computed, and keys and values of the past are cached.
 
-use super::features::Backbone;
-use super::output_layer::output_layer;
+use super::features::{Backbone, output_layer};
 use crate::StarConfig;
 use crate::backend::{Backend, Memory};
 use crate::config::NetworkFrame;
@@ -17,7 +16,6 @@ pub struct Star {
     frame: NetworkFrame,
     temporal_embedding: Linear,
     spatial_embedding: Linear,
-    /// Two encoders of some layers each.
     spatial: [Vec<EncoderLayer>; 2],
     temporal: [EncoderLayer; 2],
     fusion: Linear,
@@ -62,7 +60,6 @@ impl Star {
     }
 }
 
-/// A spatial encoder: its layers one after the other.
 fn spatial_encoder<B: Backend>(
     backend: &B,
     layers: &[EncoderLayer],

@@ -1,8 +1,7 @@
 //! The operations of a backbone by our own kernels, on the CPU in `f32`.
 
 use super::operations::{Backend, Mode};
-use super::rows::Rows;
-use super::tape::Tape;
+use super::rows::{Rows, Tape};
 use crate::Precision;
 use crate::kernel::{self, Buffer, Dropout, Dropouts, Remembered, Scenes};
 use crate::weights::{EncoderLayer, Layout, Linear};
@@ -65,7 +64,6 @@ impl Kernels {
 pub struct KernelBackend {
     kernels: Arc<Kernels>,
     mode: Mode,
-    /// Seed of the next dropout.
     seed: Cell<u64>,
     tape: Option<Tape>,
 }
@@ -74,7 +72,6 @@ pub struct KernelBackend {
 #[derive(Debug)]
 pub struct RowKeyValues {
     rows: Remembered,
-    /// None until the first query has given its share.
     gradient: RefCell<Option<Remembered>>,
 }
 
@@ -160,7 +157,6 @@ impl KernelBackend {
         rows
     }
 
-    /// The dropouts of a layer, each with a seed of its own; none outside training.
     fn dropouts(&self, layer: EncoderLayer) -> Dropouts {
         let [weights, attended, hidden, fed] = [0; 4].map(|_| self.dropout(layer.dropout));
         Dropouts {
@@ -363,30 +359,23 @@ mod tests {
         all.map(|dropout| dropout.seed).collect()
     }
 
-    /// Also from layer to layer of a pass, and the same ones in a pass of the same seed.
+    /// Also from layer to layer of a pass, and the same ones in a pass of the same seed; nothing is dropped without a
+    /// probability or outside training.
     #[test]
     fn the_four_dropouts_of_a_layer_have_distinct_seeds() {
-        let (kernels, layer) = layer(0.1);
-        let pass = |seed| {
-            let backend = KernelBackend::training(Arc::clone(&kernels), Mode::Train, seed);
-            (0..25)
-                .flat_map(|_| seeds(&backend, layer))
-                .collect::<Vec<u64>>()
+        let pass = |seed, dropout, mode| {
+            let (kernels, layer) = layer(dropout);
+            let backend = KernelBackend::training(kernels, mode, seed);
+            let layers = (0..25).flat_map(|_| seeds(&backend, layer));
+            layers.collect::<Vec<u64>>()
         };
-        let mut drawn = pass(7);
-        assert_eq!(drawn, pass(7));
-        assert_ne!(drawn, pass(8));
+        let mut drawn = pass(7, 0.1, Mode::Train);
+        assert_eq!(drawn, pass(7, 0.1, Mode::Train));
+        assert_ne!(drawn, pass(8, 0.1, Mode::Train));
         drawn.sort_unstable();
         drawn.dedup();
         assert_eq!(drawn.len(), 4 * 25);
-    }
-
-    #[test]
-    fn nothing_is_dropped_without_a_probability_or_outside_training() {
-        for (dropout, mode) in [(0.0, Mode::Train), (0.1, Mode::Evaluate)] {
-            let (kernels, layer) = layer(dropout);
-            let backend = KernelBackend::training(kernels, mode, 7);
-            assert!(seeds(&backend, layer).is_empty(), "{dropout} {mode:?}");
-        }
+        assert!(pass(7, 0.0, Mode::Train).is_empty());
+        assert!(pass(7, 0.1, Mode::Evaluate).is_empty());
     }
 }

@@ -1,8 +1,7 @@
 //! Size and constants of the forecasting network.
 
-use super::backbone_kind::BackboneKind;
 use super::range::{positive, require};
-use super::variant::Variant;
+use super::variant::{BackboneKind, Variant};
 use crate::NetworkError;
 use serde::{Deserialize, Serialize};
 
@@ -71,7 +70,6 @@ impl StarConfig {
         }
     }
 
-    /// Weights of an encoder layer, without biases and normalisation.
     fn layer_numbers(&self) -> i64 {
         self.model_width * (4 * self.model_width + 2 * self.feed_forward_width)
     }
@@ -183,51 +181,5 @@ impl StarConfig {
         positive("neighbour_box", self.neighbour_box)?;
         positive("sigma", self.sigma)?;
         positive("time_step", self.time_step)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn reports_name_the_variant_and_the_backbone() {
-        let name = |variant, backbone| {
-            StarConfig {
-                backbone,
-                ..StarConfig::recommended(variant)
-            }
-            .name()
-        };
-        assert_eq!(name(Variant::Full, BackboneKind::Star), "full");
-        assert_eq!(name(Variant::Star, BackboneKind::Star), "star");
-        assert_eq!(name(Variant::Full, BackboneKind::Perceptron), "perceptron");
-        assert_eq!(
-            name(Variant::NoGoalShift, BackboneKind::Perceptron),
-            "no-goal-shift, perceptron"
-        );
-    }
-
-    #[test]
-    fn published_sizes_are_accepted_and_broken_ones_named() {
-        let refused = |change: &dyn Fn(&mut StarConfig), said: &str| {
-            let mut config = StarConfig::published(Variant::Full);
-            config.check().unwrap();
-            change(&mut config);
-            let error = config.check().unwrap_err().to_string();
-            assert!(error.contains(said), "{error}");
-        };
-        refused(&|config| config.heads = 5, "heads = 5");
-        refused(
-            &|config| (config.model_width, config.heads) = (512, 512),
-            "heads = 512",
-        );
-        refused(
-            &|config| config.model_width = 65_536,
-            "at most 2^24 weights",
-        );
-        refused(&|config| config.spatial_layers = 65, "at most 64");
-        refused(&|config| config.spatial_dropout = 1.0, "in [0, 1)");
-        refused(&|config| config.sigma = 0.0, "sigma");
     }
 }

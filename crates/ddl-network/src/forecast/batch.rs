@@ -42,7 +42,6 @@ pub struct BatchRollout {
     pub factors: Option<Vec<[f64; 3]>>,
 }
 
-/// Checks goals, noise and shares, and lays the windows out.
 pub(super) fn batches<'a>(
     windows: &'a [Window],
     goals: &[Vec<Vec<Position>>],
@@ -108,7 +107,6 @@ impl ForecastBatch<'_> {
         self.goals.len().max(self.noise_vectors)
     }
 
-    /// The rollout, window by window, where the windows were.
     pub(super) fn windows_of(&self, rollout: &BatchRollout) -> Vec<WindowRollout> {
         let all = self.pedestrians();
         let hypotheses = rollout.hypotheses;
@@ -141,7 +139,6 @@ impl ForecastBatch<'_> {
     }
 }
 
-/// A point of the scene: where the first pedestrian was last observed.
 fn origin(window: &Window) -> Position {
     window.observed(0)[OBSERVED - 1]
 }

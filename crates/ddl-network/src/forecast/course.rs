@@ -2,9 +2,8 @@
 
 use super::batch::ForecastBatch;
 use super::motion_bounds::motion_bounds;
-use super::own_frame::OwnFrame;
+use super::own_frame::{OwnFrame, motion_unit};
 use super::rollout::StepRule;
-use super::unit::motion_unit;
 use super::visibility::visibility;
 use crate::StarConfig;
 use crate::backend::{Buffer, Rows, Scenes, SeenScenes};
@@ -36,9 +35,7 @@ pub(super) struct BatchCourse {
     bounds: Option<Vec<MotionBounds<f32>>>,
     /// Where everybody is, `[H, P]`.
     positions: Vec<[f32; 2]>,
-    /// A step ago.
     before: Vec<[f32; 2]>,
-    /// Over all time steps so far.
     sums: Vec<[f32; 2]>,
     sigma: f32,
     time_step: f32,
@@ -46,7 +43,6 @@ pub(super) struct BatchCourse {
 }
 
 impl BatchCourse {
-    /// Everybody at the last observed time step.
     pub(super) fn new(batch: &ForecastBatch<'_>, config: &StarConfig) -> Self {
         let (pedestrians, hypotheses) = (batch.pedestrians(), batch.hypotheses());
         let tracks = || {
@@ -212,7 +208,6 @@ impl BatchCourse {
         }
     }
 
-    /// One step of the dynamics for everybody, by the reference implementation.
     fn follow(&mut self, factors: &mut [[f32; 3]], (done, left): (usize, usize)) {
         let (sigma, dt) = (self.sigma, self.time_step);
         let time = StepTime { done, left, dt };
@@ -231,7 +226,6 @@ impl BatchCourse {
     }
 }
 
-/// Entry `i`, where the entries stand for as many repetitions of themselves as are asked for.
 fn around<T: Copy>(entries: &[T], i: usize) -> T {
     entries[i % entries.len()]
 }

@@ -43,7 +43,6 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;
 
-    /// The metric of the factor is the mean of the noisy metrics.
     #[test]
     fn the_expected_factor_is_that_of_the_mean_metric() {
         let mut rng = ChaCha8Rng::seed_from_u64(3);

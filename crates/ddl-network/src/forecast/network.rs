@@ -25,7 +25,6 @@ pub struct MotionNetwork {
     kernels: Arc<Kernels>,
     backbone: Box<dyn Backbone<KernelBackend>>,
     output: Linear,
-    /// What the noise adds to the metric; `None` for the variants without dynamics.
     spread: Option<NoiseSpread>,
 }
 
@@ -119,7 +118,6 @@ impl MotionNetwork {
         &self.weights
     }
 
-    /// What the output layer makes of features, with the noise beside them.
     fn emit(&self, backend: &KernelBackend, features: &Rc<Rows>, noise: &Rc<Rows>) -> Buffer {
         let emitted = backend.linear(self.output, &backend.beside(features, noise));
         Buffer::copy(&emitted)
@@ -148,7 +146,6 @@ fn initial(layout: &Arc<Layout>, seed: u64) -> Weights {
     Weights::initial(layout, stream(seed, Stage::Weights, 0))
 }
 
-/// What noise adds, where the expectation over it is asked for.
 fn spread(config: &StarConfig, weights: &Weights, output: Linear) -> Option<NoiseSpread> {
     let numbers = &weights.numbers()[output.span()];
     let noise = config.noise_width as usize;

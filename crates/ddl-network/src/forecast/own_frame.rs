@@ -1,10 +1,15 @@
 //! A pedestrian's own frame: the first axis points from where it was last observed to its goal, and lengths are in
-//! its own [unit](super::unit). So one walk teaches all directions, and a runner looks like a fast walker.
+//! its own unit. So one walk teaches all directions, and a runner looks like a fast walker.
+//!
+//! The unit is `(1 + (v / 2 m/s)^4)^(1/4)` metres for the mean observed speed `v`: a metre up to walking speed, v / (2
+//! m/s) metres far above it.
 
 use ddl_data::Position;
 
 /// Nearer to its goal than this (metres) a pedestrian has the axes of the world.
 const SMALLEST_DISTANCE: f64 = 1e-6;
+/// Speed (m/s) around which the unit begins to grow: the fastest that training recordings hold many examples of.
+const FAST_WALK: f64 = 2.0;
 /// Squares of pivots below this count as this, in m/s.
 const SMALLEST_PIVOT: f32 = 1e-12;
 
@@ -30,13 +35,11 @@ impl OwnFrame {
         Self { cos, sin, unit }
     }
 
-    /// A vector of the world in the pedestrian's axes and units.
     pub(super) fn of_world(self, [x, y]: [f32; 2]) -> [f32; 2] {
         let Self { cos, sin, unit } = self;
         [(cos * x + sin * y) / unit, (cos * y - sin * x) / unit]
     }
 
-    /// The reverse of [`of_world`](Self::of_world).
     pub(super) fn to_world(self, [x, y]: [f32; 2]) -> [f32; 2] {
         let Self { cos, sin, unit } = self;
         [(cos * x - sin * y) * unit, (cos * y + sin * x) * unit]
@@ -52,6 +55,26 @@ impl OwnFrame {
         let first = (x1 * x1 + x2 * x2).max(SMALLEST_PIVOT).sqrt();
         [first, (x1 * y1 + x2 * y2) / first, a * c / first]
     }
+}
+
+/// The unit of a pedestrian (m) from its observed positions (m), `time_step` seconds apart; 1 for fewer than two.
+///
+/// # Examples
+/// ```
+/// let at = |speed: f64| (0..8).map(|t| [0.4 * speed * f64::from(t), 0.0]).collect::<Vec<_>>();
+/// assert!((ddl_network::motion_unit(&at(1.0), 0.4) - 1.0).abs() < 0.02); // walking
+/// assert!((ddl_network::motion_unit(&at(6.0), 0.4) - 3.0).abs() < 0.02); // running
+/// ```
+pub fn motion_unit(observed: &[Position], time_step: f64) -> f64 {
+    let steps = observed.len().saturating_sub(1).max(1) as f64;
+    let way: f64 = observed
+        .windows(2)
+        .map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]))
+        .sum();
+    let relative = way / (steps * time_step * FAST_WALK);
+    // Divided by the larger of the two first: the fourth power of a large number overflows.
+    let larger = relative.max(1.0);
+    larger * (larger.powi(-4) + (relative / larger).powi(4)).powf(0.25)
 }
 
 #[cfg(test)]
@@ -84,6 +107,19 @@ mod tests {
                 let back = frame.to_world(frame.of_world(u.map(|x| x as f32)))[axis];
                 prop_assert!((f64::from(back) - u[axis]).abs() < 1e-5);
             }
+        }
+
+        /// A runner's speed in its own units stays below 2 m/s, at every scale.
+        #[test]
+        fn nobody_is_faster_than_a_fast_walk_in_its_own_units(
+            track in prop::collection::vec([-3.0..3.0f64, -3.0..3.0f64], 8),
+            scale in -6.0..6.0f64,
+        ) {
+            let track: Vec<Position> = track.iter().map(|p| p.map(|x| x * 10f64.powf(scale))).collect();
+            let unit = motion_unit(&track, 0.4);
+            let lengths = track.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1]));
+            let speed = lengths.sum::<f64>() / 7.0 / 0.4;
+            prop_assert!(unit >= 1.0 && speed / unit <= FAST_WALK * (1.0 + 1e-12));
         }
     }
 

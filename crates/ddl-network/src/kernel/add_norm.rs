@@ -1,13 +1,12 @@
 //! What follows a sublayer: dropout, the residual connection, layer normalisation (Ba et al. 2016).
 
-mod decisions;
 mod rows;
 #[cfg(test)]
 mod tests;
 
 use super::columns::{load, store};
 use ddl_simd::{DEPTH, LANES, Lanes, Simd};
-pub(super) use decisions::Decisions;
+pub(super) use rows::Decisions;
 use rows::{Four, USUAL, means};
 
 /// Added to the variance.

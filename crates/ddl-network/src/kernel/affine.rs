@@ -1,15 +1,13 @@
 //! Affine maps of rows: the projections before and after attention, embeddings, the fusion of tokens.
 
-mod matrix;
 mod product;
 #[cfg(test)]
 mod tests;
 
 use super::columns::{MatrixColumns, MatrixColumnsMut};
 use ddl_simd::{LANES, Lanes, Simd};
-use matrix::{Matrix, Start};
 pub(super) use product::sum_of_rows;
-use product::{add_transposed_product, multiply};
+use product::{Matrix, Start, add_transposed_product, multiply};
 
 /// y = W x + b, with the weights arranged for both directions.
 #[derive(Clone, Debug)]

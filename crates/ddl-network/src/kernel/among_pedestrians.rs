@@ -114,23 +114,11 @@ impl AmongPedestrians {
         let entries = self.check(qkv, frames);
         let rows = entries * frames.scenes().pedestrians();
         let row = self.heads.row();
-        assert!(
-            attended.mixed.len() == rows * row
-                && attended.normalisers.len() == entries * self.normalisers(frames),
-            "attended holds {} numbers of {rows} rows of {row}",
-            attended.mixed.len()
-        );
-        assert!(
-            mixed_gradient.len() == rows * row,
-            "the gradient of mixed has {} numbers, not {rows} rows of {row}",
-            mixed_gradient.len()
-        );
-        assert!(
-            qkv_gradient.len() == qkv.len(),
-            "the gradient of qkv has {} numbers, qkv {}",
-            qkv_gradient.len(),
-            qkv.len()
-        );
+        let normalisers = entries * self.normalisers(frames);
+        assert_eq!(attended.mixed.len(), rows * row, "mixed");
+        assert_eq!(attended.normalisers.len(), normalisers, "normalisers");
+        assert_eq!(mixed_gradient.len(), rows * row, "gradient of mixed");
+        assert_eq!(qkv_gradient.len(), qkv.len(), "gradient of qkv");
         let (mut mixed, mut normalisers) = (&attended.mixed[..], &attended.normalisers[..]);
         let (mut mixed_gradient, mut qkv_gradient) = (mixed_gradient, qkv_gradient);
         let mut jobs = Vec::new();
@@ -157,7 +145,6 @@ impl AmongPedestrians {
         frames.pairs(entries) * self.heads.groups() * self.heads.quads() * WORK_OF_A_PAIR
     }
 
-    /// [`SceneTask::normalisers`] of all scenes of an entry.
     fn normalisers(&self, frames: Frames<'_>) -> usize {
         let ranges = frames.scenes().ranges().iter();
         self.heads.groups() * ranges.map(|range| range.len().div_ceil(2)).sum::<usize>()
@@ -165,13 +152,11 @@ impl AmongPedestrians {
 
     fn check(&self, qkv: &[f32], frames: Frames<'_>) -> usize {
         let entry = frames.scenes().pedestrians() * 3 * self.heads.row();
+        let whole = !qkv.is_empty() && qkv.len().is_multiple_of(entry);
         assert!(
-            !qkv.is_empty() && qkv.len().is_multiple_of(entry),
-            "qkv has {} numbers, not a multiple of {entry}: {} pedestrians, 3 x {} x {}",
-            qkv.len(),
-            frames.scenes().pedestrians(),
-            self.heads.count,
-            self.heads.width
+            whole,
+            "qkv has {} numbers, not entries of {entry}",
+            qkv.len()
         );
         let entries = qkv.len() / entry;
         frames.check(entries);

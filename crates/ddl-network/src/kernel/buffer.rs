@@ -70,7 +70,6 @@ impl Buffer {
         buffer
     }
 
-    /// So many buffers of zeros.
     pub(super) fn many_zeros(buffers: usize, count: usize) -> Vec<Self> {
         (0..buffers).map(|_| Self::zeros(count)).collect()
     }

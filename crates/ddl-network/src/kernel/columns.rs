@@ -13,7 +13,6 @@ pub(super) struct MatrixColumns<'a> {
     count: usize,
 }
 
-/// [`MatrixColumns`] that are written.
 pub(super) struct MatrixColumnsMut<'a> {
     numbers: &'a mut [f32],
     rows: usize,
@@ -23,7 +22,6 @@ pub(super) struct MatrixColumnsMut<'a> {
 }
 
 impl<'a> MatrixColumns<'a> {
-    /// The matrix whose rows are `count` numbers.
     pub(super) fn whole(numbers: &'a [f32], count: usize) -> Self {
         Self::part(numbers, count, 0, count)
     }

@@ -17,7 +17,6 @@ pub(crate) struct Dropout {
     pub(crate) seed: u64,
 }
 
-/// A [`Dropout`] probability for random bits of a certain number.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Threshold {
     /// A number is kept when its random bits are this or more.

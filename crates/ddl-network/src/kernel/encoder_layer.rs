@@ -6,7 +6,6 @@ mod keep;
 mod layer;
 #[cfg(test)]
 mod tests;
-mod weights;
 
 use super::among_pedestrians::Attended;
 use super::buffer::Buffer;
@@ -16,8 +15,8 @@ use backward::Parts;
 use forward::Targets;
 use keep::KeptAttention;
 pub(crate) use keep::{Kept, Remembered};
+pub use layer::Sizes;
 pub(crate) use layer::{Dropouts, EncoderKernel};
-pub use weights::Sizes;
 
 impl EncoderKernel {
     /// The layer with attention among the pedestrians of each scene.

@@ -3,10 +3,8 @@
 mod backward;
 mod bf16;
 mod block;
-mod block_rows;
 mod dropout;
 mod forward;
-mod gradients;
 mod hidden;
 mod layer;
 mod product;
@@ -15,5 +13,5 @@ mod tests;
 mod tile;
 mod weights;
 
-pub(crate) use gradients::Gradients;
+pub(crate) use backward::Gradients;
 pub(crate) use layer::FeedForward;

@@ -2,10 +2,8 @@
 
 use ddl_simd::{DEPTH, LANES, Simd, Vectors};
 
-/// Heads of a pedestrian that are computed together.
 pub(super) const GROUP: usize = LANES / 2;
 
-/// Number and width of the heads of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Heads {
     pub(super) count: usize,
@@ -29,7 +27,6 @@ impl Heads {
         self.count.div_ceil(GROUP)
     }
 
-    /// Quads that hold a head.
     pub(super) fn quads(self) -> usize {
         self.width.div_ceil(DEPTH)
     }
@@ -75,7 +72,6 @@ impl HeadPart {
         simd.transpose([a, b, c, d])
     }
 
-    /// The inverse of [`HeadPart::load`].
     #[inline(always)]
     pub(super) fn store<S: Simd>(
         self,
@@ -91,7 +87,6 @@ impl HeadPart {
         }
     }
 
-    /// Stores the sum of what belongs to the two rows.
     #[inline(always)]
     pub(super) fn store_sum<S: Simd>(self, simd: S, vectors: Vectors<S>, row: &mut [f32]) {
         let [a, b, c, d] = simd.transpose(vectors);
@@ -126,7 +121,6 @@ impl HeadPart {
         }
     }
 
-    /// The part as one array, where nothing lacks and nothing lies between.
     #[inline(always)]
     fn whole(self, row: &[f32]) -> Option<&[f32; GROUP * DEPTH]> {
         if self.heads.width != DEPTH {
@@ -143,7 +137,6 @@ impl HeadPart {
         row.get_mut(self.group * GROUP * DEPTH..)?.first_chunk_mut()
     }
 
-    /// The place of each number within the part, and in the row.
     #[inline(always)]
     fn each(self, mut f: impl FnMut(usize, usize)) {
         let first = self.group * GROUP;
@@ -157,12 +150,10 @@ impl HeadPart {
     }
 }
 
-/// Which of two rows is in a lane.
 pub(super) const fn row_of(lane: usize) -> usize {
     lane % 4 / 2
 }
 
-/// Which head of a group is in a lane.
 pub(super) const fn head_of(lane: usize) -> usize {
     lane / 4 + 4 * (lane % 2)
 }

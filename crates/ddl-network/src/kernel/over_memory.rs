@@ -76,13 +76,7 @@ impl OverMemory {
                 && token.key.len() == token.value.len()
                 && token.key.len().is_multiple_of(self.heads.row())
                 && query.len().is_multiple_of(token.key.len());
-            assert!(
-                whole || query.is_empty(),
-                "keys and values of {} and {} numbers for queries of {}",
-                token.key.len(),
-                token.value.len(),
-                query.len()
-            );
+            assert!(whole || query.is_empty(), "remembered keys and values");
         }
         let chunk = ROWS_AT_ONCE * self.heads.row();
         let chunks = mixed.chunks_mut(chunk).enumerate();
@@ -110,28 +104,12 @@ impl OverMemory {
         gradients: OverMemoryGradients<'_, '_>,
     ) {
         self.check(query, own, mixed_gradient);
-        self.check(
-            query,
-            KeyValue {
-                key: gradients.own.key,
-                value: gradients.own.value,
-            },
-            gradients.query,
-        );
-        assert!(
-            memory.len() == gradients.memory.len(),
-            "{} remembered tokens and gradients of {}",
-            memory.len(),
-            gradients.memory.len()
-        );
+        let KeyValueMut { key, value } = &gradients.own;
+        self.check(query, KeyValue { key, value }, gradients.query);
+        assert_eq!(memory.len(), gradients.memory.len(), "remembered tokens");
         for (token, gradient) in memory.iter().zip(gradients.memory.iter()) {
             self.check(query, *token, gradient.key);
-            assert!(
-                gradient.value.len() == query.len(),
-                "a gradient of {} numbers for queries of {}",
-                gradient.value.len(),
-                query.len()
-            );
+            assert_eq!(gradient.value.len(), query.len(), "gradient of values");
         }
         let chunk = ROWS_AT_ONCE * self.heads.row();
         let OverMemoryGradients {
@@ -163,19 +141,9 @@ impl OverMemory {
     }
 
     fn check(&self, query: &[f32], own: KeyValue<'_>, mixed: &[f32]) {
-        assert!(
-            query.len().is_multiple_of(self.heads.row()),
-            "queries of {} numbers are not rows of {}",
-            query.len(),
-            self.heads.row()
-        );
+        assert_eq!(query.len() % self.heads.row(), 0, "rows of queries");
         for (what, other) in [("key", own.key), ("value", own.value), ("mixed", mixed)] {
-            assert!(
-                other.len() == query.len(),
-                "{what} of {} numbers for queries of {}",
-                other.len(),
-                query.len()
-            );
+            assert_eq!(other.len(), query.len(), "{what}");
         }
     }
 }

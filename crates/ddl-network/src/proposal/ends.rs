@@ -1,13 +1,32 @@
-//! Ends, and who proposes them.
+//! What the network sees of a pedestrian, the ends it proposes, and who proposes them.
 
-use super::view::PedestrianView;
 use crate::weights::Weights;
 use crate::{NetworkError, ProposalConfig};
-use ddl_data::Position;
+use ddl_data::{HORIZON, OBSERVED, Position};
 use std::fmt::Debug;
 
 /// Ends lie within a few metres of where the present velocity leads: the unit of the last layer (m).
 pub const END_UNIT: f64 = 3.0;
+
+/// A pedestrian and those nearby over the observed steps, in the pedestrian's own frame (metres): the
+/// last own position is the origin and the heading is +x.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PedestrianView {
+    /// The pedestrian.
+    pub own: [Position; OBSERVED],
+    /// Others in the scene, nearest first at the last observed step; may be empty, and longer than
+    /// what the network looks at.
+    pub neighbours: Vec<[Position; OBSERVED]>,
+}
+
+/// A pedestrian with its future, in the frame of the view (metres).
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProposalExample {
+    /// What was observed.
+    pub view: PedestrianView,
+    /// What followed.
+    pub future: [Position; HORIZON],
+}
 
 /// Ends proposed for one pedestrian, those of all members one after the other.
 #[derive(Debug, Clone, PartialEq)]

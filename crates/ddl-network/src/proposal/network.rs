@@ -1,9 +1,8 @@
 //! The ensemble on plain numbers: small perceptrons with attention over the neighbours.
 
-use super::ends::{END_UNIT, ProposeEnds, ProposedEnds};
+use super::ends::{END_UNIT, PedestrianView, ProposeEnds, ProposedEnds};
 use super::layers::{MemberAffine, ProposalLayers};
 use super::seen::SeenRows;
-use super::view::PedestrianView;
 use crate::kernel::{Buffer, LinearKernel, gelu};
 use crate::seed::{Stage, stream};
 use crate::weights::{Layout, Weights};

@@ -1,6 +1,6 @@
 //! What pedestrians see, as the numbers that the network reads.
 
-use super::view::PedestrianView;
+use super::ends::PedestrianView;
 use crate::ProposalConfig;
 use ddl_data::{HORIZON, OBSERVED, Position};
 

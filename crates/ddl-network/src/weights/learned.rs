@@ -64,10 +64,4 @@ impl Weights {
         let tensors = self.layout.tensors().iter();
         tensors.map(|tensor| (tensor, &self.numbers[tensor.span()]))
     }
-
-    /// The numbers of the tensor of that name.
-    pub fn get(&self, name: &str) -> Option<&[f32]> {
-        let mut tensors = self.iter();
-        tensors.find_map(|(tensor, numbers)| (tensor.name() == name).then_some(numbers))
-    }
 }

@@ -75,15 +75,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_difference_is_told_from_either_side() {
-        let one = Origin::from_iter([("b", "1"), ("c", "2")]);
-        let other = Origin::from_iter([("a", "0"), ("b", "1"), ("c", "3")]);
-        assert_eq!(one.difference(&other).unwrap(), "a is nothing, not 0");
-        assert_eq!(other.difference(&one).unwrap(), "a is 0, not nothing");
-        assert_eq!(one.difference(&one), None);
-    }
-
-    #[test]
     fn a_header_brings_it_back() {
         let origin = Origin::from_iter([("fold", "eth"), ("seed", "1")]);
         let header = origin.to_header("ab12");

@@ -4,7 +4,7 @@ use super::scenes::{WINDOWS, goals};
 use ddl_data::{Position, Window};
 use ddl_network::{
     ForecastWindows as _, MotionNetwork, NetworkError, NetworkFrame, Noise, ProposalConfig,
-    ProposalNetwork, StarConfig, StepRule, Variant,
+    ProposalNetwork, ProposalTraining, StarConfig, StepRule, TrainingConfig, Variant,
 };
 
 type Goals = Vec<Vec<Position>>;
@@ -65,24 +65,62 @@ fn goals_noise_and_shares_that_do_not_fit_the_windows() {
     }
 }
 
+/// A value out of its range, and what is said of it.
+type Fault<T> = (fn(&mut T), &'static str);
+
+fn check_all<T: Clone>(good: &T, check: fn(&T) -> Result<(), NetworkError>, faults: &[Fault<T>]) {
+    check(good).unwrap();
+    for (change, said) in faults {
+        let mut bad = good.clone();
+        change(&mut bad);
+        let error = check(&bad).unwrap_err();
+        assert!(matches!(error, NetworkError::Config { .. }), "{error}");
+        assert!(error.to_string().contains(said), "{error}");
+    }
+}
+
 #[test]
 fn configurations_out_of_range() {
-    let own = StarConfig {
-        frame: NetworkFrame::Goal,
-        ..StarConfig::published(Variant::NoGoalShift)
-    };
-    let error = MotionNetwork::new(own, 1).unwrap_err();
-    let NetworkError::Config { field: "frame", .. } = error else {
-        panic!("{error}")
-    };
-    let headless = ProposalConfig {
+    let published = StarConfig::published(Variant::Full);
+    check_all(
+        &published,
+        StarConfig::check,
+        &[
+            (|c| c.heads = 5, "heads = 5"),
+            (|c| (c.model_width, c.heads) = (512, 512), "heads = 512"),
+            (|c| c.model_width = 65_536, "at most 2^24 weights"),
+            (|c| c.spatial_layers = 65, "at most 64"),
+            (|c| c.spatial_dropout = 1.0, "in [0, 1)"),
+            (|c| c.sigma = 0.0, "sigma"),
+            (
+                |c| (c.variant, c.frame) = (Variant::NoGoalShift, NetworkFrame::Goal),
+                "frame",
+            ),
+        ],
+    );
+    check_all(
+        &TrainingConfig::published(),
+        TrainingConfig::check,
+        &[
+            (|c| c.epochs = usize::MAX, "epochs"),
+            (|c| c.learning_rate = f64::NAN, "learning_rate"),
+        ],
+    );
+    check_all(
+        &ProposalConfig::default(),
+        ProposalConfig::check,
+        &[(|c| c.heads = 3, "heads"), (|c| c.heads = 0, "heads")],
+    );
+    check_all(
+        &ProposalTraining::default(),
+        ProposalTraining::check,
+        &[(|c| c.turn = f64::NAN, "turn")],
+    );
+    let headless = StarConfig {
         heads: 0,
-        ..ProposalConfig::default()
+        ..published
     };
-    let error = ProposalNetwork::new(headless, 1).unwrap_err();
-    let NetworkError::Config { field: "heads", .. } = error else {
-        panic!("{error}")
-    };
+    MotionNetwork::new(headless, 1).unwrap_err();
 }
 
 #[test]

@@ -126,24 +126,18 @@ fn broken_files_are_refused() {
 fn files_of_something_else_are_refused() {
     let network = network(Variant::Full, 1);
     let star = self::network(Variant::Star, 2);
-    refuse(
-        &saved(star.weights(), &origin()),
-        "output_layer.weight has shape",
-    );
+    let shape = "output_layer.weight has shape";
+    refuse(&saved(star.weights(), &origin()), shape);
     let shallow = StarConfig {
         spatial_layers: 1,
         ..network.config().clone()
     };
-    let shallow = MotionNetwork::new(shallow, 1).unwrap();
-    let written = saved(shallow.weights(), &origin());
-    refuse(&written, "it was written for another configuration");
+    let shallow = saved(MotionNetwork::new(shallow, 1).unwrap().weights(), &origin());
+    refuse(&shallow, "it was written for another configuration");
     let elsewhere = Origin::from_iter([("fold", "plaza"), ("seed", "7")]);
-    refuse(
-        &saved(network.weights(), &elsewhere),
-        "its fold is plaza, not corridor",
-    );
-    let whole = saved(network.weights(), &origin());
-    let file = SafeTensors::deserialize(&whole).unwrap();
+    let elsewhere = saved(network.weights(), &elsewhere);
+    refuse(&elsewhere, "its fold is plaza, not corridor");
+    let file = SafeTensors::deserialize(&elsewhere).unwrap();
     let foreign = safetensors::serialize(file.iter(), None).unwrap();
     refuse(&foreign, "its fold is nothing, not corridor");
 }
@@ -172,10 +166,7 @@ fn tensors_of_either_precision_are_kept_as_they_are() {
     let error = read[0].single(&[3], &path).unwrap_err().to_string();
     assert!(error.contains("NaN or infinite"), "{error}");
     let error = read[0].double(&[1, 3], &path).unwrap_err().to_string();
-    assert!(
-        error.contains("moments has shape [3], expected [1, 3]"),
-        "{error}"
-    );
+    assert!(error.contains("moments has shape [3], expected [1, 3]"));
 }
 
 #[test]

@@ -60,7 +60,6 @@ impl Part {
     }
 }
 
-/// All parts in the order in which they are read, details unfolded.
 pub(super) fn unfolded(parts: &[Part]) -> impl Iterator<Item = &Part> {
     parts.iter().flat_map(|part| match part {
         Part::Details { parts, .. } => parts.iter(),
@@ -68,7 +67,6 @@ pub(super) fn unfolded(parts: &[Part]) -> impl Iterator<Item = &Part> {
     })
 }
 
-/// A piece of a text: as it is, or between backticks.
 pub(super) enum Span<'a> {
     Plain(&'a str),
     Code(&'a str),

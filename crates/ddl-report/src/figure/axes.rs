@@ -48,7 +48,6 @@ pub(super) const PANEL: PlotLayout = PlotLayout {
     steps: 7.0,
 };
 
-/// The plot area of a picture.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Axes {
     /// Lower left and upper right corner, metres.
@@ -96,7 +95,6 @@ impl Axes {
             .map(|axis| self.layout.before[axis] + to[axis] - from[axis] + self.layout.after[axis])
     }
 
-    /// Where places are drawn.
     pub(super) fn plan(&self) -> &PlanView {
         &self.plan
     }
@@ -126,7 +124,6 @@ impl Axes {
         drawing.rectangle("frame", self.frame());
     }
 
-    /// Writes the names of the axes outside the numbers.
     pub(super) fn draw_names(&self, drawing: &mut Drawing) {
         let [[left, top], [right, bottom]] = self.frame();
         let across = [f64::midpoint(left, right), bottom + 40.0];

@@ -10,7 +10,6 @@ pub(crate) const STYLE: &str = include_str!("figure.css");
 /// The rules of plots with axes, besides.
 pub(super) const PLOT_STYLE: &str = include_str!("plot.css");
 
-/// Shapes in pixels, y down.
 #[derive(Debug, Clone)]
 pub(crate) struct Drawing {
     width: f64,
@@ -59,7 +58,6 @@ impl Drawing {
         self.outline(class, &outline(points), style);
     }
 
-    /// A closed path.
     pub(crate) fn polygon(&mut self, class: &str, points: &[[f64; 2]]) {
         self.outline(class, &(outline(points) + "Z"), "");
     }
@@ -102,7 +100,6 @@ impl Drawing {
         self.add(text(class, at, words));
     }
 
-    /// A text that is read from bottom to top.
     pub(crate) fn upward_text(&mut self, class: &str, at: [f64; 2], words: &str) {
         let turn = format!("rotate(-90 {} {})", px(at[0]), px(at[1]));
         self.add(text(class, at, words).set("transform", turn));
@@ -224,19 +221,6 @@ mod tests {
         let inline = drawing.inline("wide");
         assert!(inline.contains("class=\"figure wide\"") && !inline.contains('#'));
         assert!(inline.contains("cx=\"1\""));
-    }
-
-    #[test]
-    fn what_is_drawn_within_a_box_stands_in_it_and_what_comes_after_does_not() {
-        let mut drawing = Drawing::new(9.0, 9.0, "");
-        drawing.within([[1.0, 2.0], [5.0, 8.0]], |drawing| {
-            drawing.path("inside", &[[-50.0, 4.0], [50.0, 4.0]]);
-        });
-        drawing.path("after", &[[0.0, 0.0], [1.0, 1.0]]);
-        let svg = drawing.inline("");
-        let (before, rest) = svg.split_once("viewBox=\"1 2 4 6\"").unwrap();
-        let (inside, after) = rest.split_once("</svg>").unwrap();
-        assert!(!before.contains("<path") && inside.contains("inside") && after.contains("after"));
     }
 
     #[test]

@@ -3,20 +3,16 @@
 /// A figure cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
+#[expect(missing_docs, reason = "the messages say what they mean")]
 pub enum FigureError {
-    /// The forecast is of other people than the window holds.
     #[error("the window holds {expected} pedestrians, the forecast {found}")]
     Pedestrians { expected: usize, found: usize },
-    /// No panel, or too many.
     #[error("a picture of goals holds 1 to {most} cases, found {found}; draw several pictures")]
     Cases { found: usize, most: usize },
-    /// A pedestrian with its goals cannot be shown.
     #[error("case `{case}`: {problem}")]
     GoalCase { case: String, problem: String },
 }
 
-/// What is wrong with a [`GoalCase`](crate::figure::GoalCase).
 #[derive(Debug, thiserror::Error)]
 pub(super) enum GoalCaseProblem {
     #[error("the track must hold 20 positions (8 observed, 12 true), found {found}")]

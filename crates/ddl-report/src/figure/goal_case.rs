@@ -94,7 +94,6 @@ impl GoalCase {
         distance(self.goals.goals()[self.nearest], self.track[WINDOW - 1])
     }
 
-    /// The last observed position.
     pub(super) fn here(&self) -> Position {
         self.track[OBSERVED - 1]
     }
@@ -103,7 +102,6 @@ impl GoalCase {
         &self.track[..OBSERVED]
     }
 
-    /// The true path after the last observed position.
     pub(super) fn truth(&self) -> &[Position] {
         &self.track[OBSERVED..]
     }
@@ -114,7 +112,6 @@ impl GoalCase {
     }
 }
 
-/// Index of the nearest goal, if the case is sound.
 fn check(track: &[Position], goals: &WeightedGoals) -> Result<usize, GoalCaseProblem> {
     if track.len() != WINDOW {
         return Err(GoalCaseProblem::TrackLength { found: track.len() });
@@ -173,63 +170,64 @@ mod tests {
         result.unwrap_err().to_string()
     }
 
+    /// Nearest to the end and not to the pedestrian; of equally near ones the likeliest is meant.
     #[test]
-    fn the_nearest_goal_is_nearest_to_the_end_and_not_to_the_pedestrian() {
-        let set = goals(&[[4.0, 1.0], [9.5, 1.5], [9.5, 3.0]], &[0.6, 0.1, 0.3]);
-        let case = GoalCase::new("a", &track(), set).unwrap();
-        assert_eq!(case.nearest_goal(), 1);
-        assert!((case.error() - 0.5).abs() < 1e-12);
-    }
-
-    #[test]
-    fn of_equally_near_goals_the_likeliest_is_meant() {
-        let set = goals(&[[9.5, 2.0], [9.5, 0.0], [9.5, 2.0]], &[0.0, 0.4, 0.6]);
-        let case = GoalCase::new("a", &track(), set).unwrap();
-        assert_eq!(case.nearest_goal(), 2);
+    fn the_nearest_goal_by_hand() {
+        for (places, weights, expected) in [
+            (
+                [[4.0, 1.0], [9.5, 1.5], [9.5, 3.0]],
+                [0.6, 0.1, 0.3],
+                (1, 0.5),
+            ),
+            (
+                [[9.5, 2.0], [9.5, 0.0], [9.5, 2.0]],
+                [0.0, 0.4, 0.6],
+                (2, 1.0),
+            ),
+        ] {
+            let case = GoalCase::new("a", &track(), goals(&places, &weights)).unwrap();
+            assert_eq!(case.nearest_goal(), expected.0);
+            assert!((case.error() - expected.1).abs() < 1e-12);
+        }
     }
 
     #[test]
     fn what_is_no_case_says_where_and_why() {
-        let good = || goals(&[[9.0, 1.0], [8.0, 1.0]], &[0.5, 0.5]);
-        let short = GoalCase::new("hotel, pedestrian 3", &track()[..19], good());
-        assert_eq!(
-            message(short),
-            "case `hotel, pedestrian 3`: the track must hold 20 positions (8 observed, 12 true), found 19"
-        );
-        let mut broken = track();
-        broken[7] = [f64::NAN, 0.0];
-        let nan = message(GoalCase::new("a", &broken, good()));
-        assert!(nan.contains("position 0 of the track"), "{nan}");
-        broken[7] = track()[7];
-        broken[13][1] = f64::INFINITY;
-        let infinite = message(GoalCase::new("a", &broken, good()));
-        assert!(
-            infinite.contains("position 13 of the track is [6.5, inf]"),
-            "{infinite}"
-        );
-        for far in [f64::NAN, 1e300, -2e6] {
-            let set = goals(&[[9.0, 1.0], [far, 1.0]], &[0.5, 0.5]);
-            assert!(message(GoalCase::new("a", &track(), set)).contains("goal 1 is"));
+        let refused = |track: &[Position], second: Position, weight: f64, said: &str| {
+            let set = goals(&[[9.0, 1.0], second], &[weight, 0.5]);
+            let message = message(GoalCase::new("hotel, pedestrian 3", track, set));
+            assert!(message.starts_with("case `hotel, pedestrian 3`: "));
+            assert!(message.contains(said), "{message}");
+        };
+        let good = [8.0, 1.0];
+        let short = "the track must hold 20 positions (8 observed, 12 true), found 19";
+        refused(&track()[..19], good, 0.5, short);
+        for (at, place, said) in [
+            (7, [f64::NAN, 0.0], "position 0 of the track"),
+            (
+                13,
+                [6.5, f64::INFINITY],
+                "position 13 of the track is [6.5, inf]",
+            ),
+        ] {
+            let mut broken = track();
+            broken[at] = place;
+            refused(&broken, good, 0.5, said);
         }
-        for (first, said) in [
+        for far in [f64::NAN, 1e300, -2e6] {
+            refused(&track(), [far, 1.0], 0.5, "goal 1 is");
+        }
+        for (weight, said) in [
             (f64::NAN, "goal 0 has the weight NaN"),
             (-0.5, "goal 0 has the weight -0.5"),
             (0.25, "the weights sum to 0.75, not to 1"),
         ] {
-            let set = goals(&[[9.0, 1.0], [8.0, 1.0]], &[first, 0.5]);
-            let found = message(GoalCase::new("a", &track(), set));
-            assert!(found.contains(said), "{found}");
+            refused(&track(), good, weight, said);
         }
-    }
-
-    #[test]
-    fn experts_are_checked_one_by_one() {
         let case = GoalCase::new("a", &track(), goals(&[[9.0, 1.0]], &[1.0])).unwrap();
-        assert!(case.clone().with_experts(vec![]).is_ok());
-        let short = case
-            .clone()
-            .with_experts(vec![track(), track()[1..].to_vec()]);
-        assert!(message(short).contains("expert 1 must hold 20 positions, found 19"));
+        let short = vec![track(), track()[1..].to_vec()];
+        let short = message(case.clone().with_experts(short));
+        assert!(short.contains("expert 1 must hold 20 positions, found 19"));
         let mut lost = track();
         lost[19][0] = f64::NEG_INFINITY;
         let lost = message(case.with_experts(vec![track(), track(), lost]));

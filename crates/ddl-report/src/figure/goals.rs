@@ -7,13 +7,12 @@ use super::{
     drawing::{Drawing, PLOT_STYLE},
     error::FigureError,
     goal_case::GoalCase,
-    goal_ring,
     legend::{LegendEntry, LegendRows},
+    marks::{goal_ring, nearest_goal},
     pedestrian,
     wrap::wrapped,
 };
 
-/// A picture has at most this many panels.
 const MOST_CASES: usize = 9;
 /// Space around everything, pixels.
 const EDGE: f64 = 16.0;
@@ -129,19 +128,18 @@ impl<'a> GoalPanel<'a> {
         let weights = case.goals().weights();
         for (k, (goal, weight)) in self.goals.iter().zip(weights).enumerate() {
             if k != nearest {
-                goal_ring::draw(drawing, plan.px(*goal), *weight);
+                goal_ring(drawing, plan.px(*goal), *weight);
             }
         }
         let (goal, end) = (self.goals[nearest], self.truth[self.truth.len() - 1]);
         drawing.line("miss", plan.px(goal), plan.px(end));
-        goal_ring::draw_nearest(drawing, plan.px(goal), weights[nearest]);
+        nearest_goal(drawing, plan.px(goal), weights[nearest]);
         drawing.path("seen", &plan.path(&self.observed));
         // The true end lies on top: it is small, and a goal that hits it has its ticks around it.
         pedestrian::track(drawing, plan, &self.observed, &self.truth);
     }
 }
 
-/// Positions as seen from `here`.
 fn from(here: Position, positions: &[Position]) -> Vec<Position> {
     let seen = |p: &Position| [p[0] - here[0], p[1] - here[1]];
     positions.iter().map(seen).collect()
@@ -155,16 +153,5 @@ fn draw_heading(drawing: &mut Drawing, axes: &Axes, case: &GoalCase) {
     lines.push(format!("nearest goal {:.2} m off", case.error()));
     for (above, line) in (0..).zip(lines.into_iter().rev()) {
         drawing.text("key", [left, top - 10.0 - f64::from(above) * LINE], line);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn grids_are_as_square_as_three_columns_allow() {
-        let found: Vec<usize> = (1..=MOST_CASES).map(columns).collect();
-        assert_eq!(found, [1, 2, 3, 2, 3, 3, 3, 3, 3]);
     }
 }

@@ -2,25 +2,20 @@
 
 use super::{
     drawing::{Drawing, text_width},
-    goal_ring,
-    marks::star,
+    marks::{goal_ring, nearest_goal, star},
     pedestrian::hypothesis_style,
 };
 
-/// Height of an entry, pixels.
 const ENTRY: f64 = 26.0;
-/// Length of a sample line, pixels.
 const SAMPLE: f64 = 42.0;
 /// Space between a sample and its text, pixels.
 const GAP: f64 = 16.0;
 /// Space between two entries of a row, pixels.
 const BETWEEN: f64 = 30.0;
-/// Size of the letters, pixels.
 const LETTERS: f64 = 12.0;
 /// Probabilities whose rings are shown as samples, and where, from the left.
 const PROBABILITIES: [(f64, f64); 3] = [(0.01, 3.0), (0.05, 14.0), (0.2, 32.0)];
 
-/// One line of a legend.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum LegendEntry {
     Observed,
@@ -55,7 +50,6 @@ impl LegendEntry {
         }
     }
 
-    /// Where the text begins, from the left of the entry.
     fn indent(self, beside_samples: bool) -> f64 {
         match self {
             Self::Note(_) if !beside_samples => 0.0,
@@ -92,10 +86,10 @@ impl LegendEntry {
             Self::Goals(_) => drawing.circle("goal", [middle, y], 6.0),
             Self::WeightedGoals => {
                 for (weight, x) in PROBABILITIES {
-                    goal_ring::draw(drawing, [left + x, y], weight);
+                    goal_ring(drawing, [left + x, y], weight);
                 }
             }
-            Self::NearestGoal => goal_ring::draw_nearest(drawing, [middle, y], 0.05),
+            Self::NearestGoal => nearest_goal(drawing, [middle, y], 0.05),
             Self::Experts => {
                 for rise in [-6.0, 0.0, 6.0] {
                     drawing.path("expert", &[[left, y], [right, y + rise]]);
@@ -105,7 +99,6 @@ impl LegendEntry {
     }
 }
 
-/// One entry below the other, from the upper left corner on.
 pub(super) fn draw_column(drawing: &mut Drawing, [left, top]: [f64; 2], entries: &[LegendEntry]) {
     for (row, entry) in entries.iter().enumerate() {
         let y = top + ENTRY * (row as f64 + 0.5);
@@ -116,7 +109,6 @@ pub(super) fn draw_column(drawing: &mut Drawing, [left, top]: [f64; 2], entries:
 /// Entries in rows that fill a width.
 pub(super) struct LegendRows<'a> {
     entries: &'a [LegendEntry],
-    /// Upper left corner of each entry, from that of the legend.
     places: Vec<[f64; 2]>,
 }
 
@@ -140,7 +132,6 @@ impl<'a> LegendRows<'a> {
         self.places.last().map_or(0.0, |[_, y]| y + ENTRY)
     }
 
-    /// Draws them from the upper left corner on.
     pub(super) fn draw(&self, drawing: &mut Drawing, [left, top]: [f64; 2]) {
         for (entry, [x, y]) in self.entries.iter().zip(&self.places) {
             let at = [left + x, top + y + 0.5 * ENTRY];

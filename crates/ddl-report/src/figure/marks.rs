@@ -1,4 +1,13 @@
-//! Shapes that mean something: the star of a predicted end, the arrow of a velocity.
+//! Shapes that mean something: the star of a predicted end, the arrow of a velocity, and goals as rings whose area is
+//! their probability.
+
+use super::drawing::Drawing;
+
+const CERTAIN: f64 = 24.0;
+/// No ring is smaller: goals of no weight are seen as well.
+const SMALLEST: f64 = 2.4;
+/// Length of the ticks around the nearest goal, pixels.
+const TICK: f64 = 6.0;
 
 /// A star of five points around `at`, the first point up.
 pub(crate) fn star([x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
@@ -31,6 +40,29 @@ pub(crate) fn arrow(from: [f64; 2], to: [f64; 2]) -> Option<[Vec<[f64; 2]>; 2]> 
         ]
     };
     Some([vec![from, to], vec![side(1.0), to, side(-1.0)]])
+}
+
+/// Radius of the ring of a goal, pixels: `24 sqrt(w)`, at least 2.4.
+fn radius(weight: f64) -> f64 {
+    (CERTAIN * weight.sqrt()).max(SMALLEST)
+}
+
+pub(super) fn goal_ring(drawing: &mut Drawing, at: [f64; 2], weight: f64) {
+    drawing.circle("goal weighted", at, radius(weight));
+}
+
+/// The goal nearest the true end: a bold ring of the same area on a white rim, with four ticks around it
+/// that are seen however small it is.
+pub(super) fn nearest_goal(drawing: &mut Drawing, [x, y]: [f64; 2], weight: f64) {
+    let radius = radius(weight);
+    drawing.circle("rim", [x, y], radius);
+    drawing.circle("nearest", [x, y], radius);
+    let (from, to) = (radius + 3.0, radius + 3.0 + TICK);
+    for [right, down] in [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]] {
+        let along = |distance: f64| [x + right * distance, y + down * distance];
+        drawing.line("rim", along(from), along(to + 1.2));
+        drawing.line("nearest", along(from), along(to));
+    }
 }
 
 #[cfg(test)]

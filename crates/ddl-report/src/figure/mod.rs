@@ -1,6 +1,6 @@
 //! Pictures as SVG, which need neither a display nor a font file.
 //!
-//! - One scene ([`scene()`], [`SceneFigure`]): what was observed (dark dots), what then happened (a solid line to a full
+//! - One scene ([`scene()`]): what was observed (dark dots), what then happened (a solid line to a full
 //!   dot), the hypotheses (the likelier the clearer; the representative one dashed, a star at its end), their goals (rings).
 //! - Estimated goals ([`goals()`], [`GoalCase`]): a pedestrian a panel, with goals (rings, the likelier the larger; the
 //!   nearest bold) and how the similar pedestrians went on (pale lines), chosen by [`typical_pedestrians`].
@@ -11,7 +11,6 @@ mod axes;
 pub(crate) mod drawing;
 mod error;
 mod goal_case;
-mod goal_ring;
 mod goals;
 mod legend;
 pub(crate) mod marks;
@@ -25,5 +24,5 @@ mod wrap;
 pub use error::FigureError;
 pub use goal_case::GoalCase;
 pub use goals::goals;
-pub use scene::{SceneFigure, scene};
+pub use scene::scene;
 pub use typical::typical_pedestrians;

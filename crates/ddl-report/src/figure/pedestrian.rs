@@ -9,7 +9,6 @@ use super::{
 };
 use crate::{MomentHypothesis, MomentPedestrian};
 
-/// Steps between two arrows.
 const ARROW_EVERY: usize = 3;
 /// An arrow is as long as the way of this time, s: its length is proportional to the speed.
 const ARROW_SECONDS: f64 = 0.8;
@@ -21,7 +20,6 @@ fn from_last<'a>(
     observed[OBSERVED - 1..].iter().chain(path)
 }
 
-/// Somebody whom the picture is not about.
 pub(crate) fn bystander(drawing: &mut Drawing, plan: &PlanView, pedestrian: &MomentPedestrian) {
     drawing.path("bystander", &plan.path(&pedestrian.observed));
     let ahead = plan.path(from_last(&pedestrian.observed, &pedestrian.truth));
@@ -62,7 +60,6 @@ pub(super) fn hypothesis_style(share: f64) -> String {
     format!("opacity:{opacity:.2};stroke-width:{width:.1}")
 }
 
-/// The goal of the hypothesis that stands for all.
 pub(crate) fn representative_goal(
     drawing: &mut Drawing,
     plan: &PlanView,

@@ -2,7 +2,6 @@
 
 use ddl_data::Position;
 
-/// Where places are drawn.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PlanView {
     /// The place in the middle, metres.

@@ -50,7 +50,6 @@ impl Scale {
         self.pixels[0] + share * (self.pixels[1] - self.pixels[0])
     }
 
-    /// Round numbers within the axis, with their labels.
     pub(crate) fn ticks(&self) -> Vec<(f64, String)> {
         if self.logarithmic {
             let exponents = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
@@ -82,7 +81,6 @@ pub(crate) fn round_step(least: f64) -> f64 {
     digit * power
 }
 
-/// As many decimals as the size needs.
 fn label(value: f64, size: f64) -> String {
     let decimals = (-(size.abs().log10() + 1e-9).floor()).max(0.0) as usize;
     if value == 0.0 {

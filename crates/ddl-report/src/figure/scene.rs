@@ -12,115 +12,77 @@ use super::{
 };
 use crate::{Moment, MomentPedestrian};
 
-/// Draws a scene with default settings; see [`SceneFigure`].
+/// Draws everybody of a window with its forecast, titled with the recording and the first frame, as the text of an SVG
+/// file. The same input gives the same bytes.
 ///
 /// # Errors
-/// As [`SceneFigure::to_svg`].
+/// The forecast is not of the window's pedestrians.
 pub fn scene(window: &Window, forecast: &Forecast) -> Result<String, FigureError> {
-    SceneFigure::new(window, forecast).to_svg()
+    let seen = |i: usize| window.track(i)[OBSERVED..].to_vec();
+    let seen: Vec<Vec<Position>> = (0..window.len()).map(seen).collect();
+    let moment = Moment::under_way("", window, forecast, &seen).map_err(|_| {
+        let (expected, found) = (window.len(), forecast.pedestrians());
+        FigureError::Pedestrians { expected, found }
+    })?;
+    let drawn = &moment.pedestrians;
+    let axes = Axes::around(&extent(drawn), &SCENE);
+    let [width, height] = axes.size();
+    let heading = format!(
+        "{}, from frame {}",
+        window.recording(),
+        window.start_frame()
+    );
+    let mut drawing = Drawing::new(width, height, &heading);
+    axes.draw(&mut drawing);
+    axes.draw_names(&mut drawing);
+    let [[left, top], [right, _]] = axes.frame();
+    drawing.text("heading", [left, top - 18.0], heading);
+    legend::draw_column(
+        &mut drawing,
+        [right + 20.0, top],
+        &entries(window, forecast),
+    );
+    drawing.within(axes.frame(), |drawing| {
+        for pedestrian in drawn {
+            pedestrian::other_hypotheses(drawing, axes.plan(), pedestrian);
+        }
+        for pedestrian in drawn {
+            pedestrian::representative_goal(drawing, axes.plan(), pedestrian);
+        }
+        for pedestrian in drawn {
+            let (observed, truth) = (&pedestrian.observed, &pedestrian.truth);
+            drawing.path("seen", &axes.plan().path(observed));
+            pedestrian::track(drawing, axes.plan(), observed, truth);
+        }
+        for pedestrian in drawn {
+            pedestrian::representative(drawing, axes.plan(), pedestrian, false);
+        }
+    });
+    Ok(drawing.to_file(PLOT_STYLE))
 }
 
-/// A picture of one window and its forecast.
-#[derive(Debug, Clone)]
-pub struct SceneFigure<'a> {
-    window: &'a Window,
-    forecast: &'a Forecast,
-    title: Option<String>,
+fn entries(window: &Window, forecast: &Forecast) -> Vec<LegendEntry> {
+    let several = forecast.hypotheses() > 1;
+    let mut entries = vec![LegendEntry::Observed];
+    if window.has_future() {
+        entries.push(LegendEntry::Truth);
+    }
+    if several {
+        let paler = LegendEntry::Note("(the paler, the less likely)");
+        entries.extend([
+            LegendEntry::Representative,
+            LegendEntry::OtherHypotheses,
+            paler,
+        ]);
+    } else {
+        entries.push(LegendEntry::Forecast);
+    }
+    if forecast.has_goals() {
+        entries.push(LegendEntry::Goals(if several { "goals" } else { "goal" }));
+    }
+    entries
 }
 
-impl<'a> SceneFigure<'a> {
-    /// A picture of everybody, titled with the recording and the first frame.
-    pub fn new(window: &'a Window, forecast: &'a Forecast) -> Self {
-        Self {
-            window,
-            forecast,
-            title: None,
-        }
-    }
-
-    /// Another title.
-    #[must_use]
-    pub fn title(mut self, title: impl Into<String>) -> Self {
-        self.title = Some(title.into());
-        self
-    }
-
-    /// The picture as the text of an SVG file. The same input gives the same bytes.
-    ///
-    /// # Errors
-    /// The forecast is not of the window's pedestrians.
-    pub fn to_svg(&self) -> Result<String, FigureError> {
-        let (window, forecast) = (self.window, self.forecast);
-        let seen = |i: usize| window.track(i)[OBSERVED..].to_vec();
-        let seen: Vec<Vec<Position>> = (0..window.len()).map(seen).collect();
-        let moment = Moment::under_way("", window, forecast, &seen).map_err(|_| {
-            let (expected, found) = (window.len(), forecast.pedestrians());
-            FigureError::Pedestrians { expected, found }
-        })?;
-        let drawn = &moment.pedestrians;
-        let axes = Axes::around(&extent(drawn), &SCENE);
-        let [width, height] = axes.size();
-        let heading = self.heading();
-        let mut drawing = Drawing::new(width, height, &heading);
-        axes.draw(&mut drawing);
-        axes.draw_names(&mut drawing);
-        let [[left, top], [right, _]] = axes.frame();
-        drawing.text("heading", [left, top - 18.0], heading);
-        legend::draw_column(&mut drawing, [right + 20.0, top], &self.entries());
-        drawing.within(axes.frame(), |drawing| {
-            for pedestrian in drawn {
-                pedestrian::other_hypotheses(drawing, axes.plan(), pedestrian);
-            }
-            for pedestrian in drawn {
-                pedestrian::representative_goal(drawing, axes.plan(), pedestrian);
-            }
-            for pedestrian in drawn {
-                let (observed, truth) = (&pedestrian.observed, &pedestrian.truth);
-                drawing.path("seen", &axes.plan().path(observed));
-                pedestrian::track(drawing, axes.plan(), observed, truth);
-            }
-            for pedestrian in drawn {
-                pedestrian::representative(drawing, axes.plan(), pedestrian, false);
-            }
-        });
-        Ok(drawing.to_file(PLOT_STYLE))
-    }
-
-    fn heading(&self) -> String {
-        self.title.clone().unwrap_or_else(|| {
-            format!(
-                "{}, from frame {}",
-                self.window.recording(),
-                self.window.start_frame()
-            )
-        })
-    }
-
-    /// What the legend names: the roles that the picture has.
-    fn entries(&self) -> Vec<LegendEntry> {
-        let several = self.forecast.hypotheses() > 1;
-        let mut entries = vec![LegendEntry::Observed];
-        if self.window.has_future() {
-            entries.push(LegendEntry::Truth);
-        }
-        if several {
-            let paler = LegendEntry::Note("(the paler, the less likely)");
-            entries.extend([
-                LegendEntry::Representative,
-                LegendEntry::OtherHypotheses,
-                paler,
-            ]);
-        } else {
-            entries.push(LegendEntry::Forecast);
-        }
-        if self.forecast.has_goals() {
-            entries.push(LegendEntry::Goals(if several { "goals" } else { "goal" }));
-        }
-        entries
-    }
-}
-
-/// Every point that the picture must hold.
 fn extent(drawn: &[MomentPedestrian]) -> Vec<Position> {
     let of_one = |pedestrian: &MomentPedestrian| {
         let mut points = [&pedestrian.observed[..], &pedestrian.truth].concat();

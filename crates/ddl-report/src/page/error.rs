@@ -5,15 +5,12 @@ use crate::ReportError;
 /// A page cannot be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
+#[expect(missing_docs, reason = "the messages say what they mean")]
 pub enum PageError {
-    /// The report cannot be written as JSON.
     #[error(transparent)]
     Report(#[from] ReportError),
-    /// Data of the page cannot be written as JSON.
     #[error("the data of the page cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
-    /// A moment is not whole.
     #[error("moment {index} (recording `{recording}`, frame {frame}): {problem}")]
     Moment {
         index: usize,
@@ -21,7 +18,6 @@ pub enum PageError {
         frame: i64,
         problem: String,
     },
-    /// A training curve is not in order.
     #[error(
         "training curve {index} (fold `{fold}`, variant `{variant}`, seed {seed}): epoch {epoch} follows {before}; \
          epochs must ascend"
@@ -36,7 +32,6 @@ pub enum PageError {
     },
 }
 
-/// What is wrong with a [`Moment`](crate::Moment).
 #[derive(Debug, thiserror::Error)]
 pub(super) enum MomentProblem {
     #[error("walker {pedestrian} has {found} positions in `{field}`, not {expected}")]

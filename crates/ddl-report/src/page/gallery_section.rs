@@ -1,14 +1,159 @@
-//! The gallery: the picked cases as figures with captions.
+//! The gallery: the picked cases as figures in the style of Figures 3 and 4 of the DDL paper, with captions.
 
 use std::fmt::Write as _;
 
-use super::figure::case_figure;
+use ddl_data::{OBSERVED, Position};
+
 use crate::{
-    Moment,
+    Moment, MomentPedestrian,
     document::{escape, inline},
-    figure::drawing::Drawing,
+    figure::{
+        drawing::Drawing,
+        marks::{arrow, star},
+        pedestrian,
+        plan::{PlanView, bounds},
+    },
     gallery::{Pick, Show},
 };
+
+const SCENE: [f64; 2] = [360.0, 300.0];
+/// Free space around what must be seen, px.
+const MARGIN: f64 = 22.0;
+/// A smaller scene is not magnified further, m.
+const LEAST_SPAN: f64 = 3.0;
+/// Heights of title and key of a file, px.
+const STRIPS: [f64; 2] = [30.0, 44.0];
+
+/// The pedestrians of the pick, and everybody else in grey; `alone` adds a title and a key, for a file.
+///
+/// Dots are observed, the solid line is the truth, dashes are the representative forecast with a star at its end and
+/// the ring of its goal, thin lines the other hypotheses, and arrows velocities along it.
+fn case_figure(moment: &Moment, pick: &Pick, alone: bool) -> Drawing {
+    let title = format!(
+        "{}: {}, frame {}",
+        pick.show, moment.recording, moment.frame
+    );
+    let above = if alone { STRIPS[0] } else { 0.0 };
+    let below = if alone { STRIPS[1] } else { 0.0 };
+    let height = SCENE[1] + above + below;
+    let mut drawing = Drawing::new(SCENE[0], height, &title);
+    let chosen: Vec<&MomentPedestrian> = pick
+        .pedestrians
+        .iter()
+        .map(|&at| &moment.pedestrians[at])
+        .collect();
+    let plan = fitting(&chosen, above);
+    for (at, pedestrian) in moment.pedestrians.iter().enumerate() {
+        let mut all = pedestrian.observed.iter().chain(&pedestrian.truth);
+        if !pick.pedestrians.contains(&at) && all.any(|place| is_seen(&plan, *place, above)) {
+            pedestrian::bystander(&mut drawing, &plan, pedestrian);
+        }
+    }
+    for pedestrian in &chosen {
+        pedestrian::other_hypotheses(&mut drawing, &plan, pedestrian);
+    }
+    for pedestrian in &chosen {
+        pedestrian::representative_goal(&mut drawing, &plan, pedestrian);
+        pedestrian::representative(&mut drawing, &plan, pedestrian, true);
+    }
+    for pedestrian in &chosen {
+        pedestrian::track(&mut drawing, &plan, &pedestrian.observed, &pedestrian.truth);
+    }
+    for pedestrian in &chosen {
+        label(&mut drawing, &plan, pedestrian, above);
+    }
+    if alone {
+        plate(&mut drawing, [0.0, above]);
+        plate(&mut drawing, [height - below, height]);
+        drawing.text("title", [12.0, 20.0], title);
+        key(&mut drawing, height - below + 16.0);
+    }
+    scale_bar(&mut drawing, &plan, height - below);
+    drawing
+}
+
+fn fitting(chosen: &[&MomentPedestrian], above: f64) -> PlanView {
+    let seen = chosen.iter().flat_map(|pedestrian| {
+        let shown = &pedestrian.hypotheses[pedestrian.representative()];
+        let paths = pedestrian.observed.iter().chain(&pedestrian.truth);
+        let ends = pedestrian
+            .hypotheses
+            .iter()
+            .filter_map(|h| h.positions.last());
+        let paths = paths.chain(&shown.positions).chain(ends);
+        paths.copied().chain(shown.goal)
+    });
+    let [low, high] = bounds(seen).unwrap_or([[0.0; 2], [1.0; 2]]);
+    let fit = |axis: usize| (SCENE[axis] - 2.0 * MARGIN) / (high[axis] - low[axis]).max(LEAST_SPAN);
+    PlanView {
+        centre: [0, 1].map(|axis| f64::midpoint(low[axis], high[axis])),
+        middle: [SCENE[0] / 2.0, above + SCENE[1] / 2.0],
+        scale: fit(0).min(fit(1)),
+    }
+}
+
+fn is_seen(plan: &PlanView, place: Position, above: f64) -> bool {
+    let [x, y] = plan.px(place);
+    let slack = 30.0;
+    (-slack..=SCENE[0] + slack).contains(&x)
+        && (above - slack..=above + SCENE[1] + slack).contains(&y)
+}
+
+fn label(drawing: &mut Drawing, plan: &PlanView, pedestrian: &MomentPedestrian, above: f64) {
+    let [first, last] =
+        [pedestrian.observed[0], pedestrian.observed[OBSERVED - 1]].map(|p| plan.px(p));
+    let ahead = last[0] - first[0];
+    let words = pedestrian.pedestrian.to_string();
+    let width = 7.0 * words.len() as f64;
+    let (class, x) = if ahead > 0.0 {
+        ("small halo end", (first[0] - 7.0).max(width + 2.0))
+    } else {
+        ("small halo", (first[0] + 7.0).min(SCENE[0] - width - 2.0))
+    };
+    let y = (first[1] + 4.0).clamp(above + 12.0, above + SCENE[1] - 22.0);
+    drawing.text(class, [x, y], words);
+}
+
+fn plate(drawing: &mut Drawing, [top, bottom]: [f64; 2]) {
+    drawing.rectangle("plate", [[0.0, top], [SCENE[0], bottom]]);
+}
+
+/// A bar of 1, 2, 5 ... metres at the lower left.
+fn scale_bar(drawing: &mut Drawing, plan: &PlanView, bottom: f64) {
+    let metres = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]
+        .into_iter()
+        .find(|metres| metres * plan.scale >= 36.0)
+        .unwrap_or(200.0);
+    let (x, y, length) = (12.0, bottom - 10.0, metres * plan.scale);
+    let ends = [[x, y - 3.0], [x, y], [x + length, y], [x + length, y - 3.0]];
+    drawing.path("scale-bar", &ends);
+    drawing.text(
+        "small halo",
+        [x + length + 6.0, y + 2.0],
+        format!("{metres} m"),
+    );
+}
+
+fn key(drawing: &mut Drawing, y: f64) {
+    drawing.circle("observed", [16.0, y - 4.0], 2.4);
+    drawing.circle("observed", [24.0, y - 4.0], 2.4);
+    drawing.text("small", [32.0, y], "observed");
+    drawing.path("truth", &[[92.0, y - 4.0], [112.0, y - 4.0]]);
+    drawing.text("small", [118.0, y], "truth");
+    drawing.path("forecast", &[[158.0, y - 4.0], [182.0, y - 4.0]]);
+    drawing.polygon("star", &star([188.0, y - 4.0], 6.0));
+    drawing.text("small", [199.0, y], "representative, its end");
+    let y = y + 18.0;
+    drawing.circle("goal representative", [20.0, y - 4.0], 5.5);
+    drawing.text("small", [32.0, y], "goal");
+    drawing.path("hypothesis", &[[92.0, y - 4.0], [112.0, y - 4.0]]);
+    drawing.text("small", [118.0, y], "others");
+    let strokes = arrow([160.0, y - 4.0], [182.0, y - 4.0]);
+    for stroke in strokes.into_iter().flatten() {
+        drawing.path("velocity", &stroke);
+    }
+    drawing.text("small", [199.0, y], "velocity (way of 0.8 s)");
+}
 
 /// Cases in the order of [`Show::ALL`], with the place of their moment.
 fn cases(moments: &[Moment]) -> Vec<(usize, &Moment, &Pick)> {
@@ -21,7 +166,6 @@ fn cases(moments: &[Moment]) -> Vec<(usize, &Moment, &Pick)> {
     cases
 }
 
-/// What a case shows, in a sentence.
 fn meaning(show: Show) -> &'static str {
     match show {
         Show::Convergence => "A walker who reaches the goal of the representative hypothesis.",

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{
-    figure::{MOST_LINES, Shape, headline_chart},
+    headline_chart::{MOST_LINES, Shape, headline_chart},
     standing::{Standing, StandingLine, standing},
 };
 use crate::{
@@ -41,7 +41,6 @@ pub(super) fn headline(report: &Report) -> String {
     html
 }
 
-/// Says so where the chart leaves lines out.
 fn shown_of(lines: usize) -> String {
     if lines > MOST_LINES {
         format!("The first {MOST_LINES} of {lines} are drawn.")
@@ -150,7 +149,6 @@ fn facts(standing: &Standing, subject: &StandingLine) -> String {
     html + "</dl>\n"
 }
 
-/// 14968 as 14,968.
 fn grouped(count: usize) -> String {
     let digits = count.to_string();
     let mut words = String::new();

@@ -5,9 +5,9 @@
 //! [`Report::document`](crate::Report::document).
 
 mod error;
-mod figure;
 mod gallery_section;
 mod headline;
+mod headline_chart;
 mod moment_data;
 mod player;
 mod report_page;

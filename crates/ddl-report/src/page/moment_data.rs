@@ -65,7 +65,6 @@ pub(super) enum Truth {
     AsSeen,
 }
 
-/// Checks that every moment is whole, and names the first that is not.
 pub(super) fn check(moments: &[Moment], truth: Truth) -> Result<(), PageError> {
     for (index, moment) in moments.iter().enumerate() {
         problem(moment, truth).map_or(Ok(()), |problem| {
@@ -152,7 +151,6 @@ fn place(pedestrian: usize, field: &'static str, path: &[Position]) -> Option<Mo
     })
 }
 
-/// The moments as one JSON array, each on a line of its own.
 pub(super) fn to_json(moments: &[Moment]) -> Result<String, PageError> {
     let lines: Vec<String> = moments
         .iter()

@@ -5,7 +5,6 @@ use crate::{Moment, document::escape, figure::drawing};
 
 /// Of every page, up to its body.
 const HEAD: &str = include_str!("head.html");
-/// Light, dark, or as the system has it.
 pub(super) const THEME_BUTTON: &str = include_str!("theme_button.html");
 const PLAYER: &str = include_str!("player.html");
 const STYLE: &str = include_str!("style.css");
@@ -25,7 +24,6 @@ pub(super) const PLAYER_SCRIPTS: [&str; 12] = [
     include_str!("script/keys.js"),
 ];
 
-/// The head of a page under this title.
 pub(super) fn head(title: &str) -> String {
     let slots = [
         ("title", &*escape(title)),
@@ -35,7 +33,6 @@ pub(super) fn head(title: &str) -> String {
     fill(HEAD, &slots)
 }
 
-/// The player, which shows the embedded moments.
 pub(super) fn player(moments: &[Moment]) -> String {
     let state = if moments.is_empty() { "empty" } else { "ready" };
     fill(PLAYER, &[("player-state", state)])

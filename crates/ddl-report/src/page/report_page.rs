@@ -2,8 +2,8 @@
 
 use super::{
     error::PageError,
-    figure::{Shape, headline_chart},
     gallery_section, headline,
+    headline_chart::{Shape, headline_chart},
     moment_data::{self, Truth},
     player::{PLAYER_SCRIPTS, THEME_BUTTON, head, player},
     standing,

@@ -13,21 +13,16 @@ use ddl_eval::{Conditions, Scores};
 pub(super) struct Standing {
     /// What all lines share; fold and forecaster are those of one row.
     pub(super) shared: Conditions,
-    /// The same in words.
     pub(super) in_words: String,
-    /// The folds measured, in the order of the convention.
     pub(super) folds: Vec<String>,
-    /// Whether these are all folds of the convention.
     pub(super) all_folds: bool,
     pub(super) lines: Vec<StandingLine>,
 }
 
-/// One forecaster in a [`Standing`].
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct StandingLine {
     pub(super) label: String,
     pub(super) conditions: Conditions,
-    /// Under what conditions it came about, in words.
     pub(super) settings: String,
     pub(super) hypotheses: usize,
     /// minADE and minFDE on each fold, m, mean over seeds; `None` where it was not measured.

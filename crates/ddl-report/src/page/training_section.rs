@@ -1,14 +1,207 @@
-//! How the trainings went: a chart for each fold and quantity.
+//! How the trainings went: a panel for each fold and quantity, variants named at the ends of their lines.
 
 use std::fmt::Write as _;
 
-use super::{
-    error::PageError,
-    figure::{TrainingPanel, training_panels},
+use super::error::PageError;
+use crate::{
+    EpochPoint, TrainingCurve,
+    document::escape,
+    figure::{drawing::Drawing, scale::Scale},
 };
-use crate::{TrainingCurve, document::escape, figure::drawing::Drawing};
 
-/// Checks that epochs ascend.
+const SIZE: [f64; 2] = [360.0, 230.0];
+const LEFT: f64 = 46.0;
+const RIGHT: f64 = 110.0;
+const TOP: f64 = 34.0;
+const BOTTOM: f64 = 36.0;
+/// Height of a label, px: nearer ones are moved apart.
+const LABEL: f64 = 14.0;
+const COLOURS: usize = 5;
+
+#[derive(Debug, Clone)]
+struct TrainingPanel {
+    fold: String,
+    quantity: String,
+    drawing: Drawing,
+}
+
+const VALIDATION: &str = "error on the validation split, m";
+
+struct Series<'a> {
+    curve: &'a TrainingCurve,
+    colour: usize,
+    points: Vec<(usize, f64)>,
+}
+
+/// Losses in one panel a fold and kind of loss, then validation errors where there are any.
+fn training_panels(curves: &[TrainingCurve]) -> Vec<TrainingPanel> {
+    let variants = distinct(curves.iter().map(|curve| curve.variant.as_str()));
+    let validation = values(curves.iter(), |point| point.validation);
+    let mut panels = Vec::new();
+    for fold in distinct(curves.iter().map(|curve| curve.fold.as_str())) {
+        let of_fold = || curves.iter().filter(move |curve| curve.fold == fold);
+        for loss in distinct(of_fold().map(|curve| curve.loss.as_str())) {
+            let of_loss = of_fold().filter(|curve| curve.loss == loss);
+            // All folds share one scale.
+            let same_loss = curves.iter().filter(|curve| curve.loss == loss);
+            let all = values(same_loss, |point| Some(point.loss));
+            let series = series(of_loss, &variants, |point| Some(point.loss));
+            panels.extend(panel(fold, loss, &series, &all));
+        }
+        let series = series(of_fold(), &variants, |point| point.validation);
+        panels.extend(panel(fold, VALIDATION, &series, &validation));
+    }
+    panels
+}
+
+fn values<'a>(
+    curves: impl Iterator<Item = &'a TrainingCurve>,
+    of: fn(&EpochPoint) -> Option<f64>,
+) -> Vec<f64> {
+    let points = curves.flat_map(|curve| &curve.epochs).filter_map(of);
+    points.filter(|value| value.is_finite()).collect()
+}
+
+fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut seen = Vec::new();
+    for name in names {
+        if !seen.contains(&name) {
+            seen.push(name);
+        }
+    }
+    seen
+}
+
+fn series<'a>(
+    curves: impl Iterator<Item = &'a TrainingCurve>,
+    variants: &[&str],
+    of: fn(&EpochPoint) -> Option<f64>,
+) -> Vec<Series<'a>> {
+    let one = |curve: &'a TrainingCurve| {
+        let finite = |point: &EpochPoint| Some((point.epoch, of(point).filter(|v| v.is_finite())?));
+        let points: Vec<(usize, f64)> = curve.epochs.iter().filter_map(finite).collect();
+        let colour = variants
+            .iter()
+            .position(|variant| *variant == curve.variant)?
+            % COLOURS;
+        (!points.is_empty()).then_some(Series {
+            curve,
+            colour,
+            points,
+        })
+    };
+    curves.filter_map(one).collect()
+}
+
+fn panel(fold: &str, quantity: &str, series: &[Series<'_>], all: &[f64]) -> Option<TrainingPanel> {
+    let epochs = || {
+        series
+            .iter()
+            .flat_map(|s| s.points.iter().map(|(epoch, _)| *epoch))
+    };
+    let (first, last) = (epochs().min()?, epochs().max()?);
+    let (right, bottom) = (SIZE[0] - RIGHT, SIZE[1] - BOTTOM);
+    let up = Scale::of(all, [bottom, TOP]);
+    let span = (last - first).max(1) as f64;
+    let across = |epoch: usize| LEFT + (epoch - first) as f64 / span * (right - LEFT);
+
+    let mut drawing = Drawing::new(SIZE[0], SIZE[1], format!("{fold}: {quantity} by epoch"));
+    drawing.data("fold", fold);
+    drawing.data(
+        "quantity",
+        if quantity == VALIDATION {
+            "validation"
+        } else {
+            "loss"
+        },
+    );
+    drawing.data("loss", quantity);
+    drawing.data("left", LEFT.to_string());
+    drawing.data("right", right.to_string());
+    drawing.data("first", first.to_string());
+    drawing.data("last", last.to_string());
+    drawing.text("title", [0.0, 14.0], fold);
+    for (value, label) in up.ticks() {
+        let y = up.at(value);
+        drawing.line("grid", [LEFT, y], [right, y]);
+        drawing.text("small end", [LEFT - 6.0, y + 4.0], label);
+    }
+    drawing.line("axis", [LEFT, bottom], [right, bottom]);
+    for epoch in epoch_ticks(first, last) {
+        drawing.text(
+            "small middle",
+            [across(epoch), bottom + 15.0],
+            epoch.to_string(),
+        );
+    }
+    drawing.text(
+        "small middle",
+        [f64::midpoint(LEFT, right), bottom + 31.0],
+        "epoch",
+    );
+    for s in series {
+        let points: Vec<[f64; 2]> = s
+            .points
+            .iter()
+            .map(|(e, v)| [across(*e), up.at(*v)])
+            .collect();
+        drawing.path(&format!("curve c{}", s.colour), &points);
+        if let [only] = points.as_slice() {
+            drawing.circle(&format!("c{}", s.colour), *only, 2.0);
+        }
+    }
+    for (colour, y, words) in labels(series, &up, [TOP, bottom]) {
+        drawing.text(&format!("small c{colour}"), [right + 7.0, y + 4.0], words);
+    }
+    Some(TrainingPanel {
+        fold: fold.to_owned(),
+        quantity: quantity.to_owned(),
+        drawing,
+    })
+}
+
+/// Each variant once, beside the end of its lines; labels that would overlap are moved apart.
+fn labels(series: &[Series<'_>], up: &Scale, [top, bottom]: [f64; 2]) -> Vec<(usize, f64, String)> {
+    let mut labels: Vec<(usize, f64, String)> = Vec::new();
+    for variant in distinct(series.iter().map(|s| s.curve.variant.as_str())) {
+        let of_it: Vec<&Series<'_>> = series
+            .iter()
+            .filter(|s| s.curve.variant == variant)
+            .collect();
+        let ends = of_it.iter().filter_map(|s| s.points.last());
+        let y = ends.map(|(_, value)| up.at(*value)).sum::<f64>() / of_it.len() as f64;
+        let words: String = variant.chars().take(17).collect();
+        labels.push((of_it[0].colour, y, words));
+    }
+    labels.sort_by(|a, b| a.1.total_cmp(&b.1));
+    // Down from the top, then up from the bottom, so that the block stays within the panel.
+    let mut free = top;
+    for label in &mut labels {
+        label.1 = label.1.max(free);
+        free = label.1 + LABEL;
+    }
+    let mut free = bottom;
+    for label in labels.iter_mut().rev() {
+        label.1 = label.1.min(free);
+        free = label.1 - LABEL;
+    }
+    labels
+}
+
+/// At most six whole numbers from the first epoch to the last.
+fn epoch_ticks(first: usize, last: usize) -> Vec<usize> {
+    let steps = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000];
+    let step = steps
+        .into_iter()
+        .find(|step| (last - first) / step <= 5)
+        .unwrap_or(10_000);
+    let mut ticks: Vec<usize> = (first..=last).filter(|epoch| epoch % step == 0).collect();
+    if ticks.first() != Some(&first) && ticks.first().is_none_or(|tick| tick - first > step / 2) {
+        ticks.insert(0, first);
+    }
+    ticks
+}
+
 pub(super) fn check(curves: &[TrainingCurve]) -> Result<(), PageError> {
     for (index, curve) in curves.iter().enumerate() {
         for pair in curve.epochs.windows(2) {
@@ -65,4 +258,16 @@ pub(super) fn figures(curves: &[TrainingCurve]) -> Vec<(String, Drawing)> {
         )
     };
     training_panels(curves).into_iter().map(named).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_few_and_whole() {
+        assert_eq!(epoch_ticks(1, 6), [1, 2, 3, 4, 5, 6]);
+        assert_eq!(epoch_ticks(1, 30), [1, 5, 10, 15, 20, 25, 30]);
+        assert_eq!(epoch_ticks(3, 3), [3]);
+    }
 }

@@ -40,10 +40,7 @@ fn each_kind_of_case_is_picked_once_and_time_is_covered() {
     let windows = windows();
     let moments = gallery::moments("corridor", "oracle", &windows, &oracle(&windows)).unwrap();
     let kinds = shown(&moments);
-    assert!(
-        kinds.contains(&Show::Convergence) && kinds.contains(&Show::KeepingDistance),
-        "{kinds:?}"
-    );
+    assert!(kinds.contains(&Show::Convergence) && kinds.contains(&Show::KeepingDistance));
     let mut once = kinds.clone();
     once.dedup();
     assert_eq!(kinds, once);
@@ -104,9 +101,7 @@ fn the_case_shown_is_the_median_one() {
     assert_eq!(shown, Some(errors[(errors.len() - 1) / 2]));
     assert!(
         pick.rule
-            .starts_with(&format!("of {} such walkers", errors.len())),
-        "{}",
-        pick.rule
+            .starts_with(&format!("of {} such walkers", errors.len()))
     );
 }
 

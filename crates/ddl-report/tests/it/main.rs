@@ -7,8 +7,6 @@
 
 mod figure;
 mod gallery;
-mod goal_figure;
 mod measured_baselines;
 mod page;
-mod recordings;
 mod report;

@@ -1,11 +1,11 @@
-//! Timing side by side with the machine's own product of matrices.
+//! Timing in turns, with empty caches.
 
 use crate::Result;
-use ddl::star::{MatrixProduct, set_threads};
 use rustix::time::{ClockId, clock_gettime};
+use std::hint::black_box;
 
-/// Rows and columns of the matrices of the yardstick.
-const MATRIX: usize = 1024;
+/// Bytes that are gone through to empty the caches: more than they hold.
+const CACHES: usize = 256 << 20;
 
 #[derive(Clone, Copy)]
 pub(crate) enum Clock {
@@ -31,46 +31,28 @@ impl Clock {
     }
 }
 
-/// What something costs, and what the machine could do at the time.
-#[derive(Clone, Copy)]
-pub(crate) struct Measured {
-    /// Median, seconds.
-    pub(crate) seconds: f64,
-    /// Multiplications and additions a second of the product of matrices, median.
-    pub(crate) matrix_rate: f64,
-}
-
-/// Runs everything in turn, each right after a product of matrices on `threads` threads; first once without looking at the
-/// clock. As [`ddl::prepare`] has it, libtorch has one thread for the rest.
+/// Seconds of everything, median of the turns. Before each of them the caches are emptied; the first turn does not
+/// count.
 pub(crate) fn side_by_side<const N: usize>(
     clock: Clock,
-    threads: usize,
     turns: usize,
     mut works: [&mut dyn FnMut() -> Result<()>; N],
-) -> Result<[Measured; N]> {
-    let mut product = MatrixProduct::new(MATRIX)?;
-    let mut multiply = || Ok(product.multiply()?);
-    let mut times: [Vec<[f64; 2]>; N] = std::array::from_fn(|_| Vec::new());
+) -> Result<[f64; N]> {
+    let mut bytes = vec![0_u8; CACHES];
+    let mut times: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
     for turn in 0..=turns {
         for (work, times) in works.iter_mut().zip(&mut times) {
-            set_threads(threads);
-            let yardstick = clock.seconds(&mut multiply)?;
-            set_threads(1);
+            black_box(&mut bytes).fill(turn as u8);
             let seconds = clock.seconds(work)?;
             if turn > 0 {
-                times.push([seconds, yardstick]);
+                times.push(seconds);
             }
         }
     }
-    let operations = product.operations() as f64;
-    Ok(times.map(|times| Measured {
-        seconds: median(times.iter().map(|pair| pair[0])),
-        matrix_rate: operations / median(times.iter().map(|pair| pair[1])),
-    }))
+    Ok(times.map(median))
 }
 
-fn median(numbers: impl Iterator<Item = f64>) -> f64 {
-    let mut numbers: Vec<f64> = numbers.collect();
+fn median(mut numbers: Vec<f64>) -> f64 {
     numbers.sort_by(f64::total_cmp);
     numbers[numbers.len() / 2]
 }

@@ -1,13 +1,12 @@
-//! What a forecast and a training step cost, beside what the machine can do: `cargo bench -p ddl --features torch --bench latency`.
+//! What a forecast and a training step cost: `cargo bench -p ddl --features torch --bench latency`.
 //!
 //! One scene of 25 simulated pedestrians with 20 hypotheses each, on one thread: the whole forecast, and its parts: goals, network,
 //! and walk with certificate in `f64`. The same for narrower feed-forward blocks. Then a training step of about 266 walkers, on one
 //! thread and on two. The weights are untrained, which costs the same.
 //!
-//! Every figure is a median of turns; in each turn, right before, two large matrices are multiplied by libtorch in `f32` on as many
-//! threads. The network's multiplications and additions (`StarConfig::forecast_operations`, `training_operations`) per second
-//! are stated as a share of that product's. Times are the processor's, which other work on the machine hardly touches, and for two
-//! threads the clock's, which it does.
+//! Every figure is a median of turns; before each of them the caches are emptied, as whatever runs between two frames
+//! of a camera would. Times are the processor's, which other work on the machine hardly touches, and for two threads
+//! the clock's, which it does.
 
 mod clock;
 mod scene;
@@ -15,7 +14,7 @@ mod step;
 mod untrained;
 mod walk;
 
-use clock::{Clock, Measured, side_by_side};
+use clock::{Clock, side_by_side};
 use ddl::data::{Dataset, Position, Window};
 use ddl::network::weights::load_weights;
 use ddl::network::{ForecastWindows as _, MotionNetwork, Noise, StepRule};
@@ -52,11 +51,15 @@ fn main() -> Result<()> {
         "\n{} pedestrians, 20 hypotheses, {library} experts, one thread, processor time",
         window.len()
     )?;
-    writeln!(out, "{}", header())?;
+    writeln!(out, "feed-forward  whole/ms  goals/ms network/ms   walk/ms")?;
     for width in WIDTHS {
         untrained::widen(&run, width)?;
-        let row = forecast(run.path(), &window, turns)?;
-        writeln!(out, "{}", row.line(width))?;
+        let [whole, goals, network, walk] =
+            forecast(run.path(), &window, turns)?.map(|seconds| 1e3 * seconds);
+        writeln!(
+            out,
+            "{width:>12} {whole:>9.2} {goals:>9.2} {network:>10.2} {walk:>9.2}"
+        )?;
     }
     writeln!(out, "\ntraining step, published network")?;
     for threads in [1, 2] {
@@ -65,50 +68,8 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// What one forecast costs.
-struct Row {
-    whole: Measured,
-    goals: Measured,
-    network: Measured,
-    walk: Measured,
-    operations: u64,
-}
-
-fn header() -> String {
-    format!(
-        "{:>12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>13} {:>10} {:>14}",
-        "feed-forward",
-        "whole/ms",
-        "goals/ms",
-        "netw./ms",
-        "walk/ms",
-        "GFLOP",
-        "network GF/s",
-        "matmul GF/s",
-        "network share"
-    )
-}
-
-impl Row {
-    fn line(&self, width: i64) -> String {
-        let ms = |measured: &Measured| 1e3 * measured.seconds;
-        let rate = self.operations as f64 / self.network.seconds;
-        format!(
-            "{width:>12} {:>9.2} {:>9.2} {:>9.2} {:>9.2} {:>9.2} {:>13.1} {:>10.1} {:>13.0}%",
-            ms(&self.whole),
-            ms(&self.goals),
-            ms(&self.network),
-            ms(&self.walk),
-            self.operations as f64 / 1e9,
-            rate / 1e9,
-            self.network.matrix_rate / 1e9,
-            100.0 * rate / self.network.matrix_rate,
-        )
-    }
-}
-
-/// The whole forecast, as a user asks for it, and its parts.
-fn forecast(run: &Path, window: &Window, turns: usize) -> Result<Row> {
+/// Seconds of the whole forecast, as a user asks for it, and of its parts: goals, network, walk.
+fn forecast(run: &Path, window: &Window, turns: usize) -> Result<[f64; 4]> {
     let model = Ddl::load(run, DeviceChoice::Cpu)?;
     let star = &model.config().star;
     let network = MotionNetwork::new(star.clone(), 0)?;
@@ -138,13 +99,5 @@ fn forecast(run: &Path, window: &Window, turns: usize) -> Result<Row> {
         &mut || roll_out().map(drop).map_err(Into::into),
         &mut || walk::all(star, window, &goals, &rollout),
     ];
-    let [whole, goals_cost, network_cost, walk_cost] =
-        side_by_side(Clock::Processor, 1, turns, parts)?;
-    Ok(Row {
-        whole,
-        goals: goals_cost,
-        network: network_cost,
-        walk: walk_cost,
-        operations: star.forecast_operations(window.len(), rollout.hypotheses),
-    })
+    side_by_side(Clock::Processor, turns, parts)
 }

@@ -16,7 +16,6 @@ pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Resul
     let windows = one_batch(dataset, training.batch_walkers)?;
     let scenes: Vec<usize> = windows.iter().map(Window::len).collect();
     let star = StarConfig::published(Variant::Full);
-    let operations = star.training_operations(&scenes) as f64;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()?;
@@ -28,23 +27,13 @@ pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Resul
     let [step] = pool.install(|| {
         let device = ComputeDevice::open(DeviceChoice::Cpu)?;
         let mut trainer = Trainer::new(TorchNetwork::new(star, 1, device)?, windows, training)?;
-        side_by_side(
-            clock,
-            threads,
-            turns,
-            [&mut || Ok(trainer.step().map(drop)?)],
-        )
+        let work: &mut dyn FnMut() -> Result<()> = &mut || Ok(trainer.step().map(drop)?);
+        side_by_side(clock, turns, [work])
     })?;
-    let rate = operations / step.seconds;
     Ok(format!(
-        "{} walkers in {} scenes, threads: {threads}: {:.3} s ({time}), {:.1} GFLOP, {:.1} GFLOP/s, {:.0}% of matmul's {:.1} GFLOP/s",
+        "{} walkers in {} scenes, threads: {threads}: {step:.3} s ({time})",
         scenes.iter().sum::<usize>(),
         scenes.len(),
-        step.seconds,
-        operations / 1e9,
-        rate / 1e9,
-        100.0 * rate / step.matrix_rate,
-        step.matrix_rate / 1e9,
     ))
 }
 

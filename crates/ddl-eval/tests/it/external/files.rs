@@ -16,7 +16,6 @@ pub(crate) fn windows() -> Vec<Window> {
     ]
 }
 
-/// A forecast that stands still at (x, y).
 pub(crate) fn still(x: f64, y: f64) -> Vec<Position> {
     vec![[x, y]; HORIZON]
 }
@@ -44,7 +43,6 @@ pub(crate) fn read(
     external::read_from(text.as_bytes(), "f", format, &windows(), coverage)
 }
 
-/// JSON lines for these windows.
 pub(crate) fn of(
     windows: &[Window],
     text: &str,
@@ -54,7 +52,6 @@ pub(crate) fn of(
     external::read_from(text.as_bytes(), "f", format, windows, coverage)
 }
 
-/// Conditions of forecasts for the windows of the yard.
 pub(crate) fn conditions(protocol: Protocol) -> Conditions {
     let (convention, rule) = (Convention::Star, WindowRule::Complete);
     Conditions::new(convention, rule, protocol, "yard", "mine")

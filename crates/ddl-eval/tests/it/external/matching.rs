@@ -2,9 +2,9 @@
 
 use ddl_data::{Format, PedestrianId, Window, WindowRule, parse_recording};
 use ddl_eval::baseline::SocialForce;
-use ddl_eval::category::TrajectoryType;
 use ddl_eval::external::{self, Coverage, ExternalError, ExternalFormat};
-use ddl_eval::{Category, Conditions, Forecast, Forecaster as _, Protocol, Scores};
+use ddl_eval::metric::displacement::average_displacement;
+use ddl_eval::{Conditions, Forecast, Forecaster as _, Protocol, Scores};
 use std::fmt::Write as _;
 
 use super::files::{
@@ -100,14 +100,11 @@ fn pedestrians_may_have_words_for_names() {
     }
     let one = line(70, 1, &hypothesis(1.0)).replace(":1,\"hyp", ":\"007\",\"hyp");
     let told = of(&windows, &one, Coverage::Whole).unwrap_err().to_string();
-    assert!(
-        told.contains("observed until 70 pedestrian 7f3e-aa41"),
-        "{told}"
-    );
+    assert!(told.contains("observed until 70 pedestrian 7f3e-aa41"));
 }
 
 #[test]
-fn the_output_of_ddl_forecast_is_read_as_it_is() {
+fn what_ddl_forecast_writes_beside_is_passed_over_and_goals_of_null_are_none() {
     let frames: Vec<i64> = (8..20).map(|t| 10 * t).collect();
     let first = format!(
         "{{\"observed_until\":70,\"pedestrian\":3,\"frames\":{frames:?},\"hypotheses\":[{{\"weight\":0.75,\"goal\":[1.0,0.0],\
@@ -116,10 +113,8 @@ fn the_output_of_ddl_forecast_is_read_as_it_is() {
     );
     let matched = read(&first, ExternalFormat::JsonLines, Coverage::Intersection).unwrap();
     let forecast = &matched.forecasts[0];
-    assert_eq!((forecast.pedestrians(), forecast.hypotheses()), (1, 2));
     assert_eq!(forecast.goal(0, 1), Some([2.0, 0.0]));
     assert!((forecast.weight(0, 0) - 0.75).abs() < f64::EPSILON);
-    // goals that are null are none
     let text = whole().replace(
         "{\"positions\"",
         "{\"goal\":null,\"weight\":1.0,\"positions\"",
@@ -129,51 +124,37 @@ fn the_output_of_ddl_forecast_is_read_as_it_is() {
 }
 
 #[test]
-fn the_intersection_names_itself_and_scores_those_alone() {
-    let text = line(70, 5, &hypothesis(2.0)) + &line(70, 4, &hypothesis(9.0));
-    let matched = read(&text, ExternalFormat::JsonLines, Coverage::Intersection).unwrap();
-    assert_eq!(
-        matched.test_subset().unwrap(),
-        // of "yard", 70 and 5, computed with Python's hashlib
-        "walkers forecast by f: 1 of 3, digest f5c3a037"
-    );
-    let other = line(70, 3, &hypothesis(2.0));
-    let other = read(&other, ExternalFormat::JsonLines, Coverage::Intersection).unwrap();
-    let of_other = "walkers forecast by f: 1 of 3, digest 0f80b53d";
-    assert_eq!(other.test_subset().unwrap(), of_other);
-    assert_eq!(matched.windows.len(), 1);
-    assert_eq!(matched.windows[0].pedestrians(), [PedestrianId(5)]);
-    let rows = external::measure(&conditions(Protocol::Fair), &matched, 1).unwrap();
-    for row in &rows {
-        assert_eq!(row.scores.pedestrians, 1);
-        assert_eq!(row.conditions.test_subset, matched.test_subset());
-    }
-    assert_eq!(rows[0].conditions.forecaster, "mine");
-    assert_eq!(
-        rows[0].scores,
-        Scores::evaluate(&matched.windows, &matched.forecasts).unwrap()
-    );
-    // he goes on from x = 4 to 9.5 at y = 2, and is forecast at (2, 0)
-    let end = f64::hypot(7.5, 2.0);
-    assert!((rows[0].scores.min_fde - end).abs() < 1e-12);
-}
-
-#[test]
-fn the_subset_of_the_caller_is_kept() {
-    let subset = |text: &str, coverage| {
+fn the_intersection_is_named_beside_the_callers_subset_and_scored_alone() {
+    let subset = |text: &str, coverage, named: Option<&str>| {
         let matched = read(text, ExternalFormat::JsonLines, coverage).unwrap();
         let conditions = Conditions {
-            test_subset: Some("every second window".to_owned()),
-            ..conditions(Protocol::Single)
+            test_subset: named.map(str::to_owned),
+            ..conditions(Protocol::Fair)
         };
         let rows = external::measure(&conditions, &matched, 1).unwrap();
-        rows[1].conditions.test_subset.clone().unwrap()
+        assert_eq!(rows[0].conditions.forecaster, "mine");
+        let of_all = rows[1].conditions.test_subset.clone();
+        assert_eq!(rows[0].conditions.test_subset, of_all);
+        (matched, rows, of_all.unwrap())
     };
-    assert_eq!(subset(&whole(), Coverage::Whole), "every second window");
-    assert_eq!(
-        subset(&line(70, 5, &hypothesis(2.0)), Coverage::Intersection),
-        "every second window; walkers forecast by f: 1 of 3, digest f5c3a037"
-    );
+    let two = line(70, 5, &hypothesis(2.0)) + &line(70, 4, &hypothesis(9.0));
+    // The digests are of "yard", 70 and the pedestrian, computed with Python's hashlib.
+    let (matched, rows, named) = subset(&two, Coverage::Intersection, None);
+    assert_eq!(named, "walkers forecast by f: 1 of 3, digest f5c3a037");
+    let windows = &matched.windows;
+    assert_eq!(windows.len(), 1);
+    assert_eq!(windows[0].pedestrians(), [PedestrianId(5)]);
+    assert!(rows.iter().all(|row| row.scores.pedestrians == 1));
+    let scores = Scores::evaluate(windows, &matched.forecasts).unwrap();
+    assert_eq!(rows[0].scores, scores);
+    // he goes on from x = 4 to 9.5 at y = 2, and is forecast at (2, 0)
+    assert!((scores.min_fde - f64::hypot(7.5, 2.0)).abs() < 1e-12);
+    let every = "every second window";
+    let other = line(70, 3, &hypothesis(2.0));
+    let (.., named) = subset(&other, Coverage::Intersection, Some(every));
+    let part = "walkers forecast by f: 1 of 3, digest 0f80b53d";
+    assert_eq!(named, format!("{every}; {part}"));
+    assert_eq!(subset(&whole(), Coverage::Whole, Some(every)).2, every);
 }
 
 #[test]
@@ -209,9 +190,10 @@ fn extensions_name_the_format_in_capitals_too() {
     }
 }
 
-/// 1 goes east, meets 2, who goes west and whom nobody forecast, at frame 15, and turns; 3 is far away.
+/// 1 goes east and meets 2, who goes west and whom nobody forecast; 3 is far away. The social force model gives way to
+/// 2.
 #[test]
-fn who_is_not_forecast_is_still_there() {
+fn baselines_see_whom_nobody_forecast() {
     let track = |at: fn(f64) -> [f64; 2]| (0..20).map(|t| at(f64::from(t))).collect::<Vec<_>>();
     let tracks = vec![
         track(|t| [0.5 * t, -0.5 * (t - 15.0).max(0.0)]),
@@ -226,29 +208,13 @@ fn who_is_not_forecast_is_still_there() {
     };
     let text = line(70, 1, &straight_on(0.0)) + &line(70, 3, &straight_on(50.0));
     let matched = of(&windows, &text, Coverage::Intersection).unwrap();
-    assert_eq!(matched.everybody, windows);
     let rows = external::measure(&conditions(Protocol::Single), &matched, 1).unwrap();
-    let mine = &rows[0].scores;
-    assert_eq!(mine.pedestrians, 2);
-    assert!((mine.true_collision_rate - 0.5).abs() < f64::EPSILON);
-    assert_eq!(mine.true_neighbour_collision_rate, Some(0.5));
     // nobody forecast where 2 goes
-    assert!(mine.collision_rate.abs() < f64::EPSILON);
-    let interacting = Category::Type(TrajectoryType::Interacting);
-    assert!(Category::of(&windows[0], 0).contains(&interacting));
-    assert!(!Category::of(&matched.windows[0], 0).contains(&interacting));
-    let found = mine.categories.iter().find(|c| c.category == interacting);
-    assert_eq!(found.unwrap().pedestrians, 1);
-    // the social force model gives way to 2
-    let forces = rows
-        .iter()
-        .find(|r| r.conditions.forecaster == "social force");
+    assert!(rows[0].scores.collision_rate.abs() < f64::EPSILON);
+    let mut forces = rows.iter();
+    let forces = forces.find(|row| row.conditions.forecaster == "social force");
     let forced = SocialForce.forecast(&windows[0]).unwrap();
-    let error = |i: usize, t: usize| {
-        let ([x, y], [u, v]) = (forced.hypothesis(i, 0)[t], windows[0].future(i)[t]);
-        f64::hypot(x - u, y - v)
-    };
-    let ade = |i: usize| (0..12).map(|t| error(i, t)).sum::<f64>() / 12.0;
+    let ade = |i: usize| average_displacement(forced.hypothesis(i, 0), windows[0].future(i));
     assert!(ade(0) > 0.01, "{}", ade(0));
     let expected = f64::midpoint(ade(0), ade(2));
     assert!((forces.unwrap().scores.min_ade - expected).abs() < 1e-12);
@@ -300,10 +266,7 @@ fn pedestrians_that_are_missing_and_forecasts_of_nobody_are_counted_and_named() 
     }
     // Where the others fit as they are, one that would fit if it were shifted says nothing of the frame.
     let among_others = hint(&line(90, 5, &hypothesis(2.0)));
-    assert!(
-        !among_others.contains("first frame forecast"),
-        "{among_others}"
-    );
+    assert!(!among_others.contains("first frame forecast"));
     let nothing = read(
         &line(9, 9, &hypothesis(0.0)),
         ExternalFormat::JsonLines,
@@ -362,10 +325,7 @@ fn forecasts_that_begin_elsewhere_are_refused_with_a_likely_reason() {
     ] {
         let complaint = measure(&text).unwrap_err().to_string();
         assert!(complaint.contains(expected), "{complaint}");
-        assert!(
-            complaint.starts_with("f: half of the forecasts begin "),
-            "{complaint}"
-        );
+        assert!(complaint.starts_with("f: half of the forecasts begin "));
     }
     assert!(measure(&file([9.9, 0.0], [9.8, 2.0], [9.5, 2.5])).is_ok());
 }

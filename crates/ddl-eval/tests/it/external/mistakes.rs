@@ -24,7 +24,6 @@ fn check_all(format: ExternalFormat, cases: &str, file: impl Fn(&[&str]) -> Stri
     }
 }
 
-/// A file with one piece of it replaced.
 fn edited(good: &str, from: &str, to: &str) -> String {
     assert!(good.contains(from), "{from}");
     good.replacen(from, &to.replace("\\n", "\n"), 1)

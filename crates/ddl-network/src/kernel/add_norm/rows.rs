@@ -1,14 +1,14 @@
-//! Four rows at a time, which makes sums over a row a matter of few instructions.
+//! Four rows at a time, which makes sums over a row a matter of few instructions; and which of their numbers are
+//! dropped.
 
+use crate::kernel::dropout::{Dropout, RowKey, Threshold, mixed};
 use ddl_simd::{DEPTH, Lanes, Simd, Vectors};
 
 /// The usual width of a row, in vectors: loops over it are spelled out.
 pub(super) const USUAL: usize = 2;
 
-/// Numbers of four rows, in the first-level cache.
 pub(super) struct Four {
     usual: [[Lanes; USUAL]; DEPTH],
-    /// For rows of any other width.
     wide: Vec<[Lanes; DEPTH]>,
     vectors: usize,
 }
@@ -84,4 +84,36 @@ pub(super) fn means<S: Simd>(simd: S, width: usize, sums: Vectors<S>) -> Vectors
         simd.spread::<0xaa>(mean),
         simd.spread::<0xff>(mean),
     ]
+}
+
+/// Which numbers of t are dropped: a function of (seed, row, column) alone, of 24 random bits.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::kernel) struct Decisions {
+    seed: u64,
+    least: u32,
+    scale: f32,
+}
+
+impl Decisions {
+    /// `None` when nothing is dropped.
+    pub(in crate::kernel) fn new(dropout: Dropout) -> Option<Self> {
+        let Threshold { least, scale } = dropout.threshold(24)?;
+        Some(Self {
+            seed: mixed(dropout.seed),
+            least: least << 8,
+            scale,
+        })
+    }
+
+    #[inline(always)]
+    pub(super) fn apply<S: Simd>(
+        self,
+        simd: S,
+        numbers: S::Floats,
+        row: usize,
+        at: usize,
+    ) -> S::Floats {
+        let bits = RowKey::new(self.seed, row as u64).bits(simd, at);
+        simd.mul(simd.keep(numbers, bits, self.least), simd.splat(self.scale))
+    }
 }

@@ -1,11 +1,39 @@
 //! Products of matrices of plain rows.
 
-use super::matrix::{Matrix, Start};
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
 use ddl_simd::{LANES, Lanes, Simd, Tile};
 
-/// Rows of B that are gone through together.
 const BLOCK: usize = 32;
+
+/// 32 columns of all rows together, then the next 32; padded with zeros.
+#[derive(Clone, Debug)]
+pub(super) struct Matrix {
+    pub(super) rows: usize,
+    pub(super) pairs: Vec<[Lanes; 2]>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Start<'a> {
+    /// In every row the same numbers.
+    Row(&'a [Lanes]),
+    Zero,
+    /// What is there already.
+    There,
+}
+
+impl Matrix {
+    pub(super) fn zeros(rows: usize, columns: usize) -> Self {
+        Self {
+            rows,
+            pairs: vec![[Lanes::ZERO; 2]; rows * columns.div_ceil(2 * LANES)],
+        }
+    }
+
+    pub(super) fn set(&mut self, row: usize, column: usize, value: f32) {
+        let pair = &mut self.pairs[column / (2 * LANES) * self.rows + row];
+        pair[column / LANES % 2].0[column % LANES] = value;
+    }
+}
 
 /// y = start + A B.
 /// A `[rows, t]`, B `[t, columns]`, y `[rows, columns]`.
@@ -174,7 +202,6 @@ fn transposed_tile<S: Simd, const R: usize, const V: usize>(
     }
 }
 
-/// Adds all rows of a matrix to `sums`.
 #[inline(always)]
 pub(in crate::kernel) fn sum_of_rows<S: Simd>(simd: S, rows: MatrixColumns<'_>, sums: &mut [f32]) {
     for at in (0..sums.len()).step_by(LANES) {

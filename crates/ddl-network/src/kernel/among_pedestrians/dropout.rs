@@ -4,7 +4,6 @@ use crate::kernel::dropout::{Dropout, Threshold, mixed};
 use crate::kernel::heads::{head_of, row_of};
 use ddl_simd::{LANES, Lanes};
 
-/// What the kernels need to know of a [`Dropout`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WeightDecisions {
     seed: u64,
@@ -33,7 +32,6 @@ impl WeightDecisions {
         self.decide(hash(query, key as u32, head as u32))
     }
 
-    /// Random bits of a query in a batch entry.
     pub(super) fn query(&self, entry: usize, query: usize) -> QueryBits {
         let place = ((entry as u64) << 32) ^ query as u64;
         let bits = mixed(self.seed.wrapping_add(place));
@@ -43,7 +41,6 @@ impl WeightDecisions {
         }
     }
 
-    /// What multiplies the weights of eight heads each of two queries.
     #[inline(always)]
     pub(super) fn factors(&self, bits: &LaneBits, key: usize) -> Lanes {
         let mut result = Lanes::ZERO;
@@ -74,7 +71,6 @@ pub(super) struct QueryBits {
     high: u32,
 }
 
-/// What the decisions of two queries need, lane by lane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LaneBits {
     low: [u32; LANES],
@@ -83,7 +79,6 @@ pub(super) struct LaneBits {
 }
 
 impl LaneBits {
-    /// Eight heads from `first_head` on of each query.
     pub(super) fn new(queries: [QueryBits; 2], first_head: usize) -> Self {
         let query = |lane: usize| queries[row_of(lane)];
         Self {
@@ -109,14 +104,10 @@ mod tests {
     use super::*;
     use crate::kernel::tests::chance::Decided;
 
-    fn decisions(p: f64, seed: u64) -> WeightDecisions {
-        WeightDecisions::new(Dropout { p, seed }).unwrap()
-    }
-
     /// Over entries and queries in rows, keys and heads in columns.
     fn decided(p: f64, seed: u64) -> Decided {
         let (pedestrians, heads) = (60, 8);
-        let decisions = decisions(p, seed);
+        let decisions = WeightDecisions::new(Dropout { p, seed }).unwrap();
         Decided::new(p, [6 * pedestrians, pedestrians * heads], |row, column| {
             let (entry, query) = (row / pedestrians, row % pedestrians);
             decisions.factor(entry, query, column / heads, column % heads) == 0.0
@@ -132,15 +123,5 @@ mod tests {
         for seed in [0, 2, 1 + (1 << 32)] {
             first.assert_apart_from(&format!("seed {seed}"), &decided(0.1, seed));
         }
-    }
-
-    #[test]
-    fn what_is_kept_is_scaled_and_nothing_drops_at_zero() {
-        let kept = (0..100).map(|key| decisions(0.1, 7).factor(0, 0, key, 0));
-        assert!(
-            kept.filter(|&factor| factor != 0.0)
-                .all(|factor| (factor - 1.0 / 0.9).abs() < 1e-6)
-        );
-        assert!(WeightDecisions::new(Dropout { p: 0.0, seed: 1 }).is_none());
     }
 }

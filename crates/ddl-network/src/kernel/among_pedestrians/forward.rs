@@ -83,7 +83,6 @@ impl Buffered<'_, SceneForward<'_>, SceneBuffers> {
     }
 }
 
-/// Scores of two queries with every key, and the largest.
 #[inline(always)]
 fn scores<S: Simd>(
     simd: S,

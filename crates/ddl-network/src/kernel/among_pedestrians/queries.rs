@@ -14,7 +14,6 @@ pub(super) struct SceneTask<'a> {
 }
 
 impl SceneTask<'_> {
-    /// Groups of heads times pairs of queries.
     pub(super) fn normalisers(&self) -> usize {
         self.heads.groups() * self.scene.pedestrians.div_ceil(2)
     }
@@ -28,23 +27,17 @@ impl SceneTask<'_> {
 pub(super) struct SceneBuffers {
     /// By two queries and quad of the head's numbers, scaled so that scores are powers of two.
     pub(super) queries: Vec<Quad>,
-    /// By key and quad.
     pub(super) keys: Vec<Quad>,
-    /// By key and quad.
     pub(super) values: Vec<Quad>,
     /// By two queries and quad: gradient of what they mixed, over the sum of their weights.
     pub(super) mixed_gradients: Vec<Quad>,
-    /// By two queries and quad.
     pub(super) query_gradients: Vec<Quad>,
     /// By two queries: largest score, and the mixed values' product with their gradient, over the sum of weights.
     pub(super) inner: Vec<[Lanes; 2]>,
-    /// By two queries.
     pub(super) bits: Vec<LaneBits>,
     /// Scores, then weights; by key in the forward pass, by two queries in the backward pass.
     pub(super) weights: Vec<Lanes>,
-    /// By two queries, of one key.
     pub(super) score_gradients: Vec<Lanes>,
-    /// What two queries see of a large scene.
     pub(super) seen: SeenKeys,
 }
 
@@ -62,7 +55,6 @@ pub(super) struct SeenKeys {
 }
 
 impl SeenKeys {
-    /// Takes those with a code other than 0 out of all.
     pub(super) fn gather(&mut self, codes: &[u8], keys: &[Quad], values: &[Quad], quads: usize) {
         self.codes.clear();
         self.keys.clear();
@@ -91,7 +83,6 @@ pub(super) static UNSEEN: [Lanes; 4] = {
 };
 
 impl SceneBuffers {
-    /// Brings queries, keys and values of a group of heads into lanes.
     #[inline(always)]
     pub(super) fn load<S: Simd>(
         &mut self,

@@ -4,7 +4,7 @@ use super::dropout::WeightDecisions;
 use super::queries::LARGE;
 use super::{AmongPedestrians, Attended};
 use crate::kernel::tests::attention::Attention;
-use crate::kernel::tests::numbers::{Numbers, assert_close, assert_refused, wide};
+use crate::kernel::tests::numbers::{Numbers, assert_close, wide};
 use crate::kernel::{Dropout, Scenes};
 use ddl_simd::InstructionSet;
 use proptest::prelude::*;
@@ -209,17 +209,4 @@ fn results_do_not_depend_on_what_was_there() {
         attention.forward(&case.qkv, scenes.throughout(), None, &mut attended);
         assert_eq!(attended.mixed(), case.run(InstructionSet::detect()).0);
     }
-}
-
-#[test]
-fn what_does_not_fit_is_refused() {
-    let forward = |frames: usize, numbers: usize| {
-        let scenes = Scenes::new(&[1], &vec![true; frames]);
-        let qkv = vec![0.0; numbers];
-        let attention = AmongPedestrians::new(8, 4);
-        attention.forward(&qkv, scenes.throughout(), None, &mut Attended::default());
-    };
-    assert_refused("qkv has 95 numbers", || forward(1, 95));
-    let frames = "2 frames of visibility for 3 batch entries";
-    assert_refused(frames, || forward(2, 288));
 }

@@ -14,7 +14,6 @@ use crate::kernel::feed_forward::Gradients;
 use crate::kernel::threads::run_each;
 use ddl_simd::{Simd, TiledKernel};
 
-/// Gradients of projections.
 pub(super) enum Parts<'a> {
     /// Side by side in every row.
     Together(&'a [f32]),
@@ -151,7 +150,6 @@ impl EncoderKernel {
     }
 }
 
-/// Adds what each piece of rows has summed up, in their order.
 fn add_up<const N: usize>(sums: &[Buffer], mut into: [&mut [f32]; N]) {
     for sums in sums {
         let mut terms = sums.iter();
@@ -166,7 +164,6 @@ fn add_up<const N: usize>(sums: &[Buffer], mut into: [&mut [f32]; N]) {
 /// y = norm(x + d(t)), or of an affine map of t.
 struct Sublayer<'a> {
     norm: &'a AddNorm,
-    /// With its input.
     map: Option<(&'a Affine, &'a [f32])>,
     normal: &'a KeptRows,
     dropout: Option<Dropout>,

@@ -13,7 +13,6 @@ use ddl_simd::{Simd, TiledKernel};
 /// Rows that are computed together. Always the same, so that sums over rows are.
 pub(super) const ROWS: usize = 256;
 
-/// Where projections of rows go.
 pub(super) enum Targets<'a> {
     /// Side by side in every row.
     Together(&'a mut [f32]),
@@ -66,7 +65,6 @@ impl EncoderKernel {
         run_each(self.dispatch, jobs, work);
     }
 
-    /// What follows attention.
     pub(super) fn after_attention(
         &self,
         x: &[f32],

@@ -4,7 +4,6 @@ use crate::kernel::among_pedestrians::Attended;
 use crate::kernel::buffer::Buffer;
 use crate::kernel::over_memory::{KeyValue, KeyValueMut};
 
-/// What the gradient of an encoder layer needs of its forward pass.
 pub(crate) struct Kept {
     pub(super) attention: KeptAttention,
     pub(super) normal1: KeptRows,
@@ -33,7 +32,6 @@ impl KeptAttention {
     }
 }
 
-/// Rows that were normalised, and by what.
 pub(super) struct KeptRows {
     pub(super) numbers: Buffer,
     pub(super) scales: Buffer,
@@ -42,9 +40,7 @@ pub(super) struct KeptRows {
 /// Keys and values of tokens, `[rows, width]` each; also what their gradients are added to.
 #[derive(Debug)]
 pub(crate) struct Remembered {
-    /// What queries are compared with.
     pub(crate) key: Buffer,
-    /// What is mixed.
     pub(crate) value: Buffer,
 }
 

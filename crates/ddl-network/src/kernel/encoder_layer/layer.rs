@@ -1,6 +1,5 @@
-//! The learned numbers of a layer, as its passes read them.
+//! The learned numbers of a layer: where they stand, and as its passes read them.
 
-use super::weights::Sizes;
 use crate::Precision;
 use crate::kernel::add_norm::AddNorm;
 use crate::kernel::affine::Affine;
@@ -19,7 +18,6 @@ use ddl_simd::InstructionSet;
 #[derive(Clone, Debug)]
 pub(crate) struct EncoderKernel {
     pub(super) sizes: Sizes,
-    /// To queries, keys and values.
     pub(super) projections: [Affine; 3],
     pub(super) out: Affine,
     pub(super) norm1: AddNorm,
@@ -33,18 +31,13 @@ pub(crate) struct EncoderKernel {
 /// The four dropouts of a layer, each with a seed of its own.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Dropouts {
-    /// Of attention weights.
     pub(crate) weights: Option<Dropout>,
-    /// Of what attention adds to its input.
     pub(crate) attended: Option<Dropout>,
-    /// Of hidden activations.
     pub(crate) hidden: Option<Dropout>,
-    /// Of what the feed-forward block adds to its input.
     pub(crate) fed: Option<Dropout>,
 }
 
 impl EncoderKernel {
-    /// A layer whose learned numbers are all 0.
     pub(crate) fn zeros(sizes: Sizes) -> Self {
         let Sizes {
             width,
@@ -92,5 +85,67 @@ impl EncoderKernel {
         self.norm1.update(n1, c1);
         self.norm2.update(n2, c2);
         self.feed_forward.update([w1, b1, w2, b2], precision);
+    }
+}
+
+/// Sizes of an encoder layer.
+///
+/// Its learned numbers stand one after the other, matrices by rows: weight `[3 width, width]` and bias of queries, keys
+/// and values; weight and bias of the map after attention; of the feed-forward block the weight `[hidden, width]` and
+/// bias before `ReLU` and those after it; weight and bias of the first normalisation and of the second.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sizes {
+    /// Numbers of a token.
+    pub width: usize,
+    /// Attention heads, a divisor of the width.
+    pub heads: usize,
+    /// Hidden units of the feed-forward block.
+    pub hidden: usize,
+}
+
+const PIECES: usize = 12;
+
+impl Sizes {
+    /// Learned numbers in all.
+    pub fn count(self) -> usize {
+        self.lengths().iter().sum()
+    }
+
+    fn lengths(self) -> [usize; PIECES] {
+        let Self { width, hidden, .. } = self;
+        [
+            3 * width * width,
+            3 * width,
+            width * width,
+            width,
+            hidden * width,
+            hidden,
+            width * hidden,
+            width,
+            width,
+            width,
+            width,
+            width,
+        ]
+    }
+
+    pub(super) fn pieces(self, mut numbers: &[f32]) -> [&[f32]; PIECES] {
+        self.check(numbers);
+        self.lengths()
+            .map(|length| numbers.split_off(..length).unwrap_or_default())
+    }
+
+    pub(super) fn pieces_mut(self, mut numbers: &mut [f32]) -> [&mut [f32]; PIECES] {
+        self.check(numbers);
+        self.lengths()
+            .map(|length| numbers.split_off_mut(..length).unwrap_or_default())
+    }
+
+    fn check(self, numbers: &[f32]) {
+        assert_eq!(
+            numbers.len(),
+            self.count(),
+            "learned numbers of an encoder layer"
+        );
     }
 }

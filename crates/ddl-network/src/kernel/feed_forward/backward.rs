@@ -5,10 +5,8 @@
 
 use std::ops::DerefMut;
 
-use super::block::{BLOCK, Block, Panel, tile_mut};
-use super::block_rows::{BlockRows, ROWS};
+use super::block::{BLOCK, Block, BlockRows, Panel, ROWS, tile_mut};
 use super::dropout::UnitDecisions;
-use super::gradients::{Gradients, UnitGradients};
 use super::hidden::{activate, deactivate};
 use super::layer::FeedForward;
 use super::product::{add_product, add_transposed_product, sum_of_rows};
@@ -17,7 +15,6 @@ use crate::kernel::dropout::Dropout;
 use crate::kernel::threads::each;
 use ddl_simd::{Simd, TiledKernel};
 
-/// Groups of hidden units at most.
 const GROUPS: usize = 8;
 /// Rows that a group goes through before the groups' gx are added up: they fit the second-level cache.
 const SPAN: usize = 512;
@@ -96,15 +93,12 @@ impl FeedForward {
     }
 }
 
-/// What a group works on.
 struct Scratch {
-    /// Its share of gx.
     gx: BlockRows,
     /// Sums over a span of the derivatives of W1, rows hidden units, for one block of them.
     w1: Vec<Panel>,
     /// Likewise of W2, rows entries of y.
     w2: Vec<Panel>,
-    /// Hidden activations of some rows.
     hidden: Vec<Block>,
     /// Derivatives with respect to what they are activations of.
     gradient: Vec<Block>,
@@ -122,13 +116,10 @@ impl Scratch {
     }
 }
 
-/// One group of hidden units over one span of rows.
 struct UnitsBackward<'a, 'b> {
     weights: &'a BlockWeights,
     decisions: Option<&'a UnitDecisions>,
-    /// The first row's number.
     first: usize,
-    /// The group's first block of units.
     units: usize,
     x: &'a BlockRows,
     gy: &'a BlockRows,
@@ -205,4 +196,64 @@ impl TiledKernel for UnitsBackward<'_, '_> {
             }
         }
     }
+}
+
+/// Sums of derivatives with respect to the weights, laid out as the weights that a layer takes over.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Gradients<N = Vec<f32>> {
+    /// `[hidden, width]`, by rows.
+    pub(crate) w1: N,
+    /// `[hidden]`.
+    pub(crate) b1: N,
+    /// `[width, hidden]`, by rows.
+    pub(crate) w2: N,
+    /// `[width]`.
+    pub(crate) b2: N,
+}
+
+#[cfg(test)]
+impl Gradients {
+    pub(crate) fn zeros(width: usize, hidden: usize) -> Self {
+        Self {
+            w1: vec![0.0; hidden * width],
+            b1: vec![0.0; hidden],
+            w2: vec![0.0; width * hidden],
+            b2: vec![0.0; width],
+        }
+    }
+}
+
+impl<N: DerefMut<Target = [f32]>> Gradients<N> {
+    pub(super) fn check(&self, width: usize, hidden: usize) {
+        let found = [&self.w1, &self.b1, &self.w2, &self.b2].map(|part| part.len());
+        let expected = [hidden * width, hidden, width * hidden, width];
+        assert_eq!(
+            found, expected,
+            "entries of the gradients of W1, b1, W2, b2"
+        );
+    }
+
+    /// What belongs to the first `units` blocks of hidden units, to the next, and so on.
+    pub(super) fn parts(&mut self, width: usize, units: usize) -> Vec<UnitGradients<'_>> {
+        let hidden = self.b1.len();
+        let size = units * BLOCK;
+        let w1 = self.w1.chunks_mut(size * width);
+        let b1 = self.b1.chunks_mut(size);
+        let mut parts: Vec<_> = w1
+            .zip(b1)
+            .map(|(w1, b1)| UnitGradients { w1, b1, w2: vec![] })
+            .collect();
+        for row in self.w2.chunks_exact_mut(hidden) {
+            for (part, piece) in parts.iter_mut().zip(row.chunks_mut(size)) {
+                part.w2.push(piece);
+            }
+        }
+        parts
+    }
+}
+
+pub(super) struct UnitGradients<'a> {
+    pub(super) w1: &'a mut [f32],
+    pub(super) b1: &'a mut [f32],
+    pub(super) w2: Vec<&'a mut [f32]>,
 }

@@ -9,20 +9,16 @@ use super::tile::Tile;
 use super::weights::BlockWeights;
 use ddl_simd::{self, LANES, PairDispatch, PairKernel, Pairs, Simd};
 
-/// Pairs that [`BLOCK`] numbers make.
 const PAIRS: usize = BLOCK / 2;
 
-/// 32 numbers of a row, neighbours paired.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 struct PairedRow([u32; PAIRS]);
 
-/// 32 numbers of each of two rows, those of a column paired.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 struct TwoRows([u32; BLOCK]);
 
-/// 32 rows of 32 numbers, two by two.
 type PairPanel = [TwoRows; PAIRS];
 
 impl PairedRow {
@@ -39,7 +35,6 @@ impl PairedRow {
 impl TwoRows {
     const ZERO: Self = Self([0; BLOCK]);
 
-    /// The sixteen pairs from 16 `part` on.
     #[inline(always)]
     fn part(&self, part: usize) -> &[u32; LANES] {
         &self.0.as_chunks().0[part]
@@ -56,7 +51,6 @@ impl TwoRows {
     }
 }
 
-/// The squares of [`BlockWeights`] that the forward pass reads, rounded.
 #[derive(Clone, Debug)]
 pub(super) struct Squares {
     w1_transposed: Vec<PairPanel>,
@@ -94,7 +88,6 @@ impl PairKernel for Round<'_> {
     }
 }
 
-/// The tile, with rounded weights.
 pub(super) struct PairForward<'a> {
     pub(super) tile: Tile<'a>,
     pub(super) squares: &'a Squares,
@@ -178,7 +171,6 @@ fn activate<P: Pairs>(
 /// of six cycles each need at least twelve.
 const ROWS: usize = 8;
 
-/// Accumulators: all parts of some rows.
 type Sums<P> = ddl_simd::Tile<<P as Pairs>::Simd, ROWS, PARTS>;
 
 /// sum + A B.

@@ -1,11 +1,10 @@
-//! Thirty-two numbers, the unit that matrices are cut into.
+//! Thirty-two numbers, the unit that matrices are cut into, and rows made of them.
 
 use ddl_simd::LANES;
+use std::cell::RefCell;
 
-/// Numbers in a [`Block`].
 pub(super) const BLOCK: usize = 32;
 
-/// Times sixteen numbers in a [`Block`].
 pub(super) const PARTS: usize = BLOCK / LANES;
 
 /// A piece of a row of a matrix. Aligned, because a register's load that crosses a cache line costs two.
@@ -16,7 +15,6 @@ pub(super) struct Block(pub(super) [f32; BLOCK]);
 impl Block {
     pub(super) const ZERO: Self = Self([0.0; BLOCK]);
 
-    /// Up to 32 numbers, the others 0.
     pub(super) fn padded(from: &[f32]) -> Self {
         if let Some(whole) = from.first_chunk() {
             return Self(*whole);
@@ -37,7 +35,6 @@ impl Block {
         &mut self.0.as_chunks_mut().0[part]
     }
 
-    /// Adds as many of the numbers as there are sums.
     #[inline(always)]
     pub(super) fn add_to(&self, sums: &mut [f32]) {
         for (sum, term) in sums.iter_mut().zip(&self.0) {
@@ -46,10 +43,8 @@ impl Block {
     }
 }
 
-/// 32 rows of a block each.
 pub(super) type Panel = [Block; BLOCK];
 
-/// Writes the transposed panel.
 pub(super) fn transpose(panel: &Panel, into: &mut Panel) {
     for (i, row) in into.iter_mut().enumerate() {
         for (j, value) in row.0.iter_mut().enumerate() {
@@ -58,7 +53,6 @@ pub(super) fn transpose(panel: &Panel, into: &mut Panel) {
     }
 }
 
-/// R rows from `first`.
 #[inline]
 pub(super) fn tile<const R: usize>(rows: &[Block], first: usize) -> &[Block; R] {
     rows[first..].first_chunk().expect("rows in whole tiles")
@@ -69,4 +63,77 @@ pub(super) fn tile_mut<const R: usize>(rows: &mut [Block], first: usize) -> &mut
     rows[first..]
         .first_chunk_mut()
         .expect("rows in whole tiles")
+}
+
+/// Rows are padded to a multiple of this, which every tile of accumulators divides.
+pub(super) const ROWS: usize = 8;
+
+/// Memory that a thread keeps for the next matrices: to ask the system for it, and to be given it a page at a time,
+/// would take as long as a tenth of a backward pass.
+const SPARE: usize = 32;
+
+thread_local! {
+    static SPARES: RefCell<Vec<Vec<Block>>> = const { RefCell::new(Vec::new()) };
+}
+
+/// All first blocks of the rows, then all second ones, and so on.
+pub(super) struct BlockRows {
+    blocks: Vec<Block>,
+    rows: usize,
+}
+
+impl BlockRows {
+    pub(super) fn zeros(rows: usize, columns: usize) -> Self {
+        let spare = SPARES.with_borrow_mut(Vec::pop);
+        let mut blocks = spare.unwrap_or_default();
+        blocks.clear();
+        blocks.resize(rows * columns, Block::ZERO);
+        Self { blocks, rows }
+    }
+
+    /// Rows of `width` numbers, followed by rows of zeros until there are a multiple of [`ROWS`].
+    pub(super) fn padded(from: &[f32], width: usize) -> Self {
+        let rows = (from.len() / width).next_multiple_of(ROWS);
+        let mut result = Self::zeros(rows, width.div_ceil(BLOCK));
+        for (r, row) in from.chunks_exact(width).enumerate() {
+            for (c, piece) in row.chunks(BLOCK).enumerate() {
+                result.column_mut(c)[r] = Block::padded(piece);
+            }
+        }
+        result
+    }
+
+    pub(super) fn rows(&self) -> usize {
+        self.rows
+    }
+
+    pub(super) fn column(&self, column: usize) -> &[Block] {
+        &self.blocks[column * self.rows..][..self.rows]
+    }
+
+    pub(super) fn column_mut(&mut self, column: usize) -> &mut [Block] {
+        &mut self.blocks[column * self.rows..][..self.rows]
+    }
+
+    /// Adds the rows from `first` to those of `sums`, as many as these are.
+    pub(super) fn add_to(&self, first: usize, sums: &mut [f32], width: usize) {
+        for (row, sums) in (first..).zip(sums.chunks_exact_mut(width)) {
+            for (column, sums) in sums.chunks_mut(BLOCK).enumerate() {
+                self.column(column)[row].add_to(sums);
+            }
+        }
+    }
+}
+
+impl Drop for BlockRows {
+    fn drop(&mut self) {
+        let blocks = std::mem::take(&mut self.blocks);
+        // At the end of a thread there is no place to keep it any more.
+        let _ = SPARES.try_with(|spares| {
+            let mut spares = spares.borrow_mut();
+            if spares.len() < SPARE {
+                spares.push(blocks);
+            }
+        });
+    }
 }

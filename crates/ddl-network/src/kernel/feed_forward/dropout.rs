@@ -1,11 +1,9 @@
 //! Which hidden activations are dropped: a function of (seed, row, unit) alone, of 16 random bits.
 
-use super::block::Block;
-use super::block_rows::ROWS;
+use super::block::{Block, ROWS};
 use crate::kernel::dropout::{Dropout, RowKey, Threshold, mixed};
 use ddl_simd::{LANES, Simd};
 
-/// What the kernels need to know of a [`Dropout`].
 #[derive(Clone, Debug)]
 pub(super) struct UnitDecisions {
     /// An activation is kept when its 16 bits, shifted to the upper half, are this or more.

@@ -1,7 +1,7 @@
 //! The forward pass: tiles of rows in parallel.
 
 use super::bf16::PairForward;
-use super::block_rows::{BlockRows, ROWS};
+use super::block::{BlockRows, ROWS};
 use super::dropout::UnitDecisions;
 use super::layer::FeedForward;
 use super::tile::Tile;

@@ -1,7 +1,6 @@
 //! One block of hidden units of a few rows.
 
-use super::block::{Block, PARTS, tile};
-use super::block_rows::BlockRows;
+use super::block::{Block, BlockRows, PARTS, tile};
 use super::product::{multiply, store_tile};
 use super::weights::Unit;
 use ddl_simd::Simd;

@@ -14,7 +14,6 @@ use ddl_simd::{Dispatch, PairDispatch};
 #[derive(Clone, Debug)]
 pub(crate) struct FeedForward {
     pub(super) weights: BlockWeights,
-    /// For the forward pass in bf16.
     pub(super) rounded: Option<Squares>,
     pub(super) dispatch: Dispatch,
     pub(super) pair_dispatch: PairDispatch,

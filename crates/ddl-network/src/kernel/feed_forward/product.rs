@@ -55,7 +55,6 @@ pub(super) fn multiply_transposed<S: Simd, const R: usize, const V: usize>(
     sum
 }
 
-/// V parts of each row, from part `part`.
 #[inline(always)]
 pub(super) fn load_tile<S: Simd, const R: usize, const V: usize>(
     simd: S,
@@ -71,7 +70,6 @@ pub(super) fn load_tile<S: Simd, const R: usize, const V: usize>(
     tile
 }
 
-/// Writes V parts of each row, from part `part`.
 #[inline(always)]
 pub(super) fn store_tile<S: Simd, const R: usize, const V: usize>(
     simd: S,

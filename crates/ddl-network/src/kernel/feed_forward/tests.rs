@@ -3,11 +3,9 @@
 mod bf16;
 mod exact;
 
+use super::FeedForward;
 use super::dropout::reference;
-use super::{FeedForward, Gradients};
-use crate::Precision;
 use crate::kernel::Dropout;
-use crate::kernel::tests::numbers::assert_refused;
 use ddl_simd::InstructionSet;
 use exact::Case;
 use proptest::prelude::*;
@@ -95,29 +93,6 @@ fn what_is_not_a_number_stays_in_its_row() {
         assert!(gx.iter().all(|gx| gx.is_finite()));
         assert!(grads.w2.iter().all(|g| g.is_nan()));
     }
-}
-
-#[test]
-fn what_does_not_fit_is_refused() {
-    let case = Case::new(32, 64, 0, None);
-    let (layer, row) = (case.layer(), [0.0; 32]);
-    assert_refused("x is not made of rows of 32", || {
-        layer.forward(&[0.0; 48], None, &mut [0.0; 48]);
-    });
-    assert_refused("entries of the gradient of W1", || {
-        let mut grads = Gradients::zeros(32, 32);
-        layer.backward(&row, &row, None, &mut [0.0; 32], &mut grads);
-    });
-    assert_refused("dropout of 1: not in [0, 1)", || {
-        layer.forward(&row, Some(Dropout { p: 1.0, seed: 1 }), &mut [0.0; 32]);
-    });
-    assert_refused("entries of W2", || {
-        FeedForward::zeros(32, 1).update([&row, &[0.0], &[0.0; 31], &row], Precision::F32);
-    });
-    assert_refused("a backward pass in bf16", || {
-        let mut grads = Gradients::zeros(32, 64);
-        bf16::layers(&case)[0].backward(&row, &row, None, &mut [0.0; 32], &mut grads);
-    });
 }
 
 fn dropouts() -> impl Strategy<Value = Option<Dropout>> {

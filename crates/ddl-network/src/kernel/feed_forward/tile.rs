@@ -1,7 +1,6 @@
 //! The forward pass of a few rows.
 
-use super::block::{Block, tile_mut};
-use super::block_rows::BlockRows;
+use super::block::{Block, BlockRows, tile_mut};
 use super::dropout::UnitDecisions;
 use super::hidden::activate;
 use super::product::add_product;
@@ -11,7 +10,6 @@ use ddl_simd::{Simd, TiledKernel};
 pub(super) struct Tile<'a> {
     pub(super) weights: &'a BlockWeights,
     pub(super) decisions: Option<&'a UnitDecisions>,
-    /// The first row's number.
     pub(super) first: usize,
     pub(super) x: &'a BlockRows,
     pub(super) y: &'a mut BlockRows,

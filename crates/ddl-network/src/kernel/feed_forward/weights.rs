@@ -8,9 +8,7 @@ use super::block::{BLOCK, Block, Panel, transpose};
 pub(super) struct BlockWeights {
     pub(super) width: usize,
     pub(super) hidden: usize,
-    /// Blocks of a row of x.
     pub(super) columns: usize,
-    /// Blocks of hidden units.
     pub(super) units: usize,
     w1: Vec<Panel>,
     pub(super) w1_transposed: Vec<Panel>,
@@ -62,7 +60,6 @@ impl BlockWeights {
         }
     }
 
-    /// Those of one block of hidden units.
     #[inline]
     pub(super) fn unit(&self, unit: usize) -> Unit<'_> {
         Unit {
@@ -72,7 +69,6 @@ impl BlockWeights {
     }
 }
 
-/// The weights of a block of hidden units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Unit<'a> {
     weights: &'a BlockWeights,
@@ -109,14 +105,12 @@ impl<'a> Unit<'a> {
         &self.weights.b1[self.unit]
     }
 
-    /// Blocks of a row of x.
     #[inline]
     pub(super) fn columns(self) -> usize {
         self.weights.columns
     }
 }
 
-/// The 32 x 32 entries from row 32 i and column 32 j; what is beyond the edge stays as it is.
 fn copy_square(matrix: &[f32], columns: usize, [i, j]: [usize; 2], into: &mut Panel) {
     let rows = matrix.chunks_exact(columns).skip(i * BLOCK);
     for (block, row) in into.iter_mut().zip(rows) {

@@ -8,9 +8,7 @@ use ddl_simd::{DEPTH, LANES, Lanes, Quad, Simd, Vectors, ZERO_QUAD};
 /// Keys and values of one token a row, `[rows, heads, head width]` each.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct KeyValue<'a> {
-    /// What queries are compared with.
     pub(crate) key: &'a [f32],
-    /// What is mixed.
     pub(crate) value: &'a [f32],
 }
 

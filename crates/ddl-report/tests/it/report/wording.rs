@@ -31,15 +31,9 @@ fn forecasts_of_another_program_are_not_called_untrained() {
     let report = Report::new("Mine", rows).unwrap();
     let markdown = report.to_markdown();
     let said = line(&markdown, "- mine: ");
-    assert!(
-        said.contains("read from mine.jsonl") && said.contains("not known here"),
-        "{said}"
-    );
+    assert!(said.contains("read from mine.jsonl") && said.contains("not known here"));
     assert!(said.contains("scored at commit 0123abc"), "{said}");
-    assert!(
-        !said.contains("nothing random") && !said.contains("not trained"),
-        "{said}"
-    );
+    assert!(!said.contains("nothing random") && !said.contains("not trained"));
     let page = ddl_report::page::Page::new(&report).to_html().unwrap();
     assert!(page.contains("scored at commit 0123abc") && !page.contains("nothing random"));
 }

@@ -3,7 +3,6 @@
 use super::{Dropout, mixed};
 use crate::kernel::tests::chance::Decided;
 
-/// 16 random bits.
 fn bits(seed: u64, row: usize, unit: usize) -> u32 {
     let key = mixed(mixed(seed).wrapping_add(row as u64));
     let (block, lane) = (unit / 32, unit % 32);

@@ -1,10 +1,12 @@
-//! The moments of a fold that are shown: typical cases of each kind, and the rest of the day.
+//! Which cases are shown, and why: the moments of a fold, typical cases of each kind and the rest of the day, chosen by
+//! rule.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 
 use ddl_data::{HORIZON, Position, Window};
+use serde::{Deserialize, Serialize};
 
-use super::{Pick, Show};
 use crate::Moment;
 use ddl_eval::{
     EvaluationError, Forecast, Scene,
@@ -22,6 +24,71 @@ const GONE: f64 = 2.0;
 const ARRIVED: f64 = 0.2;
 /// Who keeps distance does not touch the other: twice the radius of a pedestrian, m.
 const APART: f64 = 0.4;
+
+/// What a case shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Show {
+    /// A pedestrian who reaches the goal of the representative hypothesis.
+    Convergence,
+    /// People who walk together.
+    Group,
+    /// A pedestrian who slows down.
+    SlowingDown,
+    /// People who pass each other and keep their distance.
+    KeepingDistance,
+    /// A pedestrian who turns.
+    Turning,
+}
+
+impl Show {
+    /// Every one, in the order in which they are shown.
+    pub const ALL: [Self; 5] = [
+        Self::Convergence,
+        Self::Group,
+        Self::SlowingDown,
+        Self::KeepingDistance,
+        Self::Turning,
+    ];
+}
+
+impl fmt::Display for Show {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Convergence => "convergence",
+            Self::Group => "walking together",
+            Self::SlowingDown => "slowing down",
+            Self::KeepingDistance => "keeping distance",
+            Self::Turning => "turning",
+        })
+    }
+}
+
+/// Why a moment is shown, and whom to look at.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Pick {
+    /// What it shows.
+    pub show: Show,
+    /// Indices of the pedestrians it is about, in the order of the moment.
+    #[serde(rename = "walkers")]
+    pub pedestrians: Vec<usize>,
+    /// By which rule it was picked, in words, with its numbers: "of 212 such pedestrians the one of median minADE (0.14
+    /// m)".
+    pub rule: String,
+}
+
+impl Pick {
+    /// A case of these pedestrians, picked by this rule.
+    pub fn new(show: Show, pedestrians: Vec<usize>, rule: impl Into<String>) -> Self {
+        Self {
+            show,
+            pedestrians,
+            rule: rule.into(),
+        }
+    }
+}
 
 /// What to show of the forecasts of one fold, one a window, in order of recording and time.
 ///
@@ -56,14 +123,12 @@ pub fn moments(
         .collect()
 }
 
-/// A pedestrian who is a case of something.
 struct GalleryCase {
     window: usize,
     pedestrians: Vec<usize>,
     min_ade: f64,
 }
 
-/// One pick of each kind that occurs, with the index of its window.
 fn picks(
     windows: &[Window],
     forecasts: &[Forecast],
@@ -138,7 +203,6 @@ fn shows(scene: &Scene<'_>, i: usize) -> Vec<(Show, Vec<usize>)> {
     shows
 }
 
-/// Whether the representative hypothesis goes a way and arrives.
 fn converges(scene: &Scene<'_>, i: usize) -> bool {
     let k = scene.forecast().representative(i);
     let end = scene.forecast().hypothesis(i, k)[HORIZON - 1];

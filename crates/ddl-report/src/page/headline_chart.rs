@@ -7,7 +7,6 @@ use crate::{
 
 /// At most this many lines: more are in the tables.
 pub(crate) const MOST_LINES: usize = 10;
-/// Height of a line, px.
 const LINE: f64 = 26.0;
 
 /// Room behind the dots for the number, px.
@@ -15,7 +14,6 @@ const NUMBER: f64 = 46.0;
 /// Ticks are at least so far apart, px.
 const TICKS_APART: f64 = 26.0;
 
-/// Which page the chart is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shape {
     /// Folds side by side.
@@ -53,7 +51,6 @@ pub(crate) fn headline_chart(standing: &Standing, shape: Shape) -> Drawing {
 struct Chart<'a> {
     lines: &'a [StandingLine],
     subject: Option<&'a str>,
-    /// Every value drawn, from which the axis is made.
     values: Vec<f64>,
 }
 
@@ -189,7 +186,6 @@ fn dumbbell(drawing: &mut Drawing, scale: &Scale, pair: Option<[f64; 2]>, subjec
     drawing.text(class, [b + 9.0, y + 4.0], format!("{ade:.3}"));
 }
 
-/// At most so many characters.
 fn shortened(words: &str, most: usize) -> String {
     if words.chars().count() <= most {
         return words.to_owned();
