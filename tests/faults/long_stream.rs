@@ -3,6 +3,7 @@
 //! Measured in a process of its own, started anew from this very test, because the other tests of this program use memory as they like.
 
 use ddl::data::{PedestrianId, Position};
+use ddl::eval::baseline::ConstantVelocity;
 use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster, LiveForecaster};
 use ddl_tests::one_forecast::One;
 use ddl_tests::{figures, processes};
@@ -79,6 +80,18 @@ fn a_day_of_forecasts_does_not_add_up() {
             let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu).unwrap();
             stream(One(&model), size)
         },
+    );
+}
+
+/// What remembers people, and as good as nothing else.
+#[test]
+fn a_day_of_tracks_does_not_add_up() {
+    let size = (24 * HOUR, HOUR);
+    watched(
+        "a live stream, constant velocity",
+        "a_day_of_tracks_does_not_add_up",
+        size,
+        || stream(ConstantVelocity::last_step(), size),
     );
 }
 

@@ -13,4 +13,5 @@ mod long_stream;
 mod no_network;
 mod unwritable;
 
+/// What is measured of the model in `run`.
 const EVALUATE: &str = "evaluate --model run --protocol fair --test-walkers 20 --threads 1";

@@ -7,7 +7,7 @@ use ddl_tests::trained_model::{TRAIN, finish};
 use ddl_tests::{figures, program, safetensors_file};
 use serde_json::Value;
 use std::process::{Child, Stdio};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 fn start(place: &Place) -> Child {
     let mut command = program::command(place.path(), TRAIN);
@@ -86,5 +86,33 @@ fn a_killed_training_ends_in_the_same_bytes() {
         format!(
             "{rounds} of {rounds} go on to the same bytes; {while_writing} had a file half written, which was never read and is gone"
         ),
+    );
+}
+
+/// The same run again and again: what little each attempt gets done is kept from 30 s or an epoch on, and nothing is ever lost.
+#[test]
+fn a_training_that_is_killed_again_and_again_ends_in_the_same_bytes() {
+    let begun = Instant::now();
+    let expected = finish(&Place::empty());
+    let takes = begun.elapsed();
+    let place = Place::empty();
+    let mut chance = Chance::new("training killed again and again");
+    let most = figures::rounds(3, 20);
+    let mut killed = 0;
+    while killed < most && !place.at("run/model.safetensors").exists() {
+        let mut child = start(&place);
+        // the first parts of a run are gone through at every attempt
+        let moment = chance.moment((0, 1), takes / 2) + Duration::from_millis(1);
+        std::thread::sleep(moment);
+        child.kill().unwrap();
+        killed += usize::from(child.wait().unwrap().code().is_none());
+        assert_whole(&place);
+    }
+    assert!(killed > 0, "the training was done before it was killed");
+    assert_same(&expected, &finish(&place));
+    figures::tell(
+        "`kill -9` again and again",
+        format!("1 training, killed {killed} times in a row, until its model was there"),
+        "the same bytes",
     );
 }

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![cfg(unix)]
 
+mod changed_bytes;
 mod killed_benchmark;
 mod killed_training;
 mod run_folder;

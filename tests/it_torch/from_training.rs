@@ -1,11 +1,11 @@
-//! `ddl train`: what it tells, what it leaves.
+//! `ddl train`: what it tells, what it leaves, and that its goals can be measured before the network is trained.
 
-use ddl::data::Convention;
+use ddl::data::{Convention, Window, WindowRule};
 use ddl::network::{EpochReport, NetworkFrame, Objective, StarConfig, TrainingConfig};
-use ddl::{RunConfig, RunDirectory, Variant};
-use ddl_tests::place::{Place, json_lines};
+use ddl::{GoalEvaluation, RunConfig, RunDirectory, Variant};
+use ddl_tests::place::{Place, json, json_lines};
 use ddl_tests::progress::{returns_at_once, told};
-use ddl_tests::{drawn_model, folder_contents, trained_model};
+use ddl_tests::{crowd, drawn_model, folder_contents, trained_model};
 
 #[test]
 fn a_training_tells_its_steps_and_leaves_a_run() {
@@ -54,6 +54,43 @@ fn a_training_tells_its_steps_and_leaves_a_run() {
     );
     let measure = "evaluate --model run --protocol fair --test-walkers 20 --threads 1";
     assert!(place.ok(measure).contains("minADE"));
+}
+
+#[test]
+fn goals_are_measured_before_the_network_is_trained() {
+    let place = Place::empty();
+    let train = "train --convention simulated --fold plaza --epochs 1 --train-walkers 40 --batch-walkers 20 --proposal-steps 8 \
+                 --validation 0.25 --validation-recordings crossing --threads 1 --out run";
+    let _ = place.ok(&format!("{train} --only-goals"));
+    assert!(!place.at("run/model.safetensors").exists());
+    let measured = |on: &str| -> GoalEvaluation {
+        let line = format!("goals --model run --measure {on} --json --threads 1");
+        json(&place.ok(&line))
+    };
+    let test = measured("test");
+    // all of the recording set apart, the ends of the others, nothing of the test scene
+    let validation = measured("validation");
+    let names: Vec<&str> = validation.recordings.keys().map(String::as_str).collect();
+    assert_eq!(names, ["bottleneck", "corridor", "crossing", "doorway"]);
+    let crowds = crowd::dataset();
+    let whole = crowds
+        .recording("crossing")
+        .unwrap()
+        .windows(WindowRule::Complete);
+    let walkers: usize = whole.iter().map(Window::len).sum();
+    assert_eq!(validation.recordings["crossing"].walkers, walkers);
+    assert!(
+        validation.windows.contains("crossing whole"),
+        "{}",
+        validation.windows
+    );
+    // the same command without --only-goals goes on, and the goals stay
+    let before = place.read("run/proposal.safetensors");
+    let _ = place.ok(train);
+    assert!(place.at("run/model.safetensors").is_file());
+    assert!(place.read("run/proposal.safetensors") == before);
+    let again = measured("test");
+    assert_eq!((again.all, again.recordings), (test.all, test.recordings));
 }
 
 /// The configuration that a run is begun with; its network is not trained.
@@ -191,5 +228,15 @@ fn cuda_that_is_not_there_is_refused() {
         "forecast --model run tracks.csv",
     ] {
         place.fails(&format!("{line} --device cuda"), &["cuda", "--device cpu"]);
+    }
+}
+
+/// A program that embeds the library may choose device and threads again, also when tensors are at work already: that is answered, and
+/// not a panic out of libtorch.
+#[test]
+fn device_and_threads_may_be_chosen_again() {
+    trained_model::use_one_thread();
+    for _ in 0..2 {
+        ddl::prepare(ddl::DeviceChoice::Cpu, Some(1)).unwrap();
     }
 }

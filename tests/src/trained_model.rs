@@ -4,10 +4,16 @@ use crate::folder_contents::{self, Contents};
 use crate::place::Place;
 use crate::{crowd, drawn_model};
 use ddl::network::TrainingConfig;
-use ddl::{DeviceChoice, RunDirectory, TrainingRequest, TrainingStage, Variant};
+use ddl::{
+    DdlError, DeviceChoice, RunDirectory, TrainingProgress, TrainingRequest, TrainingStage,
+    TrainingStep, Variant,
+};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::{Once, OnceLock};
+use std::sync::{Mutex, Once, OnceLock};
+
+/// libtorch has one generator of random numbers: runs side by side would draw from each other's.
+static TRAINING: Mutex<()> = Mutex::new(());
 
 /// Walkers it is trained on: enough for every weight to have moved.
 pub const WALKERS: usize = 96;
@@ -57,13 +63,32 @@ pub fn use_one_thread() {
 pub fn contents() -> &'static Contents {
     static TRAINED: OnceLock<Contents> = OnceLock::new();
     TRAINED.get_or_init(|| {
-        use_one_thread();
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
-        let request = request(folder.path());
-        ddl::train(&request, &crowd::dataset(), |_| ControlFlow::Continue(()))
-            .expect("training succeeds");
+        train(&RunDirectory::new(folder.path())).expect("training succeeds");
         folder_contents::read(folder.path())
     })
+}
+
+/// Trains, or goes on, wherever the run lies.
+///
+/// # Errors
+/// What stops the training.
+pub fn train(run: &RunDirectory) -> Result<(), DdlError> {
+    train_until(run, |_| ControlFlow::Continue(()))
+}
+
+/// Begins a training, which goes on as long as its observer lets it.
+///
+/// # Errors
+/// What stops the training.
+pub fn train_until(
+    run: &RunDirectory,
+    mut goes_on: impl FnMut(&TrainingStep) -> ControlFlow<()>,
+) -> Result<(), DdlError> {
+    use_one_thread();
+    let _one_at_a_time = TRAINING.lock();
+    let observe = |now: &TrainingProgress| goes_on(&now.step);
+    ddl::train(&request(run.path()), &crowd::dataset(), observe)
 }
 
 /// What is trained: one epoch.

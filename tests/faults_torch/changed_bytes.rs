@@ -1,0 +1,63 @@
+//! One byte changed in a file of a training under way: an error, or the very same weights in the end.
+
+use ddl::{DdlError, RunDirectory, TrainingStep};
+use ddl_tests::chance::Chance;
+use ddl_tests::folder_contents::{self, Contents};
+use ddl_tests::{figures, trained_model};
+use std::ops::ControlFlow;
+use std::path::Path;
+
+/// A run stopped in each of its stages, with its state.
+fn stopped(at: fn(&TrainingStep) -> bool) -> Contents {
+    let folder = tempfile::tempdir().unwrap();
+    let run = RunDirectory::new(folder.path());
+    let error = trained_model::train_until(&run, |step| {
+        if at(step) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    });
+    assert!(matches!(error, Err(DdlError::Interrupted)), "{error:?}");
+    folder_contents::read(folder.path())
+}
+
+#[test]
+fn training_goes_on_from_a_changed_file_to_the_same_weights_or_not_at_all() {
+    let model = Path::new("model.safetensors");
+    let expected = trained_model::contents()[model].as_ref().unwrap();
+    let goals = stopped(|step| matches!(step, TrainingStep::Goals(_)));
+    let network = stopped(|step| matches!(step, TrainingStep::Network(_)));
+    let mut chance = Chance::new("changed bytes of a run under way");
+    let (mut tried, mut refused) = (0, 0);
+    for (contents, name) in [
+        (&goals, "proposal-state.safetensors"),
+        (&goals, "config.json"),
+        (&network, "optimizer.safetensors"),
+        (&network, "proposal.safetensors"),
+        (&network, "experts.safetensors"),
+    ] {
+        let whole = contents[Path::new(name)].as_ref().unwrap();
+        for byte in chance.places(whole.len(), figures::rounds(3, 60)) {
+            let folder = tempfile::tempdir().unwrap();
+            folder_contents::write(contents, folder.path());
+            std::fs::write(folder.path().join(name), chance.turned(whole, byte)).unwrap();
+            tried += 1;
+            if trained_model::train(&RunDirectory::new(folder.path())).is_ok() {
+                let found = std::fs::read(folder.path().join(model)).unwrap();
+                assert!(&found == expected, "{name}, byte {byte}");
+            } else {
+                refused += 1;
+            }
+        }
+    }
+    assert!(refused > tried / 2, "{refused} of {tried}");
+    let same = tried - refused;
+    figures::tell(
+        "one byte changed, then training goes on",
+        format!(
+            "{tried} changes of 5 files (states of both stages, configuration, proposals, experts)"
+        ),
+        format!("{refused} refused, the other {same} end in the same bytes"),
+    );
+}
