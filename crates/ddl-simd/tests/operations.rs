@@ -249,3 +249,18 @@ fn the_fastest_set_is_the_last_of_those_that_are_available() {
         assert!(dispatch.is_fused() || set == InstructionSet::Portable);
     }
 }
+
+/// By what the standard library finds out about the processor.
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn every_instruction_set_of_the_processor_is_available() {
+    let avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+    let avx512 = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq");
+    for (set, found) in [
+        (InstructionSet::Portable, true),
+        (InstructionSet::Avx2, avx2),
+        (InstructionSet::Avx512, avx2 && avx512),
+    ] {
+        assert_eq!(set.is_available(), found, "{set}");
+    }
+}
