@@ -124,6 +124,10 @@ fn advice(name: &str, header: &StringRecord) -> String {
         "id" | "ped" | "pedid" | "pedestrianid" | "agent" | "agentid" | "track" | "trackid"
         | "person" | "personid" | "object" | "objectid" => Some("pedestrian"),
         "t" | "time" | "timestamp" => return "rename it frame, and count frames".to_owned(),
+        "observeduntil" => {
+            return "this is a table of forecasts; give the tracks that they were made of"
+                .to_owned();
+        }
         "frameid" | "framenumber" | "frameno" | "framenr" | "frameindex" => Some("frame"),
         "posx" | "xpos" | "positionx" | "xm" | "px" | "centerx" | "worldx" => Some("x"),
         "posy" | "ypos" | "positiony" | "ym" | "py" | "centery" | "worldy" => Some("y"),

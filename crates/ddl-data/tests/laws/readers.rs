@@ -224,6 +224,7 @@ fn headers_as_others_write_them() {
         [2.0_f64, 3.0].map(f64::to_bits)
     );
     let cases = "
+observed_until,pedestrian,frame,x,y => this is a table of forecasts
 frame,id,x,y => rename it pedestrian
 time,pedestrian,x,y => count frames
 frame;pedestrian;x;y => commas
