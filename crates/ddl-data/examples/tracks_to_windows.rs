@@ -4,9 +4,9 @@
 //! cargo run -p ddl-data --example tracks_to_windows
 //! cargo run -p ddl-data --example tracks_to_windows -- tracks.csv 25
 //! ```
-//! The arguments are a file (the project's own csv, TrajNet++ ndjson, the text files of ETH/UCY, ..: the format is told by its name and first
-//! lines) and the frames a second that its frame numbers count. Without them, three people filmed at 25 frames a second are made up, and
-//! written in two formats. One of them comes late, one is lost for a moment: what of their last 3.2 s was not seen is made up, and counted.
+//! The arguments are a file, whose format is told by its name and first lines, and the frames a second that its frame
+//! numbers count. Without them, three people are made up and written in two formats: one comes late, one is lost for a
+//! moment.
 #![expect(clippy::print_stdout, reason = "what it is for")]
 
 use std::error::Error;
@@ -33,7 +33,6 @@ fn three_people() -> Vec<(i64, i64, f64, f64)> {
     rows
 }
 
-/// The same rows as a table, and as the lines of TrajNet++.
 fn written(rows: &[(i64, i64, f64, f64)]) -> [(&'static str, String); 2] {
     let mut table = "frame,pedestrian,x,y\n".to_owned();
     let mut lines = String::new();

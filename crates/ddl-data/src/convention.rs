@@ -10,8 +10,7 @@ use crate::format::Format;
 use crate::rule::{SOCIAL_GAN_FEWEST, WindowRule};
 use crate::unknown_name::UnknownName;
 
-/// Where recordings come from and how they were sampled: numbers of two conventions are never
-/// comparable.
+/// Where recordings come from and how they were sampled: numbers of two conventions are never comparable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Convention {
@@ -103,9 +102,8 @@ impl FromStr for Convention {
     }
 }
 
-/// One convention of `folds.json`: which recordings it has, and which ones each leave-one-out fold tests on.
-///
-/// A fold trains on every recording that it does not test on, in the order listed.
+/// One convention of `folds.json`: which recordings it has, and which ones each leave-one-out fold tests on. A fold
+/// trains on every recording that it does not test on, in the order listed.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ConventionPlan {
@@ -113,7 +111,6 @@ pub(crate) struct ConventionPlan {
     pub(crate) folds: Vec<FoldPlan>,
 }
 
-/// One recording of `folds.json`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RecordingPlan {
@@ -122,7 +119,6 @@ pub(crate) struct RecordingPlan {
     pub(crate) frame_step: i64,
 }
 
-/// One fold of `folds.json`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct FoldPlan {

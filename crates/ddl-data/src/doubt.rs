@@ -154,7 +154,6 @@ fn way(track: &[&Observation]) -> f64 {
     (last[0] - first[0]).hypot(last[1] - first[1])
 }
 
-/// Of a step, m/s.
 fn speed(from: Position, to: Position) -> f64 {
     (to[0] - from[0]).hypot(to[1] - from[1]) / TIME_STEP
 }

@@ -8,7 +8,6 @@ use crate::{
     RecordingError,
 };
 
-/// Rows and columns.
 const SIZE: usize = 3;
 
 /// A plane seen by a camera: the matrix that takes pixels to metres on the ground.

@@ -39,13 +39,11 @@ const NAME: &str = "live";
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveTracks {
-    /// What windows name as their recording.
     name: Arc<str>,
     names: PedestrianNames,
     frame_step: i64,
     completion: Completion,
     last_frame: Option<i64>,
-    /// By id.
     walkers: Vec<LivePedestrian>,
 }
 
@@ -149,8 +147,7 @@ impl LiveTracks {
     /// The tracks with one frame more, leaving these as they are.
     ///
     /// # Errors
-    /// [`LiveError`] for a frame out of range or not after the last, a position that is not finite, or
-    /// somebody twice.
+    /// [`LiveError`] for a frame out of range or not after the last, a position that is not finite, or somebody twice.
     pub fn after(
         &self,
         frame: i64,
@@ -201,7 +198,6 @@ impl LiveTracks {
         })
     }
 
-    /// What is remembered of somebody who is not in the frame; `None` where the hole is too long already.
     fn remembered(&self, absent: &LivePedestrian, frame: i64) -> Option<LivePedestrian> {
         self.remembered_before(absent, frame + 1)
     }

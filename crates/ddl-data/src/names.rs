@@ -91,9 +91,7 @@ impl PedestrianNames {
 #[derive(Debug)]
 pub(crate) struct Numbering {
     numbers: HashMap<Arc<str>, i64>,
-    /// Those that are remembered, the oldest first.
     words: VecDeque<Arc<str>>,
-    /// How many have been forgotten.
     forgotten: i64,
     most: usize,
 }
@@ -109,7 +107,6 @@ impl Numbering {
         }
     }
 
-    /// Whether there has been no word.
     pub(crate) fn is_empty(&self) -> bool {
         self.words.is_empty()
     }
@@ -139,7 +136,6 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// A word keeps its number as long as it is remembered; a new one has the next.
         #[test]
         fn so_many_words_keep_their_numbers(words in prop::collection::vec("[a-d]{1,3}", 0..200)) {
             let mut numbering = Numbering::remembering(5);

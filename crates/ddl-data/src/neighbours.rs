@@ -16,8 +16,7 @@ pub struct NeighbourMask {
 impl NeighbourMask {
     /// i and j are neighbours if i != j, |dx| <= w and |dy| <= w, w being the half width (m).
     ///
-    /// The box is aligned with the axes: as in the published code, neighbours are found before a
-    /// scene is rotated.
+    /// The box is aligned with the axes: as in the published code, neighbours are found before a scene is rotated.
     #[must_use]
     pub fn within_box(positions: &[Position], half_width_m: f64) -> Self {
         let count = positions.len();

@@ -41,7 +41,6 @@ pub fn whole_frame_step(frame_time: f64) -> Option<i64> {
     whole_multiple(TIME_STEP / frame_time, 1)
 }
 
-/// The whole multiple of `spacing` that a number of frames is.
 fn whole_multiple(frames: f64, spacing: i64) -> Option<i64> {
     let multiple = (frames / spacing as f64).round() * spacing as f64;
     fits(multiple, frames, TOLERANCE).then_some(multiple as i64)
@@ -137,7 +136,6 @@ impl Recording {
     }
 }
 
-/// Whether two numbers differ by no more than a share of the second.
 fn fits(found: f64, wanted: f64, tolerance: f64) -> bool {
     (found - wanted).abs() <= tolerance * wanted
 }

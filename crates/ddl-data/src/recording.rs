@@ -19,7 +19,6 @@ pub struct Recording {
     frames: Vec<i64>,
     /// `starts[k]..starts[k + 1]` are the observations of `frames[k]`.
     starts: Vec<usize>,
-    /// Frames with observations a second, where the file says so.
     rate: Option<f64>,
     names: PedestrianNames,
 }
@@ -177,7 +176,6 @@ impl Recording {
         tracks
     }
 
-    /// Where in [`observations`](Self::observations) a raw frame lies.
     pub(crate) fn range_at(&self, frame: i64) -> Range<usize> {
         match self.frames.binary_search(&frame) {
             Ok(index) => self.range_of(index),
@@ -185,7 +183,6 @@ impl Recording {
         }
     }
 
-    /// Where in [`observations`](Self::observations) the `index`-th annotated frame lies.
     pub(crate) fn range_of(&self, index: usize) -> Range<usize> {
         self.starts[index]..self.starts[index + 1]
     }

@@ -98,7 +98,6 @@ impl Recording {
 struct Links<'a> {
     recording: &'a Recording,
     rule: WindowRule,
-    /// Index of the same pedestrian's observation at the next step.
     next: Vec<Option<usize>>,
     /// Steps, this one included, for which the pedestrian stays without a gap.
     run: Vec<usize>,
@@ -128,7 +127,6 @@ impl<'a> Links<'a> {
         links
     }
 
-    /// The observations one step after the `index`-th annotated frame.
     fn frame_after(&self, index: usize) -> Range<usize> {
         match self.rule {
             WindowRule::Published | WindowRule::Complete => self
@@ -176,7 +174,6 @@ impl<'a> Links<'a> {
         !self.pairs(here, beyond).is_empty()
     }
 
-    /// The window that the `index`-th annotated frame starts, if it does.
     fn window(&self, index: usize) -> Option<Window> {
         let first: Vec<usize> = self
             .recording

@@ -106,7 +106,6 @@ impl Summary {
 }
 
 impl Recording {
-    /// Share of the frames between somebody's first and last at which that person was not seen.
     fn unseen(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> f64 {
         // Every frame of a track is one of the recording.
         let index = |frame| {

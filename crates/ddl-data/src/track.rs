@@ -18,7 +18,6 @@ pub const WINDOW: usize = OBSERVED + HORIZON;
 
 /// Frames are below this in size: exact in an `f64`, and far from overflow when counting on.
 pub(crate) const FRAME_LIMIT: i64 = 1 << 53;
-/// Largest frame step allowed.
 pub(crate) const FRAME_STEP_LIMIT: i64 = 1 << 31;
 
 /// Coordinates that are read from files and streams are at most this in size (m); those of UTM reach 10,000 km.

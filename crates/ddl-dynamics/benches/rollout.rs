@@ -1,7 +1,5 @@
-//! Speed of a forecast's rollout, and of its certificate, on one core.
-//!
-//! An element is a hypothesis: 12 steps of 0.4 s with a metric each. 1 / (elements/s) is its time. 512 of them are gone
-//! through in turn, so that what is measured is not one walk whose branches the processor has learnt by heart.
+//! Speed of a forecast's rollout, and of its certificate, on one core. An element is a hypothesis: 12 steps of 0.4 s
+//! with a metric each; 512 of them in turn, so that the processor does not learn the branches of one walk by heart.
 
 mod hypotheses;
 
@@ -16,7 +14,6 @@ use ddl_dynamics::{
 use hypotheses::{MadeUpWalk, STEPS, TIME_STEP, drawn};
 use nalgebra::SVector;
 
-/// Hypotheses gone through in turn.
 const COUNT: usize = 512;
 const SEED: u64 = 1;
 
@@ -39,7 +36,6 @@ fn rollouts<T: Real, const D: usize>(
     });
 }
 
-/// The certificate of a rollout that is there already, and its verdict.
 fn certificates<T: Real, const D: usize>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str) {
     let hypotheses: Vec<MadeUpWalk<T, D>> = drawn(COUNT, SEED);
     let dt = T::rounded(TIME_STEP);

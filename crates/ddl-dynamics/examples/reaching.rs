@@ -3,10 +3,9 @@
 //! ```text
 //! cargo run -p ddl-dynamics --example reaching
 //! ```
-//! A positive-definite metric shapes the reach: quick across, slow in height, with a swing to the left. A ball in the way slows the
-//! approach to it and is slid along. `StableEuler` makes every step of finite length end nearer to the cup. Printed are the distance to
-//! the cup and the clearance from the ball's surface on the way, and whether the certificate holds, which is judged from the positions
-//! alone: also of plain Euler steps, which overshoot. No file is needed.
+//! A metric shapes the reach; a ball in the way slows the approach to it and is slid along. Printed are the distance to
+//! the cup, the clearance from the ball's surface, and whether the certificate holds: also of plain Euler steps, which
+//! overshoot.
 #![expect(clippy::print_stdout, reason = "what it is for")]
 
 use ddl_dynamics::{

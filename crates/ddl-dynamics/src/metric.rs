@@ -35,9 +35,6 @@ impl<T: Real> CholeskyMetric<T, 2> {
     ///
     /// # Errors
     /// Those of [`CholeskyMetric::new`].
-    ///
-    /// # References
-    /// Equation (12) of the paper.
     pub fn planar(a: T, b: T, c: T, sigma: T) -> Result<Self, DynamicsError> {
         Self::new(SMatrix::<T, 2, 2>::new(a, T::zero(), b, c), sigma)
     }

@@ -7,9 +7,8 @@ use crate::{metric::CholeskyMetric, polar::polar, real::Real, spectrum::Eigenval
 /// The bounds between which a metric shapes the way of a pedestrian that arrives at its goal in time, and the motion
 /// that is made where nothing shapes it.
 ///
-/// With the distance `d` to the goal and `n` steps of `dt` seconds left, the *arriving speed* is
-/// `s = d / (n dt)`: at this constant speed the straight walk ends on the goal. The eigenvalues of `P` are
-/// kept within
+/// With the distance `d` to the goal and `n` steps of `dt` seconds left, the *arriving speed* is `s = d / (n dt)`: at
+/// this constant speed the straight walk ends on the goal. The eigenvalues of `P` are kept within
 ///
 /// ```text
 /// m = max(SLOWEST s, n s - (n - 1) V)        M = min(FASTEST s, n s, V)        m = M = s  if n = 1
@@ -22,7 +21,6 @@ use crate::{metric::CholeskyMetric, polar::polar, real::Real, spectrum::Eigenval
 /// # What is guaranteed
 /// If `d <= n dt V` at the start, then for every sequence of metrics: no step is faster than `V`, no step
 /// of the remaining ones passes the goal, and the last one ends on it. `docs/stability.md` has the formulas and the proof.
-///
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionBounds<T: Real> {
     top_speed: T,
@@ -203,7 +201,6 @@ impl<T: Real> MotionBounds<T> {
     }
 }
 
-/// `P` by its entries `xx`, `xy` and `yy`.
 fn entries<T: Real>(metric: &CholeskyMetric<T, 2>) -> Vector3<T> {
     let p = metric.to_matrix();
     Vector3::new(p.m11, p.m12, p.m22)

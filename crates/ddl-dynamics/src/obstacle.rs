@@ -13,7 +13,6 @@ use crate::{
 ///
 /// # Shapes
 /// Centre with `D` components and radius, in metres.
-///
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball<T, const D: usize> {
     centre: SVector<T, D>,

@@ -8,7 +8,6 @@ use crate::real::Real;
 const ITERATIONS_PER_DIMENSION: usize = 1000;
 
 /// Smallest and largest eigenvalue of a metric (m/s).
-///
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EigenvalueRange<T> {
     /// The smallest: the distance to the goal falls at least this fast (m/s).
@@ -17,7 +16,6 @@ pub struct EigenvalueRange<T> {
     pub largest: T,
 }
 
-/// Smallest and largest singular value of a lower-triangular matrix.
 pub(crate) fn factor_singular_values<T: Real, const D: usize>(factor: &SMatrix<T, D, D>) -> (T, T) {
     match D {
         0 => (T::zero(), T::zero()),
@@ -27,7 +25,6 @@ pub(crate) fn factor_singular_values<T: Real, const D: usize>(factor: &SMatrix<T
     }
 }
 
-/// Closed form for `[a 0; b c]`.
 fn planar<T: Real>(a: T, b: T, c: T) -> (T, T) {
     let (a, c) = (a.abs(), c.abs());
     let large = ((a + c).hypot(b) + (a - c).hypot(b)) / T::rounded(2.0);

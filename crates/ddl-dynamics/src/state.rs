@@ -12,8 +12,7 @@ pub struct State<'a, T, const D: usize> {
     pub step: usize,
     /// Time since the start (seconds).
     pub time: T,
-    /// Every position from the start to the present one, oldest first (metres). Empty outside a
-    /// rollout.
+    /// Every position from the start to the present one, oldest first (metres). Empty outside a rollout.
     pub history: &'a [SVector<T, D>],
 }
 

@@ -102,7 +102,6 @@ fn around_obstacles() {
     }
 }
 
-/// The counter counts: `rollout` makes one vector of positions, and nothing else.
 #[test]
 fn a_rollout_that_owns_its_positions_allocates_once() {
     let hypotheses: Vec<MadeUpWalk<f64, 2>> = drawn(1, 7);

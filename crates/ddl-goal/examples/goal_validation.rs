@@ -1,9 +1,8 @@
 //! Goal error on validation walkers of the recordings, fold by fold: `cargo run --release --example goal_validation`.
 //!
-//! `DDL_DATASETS` names the folder of the recordings (eth.csv, ...). No walker of a fold's test scene is looked at: the
-//! library holds the first 75 % (by time) of the fold's training recordings, the validation walkers are those of their
-//! last 25 % (`tails`) and of two recordings that no library holds and no fold tests (`unseen`). An argument n takes every
-//! n-th validation walker only.
+//! `DDL_DATASETS` names the folder of the recordings. The library holds the first 75 % (by time) of a fold's training
+//! recordings; validated on are the walkers of the last 25 % (`tails`), and of two recordings that no library holds and
+//! no fold tests (`unseen`). An argument n takes every n-th of them only.
 #![expect(clippy::print_stdout, reason = "a program that prints a table")]
 
 use std::error::Error;
@@ -33,7 +32,6 @@ fn within(recording: &Recording, part: impl Fn(f64, f64) -> bool) -> Vec<Positio
     star_files::tracks_of(inside).into_values().collect()
 }
 
-/// Sums over validation walkers.
 #[derive(Default)]
 struct Judged {
     walkers: usize,
@@ -42,7 +40,6 @@ struct Judged {
 }
 
 impl Judged {
-    /// Mean over recordings of the mean distance from the nearest goal to the true end (m).
     fn mean_error(
         &mut self,
         estimator: &GoalEstimator,

@@ -3,17 +3,14 @@
 //! ```text
 //! cargo run --release -p ddl-goal --example goals_of_a_walker
 //! ```
-//! The library is made up: at a fork people walk on, bear left or bear right, at many speeds and in all directions of the compass. Somebody new
-//! is seen for 3.2 s (8 positions, 0.4 s apart) who begins to bear left. The estimator finds the library's walkers who moved most
-//! alike, each seen from its own heading, and chooses goals among how they went on in the next 4.8 s. No file is needed; tracks of your own
-//! take the place of `library`.
+//! The library is made up: at a fork people walk on, bear left or bear right, at many speeds and in all directions.
+//! Somebody new, seen for 3.2 s (8 positions), begins to bear left; the goals are for 4.8 s later.
 #![expect(clippy::print_stdout, reason = "what it is for")]
 
 use std::error::Error;
 
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, TRACK_LENGTH};
 
-/// Seconds between two positions.
 const TIME_STEP: f64 = 0.4;
 
 /// A walk of 20 positions (m) at `speed` m/s towards `heading` (rad), which turns by `turn` rad/s after the first 2 s.

@@ -16,7 +16,6 @@ const TEMPERATURE: f64 = 0.4;
 const ROUNDING: f64 = 1e-9;
 /// Steps of Lloyd's iteration. More of them fit the goals to these analogues, and not to the walker.
 const STEPS: usize = 3;
-/// Analogues that a goal set keeps.
 const KEPT: usize = 100;
 
 /// A library prepared for [`crate::RetrievalFrame::Heading`].
@@ -47,7 +46,6 @@ impl Analogues {
         })
     }
 
-    /// `clusters` goals of a walker, from its `experts` nearest analogues.
     pub(crate) fn goals(
         &self,
         track: &[[f64; 2]],

@@ -123,7 +123,6 @@ mod tests {
         }
     }
 
-    /// Who does not move stays; changes whose squares overflow say nothing; and too short an observation leaves the median.
     #[test]
     #[expect(clippy::float_cmp, reason = "the place itself")]
     fn where_the_motion_says_all_or_nothing() {
@@ -136,7 +135,6 @@ mod tests {
     }
 
     proptest! {
-        /// The world's origin and axes are arbitrary.
         #[test]
         fn the_central_goal_turns_and_moves_with_the_scene(
             goals in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 1..20),

@@ -26,7 +26,6 @@ pub(crate) fn choose(points: &Points, clusters: usize, steps: usize) -> Choice {
     }
 }
 
-/// Points that get one centre together.
 struct Cell {
     members: Vec<usize>,
     mean: [f64; 2],
@@ -36,11 +35,10 @@ struct Cell {
     cost: f64,
 }
 
-/// Chooses `clusters` centres, or fewer where the points are at fewer places.
-///
-/// Starting with one cell that holds all points, the cell with the largest Σw · √(Σw d² / Σw) (w weight, d distance to
-/// the weighted mean) is cut through its mean, across the axis along which it varies most. This cost is in metres, as the
-/// mean distance of the nearest goal is. The centres are the means of the cells.
+/// Chooses `clusters` centres, or fewer where the points are at fewer places. Starting with one cell that holds all
+/// points, the cell with the largest Σw · √(Σw d² / Σw) (w weight, d distance to the weighted mean) is cut through its
+/// mean, across the axis along which it varies most. This cost is in metres, as the mean distance of the nearest goal
+/// is. The centres are the means of the cells.
 fn first_centres(points: &Points, clusters: usize) -> Vec<[f64; 2]> {
     let mut cells = vec![Cell::new(points, (0..points.len()).collect())];
     while cells.len() < clusters {
@@ -69,7 +67,6 @@ fn first_centres(points: &Points, clusters: usize) -> Vec<[f64; 2]> {
     cells.iter().map(|cell| cell.mean).collect()
 }
 
-/// Those that `is_first`, and the others, in their order.
 fn parted(members: &[usize], is_first: impl Fn(usize) -> bool) -> [Vec<usize>; 2] {
     let mut parts = [vec![0; members.len()], vec![0; members.len()]];
     let mut counts = [0; 2];
@@ -127,7 +124,6 @@ mod tests {
         all
     }
 
-    /// Weighted sum of the distances to the nearest centre.
     fn cost(points: &Points, centres: &[[f64; 2]]) -> f64 {
         let nearest = |i: usize| {
             let squares = centres.iter().map(|&c| squared_distance(c, points.get(i)));

@@ -191,9 +191,6 @@ impl GoalEstimator {
     }
 }
 
-/// Finds the tracks of a library whose velocities are nearest in the normalised soft-DTW distance.
-///
-/// # References
 /// DDL paper, equations 4 and 5. The cost is the squared Euclidean distance, as in the published code (the text of the
 /// paper says Euclidean).
 #[derive(Clone, Debug)]
@@ -204,7 +201,6 @@ struct Retriever {
 }
 
 impl Retriever {
-    /// Prepares a library for retrieval with smoothing `gamma` (m²/s²), comparing what `span` reads.
     fn new(library: &ExpertLibrary, gamma: f64, span: QuerySpan) -> Result<Self, GoalError> {
         let dtw = SoftDtw::new(gamma, Cost::SquaredEuclidean)?;
         let time_step = library.time_step();

@@ -162,7 +162,6 @@ mod tests {
     }
 
     proptest! {
-        /// None of the points, and hardly any other place, is nearer to all of them together.
         #[test]
         fn nothing_is_more_central(
             points in prop::collection::vec(

@@ -17,7 +17,6 @@ const STEPS: usize = 10;
 pub struct GoalSet {
     goals: Vec<[f64; 2]>,
     weights: Vec<f64>,
-    /// The weights before they were tempered.
     estimated: Option<Vec<f64>>,
     experts: Vec<Expert>,
 }
@@ -133,7 +132,6 @@ impl GoalSet {
 
     /// The same goals with flatter or steeper weights: each to the `power` (positive), divided by their sum, and then with the share `uniform` (0
     /// to 1) of the probability divided equally among all. Order and [`median`](Self::median) stay as they are.
-    ///
     #[must_use]
     pub fn tempered(mut self, power: f64, uniform: f64) -> Self {
         let powers: Vec<f64> = self

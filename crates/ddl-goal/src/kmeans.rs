@@ -9,16 +9,13 @@ use crate::points::{Points, is_in_range};
 use crate::seeding::first_centres;
 
 /// k-means with greedy k-means++ seeding, Lloyd's iteration and restarts, of which the one of least inertia counts.
-///
-/// Inertia is the sum of the squared distances of the points to their centres (m²). A run ends when no point changes its
-/// cluster, when the centres together move less than `tolerance` times the mean variance of the coordinates (squared
-/// distances), or after `max_iterations`: the rules and the defaults of scikit-learn. A cluster that loses all
-/// its points is moved to the point farthest from its own centre.
-///
-/// Equal points count as one with a multiplicity. Where there are fewer distinct points than clusters, each is a centre
-/// and the first of them are repeated until there are enough: always exactly as many centres as asked.
-///
-/// The result depends on the set of points and the seed, not on the order of the points.
+/// Inertia is the sum of the squared distances of the points to their centres (m²). A run ends when no point changes
+/// its cluster, when the centres together move less than `tolerance` times the mean variance of the coordinates
+/// (squared distances), or after `max_iterations`: the rules and the defaults of scikit-learn. A cluster that loses all
+/// its points is moved to the point farthest from its own centre. Equal points count as one with a multiplicity. Where
+/// there are fewer distinct points than clusters, each is a centre and the first of them are repeated until there are
+/// enough: always exactly as many centres as asked. The result depends on the set of points and the seed, not on the
+/// order of the points.
 #[derive(Clone, Debug)]
 pub(crate) struct KMeans {
     pub(crate) clusters: usize,
@@ -27,7 +24,6 @@ pub(crate) struct KMeans {
     pub(crate) tolerance: f64,
 }
 
-/// What [`KMeans::fit`] found.
 #[derive(Debug)]
 pub(crate) struct Clustering {
     /// Exactly as many as clusters were asked for (m).

@@ -67,7 +67,6 @@ impl ExpertLibrary {
         Ok(library)
     }
 
-    /// What is made of each track; the first that cannot be used is named.
     pub(crate) fn of_each<T>(
         &self,
         make: impl Fn(&[[f64; 2]]) -> Result<T, TrackError>,

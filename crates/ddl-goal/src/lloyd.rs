@@ -14,7 +14,6 @@ pub(crate) struct Lloyd {
 }
 
 impl Lloyd {
-    /// Each point with the nearest of the given centres.
     pub(crate) fn from_centres(points: &Points, centres: Vec<[f64; 2]>) -> Self {
         let count = points.len();
         let mut run = Self {
@@ -55,7 +54,6 @@ impl Lloyd {
             .sum();
     }
 
-    /// Moves each centre to the mean of its points; the sum of the squared distances moved.
     fn move_centres(&mut self, points: &Points) -> f64 {
         self.fill_empty(points);
         let mut sums = vec![[0.0_f64; 3]; self.centres.len()];
@@ -77,7 +75,6 @@ impl Lloyd {
         moved
     }
 
-    /// Gives each empty cluster the point farthest from its own centre.
     fn fill_empty(&mut self, points: &Points) {
         let mut sizes = vec![0_usize; self.centres.len()];
         for &label in &self.labels {

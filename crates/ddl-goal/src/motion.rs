@@ -9,14 +9,12 @@ use crate::span::{QuerySpan, velocities};
 pub(crate) const COMPONENTS: usize = SIGNED + STEPS;
 /// The first component that a mirror image has with the other sign: all from here on.
 pub(crate) const SIGNED: usize = STEPS + 2;
-/// Velocities of an observation.
 const STEPS: usize = 7;
 /// Weight of a squared difference against that of the next later step.
 const FADING: f64 = 0.5;
 /// Pace of somebody who stands (m/s): keeps the noise of standing walkers from counting as motion.
 const STANDING_PACE: f64 = 0.25;
 
-/// Weight of the direction in the world.
 const DIRECTION: f64 = 0.2;
 /// Speed (m/s) from which on the direction counts in full.
 const WALKING: f64 = 1.0;

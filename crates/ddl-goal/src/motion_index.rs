@@ -8,7 +8,6 @@ use ddl_simd::{Dispatch, Register, RegisterKernel};
 /// Tracks compared at once: the loop over them becomes vector instructions.
 const LANES: usize = 16;
 
-/// Sixteen tracks, one a lane.
 type Block = [[f32; LANES]; COMPONENTS];
 
 /// A track of the library or its mirror image.
@@ -16,7 +15,6 @@ type Block = [[f32; LANES]; COMPONENTS];
 pub(crate) struct Alike {
     pub(crate) index: usize,
     pub(crate) mirrored: bool,
-    /// Sum of the squared differences of the components.
     pub(crate) distance: f32,
 }
 
@@ -156,7 +154,6 @@ mod tests {
         prop_oneof![coarse, prop::array::uniform16(-3.0..3.0_f32)]
     }
 
-    /// Every track and every image compared, one after the other, and sorted.
     fn all(motions: &[[f32; COMPONENTS]], query: &[f32; COMPONENTS]) -> Vec<Alike> {
         let mut all = Vec::new();
         for (index, motion) in motions.iter().enumerate() {

@@ -69,7 +69,6 @@ impl Points {
     }
 }
 
-/// Squared distance of two points (m²).
 #[inline]
 pub(crate) fn squared_distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     let (dx, dy) = (a[0] - b[0], a[1] - b[1]);

@@ -18,7 +18,6 @@ const ROUNDING: f32 = 12_582_912.0;
 /// 1.5 · 2^52, likewise.
 const WIDE_ROUNDING: f64 = 6_755_399_441_055_744.0;
 
-/// A polynomial of degree 5, and the exponent below which it is not asked.
 struct Approximation {
     lowest: f32,
     coefficients: [f32; 6],

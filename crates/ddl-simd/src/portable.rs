@@ -14,7 +14,6 @@ type Floats = [f32; WIDTH];
 type Bits = [u32; WIDTH];
 type Wide = [f64; WIDTH / 2];
 
-/// No particular instructions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Portable;
 
@@ -29,7 +28,6 @@ macro_rules! each_lane {
     }};
 }
 
-/// Methods that do the same to each lane.
 macro_rules! lane_by_lane {
     ($(fn $name:ident$(<const $n:ident: $constant:ty>)?($($a:ident: $kind:ty),*; $($b:ident: $scalar:ty),*) -> $result:ident = |$l:ident| $value:expr;)*) => {$(
         #[inline(always)]

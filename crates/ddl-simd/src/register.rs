@@ -28,9 +28,7 @@ pub trait Register: Copy + Send + Sync {
     type Bits: Copy;
     /// `WIDTH / 2` numbers of `f64`.
     type Wide: Copy;
-    /// Arithmetic on a group.
     type Sixteen: Simd;
-    /// Numbers of `f32` in a register.
     const WIDTH: usize;
     /// Whether [`mul_add`](Self::mul_add) is rounded once.
     const FUSED: bool;
@@ -39,7 +37,6 @@ pub trait Register: Copy + Send + Sync {
 
     /// Compiles `kernel` with this instruction set and runs it.
     fn run<K: RegisterKernel>(self, kernel: K) -> K::Output;
-    /// The same instructions on whole groups.
     fn sixteen(self) -> Self::Sixteen;
     /// Runs `kernel`, within one that runs already, with the [`Tile`](crate::Tile) that the registers hold.
     fn run_tiled<K: TiledKernel>(self, kernel: K);
@@ -70,7 +67,6 @@ pub trait Register: Copy + Send + Sync {
     /// (and NaN) count as −[`COST_LIMIT`](crate::COST_LIMIT): no result is denormal.
     fn exp2_each<const G: usize>(self, exponents: [Self::Floats; G]) -> [Self::Floats; G];
 
-    /// [`exp2_each`](Self::exp2_each) of one register.
     #[inline(always)]
     fn exp2(self, exponent: Self::Floats) -> Self::Floats {
         let [power] = self.exp2_each([exponent]);

@@ -7,7 +7,6 @@ use crate::lanes::LANES;
 use crate::register::Register;
 use crate::simd::{Simd, TiledKernel, Vectors};
 
-/// Groups of sixteen numbers in `P` registers each.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sixteen<R, const P: usize>(pub(crate) R);
 

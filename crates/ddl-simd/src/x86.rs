@@ -55,7 +55,6 @@ impl Avx512Bf16 {
         Avx512::detect().filter(|_| found).map(Self)
     }
 
-    /// Compiles `kernel` with these instructions and runs it.
     #[inline]
     pub(crate) fn run<K: PairKernel>(self, kernel: K) {
         #[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512bw,avx512bf16")]
@@ -79,7 +78,6 @@ macro_rules! instructions {
     )*};
 }
 
-/// Loads and stores of the parts of a group.
 macro_rules! memory {
     ($($load:ident, $store:ident: $value:ty = [$number:ty; $lanes:expr], $load_from:ident, $store_to:ident;)*) => {$(
         #[inline(always)]

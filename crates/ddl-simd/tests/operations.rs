@@ -17,7 +17,6 @@ fn each_set() -> impl Iterator<Item = Dispatch> {
         .map(|set| Dispatch::new(set).unwrap())
 }
 
-/// The results of all operations on three groups of numbers and a word.
 struct OnGroups<'a> {
     numbers: &'a [Narrow; 3],
     word: u32,
@@ -97,7 +96,6 @@ fn same(a: f32, b: f32) -> bool {
     a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
 }
 
-/// a b + c, rounded once or twice.
 fn is_product(found: f32, a: f32, b: f32, c: f32) -> bool {
     same(found, a.mul_add(b, c)) || same(found, a * b + c)
 }
@@ -196,7 +194,6 @@ impl RegisterKernel for OnRegisters<'_> {
     }
 }
 
-/// What is made of the operations, on small whole numbers, which are exact.
 struct OnQuads<'a>(&'a Quad, &'a Quad, &'a mut Quad);
 
 impl Kernel for OnQuads<'_> {

@@ -7,7 +7,6 @@ use proptest::prelude::*;
 
 use ddl_simd::{Dispatch, InstructionSet, LANES, PairDispatch, PairKernel, Pairs, Simd};
 
-/// All ways that this machine has, with their names.
 fn ways() -> Vec<PairDispatch> {
     let emulated = InstructionSet::available().into_iter();
     let mut ways: Vec<_> = emulated
@@ -22,7 +21,6 @@ fn ways() -> Vec<PairDispatch> {
     ways
 }
 
-/// Everything that can be done with two vectors of numbers and two of pairs.
 struct All<'a>(
     &'a [[f32; LANES]; 2],
     &'a [[u32; LANES]; 2],
@@ -89,7 +87,6 @@ fn flushed(value: f32) -> f32 {
     }
 }
 
-/// The definition, one number after the other.
 fn dot(a: u32, b: u32, sum: f32) -> f32 {
     let half = |word: u32, which: u32| flushed(f32::from_bits(word >> (16 * which) << 16));
     let sum = flushed(half(a, 1).mul_add(half(b, 1), flushed(sum)));

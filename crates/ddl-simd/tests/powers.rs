@@ -15,7 +15,6 @@ fn each_set(test: impl FnMut(Dispatch)) {
     sets.map(|set| Dispatch::new(set).unwrap()).for_each(test);
 }
 
-/// 2^x of sixteen and of eight numbers.
 struct Exp2<'a>(&'a mut Narrow, &'a mut Wide);
 
 impl RegisterKernel for Exp2<'_> {
@@ -98,7 +97,6 @@ fn exponents_out_of_range_are_clamped() {
     });
 }
 
-/// The powers of groups, which vanish.
 struct Powers<'a>(&'a mut [Narrow]);
 
 impl Kernel for Powers<'_> {

@@ -1,8 +1,6 @@
-//! Speed of the sliding search: all windows of the tracks of one scene against all windows of the others.
-//!
-//! Reports pairs (window × window) a second on one thread, the choice of the 100 nearest and their `f64` distances
-//! included: 1 / (pairs/s) is the time of a pair. The tracks are those of the real recordings where `DDL_DATASETS` names
-//! their folder, synthetic walkers otherwise; the names of the benchmarks say which.
+//! Speed of the sliding search: all windows of the tracks of one scene against those of the others, in pairs (window ×
+//! window) a second on one thread, with the choice of the 100 nearest and their `f64` distances. The tracks are real
+//! where `DDL_DATASETS` names their folder, synthetic otherwise, as the benchmarks' names say.
 
 #[path = "../tests/recorded/mod.rs"]
 mod recorded;
@@ -16,7 +14,6 @@ use ddl_softdtw::{Cost, InstructionSet, SlidingIndex, SoftDtw};
 
 /// Velocities of a complete window of 20 positions.
 const COMPLETE: usize = 19;
-/// Query tracks of a measurement, evenly spread.
 const QUERIES: usize = 30;
 
 fn sliding(criterion: &mut Criterion) {

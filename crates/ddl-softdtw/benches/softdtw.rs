@@ -1,8 +1,5 @@
-//! Speed of the value, the gradient and the batch; `examples/throughput.rs` measures the search.
-//!
-//! The batch reports pairs a second on one thread, for each instruction set of the machine. Its windows
-//! are those of the real recordings where `DDL_DATASETS` names the folder that holds them, synthetic ones otherwise: the
-//! name of the benchmark says which.
+//! Speed of the value, the gradient and the batch (pairs a second on one thread, for each instruction set). The windows
+//! are real where `DDL_DATASETS` names the folder of the recordings, synthetic otherwise, as the benchmarks' names say.
 
 mod recordings;
 
@@ -17,7 +14,6 @@ fn dtw() -> SoftDtw {
     SoftDtw::new(1.0, Cost::SquaredEuclidean).expect("valid gamma")
 }
 
-/// A smooth sequence in D dimensions.
 fn wave<const D: usize>(steps: usize, phase: f64) -> Vec<[f64; D]> {
     let at = |i: usize, d: usize| (phase + 0.1 * i as f64 + d as f64).sin();
     (0..steps)

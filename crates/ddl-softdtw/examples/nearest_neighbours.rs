@@ -3,9 +3,8 @@
 //! ```text
 //! cargo run --release -p ddl-softdtw --example nearest_neighbours
 //! ```
-//! Two thousand walkers are made up: they stride, stroll, slow down or turn, at many speeds. The query starts to turn left a little
-//! later than any of them: soft-DTW lines the turns up. The 5 nearest are printed with their distances d (m²/s²) and the weights
-//! exp(-(d - smallest d) / temperature), divided by their sum. No file is needed.
+//! Two thousand walkers are made up; the query turns left a little later than any of them. The 5 nearest are printed
+//! with their distances d (m²/s²) and the weights exp(-(d - smallest d) / temperature), divided by their sum.
 #![expect(clippy::print_stdout, reason = "what it is for")]
 
 use std::error::Error;
@@ -26,7 +25,6 @@ struct Walker {
 }
 
 impl Walker {
-    /// Two thousand of them, the same at every run.
     fn library() -> Vec<Self> {
         let manners = ["straight on", "turns left", "turns right", "slows down"];
         let walker = |i: u32| Self {

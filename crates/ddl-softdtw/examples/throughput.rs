@@ -3,9 +3,8 @@
 //! ```text
 //! cargo run --release --example throughput -- [steps] [queries] [portable|avx2|avx512]
 //! ```
-//! Instructions of a pair: count those of the program with `perf stat -e instructions:u`, or with
-//! `valgrind --tool=callgrind` for `portable` and `avx2`, for two numbers of queries. The difference, divided by the
-//! number of pairs the runs differ by, is free of what it takes to start.
+//! Instructions of a pair: count those of the program for two numbers of queries (`perf stat -e instructions:u`, or
+//! `valgrind --tool=callgrind` without AVX-512), and divide the difference by that of the numbers of pairs.
 #![expect(clippy::print_stdout, reason = "what it is for")]
 
 #[path = "../benches/recordings/mod.rs"]

@@ -91,7 +91,6 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         (0..self.strips()).map(steps).sum()
     }
 
-    /// One strip, from its last step to its first; the gradients of its rows.
     #[inline(always)]
     fn retreat<M: Metric>(
         &self,

@@ -201,7 +201,6 @@ impl<const D: usize> SoftDtwBatch<D> {
         Ok(())
     }
 
-    /// Evaluates what `f32` holds, and leaves the rest.
     fn narrow_pairs(
         &self,
         blocks: &Blocks<D>,
@@ -251,7 +250,6 @@ impl<const D: usize> SoftDtwBatch<D> {
     }
 }
 
-/// Which scores of a run `f32` holds to the bound.
 #[derive(Clone, Copy, Debug)]
 struct Accurate {
     start: f32,

@@ -54,9 +54,7 @@ pub(crate) type Step<const D: usize> = [Lanes; D];
 #[derive(Clone, Debug)]
 pub(crate) struct Blocks<const D: usize> {
     pub(crate) narrowing: Narrowing<D>,
-    /// Largest absolute value among the components.
     pub(crate) largest: f64,
-    /// Steps of the longest sequence.
     pub(crate) longest: usize,
     /// Blocks of sequences of one length each, one after the other.
     pub(crate) runs: Vec<BlockRun>,
@@ -65,18 +63,15 @@ pub(crate) struct Blocks<const D: usize> {
     samples: Vec<Step<D>>,
 }
 
-/// Blocks of sequences of one length.
 #[derive(Clone, Debug)]
 pub(crate) struct BlockRun {
     pub(crate) steps: usize,
     /// The blocks, as places in [`Blocks::members`].
     pub(crate) blocks: Range<usize>,
-    /// First step of the first block in the samples.
     first: usize,
 }
 
 impl<const D: usize> Blocks<D> {
-    /// Arranges sequences of at least one step each.
     pub(crate) fn new(gamma: f64, sequences: &[&[[f64; D]]]) -> Self {
         let steps = sequences.iter().flat_map(|sequence| sequence.iter());
         let narrowing = Narrowing::new(gamma, steps.clone());

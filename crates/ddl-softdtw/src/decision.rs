@@ -16,12 +16,10 @@ pub struct Neighbour {
     pub distance: f64,
 }
 
-/// Candidates with their values.
 #[derive(Clone, Copy)]
 pub(crate) struct Candidates<'a, F> {
     pub(crate) values: PairValues,
     pub(crate) sequence: F,
-    /// D(y, y) of every candidate.
     pub(crate) self_values: &'a [f64],
 }
 

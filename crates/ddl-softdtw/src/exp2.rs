@@ -6,7 +6,6 @@
 
 /// Cells computed together: neighbours on an antidiagonal, one a row.
 pub(crate) const STRIP: usize = 4;
-/// One number for each of the cells computed together.
 pub(crate) type Lanes = [f64; STRIP];
 
 /// Adding and subtracting 1.5 · 2^52 rounds a number below 2^51 to an integer, which then sits in the low bits of the sum.
@@ -27,10 +26,8 @@ const POLYNOMIAL: [f64; 11] = [
     -4.078_071_929_588_337e-10,
 ];
 
-/// (k, 2^−f) with k + f = t, k an integer and |f| ≤ 1/2, for 0 ≤ t < 2^51; exactly (0, 1) for t = 0.
-///
-/// # Numerics
-/// Relative error of 2^−f: at most 2.3e-16.
+/// (k, 2^−f) with k + f = t, k an integer and |f| ≤ 1/2, for 0 ≤ t < 2^51; exactly (0, 1) for t = 0. Relative error of
+/// 2^−f: at most 2.3e-16.
 #[inline(always)]
 pub(crate) fn exp2_minus(t: &Lanes) -> (Lanes, Lanes) {
     let mut whole = [0.0; STRIP];

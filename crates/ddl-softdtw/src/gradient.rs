@@ -24,7 +24,6 @@ impl SoftDtw {
     ///
     /// # References
     /// Cuturi & Blondel (2017), algorithm 2.
-    ///
     pub fn value_and_gradient<T: Scalar, const D: usize>(
         &self,
         x: &[[T; D]],

@@ -36,7 +36,6 @@ pub(crate) struct Strip<const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> Grid<'_, T, D> {
-    /// The columns of row `row` that a path may pass.
     pub(crate) fn band_columns(&self, row: usize) -> RangeInclusive<usize> {
         let (n, m) = (self.rows.len(), self.columns.len());
         self.band.map_or(0..=m - 1, |band| band.columns(row, n, m))
@@ -78,7 +77,6 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
     }
 
     /// The step of the column that `lane` is at in step `d` of a strip; beyond the ends the first or the last one.
-    ///
     /// Cells beyond the ends are computed and not used: nothing in them overflows unless it does within the grid.
     #[inline(always)]
     pub(crate) fn column(&self, d: usize, lane: usize) -> [f64; D] {

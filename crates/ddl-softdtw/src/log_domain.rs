@@ -42,7 +42,6 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         }
     }
 
-    /// The smoothed minimum, its weights kept.
     fn softmin(&self, diagonal: f64, up: f64, left: f64, ways: &mut Vec<Ways>) -> f64 {
         let (smallest, weights) = softmin_weights([diagonal, up, left], self.gamma);
         ways.push(weights);

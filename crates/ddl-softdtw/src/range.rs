@@ -11,17 +11,13 @@ pub(crate) const FUSED_FLOOR: f32 = f32::from_bits((127 - 100) << 23);
 /// Added to every sum of predecessors, 2^−120: times 2^−900 it is still a normal number.
 pub(crate) const WIDE_FLOOR: f64 = f64::from_bits((1023 - 120) << 52);
 
-/// Unit roundoff of `f32`.
 const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
 /// A margin beyond this (log2 units) would let nearly everything through the sieve.
 const WIDEST_MARGIN: f64 = 0.25;
 
-/// What the numbers of a recursion can hold.
 #[derive(Clone, Copy, Debug)]
 struct Format {
-    /// Longest sequence.
     longest: usize,
-    /// Largest cost of a cell.
     cost_limit: f64,
     /// Added to every sum of predecessors, at most.
     floor: f64,
@@ -61,7 +57,6 @@ pub(crate) struct Range {
     tails_log2: f64,
     /// log2 of the start value of the recursion: as large as the number of paths allows.
     start_log2: i16,
-    /// Longest warping path, in cells.
     longest_path: f64,
 }
 
@@ -96,10 +91,9 @@ impl Range {
         self.start_log2
     }
 
-    /// The smallest score (log2, start included) that the clamp on costs and the floor on sums leave accurate.
-    ///
-    /// Each of the at most `paths` paths gains at most 2^−`cost_limit` by the clamp, and each cell passes on at most
-    /// `floor` times the number of paths from it to the last cell.
+    /// The smallest score (log2, start included) that the clamp on costs and the floor on sums leave accurate. Each of
+    /// the at most `paths` paths gains at most 2^−`cost_limit` by the clamp, and each cell passes on at most `floor`
+    /// times the number of paths from it to the last cell.
     pub(crate) fn smallest_accurate_log2(&self) -> f64 {
         let start = f64::from(self.start_log2);
         let clamp = start + self.paths_log2 - self.format.cost_limit;
@@ -113,23 +107,19 @@ impl Range {
     }
 
     /// The smallest score (log2, start included) for which the expected alignment α β / (seed · score) of each of n m
-    /// `cells` is accurate as well.
-    ///
-    /// The floor that a cell adds to β meets at most α = 2^`top` there: over all cells it changes the expected alignment by
-    /// at most cells · floor · 2^`top` / (seed · score).
+    /// `cells` is accurate as well. The floor that a cell adds to β meets at most α = 2^`top` there: over all cells it
+    /// changes the expected alignment by at most cells · floor · 2^`top` / (seed · score).
     pub(crate) fn smallest_aligned_log2(&self, cells: usize) -> f64 {
         let floors = (cells as f64 * self.format.floor).log2() + self.format.top;
         let smallest = floors + self.format.headroom - f64::from(self.seed_log2());
         smallest.max(self.smallest_accurate_log2())
     }
 
-    /// Bound on the error of log2(score) in `f32` for scores of at least `score_log2` (start included), for inputs of absolute
-    /// value up to `largest` and dimension `dimension`.
-    ///
-    /// Paths whose cost C exceeds `paths + (start − score) + 30` hold less than 2^−30 of the score. For the others, with
-    /// input errors e = largest · u, the squared differences of a path of P cells err by at most
-    /// 4 e √(P·dim·C) + 4 e² P dim (inputs) + (dim + 3) u C (rounding), by the Cauchy-Schwarz inequality; each cell adds
-    /// the error of exp2 and four roundings.
+    /// Bound on the error of log2(score) in `f32` for scores of at least `score_log2` (start included), for inputs of
+    /// absolute value up to `largest` and dimension `dimension`. Paths whose cost C exceeds `paths + (start − score) +
+    /// 30` hold less than 2^−30 of the score. For the others, with input errors e = largest · u, the squared
+    /// differences of a path of P cells err by at most 4 e √(P·dim·C) + 4 e² P dim (inputs) + (dim + 3) u C (rounding),
+    /// by the Cauchy-Schwarz inequality; each cell adds the error of exp2 and four roundings.
     pub(crate) fn error_log2(&self, score_log2: f64, largest: f64, dimension: usize) -> f64 {
         let (path, dimension) = (self.longest_path, dimension as f64);
         let cost = self.cost_log2(score_log2);
@@ -161,10 +151,8 @@ impl Range {
 }
 
 /// Bound on the error of a value in log2 units, for warping paths of up to `path` cells and a `cost` that holds all but
-/// 2^−30 of the sum.
-///
-/// Each squared difference is rounded twice, their sum, its root and its scaling D + 1 times, and the scale was rounded
-/// twice; each cell adds the error of exp2 and four roundings, and the logarithm one.
+/// 2^−30 of the sum. Each squared difference is rounded twice, their sum, its root and its scaling D + 1 times, and the
+/// scale was rounded twice; each cell adds the error of exp2 and four roundings, and the logarithm one.
 pub(crate) fn wide_error_log2(path: f64, cost: f64, dimension: usize) -> f64 {
     const UNIT: f64 = f64::EPSILON / 2.0;
     let costs = (dimension as f64 + 6.0) * UNIT * cost;

@@ -1,7 +1,5 @@
-//! Values of many pairs in `f64`, eight at a time in the exponential domain.
-//!
-//! The value of a pair depends on the pair alone: not on its neighbours in the vector, on the instruction set or on the
-//! number of threads, because every operation is rounded by itself and in the same order everywhere.
+//! Values of many pairs in `f64`, eight at a time in the exponential domain. The value of a pair does not depend on its
+//! neighbours, the instruction set or the number of threads: every operation is rounded by itself, in one order.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
@@ -17,29 +15,23 @@ pub(crate) const GAMMAS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
 /// Cells whose similarities are computed together, so that the processor is kept busy.
 pub(crate) const WIDE_GROUP: usize = 4;
 
-/// One number for each of eight pairs.
 pub(crate) type WideLanes = [f64; WIDE_LANES];
 
-/// What the exponential domain says of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum PairValue {
-    /// The value `D_γ(x, y)`.
     Known(f64),
     /// It is at least this: too large for the range of the recursion.
     AtLeast(f64),
 }
 
-/// Evaluates pairs of sequences in blocks of eight.
-///
-/// # Numerics
-/// The error of a known value is at most γ ln 2 times [`wide_error_log2`](crate::range::wide_error_log2): 4e-14 γ for eight steps and values near 0.
+/// Evaluates pairs of sequences in blocks of eight. The error of a known value is at most γ ln 2 times
+/// [`wide_error_log2`](crate::range::wide_error_log2): 4e-14 γ for eight steps and values near 0.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairValues {
     dtw: SoftDtw,
     dispatch: Dispatch,
 }
 
-/// Both sequences of a pair.
 type Both<'a, const D: usize> = (&'a [[f64; D]], &'a [[f64; D]]);
 /// A pair that waits for its block: its place in the answer, and both sequences.
 type Pair<'a, const D: usize> = (usize, &'a [[f64; D]], &'a [[f64; D]]);
@@ -49,7 +41,6 @@ impl PairValues {
         Self { dtw, dispatch }
     }
 
-    /// `D_γ` of every pair of checked sequences.
     pub(crate) fn of<'a, const D: usize>(
         &self,
         pairs: impl Iterator<Item = Both<'a, D>>,
@@ -143,7 +134,6 @@ pub(crate) fn spread<const D: usize>(steps: &[[f64; D]], lane: usize, into: &mut
     }
 }
 
-/// Memory of a block, kept from one to the next.
 struct WideWorking<const D: usize> {
     x: Vec<[WideLanes; D]>,
     y: Vec<[WideLanes; D]>,
@@ -166,7 +156,6 @@ struct WideRecursion<'a, const D: usize> {
     y: &'a [[WideLanes; D]],
     row: &'a mut [WideLanes],
     start: f64,
-    /// −log2 e / γ.
     scale: f64,
     cost: Cost,
 }

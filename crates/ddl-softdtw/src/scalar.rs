@@ -38,7 +38,6 @@ impl Scalar for f64 {
     }
 }
 
-/// The components of a step as `f64`.
 #[expect(
     clippy::inline_always,
     reason = "the lanes of a strip must stay in registers"

@@ -20,7 +20,6 @@ pub struct SearchIndex<const D: usize> {
     steps: Vec<[f64; D]>,
     /// Where candidate i begins in `steps`; one more entry ends the last.
     offsets: Vec<usize>,
-    /// D(y, y) of every candidate.
     self_values: Vec<f64>,
     sieve: Option<CandidateSieve<D>>,
     dispatch: Dispatch,

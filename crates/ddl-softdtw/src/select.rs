@@ -1,6 +1,5 @@
 //! Running selection of the largest scores, with a band below the n-th for those that may belong to the best.
 
-/// A score of the `f32` recursion and the candidate it belongs to.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scored {
     pub(crate) score: f32,

@@ -22,11 +22,9 @@ pub(crate) struct CandidateSieve<const D: usize> {
     weights: Vec<Lanes>,
 }
 
-/// A query on its way through the blocks.
 struct Search<const D: usize> {
     steps: Vec<[f32; D]>,
     range: Range,
-    /// Largest absolute value among the components of the query and the candidates.
     largest: f64,
     start: f32,
     selection: Selection,
@@ -132,7 +130,6 @@ impl<const D: usize> CandidateSieve<D> {
 /// Scores of consecutive blocks, 2^(`start_log2` − D(x, y) + D(y, y) / 2) with D in log2 units, offered to a selection.
 struct CandidateSweep<'a, const D: usize> {
     query: &'a [[f32; D]],
-    /// Steps of each candidate.
     steps: usize,
     samples: &'a [Step<D>],
     weights: &'a [Lanes],
@@ -196,7 +193,6 @@ impl<const D: usize> CandidateSweep<'_, D> {
     }
 }
 
-/// Offers the scores of the lanes in `mask`.
 #[cold]
 #[inline(never)]
 fn offer(

@@ -43,11 +43,8 @@ pub struct SlidingIndex<const D: usize> {
     length: usize,
     /// All steps of all tracks in f64, one track after the other.
     steps: Vec<[f64; D]>,
-    /// Where track t begins in `steps`.
     first_steps: Vec<usize>,
-    /// Where every window is, by track and offset.
     places: Vec<WindowPlace>,
-    /// D(y, y) of every window.
     self_values: Vec<f64>,
     sieve: Option<WindowSieve<D>>,
     dispatch: Dispatch,
@@ -228,7 +225,6 @@ impl<const D: usize> SlidingIndex<D> {
         Ok(all)
     }
 
-    /// The windows nearest to every window of a part of a query.
     fn search(
         &self,
         query: &[[f64; D]],

@@ -1,9 +1,8 @@
 //! The smoothed minimum of three numbers and its weights.
 
-/// Smoothed minimum −γ ln(e^(−a/γ) + e^(−b/γ) + e^(−c/γ)); the plain minimum for γ = 0.
-///
-/// Nothing overflows; `+inf` entries count for nothing. The order of the sum does not depend on the order of the
-/// arguments, so that soft-DTW is symmetric to the last bit.
+/// Smoothed minimum −γ ln(e^(−a/γ) + e^(−b/γ) + e^(−c/γ)); the plain minimum for γ = 0. Nothing overflows; `+inf`
+/// entries count for nothing. The order of the sum does not depend on the order of the arguments, so that soft-DTW is
+/// symmetric to the last bit.
 pub(crate) fn softmin(a: f64, b: f64, c: f64, gamma: f64) -> f64 {
     let (low, middle, high) = sorted(a, b, c);
     if gamma == 0.0 || low == f64::INFINITY {
@@ -12,9 +11,8 @@ pub(crate) fn softmin(a: f64, b: f64, c: f64, gamma: f64) -> f64 {
     low - gamma * (decay(low, middle, gamma) + decay(low, high, gamma)).ln_1p()
 }
 
-/// The smoothed minimum with its derivatives with respect to `values`: weights that are not negative and sum to 1.
-///
-/// For γ = 0 the whole weight goes to the first smallest value (a subgradient).
+/// The smoothed minimum with its derivatives with respect to `values`: weights that are not negative and sum to 1. For
+/// γ = 0 the whole weight goes to the first smallest value (a subgradient).
 pub(crate) fn softmin_weights(values: [f64; 3], gamma: f64) -> (f64, [f64; 3]) {
     let [a, b, c] = values;
     let (low, ..) = sorted(a, b, c);

@@ -113,7 +113,6 @@ impl SoftDtw {
     ///
     /// # Errors
     /// As [`SoftDtw::value`].
-    ///
     pub fn normalised<T: Scalar, const D: usize>(
         &self,
         x: &[[T; D]],
@@ -179,7 +178,6 @@ impl SoftDtw {
     }
 }
 
-/// The normalised value from the three plain ones.
 pub(crate) fn normalise(value: f64, self_x: f64, self_y: f64) -> f64 {
     // Halves are taken first: the sum of two self terms could overflow where the result does not.
     value - (0.5 * self_x + 0.5 * self_y)

@@ -52,7 +52,6 @@ pub(crate) trait StepRecord {
     fn restart(&mut self);
 }
 
-/// Keeps nothing.
 pub(crate) struct Forget;
 
 impl StepRecord for Forget {

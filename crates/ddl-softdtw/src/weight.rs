@@ -14,9 +14,8 @@ const FARTHEST: f64 = -700.0;
 /// The three ways into each cell, from (i−1, j−1), (i−1, j) and (i, j−1), by one scale a cell, and their sums.
 pub(crate) type Addends = ([Lanes; 3], Lanes);
 
-/// R of the cells of one antidiagonal of a strip.
-///
-/// Both kinds round in the same places, so they give the same bits wherever the plain one suffices.
+/// R of the cells of one antidiagonal of a strip. Both kinds round in the same places, so they give the same bits
+/// wherever the plain one suffices.
 pub(crate) trait Weight: Copy {
     /// R of one cell.
     type One: Copy;
@@ -42,7 +41,6 @@ pub(crate) trait Weight: Copy {
     /// The same numbers with every significand in [1, 2).
     fn normalised(self) -> Self;
 
-    /// [`Weight::normalised`] for one cell.
     fn normalised_one(one: Self::One) -> Self::One;
 
     fn parts(one: Self::One) -> (f64, f64);

@@ -184,7 +184,6 @@ fn bad_input_is_refused_by_name() {
     }
 }
 
-/// Real walkers of every scene against the windows of all the others.
 #[test]
 fn recorded_walkers_have_the_neighbours_of_a_plain_index() {
     let Some(dataset) = recorded::dataset() else {

@@ -20,7 +20,6 @@ pub(super) fn parse(
         .collect()
 }
 
-/// The fields of a line: as many as `names` names.
 fn fields<'a, const COUNT: usize>(
     text: &'a str,
     line: usize,

@@ -67,7 +67,6 @@ fn is_no_name(text: &str) -> bool {
     })
 }
 
-/// A coordinate (m).
 pub(super) fn coordinate(text: &str, name: &'static str) -> Result<f64, FormatProblem> {
     let text = text.trim();
     match text.parse::<f64>() {
@@ -93,7 +92,6 @@ pub(super) fn number(text: &str, name: &'static str) -> Result<(), FormatProblem
         })
 }
 
-/// A piece of a file, shortened for a message.
 pub(super) fn quoted(text: &str) -> String {
     match text.char_indices().nth(QUOTED) {
         Some((end, _)) => format!("{}...", &text[..end]),

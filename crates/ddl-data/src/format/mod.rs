@@ -1,8 +1,6 @@
-//! File formats of recordings: text in, a checked [`Recording`] out.
-//!
-//! Every reader refuses what it does not understand and says where: file, line, field. The order of the rows does not
-//! matter. In TrajNet++ alone, lines and fields of other kinds may stand between, and overlapping scenes may repeat a
-//! track.
+//! File formats of recordings: text in, a checked [`Recording`] out. What a reader does not understand is refused, with
+//! file, line and field. The order of the rows does not matter. In TrajNet++ alone, lines and fields of other kinds may
+//! stand between, and overlapping scenes may repeat a track.
 
 mod blanks;
 mod field;

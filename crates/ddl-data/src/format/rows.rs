@@ -10,10 +10,8 @@ use crate::recording::Recording;
 use crate::track::is_frame_step;
 use crate::{Observation, PedestrianId, PedestrianNames, Position};
 
-/// What the four fields of a row hold, for messages.
 pub(super) const FIELDS: &str = "frame, pedestrian, x, y";
 
-/// One observation and where in the file it is.
 #[derive(Debug)]
 pub(super) struct TrackRow {
     pub(super) frame: i64,
@@ -22,7 +20,6 @@ pub(super) struct TrackRow {
     pub(super) place: FilePlace,
 }
 
-/// An observation and where in the file it is.
 type Placed = (Observation, FilePlace);
 
 impl TrackRow {

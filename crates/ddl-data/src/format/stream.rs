@@ -14,7 +14,6 @@ use crate::error::{DataError, FormatError, FormatProblem};
 use crate::names::Numbering;
 use crate::{PedestrianId, PedestrianNames, Position};
 
-/// Bytes of the longest line.
 const LONGEST_LINE: usize = 1 << 16;
 /// People of the fullest frame: beyond any crowd a tracker sees. A frame number that stands still must not fill the memory.
 const LARGEST_CROWD: usize = 100_000;

@@ -8,7 +8,6 @@ use super::rows::{FIELDS, TrackRow};
 use crate::error::{FormatError, FormatProblem};
 
 const COLUMNS: [&str; 4] = ["frame", "pedestrian", "x", "y"];
-/// The fields of a row that has too many of them.
 const FEWER: &str = "frame, pedestrian, x, y; a comma stands between two fields, not at the end of a row and not for a decimal point";
 /// The fields of a row that is one field.
 const ONE: &str = "frame, pedestrian, x, y, separated by commas";
@@ -200,7 +199,6 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Lines without quotes are split as the reader of tables splits them.
         #[test]
         fn plain_lines_are_read_as_any(text in "[a0., \t\u{a0}\r\n\"]{0,12}[a0,]\r?\n?") {
             let fields = record(&text, 1, "t").unwrap();

@@ -117,7 +117,6 @@ struct TrackFields {
     prediction_number: Option<IgnoredAny>,
 }
 
-/// A field that is there, be it null.
 fn as_written<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value>, D::Error> {
     Value::deserialize(deserializer).map(Some)
 }

@@ -120,7 +120,6 @@ impl Engine<'_> {
         ids
     }
 
-    /// One integration step: forces, motion, bodies and walls, then the next leg or the way out.
     fn step(&mut self, rng: &mut ChaCha8Rng) {
         let before: Vec<WalkingMotion> = self.walkers.iter().map(|w| w.motion).collect();
         for index in 0..self.walkers.len() {

@@ -50,11 +50,9 @@ pub(super) fn driving(walker: WalkingMotion, desired: Position) -> Position {
     scale(sub(desired, walker.velocity), 1.0 / RELAXATION)
 }
 
-/// Away from a stranger: brake, and turn aside early when the two will meet.
-///
-/// With `e` the unit vector to the other and `D = lambda (v_i - v_j) + e`, the force decays with `exp(-d / B)`, `B =
-/// gamma |D|`, along `D` (braking) and across it (turning); `d` is counted between the bodies: Moussaïd et al., Proc.
-/// R. Soc. B 276 (2009), equations 4 and 5.
+/// Away from a stranger: brake, and turn aside early when the two will meet. With `e` the unit vector to the other and
+/// `D = lambda (v_i - v_j) + e`, the force decays with `exp(-d / B)`, `B = gamma |D|`, along `D` (braking) and across
+/// it (turning); `d` is counted between the bodies: Moussaïd et al., Proc. R. Soc. B 276 (2009), equations 4 and 5.
 pub(super) fn stranger(walker: WalkingMotion, other: WalkingMotion, other_radius: f64) -> Position {
     let apart = sub(other.position, walker.position);
     let distance = norm(apart);

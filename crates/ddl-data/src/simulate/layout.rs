@@ -16,7 +16,6 @@ impl GateLine {
         Self { a, b }
     }
 
-    /// The point at a share of the way from `a` to `b`.
     pub(super) fn at(&self, share: f64) -> Position {
         lerp(self.a, self.b, share)
     }
@@ -48,7 +47,6 @@ pub(super) enum Leg {
 #[derive(Debug, Clone)]
 pub(super) struct Route {
     pub(super) origin: GateLine,
-    /// The last leg is a gate: the way out.
     pub(super) legs: Vec<Leg>,
     pub(super) weight: f64,
 }

@@ -62,7 +62,6 @@ impl Pillar {
         Self { centre, radius }
     }
 
-    /// `p`, moved out of the pillar far enough for a body of this radius.
     pub(super) fn push_out(&self, p: Position, body: f64) -> Position {
         push_away(p, self.centre, self.radius + body)
     }

@@ -33,7 +33,6 @@ pub(super) struct Party {
 
 #[derive(Debug, Clone)]
 pub(super) struct PartyMember {
-    /// Where it enters (m).
     pub(super) entry: Position,
     /// Where it passes each leg's gate (m), or stands.
     pub(super) targets: Vec<Position>,
@@ -123,7 +122,6 @@ fn side_by_side(gate: GateLine, size: usize, across: f64) -> Vec<Position> {
         .collect()
 }
 
-/// Places around a point, facing each other.
 fn in_a_ring(centre: Position, size: usize, rng: &mut ChaCha8Rng) -> Vec<Position> {
     let radius = if size > 1 { 0.5 } else { 0.3 };
     let turn = rng.random_range(0.0..std::f64::consts::TAU);

@@ -32,7 +32,6 @@ pub(super) struct SimulatedPedestrian {
 }
 
 impl SimulatedPedestrian {
-    /// Whether the target of the present leg is nearer than the distance (m).
     pub(super) fn is_within(&self, distance: f64) -> bool {
         norm(sub(self.targets[self.leg], self.motion.position)) < distance
     }

@@ -87,7 +87,6 @@ fn bits(track: &[Position]) -> Vec<[u64; 2]> {
 }
 
 proptest! {
-    /// Frame by frame the same as by search in the whole recording, bit for bit.
     #[test]
     fn it_is_what_a_search_finds(
         tracks in prop::collection::vec(frames(), 1..5),
@@ -131,7 +130,6 @@ fn only_window(frames: &[i64], completion: Completion) -> Option<Window> {
     windows.find(|window| window.frames()[OBSERVED - 1] == last)
 }
 
-/// By hand: two frames of a hole are filled, three are not and what lies behind them does not count.
 #[test]
 fn holes_of_two_frames_are_filled_and_longer_ones_are_ends() {
     let made_up = |frames: &[i64]| {

@@ -6,7 +6,6 @@ use ddl_data::{Convention, Dataset, Recording, Window, WindowRule};
 
 use crate::recordings;
 
-/// What tells a window from all others of a data set.
 fn key(window: &Window) -> (String, i64) {
     (window.recording().to_owned(), window.start_frame())
 }

@@ -15,7 +15,6 @@ fn frames(text: &[u8]) -> Result<Vec<Frame>, DataError> {
     std::iter::from_fn(|| reader.next_frame().transpose()).collect()
 }
 
-/// Frames with everybody in them.
 type Seen = Vec<(i64, Vec<(PedestrianId, Position)>)>;
 
 fn of_whole(recording: &Recording) -> Seen {
@@ -107,7 +106,6 @@ fn what_is_wrong_is_named_with_its_line() {
     assert!(long.contains("longer than 65536 bytes"), "{long}");
 }
 
-/// What is wrong costs its line, not the stream; the rest of a line that is too long is no line of its own.
 #[test]
 fn after_an_error_the_next_line_is_read() {
     let text = format!(
@@ -142,7 +140,6 @@ fn a_frame_number_that_stands_still_does_not_fill_the_memory() {
     assert_eq!(reader.next_frame().unwrap().unwrap().number, 1);
 }
 
-/// A file of some observations in each format.
 fn written(rows: &[Observation], format: Format) -> String {
     let column = |value: &dyn Fn(&Observation) -> String| {
         rows.iter().map(value).collect::<Vec<_>>().join(",")

@@ -64,7 +64,6 @@ fn the_horizon_is_nowhere() {
 }
 
 proptest! {
-    /// Four corners determine the map: the scale of the matrix does not matter.
     #[test]
     fn multiples_are_the_same_map(
         rows in prop::array::uniform3(prop::array::uniform3(-2.0..2.0_f64)),

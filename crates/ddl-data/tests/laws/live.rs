@@ -2,7 +2,6 @@
 
 use ddl_data::{Completion, LiveError, LiveTracks, PedestrianId};
 
-/// A refused frame is as one never pushed.
 #[test]
 fn errors_change_nothing() {
     let (pedestrian, here, position) = (PedestrianId(3), [1.0, 2.0], [f64::INFINITY, 0.0]);

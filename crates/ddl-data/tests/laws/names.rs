@@ -2,10 +2,8 @@
 
 use ddl_data::{Completion, Format, FrameReader, PedestrianId, PedestrianName, parse_recording};
 
-/// A line of a file, given the frame and the pedestrian.
 type Row = fn(i64, &str) -> String;
 
-/// The same tracks with words for pedestrians, in every format that may have them.
 #[test]
 fn pedestrians_may_be_words() {
     let names = ["7f3e-aa", "12", "007", "1e3"];
@@ -56,7 +54,6 @@ fn pedestrians_may_be_words() {
     }
 }
 
-/// A word among the pedestrians of a stream changes nothing for those who are there.
 #[test]
 fn a_number_of_a_stream_stays_one_when_words_come() {
     let text = "frame,pedestrian,x,y\n0,17.0,0,0\n1,17.0,0,0\n2,17.0,0,0\n2,ab,5,5\n3,17.0,0,0\n3,ab,5,5\n";

@@ -71,7 +71,6 @@ fn what_is_no_rate_is_refused() {
 }
 
 proptest! {
-    /// Whatever the rate, whoever walks straight on still does, at every step from the last frame back, and never before it was seen.
     #[test]
     fn an_even_walk_stays_one(
         rate in 1.0..60.0_f64,

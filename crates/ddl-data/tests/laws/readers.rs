@@ -211,7 +211,6 @@ fn a_file_that_cannot_be_read_is_named() {
     );
 }
 
-/// What a header says otherwise than asked is read where it can be, and explained where not.
 #[test]
 fn headers_as_others_write_them() {
     let read = |header: &str| {
@@ -247,7 +246,6 @@ frame\tpedestrian\tx\ty => separate columns by commas
     }
 }
 
-/// What tables of other programs hold in place of the numbers asked for is known.
 #[test]
 fn rows_as_others_write_them() {
     let cases = r#"

@@ -31,7 +31,6 @@ fn share(count: usize, of: usize) -> f64 {
     count as f64 / of as f64
 }
 
-/// Positions at one frame, frame by frame.
 fn scenes(crowd: &Crowd) -> impl Iterator<Item = Vec<(PedestrianId, Position)>> + '_ {
     let recording = &crowd.recording;
     let at = |&frame| {

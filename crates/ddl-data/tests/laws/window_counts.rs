@@ -5,13 +5,11 @@ use serde_json::{Map, Value};
 
 use crate::recordings;
 
-/// A part of the reference.
 fn reference(part: &str) -> Map<String, Value> {
     let all: Value = serde_json::from_str(include_str!("reference/window_counts.json")).unwrap();
     all[part].as_object().unwrap().clone()
 }
 
-/// Number of windows, and of pedestrians summed over them.
 fn count(windows: &[Window]) -> [i64; 2] {
     [windows.len(), windows.iter().map(Window::len).sum()].map(|count| count as i64)
 }

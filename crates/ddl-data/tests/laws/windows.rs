@@ -13,7 +13,6 @@ const RULES: [WindowRule; 4] = [
     WindowRule::SocialGan { min_pedestrians: 3 },
 ];
 
-/// Recordings in which people come, go, and now and then miss a frame.
 fn recording() -> impl Strategy<Value = Vec<Observation>> {
     let walker = (
         0_i64..30,

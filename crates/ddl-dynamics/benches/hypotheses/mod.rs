@@ -7,12 +7,10 @@ use nalgebra::{SMatrix, SVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Steps of a forecast.
 pub(crate) const STEPS: usize = 12;
 /// Seconds of a step.
 pub(crate) const TIME_STEP: f64 = 0.4;
 
-/// A walk to be forecast.
 pub(crate) struct MadeUpWalk<T, const D: usize> {
     pub(crate) start: SVector<T, D>,
     pub(crate) flow: NaturalGradientFlow<T, D, MetricSchedule<T, D>>,

@@ -59,7 +59,6 @@ impl<F: Flow<f64, 2>> Followed<F> {
         ways.map(|start| walked(&self.flow, start, 0.05)).collect()
     }
 
-    /// The potential of the flow at each position (metres).
     pub(crate) fn potentials(&self) -> impl Iterator<Item = f64> {
         let image = |p: &Vector2<f64>| self.flow.chart().map_or(*p, |psi| psi.apply(p));
         let images = self.path.iter().map(image);
@@ -84,7 +83,6 @@ impl<F: Flow<f64, 2>> Followed<F> {
     }
 }
 
-/// A pedestrian who follows the way shown, at 1 m/s on it.
 pub(crate) fn behind_a_wall() -> Result<Followed<impl Flow<f64, 2>>, DynamicsError> {
     let psi = Chain::straightening(&SHOWN.map(Vector2::from), 150)?.chain;
     let flow = DiffeomorphicFlow::in_chart(SHOWN[3].into(), psi, CholeskyMetric::identity())?;
@@ -135,7 +133,6 @@ pub(crate) fn draw() -> Result<String, DynamicsError> {
     Ok(sheet.finish())
 }
 
-/// The ways of others as lines, the one followed with its steps, and the goal.
 fn draw_ways(sheet: &mut Sheet, plane: &Plot, followed: &Way, others: &[Way]) {
     for other in others {
         let way = plane.path(other);

@@ -9,7 +9,6 @@ use nalgebra::{Rotation2, Vector2};
 
 use crate::drawing::{GOAL, INK, Pixel, Plot, STABLE, Sheet};
 
-/// Seconds of a step, those of the published program.
 const TIME_STEP: f64 = 0.4;
 const STEPS: usize = 24;
 /// Vermilion of Okabe and Ito.
@@ -22,7 +21,6 @@ const NEAR: Plot = Plot {
     y: [-0.58, 0.42],
     grid: [0.25, 0.25],
 };
-/// Decimal logarithms of distances over steps.
 const DISTANCES: Plot = Plot {
     frame: [[540.0, 84.0], [880.0, 363.0]],
     x: [-0.5, STEPS as f64 + 0.5],
@@ -30,7 +28,6 @@ const DISTANCES: Plot = Plot {
     grid: [5.0, 3.0],
 };
 
-/// The picture as the text of an SVG file; the same bytes each time.
 pub(crate) fn draw() -> Result<String, DynamicsError> {
     // To a goal 4 m away at walking pace, 0.8 to 1.7 m/s, leaning to one side of the way.
     let goal = Vector2::new(4.0, 0.0);

@@ -64,14 +64,12 @@ impl Sheet {
     }
 }
 
-/// A frame with its axes.
 pub(crate) struct Plot {
     /// Upper left and lower right corner (pixels).
     pub(crate) frame: [Pixel; 2],
     /// What is at the left and the right end, and at the lower and the upper one.
     pub(crate) x: [f64; 2],
     pub(crate) y: [f64; 2],
-    /// Between the lines of the grid, across and up.
     pub(crate) grid: [f64; 2],
 }
 
@@ -87,7 +85,6 @@ impl Plot {
         path.iter().map(|p| self.pixel([p.x, p.y])).collect()
     }
 
-    /// Values by the number of the step.
     pub(crate) fn by_step(&self, values: impl Iterator<Item = f64>) -> Vec<Pixel> {
         let pixels = values
             .zip(0..)
@@ -95,7 +92,6 @@ impl Plot {
         pixels.collect()
     }
 
-    /// The grid with its numbers, and what `content` draws within the frame.
     pub(crate) fn draw(&self, sheet: &mut Sheet, heading: &str, content: impl FnOnce(&mut Sheet)) {
         let [[left, top], [right, bottom]] = self.frame;
         let grey = "stroke='#E4E4E4'";

@@ -10,7 +10,6 @@ use crate::{error::DynamicsError, polar::polar, real::Real};
 use fit::{FASTEST_RATE, Fit};
 use unbending::Unbending;
 
-/// Points by which a path is known, evenly spaced along it.
 const SAMPLES: usize = 64;
 
 /// Points, spaced as the samples are, by which a path is continued straight at each of its ends: an end that is fitted

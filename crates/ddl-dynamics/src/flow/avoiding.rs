@@ -99,8 +99,6 @@ where
         self.flow.attractor()
     }
 
-    /// # Errors
-    /// Those of the metric source.
     fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
         let free = self.flow.metric(state)?;
         let gradient = self.attractor().gradient(&state.position);

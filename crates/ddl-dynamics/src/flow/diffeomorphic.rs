@@ -113,9 +113,6 @@ where
     }
 
     /// The metric in the coordinates of the chart: `J P J^T` of a metric in space.
-    ///
-    /// # Errors
-    /// Those of the metric source and of [`CholeskyMetric::congruent`].
     fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
         let metric = self.source.metric(state)?;
         match self.given {
@@ -124,11 +121,7 @@ where
         }
     }
 
-    /// The velocity in space, `-P J^T u` or `-J^-1 P u`.
-    ///
-    /// # Errors
-    /// Those of the metric source; [`DynamicsError::SingularMap`] where the Jacobian has no inverse in
-    /// `T`.
+    /// The velocity in space, `-P J^T u` or `-J^-1 P u`; an error also where the Jacobian has no inverse in `T`.
     fn velocity(&self, state: &State<'_, T, D>) -> Result<SVector<T, D>, DynamicsError> {
         let metric = self.source.metric(state)?;
         let (image, jacobian) = self.psi.apply_with_jacobian(&state.position);

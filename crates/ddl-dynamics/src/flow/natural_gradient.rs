@@ -46,8 +46,6 @@ impl<T: Real, const D: usize, M: MetricSource<T, D>> Flow<T, D> for NaturalGradi
         &self.attractor
     }
 
-    /// # Errors
-    /// Those of the metric source.
     fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
         self.source.metric(state)
     }

@@ -16,7 +16,6 @@ const GROWTH: f64 = 5.0;
 const SHRINKAGE: f64 = 0.2;
 /// Inner steps tried in one time step; smooth flows need tens.
 const INNER_STEPS: usize = 10_000;
-/// Part of the ideal length that is tried.
 const SAFETY: f64 = 0.9;
 
 /// The Dormand-Prince pair of orders 5 and 4 with adaptive steps inside each time step: the path of the continuous

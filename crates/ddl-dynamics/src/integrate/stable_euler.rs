@@ -147,9 +147,6 @@ fn descend<T: Real, const D: usize>(
 
 impl<T: Real, const D: usize> Integrator<T, D> for StableEuler {
     /// For a flow with a [`chart`](Flow::chart) the step is taken in its coordinates.
-    ///
-    /// # Errors
-    /// Those of the flow and of [`StableEuler::advance`].
     fn step<F: Flow<T, D> + ?Sized>(
         &self,
         flow: &F,

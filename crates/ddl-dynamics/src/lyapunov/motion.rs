@@ -123,8 +123,6 @@ impl<T: Real> MotionEvidence<T> {
         }
     }
 
-    /// # Errors
-    /// The first figure that exceeds its bound.
     pub(super) fn check(&self) -> Result<(), Violation> {
         let named = [
             ("speed (m/s)", Some(self.speed)),
@@ -147,7 +145,6 @@ impl<T: Real> MotionEvidence<T> {
     }
 }
 
-/// How far the goal lies beyond what the top speed covers: 0 for goals within reach.
 fn out_of_reach<T: Real>(
     path: &[SVector<T, 2>],
     attractor: &Attractor<T, 2>,

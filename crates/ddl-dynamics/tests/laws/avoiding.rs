@@ -103,7 +103,6 @@ fn park() -> impl Strategy<Value = (Vec<Ball<f64, 2>>, Vector2<f64>, CholeskyMet
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
-    /// Among pillars that do not touch, everybody arrives, never entering one.
     #[test]
     fn everybody_arrives((pillars, start, metric, margin) in park()) {
         let origin = Attractor::new(Vector2::zeros()).unwrap();
@@ -151,7 +150,6 @@ fn an_offset_that_overflows_is_no_obstacle() {
     assert!(rollout(&flow, &StableEuler, start, 0.4, 3).is_ok());
 }
 
-/// Where the velocity along the normal changes its sign, the slowed and the free velocity are one.
 #[test]
 fn the_velocity_is_continuous() {
     let attractor = Attractor::new(Vector2::new(5.0, 0.0)).unwrap();

@@ -118,7 +118,6 @@ fn figures_by_hand() {
     assert_eq!(certificate.holds(), Ok(()));
 }
 
-/// Also when it was read from a file.
 #[test]
 fn a_certificate_from_elsewhere_is_judged_by_its_figures() {
     let text = serde_json::to_string(&by_hand()).unwrap();

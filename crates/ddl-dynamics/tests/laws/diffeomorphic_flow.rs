@@ -25,8 +25,7 @@ fn flows<T: Real, const D: usize>((maps, scene): &(MapDraw, SceneDraw)) -> [Bent
     ]
 }
 
-/// For every map, metric, start and time step: `V`, as computed, falls in every step, or the walker is
-/// on the goal.
+/// For every map, metric, start and time step: `V`, as computed, falls in every step, or the walker is on the goal.
 fn the_certificate_holds_in_the_chart<T: Real, const D: usize>(
     draw: &(MapDraw, SceneDraw),
 ) -> TestCaseResult {
@@ -70,7 +69,6 @@ fn velocity_and_metric_agree<T: Real, const D: usize>(
 }
 for_every_space!(velocity_and_metric_agree, any_bent_scene);
 
-/// Every finite number: a finite position that is not farther in the chart, or an error.
 fn no_finite_input_breaks_a_bent_flow<T: Real, const D: usize>(
     draw: &(MapDraw, SceneDraw),
 ) -> TestCaseResult {
@@ -97,8 +95,6 @@ fn no_finite_input_breaks_a_bent_flow<T: Real, const D: usize>(
 }
 for_every_space!(no_finite_input_breaks_a_bent_flow, wild_bent_scene);
 
-/// Behind a wall from the goal: in steps of 0.4 s and of the adaptive integrator the path is straight in the chart; and a
-/// metric of its own bends it and does not lose the goal.
 #[test]
 fn a_detour_is_straight_in_the_chart_and_survives_a_metric() {
     let shown = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]].map(Vector2::from);

@@ -19,7 +19,6 @@ fn general<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> DMatrix<f64> {
     DMatrix::from_fn(D, D, |row, column| matrix[(row, column)].as_f64())
 }
 
-/// The same map in `f64`, with the very parameters of `T`.
 fn twin<T: Real, const D: usize>(chain: &Chain<T, D>) -> Chain<f64, D> {
     let layer = |map: &LocalTranslation<T, D>| {
         let [centre, translation] = [map.centre(), map.translation()].map(double);
@@ -28,14 +27,12 @@ fn twin<T: Real, const D: usize>(chain: &Chain<T, D>) -> Chain<f64, D> {
     Chain::new(chain.layers().iter().map(layer).collect())
 }
 
-/// Every map of a draw as a chain: each alone, and all of them together.
 fn chains<T: Real, const D: usize>(draw: &MapDraw) -> Vec<Chain<T, D>> {
     let all = draw.translations();
     let alone = all.iter().map(|&layer| Chain::new(vec![layer]));
     alone.chain([Chain::new(all.clone())]).collect()
 }
 
-/// Largest singular value of `J` and of its inverse at `position`.
 fn stretch<T: Real, const D: usize>(map: &Chain<T, D>, position: &SVector<T, D>) -> (f64, f64) {
     let values = general(&map.jacobian(position)).singular_values();
     (values.max(), 1.0 / values.min())
@@ -87,7 +84,6 @@ fn a_translation_is_undone_to_rounding<T: Real, const D: usize>(draw: &MapDraw) 
 }
 for_every_space!(a_translation_is_undone_to_rounding, wild_maps);
 
-/// The analytic Jacobian agrees with central differences (of the same map in `f64`).
 fn the_jacobian_is_the_derivative<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
     for chain in chains::<T, D>(draw) {
         let twin = twin(&chain);
@@ -140,7 +136,6 @@ fn space_is_never_folded<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseRes
 }
 for_every_space!(space_is_never_folded, any_maps);
 
-/// Thirty times its width away, a translation is the identity to the last bit.
 fn far_away_nothing_moves<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
     for map in draw.translations::<T, D>() {
         let mut far = *map.centre();
@@ -168,7 +163,6 @@ fn no_finite_input_gives_nan<T: Real, const D: usize>(draw: &MapDraw) -> TestCas
 for_every_space!(no_finite_input_gives_nan, wild_maps);
 
 proptest! {
-    /// A chain comes back from JSON bit by bit, subnormal and huge parameters included.
     #[test]
     fn a_chain_survives_json(draw in wild_maps()) {
         let (wide, narrow) = (draw.chain::<f64, 3>(), draw.chain::<f32, 2>());

@@ -65,7 +65,6 @@ fn follows_the_matrix_exponential<T: Real, const D: usize>(scene: &SceneDraw) ->
 }
 for_every_space!(follows_the_matrix_exponential, well_conditioned_scene);
 
-/// Metrics of any condition, any goal and time step: a strict decrease, or an error that says why not.
 fn falls_or_says_why_not<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let (attractor, start) = (scene.attractor::<T, D>(), scene.start::<T, D>());
     let size = start.amax().max(attractor.goal().amax()).max(T::one());

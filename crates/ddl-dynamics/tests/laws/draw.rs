@@ -11,13 +11,11 @@ pub(crate) use crate::map_draw::{
     any_bent_scene, any_maps, any_polygon, wild_bent_scene, wild_maps,
 };
 
-/// Number of random metrics in a scene; a rollout uses one after the other.
 pub(crate) const METRICS: usize = 12;
 
 /// Entries of a factor, row by row (the upper triangle is not used), and sigma.
 pub(crate) type MetricDraw = ([[f64; 3]; 3], f64);
 
-/// A walker, its goal, a metric for each step and a time step.
 #[derive(Debug, Clone)]
 pub(crate) struct SceneDraw {
     start: [f64; 3],
@@ -68,7 +66,6 @@ pub(crate) fn any_scene() -> impl Strategy<Value = SceneDraw> {
     scene_with(metric_draw(1e3))
 }
 
-/// Metrics whose eigenvalues lie within a few orders of magnitude of each other.
 pub(crate) fn well_conditioned_scene() -> impl Strategy<Value = SceneDraw> {
     let entry = || -0.5..=0.5;
     let diagonal = || prop_oneof![0.5..=2.0, -2.0..=-0.5];
@@ -82,7 +79,6 @@ pub(crate) fn well_conditioned_scene() -> impl Strategy<Value = SceneDraw> {
     scene_with((factor, Just(PUBLISHED_SIGMA)))
 }
 
-/// Every finite number there is: subnormal and huge ones included.
 pub(crate) fn wild_scene() -> impl Strategy<Value = SceneDraw> {
     use proptest::num::f64::{NORMAL, POSITIVE, SUBNORMAL};
     let places = [wild(), wild(), wild()].map(uniform3);

@@ -1,5 +1,4 @@
-//! Random diffeomorphisms and paths, drawn as `f64` in three dimensions and cut down to the space
-//! under test.
+//! Random diffeomorphisms and paths, drawn as `f64` in three dimensions and cut down to the space under test.
 
 use ddl_dynamics::{Chain, LocalTranslation, Real};
 use nalgebra::SVector;
@@ -10,10 +9,8 @@ use crate::draw::{SceneDraw, any_scene, vector, wild, wild_scene};
 /// `sqrt(2/e)`, from a table and not from the formula.
 pub(crate) const STEEPEST: f64 = 0.857_763_884_960_706_8;
 
-/// A local translation: centre, rate, contraction and direction.
 type TranslationDraw = ([f64; 3], f64, f64, [f64; 3]);
 
-/// Some maps, and positions in and out of their reach.
 #[derive(Debug, Clone)]
 pub(crate) struct MapDraw {
     translations: Vec<TranslationDraw>,
@@ -100,7 +97,6 @@ impl PolygonDraw {
     }
 }
 
-/// Maps, and a scene for walkers in the space that they bend.
 pub(crate) fn any_bent_scene() -> impl Strategy<Value = (MapDraw, SceneDraw)> {
     (any_maps(), any_scene())
 }

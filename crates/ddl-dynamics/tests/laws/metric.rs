@@ -9,7 +9,6 @@ use crate::{
     for_every_space,
 };
 
-/// `metric` is applied as the formed matrix would be, up to the rounding of `T`.
 fn applied_as_formed<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let Some(u) = scene.unit::<T, D>() else {
         return Ok(());

@@ -48,7 +48,6 @@ fn within<T: Real>(
     Some((path, attractor, bounds, certificate))
 }
 
-/// What the theorem says, measured on the positions and not by the certificate; and the certificate says so too.
 fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCaseResult {
     let Some((path, attractor, bounds, certificate)) = within::<T>(scene, draw) else {
         return Ok(());

@@ -13,7 +13,6 @@ use crate::{
     for_every_space,
 };
 
-/// Nothing moves at the goal, nothing is NaN there, and a certificate holds.
 fn at_the_goal_nothing_moves<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let attractor = scene.attractor::<T, D>();
     let goal = *attractor.goal();
@@ -32,8 +31,6 @@ fn at_the_goal_nothing_moves<T: Real, const D: usize>(scene: &SceneDraw) -> Test
 }
 for_every_space!(at_the_goal_nothing_moves, any_scene);
 
-/// For every finite start, goal, time step and *velocity*, descending or not, subnormal or huge: a decrease or an
-/// error, never a panic or a NaN.
 fn no_finite_input_breaks_it<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let attractor = scene.attractor::<T, D>();
     let start = scene.start::<T, D>();

@@ -28,7 +28,6 @@ fn length<const D: usize>(path: &[SVector<f64, D>]) -> f64 {
     path.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
 }
 
-/// Distance from a point to the nearest one of a polygon.
 fn distance<const D: usize>(point: &SVector<f64, D>, path: &[SVector<f64, D>]) -> f64 {
     let to_side = |pair: &[SVector<f64, D>]| {
         let side = pair[1] - pair[0];
@@ -44,11 +43,9 @@ struct Descent<const D: usize> {
     /// Angle between the first step and the path, and the largest one between a step and the direction to the goal (degrees).
     departure: f64,
     widest: f64,
-    /// What is left to the goal at the end (m).
     missed: f64,
 }
 
-/// `V` falls at each step.
 fn descended<const D: usize>(
     psi: &Chain<f64, D>,
     start: SVector<f64, D>,
@@ -194,7 +191,6 @@ fn what_is_no_path_is_refused() {
     assert!((along - 2.0).abs() < 0.1, "{along}");
 }
 
-/// Whatever the polygon, the answer is a chain with finite figures, or a reason.
 fn no_polygon_breaks_it<T: Real, const D: usize>(draw: &PolygonDraw) -> TestCaseResult {
     match Chain::straightening(&draw.points::<T, D>(), 3) {
         Ok(straightening) => {

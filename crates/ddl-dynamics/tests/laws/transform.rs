@@ -63,7 +63,6 @@ fn seen_through_a_map<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseRes
 }
 for_every_space!(seen_through_a_map, any_scene);
 
-/// Any finite direction, share and map: a metric that is positive definite as computed, or an error.
 fn no_finite_input_breaks_a_transform<T: Real, const D: usize>(
     scene: &SceneDraw,
 ) -> TestCaseResult {

@@ -20,7 +20,6 @@ struct ClusteredPoints {
     inertia_of_seeds: Vec<f64>,
 }
 
-/// One run.
 fn single(clusters: usize, tolerance: f64, max_iterations: usize) -> KMeans {
     KMeans {
         max_iterations,

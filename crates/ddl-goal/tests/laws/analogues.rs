@@ -19,7 +19,6 @@ struct Definition {
 #[derive(Deserialize)]
 struct DefinedPedestrian {
     track: Coefficients,
-    /// The six nearest.
     analogues: Vec<Analogue>,
     /// Places of the second analogue's track, carried over, by step.
     carried: Vec<(usize, [f64; 2])>,
@@ -43,13 +42,11 @@ fn reference() -> Definition {
     serde_json::from_str(include_str!("reference/analogues.json")).unwrap()
 }
 
-/// Goals from the six nearest analogues.
 fn of_six(library: &[Coefficients], clusters: usize) -> GoalEstimator {
     let params = GoalEstimatorParams::default().experts(6).clusters(clusters);
     estimator(params, library.iter().map(|&walk| track(walk)).collect())
 }
 
-/// As many goals as analogues: each goal is one of them.
 #[test]
 fn distances_weights_and_ends_are_those_of_the_definition() {
     let reference = reference();
@@ -74,7 +71,6 @@ fn distances_weights_and_ends_are_those_of_the_definition() {
     }
 }
 
-/// Two goals: the first pedestrian's analogues divide where their ends lie apart, and a goal is the weighted mean of its own.
 #[test]
 fn a_goal_is_the_weighted_mean_of_its_analogues() {
     let reference = reference();
@@ -96,7 +92,6 @@ fn a_goal_is_the_weighted_mean_of_its_analogues() {
     }
 }
 
-/// Analogues that moved exactly alike count the same, however they went on.
 #[test]
 fn equal_analogues_weigh_the_same() {
     let turned = |side: f64| -> Positions {
@@ -114,7 +109,6 @@ fn equal_analogues_weigh_the_same() {
     }
 }
 
-/// A hundred experts are kept to be shown, however many were asked for.
 #[test]
 fn the_nearest_hundred_experts_are_kept() {
     let tracks = (0..300_u32).map(|i| walk(0.005 * f64::from(i), 0.1, 0.01));

@@ -7,7 +7,6 @@ use proptest::prelude::*;
 
 use crate::tracks::{self, Positions, distance, walk};
 
-/// Walkers of several speeds, headings and turns, and people who stand.
 fn library() -> Vec<Positions> {
     let track = |i: u32| {
         let speed = f64::from(i % 20) * 0.08;
@@ -22,7 +21,6 @@ fn estimator(mut params: GoalEstimatorParams) -> GoalEstimator {
     tracks::estimator(params.experts(100), library())
 }
 
-/// The default, and the published estimator without the future.
 fn both_frames() -> [GoalEstimatorParams; 2] {
     let world = GoalEstimatorParams::published().query(QuerySpan::Observed);
     [GoalEstimatorParams::default(), world]
@@ -225,7 +223,6 @@ fn bad_input_is_refused_by_name() {
     assert_eq!(estimator.params().query, QuerySpan::Observed);
 }
 
-/// In the frame of the world an expert's track is moved to the first position and nothing else.
 #[test]
 fn in_the_world_a_track_is_carried_to_where_the_pedestrian_was_first_seen() {
     let (other, walker) = (walk(1.2, 0.3, 0.05), walk(1.0, 2.0, -0.04));

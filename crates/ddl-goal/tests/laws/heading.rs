@@ -5,7 +5,6 @@ use proptest::prelude::*;
 
 use crate::tracks::{Positions, distance};
 
-/// A turned, then moved scene.
 #[derive(Clone, Copy, Debug)]
 struct SceneMotion {
     angle: f64,

@@ -35,7 +35,6 @@ fn windows(dataset: &Dataset, recording: &str, rule: WindowRule) -> StarWindows 
     tracks_of(&dataset.recording(recording).unwrap().windows(rule))
 }
 
-/// The published estimator with all complete windows of the other recordings as its library.
 fn published(dataset: &Dataset, test_recording: &str, experts: usize) -> GoalEstimator {
     let names = dataset.recordings().iter().map(Recording::name);
     let training = names.filter(|&name| name != test_recording);

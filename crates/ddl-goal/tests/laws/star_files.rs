@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use ddl_data::{Convention, DataError, Dataset, Window, locate};
 use ddl_goal::GoalSet;
 
-/// The recordings of the `star` convention.
 pub(crate) fn dataset() -> Result<Dataset, DataError> {
     Dataset::load(Convention::Star, &locate(Convention::Star, None)?)
 }
@@ -13,7 +12,6 @@ pub(crate) fn dataset() -> Result<Dataset, DataError> {
 /// The 20 positions (m) of a pedestrian from a start frame on.
 pub(crate) type StarWindows = BTreeMap<(i64, i64), Vec<[f64; 2]>>;
 
-/// Everybody's track in some complete windows, by start frame and pedestrian.
 pub(crate) fn tracks_of<'a>(windows: impl IntoIterator<Item = &'a Window>) -> StarWindows {
     let each = |window: &'a Window| {
         let pedestrians = window.pedestrians().iter().enumerate();

@@ -21,7 +21,6 @@ pub(crate) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// An estimator of valid parameters with a library of these tracks.
 pub(crate) fn estimator(params: GoalEstimatorParams, tracks: Vec<Positions>) -> GoalEstimator {
     let library = ExpertLibrary::new(tracks, 0.4).unwrap();
     GoalEstimator::new(params.check().unwrap(), library).unwrap()

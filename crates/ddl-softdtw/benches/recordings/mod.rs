@@ -12,7 +12,6 @@ pub(crate) type Walk = Vec<[f64; 2]>;
 /// The recording that queries are taken from, and candidates from all others.
 const QUERIES: &str = "eth";
 
-/// Candidates, queries and where they come from.
 pub(crate) struct Windows {
     pub(crate) source: &'static str,
     pub(crate) candidates: Vec<Walk>,
@@ -44,14 +43,12 @@ impl Windows {
         }
     }
 
-    /// `count` queries, evenly spread.
     pub(crate) fn some_queries(&self, count: usize) -> Vec<Walk> {
         let every = self.queries.len().div_ceil(count).max(1);
         self.queries.iter().step_by(every).cloned().collect()
     }
 }
 
-/// The first velocities (m/s) of the complete windows of a recording.
 fn windows(recording: &Recording, steps: usize) -> Vec<Walk> {
     let windows = recording.windows(WindowRule::Complete);
     let tracks = windows

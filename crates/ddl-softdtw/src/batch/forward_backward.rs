@@ -116,9 +116,8 @@ impl<const D: usize> ForwardBackward<'_, D> {
         left
     }
 
-    /// β of every cell from the last to the first, and with it the gradient.
-    ///
-    /// The numbers added to both products keep them from becoming denormal.
+    /// β of every cell from the last to the first, and with it the gradient. The numbers added to both products keep
+    /// them from becoming denormal.
     #[inline(always)]
     fn backward<S: Register>(
         &mut self,

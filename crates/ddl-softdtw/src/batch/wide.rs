@@ -16,7 +16,6 @@ const FARTHEST: f64 = 1_048_576.0;
 pub(super) trait Visit<const D: usize>: FnMut(usize, f64, &[[f64; D]]) {}
 impl<const D: usize, F: FnMut(usize, f64, &[[f64; D]])> Visit<D> for F {}
 
-/// Evaluates one x against eight sequences at a time; the memory for it is kept.
 pub(super) struct WidePairs<const D: usize> {
     dtw: SoftDtw,
     dispatch: Dispatch,
@@ -25,7 +24,6 @@ pub(super) struct WidePairs<const D: usize> {
     k: Vec<WideLanes>,
     alpha: Vec<WideLanes>,
     row: Vec<WideLanes>,
-    /// The gradient of one pair.
     single: Vec<[f64; D]>,
 }
 
@@ -117,7 +115,6 @@ struct WideForwardBackward<'a, const D: usize> {
 }
 
 impl<const D: usize> RegisterKernel for WideForwardBackward<'_, D> {
-    /// R(n, m), start value included.
     type Output = WideLanes;
 
     #[inline(always)]

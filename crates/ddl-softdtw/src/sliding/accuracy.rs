@@ -7,7 +7,6 @@ pub(super) const COST_CEILING: f32 = 86.0;
 /// Added to every cell of the recursion, 2^−39: times 2^−`COST_CEILING` it is still a normal number.
 pub(super) const FLOOR: f32 = f32::from_bits((127 - 39) << 23);
 
-/// Unit roundoff of `f32`.
 const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
 /// A score must exceed the error of ceiling and floor by this factor (2^24) to count as accurate.
 const HEADROOM_LOG2: f64 = 24.0;
@@ -23,12 +22,10 @@ pub(super) struct Accuracy {
 }
 
 impl Accuracy {
-    /// For windows of `length` steps, or `None` when they are too long for `f32`.
-    ///
-    /// With F(m) the paths from the first cell of a pair to m, the last cell of the row where the pair is cut, and B(m)
-    /// those from there to its last cell, a score is the sum of F(m) B(m) over m. Each factor is raised by at most
-    /// `FLOOR` times the paths between any cell and its far end; the ceiling raises each path by at most
-    /// 2^−`COST_CEILING`.
+    /// For windows of `length` steps, or `None` when they are too long for `f32`. With F(m) the paths from the first
+    /// cell of a pair to m, the last cell of the row where the pair is cut, and B(m) those from there to its last cell,
+    /// a score is the sum of F(m) B(m) over m. Each factor is raised by at most `FLOOR` times the paths between any
+    /// cell and its far end; the ceiling raises each path by at most 2^−`COST_CEILING`.
     pub(super) fn of(length: usize) -> Option<Self> {
         let range = Range::narrow(range::FLOOR, length, length)?;
         let table = PathTable::new(length);

@@ -5,10 +5,8 @@
 use crate::sliding::accuracy::COST_CEILING;
 use ddl_simd::{Lanes, Register};
 
-/// One number for every row of a block.
 pub(super) type Column<S, const M: usize> = [<S as Register>::Floats; M];
 
-/// What does not change during a sweep.
 #[derive(Clone, Copy)]
 pub(super) struct Setting<S: Register> {
     pub(super) simd: S,
@@ -43,9 +41,8 @@ pub(super) fn similarities<S: Register, const D: usize, const M: usize>(
     }
 }
 
-/// The next column of a recursion: `state` holds the column before it, `edge` enters the first row from outside.
-///
-/// Row r of the recursion is row r of `k`, or with `UPWARDS` the r-th of its last `rows` from the end.
+/// The next column of a recursion: `state` holds the column before it, `edge` enters the first row from outside. Row r
+/// of the recursion is row r of `k`, or with `UPWARDS` the r-th of its last `rows` from the end.
 #[inline(always)]
 fn advance<S: Register, const M: usize, const UPWARDS: bool>(
     setting: Setting<S>,

@@ -23,20 +23,17 @@ use crate::sliding::hits::Hits;
 use crate::sliding::layout::WindowLayout;
 use ddl_simd::{LANES, Register, RegisterKernel};
 
-/// All windows of a query against all windows of the layout.
-///
-/// `M` is the number of steps of a window; with `EXACT` false, a window may be shorter.
+/// All windows of a query against all windows of the layout. `M` is the number of steps of a window; with `EXACT`
+/// false, a window may be shorter.
 pub(super) struct WindowSweep<'a, const D: usize, const M: usize, const EXACT: bool> {
     pub(super) layout: &'a WindowLayout<D>,
     /// Steps of the query, at least one window.
     pub(super) query: &'a [[f32; D]],
-    /// What the paths before and behind the cut start from.
     pub(super) starts: (f32, f32),
     /// Takes the scores; one for each window of the query.
     pub(super) selections: &'a mut [Selection],
 }
 
-/// Working memory of a sweep.
 struct SweepMemory<S: Register, const M: usize> {
     /// K of a block of query rows at every step of the pieces, and of the block below it.
     above: Vec<Column<S, M>>,
@@ -106,9 +103,8 @@ impl<const D: usize, const M: usize, const EXACT: bool> RegisterKernel
     }
 }
 
-/// Scores of the windows that start in the rows of `memory.above`.
-///
-/// F(j) is computed side by side with B(j + 1): each is a chain of dependent operations, two keep the processor busy.
+/// Scores of the windows that start in the rows of `memory.above`. F(j) is computed side by side with B(j + 1): each is
+/// a chain of dependent operations, two keep the processor busy.
 #[inline(always)]
 fn pairs<S: Register, const M: usize>(
     setting: Setting<S>,
@@ -180,7 +176,6 @@ fn add_products<S: Register, const M: usize>(
     }
 }
 
-/// Offers the scores of one window of each piece that reach their threshold.
 #[inline(always)]
 fn compare<S: Register, const M: usize>(
     setting: Setting<S>,

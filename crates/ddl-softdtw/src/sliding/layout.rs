@@ -11,29 +11,21 @@ const LONGEST_PIECE: usize = 64;
 #[derive(Clone, Debug)]
 pub(super) struct WindowLayout<const D: usize> {
     pub(super) narrowing: Narrowing<D>,
-    /// Largest absolute value among the scaled and shifted components.
     largest: f64,
-    /// Steps of a window.
     length: usize,
     groups: Vec<PieceGroup>,
     samples: Vec<Step<D>>,
     weights: Vec<Lanes>,
 }
 
-/// Up to sixteen pieces of about one length.
 #[derive(Clone, Debug)]
 struct PieceGroup {
-    /// First step in `samples`.
     first_sample: usize,
-    /// First window in `weights`.
     first_weight: usize,
-    /// Windows of the longest piece.
     windows: usize,
-    /// Identity of the first window of each lane.
     first_windows: [usize; LANES],
 }
 
-/// One group as the kernel sees it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GroupView<'a, const D: usize> {
     /// Steps of the pieces; what lies behind the end of a shorter piece is 0.
@@ -44,7 +36,6 @@ pub(super) struct GroupView<'a, const D: usize> {
     pub(super) first_windows: &'a [usize; LANES],
 }
 
-/// Consecutive windows of one track.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     track: usize,

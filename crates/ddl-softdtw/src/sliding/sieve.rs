@@ -29,7 +29,6 @@ impl<const D: usize> WindowSieve<D> {
     }
 
     /// For each window of `query` the windows that may be among its `wanted` nearest, or `None` when `f32` cannot tell.
-    ///
     /// `query` has at least the steps of a window.
     pub(super) fn survivors(
         &self,
@@ -99,7 +98,6 @@ mod tests {
         (0..count).map(walk).collect()
     }
 
-    /// The sieve of all windows, the windows and their D(y, y).
     fn sieve(
         dtw: SoftDtw,
         tracks: &[Track],

@@ -17,7 +17,6 @@ pub(super) struct WindowPlace {
     pub(super) offset: usize,
 }
 
-/// The first windows of a track.
 pub(super) fn places_of(
     (track, &windows): (usize, &usize),
 ) -> impl Iterator<Item = WindowPlace> + use<> {

@@ -29,7 +29,6 @@ fn velocities(recording: &Recording) -> Vec<Track> {
     tracks
 }
 
-/// Tracks of the recordings of one scene, and those of all the others.
 pub(crate) fn split(dataset: &Dataset, scene: &[&str]) -> [Vec<Track>; 2] {
     let (inside, outside): (Vec<&Recording>, Vec<_>) = dataset
         .recordings()

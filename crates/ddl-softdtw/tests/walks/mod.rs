@@ -39,7 +39,6 @@ impl Numbers {
         (0..steps).map(velocity).collect()
     }
 
-    /// Walkers of up to `longest` steps.
     pub(crate) fn walkers<const D: usize>(
         &mut self,
         count: usize,

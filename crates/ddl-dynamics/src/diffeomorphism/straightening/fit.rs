@@ -4,7 +4,6 @@ use nalgebra::SVector;
 
 use crate::polar::polar;
 
-/// Rates tried for each layer, from the slowest to the fastest, in units of 1 / length of the path.
 const RATES: usize = 26;
 const SLOWEST_RATE: f64 = 0.3;
 pub(super) const FASTEST_RATE: f64 = 40.0;
@@ -22,7 +21,6 @@ pub(super) struct Bump<const D: usize> {
     pub(super) translation: SVector<f64, D>,
 }
 
-/// The images of the samples under the layers found so far.
 pub(super) struct Fit<const D: usize> {
     pub(super) images: Vec<SVector<f64, D>>,
 }

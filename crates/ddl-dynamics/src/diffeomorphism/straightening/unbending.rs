@@ -14,7 +14,6 @@ const ITERATIONS_PER_DIMENSION: usize = 1000;
 /// (Bishop's frame). With all turns scaled by the same factor it unbends like a wire.
 pub(super) struct Unbending<const D: usize> {
     lengths: Vec<f64>,
-    /// Direction of the first side, in the world and in the frame alike.
     first: SVector<f64, D>,
     /// Direction of each further side in the frame of the side before it.
     turns: Vec<SVector<f64, D>>,
@@ -133,7 +132,6 @@ mod tests {
 
     use super::*;
 
-    /// Fully bent it is the curve itself, wherever it starts from; unbent it is straight and as long.
     #[test]
     fn a_helix_unbends() {
         let points: Vec<_> = (0..40)
