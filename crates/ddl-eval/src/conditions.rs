@@ -22,8 +22,7 @@ pub struct Conditions {
     pub fold: String,
     /// Name of the forecaster.
     pub forecaster: String,
-    /// Ablation variant (`full`, `no-goal-shift`, `no-dynamics` or `star`) and a backbone other than STAR (`perceptron`); `None`
-    /// when it has none.
+    /// Ablation variant (`full`, `no-goal-shift`, `no-dynamics` or `star`) and a backbone other than STAR, if any.
     pub variant: Option<String>,
     /// Seed of the training and of the samples; `None` when nothing is random.
     pub seed: Option<u64>,
@@ -96,8 +95,6 @@ pub struct ResultRow {
 impl ResultRow {
     /// Forecasts the windows under the protocol of the conditions and scores the forecasts.
     ///
-    /// The conditions are taken at their word: windows and rule are the caller's to see to.
-    ///
     /// # Errors
     /// The forecaster failed, broke the protocol, or its forecasts cannot be scored.
     pub fn measure(
@@ -108,7 +105,6 @@ impl ResultRow {
         Self::measure_among(conditions, forecaster, windows, windows)
     }
 
-    /// The same for a part of the pedestrians: the forecaster is shown everybody of the whole windows, one each.
     pub(crate) fn measure_among(
         conditions: Conditions,
         forecaster: &(impl Forecaster + ?Sized),
@@ -117,7 +113,6 @@ impl ResultRow {
     ) -> Result<Self, MeasureError> {
         let mut forecasts = conditions.protocol.forecast(forecaster, everybody)?;
         for (forecast, (window, whole)) in forecasts.iter_mut().zip(windows.iter().zip(everybody)) {
-            // Whatever does not belong together is reported when it is scored.
             if let Some(places) = places(window, whole)
                 && places.len() < forecast.pedestrians()
                 && forecast.pedestrians() == whole.len()
@@ -142,7 +137,6 @@ impl ResultRow {
         Self::score_among(conditions, windows, windows, forecasts)
     }
 
-    /// The same for windows that are reduced to a part of their pedestrians.
     pub(crate) fn score_among(
         conditions: Conditions,
         windows: &[Window],
@@ -161,7 +155,6 @@ impl ResultRow {
     /// The mean over the recordings, weighted by their pedestrians, is that of the row.
     pub fn by_recording(&self) -> Vec<RecordingErrors> {
         let mut recordings: Vec<RecordingErrors> = Vec::new();
-        // blocks stand in the order of their recordings
         for of_one in self.blocks.chunk_by(|a, b| a.recording == b.recording) {
             let pedestrians = of_one.iter().map(|block| block.pedestrians).sum::<usize>();
             let count = pedestrians.max(1) as f64;

@@ -36,8 +36,7 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The same, where the window and its forecast are of a part of the pedestrians of another window: metrics that
-    /// look at the others' true futures see everybody in it.
+    /// The same, where the window and its forecast are of a part of the pedestrians of another window.
     ///
     /// # Errors
     /// That window has no future, or is not of the same frames of the same recording with all these pedestrians.
@@ -56,15 +55,13 @@ impl<'a> Scene<'a> {
         self.window
     }
 
-    /// The window with everybody who was there, forecast or not; the [`window`](Self::window) itself, but after
-    /// [`among`](Self::among).
+    /// The window with everybody who was there, forecast or not.
     pub fn everybody(&self) -> &'a Window {
         self.everybody
     }
 
     /// Which of [`everybody`](Self::everybody) pedestrian `i` is.
     pub fn place(&self, i: usize) -> usize {
-        // `among` has seen that everybody includes them; in the window itself each is at its own place.
         place(self.everybody, self.window.pedestrians()[i]).unwrap_or(i)
     }
 

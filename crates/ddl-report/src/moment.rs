@@ -15,8 +15,7 @@ const REGION: f64 = 0.9;
 
 /// What was observed, what was forecast and what then happened, at one moment of a recording.
 ///
-/// Positions are metres rounded to the millimetre, weights to a thousandth: for looking at. The verdicts are those of the
-/// unrounded forecast.
+/// Positions are metres rounded to the millimetre, weights to a thousandth; verdicts are of the unrounded forecast.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Moment {
@@ -66,8 +65,7 @@ pub struct MomentHypothesis {
     pub weight: f64,
     /// 12 positions, m.
     pub positions: Vec<Position>,
-    /// Radii of its discs in the region that holds the pedestrian with a probability of 90 %, one a step, m; 0 where it has none, no radii for
-    /// forecasts without regions.
+    /// Radii of its discs in the region that holds the pedestrian with a probability of 90 %, one a step, m; or 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub radii: Vec<f64>,
     /// Where it heads, m; `None` for forecasts without goals.

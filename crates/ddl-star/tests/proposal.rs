@@ -111,8 +111,6 @@ fn it_learns_where_walkers_go_on_a_fork() {
     assert!(reach(1.5) > reach(0.8) + 1.0);
 }
 
-/// The same ends and weights (metres), for people alone, in a crowd, standing, and with others out of reach; by networks with
-/// initial and with learned numbers.
 #[test]
 fn plain_numbers_propose_what_libtorch_proposes() {
     let mut views: Vec<PedestrianView> = (0..70_u8)
@@ -189,7 +187,6 @@ fn what_cannot_be_learned_from_is_refused() {
     assert_eq!(trainer.steps(), (0, 5));
     assert!(error.to_string().contains("of the examples"), "{error}");
 
-    // The sound ones before them are not blamed.
     let only_reversed = ProposalTraining {
         reversed: 1.0,
         ..training(5)

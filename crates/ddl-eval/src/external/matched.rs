@@ -19,8 +19,8 @@ pub enum Coverage {
     /// It is an error: the file must forecast exactly the pedestrians of the windows.
     #[default]
     Whole,
-    /// The pedestrians that are in both are scored, among everybody: the others still count for collisions with true
-    /// futures, interactions and baselines, but not for the collision rate, JADE and JFDE, which compare forecasts.
+    /// The pedestrians that are in both are scored, among everybody, who still count for collisions with true futures,
+    /// interactions and baselines.
     Intersection,
 }
 
@@ -57,8 +57,8 @@ impl Matched {
         self.pedestrians
     }
 
-    /// The words by which a result names the part of the pedestrians it is of: the file, both counts and a digest of who
-    /// they are. `None` where it is of all.
+    /// The words by which a result names the part of the pedestrians it is of, with a digest of them. `None` where
+    /// it is of all.
     pub fn test_subset(&self) -> Option<String> {
         let scored = self.forecast_pedestrians();
         (scored < self.pedestrians).then(|| {

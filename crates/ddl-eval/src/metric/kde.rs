@@ -15,11 +15,9 @@
 //! A forecast that says how far pedestrians spread about its hypotheses is a mixture of bells already: with that
 //! [spread](crate::Forecast::spread) s, H is s^2 times the identity.
 //!
-//! This is `scipy.stats.gaussian_kde(x, weights=w).logpdf(p)`, clipped as in Trajectron++ and Social-Implicit, but for the
-//! smallest bandwidth: eigenvalues of H below (1 cm)^2 are raised to it, where others fail or leave the frame out.
+//! This is `scipy.stats.gaussian_kde(x, weights=w).logpdf(p)`, clipped as in Trajectron++ and Social-Implicit.
 //!
-//! Lower is better, and it may be negative. A forecast of one hypothesis has no density. The number depends strongly on
-//! how many hypotheses there are: that of 1,000 samples cannot be compared with that of 20.
+//! A forecast of one hypothesis has no density. The number depends strongly on how many hypotheses there are.
 //!
 //! # References
 //! Ivanovic and Pavone, "The Trajectron", ICCV 2019 (KDE NLL); Salzmann et al., "Trajectron++", ECCV
@@ -35,8 +33,7 @@ pub const LOWEST_LOG_DENSITY: f64 = -20.0;
 /// Least deviation of a distribution of positions along any direction, metres.
 pub const LEAST_DEVIATION: f64 = 0.01;
 
-/// `ln f(at)` of the kernel density of weighted points, nats for a density per square metre; not
-/// clipped.
+/// `ln f(at)` of the kernel density of weighted points, nats for a density per square metre; not clipped.
 ///
 /// # Panics
 /// When there is not one weight a point.
@@ -83,8 +80,7 @@ fn mixture_log_density(
     largest + sum.ln() - std::f64::consts::TAU.ln() - 0.5 * bandwidth.ln_determinant()
 }
 
-/// Mean over the frames of -ln of the clipped density at the truth of pedestrian `i`, nats; `None`
-/// for forecasts of one hypothesis.
+/// Mean over the frames of -ln of the clipped density at the truth of pedestrian `i`, nats; `None` for one hypothesis.
 pub fn kde_nll(scene: &Scene<'_>, i: usize) -> Option<f64> {
     if scene.hypotheses() < 2 {
         return None;

@@ -1,4 +1,4 @@
-//! What weights and regions are worth: the probability given to what came, and the share of true positions that regions hold.
+//! The probability given to what came, and the share of true positions that regions hold.
 
 use ddl_data::HORIZON;
 
@@ -39,8 +39,7 @@ impl RegionScores {
     }
 }
 
-/// -ln of the weight of the hypothesis that leads nearest to the true end: by its goal, or by its last position where it has
-/// none; nats. `None` for forecasts of one hypothesis. Equal weights have ln K.
+/// -ln of the weight of the hypothesis that leads nearest to the true end, nats; `None` for one hypothesis.
 pub fn weight_log_loss(scene: &Scene<'_>, i: usize) -> Option<f64> {
     let forecast = scene.forecast();
     let truth = scene.truth(i);

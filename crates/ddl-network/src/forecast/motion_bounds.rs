@@ -39,7 +39,6 @@ pub fn motion_bounds(observed: &[Position], time_step: f64, share: f64) -> Motio
 mod tests {
     use super::*;
 
-    /// Steps of 0.4 m and a last one of 0.8 m; even steps, and steps that tremble by far more than 6 cm.
     #[test]
     fn the_last_step_counts_where_steps_are_even() {
         let even: Vec<Position> = (0..8).map(|t| [0.4 * f64::from(t), 1.0]).collect();
@@ -50,10 +49,8 @@ mod tests {
         for (t, p) in askew.iter_mut().enumerate() {
             p[1] += if t % 2 == 0 { 3.0 } else { 0.0 };
         }
-        // the last three steps go 3 m up, down and up again in 1.2 s
         let velocity = motion_bounds(&askew, 0.4, 1.0).velocity();
         assert!((velocity - Vector2::new(1.0, -3.0 / 1.2)).norm() < 1e-9);
-        // a share out of range keeps the runner's bounds
         let runner: Vec<Position> = (0..8).map(|t| [2.4 * f64::from(t), 0.0]).collect();
         for (share, kept) in [(1.000_000_1, 1.0), (-1.0, 0.0), (f64::NAN, 0.0)] {
             assert_eq!(

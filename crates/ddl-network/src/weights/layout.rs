@@ -49,8 +49,7 @@ impl TensorLayout {
 
 /// The learned tensors of a network, in order.
 ///
-/// A network declares its layers when it is made; each declaration gives a handle, with which a
-/// [`Backend`](crate::backend::Backend) finds the layer's weights.
+/// A network declares its layers when it is made, and finds their weights by the handles that it gets.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Layout {
     tensors: Vec<TensorLayout>,
@@ -181,7 +180,6 @@ impl Layout {
     pub fn encoder_layer(&mut self, name: &str, sizes: Sizes, dropout: f64) -> EncoderLayer {
         let Sizes { width, hidden, .. } = sizes;
         let (first, tensor) = (self.count, self.tensors.len());
-        // In the order of `Sizes`.
         let bound = (6.0 / (4 * width) as f64).sqrt();
         self.uniform(
             format!("{name}.self_attn.in_proj_weight"),

@@ -49,7 +49,6 @@ fn forged(whole: &[u8], change: impl Fn(&mut String, &mut Dtype, &mut Vec<u8>)) 
     safetensors::serialize(views(), Some(header)).unwrap()
 }
 
-/// The bytes, as a file of a network's weights, have to be refused.
 fn refuse(bytes: &[u8], said: &str) {
     let folder = tempfile::tempdir().unwrap();
     let broken = folder.path().join("broken.safetensors");
@@ -61,7 +60,6 @@ fn refuse(bytes: &[u8], said: &str) {
     assert!(error.to_string().contains("broken.safetensors"), "{error}");
 }
 
-/// The bytes of a file of weights.
 fn saved(weights: &Weights, origin: &Origin) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("model.safetensors");
@@ -105,7 +103,6 @@ fn broken_files_are_refused() {
     let last = turned.len() - 4;
     turned[last] ^= 1;
     refuse(&turned, "the SHA-256 of its numbers");
-    // What was meant, and carries the right digest.
     let renamed = forged(&whole, |name, _, _| {
         if name == "fusion_layer.bias" {
             *name = "xusion_layer.bias".to_owned();
@@ -192,7 +189,6 @@ fn a_file_that_cannot_be_written_leaves_the_old_one() {
             .join("no such folder")
             .join("model.safetensors"),
     );
-    // A folder of that name cannot be replaced by a file.
     let taken = folder.path().join("taken");
     std::fs::create_dir_all(taken.join("kept")).unwrap();
     nowhere(&taken);

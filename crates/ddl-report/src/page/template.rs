@@ -18,8 +18,7 @@ pub(super) fn fill(template: &str, slots: &[(&str, &str)]) -> String {
     filled
 }
 
-/// JSON that can stand in a `<script type="application/json">`: the same value to a parser, with nothing that ends the
-/// element or, to older scripts, a line.
+/// JSON that can stand in a `<script type="application/json">`: nothing in it ends the element.
 pub(super) fn json_in_script(json: &str) -> String {
     let mut escaped = String::with_capacity(json.len());
     let mut rest = json;
@@ -29,7 +28,6 @@ pub(super) fn json_in_script(json: &str) -> String {
         match characters.next() {
             Some('\u{2028}') => escaped.push_str("\\u2028"),
             Some('\u{2029}') => escaped.push_str("\\u2029"),
-            // What `</script`, `<!--` and `<script` begin with.
             _ if rest[at + 1..].starts_with(['/', '!', 's', 'S']) => {
                 escaped.push_str("\\u003c");
             }

@@ -42,7 +42,6 @@ fn training_panels(curves: &[TrainingCurve]) -> Vec<TrainingPanel> {
         let of_fold = || curves.iter().filter(move |curve| curve.fold == fold);
         for loss in distinct(of_fold().map(|curve| curve.loss.as_str())) {
             let of_loss = of_fold().filter(|curve| curve.loss == loss);
-            // All folds share one scale.
             let same_loss = curves.iter().filter(|curve| curve.loss == loss);
             let all = values(same_loss, |point| Some(point.loss));
             let series = series(of_loss, &variants, |point| Some(point.loss));
@@ -188,7 +187,6 @@ fn labels(series: &[Series<'_>], up: &Scale, [top, bottom]: [f64; 2]) -> Vec<(us
     labels
 }
 
-/// At most six whole numbers from the first epoch to the last.
 fn epoch_ticks(first: usize, last: usize) -> Vec<usize> {
     let steps = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000];
     let step = steps

@@ -58,7 +58,6 @@ fn has_ablated_variant(group: &ResultGroup<'_>) -> bool {
     group.lines.iter().any(ablated)
 }
 
-/// Whether the variants of a group differ in the variant alone.
 fn alike(group: &ResultGroup<'_>) -> bool {
     let made = |line: &TableLine<'_>| {
         let rows = line
@@ -84,7 +83,6 @@ fn alike(group: &ResultGroup<'_>) -> bool {
 fn variant(line: &TableLine<'_>) -> Option<&'static AblationRow> {
     let conditions = line.conditions();
     let name = conditions.variant.as_deref()?;
-    // "DDL with plain Euler steps" and the like are no variants of their own.
     let mut rows = LITERATURE.ablation.iter();
     rows.find(|row| conditions.forecaster == "DDL" && row.variant == name)
 }

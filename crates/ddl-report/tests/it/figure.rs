@@ -10,11 +10,9 @@ use ddl_report::{
     figure::{self, GoalCase},
 };
 
-/// Circles of the legend: 4 observed dots, a true end, 3 goals of some probability, and the nearest with
-/// its rim.
+/// Circles of the legend: 4 observed dots, a true end, 3 goals, and the nearest with its rim.
 const LEGEND_CIRCLES: usize = 4 + 1 + 3 + 2;
-/// Circles of a panel but for the goals that are not the nearest: 8 observed dots, a true end, the nearest
-/// with its rim.
+/// Circles of a panel but for goals that are not the nearest: 8 observed dots, a true end, the nearest with its rim.
 const PANEL_CIRCLES: usize = 8 + 1 + 2;
 
 fn walk(from: Position, step: Position) -> Vec<Position> {
@@ -185,7 +183,6 @@ fn every_role_of_a_scene_is_drawn_and_named() {
     ] {
         assert!(svg.contains(text), "no `{text}`");
     }
-    // Text of the user's files must not become markup.
     assert!(svg.contains("&lt;corridor&gt; &amp; ") && !svg.contains("<corridor>"));
     // 8 observed dots, a true end and a goal for each of the two, and the legend's 4, 1 and 1.
     assert_eq!(count(&svg, "<circle"), 2 * (8 + 1 + 1) + 4 + 1 + 1);

@@ -1,5 +1,4 @@
-//! Multi-head attention (Vaswani et al. 2017, section 3.2) of projected tokens, in the two forms STAR needs:
-//! every pedestrian over its neighbours, and the newest token over all earlier ones.
+//! Multi-head attention (Vaswani et al. 2017, section 3.2) of projected tokens, in the two forms STAR needs.
 
 use super::neighbours::SeenNeighbours;
 use std::rc::Rc;
@@ -41,7 +40,6 @@ pub(super) fn over_cache(newest: &Tensor, heads: i64, cache: &[Rc<Tensor>]) -> T
     let (batch, pedestrians, width) = (newest.size()[0], newest.size()[1], newest.size()[2] / 3);
     let cached = cache.iter().map(|token| &**token);
     let tokens: Vec<&Tensor> = cached.chain([newest]).collect();
-    // All projections of all tokens at once: one copy, and one gradient for each token.
     let parts = Tensor::stack(&tokens, 0)
         .view([-1, batch, pedestrians, 3, heads, width / heads])
         .unbind(3);

@@ -1,12 +1,9 @@
-//! The differentiable twin of `ddl-dynamics`: one step of v = -P grad Phi on tensors.
-//!
-//! The formulas are those of the crate [`ddl_dynamics`]; a test holds the two together.
+//! The differentiable twin of `ddl-dynamics`: one step of v = -P grad Phi on tensors; a test holds the two together.
 
 use ddl_dynamics::{MotionBounds, StepTime};
 use tch::Tensor;
 
-/// Within this distance, in metres, a walker is at the goal. Squares of smaller offsets underflow in
-/// f32, so that nothing below could be told from the goal anyway.
+/// Within this distance (m) a walker is at the goal: squares of smaller offsets underflow in f32.
 const SMALLEST_NORM: f64 = 1e-18;
 /// Added to the square of half the difference of the eigenvalues (m/s), whose root has no derivative at 0.
 const SMALLEST_RADIUS_SQUARED: f64 = 1e-14;
@@ -130,7 +127,6 @@ fn neutral(
         bounds.velocity.narrow(-1, 1, 1),
     );
     let along = arriving * (1.0 - g) + (&vx * &cos + &vy * &sin) * g;
-    // At the goal all of these are 0, and nothing moves.
     let a = along
         .maximum(smallest)
         .clamp_min(f64::from(f32::MIN_POSITIVE));
@@ -185,8 +181,7 @@ impl SymmetricTensors {
 fn away(positions: &Tensor, goals: &Tensor) -> (Tensor, Tensor) {
     let offset = positions - goals;
     let distance = offset.norm_scalaropt_dim(2, [-1i64].as_slice(), true);
-    // Divided by infinity at the goal: u and its derivative are 0 there. Divided by something small, the
-    // derivative would be huge, and that of a few steps at the goal no number.
+    // Divided by infinity at the goal: u and its derivative are 0 there, and not huge.
     let at_goal = distance.lt(SMALLEST_NORM);
     let u = offset / distance.masked_fill(&at_goal, f64::INFINITY);
     (distance, u)

@@ -9,7 +9,6 @@ use std::rc::Rc;
 use std::sync::Arc;
 use tch::{TchError, Tensor};
 
-/// A backend between tensors.
 pub(crate) trait TensorBackend: Backend {
     /// Numbers that the network is given, which nobody asks the gradient of, `[B, P, width]`.
     fn given(&self, x: &Tensor) -> Self::Tokens;
@@ -142,7 +141,6 @@ impl Pass {
         loss.f_backward()?;
         let mut sums = vec![0.0; parameters.count()];
         kernels.backward(&mut sums);
-        // Those of the layers that libtorch computes.
         let tensors = parameters.layout().tensors().iter();
         for (learned, tensor) in parameters.tensors().iter().zip(tensors) {
             let gradient = learned.f_grad()?;

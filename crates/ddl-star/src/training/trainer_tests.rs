@@ -8,7 +8,6 @@ use ddl_data::{Dataset, WindowRule};
 use ddl_network::{DeviceChoice, StarConfig, Variant};
 use tch::Kind;
 
-/// Seven steps an epoch; in `Double` all of it is libtorch's.
 fn trainer(kind: Kind, read_every: usize) -> Trainer {
     crate::set_threads(1);
     let config = StarConfig {
@@ -88,7 +87,6 @@ fn a_bad_step_is_found_later_and_nothing_after_it_counts() {
         assert_eq!(trainer.steps(), known.steps());
         assert!((trainer.progress.loss_sum - known.progress.loss_sum).abs() < 1e-15);
 
-        // Drawn afresh, the step is as good as any other.
         trainer.draws = None;
         trainer.read_every = 1;
         assert_eq!(trainer.step().unwrap().loss, known.step().unwrap().loss);
@@ -121,7 +119,6 @@ fn saving_reads_what_is_not_read_yet() {
     ));
 }
 
-/// What Adam would make NaN of, and steps that are not the run's.
 #[test]
 fn a_state_that_cannot_be_is_refused() {
     let folder = tempfile::tempdir().unwrap();

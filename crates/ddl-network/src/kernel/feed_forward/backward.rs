@@ -1,5 +1,4 @@
 //! The backward pass: groups of hidden units in parallel.
-//!
 //! The derivatives of a unit's weights belong to one group alone, so that nothing has to be added up over threads but
 //! gx, which is small: `rows * width` for each group. The groups are always the same, and so are the sums.
 
@@ -24,7 +23,6 @@ const KEPT: usize = 64;
 impl FeedForward {
     /// The derivative with respect to x, and those with respect to the weights added to `grads`.
     ///
-    /// With the same dropout as in [`Self::forward`], whose decisions are made again.
     /// `x`, `gy` `[rows, width]` -> `gx` `[rows, width]`, overwritten.
     /// An entry differs from the exact one by at most (width + hidden + 16) 2^-24 (for gx), (width + rows + 16) 2^-24 (for
     /// the others) times the formula with the absolute values of all its terms; where W1 x + b1 is 0 to rounding the
@@ -100,7 +98,6 @@ struct Scratch {
     /// Likewise of W2, rows entries of y.
     w2: Vec<Panel>,
     hidden: Vec<Block>,
-    /// Derivatives with respect to what they are activations of.
     gradient: Vec<Block>,
 }
 

@@ -1,5 +1,4 @@
 //! The forward pass with products of bf16 numbers, summed up in `f32`: twice as many multiplications an instruction.
-//!
 //! A product A B takes two numbers of a row of A and two rows of B at a time. So A is held with neighbours in a row paired,
 //! B with neighbours in a column.
 
@@ -108,7 +107,6 @@ impl PairKernel for PairForward<'_> {
             squares,
         } = self;
         let columns = weights.columns;
-        // The blocks of the first rows, those of the next ones, and so on.
         let mut rounded_x = vec![[PairedRow::ZERO; ROWS]; columns * x.rows() / ROWS];
         for (tile, rounded) in rounded_x.iter_mut().enumerate() {
             let (row, column) = (tile / columns * ROWS, tile % columns);
@@ -188,7 +186,6 @@ fn multiply<P: Pairs>(pairs: P, mut sum: Sums<P>, a: &[PairedRow; ROWS], b: &Pai
     sum
 }
 
-/// sum + A B, the sum in memory.
 #[inline(always)]
 fn add_product<P: Pairs>(pairs: P, sum: &mut [Block; ROWS], a: &[PairedRow; ROWS], b: &PairPanel) {
     let tile = load_tile(pairs.simd(), sum, 0);
