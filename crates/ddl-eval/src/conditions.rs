@@ -95,6 +95,8 @@ pub struct ResultRow {
 impl ResultRow {
     /// Forecasts the windows under the protocol of the conditions and scores the forecasts.
     ///
+    /// The conditions are taken at their word: windows and rule are the caller's to see to.
+    ///
     /// # Errors
     /// The forecaster failed, broke the protocol, or its forecasts cannot be scored.
     pub fn measure(
@@ -113,6 +115,7 @@ impl ResultRow {
     ) -> Result<Self, MeasureError> {
         let mut forecasts = conditions.protocol.forecast(forecaster, everybody)?;
         for (forecast, (window, whole)) in forecasts.iter_mut().zip(windows.iter().zip(everybody)) {
+            // Whatever does not belong together is reported when it is scored.
             if let Some(places) = places(window, whole)
                 && places.len() < forecast.pedestrians()
                 && forecast.pedestrians() == whole.len()
@@ -155,6 +158,7 @@ impl ResultRow {
     /// The mean over the recordings, weighted by their pedestrians, is that of the row.
     pub fn by_recording(&self) -> Vec<RecordingErrors> {
         let mut recordings: Vec<RecordingErrors> = Vec::new();
+        // blocks stand in the order of their recordings
         for of_one in self.blocks.chunk_by(|a, b| a.recording == b.recording) {
             let pedestrians = of_one.iter().map(|block| block.pedestrians).sum::<usize>();
             let count = pedestrians.max(1) as f64;

@@ -235,6 +235,7 @@ impl Forecast {
             weights: vec![1.0; self.pedestrians],
             goals: rows().map(|(i, &k)| self.goal(i, k)).collect(),
             certified: rows().map(|(i, &k)| self.certified(i, k)).collect(),
+            // about one of many hypotheses, not about the one that stands for all
             spread: None,
             familiarity: self.familiarity.clone(),
         }

@@ -7,8 +7,8 @@ use crate::{Forecast, error::ForecastError};
 /// Something that forecasts the people of a window: a baseline, the DDL model or any other.
 ///
 /// # Contract
-/// A forecaster reads [`Window::observed`] alone, which `leak::find` checks, or fails with
-/// [`ForecastError::FutureMissing`] where the future is not there.
+/// A forecaster reads [`Window::observed`] alone, which `leak::find` checks. One that also reads the future where it is
+/// shown (protocol `published`) must not need it, or must fail with [`ForecastError::FutureMissing`].
 pub trait Forecaster {
     /// The name printed in tables, the same for every window.
     fn name(&self) -> String;

@@ -36,7 +36,8 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The same, where the window and its forecast are of a part of the pedestrians of another window.
+    /// The same, where the window and its forecast are of a part of the pedestrians of another window: metrics that
+    /// look at the others' true futures see everybody in it.
     ///
     /// # Errors
     /// That window has no future, or is not of the same frames of the same recording with all these pedestrians.
@@ -62,6 +63,7 @@ impl<'a> Scene<'a> {
 
     /// Which of [`everybody`](Self::everybody) pedestrian `i` is.
     pub fn place(&self, i: usize) -> usize {
+        // `among` has seen that everybody includes them; in the window itself each is at its own place.
         place(self.everybody, self.window.pedestrians()[i]).unwrap_or(i)
     }
 

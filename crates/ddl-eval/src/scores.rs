@@ -90,6 +90,8 @@ pub struct Scores {
 impl Scores {
     /// Scores one forecast a window, all windows together.
     ///
+    /// The result does not depend on the number of threads.
+    ///
     /// # Errors
     /// There is no window, a window has no future, a forecast does not belong to its window, or the
     /// forecasts differ in their number of hypotheses, in having goals or in having certificates.
@@ -99,7 +101,8 @@ impl Scores {
 
     /// The same for a part of the pedestrians, who are among everybody of the whole windows, one each.
     ///
-    /// The collision rate, JADE and JFDE, which compare forecasts, are among those forecast.
+    /// Means are over the part alone. Collisions with true futures and interactions are with everybody; the collision
+    /// rate, JADE and JFDE, which compare forecasts, are among those forecast.
     ///
     /// # Errors
     /// As [`Scores::evaluate`]; or a whole window is not that of the reduced one.
@@ -139,6 +142,7 @@ impl Scores {
             let all = scenes.iter().flat_map(|s| &s.pedestrians);
             all.filter(|pedestrian| of(pedestrian)).count() as f64 / total
         };
+        // All pedestrians have as many hypotheses: either each has a distribution or none.
         let several = first.hypotheses() > 1;
         let of_several = |of: fn(&PedestrianScores) -> Option<f64>| {
             let sum = |s: &SceneScores| s.pedestrians.iter().filter_map(of).sum::<f64>();

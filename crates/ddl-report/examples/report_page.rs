@@ -147,6 +147,7 @@ fn rows(
                 windows,
             )?);
         }
+        // Two seeds of what is random; what is not is the same twice, and kept once.
         for seed in [1, 2] {
             rows.extend(baseline::measure(&named(String::new()), windows, seed)?);
         }

@@ -27,7 +27,8 @@ pub struct Literature {
     pub star_convention: Vec<PublishedRow>,
     /// Table II of the DDL paper: `star` convention, protocol `published`.
     pub ablation: Vec<AblationRow>,
-    /// Baselines on all test windows of the `star` convention; goals by the published estimator (100 experts).
+    /// Baselines on all test windows of the `star` convention, cut by the published rule. Rows on goals are of the
+    /// published estimator (100 experts, 20 centres, gamma = 1).
     pub measured: Vec<MeasuredRow>,
 }
 

@@ -65,7 +65,8 @@ pub struct MomentHypothesis {
     pub weight: f64,
     /// 12 positions, m.
     pub positions: Vec<Position>,
-    /// Radii of its discs in the region that holds the pedestrian with a probability of 90 %, one a step, m; or 0.
+    /// Radii of its discs in the region that holds the pedestrian with a probability of 90 %, one a step, m; 0 where it has none, no radii for
+    /// forecasts without regions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub radii: Vec<f64>,
     /// Where it heads, m; `None` for forecasts without goals.

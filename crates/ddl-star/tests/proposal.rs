@@ -187,6 +187,7 @@ fn what_cannot_be_learned_from_is_refused() {
     assert_eq!(trainer.steps(), (0, 5));
     assert!(error.to_string().contains("of the examples"), "{error}");
 
+    // The sound ones before them are not blamed.
     let only_reversed = ProposalTraining {
         reversed: 1.0,
         ..training(5)

@@ -7,7 +7,8 @@ use crate::{Forecast, Forecaster, error::ForecastError, metric::displacement::mi
 /// Constant acceleration: `p(8 + t) = p(8) + t v + t (t + 1)/2 a`, with `v = p(8) - p(7)` in metres a frame and
 /// `a = v - (p(7) - p(6))` in metres a frame squared.
 ///
-/// [`unbounded`](Self::unbounded) is the literature's; [`bounded`](Self::bounded) is no faster than observed.
+/// [`unbounded`](Self::unbounded) is the literature's definition. [`bounded`](Self::bounded) is no faster than the
+/// fastest of the 7 observed steps, and stops where it would turn back.
 ///
 /// # References
 /// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion prediction", RA-L 2020.

@@ -122,6 +122,7 @@ impl ForcedPedestrian {
                 continue;
             }
             let push = self.push_of(other);
+            // The other is where the push comes from.
             let ahead = -(push[0] * self.direction[0] + push[1] * self.direction[1]);
             let weight = if ahead > sight * length(push) {
                 1.0

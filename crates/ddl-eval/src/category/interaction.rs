@@ -39,9 +39,10 @@ const GROUP_DEVIATION: f64 = 0.2;
 /// The frames need not follow one another, and the deviation is that of the population.
 ///
 /// # Where this differs
-/// `TrajNet++`'s dataset tool observes 9 frames and judges a group over 21, and takes one border of each sector. There,
-/// who does not move from t - 3 to t walks along x; here it has no course. It sees everybody present at a frame, here
-/// only those in the window for all 20.
+/// `TrajNet++`'s dataset tool observes 9 frames and judges a group over 21, and takes one border of each sector; here
+/// both borders belong to it, so that mirror images are alike. There, who does not move from t - 3 to t walks along x;
+/// here nobody is ahead of it or beside it, and it has no course. It sees everybody present at a frame, here only
+/// those in the window for all 20.
 ///
 /// # References
 /// Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds", T-ITS 2021, section III.

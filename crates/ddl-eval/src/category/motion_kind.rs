@@ -29,6 +29,8 @@ const CHANGE: f64 = 0.3;
 /// speeding up      |b| / 4.8 s >= 1.3 |a| / 2.8 s
 /// straight on      otherwise
 /// ```
+///
+/// Left is from x to y, counter-clockwise where y points up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MotionKind {

@@ -19,8 +19,8 @@ pub enum Coverage {
     /// It is an error: the file must forecast exactly the pedestrians of the windows.
     #[default]
     Whole,
-    /// The pedestrians that are in both are scored, among everybody, who still count for collisions with true futures,
-    /// interactions and baselines.
+    /// The pedestrians that are in both are scored, among everybody: the others still count for collisions with true
+    /// futures, interactions and baselines, but not for the collision rate, JADE and JFDE, which compare forecasts.
     Intersection,
 }
 

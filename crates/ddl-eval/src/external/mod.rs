@@ -1,6 +1,6 @@
 //! Forecasts that another program made: read from a file, matched with the windows of a fold, scored.
-//! The recording, the raw number of the **last observed** frame (`observed_until`) and the pedestrian name whom a
-//! forecast is of. `docs/your-model.md` describes the files; nothing is repaired.
+//! Recording, raw number of the **last observed** frame (`observed_until`) and pedestrian say whom a forecast is of.
+//! `docs/your-model.md` describes the files. Whatever is wrong is an error with its line and field.
 
 mod error;
 mod expected;

@@ -34,6 +34,7 @@ impl Fields<'_> {
     /// The field in a column, without blanks around it; nothing beyond the last.
     pub(super) fn get(&self, column: usize) -> &str {
         let start = column.checked_sub(1).map_or(0, |before| self.ends[before]);
+        // Lines are text, and their fields are cut at commas and quotes.
         std::str::from_utf8(&self.text[start..self.ends[column]]).map_or("", str::trim)
     }
 }

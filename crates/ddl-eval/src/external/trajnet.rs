@@ -117,6 +117,7 @@ impl<'w, 'a> Reading<'w, 'a> {
         let Some(track) = line.track else {
             return Ok(());
         };
+        // Tracks without a number were observed.
         let Some(Whole(prediction)) = track.prediction_number else {
             return Ok(());
         };

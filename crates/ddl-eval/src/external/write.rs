@@ -58,6 +58,9 @@ pub fn write_windows(windows: &[Window], mut writer: impl Write) -> Result<(), E
     writer.flush().map_err(cannot_write)
 }
 
+/// Writes forecasts as the JSON lines that [`read`](super::read) takes back, bit by bit; verdicts of certificates are
+/// left out.
+///
 /// # Errors
 /// Windows and forecasts are not of the same pedestrians, or it cannot be written.
 pub fn write_forecasts(

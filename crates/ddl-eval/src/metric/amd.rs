@@ -12,6 +12,11 @@
 //! A wider distribution has a smaller AMD and a larger AMV. Eigenvalues of C below (1 cm)^2 are raised to it. A forecast
 //! of one hypothesis is no distribution. A spread about the hypotheses adds its variance to C.
 //!
+//! # Beside the published code
+//! Social-Implicit fits a mixture of up to four Gaussians to 1,000 samples; here C and m are the hypotheses' own moments.
+//! AMV does not depend on the number of components; AMD is theirs wherever one is chosen. As in their code, and not their
+//! paper, AMV is the largest eigenvalue of the mean, which adds pedestrians in world axes.
+//!
 //! # References
 //! Mohamed et al., "Social-Implicit: Rethinking Trajectory Prediction Evaluation and The Effectiveness
 //! of Implicit Maximum Likelihood Estimation", ECCV 2022.

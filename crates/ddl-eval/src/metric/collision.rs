@@ -9,8 +9,9 @@
 //! collision rate = pedestrians who collide with anybody / pedestrians, in [0, 1]
 //! ```
 //!
-//! Pedestrians alone in their window count in the denominator. Real people who walk together come closer than this too:
-//! compare with the rate of the true futures.
+//! The minimum is exact. Pedestrians alone in their window count in the denominator. Real people who walk together come
+//! closer than this too: compare with the rate of the true futures. Other works take centres closer than 0.2 m, pairs
+//! instead of people, or fewer instants: their percentages are not comparable.
 //!
 //! Against the truth (Col-II of `TrajNet++`) everybody but pedestrian i follows the TRUE future.
 //!

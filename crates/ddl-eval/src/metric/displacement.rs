@@ -12,7 +12,10 @@
 //! ```
 //!
 //! The two minima are independent; STAR's and DDL's code prints `FDE@minADE`, works that choose by the end (`PECNet`,
-//! Y-Net) `ADE@minFDE`. In JADE a scene counts with its number of pedestrians, as in minADE. The goal of a pedestrian
+//! Y-Net) `ADE@minFDE`. The expected error is that of a hypothesis drawn with its weight; the most likely hypothesis is
+//! not the one of the protocol `single`, the [representative](Forecast::representative) one.
+//! JADE and JFDE are a fair question only to models whose hypothesis `k` is one future of the scene. The averages of
+//! "Joint Metrics Matter" are over scenes; here a scene counts with its number of pedestrians. The goal of a pedestrian
 //! still under way lies beyond the 12th frame, and is compared with the last true position all the same.
 //!
 //! # References

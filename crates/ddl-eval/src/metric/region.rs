@@ -39,7 +39,8 @@ impl RegionScores {
     }
 }
 
-/// -ln of the weight of the hypothesis that leads nearest to the true end, nats; `None` for one hypothesis.
+/// -ln of the weight of the hypothesis that leads nearest to the true end: by its goal, or by its last position where it has
+/// none; nats. `None` for forecasts of one hypothesis. Equal weights have ln K.
 pub fn weight_log_loss(scene: &Scene<'_>, i: usize) -> Option<f64> {
     let forecast = scene.forecast();
     let truth = scene.truth(i);

@@ -74,6 +74,7 @@ pub fn paired_difference(
 }
 
 fn p_value(folds: &[Vec<PartialSum>], observed: f64) -> f64 {
+    // Sums in another order differ in their last bits; they are no less.
     let as_large = observed.abs() * (1.0 - 1e-12);
     let mut random = generator();
     let mut at_least = 1;

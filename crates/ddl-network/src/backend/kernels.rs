@@ -106,7 +106,7 @@ impl KernelBackend {
         }
     }
 
-    /// Runs `step`, which may add to the gradients of all learned numbers, when those of all that comes later are known.
+    /// Runs `step`, which may add to the gradients of learned numbers, when those of all that comes later are known.
     pub fn on_the_way_back(&self, step: impl FnOnce(&mut [f32]) + 'static) {
         #[cfg(feature = "training")]
         if let Some(tape) = &self.tape {

@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 pub enum NetworkFrame {
     /// That of the recording, as published.
     World,
-    /// The pedestrian's own: its first axis points to the goal, and velocities are read beside positions.
+    /// The pedestrian's own, whose first axis points from where it was last observed to its goal. Velocities are read beside
+    /// positions, and the output layer reads both beside the token.
     Goal,
 }
 
@@ -101,7 +102,7 @@ impl StarConfig {
         }
     }
 
-    /// The default of the protocols `fair` and `single`, in the pedestrians' own frames (`docs/accuracy.md`).
+    /// The default of the protocols `fair` and `single`, in own frames where there are goals (`docs/accuracy.md`).
     pub fn recommended(variant: Variant) -> Self {
         Self {
             frame: if variant.goal_shift() {
@@ -122,7 +123,7 @@ impl StarConfig {
         }
     }
 
-    /// Numbers the output layer reads of a pedestrian and step, without noise: token; in its own frame place and velocity.
+    /// Numbers the output layer reads of a pedestrian and step, without noise: token; in own frames place and velocity.
     pub fn output_inputs(&self) -> i64 {
         match self.frame {
             NetworkFrame::World => self.model_width,

@@ -49,8 +49,10 @@ mod tests {
         for (t, p) in askew.iter_mut().enumerate() {
             p[1] += if t % 2 == 0 { 3.0 } else { 0.0 };
         }
+        // the last three steps go 3 m up, down and up again in 1.2 s
         let velocity = motion_bounds(&askew, 0.4, 1.0).velocity();
         assert!((velocity - Vector2::new(1.0, -3.0 / 1.2)).norm() < 1e-9);
+        // a share out of range keeps the runner's bounds
         let runner: Vec<Position> = (0..8).map(|t| [2.4 * f64::from(t), 0.0]).collect();
         for (share, kept) in [(1.000_000_1, 1.0), (-1.0, 0.0), (f64::NAN, 0.0)] {
             assert_eq!(

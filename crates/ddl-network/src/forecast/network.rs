@@ -184,6 +184,7 @@ impl ForecastWindows for MotionNetwork {
             features = Some(step);
         }
         let hypotheses = batch.hypotheses();
+        // There is a last observed step.
         let Some(features) = features else {
             unreachable!("{OBSERVED} observed time steps")
         };

@@ -24,7 +24,8 @@ pub enum Noise {
 pub enum StepRule {
     /// p + dt v, the published scheme. It may step past the goal and circle it.
     Euler,
-    /// The same with P within `ddl_dynamics::MotionBounds`: no step passes the goal, and the last one ends on it.
+    /// The same with P within `ddl_dynamics::MotionBounds`: no step passes the goal, none is faster than the
+    /// pedestrian can be, and the last one ends on the goal.
     Bounded,
 }
 

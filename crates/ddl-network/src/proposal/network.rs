@@ -147,6 +147,7 @@ fn members(
     let of = |layer: MemberAffine, member: usize| {
         let [inputs, outputs] = layer.sizes();
         let [weight, bias] = layer.of_member(member).map(|span| &weights.numbers()[span]);
+        // The kernel takes W by outputs.
         let by_outputs =
             (0..outputs).flat_map(|o| (0..inputs).map(move |i| weight[i * outputs + o]));
         let numbers: Vec<f32> = by_outputs.chain(bias.iter().copied()).collect();

@@ -180,6 +180,7 @@ impl Layout {
     pub fn encoder_layer(&mut self, name: &str, sizes: Sizes, dropout: f64) -> EncoderLayer {
         let Sizes { width, hidden, .. } = sizes;
         let (first, tensor) = (self.count, self.tensors.len());
+        // In the order of `Sizes`.
         let bound = (6.0 / (4 * width) as f64).sqrt();
         self.uniform(
             format!("{name}.self_attn.in_proj_weight"),

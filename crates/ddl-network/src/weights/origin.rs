@@ -49,7 +49,7 @@ impl Origin {
         HashMap::from([(HEADER.to_owned(), facts.to_string())])
     }
 
-    /// What the header of a safetensors file says, and the SHA-256 of its numbers, which earlier versions lack.
+    /// What the header of a safetensors file says (nothing if it is not ours), and the SHA-256 of its numbers, if any.
     pub fn of_header(header: Option<&HashMap<String, String>>) -> (Self, Option<String>) {
         let facts = header.and_then(|header| header.get(HEADER));
         let mut origin = Self(
@@ -81,6 +81,7 @@ mod tests {
         assert_eq!(Origin::of_header(None), nothing);
         let foreign = HashMap::from([(HEADER.to_owned(), "[1".to_owned())]);
         assert_eq!(Origin::of_header(Some(&foreign)), nothing);
+        // of a version without a digest
         let old = HashMap::from([(HEADER.to_owned(), r#"{"fold":"eth"}"#.to_owned())]);
         let eth = Origin::from_iter([("fold", "eth")]);
         assert_eq!(Origin::of_header(Some(&old)), (eth, None));

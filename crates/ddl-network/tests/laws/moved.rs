@@ -40,6 +40,8 @@ proptest! {
         prop_assert!(off < 1e-4, "{off} m");
     }
 
+    /// A perceptron reads everything in the pedestrian's own frame. STAR does not: where everybody is in the scene it reads in the
+    /// axes of the world.
     #[test]
     fn with_every_turn_of_it_in_the_own_frame(
         variant in prop::sample::select(vec![Variant::Full, Variant::NoDynamics]),

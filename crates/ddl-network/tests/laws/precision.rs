@@ -25,6 +25,7 @@ fn half_precision_changes_forecasts_a_little_and_weights_not_at_all() {
             (precision, &weights)
         );
         let found = forecasts(&network);
+        // Other weights are packed in the same precision.
         let again = MotionNetwork::new(network.config().clone(), 4).unwrap();
         let again = again.in_precision(precision).with_weights(weights.clone());
         assert_eq!(forecasts(&again.unwrap()), found);

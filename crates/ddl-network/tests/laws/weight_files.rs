@@ -103,6 +103,7 @@ fn broken_files_are_refused() {
     let last = turned.len() - 4;
     turned[last] ^= 1;
     refuse(&turned, "the SHA-256 of its numbers");
+    // What was meant, and carries the right digest.
     let renamed = forged(&whole, |name, _, _| {
         if name == "fusion_layer.bias" {
             *name = "xusion_layer.bias".to_owned();
@@ -189,6 +190,7 @@ fn a_file_that_cannot_be_written_leaves_the_old_one() {
             .join("no such folder")
             .join("model.safetensors"),
     );
+    // A folder of that name cannot be replaced by a file.
     let taken = folder.path().join("taken");
     std::fs::create_dir_all(taken.join("kept")).unwrap();
     nowhere(&taken);

@@ -11,7 +11,7 @@ pub(crate) struct ContentsEntry {
 }
 
 impl Document {
-    /// HTML for the body of a page: lead, title and parts, each section with an `id` made of its heading.
+    /// HTML for the body of a page: lead, title and parts, each section with an `id` of its heading; text is escaped.
     pub fn to_html(&self) -> String {
         format!(
             "<header>\n<h1>{}</h1>\n<p class=\"lead\">{}</p>\n</header>\n{}",
@@ -21,7 +21,7 @@ impl Document {
         )
     }
 
-    /// The parts as HTML, without title and lead, and the sections they make; those with a warning are of class `warned`.
+    /// The parts as HTML, without title and lead, and the sections they make, of class `warned` where they hold one.
     pub(crate) fn sections(&self) -> (String, Vec<ContentsEntry>) {
         let mut body = String::new();
         let mut contents: Vec<ContentsEntry> = Vec::new();
@@ -83,6 +83,7 @@ fn plain(part: &Part, used: &mut Vec<String>) -> String {
             format!("<ul>\n<li>{}</li>\n</ul>\n", items.join("</li>\n<li>"))
         }
         Part::Table(table) => render(table),
+        // Details do not nest.
         Part::Details { .. } => String::new(),
     }
 }

@@ -31,6 +31,7 @@ impl Document {
                         None => format!("{}.", headings.join(": ")),
                     };
                     let comment = one_line(&headings.join(": "));
+                    // What follows a table at once is under which conditions its lines came about.
                     let notes = match parts.peek() {
                         Some(Part::List(items)) => items.join(" "),
                         _ => String::new(),

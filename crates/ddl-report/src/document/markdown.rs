@@ -17,6 +17,7 @@ fn render(part: &Part) -> String {
         Part::Paragraph(text) => format!("{text}\n"),
         Part::Warning(text) => format!("> **Warning.** {text}\n"),
         Part::List(items) => items.iter().flat_map(|item| ["- ", item, "\n"]).collect(),
+        // Unfolded above.
         Part::Details { .. } => String::new(),
         Part::Table(table) => match table.caption() {
             Some(caption) => format!("{caption}\n\n{table}"),

@@ -101,6 +101,7 @@ impl std::fmt::Display for Table {
             column.set_cell_alignment(side);
         }
         for (number, line) in table.lines().enumerate() {
+            // The rule under the header carries the alignment of the rendered table.
             let line = if number == 1 {
                 align_numbers(&line, &self.text)
             } else {

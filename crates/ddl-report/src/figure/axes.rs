@@ -59,6 +59,7 @@ pub(super) struct Axes {
 
 impl Axes {
     pub(super) fn around(points: &[Position], layout: &'static PlotLayout) -> Self {
+        // Without points there is nothing to show but empty axes.
         let [low, high] = bounds(points.iter().copied()).unwrap_or([[0.0; 2]; 2]);
         let centre = [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]));
         let fitting = |axis: usize| {

@@ -156,6 +156,7 @@ impl Drawing {
 
 /// Width of a text in pixels, about, of letters of this size: fonts differ, and the reader's is not known.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
+    // A letter of a wide sans-serif is about 0.56 of its size wide.
     0.56 * size * text.chars().count() as f64
 }
 

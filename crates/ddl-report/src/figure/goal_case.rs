@@ -142,6 +142,7 @@ fn check_near(
     places: &[Position],
     name: impl Fn(usize) -> String,
 ) -> Result<(), GoalCaseProblem> {
+    // Not a number is not near.
     let near = |place: &Position| distance(*place, here) <= FARTHEST;
     match places.iter().position(|place| !near(place)) {
         None => Ok(()),

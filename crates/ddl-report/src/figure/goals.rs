@@ -30,7 +30,7 @@ const TITLE_LINES: usize = 2;
 /// Draws 1 to 9 pedestrians with their estimated goals, a panel each, as the text of an SVG file.
 ///
 /// Each panel is in metres from the pedestrian's last observed position, at one scale for both axes. The area of a ring
-/// is the goal's probability, but for the smallest.
+/// is the goal's probability, but for the smallest. The same input gives the same bytes.
 ///
 /// # Errors
 /// There is no case or there are more than 9.
@@ -145,6 +145,7 @@ fn from(here: Position, positions: &[Position]) -> Vec<Position> {
 
 fn draw_heading(drawing: &mut Drawing, axes: &Axes, case: &GoalCase) {
     let [[left, top], [right, _]] = axes.frame();
+    // Beyond its frame there is space before that of the next panel.
     let width = right - left + PANEL.after[0] + EDGE;
     let mut lines = wrapped(case.title(), LETTERS, width, TITLE_LINES);
     lines.push(format!("nearest goal {:.2} m off", case.error()));

@@ -34,6 +34,7 @@ fn broken(text: &str, fits: impl Fn(&str) -> bool, most: usize, at_pauses: bool)
             continue;
         }
         let (full, rest) = match line.rfind([',', ':']) {
+            // Not the comma of a number.
             Some(pause) if at_pauses && line[pause + 1..].starts_with(' ') => {
                 let (full, rest) = line.split_at(pause + 1);
                 (full.to_owned(), format!("{} {word}", rest.trim_start()))

@@ -116,6 +116,7 @@ fn narrow(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
     let block = 56.0 + line_height * lines.len() as f64;
     let mut drawing = Drawing::new(width, 28.0 + block * names.len() as f64, title);
     chart.key(&mut drawing, [0.0, 12.0]);
+    // The mean first: the folds are a long way to scroll.
     for (place, name) in names
         .iter()
         .cycle()

@@ -7,6 +7,7 @@ const HEAD: &str = include_str!("head.html");
 pub(super) const THEME_BUTTON: &str = include_str!("theme_button.html");
 const PLAYER: &str = include_str!("player.html");
 const STYLE: &str = include_str!("style.css");
+/// Of the player. Run in this order, inside one function.
 pub(super) const PLAYER_SCRIPTS: [&str; 12] = [
     include_str!("script/theme.js"),
     include_str!("script/print.js"),

@@ -17,6 +17,7 @@ use crate::{
 };
 
 const TEMPLATE: &str = include_str!("page.html");
+/// Of what is on this page besides the player; run after its scripts.
 const REPORT_SCRIPTS: [&str; 2] = [
     include_str!("script/curves.js"),
     include_str!("script/report_file.js"),

@@ -33,7 +33,8 @@ pub(super) struct StandingLine {
 }
 
 impl Standing {
-    /// The forecaster that the report is about: the best trained one, without its variations, else the best of all.
+    /// The forecaster that the report is about: the best trained one, without its variations ("DDL" for "DDL without an
+    /// expert library"); else that of another program; else the best of all.
     pub(super) fn subject(&self) -> Option<&StandingLine> {
         let trained = |line: &&StandingLine| line.conditions.epochs.is_some();
         let foreign = |line: &&StandingLine| line.conditions.selection.is_some();
@@ -57,9 +58,11 @@ impl Standing {
     }
 }
 
-/// The results that the page begins with: under `fair` if there are any, else `single`, else `published`.
+/// The results that the page begins with: under `fair` if there are any, else `single`, else `published`; of these, those
+/// by the published window rule on all test windows if there are any.
 pub(super) fn standing(report: &Report) -> Option<Standing> {
     let groups = groups(report.rows());
+    // Groups stand in the order of conventions and rules already; the first of equals is taken.
     let rank = |group: &&ResultGroup<'_>| {
         let other_rule = group.window_rule != WindowRule::Published;
         (order(group.protocol), group.convention, other_rule)
@@ -71,6 +74,7 @@ pub(super) fn standing(report: &Report) -> Option<Standing> {
         .labelled()
         .map(|(line, label)| StandingLine::of(line, label, &folds))
         .collect();
+    // Lines without a mean stand last; the sort is stable.
     let order = |line: &StandingLine| line.mean.map_or(f64::INFINITY, |mean| mean[0]);
     lines.sort_by(|a, b| order(a).total_cmp(&order(b)));
     Some(Standing {

@@ -28,6 +28,7 @@ pub(super) fn json_in_script(json: &str) -> String {
         match characters.next() {
             Some('\u{2028}') => escaped.push_str("\\u2028"),
             Some('\u{2029}') => escaped.push_str("\\u2029"),
+            // What `</script`, `<!--` and `<script` begin with.
             _ if rest[at + 1..].starts_with(['/', '!', 's', 'S']) => {
                 escaped.push_str("\\u003c");
             }

@@ -42,6 +42,7 @@ fn training_panels(curves: &[TrainingCurve]) -> Vec<TrainingPanel> {
         let of_fold = || curves.iter().filter(move |curve| curve.fold == fold);
         for loss in distinct(of_fold().map(|curve| curve.loss.as_str())) {
             let of_loss = of_fold().filter(|curve| curve.loss == loss);
+            // All folds share one scale.
             let same_loss = curves.iter().filter(|curve| curve.loss == loss);
             let all = values(same_loss, |point| Some(point.loss));
             let series = series(of_loss, &variants, |point| Some(point.loss));

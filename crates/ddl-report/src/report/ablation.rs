@@ -83,6 +83,7 @@ fn alike(group: &ResultGroup<'_>) -> bool {
 fn variant(line: &TableLine<'_>) -> Option<&'static AblationRow> {
     let conditions = line.conditions();
     let name = conditions.variant.as_deref()?;
+    // "DDL with plain Euler steps" and the like are no variants of their own.
     let mut rows = LITERATURE.ablation.iter();
     rows.find(|row| conditions.forecaster == "DDL" && row.variant == name)
 }

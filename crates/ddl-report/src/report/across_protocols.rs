@@ -21,6 +21,7 @@ pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
     for oracle in groups.iter().filter(|g| g.protocol == Protocol::Published) {
         let mut comparable: Vec<&ResultGroup<'_>> =
             groups.iter().filter(|g| g.same_windows(oracle)).collect();
+        // From the published pipeline to the honest one.
         comparable.sort_by_key(|g| g.protocol != Protocol::Published);
         if comparable.len() < 2 {
             continue;

@@ -231,6 +231,7 @@ impl<'a> TableLine<'a> {
             }
         };
         let commit = known(&c.commit);
+        // What made the forecasts of another program is known to it alone.
         if let (None, Some(origin)) = (c.epochs, &c.selection) {
             return format!(
                 "{origin}; its seed, its training and what it saw of the future are not known here; scored at commit {commit}"

@@ -27,6 +27,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
 
 /// `None` for a single recording.
 fn table(group: &ResultGroup<'_>, fold: &str) -> Option<Table> {
+    // of several seeds the first
     let rows = group.lines.iter().map(|line| line.on(fold).next());
     let measured: Vec<(String, &ResultRow, Vec<RecordingErrors>)> = group
         .labels()

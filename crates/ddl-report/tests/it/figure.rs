@@ -183,6 +183,7 @@ fn every_role_of_a_scene_is_drawn_and_named() {
     ] {
         assert!(svg.contains(text), "no `{text}`");
     }
+    // Text of the user's files must not become markup.
     assert!(svg.contains("&lt;corridor&gt; &amp; ") && !svg.contains("<corridor>"));
     // 8 observed dots, a true end and a goal for each of the two, and the legend's 4, 1 and 1.
     assert_eq!(count(&svg, "<circle"), 2 * (8 + 1 + 1) + 4 + 1 + 1);

@@ -40,6 +40,7 @@ pub(super) fn over_cache(newest: &Tensor, heads: i64, cache: &[Rc<Tensor>]) -> T
     let (batch, pedestrians, width) = (newest.size()[0], newest.size()[1], newest.size()[2] / 3);
     let cached = cache.iter().map(|token| &**token);
     let tokens: Vec<&Tensor> = cached.chain([newest]).collect();
+    // All projections of all tokens at once: one copy, and one gradient for each token.
     let parts = Tensor::stack(&tokens, 0)
         .view([-1, batch, pedestrians, 3, heads, width / heads])
         .unbind(3);

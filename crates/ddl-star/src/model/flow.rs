@@ -127,6 +127,7 @@ fn neutral(
         bounds.velocity.narrow(-1, 1, 1),
     );
     let along = arriving * (1.0 - g) + (&vx * &cos + &vy * &sin) * g;
+    // At the goal all of these are 0, and nothing moves.
     let a = along
         .maximum(smallest)
         .clamp_min(f64::from(f32::MIN_POSITIVE));
@@ -181,7 +182,8 @@ impl SymmetricTensors {
 fn away(positions: &Tensor, goals: &Tensor) -> (Tensor, Tensor) {
     let offset = positions - goals;
     let distance = offset.norm_scalaropt_dim(2, [-1i64].as_slice(), true);
-    // Divided by infinity at the goal: u and its derivative are 0 there, and not huge.
+    // Divided by infinity at the goal: u and its derivative are 0 there. Divided by something small, the
+    // derivative would be huge, and that of a few steps at the goal no number.
     let at_goal = distance.lt(SMALLEST_NORM);
     let u = offset / distance.masked_fill(&at_goal, f64::INFINITY);
     (distance, u)

@@ -141,6 +141,7 @@ impl Pass {
         loss.f_backward()?;
         let mut sums = vec![0.0; parameters.count()];
         kernels.backward(&mut sums);
+        // Those of the layers that libtorch computes.
         let tensors = parameters.layout().tensors().iter();
         for (learned, tensor) in parameters.tensors().iter().zip(tensors) {
             let gradient = learned.f_grad()?;

@@ -168,6 +168,7 @@ impl ProposalTrainer {
         for (quantity, value) in [("loss", distance), ("gradient norm", norm_value)] {
             if !value.is_finite() {
                 let row = rows.int64_value(&[0, 0]) as usize;
+                // the reversed examples lie behind the others
                 let reversed = row >= self.onward;
                 let example = if reversed { row - self.onward } else { row };
                 return Err(StarError::ProposalNonFinite {

@@ -34,7 +34,7 @@ pub(crate) struct TrainerProgress {
     pub(crate) seconds: f64,
 }
 
-/// Writes everything a killed run needs to go on in one file.
+/// Writes everything a killed run needs to go on in one file, so that its parts never disagree.
 pub(crate) fn save(
     parameters: &Parameters,
     adam: &Adam,

@@ -35,8 +35,8 @@ impl TrainingBatch {
         }
     }
 
-    /// The same as if every observed coordinate were off by a normal error, whose deviation is uniform from 0 to `jitter`
-    /// (m) for each walker. Future and goals stay where they are. Draws from libtorch's generator.
+    /// The same as if every observed coordinate were off by a normal error, whose deviation is uniform from 0 to
+    /// `jitter` (m) for each walker. Future and goals stay where they are. Draws from libtorch's generator.
     pub(crate) fn jittered(self, jitter: f64) -> Self {
         let Self { scenes, goals } = self;
         let observed = scenes.positions.narrow(0, 0, OBSERVED as i64);

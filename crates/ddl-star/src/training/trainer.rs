@@ -211,6 +211,10 @@ impl Trainer {
 
     /// One batch: forward, backward, clipped Adam step.
     ///
+    /// Nothing is read back from the device but what [`StepReport::loss`] says. That a step changes nothing
+    /// when its loss is no longer a number is decided on the device, and so does no later one; the
+    /// next reading finds out.
+    ///
     /// # Errors
     /// [`StarError::NonFinite`] when loss or gradient of this step, or of one since the last reading, is no longer a
     /// number. The weights and the steps done are then those before that step.

@@ -87,6 +87,7 @@ fn a_bad_step_is_found_later_and_nothing_after_it_counts() {
         assert_eq!(trainer.steps(), known.steps());
         assert!((trainer.progress.loss_sum - known.progress.loss_sum).abs() < 1e-15);
 
+        // Drawn afresh, the step is as good as any other.
         trainer.draws = None;
         trainer.read_every = 1;
         assert_eq!(trainer.step().unwrap().loss, known.step().unwrap().loss);

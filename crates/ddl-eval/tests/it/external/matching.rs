@@ -208,6 +208,7 @@ fn baselines_see_whom_nobody_forecast() {
     let text = line(70, 1, &straight_on(0.0)) + &line(70, 3, &straight_on(50.0));
     let matched = of(&windows, &text, Coverage::Intersection).unwrap();
     let rows = external::measure(&conditions(Protocol::Single), &matched, 1).unwrap();
+    // nobody forecast where 2 goes
     assert!(rows[0].scores.collision_rate.abs() < f64::EPSILON);
     let mut forces = rows.iter();
     let forces = forces.find(|row| row.conditions.forecaster == "social force");

@@ -18,6 +18,7 @@ impl Kernel for Buffered<'_, SceneForward<'_>, SceneBuffers> {
     fn run<S: Simd>(mut self, simd: S) {
         let task = self.job.task;
         for group in 0..task.heads.groups() {
+            // The number of quads is spelled out for the usual one, which takes the loops over quads away.
             match (task.heads.quads(), task.decisions.is_some()) {
                 (1, false) => self.group::<S, false>(simd, group, 1),
                 (1, true) => self.group::<S, true>(simd, group, 1),

@@ -23,6 +23,7 @@ const KEPT: usize = 64;
 impl FeedForward {
     /// The derivative with respect to x, and those with respect to the weights added to `grads`.
     ///
+    /// With the same dropout as in [`Self::forward`], whose decisions are made again.
     /// `x`, `gy` `[rows, width]` -> `gx` `[rows, width]`, overwritten.
     /// An entry differs from the exact one by at most (width + hidden + 16) 2^-24 (for gx), (width + rows + 16) 2^-24 (for
     /// the others) times the formula with the absolute values of all its terms; where W1 x + b1 is 0 to rounding the

@@ -107,6 +107,7 @@ impl PairKernel for PairForward<'_> {
             squares,
         } = self;
         let columns = weights.columns;
+        // The blocks of the first rows, those of the next ones, and so on.
         let mut rounded_x = vec![[PairedRow::ZERO; ROWS]; columns * x.rows() / ROWS];
         for (tile, rounded) in rounded_x.iter_mut().enumerate() {
             let (row, column) = (tile / columns * ROWS, tile % columns);

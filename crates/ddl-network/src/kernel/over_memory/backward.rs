@@ -27,6 +27,7 @@ pub(super) struct MemoryBackward<'a> {
 impl Kernel for Buffered<'_, MemoryBackward<'_>, MemoryBuffers> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
+        // The usual width is spelled out, which takes the loops over quads away.
         match self.job.heads.width {
             DEPTH => self.rows(simd, DEPTH, 1),
             width => {

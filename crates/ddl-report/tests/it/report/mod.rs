@@ -143,6 +143,7 @@ fn a_table_names_everything_it_must() {
         assert!(page.contains(named), "no `{named}` in\n{page}");
     }
     assert_eq!(cells(line(&page, "| DDL "))[1..], ["0.250/0.500"; 6]);
+    // The literature's DDL row stands in a table of its own, and the warning where it belongs.
     assert!(!page.contains("**Warning.**"));
     assert!(!page.contains("Table II") && !page.contains("Ablation"));
     assert!(!page.contains("By recording"));
@@ -385,6 +386,7 @@ fn own_recordings_have_a_row_each_and_one_for_all() {
     ] {
         assert_eq!(cells(line(&page, &format!("| {} ", row[0]))), row);
     }
+    // One recording is the whole table already.
     measured.blocks.pop();
     assert!(!markdown([measured]).contains("By recording"));
 }

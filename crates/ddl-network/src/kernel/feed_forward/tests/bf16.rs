@@ -19,6 +19,7 @@ pub(super) fn layers(case: &Case) -> Vec<FeedForward> {
 }
 
 pub(super) fn run(case: &Case, layer: &FeedForward) -> Vec<f32> {
+    // Overwritten.
     let mut y = vec![f32::NAN; case.x.len()];
     layer.forward(&case.x, case.dropout, &mut y);
     y

@@ -77,6 +77,7 @@ impl Case {
     }
 
     pub(super) fn run(&self, layer: &FeedForward) -> (Vec<f32>, Vec<f32>, Gradients) {
+        // Both are overwritten.
         let [mut y, mut gx] = [vec![f32::NAN; self.x.len()], vec![f32::NAN; self.x.len()]];
         let mut grads = Gradients::zeros(self.width, self.hidden);
         layer.forward(&self.x, self.dropout, &mut y);
