@@ -15,7 +15,6 @@ use ddl_eval::{
 
 /// Pedestrians of univ under the published rule.
 const PEDESTRIANS: usize = 24_254;
-/// Pedestrians of a window.
 const CROWD: usize = 25;
 /// Side of the square they begin in, m: as dense as univ.
 const SIDE: f64 = 14.0;

@@ -22,8 +22,7 @@ pub struct Conditions {
     pub fold: String,
     /// Name of the forecaster.
     pub forecaster: String,
-    /// Ablation variant (`full`, `no-goal-shift`, `no-dynamics` or `star`) and a backbone other than STAR (`perceptron`); `None`
-    /// when it has none.
+    /// Ablation variant (`full`, `no-goal-shift`, `no-dynamics` or `star`) and a backbone other than STAR, if any.
     pub variant: Option<String>,
     /// Seed of the training and of the samples; `None` when nothing is random.
     pub seed: Option<u64>,
@@ -108,7 +107,6 @@ impl ResultRow {
         Self::measure_among(conditions, forecaster, windows, windows)
     }
 
-    /// The same for a part of the pedestrians: the forecaster is shown everybody of the whole windows, one each.
     pub(crate) fn measure_among(
         conditions: Conditions,
         forecaster: &(impl Forecaster + ?Sized),
@@ -142,7 +140,6 @@ impl ResultRow {
         Self::score_among(conditions, windows, windows, forecasts)
     }
 
-    /// The same for windows that are reduced to a part of their pedestrians.
     pub(crate) fn score_among(
         conditions: Conditions,
         windows: &[Window],

@@ -30,7 +30,6 @@ pub(crate) fn walk(start: Position, step: Position) -> Vec<Position> {
     (1..=HORIZON).map(|t| at(start, step, t as f64)).collect()
 }
 
-/// A forecast of `pedestrians` equal groups of hypotheses, given in order, with equal weights.
 pub(crate) fn forecast(pedestrians: usize, hypotheses: &[Vec<Position>]) -> Forecast {
     let k = hypotheses.len() / pedestrians;
     Forecast::equally_likely(pedestrians, k, hypotheses.concat()).unwrap()

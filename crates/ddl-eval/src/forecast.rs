@@ -8,15 +8,13 @@ use crate::{error::ForecastShapeError, region::RegionTable};
 
 /// K weighted hypotheses of 12 positions for each of N pedestrians, in the order of the window.
 ///
-/// Frames are 0.4 s apart; the first is the one after the last observed frame. Hypothesis `k` of
-/// every pedestrian together is one joint future of the scene, which is what the joint metrics score.
+/// Frames are 0.4 s apart; the first follows the last observed one. Hypothesis `k` of everybody is one joint future.
 ///
 /// # Shapes
-/// positions `[N][K][12]` in metres, weights `[N][K]` (sum 1 a pedestrian), goals `[N][K]` in metres:
-/// the point hypothesis `k` is meant to end at, when the model has such a notion; certified `[N][K]`:
-/// whether the model's proof that hypothesis `k` goes to its goal holds, when it gives one; spread `[N][12]` in metres: the standard
-/// deviation in every direction of where a pedestrian is about the position of the right hypothesis, when the model says so;
-/// familiarity `[N]`, 0 to 1: how much the observed motion is like those that the model was trained on.
+/// positions `[N][K][12]` in metres, weights `[N][K]` (sum 1 a pedestrian), goals `[N][K]` in metres; certified
+/// `[N][K]`: whether the model's proof that hypothesis `k` goes to its goal holds; spread `[N][12]` in metres: the
+/// standard deviation of a pedestrian about the right hypothesis; familiarity `[N]`, 0 to 1: how much the observed
+/// motion is like those that the model was trained on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
     pedestrians: usize,
@@ -110,8 +108,7 @@ impl Forecast {
         })
     }
 
-    /// The same forecast with its spread about the hypotheses, `[N][12]`: standard deviations in every direction (metres),
-    /// and the table by which its [regions](Self::region) hold a pedestrian with a given probability.
+    /// The same forecast with its spread about the hypotheses, `[N][12]` (metres), and its table of regions.
     ///
     /// # Errors
     /// The array has the wrong length, or a deviation is not finite and positive.
@@ -151,8 +148,7 @@ impl Forecast {
         })
     }
 
-    /// Standard deviation of pedestrian `i` in every direction, `t` + 1 steps ahead, about the right hypothesis (metres);
-    /// `None` for forecasts without a spread.
+    /// Standard deviation of pedestrian `i`, `t` + 1 steps ahead, about the right hypothesis (metres), if known.
     pub fn spread(&self, i: usize, t: usize) -> Option<f64> {
         let (spread, _) = self.spread.as_ref()?;
         Some(spread[i * HORIZON..][..HORIZON][t])
@@ -163,8 +159,7 @@ impl Forecast {
         self.spread.as_ref().map(|(_, regions)| regions.as_ref())
     }
 
-    /// How much the observed motion of pedestrian `i` is like those that the model was trained on, 0 to 1; `None` for
-    /// forecasts of models that do not say.
+    /// How much the observed motion of pedestrian `i` is like that of the training, 0 to 1; `None` where unknown.
     pub fn familiarity(&self, i: usize) -> Option<f64> {
         self.familiarity.as_ref().map(|familiarity| familiarity[i])
     }
@@ -201,8 +196,7 @@ impl Forecast {
         self.goals.is_some()
     }
 
-    /// Whether the certificate of hypothesis `k` of pedestrian `i` holds; `None` for forecasts that
-    /// carry no certificates.
+    /// Whether the certificate of hypothesis `k` of pedestrian `i` holds; `None` without certificates.
     pub fn certified(&self, i: usize, k: usize) -> Option<bool> {
         let pair = self.pair(i, k);
         self.certified.as_ref().map(|certified| certified[pair])
@@ -214,8 +208,6 @@ impl Forecast {
     }
 
     /// The hypothesis of greatest weight of pedestrian `i`; of equals, the first.
-    ///
-    /// To act on one hypothesis, take the [representative](Self::representative) one.
     pub fn most_likely(&self, i: usize) -> usize {
         (1..self.hypotheses).fold(0, |best, k| {
             if self.weight(i, k) > self.weight(i, best) {

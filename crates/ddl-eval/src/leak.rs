@@ -1,6 +1,4 @@
 //! The leak test: does a forecast change when the future does?
-//!
-//! [`Protocol::forecast`](crate::Protocol::forecast) cuts the future off; [`find`] checks the forecaster itself.
 
 use ddl_data::{OBSERVED, Position, WINDOW, Window};
 
@@ -83,7 +81,6 @@ mod tests {
     use super::*;
     use crate::fixture::{forecast, walk, window};
 
-    /// Reads one coordinate of one future frame of the last pedestrian, when it is there.
     struct Peeks {
         frame: usize,
     }

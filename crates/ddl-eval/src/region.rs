@@ -9,8 +9,8 @@
 //!
 //! The region of a level is where the score is at most a quantile `q` of the scores of true positions that the level of them
 //! does not exceed, found on recordings that were kept for this (split-conformal prediction): one disc about each hypothesis,
-//! of the radius `s sqrt(2 (q + ln(w_k / max w)))`, and none where that is no number. A likelier hypothesis has a larger disc, and the
-//! likeliest one always has one. What was calibrated on some places holds on average over places like these.
+//! of the radius `s sqrt(2 (q + ln(w_k / max w)))`, and none where that is no number. What was calibrated on some
+//! places holds on average over places like these.
 //!
 //! # References
 //! Vovk et al., *Algorithmic Learning in a Random World*, 2005 (split-conformal prediction).
@@ -114,8 +114,7 @@ impl RegionTable {
         [levels[0], levels[levels.len() - 1]]
     }
 
-    /// The quantile of a level, `t` + 1 steps ahead, linear between the levels of the table; `None` beyond its
-    /// [range](Self::range).
+    /// The quantile of a level, `t` + 1 steps ahead, linear between the levels; `None` beyond the [range](Self::range).
     pub fn quantile(&self, level: f64, t: usize) -> Option<f64> {
         let LevelQuantiles { levels, quantiles } = &self.0;
         let [lowest, highest] = self.range();
@@ -245,7 +244,6 @@ mod tests {
     }
 
     proptest! {
-        /// A position is in the region exactly if its score is at most the quantile; and the level of calibrated positions is.
         #[test]
         fn the_region_is_where_the_score_is_small(
             ends in vec([-3.0..3.0f64, -3.0..3.0f64], 5),

@@ -5,9 +5,8 @@
 //! k* = argmin_k sum_j w_j d(k, j)
 //! ```
 //!
-//! If the truth were hypothesis `j` with probability `w_j`, the sum would be the ADE to expect of forecasting `k`: the
-//! representative is the Bayes choice for that error. The heaviest hypothesis ([`Forecast::most_likely`]) is not: where
-//! goals divide the probability finely, it may stand far from most of it.
+//! If the truth were hypothesis `j` with probability `w_j`, the sum would be the ADE to expect of forecasting `k`; the
+//! heaviest hypothesis ([`Forecast::most_likely`]) may stand far from most of the probability.
 //!
 //! # Numerics
 //! O(K^2 T). Expected errors within 1 nm of the least count as equal; of these the heaviest hypothesis is taken, then
@@ -23,8 +22,7 @@ use crate::{Forecast, metric::displacement::average_displacement};
 const EQUAL: f64 = 1e-9;
 
 impl Forecast {
-    /// The hypothesis of pedestrian `i` that stands for all: of least expected ADE if the truth is one of them, each with
-    /// its weight. It is the forecast of the protocol `single`, and what is checked for collisions.
+    /// The hypothesis of pedestrian `i` that stands for all: of least expected ADE if the truth is one of them.
     pub fn representative(&self, i: usize) -> usize {
         let weights: Vec<f64> = (0..self.hypotheses()).map(|k| self.weight(i, k)).collect();
         medoid(&weights, |k, j| {

@@ -56,8 +56,7 @@ impl<'a> Scene<'a> {
         self.window
     }
 
-    /// The window with everybody who was there, forecast or not; the [`window`](Self::window) itself, but after
-    /// [`among`](Self::among).
+    /// The window with everybody who was there, forecast or not.
     pub fn everybody(&self) -> &'a Window {
         self.everybody
     }

@@ -19,8 +19,7 @@ use crate::{
 
 /// The metrics of one forecaster on the test windows of one fold.
 ///
-/// Means are over pedestrians; a pedestrian in several windows counts once for each. Fields that earlier versions did not
-/// write are `None` when their files are read.
+/// Means are over pedestrians, one in several windows once for each. Fields that earlier versions lack are `None`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Scores {
     /// Pedestrians scored, over all windows.
@@ -65,8 +64,7 @@ pub struct Scores {
     pub miss_rate_2m: Option<f64>,
     /// Share of pedestrians whose representative forecast runs into another's true future, in [0, 1].
     pub true_neighbour_collision_rate: Option<f64>,
-    /// Negative log-likelihood of the truth under a kernel density of the hypotheses, nats; `None` for one
-    /// hypothesis.
+    /// Negative log-likelihood of the truth under a kernel density of the hypotheses, nats; `None` for one hypothesis.
     pub kde_nll: Option<f64>,
     /// Average Mahalanobis distance of the truth, deviations; `None` for one hypothesis.
     pub amd: Option<f64>,
@@ -76,8 +74,7 @@ pub struct Scores {
     pub diversity: Option<f64>,
     /// Mean distance between the ends of two hypotheses, metres; `None` for one hypothesis.
     pub end_diversity: Option<f64>,
-    /// Mean of -ln of the weight of the hypothesis whose goal is nearest to the true end, nats; equal weights have ln K. `None` for one
-    /// hypothesis.
+    /// Mean of -ln of the weight of the hypothesis whose goal is nearest to the true end, nats; `None` for one.
     pub weight_log_loss: Option<f64>,
     /// Share of true positions inside the regions of 50 % and of 90 %, in [0, 1]; `None` for forecasts without regions.
     pub coverage: Option<[f64; 2]>,
@@ -85,8 +82,7 @@ pub struct Scores {
     pub region_radius: Option<[f64; 2]>,
     /// Mean familiarity of the observed motions, 0 to 1; `None` for forecasters that do not say.
     pub familiarity: Option<f64>,
-    /// The pedestrians by kind of motion, in the order of [`Category::all`](crate::category::Category::all);
-    /// categories that nobody is in are left out.
+    /// The pedestrians by kind of motion, in the order of [`Category::all`](crate::category::Category::all).
     #[serde(default)]
     pub categories: Vec<CategoryScores>,
 }

@@ -4,14 +4,11 @@ use crate::names::named;
 use serde::{Deserialize, Serialize};
 
 /// Precision of the products in the feed-forward blocks of forecasts, on the CPU.
-///
-/// A choice of the one who computes, not of the model: weights, and all else that is computed, are what they are without it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
     /// Single precision throughout: the reference.
     F32,
-    /// Factors with 8 significant bits, sums in single precision. Fast on processors with AVX-512 BF16; emulated on others,
-    /// bit for bit and slowly.
+    /// Factors with 8 significant bits, sums in single precision; emulated, bit for bit, without AVX-512 BF16.
     Bf16,
 }
 

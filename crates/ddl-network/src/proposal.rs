@@ -1,5 +1,4 @@
 //! A small network that proposes where a pedestrian will be at the end of the horizon.
-//!
 //! It sees one pedestrian in its own frame and those nearby. An ensemble of members, each with K ends, is trained so that
 //! the nearest of the K ends comes close to the true one ("winner takes all").
 

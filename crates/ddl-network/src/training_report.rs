@@ -12,8 +12,7 @@ pub struct StepReport {
     /// Steps of an epoch.
     pub steps_per_epoch: usize,
     /// Mean loss (square metres) of the steps whose losses were read with this one; `None` when none was.
-    ///
-    /// On CUDA, where reading a loss waits for all work ahead, every sixteenth step and the last of an epoch read several.
+    /// On CUDA every sixteenth step and the last of an epoch read several.
     pub loss: Option<f64>,
     /// Set when the step was the last of its epoch.
     pub finished_epoch: Option<EpochReport>,

@@ -22,7 +22,6 @@ const SPEEDS: [f64; 4] = [0.45, 0.8, 1.0, 1.2];
 /// Moments of the player alone.
 const MOMENTS: usize = 8;
 
-/// Goals in a fan around the point that the mean velocity reaches: straight on and as fast is likeliest.
 #[derive(Clone, Copy)]
 struct Fan;
 
@@ -156,8 +155,6 @@ fn rows(
     Ok(rows)
 }
 
-/// Moments of the player alone, as for tracks that are still going on: what then happened was seen of everybody at first, of some later,
-/// of nobody at the end.
 fn under_way(windows: &[Window]) -> Result<Vec<Moment>, Box<dyn Error>> {
     let spread = windows.iter().step_by((windows.len() / MOMENTS).max(1));
     let mut moments = Vec::new();
@@ -181,7 +178,6 @@ fn under_way(windows: &[Window]) -> Result<Vec<Moment>, Box<dyn Error>> {
     Ok(moments)
 }
 
-/// Curves that look like a training's. Nothing was trained.
 fn made_up(folds: &[&str]) -> Vec<TrainingCurve> {
     let mut curves = Vec::new();
     let variants = ["full", "no-dynamics", "no-goal-shift"];

@@ -1,5 +1,4 @@
-//! Which cases are shown, and why: the moments of a fold, typical cases of each kind and the rest of the day, chosen by
-//! rule.
+//! Which cases are shown, and why: the moments of a fold and typical cases of each kind, chosen by rule.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -74,8 +73,7 @@ pub struct Pick {
     /// Indices of the pedestrians it is about, in the order of the moment.
     #[serde(rename = "walkers")]
     pub pedestrians: Vec<usize>,
-    /// By which rule it was picked, in words, with its numbers: "of 212 such pedestrians the one of median minADE (0.14
-    /// m)".
+    /// By which rule it was picked, in words, with its numbers.
     pub rule: String,
 }
 
@@ -92,8 +90,7 @@ impl Pick {
 
 /// What to show of the forecasts of one fold, one a window, in order of recording and time.
 ///
-/// For each kind of case ([`Show`]) the moment of one pedestrian: of all pedestrians of that kind the one of median minADE, so that
-/// neither a success nor a failure is picked by hand. And of each recording 8 moments evenly spread over its windows.
+/// For each [`Show`] the moment of the pedestrian of median minADE; of each recording 8 moments evenly spread.
 ///
 /// # Errors
 /// A window has no future, or a forecast is not of its window's pedestrians.
@@ -153,7 +150,6 @@ fn picks(
         .collect())
 }
 
-/// The case of median error; of an even number the better of the two in the middle.
 fn median(show: Show, mut cases: Vec<GalleryCase>) -> (usize, Pick) {
     let count = cases.len();
     cases.sort_by(|a, b| {
@@ -177,7 +173,6 @@ fn median(show: Show, mut cases: Vec<GalleryCase>) -> (usize, Pick) {
     (case.window, pick)
 }
 
-/// What pedestrian `i` is a case of, and whom else it is about.
 fn shows(scene: &Scene<'_>, i: usize) -> Vec<(Show, Vec<usize>)> {
     let window = scene.window();
     let mut shows = Vec::new();

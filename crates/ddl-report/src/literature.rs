@@ -1,8 +1,6 @@
 //! Published results and measured baselines as data, each row with its source and data convention.
-//!
-//! Values are those printed by the source, in metres, ADE/FDE. Rows of different conventions are not
-//! comparable: on ETH the same system errs about 60 % more in the `social-gan` files than in the
-//! `star` files, because their frames are farther apart.
+//! Values are those printed by the source, in metres, ADE/FDE. Rows of different conventions are not comparable: on ETH
+//! the same system errs about 60 % more in the `social-gan` files than in the `star` files.
 
 use std::sync::LazyLock;
 
@@ -158,7 +156,6 @@ fn cells(folds: &[[f64; 2]; 5], mean: [f64; 2]) -> impl Iterator<Item = String> 
 mod tests {
     use super::*;
 
-    /// A typing error in a cell moves the mean of its row: printed means agree to their rounding.
     #[test]
     fn printed_means_are_the_means_of_the_printed_folds() {
         let published = LITERATURE

@@ -15,8 +15,7 @@ const REGION: f64 = 0.9;
 
 /// What was observed, what was forecast and what then happened, at one moment of a recording.
 ///
-/// Positions are metres rounded to the millimetre, weights to a thousandth: for looking at. The verdicts are those of the
-/// unrounded forecast.
+/// Positions are metres rounded to the millimetre, weights to a thousandth; verdicts are of the unrounded forecast.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Moment {

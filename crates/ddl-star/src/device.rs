@@ -49,8 +49,7 @@ pub fn set_threads(threads: usize) {
     tch::set_num_threads(i32::try_from(threads.max(1)).unwrap_or(i32::MAX));
 }
 
-/// One thread for tensor operations in this process until it is dropped: small tensors are not worth sharing, and on a busy
-/// machine the threads wait for each other most of the time.
+/// One thread for tensor operations until it is dropped: small tensors are not worth sharing.
 #[derive(Debug)]
 pub(crate) struct OneThread(i32);
 

@@ -14,7 +14,6 @@ use ddl_network::{ForecastWindows, WindowRollout};
 use ddl_star::{ComputeDevice, TorchNetwork, Trainer};
 use tch::Kind;
 
-/// One recurrent layer, whose state looks at the neighbours once a time step.
 #[derive(Debug, Clone)]
 struct Recurrent {
     first: Linear,

@@ -13,7 +13,6 @@ use proptest::prelude::*;
 use tch::{Kind, Tensor};
 
 const SIGMA: f64 = 1e-8;
-/// Steps of a forecast.
 const HORIZON: i64 = 12;
 
 /// Top speed, own velocity and share of bounded steps, and whether metrics are in m/s.
@@ -171,7 +170,6 @@ proptest! {
     }
 }
 
-/// Walkers side by side in a chain, which costs hardly more than one.
 const SIDE_BY_SIDE: usize = 16;
 
 proptest! {

@@ -111,8 +111,6 @@ fn it_learns_where_walkers_go_on_a_fork() {
     assert!(reach(1.5) > reach(0.8) + 1.0);
 }
 
-/// The same ends and weights (metres), for people alone, in a crowd, standing, and with others out of reach; by networks with
-/// initial and with learned numbers.
 #[test]
 fn plain_numbers_propose_what_libtorch_proposes() {
     let mut views: Vec<PedestrianView> = (0..70_u8)

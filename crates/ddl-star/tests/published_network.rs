@@ -35,7 +35,6 @@ impl Reference {
             .to_kind(kind)
     }
 
-    /// The three scenes as windows.
     fn windows(&self) -> Vec<Window> {
         let positions = self.numbers("/positions");
         let walkers = positions.len() / 40;

@@ -39,7 +39,6 @@ fn trainer(variant: Variant, epochs: usize) -> Trainer {
     Trainer::new(network, windows(), training).unwrap()
 }
 
-/// The mean loss of each epoch of a whole training.
 fn losses(mut trainer: Trainer) -> Vec<f64> {
     let mut losses = Vec::new();
     while !trainer.is_finished() {
@@ -112,7 +111,6 @@ fn a_goal_is_needed_for_everybody() {
     );
 }
 
-/// The weights of a training that was stopped, saved and resumed after so many steps.
 fn resumed(trainer: impl Fn() -> Trainer, stop: u64) -> Vec<f32> {
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("optimizer.safetensors");
@@ -126,7 +124,6 @@ fn resumed(trainer: impl Fn() -> Trainer, stop: u64) -> Vec<f32> {
     whole(second)
 }
 
-/// The weights at the end.
 fn whole(mut trainer: Trainer) -> Vec<f32> {
     while !trainer.is_finished() {
         trainer.step().unwrap();

@@ -36,8 +36,8 @@ impl ConstantVelocity {
         Self(VelocityRule::MeanObserved)
     }
 
-    /// Twenty hypotheses of equal weight: the last observed step turned by angles drawn from N(0, (25 degrees)^2), for
-    /// every pedestrian and sample. They depend on the seed, the recording and the first frame alone.
+    /// Twenty hypotheses of equal weight: the last observed step turned by angles drawn from N(0, (25 degrees)^2). They
+    /// depend on the seed, the recording and the first frame alone.
     pub fn angular_noise(seed: u64) -> Self {
         Self(VelocityRule::AngularNoise { seed })
     }

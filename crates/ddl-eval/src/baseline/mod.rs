@@ -19,9 +19,8 @@ pub const NOISE_SEED: u64 = 1;
 
 /// Measures the baselines that a protocol admits on the windows of one fold.
 ///
-/// These are constant velocity (last step, mean observed, and with angular noise where several hypotheses are allowed),
-/// bounded constant acceleration, the social force model, and the straight line to the TRUE end where the future is
-/// shown. What the `conditions` say of the forecaster and its training is replaced.
+/// These are constant velocity, bounded constant acceleration, the social force model, and the straight line to the
+/// TRUE end where the future is shown. What the `conditions` say of the forecaster and its training is replaced.
 ///
 /// # Errors
 /// The windows cannot be scored.
@@ -33,7 +32,6 @@ pub fn measure(
     measure_among(conditions, windows, windows, noise_seed)
 }
 
-/// The same, scored on a part of the pedestrians; the baselines see everybody of the whole windows, one each.
 pub(crate) fn measure_among(
     conditions: &Conditions,
     windows: &[Window],

@@ -36,8 +36,7 @@ const NEGLIGIBLE: f64 = 15.0 * REACH;
 /// w = 1 within 100 degrees of e, else 0.5;  |v| <= 1.3 |v0|
 /// ```
 ///
-/// Integrated by Euler in steps of 0.05 s, first the velocity, then the position. The parameters are the paper's;
-/// its walls, fluctuations and attractions are left out. Who stands keeps standing.
+/// Integrated by Euler in steps of 0.05 s. The paper's walls, fluctuations and attractions are left out.
 ///
 /// # References
 /// Helbing and Molnar, "Social force model for pedestrian dynamics", Physical Review E 51 (1995).

@@ -78,8 +78,6 @@ impl<G: GoalSource + ?Sized> GoalSource for &G {
 }
 
 /// The last true position: an oracle, which only the protocol `published` lets see.
-///
-/// The straight line to it is the floor of any straight goal-directed model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct TrueEnd;
 

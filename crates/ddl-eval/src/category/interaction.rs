@@ -111,7 +111,6 @@ impl fmt::Display for Interaction {
     }
 }
 
-/// Frames at which another pedestrian is where it matters.
 #[derive(Default)]
 struct Encounter {
     ahead: usize,

@@ -7,8 +7,8 @@
 //! s(1) ~ N((z(1), 0), I)                                        the forecast: p(8) + 12 v(8)
 //! ```
 //!
-//! Noises and prior are those of `TrajNet++`'s filter. That one adapts them by ten rounds of EM and averages five random
-//! continuations; here they stay, and the continuation is the expected one.
+//! Noises and prior are those of `TrajNet++`'s filter. That one adapts them by EM and averages random continuations.
+//! Here they stay, and the continuation is the expected one.
 
 use ddl_data::{HORIZON, Position};
 

@@ -1,6 +1,4 @@
-//! What kind of walk a result is about: the pedestrian's own motion ([`MotionKind`]), and `TrajNet++`'s
-//! [`TrajectoryType`] with the [`Interaction`]s of its third type.
-//!
+//! What kind of walk a result is about: [`MotionKind`], and `TrajNet++`'s [`TrajectoryType`] with [`Interaction`]s.
 //! All read the future: for grouping results once forecasts are made. No forecast may depend on them.
 
 mod interaction;

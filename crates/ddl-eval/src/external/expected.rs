@@ -10,7 +10,6 @@ use super::lines::{Wrong, in_field, whole_line};
 use super::pedestrian_key::{PedestrianKey, frames_ahead, in_short, last_observed};
 use crate::Forecast;
 
-/// What is forecast of one pedestrian, as the file has it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct PedestrianForecast {
     /// `[K][12]`, metres.

@@ -43,8 +43,7 @@ impl Unknown {
         self.frames = Some((least.min(frame), greatest.max(frame)));
     }
 
-    /// A likely reason why the forecasts match no pedestrian: what recordings the windows are of, the range of frames until which
-    /// they are observed, and how many other forecasts match.
+    /// A likely reason why the forecasts match no pedestrian, given how many others match.
     pub(super) fn hint(
         &self,
         recordings: &[&str],

@@ -34,7 +34,6 @@ enum Name {
     Word(String),
 }
 
-/// For fields: a [`Whole`] as the number it is.
 pub(super) fn whole<'de, D: Deserializer<'de>>(field: D) -> Result<i64, D::Error> {
     Whole::deserialize(field).map(|Whole(number)| number)
 }

@@ -57,8 +57,8 @@ impl Matched {
         self.pedestrians
     }
 
-    /// The words by which a result names the part of the pedestrians it is of: the file, both counts and a digest of who
-    /// they are. `None` where it is of all.
+    /// The words by which a result names the part of the pedestrians it is of, with a digest of them. `None` where
+    /// it is of all.
     pub fn test_subset(&self) -> Option<String> {
         let scored = self.forecast_pedestrians();
         (scored < self.pedestrians).then(|| {

@@ -60,7 +60,6 @@ pub fn measure(
 }
 
 impl Matched {
-    /// Refuses files of which half of the likeliest forecasts begin more than 3 m from the last observed position.
     fn ensure_in_place(&self) -> Result<(), ExternalError> {
         let starts: Vec<(Position, Position)> = self
             .windows

@@ -1,9 +1,6 @@
 //! Forecasts that another program made: read from a file, matched with the windows of a fold, scored.
-//!
-//! A pedestrian of a window is named by the recording, the raw number of the **last observed** frame (`observed_until`),
-//! and the pedestrian. [`write_windows`] hands out what was observed, [`read`] takes forecasts back in one of three
-//! [formats](ExternalFormat), and [`measure`] scores them beside the baselines. `docs/your-model.md` describes the
-//! files. Nothing is repaired: whatever is wrong is an error with its line and field.
+//! Recording, raw number of the **last observed** frame (`observed_until`) and pedestrian say whom a forecast is of.
+//! `docs/your-model.md` describes the files. Whatever is wrong is an error with its line and field.
 
 mod error;
 mod expected;

@@ -1,9 +1,8 @@
 //! TrajNet++ ndjson: scenes of 8 or 9 observed and 12 forecast frames, and the tracks that were forecast in them.
 //!
-//! A scene stands for the window that starts at its first frame or, with 9 observed frames, at its second. Its primary
-//! pedestrian is forecast for its own sake; a neighbour's forecast counts where no scene of the window has that pedestrian
-//! as its primary one. Neighbours who are not in the window are not scored, and left out. Where pedestrians are forecast
-//! in several scenes, hypothesis k of a window is put together from those scenes.
+//! A scene stands for the window that starts at its first frame or, with 9 observed frames, at its second. A
+//! neighbour's forecast counts where no scene of the window has it as primary; who is outside the window is left out.
+//! Hypothesis k of a window is put together from the scenes.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::BufRead;

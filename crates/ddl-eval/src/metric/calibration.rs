@@ -5,8 +5,7 @@
 //! log loss = -1/N sum_i ln w_{i, k*(i)}      nats, k*(i) the hypothesis nearest the truth
 //! ```
 //!
-//! Equal weights have the log loss ln K. Reference: Guo et al., *On calibration of modern neural
-//! networks*, ICML 2017 (reliability diagram, expected calibration error).
+//! Equal weights have ln K. Reference: Guo et al., *On calibration of modern neural networks*, ICML 2017.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,8 +17,7 @@ const SMALLEST: f64 = 1e-6;
 /// Reliability of the probabilities of many sets of hypotheses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
-    /// Mean of -ln of the probability given to the nearest hypothesis, nats; probabilities below 1e-6
-    /// count as that.
+    /// Mean of -ln of the probability (at least 1e-6) given to the nearest hypothesis, nats.
     pub log_loss: f64,
     /// What equal probabilities would have: ln K, averaged over the sets.
     pub uniform_log_loss: f64,
@@ -85,7 +83,6 @@ mod tests {
 
     use super::*;
 
-    /// Of two goals the likelier (0.75) is the nearest three times out of four; of two others the certain one every other time.
     #[test]
     fn probabilities_come_true_or_not() {
         let of = |weights: &[f64; 2], second: usize| {

@@ -13,8 +13,7 @@
 //! closer than this too: compare with the rate of the true futures. Other works take centres closer than 0.2 m, pairs
 //! instead of people, or fewer instants: their percentages are not comparable.
 //!
-//! Against the truth (Col-II of `TrajNet++`) pedestrian i follows its representative hypothesis, and everybody else,
-//! forecast or not, the TRUE future. A forecast that stays far from everybody because it is wrong scores well there.
+//! Against the truth (Col-II of `TrajNet++`) everybody but pedestrian i follows the TRUE future.
 //!
 //! # References
 //! Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds" (`TrajNet++`), T-ITS 2021.

@@ -14,12 +14,9 @@
 //! The two minima are independent; STAR's and DDL's code prints `FDE@minADE`, works that choose by the end (`PECNet`,
 //! Y-Net) `ADE@minFDE`. The expected error is that of a hypothesis drawn with its weight; the most likely hypothesis is
 //! not the one of the protocol `single`, the [representative](Forecast::representative) one.
-//!
-//! JADE and JFDE are never smaller than the mean of the pedestrians' own minima, and a fair question only to models
-//! whose hypothesis `k` is one future of the scene. The averages of "Joint Metrics Matter" are over scenes; here a
-//! scene counts with its number of pedestrians, so that JADE and minADE are means over the same people. The goal FDE is
-//! the error of the goal estimator alone, and the least that a model which converges to its goals can have; the goal of
-//! a pedestrian still under way lies beyond the 12th frame, and is compared with the last true position all the same.
+//! JADE and JFDE are a fair question only to models whose hypothesis `k` is one future of the scene. The averages of
+//! "Joint Metrics Matter" are over scenes; here a scene counts with its number of pedestrians. The goal of a pedestrian
+//! still under way lies beyond the 12th frame, and is compared with the last true position all the same.
 //!
 //! # References
 //! Pellegrini et al., "You'll never walk alone", ICCV 2009 (displacement errors); Gupta et al.,

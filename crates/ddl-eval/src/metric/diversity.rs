@@ -8,8 +8,7 @@
 //! Weights and truth do not count: noise is diverse too. A forecast of one hypothesis has none.
 //!
 //! # References
-//! Yuan and Kitani, "`DLow`: Diversifying Latent Flows for Diverse Human Motion Prediction", ECCV 2020
-//! (APD, there over whole poses).
+//! Yuan and Kitani, "`DLow`: Diversifying Latent Flows for Diverse Human Motion Prediction", ECCV 2020 (APD).
 
 use crate::Scene;
 

@@ -35,8 +35,7 @@ pub const LOWEST_LOG_DENSITY: f64 = -20.0;
 /// Least deviation of a distribution of positions along any direction, metres.
 pub const LEAST_DEVIATION: f64 = 0.01;
 
-/// `ln f(at)` of the kernel density of weighted points, nats for a density per square metre; not
-/// clipped.
+/// `ln f(at)` of the kernel density of weighted points, nats for a density per square metre; not clipped.
 ///
 /// # Panics
 /// When there is not one weight a point.
@@ -83,8 +82,7 @@ fn mixture_log_density(
     largest + sum.ln() - std::f64::consts::TAU.ln() - 0.5 * bandwidth.ln_determinant()
 }
 
-/// Mean over the frames of -ln of the clipped density at the truth of pedestrian `i`, nats; `None`
-/// for forecasts of one hypothesis.
+/// Mean over the frames of -ln of the clipped density at the truth of pedestrian `i`, nats; `None` for one hypothesis.
 pub fn kde_nll(scene: &Scene<'_>, i: usize) -> Option<f64> {
     if scene.hypotheses() < 2 {
         return None;

@@ -1,4 +1,4 @@
-//! What weights and regions are worth: the probability given to what came, and the share of true positions that regions hold.
+//! The probability given to what came, and the share of true positions that regions hold.
 
 use ddl_data::HORIZON;
 

@@ -39,8 +39,7 @@ pub struct RolloutStability {
 }
 
 impl RolloutStability {
-    /// Judges the rollout `path`, which starts from `start`, against `goal`; all in metres. Nothing is
-    /// known of a certificate.
+    /// Judges the rollout `path`, which starts from `start`, against `goal`; all in metres. No certificate is known.
     pub fn of(start: Position, path: &[Position], goal: Position) -> Self {
         let mut result = Self {
             decreasing: true,

@@ -3,8 +3,6 @@ use approx::assert_relative_eq;
 use super::*;
 use crate::fixture::{forecast, walk, window};
 
-/// One window of one pedestrian (errors 1 m) and one of three (errors 0): the mean is over the
-/// four pedestrians, not over the two windows.
 #[test]
 fn means_are_over_pedestrians() {
     let (still, far) = ([0.0, 0.0], [[0.0, 0.0], [5.0, 0.0], [9.0, 0.0]]);
@@ -61,7 +59,6 @@ fn what_does_not_belong_together_is_refused() {
     );
 }
 
-/// Sums are taken in the order of the windows, whoever measured them.
 #[test]
 fn the_number_of_threads_changes_no_bit() {
     let steps = [[0.3, 0.1], [-0.2, 0.37], [0.41, -0.13]];

@@ -43,8 +43,7 @@ impl BlockErrors {
     }
 }
 
-/// Sums the errors of forecasts, one a window, by recording, then by time. The result does not depend on the number of
-/// threads.
+/// Sums the errors of forecasts, one a window, by recording, then by time.
 ///
 /// # Errors
 /// A window has no future, or a forecast is not of its window's pedestrians.

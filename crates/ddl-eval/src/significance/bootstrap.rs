@@ -8,7 +8,7 @@ use super::{BlockErrors, BlockMetric};
 /// Resamples drawn for an interval, and sign changes for a test.
 pub const RESAMPLES: usize = 10_000;
 
-/// Fewest blocks of a fold: fewer know too little of their own spread, and their resamples pretend to a certainty that is not there.
+/// Fewest blocks of a fold: fewer know too little of their own spread.
 pub const FEWEST_BLOCKS: usize = 10;
 
 /// Seed of the resamples: the same in every report, so that it is made again bit by bit.
@@ -131,7 +131,6 @@ mod tests {
         assert_relative_eq!(twice.low, 2.0 * interval.low, epsilon = 1e-12);
     }
 
-    /// Two folds of the same spread: the deviation of the mean falls by sqrt(2), whatever their levels.
     #[test]
     fn folds_count_alike_and_are_resampled_apart() {
         let errors: Vec<f64> = (0..40).map(|i| f64::from(i % 2)).collect();

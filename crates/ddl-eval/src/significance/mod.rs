@@ -1,8 +1,6 @@
 //! How sure a difference is: intervals and tests that know how windows overlap.
-//!
-//! Windows start at every frame and last 20, so that neighbours share most of their people: they are no independent
-//! samples. Here the unit is a *block*: all windows of a recording that start within the same 20 s ([`BLOCK_STEPS`]
-//! steps), longer than most people stay in view. Errors are summed block by block and resampled within each fold.
+//! Neighbouring windows share most of their people, so that the unit is a *block*: all windows of a recording that
+//! start within the same 20 s ([`BLOCK_STEPS`] steps). Errors are summed by block and resampled within each fold.
 //!
 //! # References
 //! Künsch, "The jackknife and the bootstrap for general stationary observations", Annals of Statistics 1989 (blocks);

@@ -9,7 +9,6 @@ pub(crate) fn position() -> impl Strategy<Value = Position> + Clone {
     (-20.0..20.0, -20.0..20.0).prop_map(|(x, y)| [x, y])
 }
 
-/// A window of pedestrians at such positions, from a frame of a recording on.
 pub(crate) fn window(
     (recording, start, step): (&'static str, i64, i64),
     pedestrians: usize,
@@ -21,7 +20,6 @@ pub(crate) fn window(
     })
 }
 
-/// A forecast of `k` hypotheses at such positions with weights that sum to 1.
 pub(crate) fn forecast(
     pedestrians: usize,
     k: usize,

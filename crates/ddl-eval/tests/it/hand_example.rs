@@ -17,7 +17,6 @@
 use ddl_data::{PedestrianId, Position, Window};
 use ddl_eval::{Category, Forecast, MotionKind, Scores, category::TrajectoryType};
 
-/// A position at frame `s`.
 type Path = fn(f64) -> Position;
 
 /// Positions of the three pedestrians at frame `s`, 0 being the last observed one.
@@ -116,7 +115,6 @@ fn misses_and_collisions() {
     check("collisions with the truth", into_truth, 1.0 / 3.0);
 }
 
-/// Goals from the true ends: A 0.4 (the other 2.2), B 0.5 (the other 1.5), C 0 (the other 1.2).
 #[test]
 fn goals_and_stability() {
     let s = scores();
@@ -166,7 +164,6 @@ fn the_distribution_as_computed_elsewhere() {
     check("AMV", s.amv, 0.336_472_522_377_543_5);
 }
 
-/// A and C walk straight on at one speed, B stands.
 #[test]
 fn categories() {
     // minADE, minFDE, FDE@minADE, missed, most likely ADE and FDE, collisions.

@@ -10,7 +10,6 @@ use serde_json::Value;
 
 use crate::generated::{self, position};
 
-/// A window of `n` pedestrians and a forecast of `k` hypotheses with weights and goals.
 fn scene(n: usize, k: usize) -> impl Strategy<Value = (Window, Forecast)> {
     let forecast = generated::forecast(n, k, true, position());
     (
@@ -256,7 +255,6 @@ proptest! {
         prop_assert!(all_agree(&[mean / s.pedestrians as f64], &[s.min_ade]));
     }
 
-    /// Moving the world changes no category; its mirror image exchanges left and right.
     #[test]
     fn categories_of_a_moved_mirror_image_are_mirrored(
         window in walking(4),
@@ -281,7 +279,6 @@ proptest! {
         prop_assert_eq!(moved, expected);
     }
 
-    /// The closed form is never above, and hardly below, the least of many instants.
     #[test]
     fn closest_approach_is_the_minimum_over_time(
         a in vec(position(), 4),

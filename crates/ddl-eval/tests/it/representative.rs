@@ -47,7 +47,6 @@ fn of_four_straight_walks() {
     assert_eq!(single.hypothesis(0, 0), forecast.hypothesis(0, 1));
 }
 
-/// Equal but for the last digits of a sum: the heaviest, of equally heavy ones the first.
 #[test]
 fn ties_go_to_the_heaviest_and_then_to_the_first() {
     let one_metre = |k: usize, j: usize| if k == j { 0.0 } else { 1.0 };
@@ -65,7 +64,6 @@ fn ties_go_to_the_heaviest_and_then_to_the_first() {
     assert_eq!(medoid(&[0.3, 0.5, 0.2], apart), 1);
 }
 
-/// Distances beyond all numbers, with and without weight, and one hypothesis alone.
 #[test]
 fn the_extremes() {
     let far = [[1e308, 0.0], [-1e308, 0.0], [0.0, 0.0]];
@@ -76,7 +74,6 @@ fn the_extremes() {
 }
 
 proptest! {
-    /// No hypothesis has a smaller expected error, the heaviest least of all.
     #[test]
     fn nothing_is_better_under_its_own_weights(
         forecast in (1..21_usize).prop_flat_map(|k| forecast(1, k, false, position()))

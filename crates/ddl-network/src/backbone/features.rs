@@ -1,5 +1,4 @@
-//! From what pedestrians see to features, whatever the network is made of, and from these and noise to what shapes a
-//! step.
+//! From what pedestrians see to features, and from these and noise to what shapes a step.
 
 use crate::StarConfig;
 use crate::backend::{Backend, Memory};
@@ -10,8 +9,7 @@ use std::fmt::Debug;
 /// How much smaller the first weights of an output layer are that begins near L = I.
 const NEAR_NEUTRAL: f64 = 0.1;
 
-/// A network that turns what pedestrians see, time step by time step, into features for the output layer. Rollout, output
-/// layer, noise, dynamics and loss are shared by all. How one is added: the guide's chapter on extending.
+/// A network that turns what pedestrians see, step by step, into features. To add one: the guide on extending.
 pub trait Backbone<B: Backend>: Debug + Send + Sync {
     /// The output layer that it has declared: [`output_layer`].
     fn output(&self) -> Linear;

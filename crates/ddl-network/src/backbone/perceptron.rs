@@ -7,8 +7,7 @@ use crate::config::NetworkFrame;
 use crate::weights::{Layout, Linear};
 use ddl_data::OBSERVED;
 
-/// The backbone without a Transformer: two hidden layers on where the pedestrian is now, relative to its goal, and where it was at
-/// the observed time steps, in its own frame with the velocities.
+/// The backbone without a Transformer: two hidden layers on where the pedestrian is and was, in its own frame.
 #[derive(Debug, Clone)]
 pub struct Perceptron {
     frame: NetworkFrame,

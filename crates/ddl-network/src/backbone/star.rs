@@ -1,8 +1,6 @@
 //! STAR (Yu et al., ECCV 2020), one time step at a time.
-//!
-//! A position relative to the goal becomes a temporal token, one relative to the scene a spatial token; the two are fused,
-//! attend to the neighbours and to the pedestrian's earlier tokens. Only the newest token's output is used, and earlier
-//! tokens never change: one query a step is computed, and keys and values of the past are cached.
+//! Only the newest token's output is used, and earlier tokens never change: one query a step is computed, and keys and
+//! values of the past are cached.
 
 use super::features::{Backbone, output_layer};
 use crate::StarConfig;

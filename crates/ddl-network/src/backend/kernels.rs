@@ -106,8 +106,7 @@ impl KernelBackend {
         }
     }
 
-    /// Runs `step` on the way back, when the gradients of all that comes later are known. It may add to the gradients of all
-    /// learned numbers.
+    /// Runs `step`, which may add to the gradients of learned numbers, when those of all that comes later are known.
     pub fn on_the_way_back(&self, step: impl FnOnce(&mut [f32]) + 'static) {
         #[cfg(feature = "training")]
         if let Some(tape) = &self.tape {
@@ -118,8 +117,7 @@ impl KernelBackend {
         drop(step);
     }
 
-    /// Adds the gradients of all learned numbers to `of_weights`, from those that were added to tokens. The second call adds
-    /// nothing.
+    /// Adds the gradients of all learned numbers to `of_weights`; the second call adds nothing.
     #[cfg(feature = "training")]
     pub fn backward(&self, of_weights: &mut [f32]) {
         if let Some(tape) = &self.tape {
@@ -359,8 +357,6 @@ mod tests {
         all.map(|dropout| dropout.seed).collect()
     }
 
-    /// Also from layer to layer of a pass, and the same ones in a pass of the same seed; nothing is dropped without a
-    /// probability or outside training.
     #[test]
     fn the_four_dropouts_of_a_layer_have_distinct_seeds() {
         let pass = |seed, dropout, mode| {

@@ -1,5 +1,4 @@
 //! Tokens of the kernels: plain numbers, with the gradient that has come back to them; and the tape of the way back.
-//!
 //! A kernel leaves on the tape how the gradients of its output become those of its inputs and weights. Where tokens
 //! go over to another library, its way back comes first; then the tape, from its end.
 

@@ -60,8 +60,7 @@ const MOST_LAYER_NUMBERS: i64 = 1 << 24;
 const MOST_LAYERS: usize = 64;
 
 impl StarConfig {
-    /// What reports call a network of this configuration: its variant, and its backbone where that is not STAR. The full
-    /// method goes without saying beside another backbone.
+    /// What reports call a network of this configuration: its variant, and its backbone where that is not STAR.
     pub fn name(&self) -> String {
         match (self.variant, self.backbone) {
             (variant, BackboneKind::Star) => variant.name().to_owned(),
@@ -74,8 +73,7 @@ impl StarConfig {
         self.model_width * (4 * self.model_width + 2 * self.feed_forward_width)
     }
 
-    /// Weights of the largest layers alone: the network has more numbers than these, so that a file with fewer is refused
-    /// before there is a network to fill.
+    /// Weights of the largest layers alone, so that a file with fewer is refused before there is a network to fill.
     ///
     /// # Panics
     /// Where numbers overflow, which [`check`](Self::check) excludes.
@@ -86,8 +84,7 @@ impl StarConfig {
         }
     }
 
-    /// The published network: 32-wide tokens, 8 heads, 2048-wide feed-forward blocks, two spatial
-    /// layers, 16 noise numbers, sigma = 1e-8, 0.4 s.
+    /// The network with the sizes and constants of the paper.
     pub fn published(variant: Variant) -> Self {
         Self {
             backbone: BackboneKind::Star,
@@ -105,8 +102,7 @@ impl StarConfig {
         }
     }
 
-    /// The network that the protocols `fair` and `single` are measured with by default: narrower feed-forward blocks, and
-    /// everything in the pedestrians' own frames where the variant has goals to read (`docs/accuracy.md`).
+    /// The default of the protocols `fair` and `single`, in own frames where there are goals (`docs/accuracy.md`).
     pub fn recommended(variant: Variant) -> Self {
         Self {
             frame: if variant.goal_shift() {
@@ -127,8 +123,7 @@ impl StarConfig {
         }
     }
 
-    /// Numbers the output layer reads of a pedestrian and step, without noise: its token and, in its own frame, where it is and how
-    /// fast, past the layer normalisations, which forget lengths.
+    /// Numbers the output layer reads of a pedestrian and step, without noise: token; in own frames place and velocity.
     pub fn output_inputs(&self) -> i64 {
         match self.frame {
             NetworkFrame::World => self.model_width,

@@ -42,11 +42,9 @@ named!(LearningRateSchedule, "learning_rate_schedule", Constant => "constant", C
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Objective {
-    /// The next position from the true ones before it, on the way to the true end, with noise and by plain Euler steps:
-    /// squared distance (paper eq. 13), as published.
+    /// The next position from the true ones, on the way to the true end, with noise: squared distance (paper eq. 13).
     NextStep,
-    /// The walk that will be forecast: from the observed frames alone, by its own positions, to an estimated goal, with the
-    /// expected metric and by steps that keep the guarantee: distance from the true path.
+    /// The walk that will be forecast, from the observed frames to an estimated goal: distance from the true path.
     Walk,
 }
 
@@ -102,8 +100,7 @@ impl TrainingConfig {
         }
     }
 
-    /// The training behind the protocols `fair` and `single`, chosen on validation splits of training recordings
-    /// (`docs/accuracy.md`): whole walks to estimated goals, and for plain STAR, which has none, single steps.
+    /// The training behind the protocols `fair` and `single` (`docs/accuracy.md`).
     pub fn recommended(variant: Variant) -> Self {
         let (objective, jitter) = if variant.uses_goal() {
             (Objective::Walk, 0.06)
@@ -152,8 +149,7 @@ impl TrainingConfig {
     /// Checks that a network of this variant can be trained so.
     ///
     /// # Errors
-    /// [`NetworkError::Config`] for walks of [`Variant::Star`], which has no goals to walk to: its forecasts live on the noise that
-    /// walks are trained without.
+    /// [`NetworkError::Config`] for walks of [`Variant::Star`], which has no goals to walk to.
     pub fn check_for(&self, variant: Variant) -> Result<(), NetworkError> {
         require(
             variant.uses_goal() || self.objective == Objective::NextStep,

@@ -4,8 +4,6 @@ use crate::names::named;
 use serde::{Deserialize, Serialize};
 
 /// The four rows of the paper's Table II: goal shift (A) and dynamics (B), each on or off.
-///
-/// One network serves all four; a variant only chooses what it reads and what its output means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Variant {
@@ -23,14 +21,12 @@ impl Variant {
     /// All variants, in the order of the paper's Table II.
     pub const ALL: [Self; 4] = [Self::Star, Self::NoGoalShift, Self::NoDynamics, Self::Full];
 
-    /// Whether the temporal encoders read positions relative to the goal (eq. 10) rather than
-    /// to the last observed position.
+    /// Whether the temporal encoders read positions relative to the goal (eq. 10), not to the last observed position.
     pub fn goal_shift(self) -> bool {
         matches!(self, Self::Full | Self::NoDynamics)
     }
 
-    /// Whether the output is the Cholesky factor of the metric (eq. 12) rather than the next
-    /// position itself.
+    /// Whether the output is the Cholesky factor of the metric (eq. 12), not the next position itself.
     pub fn dynamics(self) -> bool {
         matches!(self, Self::Full | Self::NoGoalShift)
     }
@@ -43,8 +39,7 @@ impl Variant {
 
 named!(Variant, "variant", Full => "full", NoGoalShift => "no-goal-shift", NoDynamics => "no-dynamics", Star => "star");
 
-/// The network behind the shared rollout: what turns observed and forecast positions into features, of which the output
-/// layer makes the metric of each step.
+/// The network behind the shared rollout: what turns observed and forecast positions into features.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BackboneKind {

@@ -25,9 +25,7 @@ impl NoiseSpread {
 
     /// The Cholesky factor of E[L L^T] when noise adds W n to (a, b, c).
     ///
-    /// The output is linear in the noise, so E[L L^T] = L0 L0^T + E[D D^T] with D built from W n: the mean
-    /// velocity of noisy pedestrians, in closed form. The noise-free L0 alone would be too slow: P is
-    /// quadratic in L, and the noise's share of it is not small.
+    /// The output is linear in the noise, so E[L L^T] = L0 L0^T + E[D D^T] with D built from W n; L0 alone is too slow.
     pub(super) fn expected_factor(self, [a, b, c]: [f32; 3]) -> [f32; 3] {
         let first = (a * a + self.c11).max(SMALLEST_PIVOT).sqrt();
         let below = (a * b + self.c12) / first;

@@ -39,7 +39,6 @@ pub fn motion_bounds(observed: &[Position], time_step: f64, share: f64) -> Motio
 mod tests {
     use super::*;
 
-    /// Steps of 0.4 m and a last one of 0.8 m; even steps, and steps that tremble by far more than 6 cm.
     #[test]
     fn the_last_step_counts_where_steps_are_even() {
         let even: Vec<Position> = (0..8).map(|t| [0.4 * f64::from(t), 1.0]).collect();

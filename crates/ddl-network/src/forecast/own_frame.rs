@@ -88,7 +88,6 @@ mod tests {
     }
 
     proptest! {
-        /// The metric itself is what turns, P' = R^T P R, and a vector comes back.
         #[test]
         fn the_metric_turns_with_the_frame(
             angle in 0.0..std::f64::consts::TAU,
@@ -109,7 +108,6 @@ mod tests {
             }
         }
 
-        /// A runner's speed in its own units stays below 2 m/s, at every scale.
         #[test]
         fn nobody_is_faster_than_a_fast_walk_in_its_own_units(
             track in prop::collection::vec([-3.0..3.0f64, -3.0..3.0f64], 8),

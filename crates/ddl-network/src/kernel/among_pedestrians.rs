@@ -27,8 +27,7 @@ const WORK_OF_A_PAIR: usize = 50;
 ///
 /// `mixed_i = Σ_j d_ij softmax_j(q_i · k_j / √head width) v_j` over the j that i sees, for each head alone, where `d_ij`
 /// is 1 or what [`Dropout`] makes of it.
-/// Every number is computed by one thread in a fixed order: results do not depend on the number of threads. The
-/// instruction sets agree to rounding.
+/// Results do not depend on the number of threads; the instruction sets agree to rounding.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AmongPedestrians {
     heads: Heads,

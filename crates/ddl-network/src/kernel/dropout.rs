@@ -1,13 +1,10 @@
 //! Dropout (Srivastava et al. 2014) whose decisions are a function of a seed and a place, not of the order of work.
-//!
-//! What is decided on, and how a place becomes random bits, is up to each kernel: see its own module of this name.
 
 use ddl_simd::Simd;
 
 /// Sets each number to 0 with probability `p` and scales the others by 1 / (1 - p).
 ///
-/// The decision is a function of `seed` and the place of the number alone: the same in the forward and the backward pass,
-/// on every machine, for every number of threads. Each layer of each step needs a seed of its own.
+/// The decision is a function of `seed` and the place of the number alone; each layer of each step needs its own seed.
 /// p is rounded to a multiple of 2^-16 for hidden units, of 2^-24 for attention weights and outputs, and to less than 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Dropout {

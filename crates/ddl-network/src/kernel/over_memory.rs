@@ -25,8 +25,7 @@ const WORK_OF_A_NUMBER: usize = 8;
 /// Multi-head attention of one query a row over t remembered tokens and its own.
 ///
 /// `mixed = Σ_e softmax_e(q · k_e / √head width) v_e` over the t + 1 tokens e, for each row and head alone.
-/// Every number is computed by one thread in a fixed order: results do not depend on the number of threads. The
-/// instruction sets agree to rounding.
+/// Results do not depend on the number of threads; the instruction sets agree to rounding.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OverMemory {
     heads: Heads,
@@ -37,9 +36,7 @@ pub(crate) struct OverMemory {
 pub(crate) struct OverMemoryGradients<'a, 'b> {
     /// `[rows, heads, head width]`.
     pub(crate) query: &'a mut [f32],
-    /// Of the remembered tokens.
     pub(crate) memory: &'b mut [KeyValueMut<'a>],
-    /// Of the query's own token.
     pub(crate) own: KeyValueMut<'a>,
 }
 

@@ -14,8 +14,7 @@ pub const END_UNIT: f64 = 3.0;
 pub struct PedestrianView {
     /// The pedestrian.
     pub own: [Position; OBSERVED],
-    /// Others in the scene, nearest first at the last observed step; may be empty, and longer than
-    /// what the network looks at.
+    /// Others in the scene, nearest first at the last observed step; any number of them.
     pub neighbours: Vec<[Position; OBSERVED]>,
 }
 

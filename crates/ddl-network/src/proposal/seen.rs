@@ -9,7 +9,6 @@ pub const RECENT: usize = 3;
 /// Inputs of a neighbour: direction, nearness twice, relative and own velocity, closing speed.
 pub const NEIGHBOUR_FEATURES: usize = 9;
 
-/// What some pedestrians see, as rows.
 #[derive(Default)]
 pub(super) struct SeenRows {
     /// `[B, 30]`: positions and velocities.

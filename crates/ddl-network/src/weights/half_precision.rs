@@ -25,7 +25,6 @@ impl Weights {
     ///
     /// # Numerics
     /// A number is rounded to 11 significant bits: off by at most 2^-11 of its size, or by 2^-25 where it is smaller than 2^-14.
-    /// Rounding rounded numbers again changes nothing.
     pub fn to_half(&self) -> Result<Vec<HalfTensor>, NetworkError> {
         self.iter()
             .map(|(tensor, numbers)| {
@@ -134,7 +133,6 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
-        /// Whatever is wrong with one tensor is an error.
         #[test]
         fn what_does_not_fit_is_refused(index in any::<prop::sample::Index>(), kind in 0..7) {
             let learned = weights();

@@ -49,8 +49,7 @@ impl TensorLayout {
 
 /// The learned tensors of a network, in order.
 ///
-/// A network declares its layers when it is made; each declaration gives a handle, with which a
-/// [`Backend`](crate::backend::Backend) finds the layer's weights.
+/// A network declares its layers when it is made, and finds their weights by the handles that it gets.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Layout {
     tensors: Vec<TensorLayout>,

@@ -4,8 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 /// The facts that decide the numbers of a checkpoint, by name: configuration, seed, data.
 ///
-/// They are written into the header of the file. A file of another origin is refused, also where all its
-/// shapes would fit: weights of another fold, seed or variant would give forecasts that look right.
+/// They are written into the header of the file. A file of another origin is refused, even if all shapes fit.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Origin(BTreeMap<String, String>);
 
@@ -38,8 +37,7 @@ impl Origin {
         ))
     }
 
-    /// As the header of a safetensors file holds it, with the SHA-256 of the file's numbers ([`numbers_digest`](super::numbers_digest)):
-    /// one entry, so that the same origin and numbers are always the same bytes.
+    /// As the header of a safetensors file holds it, with the SHA-256 of the file's numbers, in one entry.
     pub fn to_header(&self, digest: &str) -> HashMap<String, String> {
         let facts = self
             .0
@@ -51,8 +49,7 @@ impl Origin {
         HashMap::from([(HEADER.to_owned(), facts.to_string())])
     }
 
-    /// What the header of a safetensors file says, and the SHA-256 of its numbers; nothing, when it is not a header of ours. Files of
-    /// earlier versions have no SHA-256.
+    /// What the header of a safetensors file says (nothing if it is not ours), and the SHA-256 of its numbers, if any.
     pub fn of_header(header: Option<&HashMap<String, String>>) -> (Self, Option<String>) {
         let facts = header.and_then(|header| header.get(HEADER));
         let mut origin = Self(

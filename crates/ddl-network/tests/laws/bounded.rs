@@ -24,7 +24,6 @@ fn with_dynamics() -> Vec<StarConfig> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// Goals in any direction, as far away as can be reached, and random weights of any seed.
     #[test]
     fn the_last_step_ends_on_the_goal_and_none_is_too_fast(
         config in prop::sample::select(with_dynamics()),
@@ -94,7 +93,6 @@ fn step(
     path.unwrap()[1].into()
 }
 
-/// Each position follows from the one before it by the factor that stands beside it.
 #[test]
 fn the_factors_are_those_of_the_steps() {
     let windows: Vec<&Window> = WINDOWS.iter().take(8).collect();

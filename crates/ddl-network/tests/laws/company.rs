@@ -4,8 +4,7 @@ use super::scenes::{Question, WINDOWS, distance, recommended};
 use ddl_data::{HORIZON, Window};
 use ddl_network::{BackboneKind, MotionNetwork, Variant, WindowRollout};
 
-/// How far a pedestrian's forecasts among others lie from those alone at most, over all windows (m); of who comes first in a window
-/// alone, since positions are rounded relative to it, and of everybody.
+/// Largest distance (m) of forecasts among others from those alone: of who comes first in a window, and of everybody.
 fn furthest(backbone: BackboneKind) -> [f64; 2] {
     let network = MotionNetwork::new(recommended(backbone, Variant::Full), 5).unwrap();
     let question = Question::bounded(2);

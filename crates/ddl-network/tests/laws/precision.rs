@@ -4,7 +4,6 @@ use super::scenes::{Question, WINDOWS, distance};
 use ddl_data::{Position, Window};
 use ddl_network::{ForecastWindows as _, MotionNetwork, Precision, StarConfig, Variant};
 
-/// Forecasts differ by little, and the weights are those of before: packed again in single precision they give the same.
 #[test]
 fn half_precision_changes_forecasts_a_little_and_weights_not_at_all() {
     let config = StarConfig {

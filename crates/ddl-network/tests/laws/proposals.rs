@@ -23,7 +23,6 @@ fn small() -> ProposalConfig {
     }
 }
 
-/// What a pedestrian of a window sees, up to the turn.
 fn seen(window: &Window, i: usize) -> PedestrianView {
     let here = window.observed(i)[OBSERVED - 1];
     let relative = |j: usize| -> [Position; OBSERVED] {
@@ -94,7 +93,6 @@ proptest! {
     }
 }
 
-/// Largest difference of the ends proposed in two views.
 fn apart(a: &PedestrianView, b: &PedestrianView) -> f64 {
     let network = network(small());
     let ends = |view: &PedestrianView| {

@@ -65,7 +65,6 @@ fn goals_noise_and_shares_that_do_not_fit_the_windows() {
     }
 }
 
-/// A value out of its range, and what is said of it.
 type Fault<T> = (fn(&mut T), &'static str);
 
 fn check_all<T: Clone>(good: &T, check: fn(&T) -> Result<(), NetworkError>, faults: &[Fault<T>]) {

@@ -6,7 +6,6 @@ use ddl_network::{MotionNetwork, Noise, Precision, StarConfig, StepRule, Variant
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-/// All numbers of a rollout, bit by bit.
 fn bits(rollout: &WindowRollout) -> Vec<u64> {
     let factors = rollout.factors.iter().flatten().flatten();
     let numbers = rollout.positions.as_flattened().iter().chain(factors);
@@ -30,7 +29,6 @@ fn questions() -> impl Strategy<Value = Question> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// Others come before and after, in any order and repeatedly; the crowd is one of them.
     #[test]
     fn a_window_alone_and_among_others(
         config in prop::sample::select(configs()),
@@ -51,7 +49,6 @@ proptest! {
     }
 }
 
-/// A crowd is work for several threads, and goes through attention by who is seen.
 #[test]
 fn a_crowd_with_any_number_of_threads() {
     let crowd = WINDOWS.last().unwrap();

@@ -50,7 +50,6 @@ pub(crate) fn shares(window: &Window) -> Vec<f64> {
     (0..window.len()).map(|i| (i % 5) as f64 / 4.0).collect()
 }
 
-/// What a window is forecast with.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Question {
     pub goals: usize,
@@ -60,7 +59,6 @@ pub(crate) struct Question {
 }
 
 impl Question {
-    /// The expectation over the noise by bounded steps.
     pub(crate) fn bounded(goals: usize) -> Self {
         Self {
             goals,
@@ -70,7 +68,6 @@ impl Question {
         }
     }
 
-    /// The rollouts of windows with a future, which the network does not see.
     pub(crate) fn ask(self, network: &MotionNetwork, windows: &[&Window]) -> Vec<WindowRollout> {
         let observed: Vec<Window> = windows
             .iter()
@@ -88,7 +85,6 @@ impl Question {
     }
 }
 
-/// Both backbones, all variants, published and recommended; with narrow feed-forward blocks.
 pub(crate) fn configs() -> Vec<StarConfig> {
     let mut configs = Vec::new();
     for backbone in BackboneKind::ALL {
@@ -108,7 +104,6 @@ pub(crate) fn configs() -> Vec<StarConfig> {
     configs
 }
 
-/// The recommended configuration with a backbone.
 pub(crate) fn recommended(backbone: BackboneKind, variant: Variant) -> StarConfig {
     StarConfig {
         backbone,
@@ -120,7 +115,6 @@ pub(crate) fn distance(a: Position, b: Position) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// Runs with so many threads.
 pub(crate) fn with_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.unwrap().install(run)

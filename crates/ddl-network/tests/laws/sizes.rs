@@ -4,7 +4,6 @@ use ddl_network::{
     BackboneKind, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig, Variant,
 };
 
-/// The network has more numbers than the least that its configuration names, but not many times more.
 fn check(least: u64, count: usize) {
     let all = least..=20 * least + 1000;
     assert!(all.contains(&(count as u64)), "{least}, {count}");

@@ -49,7 +49,6 @@ fn forged(whole: &[u8], change: impl Fn(&mut String, &mut Dtype, &mut Vec<u8>)) 
     safetensors::serialize(views(), Some(header)).unwrap()
 }
 
-/// The bytes, as a file of a network's weights, have to be refused.
 fn refuse(bytes: &[u8], said: &str) {
     let folder = tempfile::tempdir().unwrap();
     let broken = folder.path().join("broken.safetensors");
@@ -61,7 +60,6 @@ fn refuse(bytes: &[u8], said: &str) {
     assert!(error.to_string().contains("broken.safetensors"), "{error}");
 }
 
-/// The bytes of a file of weights.
 fn saved(weights: &Weights, origin: &Origin) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("model.safetensors");

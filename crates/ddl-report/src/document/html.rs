@@ -6,14 +6,12 @@ use super::table::Table;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct ContentsEntry {
     pub(crate) id: String,
-    /// Its heading, as HTML.
     pub(crate) heading: String,
     pub(crate) warned: bool,
 }
 
 impl Document {
-    /// HTML for the body of a page: lead, title and parts, each section with an `id` made of its heading. Text is
-    /// escaped.
+    /// HTML for the body of a page: lead, title and parts, each section with an `id` of its heading; text is escaped.
     pub fn to_html(&self) -> String {
         format!(
             "<header>\n<h1>{}</h1>\n<p class=\"lead\">{}</p>\n</header>\n{}",
@@ -23,8 +21,7 @@ impl Document {
         )
     }
 
-    /// The parts as HTML, without title and lead, for a page that has a head of its own, and the sections they make. A section that
-    /// holds a warning has the class `warned`.
+    /// The parts as HTML, without title and lead, and the sections they make, of class `warned` where they hold one.
     pub(crate) fn sections(&self) -> (String, Vec<ContentsEntry>) {
         let mut body = String::new();
         let mut contents: Vec<ContentsEntry> = Vec::new();
@@ -166,7 +163,6 @@ pub(crate) fn identifier(words: &str) -> String {
     words.collect::<Vec<_>>().join("-").to_ascii_lowercase()
 }
 
-/// The name, numbered if it has been used.
 pub(crate) fn unused(name: String, used: &mut Vec<String>) -> String {
     let before = used.iter().filter(|known| **known == name).count();
     used.push(name.clone());

@@ -4,8 +4,7 @@ use super::parts::{Document, Part, Span, spans, unfolded};
 use super::table::Table;
 
 impl Document {
-    /// The tables for a paper, each a `table*` with its caption and the warnings of its section, to be included with
-    /// `\input`; needs the packages `booktabs` and `adjustbox`.
+    /// The tables for a paper, each a `table*`, to be included with `\input`; needs `booktabs` and `adjustbox`.
     pub fn to_latex(&self) -> String {
         let mut text = format!(
             "% {}\n% {}\n% Needs \\usepackage{{booktabs,adjustbox}}.\n",

@@ -1,6 +1,4 @@
 //! A page of results before it has a form: what is said in which order, to be rendered as markdown, HTML or LaTeX.
-//!
-//! All three are made from the same parts, so that a number cannot differ between them.
 
 mod html;
 mod latex;

@@ -72,7 +72,6 @@ pub(super) enum Span<'a> {
     Code(&'a str),
 }
 
-/// The text cut at its backticks; one without a partner is kept as it is.
 pub(super) fn spans(text: &str) -> Vec<Span<'_>> {
     let mut spans = Vec::new();
     let mut rest = text;

@@ -2,8 +2,7 @@
 
 use comfy_table::{CellAlignment, presets::ASCII_MARKDOWN};
 
-/// A table whose first column is text, aligned left, and whose other columns are numbers, aligned
-/// right, unless [`text_column`](Self::text_column) says otherwise.
+/// A table whose first column is text, and whose others are numbers unless [`text_column`](Self::text_column) says so.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Table {
     caption: Option<String>,
@@ -114,7 +113,6 @@ impl std::fmt::Display for Table {
     }
 }
 
-/// `|---|---|---|` becomes `|---|--:|--:|` where the last two columns are numbers.
 fn align_numbers(rule: &str, text: &[bool]) -> String {
     let columns = rule.trim_matches('|').split('|').zip(text);
     columns.fold("|".to_owned(), |rule, (dashes, text)| {

@@ -58,7 +58,6 @@ pub(super) struct Axes {
 }
 
 impl Axes {
-    /// A plot that holds every point; its space, lettering included, begins at the origin.
     pub(super) fn around(points: &[Position], layout: &'static PlotLayout) -> Self {
         // Without points there is nothing to show but empty axes.
         let [low, high] = bounds(points.iter().copied()).unwrap_or([[0.0; 2]; 2]);
@@ -82,7 +81,6 @@ impl Axes {
         }
     }
 
-    /// The same plot, its space moved by so many pixels.
     pub(super) fn moved(mut self, by: [f64; 2]) -> Self {
         self.plan.middle = [0, 1].map(|axis| self.plan.middle[axis] + by[axis]);
         self

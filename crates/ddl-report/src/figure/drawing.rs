@@ -7,7 +7,6 @@ use svg::{
 
 /// The rules of `figure.css`; each colour in it is `var(--name, COLOUR ON WHITE)`.
 pub(crate) const STYLE: &str = include_str!("figure.css");
-/// The rules of plots with axes, besides.
 pub(super) const PLOT_STYLE: &str = include_str!("plot.css");
 
 #[derive(Debug, Clone)]
@@ -53,7 +52,6 @@ impl Drawing {
         self.styled_path(class, points, "");
     }
 
-    /// An open path; `style` is what varies from shape to shape, such as its opacity.
     pub(crate) fn styled_path(&mut self, class: &str, points: &[[f64; 2]], style: &str) {
         self.outline(class, &outline(points), style);
     }
@@ -62,7 +60,6 @@ impl Drawing {
         self.outline(class, &(outline(points) + "Z"), "");
     }
 
-    /// A closed path along the sides of a box, of which two opposite corners are given.
     pub(crate) fn rectangle(&mut self, class: &str, [[left, top], [right, bottom]]: [[f64; 2]; 2]) {
         let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
         self.polygon(class, &corners);
@@ -105,7 +102,6 @@ impl Drawing {
         self.add(text(class, at, words).set("transform", turn));
     }
 
-    /// Draws shapes of which only what lies within the box is seen.
     pub(crate) fn within(
         &mut self,
         [[left, top], [right, bottom]]: [[f64; 2]; 2],

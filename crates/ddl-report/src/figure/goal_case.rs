@@ -106,7 +106,6 @@ impl GoalCase {
         &self.track[OBSERVED..]
     }
 
-    /// The path of each expert from where it stood when the pedestrian was last observed.
     pub(super) fn expert_paths(&self) -> impl Iterator<Item = &[Position]> {
         self.experts.iter().map(|expert| &expert[OBSERVED - 1..])
     }
@@ -170,7 +169,6 @@ mod tests {
         result.unwrap_err().to_string()
     }
 
-    /// Nearest to the end and not to the pedestrian; of equally near ones the likeliest is meant.
     #[test]
     fn the_nearest_goal_by_hand() {
         for (places, weights, expected) in [

@@ -29,9 +29,8 @@ const TITLE_LINES: usize = 2;
 
 /// Draws 1 to 9 pedestrians with their estimated goals, a panel each, as the text of an SVG file.
 ///
-/// Each panel is in metres from the pedestrian's last observed position, at one scale for both axes, and holds
-/// the track and all goals; of the experts what lies within is drawn. The area of a ring is the goal's
-/// probability, except that no ring is too small to be seen. The same input gives the same bytes.
+/// Each panel is in metres from the pedestrian's last observed position, at one scale for both axes. The area of a ring
+/// is the goal's probability, but for the smallest. The same input gives the same bytes.
 ///
 /// # Errors
 /// There is no case or there are more than 9.
@@ -69,7 +68,6 @@ pub fn goals(title: &str, cases: &[GoalCase]) -> Result<String, FigureError> {
     Ok(drawing.to_file(PLOT_STYLE))
 }
 
-/// Up to three panels side by side; four make a square.
 fn columns(cases: usize) -> usize {
     match cases {
         4 => 2,

@@ -20,12 +20,9 @@ const PROBABILITIES: [(f64, f64); 3] = [(0.01, 3.0), (0.05, 14.0), (0.2, 32.0)];
 pub(super) enum LegendEntry {
     Observed,
     Truth,
-    /// The only hypothesis.
     Forecast,
-    /// The one of several hypotheses that stands for them.
     Representative,
     OtherHypotheses,
-    /// Text alone.
     Note(&'static str),
     /// Rings of hypotheses.
     Goals(&'static str),
@@ -106,14 +103,12 @@ pub(super) fn draw_column(drawing: &mut Drawing, [left, top]: [f64; 2], entries:
     }
 }
 
-/// Entries in rows that fill a width.
 pub(super) struct LegendRows<'a> {
     entries: &'a [LegendEntry],
     places: Vec<[f64; 2]>,
 }
 
 impl<'a> LegendRows<'a> {
-    /// Begins a row whenever the next entry would reach beyond `width`.
     pub(super) fn new(entries: &'a [LegendEntry], width: f64) -> Self {
         let (mut x, mut y) = (0.0, 0.0);
         let mut places = Vec::with_capacity(entries.len());

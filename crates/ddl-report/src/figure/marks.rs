@@ -1,5 +1,4 @@
-//! Shapes that mean something: the star of a predicted end, the arrow of a velocity, and goals as rings whose area is
-//! their probability.
+//! Shapes that mean something: stars, arrows, and goals as rings whose area is their probability.
 
 use super::drawing::Drawing;
 
@@ -9,7 +8,6 @@ const SMALLEST: f64 = 2.4;
 /// Length of the ticks around the nearest goal, pixels.
 const TICK: f64 = 6.0;
 
-/// A star of five points around `at`, the first point up.
 pub(crate) fn star([x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
     (0..10)
         .map(|corner| {
@@ -51,8 +49,7 @@ pub(super) fn goal_ring(drawing: &mut Drawing, at: [f64; 2], weight: f64) {
     drawing.circle("goal weighted", at, radius(weight));
 }
 
-/// The goal nearest the true end: a bold ring of the same area on a white rim, with four ticks around it
-/// that are seen however small it is.
+/// The goal nearest the true end: a bold ring on a white rim, with four ticks around it.
 pub(super) fn nearest_goal(drawing: &mut Drawing, [x, y]: [f64; 2], weight: f64) {
     let radius = radius(weight);
     drawing.circle("rim", [x, y], radius);

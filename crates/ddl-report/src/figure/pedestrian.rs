@@ -54,7 +54,6 @@ pub(crate) fn other_hypotheses(
     }
 }
 
-/// How a hypothesis is drawn whose weight is this share of the heaviest one's.
 pub(super) fn hypothesis_style(share: f64) -> String {
     let (opacity, width) = (0.14 + 0.5 * share, 0.8 + share);
     format!("opacity:{opacity:.2};stroke-width:{width:.1}")
@@ -70,7 +69,7 @@ pub(crate) fn representative_goal(
     }
 }
 
-/// The hypothesis that stands for all: dashes with a star at the end, and arrows of its velocity where they are asked for.
+/// The hypothesis that stands for all, with arrows of its velocity where they are asked for.
 pub(crate) fn representative(
     drawing: &mut Drawing,
     plan: &PlanView,

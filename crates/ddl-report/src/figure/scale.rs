@@ -64,7 +64,6 @@ impl Scale {
     }
 }
 
-/// The multiples of a step from one number to another, with their labels.
 pub(crate) fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = (f64, String)> {
     let first = (low / step - 1e-9).ceil() as i64;
     let last = (high / step + 1e-9).floor() as i64;

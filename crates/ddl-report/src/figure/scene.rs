@@ -12,8 +12,7 @@ use super::{
 };
 use crate::{Moment, MomentPedestrian};
 
-/// Draws everybody of a window with its forecast, titled with the recording and the first frame, as the text of an SVG
-/// file. The same input gives the same bytes.
+/// Draws everybody of a window with its forecast as the text of an SVG file. The same input gives the same bytes.
 ///
 /// # Errors
 /// The forecast is not of the window's pedestrians.

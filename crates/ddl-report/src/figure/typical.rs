@@ -4,9 +4,8 @@ use ddl_eval::MotionKind;
 
 /// Picks a pedestrian of each kind of motion whose error is the median of its kind.
 ///
-/// The pedestrians of a kind are ordered by their error (m), and the middle one is picked, the lower of two, the first of
-/// equals: nothing is picked by hand. The result holds indices into `pedestrians`, in the order of [`MotionKind::ALL`];
-/// kinds that nobody has and errors that are not finite are left out.
+/// The pedestrians of a kind are ordered by their error (m), and the middle one, the lower of two, is picked. Indices
+/// are in the order of [`MotionKind::ALL`]; errors that are not finite are left out.
 pub fn typical_pedestrians(pedestrians: &[(MotionKind, f64)]) -> Vec<usize> {
     MotionKind::ALL
         .into_iter()
@@ -37,7 +36,6 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// Of equal errors the first; of those that are no numbers none.
         #[test]
         fn half_of_a_kind_is_no_better_and_half_no_worse(
             pedestrians in vec((0..6_usize, 0..9_u8), 0..60)

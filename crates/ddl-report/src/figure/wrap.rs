@@ -3,9 +3,6 @@
 use super::drawing::text_width;
 
 /// A text in at most `most` lines (at least one); what does not fit into them is cut.
-///
-/// Lines end after a comma or colon, so that what belongs together stays together, unless the text then
-/// needs more room than there is.
 pub(super) fn wrapped(text: &str, size: f64, width: f64, most: usize) -> Vec<String> {
     let fits = |line: &str| text_width(line, size) <= width;
     let at_pauses = broken(text, fits, most, true);
@@ -59,7 +56,6 @@ mod tests {
 
     const SIZE: f64 = 12.0;
 
-    /// Not within a number, and not where the rest would no longer fit.
     #[test]
     fn long_titles_break_after_a_comma_or_colon() {
         for (lines, width) in [

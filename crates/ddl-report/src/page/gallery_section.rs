@@ -25,9 +25,6 @@ const LEAST_SPAN: f64 = 3.0;
 const STRIPS: [f64; 2] = [30.0, 44.0];
 
 /// The pedestrians of the pick, and everybody else in grey; `alone` adds a title and a key, for a file.
-///
-/// Dots are observed, the solid line is the truth, dashes are the representative forecast with a star at its end and
-/// the ring of its goal, thin lines the other hypotheses, and arrows velocities along it.
 fn case_figure(moment: &Moment, pick: &Pick, alone: bool) -> Drawing {
     let title = format!(
         "{}: {}, frame {}",
@@ -155,7 +152,6 @@ fn key(drawing: &mut Drawing, y: f64) {
     drawing.text("small", [199.0, y], "velocity (way of 0.8 s)");
 }
 
-/// Cases in the order of [`Show::ALL`], with the place of their moment.
 fn cases(moments: &[Moment]) -> Vec<(usize, &Moment, &Pick)> {
     let mut cases: Vec<(usize, &Moment, &Pick)> = moments
         .iter()

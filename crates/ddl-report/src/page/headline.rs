@@ -11,7 +11,6 @@ use crate::{
     document::{escape, inline},
 };
 
-/// The head of the page, as HTML; a report without rows says so.
 pub(super) fn headline(report: &Report) -> String {
     let Some(standing) = standing(report) else {
         return "<p class=\"nothing\">This report holds no results.</p>\n".to_owned();

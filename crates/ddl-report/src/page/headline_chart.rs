@@ -16,9 +16,7 @@ const TICKS_APART: f64 = 26.0;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shape {
-    /// Folds side by side.
     Wide,
-    /// Folds below each other.
     Narrow,
 }
 

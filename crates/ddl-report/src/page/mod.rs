@@ -1,7 +1,5 @@
 //! The report as one HTML page that needs nothing else: no network, no other file.
-//!
-//! It has the comparison, a player of recorded moments, a gallery of cases, training curves and every table of the
-//! report. The numbers come from the `report.json` that is embedded in it; tables are those of
+//! Its numbers come from the `report.json` that is embedded in it; tables are those of
 //! [`Report::document`](crate::Report::document).
 
 mod error;

@@ -3,7 +3,6 @@
 use super::template::fill;
 use crate::{Moment, document::escape, figure::drawing};
 
-/// Of every page, up to its body.
 const HEAD: &str = include_str!("head.html");
 pub(super) const THEME_BUTTON: &str = include_str!("theme_button.html");
 const PLAYER: &str = include_str!("player.html");

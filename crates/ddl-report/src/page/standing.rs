@@ -8,7 +8,6 @@ use crate::{
 };
 use ddl_eval::{Conditions, Scores};
 
-/// Comparable lines of a report: one convention, window rule, protocol and scored part.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Standing {
     /// What all lines share; fold and forecaster are those of one row.

@@ -18,8 +18,7 @@ pub(super) fn fill(template: &str, slots: &[(&str, &str)]) -> String {
     filled
 }
 
-/// JSON that can stand in a `<script type="application/json">`: the same value to a parser, with nothing that ends the
-/// element or, to older scripts, a line.
+/// JSON that can stand in a `<script type="application/json">`: nothing in it ends the element.
 pub(super) fn json_in_script(json: &str) -> String {
     let mut escaped = String::with_capacity(json.len());
     let mut rest = json;

@@ -188,7 +188,6 @@ fn labels(series: &[Series<'_>], up: &Scale, [top, bottom]: [f64; 2]) -> Vec<(us
     labels
 }
 
-/// At most six whole numbers from the first epoch to the last.
 fn epoch_ticks(first: usize, last: usize) -> Vec<usize> {
     let steps = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000];
     let step = steps

@@ -58,7 +58,6 @@ fn has_ablated_variant(group: &ResultGroup<'_>) -> bool {
     group.lines.iter().any(ablated)
 }
 
-/// Whether the variants of a group differ in the variant alone.
 fn alike(group: &ResultGroup<'_>) -> bool {
     let made = |line: &TableLine<'_>| {
         let rows = line

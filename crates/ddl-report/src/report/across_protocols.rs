@@ -1,5 +1,4 @@
 //! The same forecaster under every protocol: what choosing with the truth is worth.
-//!
 //! The one table in which protocols meet. It is there to show that their numbers must not be compared, and says so.
 
 use super::{
@@ -16,8 +15,7 @@ const NOTE: &str = "The same windows and folds in every line, from the published
     hypotheses. The other lines under `fair` go to the forecaster's own goals, and under `single` to one that stands for them. Which \
     training each line had stands beside the tables above.";
 
-/// The lines of trained forecasters and of straight lines to goals, protocol by protocol, where `published` and another
-/// protocol have results on the same windows.
+/// The lines of forecasters that head for goals, protocol by protocol, beside `published` on the same windows.
 pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
     let mut parts = Vec::new();
     for oracle in groups.iter().filter(|g| g.protocol == Protocol::Published) {
@@ -77,7 +75,6 @@ fn table(groups: &[&ResultGroup<'_>]) -> Table {
     table
 }
 
-/// Whether a protocol has a goal to choose: trained forecasters, and straight lines to estimated goals.
 fn heads_for_goals(line: &TableLine<'_>) -> bool {
     line.conditions().epochs.is_some()
         || line.rows[0].scores.goal_fde.is_some()

@@ -7,7 +7,6 @@ use super::{
 use crate::document::{Part, Table};
 use ddl_eval::{CategoryScores, category::Category};
 
-/// What the categories are.
 pub(super) const LEGEND: &str = "By category of walker: minADE/minFDE in metres, mean over the walkers of the folds named, which all \
     forecasters of the table have (not over the folds: some hold few walkers of a kind). First the walker's own motion, then the \
     types of TrajNet++ (static, linear, interacting, non-interacting), then the kinds of interaction, of which a walker may have \
@@ -56,7 +55,6 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     ]
 }
 
-/// The pedestrians of one category on some folds together.
 struct Pooled {
     pedestrians: usize,
     min_ade: f64,

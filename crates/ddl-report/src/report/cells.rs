@@ -2,7 +2,6 @@
 
 use super::group::TableLine;
 
-/// What a table shows where there is nothing to show.
 pub(super) const NOTHING: &str = "-";
 
 /// `ADE/FDE`, where there are both.
@@ -28,7 +27,6 @@ pub(super) fn errors(line: &TableLine<'_>, folds: &[&str]) -> Vec<String> {
     folds.iter().map(of_fold).chain([mean]).collect()
 }
 
-/// Counts that should be one, or nothing.
 pub(super) fn counts(mut counts: Vec<usize>) -> String {
     counts.sort_unstable();
     counts.dedup();

@@ -20,8 +20,7 @@ pub(crate) struct TableLine<'a> {
     pub(crate) rows: Vec<&'a ResultRow>,
 }
 
-/// Sorts rows into tables: by convention, then the published window rule before others, then the
-/// headline protocol first. Lines stand in the order in which their first row was given.
+/// Sorts rows into tables: by convention, the published window rule first, the headline protocol first.
 pub(crate) fn groups(rows: &[ResultRow]) -> Vec<ResultGroup<'_>> {
     let mut groups: Vec<ResultGroup<'_>> = Vec::new();
     for row in rows {
@@ -130,18 +129,15 @@ impl ResultGroup<'_> {
         labels.iter().enumerate().map(numbered).collect()
     }
 
-    /// The lines with their [`labels`](Self::labels).
     pub(crate) fn labelled(&self) -> impl Iterator<Item = (&TableLine<'_>, String)> {
         self.lines.iter().zip(self.labels())
     }
 
-    /// The numbers of pedestrians scored on a fold, one a row.
     pub(crate) fn pedestrians(&self, fold: &str) -> Vec<usize> {
         let rows = self.lines.iter().flat_map(|line| line.on(fold));
         rows.map(|row| row.scores.pedestrians).collect()
     }
 
-    /// What a reader must be told beside the numbers.
     pub(crate) fn warning(&self) -> Option<Part> {
         let words = self.protocol.warning()?;
         Some(Part::Warning(words.to_owned()))
@@ -159,7 +155,6 @@ impl<'a> TableLine<'a> {
         *mine == same
     }
 
-    /// The conditions of the line; fold and seed are those of its first row only.
     pub(crate) fn conditions(&self) -> &'a Conditions {
         &self.rows[0].conditions
     }
@@ -171,8 +166,7 @@ impl<'a> TableLine<'a> {
             .filter(move |row| row.conditions.fold == fold)
     }
 
-    /// The errors by block on one fold, mean over the seeds; `None` where a row has none, or the seeds were not measured on
-    /// the same windows.
+    /// The errors by block on one fold, mean over the seeds; `None` unless all have them of the same windows.
     pub(crate) fn blocks(&self, fold: &str) -> Option<Vec<BlockErrors>> {
         let rows: Vec<&ResultRow> = self.on(fold).collect();
         let count = rows.len() as f64;
@@ -270,7 +264,6 @@ impl<'a> TableLine<'a> {
         parts.join("; ")
     }
 
-    /// The folds that the line has, in the order of `folds`.
     pub(crate) fn present<'f>(&self, folds: &[&'f str]) -> Vec<&'f str> {
         folds
             .iter()

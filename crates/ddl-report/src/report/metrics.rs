@@ -73,7 +73,6 @@ const WHOLE: [MetricColumn; 13] = [
     ("FPD m", 3, |s| s.end_diversity),
 ];
 
-/// The tables of both, each below its heading.
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let both = [
         ("Further metrics", &FURTHER[..]),

@@ -22,7 +22,6 @@ mod spread;
 
 pub(crate) use group::{ResultGroup, TableLine, groups, order};
 
-/// Version of the JSON file.
 const FORMAT: u32 = 1;
 
 /// Results of any number of runs.

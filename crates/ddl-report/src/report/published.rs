@@ -5,7 +5,6 @@ use ddl_data::Convention;
 use crate::{document::Part, literature};
 use ddl_eval::ResultRow;
 
-/// The tables of the literature that the results may be read against, and those that they may not.
 pub(super) fn parts(rows: &[ResultRow]) -> Vec<Part> {
     let star = rows
         .iter()

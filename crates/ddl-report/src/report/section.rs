@@ -10,7 +10,6 @@ use super::{
 };
 use crate::document::{Part, Table};
 
-/// The results of one group, from its heading to its further metrics.
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let rule = describe_rule(group.window_rule);
     let subset = group.test_subset.unwrap_or("all test windows");

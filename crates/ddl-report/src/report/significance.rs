@@ -11,7 +11,6 @@ use ddl_eval::significance::{
     BlockErrors, BlockMetric, Interval, mean_interval, paired_difference,
 };
 
-/// What the intervals and p-values are.
 pub(super) const LEGEND: &str = "How sure the means are: in brackets the 95 % interval over 10,000 resamples of 20 s of recording \
     (windows overlap and are no independent samples); p: how often chance alone would make as large a difference from the \
     forecaster named in the head of the column, by changing the sign of the difference of every 20 s at random (a cautious answer where the folds disagree); not corrected for the \
@@ -70,7 +69,6 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     ]
 }
 
-/// A line with its errors by block, seeds averaged.
 struct MeasuredLine<'a> {
     line: &'a TableLine<'a>,
     /// The folds it has, each with its blocks.

@@ -10,11 +10,9 @@ use ddl_report::{
     figure::{self, GoalCase},
 };
 
-/// Circles of the legend: 4 observed dots, a true end, 3 goals of some probability, and the nearest with
-/// its rim.
+/// Circles of the legend: 4 observed dots, a true end, 3 goals, and the nearest with its rim.
 const LEGEND_CIRCLES: usize = 4 + 1 + 3 + 2;
-/// Circles of a panel but for the goals that are not the nearest: 8 observed dots, a true end, the nearest
-/// with its rim.
+/// Circles of a panel but for goals that are not the nearest: 8 observed dots, a true end, the nearest with its rim.
 const PANEL_CIRCLES: usize = 8 + 1 + 2;
 
 fn walk(from: Position, step: Position) -> Vec<Position> {

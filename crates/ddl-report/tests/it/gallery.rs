@@ -64,7 +64,6 @@ fn each_kind_of_case_is_picked_once_and_time_is_covered() {
     }
 }
 
-/// Half of the cases of a kind are forecast better than the one shown, half worse: counted anew from the definition.
 #[test]
 fn the_case_shown_is_the_median_one() {
     let windows = windows();

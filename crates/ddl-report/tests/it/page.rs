@@ -138,7 +138,6 @@ fn the_head_takes_fair_results_and_the_published_ones_bring_their_warning() {
     assert!(head(&Report::new("Nothing", []).unwrap()).contains("This report holds no results."));
 }
 
-/// Even where the same with something changed is better.
 #[test]
 fn the_head_is_about_the_model_as_it_is() {
     let (window, forecast) = window_and_forecast(1, 1, false);
@@ -266,7 +265,6 @@ fn what_is_not_there_is_said() {
     }
 }
 
-/// A change that spoils a moment, and what is said of it.
 type Fault = (fn(&mut Moment), &'static str);
 
 #[test]
@@ -326,7 +324,6 @@ fn forty_crowded_moments_stay_below_six_megabytes() {
     assert!(html.len() < 6_000_000, "{} bytes", html.len());
 }
 
-/// The positions that a script makes of compact ones.
 fn walked(mut at: [i64; 2], steps: &Value) -> (Vec<Position>, [i64; 2]) {
     let steps: Vec<i64> = steps
         .as_array()
@@ -343,7 +340,6 @@ fn walked(mut at: [i64; 2], steps: &Value) -> (Vec<Position>, [i64; 2]) {
 }
 
 proptest! {
-    /// Whole millimetres anywhere within reach come out of the page as the same numbers, bit for bit.
     #[test]
     fn positions_survive_their_compact_form(places in prop::collection::vec([-1_000_000_000_i64..=1_000_000_000, -50_000..=50_000], 32)) {
         let metres: Vec<Position> = places.iter().map(|p| p.map(|mm| mm as f64 / 1000.0)).collect();

@@ -1,5 +1,4 @@
-//! Multi-head attention (Vaswani et al. 2017, section 3.2) of projected tokens, in the two forms STAR needs:
-//! every pedestrian over its neighbours, and the newest token over all earlier ones.
+//! Multi-head attention (Vaswani et al. 2017, section 3.2) of projected tokens, in the two forms STAR needs.
 
 use super::neighbours::SeenNeighbours;
 use std::rc::Rc;

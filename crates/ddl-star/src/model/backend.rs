@@ -15,7 +15,6 @@ use tch::{TchError, Tensor};
 pub struct TorchBackend {
     tensors: Vec<Tensor>,
     mode: Mode,
-    /// For training on a device where small operations cost as much as large ones.
     shared: Option<SharedWeights>,
 }
 
@@ -60,8 +59,7 @@ impl TorchBackend {
         }
     }
 
-    /// What follows attention in an encoder layer, of what it has mixed: residual connections, normalisations, the
-    /// feed-forward block.
+    /// What follows attention in an encoder layer.
     fn after_attention(&self, layer: EncoderLayer, x: &Tensor, mixed: &Tensor) -> Rc<Tensor> {
         let (first, p, mode) = (layer.tensor, layer.dropout, self.mode);
         let attended = self.affine(mixed, first + 2);

@@ -13,7 +13,6 @@ pub enum NoiseInput {
 }
 
 impl NoiseInput {
-    /// Hypotheses that differ by their noise.
     pub(crate) fn count(&self) -> i64 {
         match self {
             Self::Draws(draws) => draws.size()[0],
@@ -36,7 +35,6 @@ enum Prepared<'a> {
     Expected {
         /// The columns for the token.
         weight: Tensor,
-        /// For the variants with dynamics.
         spread: Option<NoiseCovariance>,
     },
 }
@@ -110,9 +108,7 @@ impl NoiseCovariance {
 
     /// The Cholesky factor of E[L L^T] when noise adds W n to (a, b, c).
     ///
-    /// The output is linear in the noise, so E[L L^T] = L0 L0^T + E[D D^T] with D built from W n: the mean
-    /// velocity of the noisy walkers, in closed form. The noise-free L0 alone would be too slow: P is
-    /// quadratic in L, and the noise's share of it is not small.
+    /// The output is linear in the noise, so E[L L^T] = L0 L0^T + E[D D^T] with D built from W n; L0 alone is too slow.
     /// Shapes: `mean` `[.., 3]` -> `[.., 3]`.
     fn expected_factor(&self, mean: &Tensor) -> Tensor {
         let l = |i: i64| mean.narrow(-1, i, 1);

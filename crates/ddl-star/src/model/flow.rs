@@ -1,12 +1,9 @@
-//! The differentiable twin of `ddl-dynamics`: one step of v = -P grad Phi on tensors.
-//!
-//! The formulas are those of the crate [`ddl_dynamics`]; a test holds the two together.
+//! The differentiable twin of `ddl-dynamics`: one step of v = -P grad Phi on tensors; a test holds the two together.
 
 use ddl_dynamics::{MotionBounds, StepTime};
 use tch::Tensor;
 
-/// Within this distance, in metres, a walker is at the goal. Squares of smaller offsets underflow in
-/// f32, so that nothing below could be told from the goal anyway.
+/// Within this distance (m) a walker is at the goal: squares of smaller offsets underflow in f32.
 const SMALLEST_NORM: f64 = 1e-18;
 /// Added to the square of half the difference of the eigenvalues (m/s), whose root has no derivative at 0.
 const SMALLEST_RADIUS_SQUARED: f64 = 1e-14;

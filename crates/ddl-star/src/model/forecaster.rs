@@ -27,7 +27,6 @@ impl TorchNetwork {
         })
     }
 
-    /// Forecasts one batch by libtorch.
     fn roll_out_batch(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, StarError> {
         let _guard = tch::no_grad_guard();
         let (device, kind) = (self.device(), self.kind());

@@ -1,5 +1,5 @@
-//! A pedestrian's own frame: the first axis points from where it was last observed to its goal, and lengths are in its
-//! own [unit](ddl_network::motion_unit), so that one walk teaches the network all directions and speeds.
+//! A pedestrian's own frame: the first axis points from where it was last observed to its goal, lengths are in its own
+//! [unit](ddl_network::motion_unit).
 
 use super::own_motion;
 use ddl_data::OBSERVED;

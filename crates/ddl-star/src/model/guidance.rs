@@ -5,7 +5,6 @@ use super::goal_frame::GoalFrame;
 use ddl_dynamics::StepTime;
 use tch::Tensor;
 
-/// What the walkers of a batch are told of where they go, and what their output means there.
 #[derive(Debug)]
 pub(super) struct Guidance {
     /// What temporal positions are relative to, `[G or 1, P, 2]`: the goal, or the last observed position.

@@ -33,7 +33,6 @@ impl Neighbours {
         }
     }
 
-    /// The scenes, for the kernels.
     pub(crate) fn scenes(&self) -> &Arc<Scenes> {
         &self.scenes
     }
@@ -46,7 +45,6 @@ impl Neighbours {
         }
     }
 
-    /// The rows for libtorch, made when first asked for.
     fn rows(&self) -> &MaskedRows {
         self.rows.get_or_init(|| {
             let scenes = &self.scenes;
@@ -89,7 +87,6 @@ impl Neighbours {
     }
 }
 
-/// The walkers of all scenes in rows of one length, as [`Packing`] has them.
 #[derive(Debug)]
 struct MaskedRows {
     /// The walker at each place, `[R * L]`.

@@ -14,8 +14,6 @@ use std::sync::Arc;
 use tch::{Device, Kind};
 
 /// The network on libtorch's tensors, on a device.
-///
-/// Its backbone stands in both forms, because on the CPU in `f32` kernels compute it in training.
 #[derive(Debug)]
 pub struct TorchNetwork {
     config: StarConfig,
@@ -112,17 +110,14 @@ impl TorchNetwork {
         Ok(Some(Arc::new(kernels)))
     }
 
-    /// The backbone on libtorch.
     pub(super) fn on_tensors(&self) -> &dyn Backbone<TorchBackend> {
         &*self.on_tensors
     }
 
-    /// The backbone on kernels.
     pub(super) fn on_rows(&self) -> &dyn Backbone<KernelBackend> {
         &*self.on_rows
     }
 
-    /// What the output layer makes of features under this noise.
     pub(super) fn emission<'a>(&'a self, noise: &'a NoiseInput) -> Emission<'a> {
         let [weight, bias] = [0, 1].map(|one| &self.parameters.tensors()[self.output.tensor + one]);
         Emission::new(weight, bias, noise, &self.config)

@@ -59,7 +59,6 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Tensors and positions agree, for walks that tremble, at every scale.
         #[test]
         fn tensors_and_positions_agree(
             track in prop::collection::vec([-0.2..0.2f64, -0.2..0.2f64], 8),

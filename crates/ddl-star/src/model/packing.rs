@@ -6,8 +6,7 @@ use std::ops::Range;
 /// Rows are a multiple of this long: what libtorch's fused attention on CUDA takes without copying the mask.
 const ALIGNMENT: usize = 8;
 
-/// Where the walkers of some scenes stand in rows of one length: about that of the largest scene, each with as many
-/// whole scenes as fit. A row for each scene would mostly be empty.
+/// Where the walkers of some scenes stand in rows of about the length of the largest scene, each with whole scenes.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Packing {
     rows: usize,
@@ -46,17 +45,14 @@ impl Packing {
         }
     }
 
-    /// How many rows there are.
     pub(crate) fn rows(&self) -> usize {
         self.rows
     }
 
-    /// Places in a row.
     pub(crate) fn length(&self) -> usize {
         self.length
     }
 
-    /// The place of each walker: `row * length + column`.
     pub(crate) fn places(&self) -> &[usize] {
         &self.places
     }

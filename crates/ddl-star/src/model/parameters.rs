@@ -17,7 +17,6 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// Tensors that begin with these numbers.
     pub(crate) fn new(layout: Layout, initial: &[f64], device: Device, kind: Kind) -> Self {
         let _guard = tch::no_grad_guard();
         let flat = Tensor::from_slice(initial).to_kind(kind).to_device(device);
@@ -85,7 +84,6 @@ impl Parameters {
         Ok(())
     }
 
-    /// The learned tensors, in order.
     pub(crate) fn tensors(&self) -> &[Tensor] {
         &self.tensors
     }
@@ -96,8 +94,6 @@ impl Parameters {
     }
 
     /// The gradient of a loss that only libtorch's operations lead to, as one vector like [`flat`](Self::flat).
-    ///
-    /// Nothing is added up in the tensors: there is nothing to forget before, and nothing to add to.
     pub(crate) fn gradient_of(&self, loss: &Tensor) -> Result<Tensor, tch::TchError> {
         let rows = Tensor::f_run_backward(&[loss], &self.tensors, false, false)?
             .iter()
@@ -114,7 +110,6 @@ impl Parameters {
     }
 }
 
-/// A shape as libtorch counts.
 pub(crate) fn sizes(shape: &[usize]) -> Vec<i64> {
     shape.iter().map(|&size| size as i64).collect()
 }

@@ -33,7 +33,6 @@ fn batch(windows: &[Window], kind: Kind) -> SceneBatch {
     SceneBatch::new(&windows, WINDOW, WINDOW - 1, 2.0, tch::Device::Cpu, kind).unwrap()
 }
 
-/// The networks of all variants, and those in the pedestrians' own frames, with either backbone.
 fn configs() -> Vec<StarConfig> {
     let own = [Variant::NoDynamics, Variant::Full].map(StarConfig::recommended);
     let world = Variant::ALL.map(StarConfig::published);
@@ -57,7 +56,6 @@ fn network(config: &StarConfig, kind: Kind) -> TorchNetwork {
     TorchNetwork::with_precision(config.clone(), 3, cpu, kind).unwrap()
 }
 
-/// By what a gradient is computed.
 #[derive(Debug, Clone, Copy)]
 enum By {
     /// Kernels and tape, in single precision.
@@ -109,7 +107,6 @@ fn teacher_forced(windows: &[Window], network: &TorchNetwork, pass: &Pass) -> Te
     (forecast - truth).square().mean(None::<Kind>)
 }
 
-/// The mean distance of a whole walk, whose own positions are read again.
 fn walk(windows: &[Window], network: &TorchNetwork, pass: &Pass) -> Tensor {
     let batch = batch(windows, network.kind());
     let goals = batch.positions().narrow(0, WINDOW as i64 - 1, 1) + 0.3;
@@ -122,7 +119,6 @@ fn walk(windows: &[Window], network: &TorchNetwork, pass: &Pass) -> Tensor {
 /// A loss, and how far it and its gradient may be off, as shares.
 type Compared = (fn(&[Window], &TorchNetwork, &Pass) -> Tensor, [f64; 2]);
 
-/// Through kernels and tape, and with shared weights, as libtorch alone has them in double precision.
 #[test]
 fn kernels_and_tape_give_the_gradients_of_libtorch() {
     let [some, many, alone] = scenes();

@@ -115,8 +115,7 @@ impl TorchNetwork {
         self.roll_out_in(batch, goals, noise, (horizon, rule), &pass)
     }
 
-    /// [`roll_out`](Self::roll_out) in a pass of its own. Gradients come back through the walk and through the memory of
-    /// tokens, not through the positions that the network reads: those are given, as observed ones are.
+    /// [`roll_out`](Self::roll_out) in a pass of its own. Gradients come back through walk and memory alone.
     pub(crate) fn roll_out_in(
         &self,
         batch: &SceneBatch,

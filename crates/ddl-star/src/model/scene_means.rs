@@ -3,8 +3,7 @@
 use std::ops::Range;
 use tch::{Device, Kind, Tensor};
 
-/// Averages over scenes whose walkers stand one after the other: laid side by side and summed, in the same order
-/// whenever it is computed, which sums by index do not have on CUDA.
+/// Averages over scenes, summed in the same order whenever they are computed, which sums by index are not on CUDA.
 #[derive(Debug)]
 pub(crate) struct SceneMeans {
     scenes: i64,

@@ -1,8 +1,6 @@
 //! Affine maps that are applied many times in a pass: the gradients of their weights from all uses at once.
-//!
-//! libtorch would compute a gradient at each of 19 frames and add them up, which on CUDA costs launches and little
-//! else. Here the weights are constants of its graph; what comes back to the output of every use is kept, and dW = G^T
-//! X is one product over the rows of all uses.
+//! What comes back to the output of every use is kept, and dW = G^T X is one product over the rows of all uses: on CUDA
+//! a gradient at each of 19 frames would cost launches and little else.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -20,7 +18,6 @@ struct Use {
     output: Tensor,
 }
 
-/// The uses of one pass.
 #[derive(Debug, Default)]
 pub(crate) struct SharedWeights {
     uses: RefCell<Vec<Use>>,
@@ -130,8 +127,6 @@ mod tests {
     use tch::Device;
 
     proptest! {
-        /// A chain through one map, another one whose bias it shares nothing with, an output that nobody uses,
-        /// and a weight that the loss also depends on directly: as libtorch has it.
         #[test]
         fn gradients_are_those_of_libtorch(uses in 1_usize..6, walkers in 1_i64..5, seed in 0_u64..99) {
             let rng = stream(seed, Stage::Weights, 0);

@@ -9,7 +9,6 @@ use std::rc::Rc;
 use std::sync::Arc;
 use tch::{TchError, Tensor};
 
-/// A backend between tensors.
 pub(crate) trait TensorBackend: Backend {
     /// Numbers that the network is given, which nobody asks the gradient of, `[B, P, width]`.
     fn given(&self, x: &Tensor) -> Self::Tokens;

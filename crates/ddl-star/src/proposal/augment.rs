@@ -1,5 +1,5 @@
-//! Changes to a batch that leave a plausible scene: mirrored, turned, enlarged, observed less well. A fold's windows
-//! overlap: what identifies a walker must change from visit to visit, or it is learned by heart.
+//! Changes to a batch that leave a plausible scene. A fold's windows overlap: what identifies a walker must change from
+//! visit to visit, or it is learned by heart.
 
 use super::data::Views;
 use ddl_network::ProposalTraining;

@@ -5,7 +5,6 @@ use ddl_data::HORIZON;
 use ddl_network::proposal::WAYPOINTS;
 use tch::{Kind, Tensor};
 
-/// Weights of the three parts of the loss.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LossWeights {
     /// How many of the nearest ends share the loss; a fraction counts for the last of them.

@@ -14,7 +14,6 @@ use ddl_network::{NetworkError, PedestrianView, ProposalConfig, ProposeEnds, Pro
 use std::sync::{Mutex, PoisonError};
 use tch::{Kind, Tensor};
 
-/// Pedestrians that are pushed through the network together.
 const CHUNK: usize = 2048;
 
 /// What the network says of a batch.
@@ -27,10 +26,6 @@ pub(crate) struct Proposals {
 }
 
 /// The ensemble.
-///
-/// A walker's positions and velocities pass one layer; its code then asks the codes of its
-/// neighbours (attention, with the choice to look at none), and further layers with short cuts give
-/// K ends relative to where the present velocity leads, and a probability for each.
 #[derive(Debug)]
 pub struct TorchProposals {
     config: ProposalConfig,
@@ -100,8 +95,6 @@ impl TorchProposals {
     }
 
     /// Proposes ends for each of the walkers.
-    ///
-    /// A walker's proposals do not depend on the other views of the call, beyond rounding.
     ///
     /// # Shapes
     /// One [`ProposedEnds`] a view, in their order: `members * ends` places, in metres ahead and to the left.

@@ -26,15 +26,13 @@ const AVERAGE: f64 = 0.999;
 /// Share of the past that the reported distance keeps at each step.
 const REPORTED: f64 = 0.98;
 
-/// How far a training has come.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct ProposalProgress {
     steps: u64,
     distance: f64,
 }
 
-/// A proposal network in training. Every step draws from its own random stream, so that a run that
-/// was stopped, saved and resumed gives the same weights as one that was not.
+/// A proposal network in training. A run that was stopped, saved and resumed gives the weights of one that was not.
 #[derive(Debug)]
 pub struct ProposalTrainer {
     network: TorchProposals,
@@ -53,8 +51,7 @@ pub struct ProposalTrainer {
 }
 
 impl ProposalTrainer {
-    /// Prepares training on the examples, and on `reversed` ones: walkers as if time ran backwards, who turn, start and stop
-    /// at other places than those who were seen; there may be none.
+    /// Prepares training on the examples, and on `reversed` ones, walkers as if time ran backwards; there may be none.
     ///
     /// # Errors
     /// [`StarError::Network`] for a bad configuration, [`StarError::NoTrainingWindows`] without

@@ -24,7 +24,6 @@ pub(crate) struct Extra<'a> {
     pub(crate) vectors: Vec<(&'static str, &'a Tensor)>,
 }
 
-/// How far a training run has come.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct TrainerProgress {
     /// Batches seen, over all epochs.
@@ -35,8 +34,7 @@ pub(crate) struct TrainerProgress {
     pub(crate) seconds: f64,
 }
 
-/// Writes everything a killed run needs to go on: weights, Adam's moments and the progress, in one
-/// file, so that they can never disagree.
+/// Writes everything a killed run needs to go on in one file, so that its parts never disagree.
 pub(crate) fn save(
     parameters: &Parameters,
     adam: &Adam,
@@ -62,8 +60,7 @@ pub(crate) fn save(
     Ok(write_tensors(&tensors, origin, path)?)
 }
 
-/// Restores all of it, and gives the progress, whose first number is the number of steps; nothing is changed when the file is not
-/// whole.
+/// Restores all of it, and gives the progress; nothing is changed when the file is not whole.
 pub(crate) fn load(
     parameters: &Parameters,
     adam: &mut Adam,
@@ -108,7 +105,6 @@ pub(crate) fn load(
     Ok(steps)
 }
 
-/// A number of steps as the file holds it.
 fn whole_steps(number: f64, most: u64, path: &Path) -> Result<u64, StarError> {
     if number.fract() == 0.0 && (0.0..=most as f64).contains(&number) {
         return Ok(number as u64);

@@ -10,8 +10,7 @@ use rand_distr::StandardNormal;
 use std::ops::Range;
 use tch::{Device, Kind, Tensor};
 
-/// Everything random of some steps in a row. Each step draws from a stream of its own; the numbers of all
-/// of them go to the device in one copy, so that no step has to wait for one.
+/// Everything random of some steps in a row, copied to the device at once, so that no step has to wait.
 #[derive(Debug)]
 pub(crate) struct StepDraws {
     steps: Range<u64>,
@@ -22,14 +21,12 @@ pub(crate) struct StepDraws {
     turns: Option<Tensor>,
 }
 
-/// Where the generators of one step start.
 #[derive(Debug, Clone, Copy)]
 struct Seeds {
     libtorch: i64,
     kernels: u64,
 }
 
-/// What one step draws.
 #[derive(Debug)]
 pub(crate) struct StepDraw {
     /// Seed of libtorch's generator.

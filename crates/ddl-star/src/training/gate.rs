@@ -2,8 +2,7 @@
 
 use tch::{Device, Kind, Tensor};
 
-/// Open until it has seen a number that is not finite, then shut until it is reopened. It lives on the device: whether
-/// an update counts is decided there, so that nobody waits.
+/// Open until it has seen a number that is not finite, then shut until it is reopened; decided on the device.
 #[derive(Debug)]
 pub(crate) struct FiniteGate {
     /// Scalar, 1 or 0.
@@ -11,7 +10,6 @@ pub(crate) struct FiniteGate {
 }
 
 impl FiniteGate {
-    /// An open gate.
     pub(crate) fn new(device: Device, kind: Kind) -> Self {
         Self {
             open: Tensor::ones([], (kind, device)),
@@ -26,7 +24,6 @@ impl FiniteGate {
         self.open *= finite;
     }
 
-    /// Opens it again.
     pub(crate) fn reopen(&mut self) {
         let _ = self.open.fill_(1.0);
     }

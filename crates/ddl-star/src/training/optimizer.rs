@@ -88,7 +88,6 @@ mod tests {
         difference.abs().max().double_value(&[])
     }
 
-    /// The formulas as the paper has them (its algorithm 1), with the gradient clipped first.
     #[test]
     fn it_does_what_the_paper_says() {
         let parameters = parameters();

@@ -6,8 +6,7 @@ use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
 use std::cell::OnceCell;
 use tch::{Device, Kind, Tensor};
 
-/// Training windows as batches that stay where the network computes: every window belongs to one batch for good, which
-/// is laid out at its first visit and found at every later one.
+/// Training windows as batches that stay where the network computes, each laid out at its first visit.
 #[derive(Debug)]
 pub(crate) struct PreparedBatches {
     windows: Vec<Window>,
@@ -36,9 +35,8 @@ impl TrainingBatch {
         }
     }
 
-    /// The same as if it had been observed less exactly: every observed coordinate is off by a normal error, whose deviation is
-    /// uniform from 0 to `jitter` (m) for each walker. The future and the goals stay where they are. Draws from libtorch's
-    /// generator.
+    /// The same as if every observed coordinate were off by a normal error, whose deviation is uniform from 0 to
+    /// `jitter` (m) for each walker. Future and goals stay where they are. Draws from libtorch's generator.
     pub(crate) fn jittered(self, jitter: f64) -> Self {
         let Self { scenes, goals } = self;
         let observed = scenes.positions.narrow(0, 0, OBSERVED as i64);
@@ -56,7 +54,6 @@ impl TrainingBatch {
         }
     }
 
-    /// The same, without copying.
     pub(crate) fn shared(&self) -> Self {
         Self {
             scenes: self.scenes.shared(),
@@ -84,7 +81,6 @@ impl PreparedBatches {
         }
     }
 
-    /// A window.
     pub(crate) fn window(&self, index: usize) -> &Window {
         &self.windows[index]
     }

@@ -57,22 +57,18 @@ impl Schedule {
         self.steps_per_epoch
     }
 
-    /// Batches of the training set.
     pub(crate) fn batches(&self) -> usize {
         self.batches.len()
     }
 
-    /// The seed that everything random of the training comes from.
     pub(crate) fn seed(&self) -> u64 {
         self.seed
     }
 
-    /// Index of the batch visited at a step.
     pub(crate) fn batch_index(&self, step: u64) -> usize {
         (step % self.batches.len() as u64) as usize
     }
 
-    /// Windows of a batch.
     pub(crate) fn batch(&self, index: usize) -> &[usize] {
         &self.batches[index]
     }

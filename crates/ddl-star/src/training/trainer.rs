@@ -23,8 +23,7 @@ use tch::{Device, Tensor};
 /// Steps whose losses CUDA keeps before they are read.
 const READ_EVERY_ON_CUDA: usize = 16;
 
-/// A network in training. Every step draws from its own random stream, so that a run that was
-/// stopped, saved and resumed gives the same weights as one that was not.
+/// A network in training. A run that was stopped, saved and resumed gives the weights of one that was not.
 #[derive(Debug)]
 pub struct Trainer {
     network: TorchNetwork,
@@ -269,7 +268,6 @@ impl Trainer {
         Ok(self.report(step, loss))
     }
 
-    /// Hands the present weights to the kernels.
     fn update_kernels(&mut self) -> Result<(), StarError> {
         if let Some(kernels) = &mut self.kernels {
             let weights = self.network.parameters().to_weights()?;
@@ -304,7 +302,6 @@ impl Trainer {
         Ok(Some(sum / pairs.len() as f64))
     }
 
-    /// Loss of a batch.
     fn loss(&self, batch: &TrainingBatch, noise: Tensor, pass: &Pass) -> Result<Tensor, StarError> {
         let (scenes, goals) = (&batch.scenes, &batch.goals);
         let after = |frames: usize| {
@@ -359,7 +356,6 @@ impl Trainer {
         }
     }
 
-    /// What is said when the next step is the one at fault.
     fn non_finite(&self, quantity: &'static str, value: f64) -> StarError {
         let batch = self.schedule.batch_index(self.progress.steps);
         let windows = self

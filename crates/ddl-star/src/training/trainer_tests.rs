@@ -8,7 +8,6 @@ use ddl_data::{Dataset, WindowRule};
 use ddl_network::{DeviceChoice, StarConfig, Variant};
 use tch::Kind;
 
-/// Seven steps an epoch; in `Double` all of it is libtorch's.
 fn trainer(kind: Kind, read_every: usize) -> Trainer {
     crate::set_threads(1);
     let config = StarConfig {
@@ -121,7 +120,6 @@ fn saving_reads_what_is_not_read_yet() {
     ));
 }
 
-/// What Adam would make NaN of, and steps that are not the run's.
 #[test]
 fn a_state_that_cannot_be_is_refused() {
     let folder = tempfile::tempdir().unwrap();

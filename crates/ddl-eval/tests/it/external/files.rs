@@ -69,7 +69,6 @@ pub(crate) fn expected() -> Vec<Forecast> {
     vec![one(&[1.0, 2.0]), one(&[3.0])]
 }
 
-/// The rows of a table: a pedestrian and where it stands.
 pub(crate) fn rows(
     recording: &str,
     until: i64,

@@ -23,7 +23,6 @@ fn position() -> impl Strategy<Value = Position> + Clone {
     (coordinate(), coordinate()).prop_map(|(x, y)| [x, y])
 }
 
-/// Windows of two recordings, and forecasts of them with K hypotheses, with goals or without.
 fn forecast_windows() -> impl Strategy<Value = (Vec<Window>, Vec<Forecast>)> {
     let shapes = (vec(1..4_usize, 1..5), 1..4_usize, any::<bool>());
     shapes.prop_flat_map(|(sizes, k, with_goals)| {
@@ -94,7 +93,6 @@ proptest! {
         prop_assert_eq!(lines.next(), None);
     }
 
-    /// Whoever is scored alone among everybody sees what it sees where all are scored.
     #[test]
     fn what_looks_at_others_is_the_same_for_a_part((windows, forecasts) in forecast_windows()) {
         let whole = Scores::evaluate(&windows, &forecasts).unwrap();

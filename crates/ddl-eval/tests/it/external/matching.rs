@@ -62,7 +62,6 @@ fn scenes_of_trajnet_stand_for_windows() {
     }
 }
 
-/// Pedestrians whom the recording knows by words are forecast under their words, in every format.
 #[test]
 fn pedestrians_may_have_words_for_names() {
     let words = ["7f3e-aa41", "007"];

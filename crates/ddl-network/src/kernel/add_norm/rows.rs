@@ -1,5 +1,4 @@
-//! Four rows at a time, which makes sums over a row a matter of few instructions; and which of their numbers are
-//! dropped.
+//! Four rows at a time, which makes sums over a row a matter of few instructions.
 
 use crate::kernel::dropout::{Dropout, RowKey, Threshold, mixed};
 use ddl_simd::{DEPTH, Lanes, Simd, Vectors};
@@ -57,7 +56,6 @@ impl Four {
         sums
     }
 
-    /// Sums of products of the same places, likewise.
     #[inline(always)]
     pub(super) fn products<S: Simd>(&self, simd: S, other: &Self) -> Vectors<S> {
         let mut sums = [simd.splat(0.0); DEPTH];

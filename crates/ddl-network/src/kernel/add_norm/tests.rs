@@ -7,7 +7,6 @@ use crate::kernel::tests::numbers::{Numbers, assert_close};
 use ddl_simd::{Dispatch, InstructionSet, Kernel, Simd};
 use proptest::prelude::*;
 
-/// Forwards and backwards; the first row is the 5th.
 struct Both<'a> {
     norm: &'a AddNorm,
     inputs: [&'a [f32]; 2],

@@ -6,7 +6,6 @@ use crate::kernel::tests::numbers::{Numbers, assert_close, wide};
 use ddl_simd::{Dispatch, InstructionSet, Simd, TiledKernel};
 use proptest::prelude::*;
 
-/// All three products, y and gx in the middle of wider rows.
 struct All<'a> {
     map: &'a Affine,
     x: MatrixColumns<'a>,

@@ -9,7 +9,6 @@ use crate::kernel::{Dropout, Scenes};
 use ddl_simd::InstructionSet;
 use proptest::prelude::*;
 
-/// Sizes of scenes, and everything else of a case.
 struct SceneCase {
     heads: (usize, usize),
     sizes: Vec<usize>,
@@ -42,7 +41,6 @@ impl SceneCase {
         }
     }
 
-    /// Mixed values and the gradient of qkv.
     fn run(&self, set: InstructionSet) -> (Vec<f32>, Vec<f32>) {
         let attention = AmongPedestrians::new(self.heads.0, self.heads.1);
         let attention = attention.with_instructions(set).unwrap();
@@ -62,7 +60,6 @@ impl SceneCase {
         (attended.mixed().to_vec(), gradient)
     }
 
-    /// The same by the formula.
     fn expected(&self) -> (Vec<f64>, Vec<f64>) {
         let (heads, width) = self.heads;
         let pedestrians: usize = self.sizes.iter().sum();
@@ -121,7 +118,6 @@ impl SceneCase {
         (mixed, qkv_gradient)
     }
 
-    /// With every instruction set.
     fn check(&self, tolerance: f64) {
         let (mixed, gradient) = self.expected();
         for set in InstructionSet::available() {
@@ -155,7 +151,6 @@ fn heads() -> impl Strategy<Value = (usize, usize)> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(128))]
 
-    /// Values and gradients are those of the formula.
     #[test]
     fn agrees_with_the_formula(
         (heads, sizes) in (heads(), prop::collection::vec(1_usize..24, 1..5)),
@@ -170,7 +165,6 @@ proptest! {
     }
 }
 
-/// A scene so large that only who is seen is gone through.
 #[test]
 fn agrees_in_large_scenes() {
     SceneCase::new(21, STAR, &[LARGE + 21], (2, 1), 1.5).check(5e-6);
@@ -197,7 +191,6 @@ fn bears_big_scores() {
     }
 }
 
-/// Buffers of a bigger batch may be used again.
 #[test]
 fn results_do_not_depend_on_what_was_there() {
     let big = SceneCase::new(12, STAR, &[30, 5], (2, 1), 1.0);

@@ -1,5 +1,4 @@
 //! From the gradient of a layer's output to those of its input and weights, a few rows at a time.
-//!
 //! Each piece of rows adds up gradients of weights of its own; these are added in the order of the rows.
 
 use super::forward::ROWS;

@@ -28,7 +28,6 @@ pub(crate) struct EncoderKernel {
     pub(super) dispatch: Dispatch,
 }
 
-/// The four dropouts of a layer, each with a seed of its own.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Dropouts {
     pub(crate) weights: Option<Dropout>,

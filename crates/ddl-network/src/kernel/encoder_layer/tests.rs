@@ -126,7 +126,6 @@ fn the_number_of_threads_changes_no_bit() {
     }
 }
 
-/// Along the gradient the output rises as steeply as the gradient is long, dropout included.
 #[test]
 fn gradients_are_slopes() {
     let scenes = [4, 1, 6];

@@ -1,5 +1,4 @@
 //! The backward pass: groups of hidden units in parallel.
-//!
 //! The derivatives of a unit's weights belong to one group alone, so that nothing has to be added up over threads but
 //! gx, which is small: `rows * width` for each group. The groups are always the same, and so are the sums.
 
@@ -100,7 +99,6 @@ struct Scratch {
     /// Likewise of W2, rows entries of y.
     w2: Vec<Panel>,
     hidden: Vec<Block>,
-    /// Derivatives with respect to what they are activations of.
     gradient: Vec<Block>,
 }
 

@@ -1,5 +1,4 @@
 //! The forward pass with products of bf16 numbers, summed up in `f32`: twice as many multiplications an instruction.
-//!
 //! A product A B takes two numbers of a row of A and two rows of B at a time. So A is held with neighbours in a row paired,
 //! B with neighbours in a column.
 
@@ -188,7 +187,6 @@ fn multiply<P: Pairs>(pairs: P, mut sum: Sums<P>, a: &[PairedRow; ROWS], b: &Pai
     sum
 }
 
-/// sum + A B, the sum in memory.
 #[inline(always)]
 fn add_product<P: Pairs>(pairs: P, sum: &mut [Block; ROWS], a: &[PairedRow; ROWS], b: &PairPanel) {
     let tile = load_tile(pairs.simd(), sum, 0);

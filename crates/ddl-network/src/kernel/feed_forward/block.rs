@@ -68,8 +68,7 @@ pub(super) fn tile_mut<const R: usize>(rows: &mut [Block], first: usize) -> &mut
 /// Rows are padded to a multiple of this, which every tile of accumulators divides.
 pub(super) const ROWS: usize = 8;
 
-/// Memory that a thread keeps for the next matrices: to ask the system for it, and to be given it a page at a time,
-/// would take as long as a tenth of a backward pass.
+/// Memory that a thread keeps for the next matrices: fresh pages would take as long as a tenth of a backward pass.
 const SPARE: usize = 32;
 
 thread_local! {

@@ -26,7 +26,6 @@ fn assert_near(name: &str, found: &[f32], exact: &[f64], bounds: &[f64]) {
     }
 }
 
-/// The layer with every instruction set.
 fn layers(case: &Case) -> Vec<FeedForward> {
     let sets = InstructionSet::available();
     assert!(sets.contains(&InstructionSet::Portable));
@@ -34,7 +33,6 @@ fn layers(case: &Case) -> Vec<FeedForward> {
     sets.into_iter().map(layer).collect()
 }
 
-/// Both passes, and the forward pass in bf16, within the stated bounds.
 fn check(case: &Case) {
     let exact = case.exact();
     let scaled = |steps: usize, [sizes, doubts]: [&[f64]; 2]| -> Vec<f64> {
@@ -60,7 +58,6 @@ fn check(case: &Case) {
     bf16::check(case);
 }
 
-/// Nothing at all, one row, several tiles, spans and blocks.
 #[test]
 fn the_error_bounds_hold_at_the_edges() {
     for (width, hidden, rows, p) in [

@@ -132,7 +132,6 @@ fn bears_big_scores() {
     MemoryCase::new(3, (8, 4), 9, 8, 20.0).check(2e-4);
 }
 
-/// One memory for several hypotheses is the memory repeated.
 #[test]
 fn a_memory_of_fewer_rows_is_repeated() {
     for rows in [1, 5, 25, 64] {

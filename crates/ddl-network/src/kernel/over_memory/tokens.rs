@@ -19,7 +19,6 @@ pub(crate) struct KeyValueMut<'a> {
 }
 
 impl KeyValueMut<'_> {
-    /// The same, for a shorter time.
     pub(super) fn reborrow(&mut self) -> KeyValueMut<'_> {
         KeyValueMut {
             key: self.key,

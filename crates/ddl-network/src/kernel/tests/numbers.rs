@@ -52,7 +52,6 @@ pub(crate) fn bits(numbers: &[f32]) -> Vec<u32> {
     numbers.iter().map(|number| number.to_bits()).collect()
 }
 
-/// Panics unless `run` does, with a message that says this.
 pub(crate) fn assert_refused(said: &str, run: impl FnOnce()) {
     let panic = catch_unwind(AssertUnwindSafe(run)).expect_err(said);
     let message = match panic.downcast_ref::<String>() {

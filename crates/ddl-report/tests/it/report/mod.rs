@@ -71,7 +71,6 @@ fn row(protocol: Protocol, fold: &str, seed: u64, min_ade: f64) -> ResultRow {
     }
 }
 
-/// Pedestrians who turn to the left, with this error.
 fn turning(pedestrians: usize, min_ade: f64) -> Vec<CategoryScores> {
     vec![CategoryScores {
         category: Category::Motion(MotionKind::TurningLeft),
@@ -99,7 +98,6 @@ fn markdown(rows: impl IntoIterator<Item = ResultRow>) -> String {
     Report::new("Results", rows).unwrap().to_markdown()
 }
 
-/// The same rows of a forecaster that nobody trained.
 fn of_forecaster(mut rows: Vec<ResultRow>, name: &str) -> Vec<ResultRow> {
     for row in &mut rows {
         name.clone_into(&mut row.conditions.forecaster);
@@ -110,7 +108,6 @@ fn of_forecaster(mut rows: Vec<ResultRow>, name: &str) -> Vec<ResultRow> {
     rows
 }
 
-/// The line of the first table that begins with `start`.
 fn line<'a>(page: &'a str, start: &str) -> &'a str {
     page.lines().find(|line| line.starts_with(start)).unwrap()
 }
@@ -153,7 +150,6 @@ fn a_table_names_everything_it_must() {
     assert!(markdown([]).starts_with("Data convention: none"));
 }
 
-/// Metrics that a row lacks, or a fold of it, are left out and not counted as 0.
 #[test]
 fn metrics_have_columns() {
     let mut rows = five_folds(Protocol::Fair, 1, 0.25);
@@ -290,7 +286,6 @@ fn the_same_row_twice_is_one_and_a_contradiction_is_refused() {
     assert!(error.to_string().contains("`DDL` on fold `eth`"));
 }
 
-/// The better forecaster is so in every block, by 0.05 m on the mean.
 #[test]
 fn differences_come_with_their_interval_and_their_p_value() {
     let better = five_folds(Protocol::Fair, 1, 0.25);
@@ -306,8 +301,6 @@ fn differences_come_with_their_interval_and_their_p_value() {
     assert_eq!(cells(line(sure, "| DDL "))[4..], ["-"; 4]);
 }
 
-/// The same model stands under the oracle's protocol and under the fair one in one table, with the warning; and every form of the report
-/// says the same.
 #[test]
 fn protocols_meet_in_one_table_with_its_warning() {
     let mut rows = five_folds(Protocol::Fair, 1, 0.25);
@@ -372,7 +365,6 @@ fn categories_are_pooled_over_the_pedestrians_of_shared_folds() {
     );
 }
 
-/// Two recordings of 100 and 10 pedestrians: the mean over all is not that over the recordings.
 #[test]
 fn own_recordings_have_a_row_each_and_one_for_all() {
     let mut measured = row(Protocol::Fair, "2 recordings, lobby to yard", 1, 0.25);

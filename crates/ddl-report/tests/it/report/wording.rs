@@ -5,7 +5,6 @@ use ddl_report::Report;
 
 use super::{cells, five_folds, line, markdown, of_forecaster};
 
-/// Constant velocity has two folds, the model one: on the other it was not beaten, it was not measured.
 #[test]
 fn a_line_that_lacks_folds_is_not_ranked_against_one_that_has_them() {
     let mut rows = five_folds(Protocol::Fair, 1, 0.25);

@@ -5,7 +5,6 @@ use super::{FeedForward, UNIT, assert_near};
 use crate::Precision;
 use ddl_simd::InstructionSet;
 
-/// Emulated with every instruction set, and with what the machine is fastest with.
 pub(super) fn layers(case: &Case) -> Vec<FeedForward> {
     let zeros = || FeedForward::zeros(case.width, case.hidden);
     let emulated = InstructionSet::available().into_iter();
@@ -78,7 +77,6 @@ fn exact(case: &Case) -> [Vec<f64>; 2] {
     [values, bounds]
 }
 
-/// Within the stated bounds, and the same bits, emulated or not.
 pub(super) fn check(case: &Case) {
     let [values, bounds] = exact(case);
     let mut first = None;

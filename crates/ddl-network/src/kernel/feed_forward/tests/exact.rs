@@ -6,7 +6,6 @@ use crate::kernel::feed_forward::dropout::reference;
 use crate::kernel::feed_forward::{FeedForward, Gradients};
 use crate::kernel::tests::numbers::Numbers;
 
-/// A layer and what it is applied to.
 pub(super) struct Case {
     pub(super) width: usize,
     pub(super) hidden: usize,
@@ -77,7 +76,6 @@ impl Case {
         layer
     }
 
-    /// y, gx and the derivatives of the weights.
     pub(super) fn run(&self, layer: &FeedForward) -> (Vec<f32>, Vec<f32>, Gradients) {
         // Both are overwritten.
         let [mut y, mut gx] = [vec![f32::NAN; self.x.len()], vec![f32::NAN; self.x.len()]];
