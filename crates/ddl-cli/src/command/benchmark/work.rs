@@ -74,7 +74,7 @@ pub(super) fn side_by_side(
 }
 
 impl Workers {
-    /// How each task ended, in the plan's order. After a wish to stop none is begun, and running ones are asked to save.
+    /// How each task ended, in the plan's order. After a wish to stop none begins, and running ones are asked to save.
     pub(super) fn run(
         &self,
         plan: &Plan,
