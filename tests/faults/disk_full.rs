@@ -59,7 +59,6 @@ fn an_earlier_output_stays() {
     );
 }
 
-/// What is printed has to arrive somewhere too.
 #[test]
 fn standard_output_that_takes_nothing_is_an_error() {
     let place = Place::with_model();

@@ -30,7 +30,6 @@ fn pipe(place: &Place) -> String {
     pipe.display().to_string()
 }
 
-/// Texts of a JSON value, by pointer.
 fn texts(value: &Value, pointer: &str, found: &mut Vec<String>) {
     match value {
         Value::String(_) => found.push(pointer.to_owned()),
@@ -144,7 +143,6 @@ fn a_model_with_paths_for_names_forecasts_as_before() {
     );
 }
 
-/// A file of a run that is a link: read through, as everything the system names; written over, not through.
 #[test]
 fn nothing_is_written_through_a_link() {
     let place = Place::with_model();

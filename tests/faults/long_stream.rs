@@ -1,6 +1,5 @@
-//! A day of live tracks: memory and time of a frame at its end are those of its beginning.
-//!
-//! Measured in a process of its own, started anew from this very test, because the other tests of this program use memory as they like.
+//! A day of live tracks: memory and time of a frame at its end are those of its beginning, measured in a process of its
+//! own, because the other tests of this program use memory as they like.
 
 use ddl::data::{PedestrianId, Position};
 use ddl::eval::baseline::ConstantVelocity;
@@ -83,7 +82,6 @@ fn a_day_of_forecasts_does_not_add_up() {
     );
 }
 
-/// What remembers people, and as good as nothing else.
 #[test]
 fn a_day_of_tracks_does_not_add_up() {
     let size = (24 * HOUR, HOUR);
@@ -95,7 +93,6 @@ fn a_day_of_tracks_does_not_add_up() {
     );
 }
 
-/// Lets a child stream, and holds what it measured to what it measured at first.
 fn watched(
     what: &str,
     test: &str,

@@ -9,7 +9,6 @@ use std::os::unix::process::ExitStatusExt as _;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A benchmark of two models, each of which takes some seconds.
 const BENCHMARK: &str = "benchmark --convention simulated --profile smoke --folds corridor --seeds 1,2 --train-walkers 64 --test-walkers 20 \
                          --protocol fair --jobs 2 --out out";
 
@@ -19,7 +18,6 @@ fn benchmark(place: &Place) -> Command {
     command
 }
 
-/// One that has claimed its folder.
 fn begun(place: &Place) -> Child {
     let mut child = benchmark(place).spawn().unwrap();
     while !place.at("out/plan.json").exists() {
@@ -134,7 +132,6 @@ fn a_second_benchmark_in_the_same_folder_is_refused() {
     );
 }
 
-/// Ctrl-C, and what stops a container: processes save and leave, the exit code says so, and the same command goes on.
 #[test]
 fn an_interrupted_benchmark_stops_cleanly_and_goes_on() {
     let place = Place::empty();

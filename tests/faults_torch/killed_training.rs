@@ -15,7 +15,6 @@ fn start(place: &Place) -> Child {
     command.spawn().unwrap()
 }
 
-/// Whether a file is being written in the run.
 fn is_writing(place: &Place) -> bool {
     ["run", "run/epochs"].iter().any(|folder| {
         let entries = std::fs::read_dir(place.at(folder))

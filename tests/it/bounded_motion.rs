@@ -155,7 +155,6 @@ fn check(model: &Ddl, tracks: &[Vec<Position>]) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Observations that no training scene holds: on one spot together, a leap of 100 m, steps to and fro.
 #[test]
 fn strange_observations_are_forecast_as_stably() {
     let standing = vec![[3.0, -2.0]; OBSERVED];
@@ -173,7 +172,6 @@ fn strange_observations_are_forecast_as_stably() {
     }
 }
 
-/// What is certified is what is forecast: many, and the one towards the central goal, in single precision or in half.
 #[test]
 fn the_certified_forecast_is_the_forecast() {
     let windows = crowd::windows(3, 10);

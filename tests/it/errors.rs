@@ -36,7 +36,6 @@ fn the_file_that_is_read_is_not_written_over() {
     }
 }
 
-/// Weights of another variant, and weights of the same shapes and goals of another fold, copied over those of the run.
 #[test]
 fn files_of_another_run_are_refused() {
     let [other, elsewhere] = [Place::with_variant(Variant::NoDynamics), Place::empty()];
@@ -85,7 +84,6 @@ fn what_a_run_does_not_hold_is_said() {
     let _ = place.ok("evaluate --model last --protocol fair --test-walkers 20 --threads 1");
 }
 
-/// Training and CUDA are libtorch's: in one sentence, how to get them.
 #[cfg(not(feature = "torch"))]
 #[test]
 fn what_needs_libtorch_says_how_to_get_it() {

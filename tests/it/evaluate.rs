@@ -26,7 +26,6 @@ fn config() -> RunConfig {
     }
 }
 
-/// Every row names the conditions of its number.
 fn check_conditions(row: &ResultRow) {
     let conditions = &row.conditions;
     assert_eq!(conditions.convention, Convention::Simulated);
@@ -47,7 +46,6 @@ fn check_conditions(row: &ResultRow) {
     }
 }
 
-/// Stable steps are certified all; plain ones, published or not, are counted as they are.
 fn check_certificates(protocol: Protocol, rows: &[&ResultRow]) {
     let named = |start: &str| {
         rows.iter()
@@ -182,7 +180,6 @@ fn a_number_goes_from_the_model_to_the_page() {
     }
 }
 
-/// Each protocol under each window rule, on real recordings.
 #[test]
 fn a_model_of_the_hotel_fold_is_measured() {
     let Some(data) = recordings::star_folder() else {

@@ -105,7 +105,6 @@ fn every_example_runs_and_keeps_its_promise() {
     }
 }
 
-/// An example that is added is run from then on.
 #[test]
 fn no_example_is_forgotten() {
     let known = EXAMPLES

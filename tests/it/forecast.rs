@@ -100,8 +100,6 @@ fn check_certificate(start: Position, hypothesis: &Hypothesis) -> Vec<f64> {
     potentials[1..].to_vec()
 }
 
-/// JSON lines, csv, with certificates and without: twenty weighted futures of twelve frames each, the same ones, that come nearer to
-/// their goals at every step.
 #[test]
 fn every_format_holds_the_same_futures_and_certificates_speak_of_them() {
     let place = Place::with_model();
@@ -175,7 +173,6 @@ fn every_format_holds_the_same_futures_and_certificates_speak_of_them() {
     assert_eq!(plain, lines);
 }
 
-/// Of every model that comes with the program, which is used without any option: in any order of rows, among other moments or alone, from a longer recording or a shorter one, on one thread or two: the same bits.
 #[test]
 fn a_forecast_has_the_same_bits_in_any_company() {
     let place = Place::empty();
@@ -245,7 +242,6 @@ fn forecasts_move_with_the_origin_of_the_map() {
     }
 }
 
-/// Regions: a radius a row in csv and discs in JSON lines, the same ones; the region of 90 % is the larger, and grows with time.
 #[test]
 fn regions_are_written_as_radii_and_as_discs() {
     let place = Place::with_model();
@@ -294,7 +290,6 @@ struct Goal {
     y: f64,
 }
 
-/// `ddl goals` prints the goals of the forecasts. In tables, positions have 0.1 mm.
 #[test]
 fn goals_of_own_tracks_are_those_of_the_forecasts() {
     let place = Place::with_model();

@@ -20,7 +20,6 @@ struct Golden {
     familiarity: f64,
     /// The last position of the one forecast.
     one: Position,
-    /// Of the hypotheses, likeliest first.
     weights: Vec<f64>,
     goals: Vec<Position>,
     step_1: Vec<Position>,

@@ -40,11 +40,9 @@ fn certified(path: &[Position]) -> bool {
     certificate.holds().is_ok()
 }
 
-/// One walker against its own end.
 struct Walker {
     /// Mean distance between where it was and where the guarantee would have had it, 12 frames (m).
     displacement: f64,
-    /// Gets further than [`STANDING`].
     walks: bool,
     certified: bool,
     /// Largest angle between a step and the direction to its end (degrees).

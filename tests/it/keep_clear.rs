@@ -35,7 +35,6 @@ fn free_and_careful() -> [Ddl; 2] {
     [free, careful.keeping_clear(clearance).unwrap()]
 }
 
-/// Twenty hypotheses, and the one forecast: fewer come near, some go another way, all still to their goals.
 #[test]
 fn fewer_come_near_and_all_still_arrive() {
     let windows = crowd::windows(12, 12);
@@ -100,7 +99,6 @@ fn the_program_keeps_clear_and_says_so() {
     ]);
 }
 
-/// Variants without dynamics have no flow: nothing is certified, nobody is kept apart, and nothing is left behind.
 #[test]
 fn what_has_no_flow_is_refused() {
     for variant in [Variant::Star, Variant::NoDynamics] {

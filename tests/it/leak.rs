@@ -143,7 +143,6 @@ fn who_reads_the_future_is_found() {
     assert!(leak::find(&forecaster, window).unwrap().is_some());
 }
 
-/// Who cannot forecast without the future says so, and is refused under `fair` and `single`.
 #[test]
 fn who_needs_the_future_is_refused() {
     let windows = crowd::windows(1, 6);

@@ -11,7 +11,6 @@ use serde_json::Value;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 
-/// Plays three people, of whom one is missing for a while and nobody is seen at frame 180, plainly and certified.
 #[test]
 fn every_frame_is_forecast_as_its_window_is() {
     let model = drawn_model::of(Variant::Full);
@@ -107,7 +106,6 @@ impl Live {
         json(&line)
     }
 
-    /// The rest of its output, what was told, and the exit code.
     fn end(mut self) -> (String, String, Option<i32>) {
         drop(self.input);
         let mut rest = String::new();
@@ -124,7 +122,6 @@ fn rows_of(rows: &[Row], frames: std::ops::Range<i64>) -> String {
     table.split_once('\n').unwrap().1.to_owned()
 }
 
-/// The answer comes while the tracker still waits with the next frame, and is that of the file.
 #[test]
 fn every_frame_is_answered_before_the_next_one_comes() {
     let place = Place::with_model();
@@ -146,7 +143,6 @@ fn every_frame_is_answered_before_the_next_one_comes() {
     assert_eq!(expected.next(), None);
 }
 
-/// From the second frame on, the step learned from the first two. Who has seen enough may go: that ends it quietly.
 #[test]
 fn two_frames_are_enough_and_a_reader_that_leaves_ends_it_quietly() {
     let place = Place::with_model();
@@ -183,7 +179,6 @@ fn two_frames_are_enough_and_a_reader_that_leaves_ends_it_quietly() {
     assert_eq!(finished.stderr.lines().count(), 1, "{finished:?}");
 }
 
-/// What came before a bad line has been answered.
 #[test]
 fn a_bad_line_is_named_and_nothing_before_it_is_lost() {
     let place = Place::with_model();
@@ -222,7 +217,6 @@ fn what_cannot_be_live_is_refused() {
     ]);
 }
 
-/// Pixels are seen in the speeds as soon as somebody was seen whole, and an unfamiliar motion whenever it comes: each is told of once.
 #[test]
 fn what_looks_wrong_is_told_once() {
     let place = Place::empty();

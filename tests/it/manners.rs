@@ -70,8 +70,6 @@ fn every_command_has_help_completions_and_a_manual_page() {
     }
 }
 
-/// Every command that reports takes `--progress` beside it, so that programs need not know which has a bar. Nothing but plain text goes
-/// into a pipe.
 #[test]
 fn commands_that_report_also_speak_json() {
     let place = Place::with_model();
@@ -180,7 +178,6 @@ fn the_first_output_comes_soon() {
     assert!(best <= SOON, "{runs:?} of processor time, at most {SOON:?}");
 }
 
-/// No library is loaded but those of every Rust program, neither at the start nor later: whatever else the program needs is in it.
 #[cfg(all(target_os = "linux", not(feature = "torch")))]
 #[test]
 fn no_library_is_loaded_but_the_systems() {

@@ -38,7 +38,6 @@ fn row<'a>(report: &'a Report, protocol: &str, forecaster: &str) -> &'a ResultRo
     report.rows().iter().find(of).unwrap()
 }
 
-/// The example's row and the baseline's agree, under both protocols.
 fn report(place: &Place, folder: &str, name: &str) -> Report {
     let report = Report::load(&place.at(folder).join("report.json")).unwrap();
     for protocol in ["fair", "single"] {
@@ -167,7 +166,6 @@ fn what_cannot_be_measured_is_refused_with_the_reason() {
     ]);
 }
 
-/// Both formats that `ddl forecast` writes are formats that are read, as they are.
 #[test]
 fn what_ddl_forecast_writes_is_read_back() {
     let place = Place::with_model();

@@ -29,8 +29,6 @@ fn own_recordings_are_told_of() {
     assert!(words.lines().last().unwrap().contains(&in_all), "{words}");
 }
 
-/// Any model can be measured on recordings it does not know. Where a folder holds none of the ETH/UCY recordings, a fold is one of its
-/// own.
 #[test]
 fn models_are_measured_on_own_recordings() {
     let place = with_recordings();
@@ -52,7 +50,6 @@ fn models_are_measured_on_own_recordings() {
     assert_eq!(of_fold, of_model);
 }
 
-/// The sound files are told of, and the broken ones named, so that they can be mended at once.
 #[test]
 fn files_that_cannot_be_read_are_named_together() {
     let place = with_recordings();

@@ -13,7 +13,6 @@ const PACKED: &str = "DDL without an expert library";
 /// Metres by which results may differ through weights in half precision, or on another machine.
 const ROUNDING: f64 = 0.002;
 
-/// The one row of that name under `fair`.
 fn row<'a>(report: &'a Report, forecaster: &str) -> &'a ResultRow {
     let mut rows = report.rows().iter().filter(|row| {
         row.conditions.forecaster == forecaster && row.conditions.protocol == Protocol::Fair
@@ -116,7 +115,6 @@ fn what_a_packed_model_cannot_do_is_said() {
     ]);
 }
 
-/// What is reported of a built-in model, beside its weights.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Reported {
@@ -149,7 +147,6 @@ fn every_built_in_model_is_reported_and_of_the_seed_it_is_reported_with() {
     }
 }
 
-/// Of the smallest test scene.
 #[test]
 fn the_reported_number_comes_out_again() {
     let Some(data) = recordings::star_folder() else {

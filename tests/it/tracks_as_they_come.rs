@@ -17,7 +17,6 @@ fn made_up(line: &Value) -> [i64; 4] {
     ["observed_until", "pedestrian", "padded", "filled"].map(|name| line[name].as_i64().unwrap())
 }
 
-/// The rows with a word for each pedestrian, in csv.
 fn in_words(rows: &[Row]) -> String {
     let mut text = "frame,pedestrian,x,y\n".to_owned();
     for (frame, pedestrian, x, y) in rows {
@@ -27,7 +26,6 @@ fn in_words(rows: &[Row]) -> String {
     text
 }
 
-/// Forecasts of rows with a built-in model, and what was told.
 fn forecast(rows: &[Row], options: &str) -> (Vec<Value>, String) {
     let place = Place::empty();
     place.write_tracks("tracks.csv", rows);
@@ -95,7 +93,6 @@ fn pixels_become_metres_and_formats_make_no_difference() {
     assert_eq!(json_lines::<Value>(&text), expected);
 }
 
-/// Whoever is named by a word is forecast as who is numbered, and comes back under that word.
 #[test]
 fn words_come_back_as_they_were_written() {
     let place = Place::empty();
@@ -143,7 +140,6 @@ fn words_come_back_as_they_were_written() {
     );
 }
 
-/// A step of 0.4 s is taken by the scenes' rate, unless another is given, and that is said.
 #[test]
 fn the_rate_of_scenes_is_used() {
     let place = Place::empty();
@@ -177,7 +173,6 @@ fn the_rate_of_scenes_is_used() {
     }
 }
 
-/// Options say what numbers mean, then the file, then the run.
 #[test]
 fn the_rate_of_a_run_yields_to_files_and_options() {
     let place = Place::with_model();
@@ -224,8 +219,6 @@ fn the_rate_of_a_run_yields_to_files_and_options() {
     }
 }
 
-/// Cameras of 23.98 frames a second that count pixels: what a run remembers of them holds for the recordings that it is measured on,
-/// and not for files that give their rate.
 #[test]
 fn rate_and_homography_of_a_run_are_used() {
     let place = Place::with_model();
@@ -265,7 +258,6 @@ fn rate_and_homography_of_a_run_are_used() {
     assert!(live.stderr.contains(message), "{live:?}");
 }
 
-/// Recordings in pixels, or of a camera that is too near, are doubted aloud, and in the facts for programs too.
 #[test]
 fn numbers_that_nobody_walks_at_are_doubted() {
     let place = Place::empty();
@@ -322,7 +314,6 @@ fn frames_are_numbered_as_the_tracks_number_them() {
     }
 }
 
-/// `ddl view`: forecasts of own tracks as a page that loads nothing from anywhere.
 #[test]
 fn a_page_shows_the_moments_of_own_tracks() {
     let place = Place::empty();

@@ -133,7 +133,6 @@ fn the_published_recipe_is_the_papers() {
     );
 }
 
-/// Neither over another run, nor from half a file of its own, and not silently anew either.
 #[test]
 fn a_folder_that_holds_something_else_is_not_trained_over() {
     let place = Place::empty();
@@ -214,7 +213,6 @@ fn numbers_out_of_range_are_refused_before_anything_is_written() {
     }
 }
 
-/// CUDA that is not there is an error, and not the CPU.
 #[test]
 fn cuda_that_is_not_there_is_refused() {
     let place = Place::with_model();
@@ -231,8 +229,6 @@ fn cuda_that_is_not_there_is_refused() {
     }
 }
 
-/// A program that embeds the library may choose device and threads again, also when tensors are at work already: that is answered, and
-/// not a panic out of libtorch.
 #[test]
 fn device_and_threads_may_be_chosen_again() {
     trained_model::use_one_thread();

@@ -21,7 +21,6 @@ fn with_clips(frames: i64, count: i64) -> Place {
     place
 }
 
-/// minADE and pedestrians of the first row of a report.
 fn first_row(report: &Value) -> (f64, u64) {
     let scores = &report["rows"][0]["scores"];
     let (min_ade, pedestrians) = (&scores["min_ade"], &scores["pedestrians"]);
@@ -126,8 +125,6 @@ fn a_recording_can_be_left_out_and_the_run_goes_on_where_it_stopped() {
     assert!(told.contains("yard") && !told.contains("lobby"), "{told}");
 }
 
-/// Training, `ddl evaluate` of the run and of the built-in model tell the same numbers of the same windows, also where there are more
-/// pedestrians than epochs are chosen by.
 #[test]
 fn training_and_evaluation_measure_alike() {
     let place = with_clips(2000, 2);
@@ -158,7 +155,6 @@ fn training_and_evaluation_measure_alike() {
     place.fails(other, &["leave --validation-recordings out"]);
 }
 
-/// Weights to begin with are an epoch like the others: what comes of them is no worse where it was chosen.
 #[test]
 fn a_training_begins_with_another_models_weights() {
     let place = with_clips(1500, 2);
@@ -244,7 +240,6 @@ fn short_clips_are_validated_on_whole_and_begin_with_the_builtin_model() {
     }
 }
 
-/// A recording whose last fifth holds no window of 8 s: its run cannot be measured on that.
 #[test]
 fn an_empty_validation_part_is_no_result() {
     let place = with_clips(900, 1);
@@ -261,7 +256,6 @@ fn an_empty_validation_part_is_no_result() {
     place.fails("train --data short.csv --out new", &["no training windows"]);
 }
 
-/// Cameras of 23.98 frames a second that count pixels: what was said is remembered with the run.
 #[test]
 fn a_run_remembers_rate_and_homography() {
     let place = Place::empty();

@@ -1,7 +1,5 @@
-//! The memory of a training run does not grow with its steps.
-//!
-//! Measured in a process of its own, started anew from this very test, because the other tests of this program use memory
-//! as they like.
+//! The memory of a training run does not grow with its steps: measured in a process of its own, because the other tests
+//! of this program use memory as they like.
 
 use ddl::network::{StarConfig, TrainingConfig};
 use ddl::star::{ComputeDevice, TorchNetwork, Trainer};

@@ -1,6 +1,4 @@
-//! Commands on the pages of the documentation: what a reader types, and what the page says is answered.
-//!
-//! `xtask`, which depends on no crate of the workspace, includes this very file to check the calls of `cargo xtask`.
+//! Commands on the pages of the documentation. `xtask`, which depends on no crate of the workspace, includes this file.
 
 #![allow(
     unreachable_pub,

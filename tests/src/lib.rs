@@ -1,8 +1,5 @@
-//! What the cross-crate and command-line tests share: recordings, crowds, a model with drawn weights, the
-//! program `ddl`, and what the tests compare.
-//!
-//! The test targets `it` and `faults` need no libtorch, and run a program without it; `it_torch` and `faults_torch` train
-//! (feature `torch`, on by default).
+//! What the cross-crate and command-line tests share. The test targets `it` and `faults` need no libtorch; `it_torch`
+//! and `faults_torch` train (feature `torch`, on by default).
 
 #![allow(
     clippy::missing_panics_doc,

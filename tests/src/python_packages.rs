@@ -5,7 +5,6 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// What is installed; the folder is named after it.
 const REQUIREMENTS: [&str; 2] = ["pandas==2.3.3", "matplotlib==3.10.7"];
 /// Packages are compiled for one minor version of Python.
 const VERSION: &str =

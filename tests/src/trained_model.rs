@@ -42,7 +42,6 @@ pub fn result(run: &Path) -> Contents {
     files
 }
 
-/// A line of `metrics.jsonl` without its seconds.
 fn losses(line: &str) -> String {
     let mut epoch: serde_json::Value = serde_json::from_str(line).expect("a line is JSON");
     let fields = epoch.as_object_mut().expect("a line is an object");
@@ -91,7 +90,6 @@ pub fn train_until(
     ddl::train(&request(run.path()), &crowd::dataset(), observe)
 }
 
-/// What is trained: one epoch.
 fn request(out: &Path) -> TrainingRequest {
     let config = drawn_model::config(Variant::Full);
     TrainingRequest {

@@ -15,7 +15,6 @@ use crate::python::Python;
 /// Installations and checks take minutes; beyond this something hangs.
 const LIMIT: Duration = Duration::from_mins(15);
 
-/// A browser and the Python that drives it, both there.
 #[derive(Debug)]
 pub(crate) struct Browser {
     program: PathBuf,

@@ -65,7 +65,6 @@ mod tests {
         fill(&folder, is_whole, make("half")).unwrap();
         fill(&folder, is_whole, make("whole")).unwrap();
         assert!(is_whole(&folder) && !folder.join("half").exists());
-        // A second one is not needed.
         fill(&folder, is_whole, make("other")).unwrap();
         assert!(is_whole(&folder) && !folder.join("other").exists());
         assert_eq!(fs::read_dir(cache.path()).unwrap().count(), 1);

@@ -22,9 +22,7 @@ pub(crate) struct CargoTool {
     /// Its package, which is also what it is called.
     pub(crate) name: &'static str,
     pub(crate) version: &'static str,
-    /// Further options of `cargo install`.
     pub(crate) options: &'static [&'static str],
-    /// How it is asked for its version.
     pub(crate) version_call: &'static [&'static str],
 }
 

@@ -18,17 +18,14 @@ pub(crate) use pin::VERSION;
 use crate::cache;
 use crate::workspace::{Workspace, absolute, program_on_path};
 
-/// Where set-up may look and put things, beyond its defaults.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Request {
     pub(crate) cache: Option<PathBuf>,
     /// Folder that holds the pinned wheels, for machines without a package index.
     pub(crate) wheel_dir: Option<PathBuf>,
-    /// Whether the hashes of the kept libraries are checked again.
     pub(crate) verify: bool,
 }
 
-/// Where the libraries in use come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Origin {
     Variable,
@@ -51,7 +48,6 @@ impl fmt::Display for Origin {
     }
 }
 
-/// Libraries that the workspace now builds against.
 #[derive(Debug, Clone)]
 pub(crate) struct Ready {
     pub(crate) folder: PathBuf,

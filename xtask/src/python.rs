@@ -10,13 +10,10 @@ use anyhow::{Context, Result, bail};
 
 use crate::workspace::program_on_path;
 
-/// Streams an address to standard output.
 pub(crate) const DOWNLOAD: &str = include_str!("python/download.py");
 /// Prints the address of a file on the package index, found the way pip finds it.
 pub(crate) const INDEX_LINK: &str = include_str!("python/index_link.py");
-/// Copies chosen members of a zip archive.
 pub(crate) const EXTRACT_ZIP: &str = include_str!("python/extract_zip.py");
-/// Copies chosen members of a tar archive.
 pub(crate) const EXTRACT_TAR: &str = include_str!("python/extract_tar.py");
 
 #[derive(Debug, Clone)]
@@ -103,7 +100,6 @@ pub(crate) fn read(command: &mut Command) -> Result<String> {
     String::from_utf8(output.stdout).context("Python printed something that is not text")
 }
 
-/// The last line that a failed script wrote, which is the one that says what went wrong.
 pub(crate) fn complaint(stderr: &[u8]) -> String {
     let text = String::from_utf8_lossy(stderr);
     text.lines()

@@ -1,7 +1,5 @@
-//! The documentation site: the guide (`docs/`, by mdBook) and the interface of every crate (by rustdoc).
-//!
-//! Everything lies in one folder that can be opened from the file system or served as it is; nothing in it is loaded
-//! from a network.
+//! The documentation site: the guide (`docs/`, by mdBook) and the interface of every crate (by rustdoc), in one folder
+//! that can be opened from the file system or served as it is; nothing in it is loaded from a network.
 
 mod api;
 mod check;
@@ -35,7 +33,6 @@ const CRATES: &str = "<!-- crates -->";
 const ONWARD: &str = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>Crates</title>\n\
     <meta http-equiv=\"refresh\" content=\"0;URL=../index.html\">\n<a href=\"../index.html#crates\">Crates</a>\n</html>\n";
 
-/// Makes the whole site and checks every link in it; returns its first page.
 pub(crate) fn build(workspace: &Workspace) -> Result<PathBuf> {
     let mdbook = MDBOOK.ensure(workspace)?;
     let metadata = workspace.metadata()?;
@@ -116,7 +113,6 @@ fn unlisted(book: &Path, rendered: &Path) -> Result<Vec<String>> {
     Ok(found)
 }
 
-/// The first page, with a row for each library crate.
 fn landing(libraries: &[Library]) -> String {
     let mut rows = String::new();
     for Library {

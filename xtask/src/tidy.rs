@@ -1,8 +1,5 @@
-//! House rules that no other tool checks: names and lengths of files, links between files, inherited lints, and that
-//! no recording and nobody's home folder is tracked.
-//!
-//! cargo-deny holds the arrows between crates, licences and banned crates (`deny.toml`); clippy and rustdoc hold the rest
-//! (`[workspace.lints]`, `clippy.toml`).
+//! House rules that no other tool checks: names and lengths of files, links between files, inherited lints, and that no
+//! recording and nobody's home folder is tracked.
 
 mod links;
 
@@ -16,13 +13,11 @@ use crate::workspace::Workspace;
 
 /// A file beyond this has probably outgrown its name.
 const SOFT_LIMIT: usize = 300;
-/// No file may be longer.
 const HARD_LIMIT: usize = 500;
 /// Names that say nothing about what is inside.
 const EMPTY_NAMES: [&str; 9] = [
     "utils", "util", "common", "helpers", "helper", "misc", "stuff", "tools", "shared",
 ];
-/// What may lie in `datasets/`.
 const DESCRIPTIONS: [&str; 3] = ["README.md", "manifest.toml", "folds.json"];
 // Spelled in pieces, so that this file does not find itself.
 const HOME_FOLDERS: [&str; 3] = [
@@ -52,7 +47,6 @@ pub(crate) fn run(workspace: &Workspace) -> Result<()> {
     Ok(())
 }
 
-/// Every check, over everything that git tracks or would track.
 fn check(workspace: &Workspace) -> Result<Findings> {
     let manifest = Manifest::load(workspace)?;
     let recordings: Vec<(&str, &str)> = RECORDED

@@ -158,7 +158,6 @@ impl Workspace {
     }
 }
 
-/// The cargo that runs this program, so that a chosen toolchain stays chosen.
 fn cargo_program() -> OsString {
     env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }

@@ -5,7 +5,6 @@ use serde::Serialize;
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Clock {
-    /// Parts of a frame that windows count.
     parts: i64,
 }
 
@@ -18,7 +17,6 @@ pub(crate) enum FrameNumber {
 }
 
 impl Clock {
-    /// Windows count frames as the tracks do.
     pub(crate) const WHOLE: Self = Self { parts: 1 };
 
     pub(crate) fn of_parts(parts: i64) -> Self {

@@ -93,7 +93,6 @@ pub(crate) struct Exactness {
 }
 
 impl Exactness {
-    /// The precision, and a warning where it is no gain.
     pub(crate) fn precision(&self) -> Precision {
         if !self.precision.is_native() {
             tell(format_args!(
@@ -163,7 +162,6 @@ pub(crate) struct Reporting {
 }
 
 impl Reporting {
-    /// Prints results: for programs as JSON where asked for, else for people; `rest` says where more of them is.
     fn print(&self, report: &Report, rest: &str) -> anyhow::Result<()> {
         if self.telling.json {
             output::print(&(report.to_json()? + "\n"))
@@ -236,7 +234,6 @@ fn convention_of(data: Option<&Path>, of_model: Convention) -> Convention {
     }
 }
 
-/// The recordings of a convention, from a folder or simulated; own ones in these units.
 fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow::Result<Dataset> {
     if convention == Convention::Own {
         let data = data.context("give the folder of your own recordings: --data FOLDER")?;

@@ -46,7 +46,6 @@ pub(crate) fn table_share(share: f64) -> f64 {
     format!("{share:.2e}").parse().unwrap_or(share)
 }
 
-/// A path as a shell takes it for one word.
 pub(crate) fn shell_word(path: &Path) -> String {
     let path = path.display().to_string();
     // A path with a zero byte, which has no quoted form, is none that a file system has.

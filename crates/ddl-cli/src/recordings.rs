@@ -48,7 +48,6 @@ fn in_folder(folder: &Path, units: &Units) -> anyhow::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Reads them all in steps of 0.4 s.
 pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<InSteps>> {
     let (read, errors) = read_each(files, units);
     all_read(errors, files.len())?;
@@ -80,7 +79,6 @@ pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a InSteps>) {
     tell_grouped("note", notes);
 }
 
-/// Those that can be read in steps of 0.4 s, and why the others cannot.
 pub(crate) fn read_each<'f>(
     files: &'f [PathBuf],
     units: &Units,
@@ -121,12 +119,10 @@ pub(crate) fn warn_of_doubts(read: &[InSteps]) {
     tell_grouped("warning", doubtful);
 }
 
-/// Says what looks wrong with the only recording there is, with the options that may mend it.
 pub(crate) fn warn_of(doubt: &Doubt) {
     tell(format_args!("warning: {}", words(doubt)));
 }
 
-/// What looks wrong, with the options that may mend it.
 pub(crate) fn words(doubt: &Doubt) -> String {
     let options = match doubt {
         Doubt::Fast { .. } => " (--homography, --fps)",

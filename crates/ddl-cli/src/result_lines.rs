@@ -1,12 +1,9 @@
-//! Results for people, in the terminal.
-
 use ddl::Protocol;
 use ddl::data::Convention;
 use ddl::eval::{RecordingErrors, ResultRow};
 use ddl::report::Report;
 use std::fmt::{Result, Write as _};
 
-/// What a model is to beat, recording by recording.
 const VELOCITY: &str = "constant velocity (last step)";
 /// A pedestrian counts once in every window.
 const PEDESTRIAN_WINDOWS: &str = "pedestrian-windows";

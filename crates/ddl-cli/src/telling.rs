@@ -38,7 +38,6 @@ pub(crate) fn words(error: &anyhow::Error) -> String {
     message
 }
 
-/// What to do about an error of the system, where there is something to be done.
 fn advice(error: &anyhow::Error) -> Option<&'static str> {
     kinds(error).find_map(|kind| match kind {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {

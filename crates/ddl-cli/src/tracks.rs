@@ -1,5 +1,3 @@
-//! A user's own tracks.
-
 use crate::clock::{Clock, FrameNumber};
 use crate::recordings;
 use crate::telling::tell;
@@ -42,14 +40,11 @@ fn frames(count: FrameNumber) -> String {
 
 #[derive(Debug)]
 pub(crate) struct Observed {
-    /// The tracks in steps of 0.4 s.
     pub(crate) recording: Recording,
-    /// One a frame that has anybody to forecast.
     pub(crate) windows: Vec<Window>,
     pub(crate) clock: Clock,
     /// What looks wrong with them: wrong units or a wrong rate give forecasts that look confident and mean nothing.
     pub(crate) doubt: Option<Doubt>,
-    /// Whether only people seen at all 8 steps were asked for.
     whole: bool,
 }
 

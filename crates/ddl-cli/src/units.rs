@@ -30,7 +30,6 @@ pub(crate) struct Units {
     remembered: TrackUnits,
 }
 
-/// A recording in steps of 0.4 s.
 #[derive(Debug)]
 pub(crate) struct InSteps {
     pub(crate) recording: Recording,
@@ -53,7 +52,6 @@ impl Units {
         }
     }
 
-    /// What a run remembers of them; nothing where nothing was given.
     pub(crate) fn told(&self) -> anyhow::Result<Option<TrackUnits>> {
         let told = TrackUnits {
             homography: self.homography()?,

@@ -5,7 +5,6 @@
 
 use std::process::Command;
 
-/// Options that only a model heeds are refused beside a file of forecasts, and not ignored.
 #[test]
 fn options_of_the_network_do_not_go_with_forecasts_of_another_program() {
     for option in [
@@ -29,7 +28,6 @@ fn options_of_the_network_do_not_go_with_forecasts_of_another_program() {
     }
 }
 
-/// A benchmark trains, and says at once what that takes.
 #[cfg(not(feature = "torch"))]
 #[test]
 fn without_libtorch_a_benchmark_says_where_to_get_it() {

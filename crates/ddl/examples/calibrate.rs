@@ -24,7 +24,6 @@ const PEDESTRIANS: usize = 1500;
 /// Windows forecast at a time.
 const CHUNK: usize = 64;
 
-/// Scores of true positions, one a pedestrian and model.
 type TrueScores = Vec<[f64; HORIZON]>;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -99,7 +98,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// As many scores of every place as the smallest has, evenly spread.
 fn balanced(places: &[&TrueScores]) -> TrueScores {
     let least = places.iter().map(|scores| scores.len()).min().unwrap_or(0);
     let spread = |scores: &&TrueScores| {

@@ -21,7 +21,6 @@ const PEDESTRIANS: usize = 3000;
 const CHUNK: usize = 64;
 /// Who is faster than this (m/s) runs or rides.
 const FAST: f64 = 3.0;
-/// Seed of the noisy baseline.
 const SEED: u64 = 0;
 
 const HEAD: &str = "# Other places
@@ -170,7 +169,6 @@ fn print_model(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), Box<dy
     Ok(())
 }
 
-/// A row for each recording, where there are several.
 fn print_recordings(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), Box<dyn Error>> {
     let of_one: Vec<&[Window]> = windows
         .chunk_by(|a, b| a.recording() == b.recording())
@@ -268,7 +266,6 @@ fn interval(
     }))
 }
 
-/// Straight lines at constant speed to the goals of a forecast, with its weights.
 fn straight_lines(window: &Window, forecast: &Forecast) -> Result<Forecast, Box<dyn Error>> {
     let (mut positions, mut weights, mut goals) = (Vec::new(), Vec::new(), Vec::new());
     for i in 0..forecast.pedestrians() {

@@ -15,7 +15,6 @@ use std::fmt::Write as _;
 use ddl::data::{Completion, Format, HORIZON, parse_recording};
 use ddl::{BuiltinModel, Ddl, DeviceChoice};
 
-/// Rows such as a tracker writes.
 fn pavement() -> String {
     let mut table = "frame,pedestrian,x,y\n".to_owned();
     for t in 0..10 {

@@ -62,7 +62,6 @@ impl Device {
         }
     }
 
-    /// The device, and libtorch where it computes in place of the kernels, as results name them.
     pub(crate) fn words(self) -> &'static str {
         match self.0 {
             Opened::Cpu => "cpu",

@@ -1,5 +1,3 @@
-//! What can go wrong in the facade.
-
 use std::path::PathBuf;
 
 /// Errors of `ddl`. Messages say what is wrong, where, and what to do.

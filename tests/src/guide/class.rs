@@ -51,7 +51,6 @@ pub fn begins(page: &str, command: &Command, (of, start): (&str, &str)) -> bool 
     page == of && command.typed.starts_with(start)
 }
 
-/// What a test can do with a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Class {
     Run(Depth),

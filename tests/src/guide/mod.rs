@@ -1,7 +1,5 @@
-//! Commands that the documentation shows, run as far as a test can run them.
-//!
-//! Whatever [`class`] does not name runs to its end and must answer as its page says. Calls of `cargo xtask` are held to its own
-//! arguments by a test of xtask (`xtask/src/command/docs.rs`).
+//! Commands that the documentation shows: whatever [`class`] does not name runs to its end and must answer as its page
+//! says. Calls of `cargo xtask` are held to its arguments by a test of xtask (`xtask/src/command/docs.rs`).
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 

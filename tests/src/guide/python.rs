@@ -14,7 +14,6 @@ shares = {'orange': orange.mean(), 'green': green.mean(), 'black': black.mean()}
 assert all(share > 0.002 for share in shares.values()), shares
 ";
 
-/// The Python of a page is one program, as a reader would paste it.
 pub(super) fn run(page: &str, text: &str, folder: &PageFolder) {
     let mut blocks = text
         .split("```python\n")

@@ -6,7 +6,6 @@ use super::Reader;
 use super::edits::Choices;
 use crate::chance::Chance;
 
-/// Byte edits of each file.
 const EDITS: u64 = 300;
 /// Longest file of which every truncation is read; of a longer one as many are.
 const MOST_TRUNCATIONS: usize = 2048;

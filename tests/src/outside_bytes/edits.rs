@@ -1,6 +1,5 @@
 //! Bytes as choices, and as edits of something whole: what lies behind a reader's first checks is reached by changing what passes them.
 
-/// Numbers that readers stumble over.
 const ODD_NUMBERS: [&str; 16] = [
     "0",
     "-0.0",
@@ -29,7 +28,6 @@ impl<'a> Choices<'a> {
         Self(bytes)
     }
 
-    /// As many edits of `whole` as there are choices for.
     pub(super) fn edited(bytes: &'a [u8], whole: &[u8]) -> Vec<u8> {
         let mut edited = whole.to_vec();
         let mut choices = Self::new(bytes);

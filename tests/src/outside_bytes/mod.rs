@@ -1,8 +1,6 @@
-//! Every reader of bytes that somebody else wrote, as a function of bytes that holds it to its laws.
-//!
-//! No reader panics, whatever the bytes. Where there is more to say, the function says it: what is read and written again reads the
-//! same, a stream in pieces gives what it gives at once, an error changes nothing. The fuzz targets of `tests/fuzz` call these
-//! functions, and so do plain tests, with the committed corpora.
+//! Every reader of bytes that somebody else wrote, as a function that holds it to its laws: no panic, whatever the
+//! bytes; what is read and written again reads the same; a stream in pieces gives what it gives at once; an error
+//! changes nothing. Called by the fuzz targets of `tests/fuzz`, and by plain tests with the committed corpora.
 
 pub mod corpus;
 mod edits;

@@ -10,7 +10,6 @@ use anyhow::{Context, Result, bail};
 use super::{LIMIT, run_within};
 use crate::workspace::find_on_path;
 
-/// Programs that are one, the plainest first.
 const NAMES: [&str; 5] = [
     "chromium",
     "chromium-browser",
@@ -20,7 +19,6 @@ const NAMES: [&str; 5] = [
 ];
 /// What is installed where a machine lets us: the browser, and letters for it to write with.
 const PACKAGES: [&str; 2] = ["chromium", "fonts-dejavu-core"];
-/// What to do where we cannot.
 const ADVICE: &str = "install Chromium, on Debian with `apt install chromium fonts-dejavu-core`, or name one with \
     DDL_BROWSER=/path/to/program";
 

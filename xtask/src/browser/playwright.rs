@@ -10,7 +10,6 @@ use super::{LIMIT, run_within};
 use crate::cache;
 use crate::python::{self, Python};
 
-/// The version the check was written with.
 const REQUIREMENT: &str = "playwright==1.65.2";
 
 /// The folder for Python's search path; the package is fetched when it is not there.

@@ -1,6 +1,4 @@
-//! `cargo xtask benchmark`: from nothing to the table.
-//!
-//! It brings in libtorch and the recordings, builds the program, and hands over to `ddl benchmark`.
+//! `cargo xtask benchmark`: libtorch, the recordings and the program, then `ddl benchmark`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -80,7 +78,6 @@ fn handed_over(root: &Path, chosen: &Chosen, options: Vec<String>) -> Vec<String
     words
 }
 
-/// Takes an option and its value out of the others.
 fn take(options: &mut Vec<String>, name: &str) -> Result<Option<String>> {
     let of_word = |word: &String| {
         word.strip_prefix(name)?

@@ -9,7 +9,6 @@ use super::{benchmark, data, deny, docs, package, page, set_up, test};
 use crate::tidy;
 use crate::workspace::{Workspace, step};
 
-/// A named check of `ci`.
 type Check = (&'static str, fn(&Workspace) -> Result<()>);
 
 const CHECKS: [Check; 11] = [

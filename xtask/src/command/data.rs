@@ -119,7 +119,6 @@ impl Arguments {
     }
 }
 
-/// Finds or fetches one convention and says in a line what was done.
 pub(super) fn fetch_one(
     workspace: &Workspace,
     convention: Convention,

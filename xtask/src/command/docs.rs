@@ -40,7 +40,6 @@ impl Arguments {
     }
 }
 
-/// As `cargo xtask docs` without arguments.
 pub(super) fn check(workspace: &Workspace) -> Result<()> {
     site::build(workspace).map(drop)
 }

@@ -92,7 +92,6 @@ fn made_by(commit: &str, time: &str, took: Duration) -> String {
     )
 }
 
-/// The page with other figures between its marks.
 fn with_figures(page: &str, figures: &str) -> Result<String> {
     let parts = page
         .split_once(BEGIN)

@@ -12,7 +12,6 @@ use crate::workspace::{Workspace, step};
 
 /// Registries take no package beyond this, in bytes, compressed.
 const LIMIT: u64 = 10 * 1024 * 1024;
-/// What every package holds besides its sources.
 const NEEDED: [&str; 4] = ["Cargo.toml", "README.md", "LICENSE-MIT", "LICENSE-APACHE"];
 /// Folders of which a package may leave files out, because nothing that is built by those who use it needs them.
 const SPARED: [&str; 3] = ["tests", "benches", "examples"];

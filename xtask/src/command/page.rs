@@ -27,7 +27,6 @@ impl Arguments {
     }
 }
 
-/// As `cargo xtask page` without arguments.
 pub(crate) fn check(workspace: &Workspace) -> Result<()> {
     make_and_check(workspace, &workspace.path("target/report-page"), None)
 }

@@ -145,7 +145,6 @@ mod tests {
     use super::*;
     use std::fs;
 
-    /// A workspace whose manifest names sources that nobody can reach.
     fn workspace() -> (tempfile::TempDir, Workspace) {
         let folder = tempfile::tempdir().unwrap();
         let real = Workspace::find().unwrap();
@@ -185,7 +184,6 @@ mod tests {
         }
         let error = choose(&workspace, Some(Convention::Star), Some(&data), &mut |_| {});
         assert!(format!("{:#}", error.unwrap_err()).contains("cannot be fetched"));
-        // a folder that was named and holds nothing is a mistake, not a reason to simulate
         let error = choose(&workspace, None, Some(&data), &mut |_| {}).unwrap_err();
         assert!(format!("{error:#}").contains("correct --data"), "{error:#}");
     }

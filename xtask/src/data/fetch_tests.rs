@@ -1,5 +1,3 @@
-//! Fetching from folders, each of which stands for a source.
-
 use std::fs;
 
 use super::*;

@@ -98,7 +98,6 @@ impl Manifest {
         }
     }
 
-    /// What to cite when numbers of a convention are published.
     pub(crate) fn citations<'a>(&'a self, entry: &'a Entry) -> impl Iterator<Item = &'a str> {
         entry
             .cite

@@ -58,7 +58,6 @@ pub(super) fn get(
     }
 }
 
-/// A file on the package index.
 #[derive(Debug, Deserialize)]
 struct Link {
     address: String,
@@ -73,7 +72,6 @@ fn find_on_index(python: &Python, package: &str, archive: &str) -> Result<Link> 
     serde_json::from_str(&text).context("the index script did not print a link")
 }
 
-/// Streams an address into a pinned file.
 fn download(
     python: &Python,
     address: &str,
@@ -108,7 +106,6 @@ fn download(
     }
 }
 
-/// A reader that remembers whether it came to its end.
 struct Watched<R> {
     inner: R,
     ended: bool,

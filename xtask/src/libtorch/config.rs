@@ -21,7 +21,6 @@ pub(super) fn write(file: &Path, libtorch: &Path) -> Result<bool> {
     Ok(!is_there)
 }
 
-/// The folder that the configuration names, if it is there and well formed.
 pub(super) fn read(file: &Path) -> Option<PathBuf> {
     let table: toml::Table = fs::read_to_string(file).ok()?.parse().ok()?;
     table

@@ -15,7 +15,6 @@ use crate::python::{self, Python};
 /// Written last; a folder without it was never finished.
 const MARK: &str = ".complete";
 
-/// What `.complete` says: from which wheels the folder was made, and its libraries' hashes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 struct Complete {
     libtorch: String,
@@ -74,7 +73,6 @@ fn read_mark(folder: &Path) -> Result<Complete> {
     serde_json::from_slice(&text).context(".complete is damaged")
 }
 
-/// Makes `folder` from the wheels in `wheel_dir`, or from those that pip downloads.
 pub(super) fn fetch(folder: &Path, wheel_dir: Option<&Path>) -> Result<()> {
     if !pin::is_supported() {
         bail!(

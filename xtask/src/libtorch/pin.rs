@@ -76,7 +76,6 @@ pub(super) fn folder_name() -> String {
     format!("libtorch-{VERSION}")
 }
 
-/// Whether the pinned wheels run on the machine this program was built for.
 pub(super) fn is_supported() -> bool {
     cfg!(all(
         target_os = "linux",

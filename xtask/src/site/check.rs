@@ -18,7 +18,6 @@ pub(super) struct Checked {
     pub(super) faults: Vec<String>,
 }
 
-/// Reads every page and style below `site`.
 pub(super) fn check(site: &Path) -> Result<Checked> {
     let mut pages = BTreeMap::new();
     let mut checked = Checked::default();
@@ -117,7 +116,6 @@ fn foreign_style(css: &str) -> Option<&str> {
         .find(|target| is_foreign(target))
 }
 
-/// The file that a relative address on the page `file` means.
 fn resolved(file: &Path, address: &str) -> PathBuf {
     if address.is_empty() {
         return file.to_path_buf();

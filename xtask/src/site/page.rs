@@ -15,7 +15,6 @@ pub(super) struct Reference {
 pub(super) struct Page {
     pub(super) references: Vec<Reference>,
     pub(super) anchors: BTreeSet<String>,
-    /// The page that a browser goes on to at once.
     pub(super) redirect: Option<String>,
 }
 

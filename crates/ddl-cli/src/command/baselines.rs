@@ -1,5 +1,3 @@
-//! `ddl baselines`.
-
 use super::{RecordingsAt, Reporting, at_least_one};
 use clap::Args;
 use ddl::data::{Convention, Dataset};
@@ -56,7 +54,6 @@ impl Baselines {
     }
 }
 
-/// Measures the baselines under some protocols on about so many walkers of each fold.
 pub(super) fn measure(
     dataset: &Dataset,
     folds: &[String],

@@ -1,5 +1,3 @@
-//! `ddl benchmark`.
-
 mod child;
 mod cost;
 mod display;

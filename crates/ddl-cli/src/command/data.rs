@@ -1,5 +1,3 @@
-//! `ddl data`.
-
 use super::Telling;
 use crate::clock::Clock;
 use crate::telling::tell;
@@ -60,7 +58,6 @@ impl Data {
     }
 }
 
-/// Says so where many motions are unlike those that the built-in model was trained on.
 fn warn_of_unfamiliar<'r>(recordings: impl Iterator<Item = &'r Recording>) -> anyhow::Result<()> {
     let model = BuiltinModel::default();
     let (mut all, mut unfamiliar) = (0, 0);

@@ -1,5 +1,3 @@
-//! `ddl evaluate`.
-
 mod forecasts;
 
 use super::{Exactness, KeepClear, Machine, RecordingsAt, Reporting, at_least_one};

@@ -1,5 +1,3 @@
-//! `ddl forecast`.
-
 mod json_lines;
 mod live;
 mod table;
@@ -73,7 +71,6 @@ const LOOKED_THROUGH: usize = 100;
 /// Bytes of a file that few expect of some tracks.
 const LARGE: usize = 50 << 20;
 
-/// What was observed until one frame, and what is forecast from there.
 struct Moment<'a> {
     window: &'a Window,
     forecast: &'a ddl::Forecast,
@@ -223,7 +220,6 @@ impl<'a> Moment<'a> {
         Some(self.certified?.certificate(i, hypothesis))
     }
 
-    /// The last observed frame.
     fn observed_until(&self) -> FrameNumber {
         self.clock.number(self.window.frames()[OBSERVED - 1])
     }

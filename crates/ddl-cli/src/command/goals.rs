@@ -1,5 +1,3 @@
-//! `ddl goals`.
-
 use super::{Machine, ModelChoice, Telling, convention_of, dataset};
 use crate::clock::FrameNumber;
 use crate::output::{ensure_not_input, table_metres, write_output};

@@ -1,5 +1,3 @@
-//! `ddl info`.
-
 use super::Telling;
 use crate::output;
 use clap::Args;
@@ -87,7 +85,6 @@ fn summary(goals: &GoalModel, trained: &str) -> String {
     )
 }
 
-/// What a run was made with; `parameters` is what is known of its forecasting network.
 fn facts_of(
     goals: &GoalModel,
     parameters: &serde_json::Value,

@@ -1,5 +1,3 @@
-//! `ddl pack`.
-
 mod finished_benchmark;
 
 use super::Telling;
@@ -53,7 +51,6 @@ impl Pack {
     }
 }
 
-/// Packs a run, or whatever else a model is; how many weights it has.
 fn pack(model: &Path, out: &Path) -> anyhow::Result<usize> {
     let model = Ddl::open(&ModelSource::named(model), DeviceChoice::Cpu)?;
     model.pack(out)?;

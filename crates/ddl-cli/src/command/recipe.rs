@@ -1,5 +1,3 @@
-//! By which recipe networks are made and trained.
-
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use std::fmt;

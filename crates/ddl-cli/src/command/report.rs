@@ -1,5 +1,3 @@
-//! `ddl report`.
-
 use super::Telling;
 use crate::output;
 use clap::Args;

@@ -1,5 +1,3 @@
-//! Which test windows to take, where no model says it.
-
 use super::RecordingsAt;
 use anyhow::bail;
 use clap::Args;
@@ -22,7 +20,6 @@ pub(crate) struct TestWindows {
 }
 
 impl TestWindows {
-    /// The convention asked for, or that of the fold, or that of what lies there, which may be that of a model.
     pub(crate) fn convention(&self, recordings: &RecordingsAt, of_model: Convention) -> Convention {
         let scene = |fold: &&String| Convention::Star.fold_names().any(|known| known == *fold);
         let of_fold = self.fold.as_ref().filter(scene);
@@ -30,7 +27,6 @@ impl TestWindows {
         recordings.convention(asked, of_model)
     }
 
-    /// Refuses a rule for recordings that have one.
     pub(crate) fn ensure_no_rule_for_own(&self) -> anyhow::Result<()> {
         if self.window_rule.is_some() {
             bail!(
@@ -57,7 +53,6 @@ impl TestWindows {
         Ok(self.fold.as_deref())
     }
 
-    /// Refuses windows that no built-in model is measured on.
     pub(crate) fn ensure_of_builtin_models(&self) -> anyhow::Result<()> {
         let convention = self.convention.unwrap_or(Convention::Star);
         if convention != Convention::Star {
@@ -74,7 +69,6 @@ impl TestWindows {
         Ok(())
     }
 
-    /// The windows, read from a folder of recordings or simulated, and what results call them.
     pub(crate) fn windows(
         &self,
         recordings: &RecordingsAt,
@@ -92,7 +86,6 @@ impl TestWindows {
     }
 }
 
-/// Refuses a fold that is not a scene of `star`, unless a convention was given.
 pub(crate) fn ensure_scene_of_star(fold: &str) -> anyhow::Result<()> {
     let known: Vec<&str> = Convention::Star.fold_names().collect();
     if !known.contains(&fold) {

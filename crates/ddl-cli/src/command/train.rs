@@ -1,5 +1,3 @@
-//! `ddl train`.
-
 mod bars;
 mod finished;
 
@@ -338,7 +336,6 @@ impl Train {
     }
 }
 
-/// Puts what an option says in its place, where it was given.
 fn set<T>(place: &mut T, option: Option<T>) {
     if let Some(value) = option {
         *place = value;

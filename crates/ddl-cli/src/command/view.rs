@@ -1,5 +1,3 @@
-//! `ddl view`.
-
 use super::{KeepClear, Machine, ModelChoice};
 use crate::output;
 use crate::tracks::{Observed, Tracks};
@@ -74,7 +72,6 @@ fn open(path: &Path) -> anyhow::Result<()> {
     })
 }
 
-/// At most so many windows, evenly spread, the last one among them.
 fn spread(windows: &[Window], most: usize) -> Vec<Window> {
     let count = windows.len().min(most);
     (1..=count)
@@ -124,7 +121,6 @@ fn page(
     Ok(viewer.to_html()?)
 }
 
-/// How many motions are unlike those of the training, in words; nothing where none is.
 fn unfamiliar(forecasts: &[Forecast]) -> Option<String> {
     let all = forecasts
         .iter()
@@ -143,7 +139,6 @@ fn unfamiliar(forecasts: &[Forecast]) -> Option<String> {
     })
 }
 
-/// What the certificates say, in words; nothing where there are none.
 fn certificates(forecasts: &[Forecast]) -> Option<String> {
     let verdicts: Vec<bool> = forecasts
         .iter()

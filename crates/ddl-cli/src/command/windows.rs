@@ -1,5 +1,3 @@
-//! `ddl windows`.
-
 use super::RecordingsAt;
 use super::test_windows::TestWindows;
 use crate::output::write_output;

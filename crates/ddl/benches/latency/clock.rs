@@ -11,7 +11,6 @@ const CACHES: usize = 256 << 20;
 pub(crate) enum Clock {
     /// That of the processor, of all threads of the process together.
     Processor,
-    /// That of the wall.
     Wall,
 }
 

@@ -1,12 +1,6 @@
-//! What a forecast and a training step cost: `cargo bench -p ddl --features torch --bench latency`.
-//!
-//! One scene of 25 simulated pedestrians with 20 hypotheses each, on one thread: the whole forecast, and its parts: goals, network,
-//! and walk with certificate in `f64`. The same for narrower feed-forward blocks. Then a training step of about 266 walkers, on one
-//! thread and on two. The weights are untrained, which costs the same.
-//!
-//! Every figure is a median of turns; before each of them the caches are emptied, as whatever runs between two frames
-//! of a camera would. Times are the processor's, which other work on the machine hardly touches, and for two threads
-//! the clock's, which it does.
+//! What a forecast and a training step cost: `cargo bench -p ddl --features torch --bench latency`. One scene of 25
+//! simulated pedestrians with 20 hypotheses each, or a step of about 266 walkers. Figures are medians of turns, each
+//! after the caches are emptied: processor time, for two threads the time of the clock. Weights are untrained.
 
 mod clock;
 mod scene;

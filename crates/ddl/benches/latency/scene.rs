@@ -1,5 +1,3 @@
-//! The scene that is forecast.
-
 use crate::Result;
 use ddl::data::{Dataset, Window};
 

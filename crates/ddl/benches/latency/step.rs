@@ -1,5 +1,3 @@
-//! A training step.
-
 use crate::Result;
 use crate::clock::{Clock, side_by_side};
 use ddl::data::{Dataset, Window, WindowRule};
@@ -7,7 +5,6 @@ use ddl::network::{StarConfig, TrainingConfig};
 use ddl::star::{ComputeDevice, TorchNetwork, Trainer};
 use ddl::{DeviceChoice, Variant};
 
-/// A line about the step of one batch of the published size, on so many threads.
 pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Result<String> {
     let training = TrainingConfig {
         epochs: 1_000_000, // never done

@@ -10,7 +10,6 @@ use ddl::{
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// A run of one small step for each of its networks.
 pub(crate) fn run(dataset: &Dataset, folder: &Path) -> Result<RunDirectory> {
     let run = RunDirectory::new(folder.join("run"));
     let mut goals = GoalRecipe::proposed(1);

@@ -9,7 +9,6 @@ use ddl::dynamics::{
 use ddl::network::{StarConfig, WindowRollout};
 use nalgebra::Vector2;
 
-/// Walks every hypothesis to its goal, shaped by the factors that the network emitted.
 pub(crate) fn all(
     star: &StarConfig,
     window: &Window,

@@ -1,5 +1,3 @@
-//! The baselines alone, on any convention's test windows: what every model is read against.
-
 use crate::error::DdlError;
 use crate::evaluation::test_set::TestSet;
 use ddl_data::{Dataset, Window};

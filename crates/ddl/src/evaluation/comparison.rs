@@ -1,5 +1,3 @@
-//! A trained run beside another model, on what the run kept for validation.
-
 use crate::error::DdlError;
 use crate::evaluation::test_set::TestSet;
 use crate::model::ddl::Ddl;

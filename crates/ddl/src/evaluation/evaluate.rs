@@ -1,5 +1,3 @@
-//! A model on the test windows of its fold, beside the baselines, under each protocol asked for.
-
 use crate::error::DdlError;
 use crate::evaluation::manner::{GivenGoals, Manner, Way};
 use crate::evaluation::published::Published;
@@ -18,7 +16,6 @@ use ddl_report::{Moment, gallery};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
-/// Walkers forecast between two reports of progress.
 const WALKERS_A_REPORT: usize = 128;
 /// Walkers of the test set on which the published protocol chooses its epoch, at most.
 const SELECTION_WALKERS: usize = 250;
@@ -103,7 +100,6 @@ pub fn evaluate(
 struct Forecasts {
     /// One list a manner.
     model: Vec<Vec<Forecast>>,
-    /// None where they are not asked for.
     lines: Vec<Forecast>,
 }
 

@@ -1,5 +1,3 @@
-//! A picture of estimated goals: for each kind of motion the walker with the median error.
-
 use crate::error::DdlError;
 use crate::evaluation::goals::MeasuredGoals;
 use crate::goals::model::GoalModel;
@@ -53,7 +51,6 @@ pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<Strin
     Ok(figure::goals(&title, &cases)?)
 }
 
-/// A walker whose future is known.
 struct Walker<'a> {
     window: &'a Window,
     index: usize,

@@ -1,5 +1,3 @@
-//! How good the goals of a run are, before any walker follows them.
-
 use crate::error::DdlError;
 use crate::evaluation::split::EvaluationSplit;
 use crate::evaluation::test_set::TestSet;

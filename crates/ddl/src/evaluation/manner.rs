@@ -1,5 +1,3 @@
-//! The ways in which one model is measured under the honest protocols.
-
 use crate::forecast::clearance::Clearance;
 use crate::forecast::name::WITHOUT_LIBRARY;
 use crate::forecast::walk::Gait;
@@ -20,27 +18,22 @@ pub(crate) struct Manner {
 /// Which goals the model is given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum GivenGoals {
-    /// Its own.
     Own,
     /// The one that stands for its own.
     Central,
-    /// Those it would have without its expert library.
     WithoutLibrary,
     /// Those of the published estimator, without its look at the first future frame.
     Published,
 }
 
-/// The way to the goals.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Way {
-    /// As the network shapes it.
     Shaped(Gait),
     /// The neutral motion, alone or keeping clear of the others.
     Neutral(Option<Clearance>),
 }
 
 impl Manner {
-    /// Where its goals come from, as results say it.
     pub(crate) fn goal_words(&self, model: &Ddl) -> String {
         match self.goals {
             // Of the published goals the name of the row tells.

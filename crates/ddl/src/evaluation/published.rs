@@ -12,7 +12,6 @@ use ddl_eval::{Forecast, ForecastError, Scores};
 use ddl_goal::GoalEstimator;
 use ddl_network::{ForecastWindows, NetworkFrame, Noise};
 
-/// Noise samples on the one goal.
 const SAMPLES: usize = 20;
 
 /// The model as the published code measures it: the estimated goal nearest the TRUE end, then 20

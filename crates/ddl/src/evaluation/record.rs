@@ -31,7 +31,6 @@ struct Record {
     calibration: String,
 }
 
-/// A recording that was measured on.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 struct Measured {
     name: String,

@@ -1,5 +1,3 @@
-//! Results of several evaluations put together: tables, figures and the page to look at them.
-
 use crate::error::DdlError;
 use crate::run::directory::RunDirectory;
 use crate::run::directory::write_atomically;
@@ -7,7 +5,6 @@ use ddl_report::page::Page;
 use ddl_report::{EpochPoint, Moment, Report, TrainingCurve};
 use std::path::Path;
 
-/// What the curve of a training shows.
 const LOSS: &str = "training loss: mean squared error of the next position (m²)";
 
 /// Results of any number of evaluated runs, with what there is to look at.
@@ -118,7 +115,6 @@ impl Results {
     }
 }
 
-/// Removes the `.svg` files of a folder that are not among these.
 fn remove_others(folder: &Path, kept: &[(String, String)]) -> Result<(), DdlError> {
     let failed = |error| DdlError::io(folder, error);
     for entry in std::fs::read_dir(folder).map_err(failed)? {

@@ -14,7 +14,6 @@ pub(crate) struct Forecasted {
     forecaster: String,
     /// By the trained model, or by straight lines to goals, which depend on the run's seed alone.
     by_model: bool,
-    /// Where its goals come from, in words.
     goals: String,
     forecasts: Vec<Forecast>,
 }
@@ -57,7 +56,6 @@ pub(crate) struct ResultRows<'a> {
     pub(crate) model: &'a Ddl,
     pub(crate) test: &'a TestSet,
     pub(crate) protocol: Protocol,
-    /// How the epoch of the model was chosen.
     pub(crate) selection: &'a str,
     pub(crate) commit: &'a str,
 }

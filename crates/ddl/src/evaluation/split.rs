@@ -1,5 +1,3 @@
-//! Which windows a model is measured on.
-
 use serde::{Deserialize, Serialize};
 
 /// Which windows to measure on.

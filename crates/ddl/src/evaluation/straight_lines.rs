@@ -4,7 +4,6 @@ use ddl_data::Window;
 use ddl_eval::baseline::{GoalSource, StraightLine, WeightedGoals};
 use ddl_eval::{Forecast, ForecastError, Forecaster as _};
 
-/// Constant-speed lines to goals that are known already.
 pub(crate) fn straight_lines(
     name: &'static str,
     windows: &[Window],

@@ -19,7 +19,6 @@ const SUBSET_SEED: u64 = 0;
 #[derive(Debug)]
 pub(crate) struct TestSet {
     pub(crate) convention: Convention,
-    /// Of which fold these are, as results name it.
     pub(crate) fold: String,
     pub(crate) windows: Vec<Window>,
     /// Each rule with the indices of its windows; the headline rule first.

@@ -1,5 +1,3 @@
-//! A forecast with the evidence, for each of its hypotheses, that it goes to its goal.
-
 use crate::forecast::clearance::Clearance;
 use crate::forecast::walk::{Course, Gait, Walk};
 use crate::trust::calibration::Calibration;
@@ -129,10 +127,7 @@ impl Walked<'_> {
         Ok(forecast.with_spread(spread, Calibration::shared_regions())?)
     }
 
-    /// The forecast with a certificate for each hypothesis.
-    ///
-    /// Stable steps: P is shaped by its factors, `ddl-dynamics` walks. Plain Euler steps: the positions of the
-    /// network's own rollout, as they are.
+    /// With plain Euler steps, certificates are of the positions of the network's own rollout, as they are.
     pub(crate) fn certified(self) -> Result<CertifiedForecast, ForecastError> {
         let Some(factors) = &self.factors else {
             return Err(no_flow(self.config.variant));
@@ -236,14 +231,12 @@ impl Walked<'_> {
     }
 }
 
-/// Positions and certificates of walks, each in one list.
 fn flat(walks: Vec<Walk>) -> (Vec<Position>, Vec<LyapunovCertificate<f64>>) {
     let positions = walks.iter().flat_map(|walk| walk.positions).collect();
     let certificates = walks.into_iter().map(|walk| walk.certificate).collect();
     (positions, certificates)
 }
 
-/// Whether forecasts of the variant can be certified.
 pub(crate) fn ensure_flow(variant: Variant) -> Result<(), ForecastError> {
     if variant.dynamics() {
         Ok(())

@@ -1,5 +1,3 @@
-//! Forecasts that keep clear of each other, without losing their goals.
-
 use crate::error::DdlError;
 use ddl_data::{HORIZON, Position};
 use ddl_dynamics::{Ball, DynamicsError, ObstacleSchedule};

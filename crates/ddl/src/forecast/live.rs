@@ -1,5 +1,3 @@
-//! Forecasts frame by frame, as people are seen.
-
 use crate::error::DdlError;
 use crate::forecast::certified::{self, CertifiedForecast};
 use crate::model::ddl::Ddl;

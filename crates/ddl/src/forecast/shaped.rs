@@ -88,7 +88,6 @@ pub(crate) fn without_goals(
         .collect()
 }
 
-/// A rollout without goals as a forecast.
 pub(crate) fn equally_likely(rollout: WindowRollout) -> Result<Forecast, ForecastError> {
     Ok(Forecast::equally_likely(
         rollout.pedestrians,

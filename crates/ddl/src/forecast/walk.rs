@@ -1,7 +1,5 @@
-//! One hypothesis of one walker: walked by the reference implementation, or certified as it was walked.
-//!
-//! The network emits the factors of P; `ddl-dynamics` turns them into positions in `f64`, by the
-//! integrator whose guarantee holds for the computed numbers.
+//! One hypothesis of one walker: the network emits the factors of P, `ddl-dynamics` turns them into positions in `f64`,
+//! by the integrator whose guarantee holds for the computed numbers; or positions walked elsewhere are certified.
 
 use crate::forecast::clearance::Clearance;
 use ddl_data::{HORIZON, Position};
@@ -22,7 +20,6 @@ pub(crate) enum Gait {
 }
 
 impl Gait {
-    /// The steps of the network's own rollout.
     pub(crate) fn rule(self) -> StepRule {
         match self {
             Self::PlainEuler => StepRule::Euler,
@@ -31,7 +28,6 @@ impl Gait {
     }
 }
 
-/// What a walk needs besides its shape.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Course {
     /// Last observed position, metres.
@@ -43,7 +39,6 @@ pub(crate) struct Course {
     pub(crate) bounds: MotionBounds<f64>,
 }
 
-/// A walk with the evidence that it goes to its goal.
 #[derive(Debug)]
 pub(crate) struct Walk {
     /// One a step, the start left out; metres.

@@ -13,12 +13,9 @@ use std::path::Path;
 const TRACKS: &str = "tracks";
 /// Bytes of a track: 20 positions of two f64.
 const TRACK_BYTES: usize = WINDOW * 2 * 8;
-/// What to do about a file that is not what was written.
 const MEND: &str = "copy it again, or delete it and run the same training again";
-/// Room for the header of the file.
 const HEADER_BYTES: u64 = 1 << 20;
 
-/// The library of all walkers of the training windows.
 pub(crate) fn library(windows: &[Window]) -> Result<ExpertLibrary, DdlError> {
     let tracks: Vec<Vec<Position>> = windows
         .iter()

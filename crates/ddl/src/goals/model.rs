@@ -1,5 +1,3 @@
-//! Where the goals of a model come from: the expert library of its run, its proposal network, or both.
-
 use crate::device::Device;
 use crate::error::DdlError;
 use crate::goals::experts;
@@ -34,12 +32,9 @@ pub struct GoalModel {
     motions: Option<TrainingMotions>,
 }
 
-/// What goals are made of.
 #[derive(Debug)]
 enum GoalOrigin {
-    /// Similar walkers.
     Retrieved(GoalEstimator),
-    /// The network's ends.
     Proposed(Box<dyn ProposeEnds>),
     /// Both, the retrieved goals with this share of the probability.
     Both(Box<dyn ProposeEnds>, GoalEstimator, f64),

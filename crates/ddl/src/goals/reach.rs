@@ -1,5 +1,3 @@
-//! How far the goals of a pedestrian can lie, by how fast it can be.
-
 use ddl_data::{HORIZON, OBSERVED, Window};
 use ddl_goal::GoalSet;
 use ddl_network::motion_bounds;

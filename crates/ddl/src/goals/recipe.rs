@@ -1,5 +1,3 @@
-//! What the goals of a run come from.
-
 use crate::error::DdlError;
 use ddl_goal::GoalEstimatorParams;
 use ddl_network::{ProposalConfig, ProposalTraining};

@@ -54,7 +54,6 @@ pub(crate) fn examples(
     Ok(examples)
 }
 
-/// The others of a window, nearest to pedestrian `i` at the last observed frame first.
 fn nearest(window: &Window, i: usize, count: usize) -> impl Iterator<Item = usize> {
     let last = |j: usize| window.observed(j)[OBSERVED - 1];
     let here = last(i);

@@ -1,5 +1,3 @@
-//! The models that come with the program.
-
 use crate::error::DdlError;
 use std::fmt;
 use std::str::FromStr;
@@ -39,7 +37,6 @@ impl BuiltinModel {
         }
     }
 
-    /// The packed model.
     pub(crate) fn bytes(self) -> &'static [u8] {
         BYTES[self as usize]
     }

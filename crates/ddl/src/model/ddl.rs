@@ -1,5 +1,3 @@
-//! A trained model: the network, its goal estimator, and how the two make a forecast.
-
 use crate::device::Device;
 use crate::error::DdlError;
 use crate::forecast::certified::{self, CertifiedForecast, Walked};
@@ -135,7 +133,6 @@ impl Ddl {
         &self.goals
     }
 
-    /// The weights of the network that forecasts and of the one that proposes goals, where there is one.
     pub(crate) fn weights(&self) -> Result<(Weights, Option<Weights>), DdlError> {
         let proposal = self.goals.proposal_network();
         let proposal = proposal.map(ddl_network::ProposeEnds::copy_weights);
@@ -211,7 +208,6 @@ impl Ddl {
             .collect()
     }
 
-    /// The neutral walks, of which each becomes a forecast when it is its turn.
     fn neutral<'a>(
         &'a self,
         windows: &'a [Window],

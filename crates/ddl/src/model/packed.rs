@@ -40,7 +40,6 @@ pub(super) struct Header {
     pub(super) sha256: String,
 }
 
-/// What a packed model holds.
 pub(crate) struct Unpacked {
     pub(crate) config: RunConfig,
     pub(crate) network: Box<dyn ForecastWindows>,
@@ -70,7 +69,6 @@ fn read(path: &Path) -> Result<Vec<u8>, DdlError> {
     Ok(bytes)
 }
 
-/// What a packed model holds, as far as it is read without making networks.
 type Contents = (RunConfig, Option<TrainingMotions>, Vec<HalfTensor>);
 
 /// The configuration of a packed model, its training motions and its tensors, which belong together.
@@ -143,7 +141,6 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
     Ok((config, motions, tensors))
 }
 
-/// The configuration alone.
 pub(crate) fn config(bytes: &[u8], source: &ModelSource) -> Result<RunConfig, DdlError> {
     contents(bytes, source).map(|(config, ..)| config)
 }
@@ -156,7 +153,6 @@ pub(crate) fn motions(
     contents(bytes, source).map(|(config, motions, _)| (config, motions))
 }
 
-/// The networks of a packed model.
 pub(crate) fn unpack(
     bytes: &[u8],
     source: &ModelSource,

@@ -1,5 +1,3 @@
-//! A model made into one small file.
-
 use crate::error::DdlError;
 use crate::goals::model::GoalModel;
 use crate::model::packed::{ENTRY, Header, LAYOUT, NETWORK, PROPOSAL, digest};

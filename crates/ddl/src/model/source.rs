@@ -1,5 +1,3 @@
-//! Where a model is taken from: the directory of a run, a packed file, or the program itself.
-
 use crate::error::DdlError;
 use crate::model::builtin::BuiltinModel;
 use crate::run::config::RunConfig;

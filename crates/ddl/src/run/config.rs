@@ -1,5 +1,3 @@
-//! Everything that decides what a run computes: its `config.json`.
-
 use crate::goals::recipe::GoalRecipe;
 use crate::run::starting_model::StartingModel;
 use crate::run::track_units::TrackUnits;

@@ -125,7 +125,6 @@ impl RunDirectory {
         self.model().is_file()
     }
 
-    /// Whether everything that goals come from is there.
     pub(crate) fn has_goals(&self, recipe: &GoalRecipe) -> bool {
         self.experts().is_file() && (recipe.proposal.is_none() || self.proposal().is_file())
     }

@@ -1,5 +1,3 @@
-//! The model whose weights a training begins with, in place of random ones.
-
 use crate::goals::recipe::GoalRecipe;
 use ddl_network::{TrainingConfig, Variant};
 use serde::{Deserialize, Serialize};

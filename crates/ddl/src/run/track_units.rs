@@ -1,5 +1,3 @@
-//! What a run remembers of the numbers of the recordings it was trained on.
-
 use ddl_data::Homography;
 use serde::{Deserialize, Serialize};
 

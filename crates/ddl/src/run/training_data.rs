@@ -1,5 +1,3 @@
-//! What a run is trained on, and how it is recognised.
-
 use crate::run::sha256;
 use ddl_data::{Convention, DataError, Dataset, Fold, Recording, Window, WindowRule};
 use sha2::{Digest as _, Sha256};
@@ -24,7 +22,6 @@ pub fn fold_of<'a>(dataset: &'a Dataset, name: &str) -> Result<Fold<'a>, DataErr
     }
 }
 
-/// The recordings that a fold trains or validates on.
 pub(crate) fn learned_from<'a>(fold: &'a Fold<'_>) -> impl Iterator<Item = &'a Recording> {
     let learned = fold.training_recordings().iter();
     learned.chain(fold.recordings_set_apart()).copied()

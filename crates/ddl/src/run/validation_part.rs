@@ -1,5 +1,3 @@
-//! Which part of own recordings choices are made on, where nobody says it.
-
 use ddl_data::{Convention, Fold, Recording, Window};
 
 /// Share of the time of own recordings, at their ends, that is kept for validation.

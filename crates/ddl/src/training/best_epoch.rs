@@ -1,5 +1,3 @@
-//! Which epoch of a training is the best on the validation part, and when none better is to be expected.
-
 use ddl_network::EpochReport;
 
 /// The epoch with the least validation error, the first of them; `None` where none was measured.

@@ -1,5 +1,3 @@
-//! The weights that a training begins with, in place of random ones.
-
 use crate::error::DdlError;
 use crate::goals::recipe::GoalRecipe;
 use crate::model::ddl::Ddl;
@@ -11,7 +9,6 @@ use ddl_network::weights::Weights;
 use ddl_network::{DeviceChoice, StarConfig};
 use sha2::{Digest as _, Sha256};
 
-/// The weights of both networks of that model.
 #[derive(Debug)]
 pub(crate) struct StartingWeights {
     pub(crate) network: Weights,
@@ -21,7 +18,6 @@ pub(crate) struct StartingWeights {
 }
 
 impl StartingWeights {
-    /// The weights of a model, for networks of these sizes.
     pub(crate) fn of(
         source: &ModelSource,
         (star, goals): (&StarConfig, &GoalRecipe),

@@ -1,7 +1,5 @@
-//! How far a model is trusted: constants that are the same for all models.
-//!
-//! The regions in `calibration.json` are written by the example `calibrate`, from places that no model was trained on; `docs/accuracy.md` tells
-//! on which recordings the other constants were chosen.
+//! How far a model is trusted: constants that are the same for all models, chosen as `docs/accuracy.md` tells. The
+//! example `calibrate` writes the regions in `calibration.json`, from places that no model was trained on.
 
 use crate::run::sha256;
 use ddl_data::{HORIZON, Position};
@@ -37,7 +35,6 @@ pub struct Calibration {
 
 const FILE: &str = include_str!("calibration.json");
 static FITTED: LazyLock<Option<Calibration>> = LazyLock::new(|| serde_json::from_str(FILE).ok());
-/// The table of the fitted constants, as forecasts share it.
 static REGIONS: LazyLock<Arc<RegionTable>> =
     LazyLock::new(|| Arc::new(Calibration::fitted().regions.clone()));
 
@@ -64,7 +61,6 @@ impl Calibration {
         sha256::in_hex(hasher)
     }
 
-    /// The table of the regions that come with the program.
     pub(crate) fn shared_regions() -> Arc<RegionTable> {
         Arc::clone(&REGIONS)
     }
@@ -74,7 +70,6 @@ impl Calibration {
         familiarity / (familiarity + self.half_trust)
     }
 
-    /// The share of the network's metric in what shapes the steps of a motion of this familiarity.
     pub(crate) fn share(&self, familiarity: f64) -> f64 {
         self.share * self.trust(familiarity)
     }

@@ -1,5 +1,3 @@
-//! The file of a packed model, and its edits.
-
 use std::collections::HashMap;
 
 use ddl::network::weights::HalfTensor;
@@ -14,13 +12,11 @@ const FEW: usize = 4;
 
 pub(super) struct PackedFile {
     config: String,
-    /// Of both networks.
     tensors: Vec<HalfTensor>,
     file: Vec<u8>,
 }
 
 impl PackedFile {
-    /// With every tensor that its networks need.
     pub(super) fn whole() -> Self {
         let config = smallest::config();
         let (network, proposal) = (smallest::network(&config), smallest::proposal(&config));
@@ -74,7 +70,6 @@ impl PackedFile {
     }
 }
 
-/// Another shape, name or content for one of the tensors.
 fn forge(tensors: &mut Vec<HalfTensor>, choices: &mut Choices<'_>) {
     let index = choices.below(tensors.len());
     match choices.byte() % 6 {

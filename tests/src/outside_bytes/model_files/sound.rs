@@ -9,7 +9,6 @@ use super::{names_file, with_file};
 use crate::outside_bytes::edits::Choices;
 use crate::safetensors_file;
 
-/// The file, and what it takes to read it.
 pub(super) struct Sound<T> {
     pub(super) with: T,
     pub(super) path: PathBuf,

@@ -12,10 +12,8 @@ use std::time::Duration;
 /// How often a wish to stop and the end of a process are looked for.
 pub(super) const BEAT: Duration = Duration::from_millis(20);
 
-/// Runs a process to its end, and hears each line of its standard output.
-///
-/// It runs in a process group of its own: in a terminal Ctrl-C reaches the whole foreground group, and it would hear of that twice. The
-/// first wish to stop reaches it as SIGTERM, which lets it save, any further one as a kill.
+/// Runs a process to its end in a process group of its own, which Ctrl-C does not reach: the first wish to stop is
+/// passed on as SIGTERM, which lets it save, any further one as a kill.
 pub(super) fn run(
     command: &mut Command,
     interrupt: &Interrupt,

@@ -1,6 +1,4 @@
-//! What a task is likely to take, so that the longest starts first and the time left is known.
-//!
-//! Only proportions matter. They are those of two cores.
+//! What a task is likely to take on two cores, so that the longest starts first; only proportions matter.
 
 use super::super::recipe::Recipe;
 
@@ -13,13 +11,11 @@ const TEST_WALKERS: [(&str, usize); 5] = [
     ("zara2", 5_900),
 ];
 
-/// A fold this table does not know.
 const TYPICAL_TEST_WALKERS: usize = 5_000;
 
 /// Walkers of all recordings together, of which a fold trains on what it does not test on.
 const ALL_WALKERS: usize = 39_398;
 
-/// Walkers an epoch of the recommended recipe where nobody says how many.
 const RECOMMENDED_WALKERS: usize = 5_000;
 
 /// Expected seconds of training and of scoring: so many epochs on so many walkers each, then so many walkers; none is as many as there are.

@@ -35,7 +35,6 @@ struct Progressing {
     cost: f64,
     done: f64,
     bar: ProgressBar,
-    /// When it was heard of last.
     told: Instant,
 }
 
@@ -61,7 +60,6 @@ impl Display {
         }
     }
 
-    /// Takes the bars away, so that what follows is printed on a clean screen.
     pub(super) fn close(&self) {
         self.overall.finish_and_clear();
     }
@@ -82,7 +80,6 @@ impl Display {
             state.ended,
             state.tasks.len()
         ));
-        // What went wrong is always told.
         let is_told =
             self.mode == ProgressMode::Auto || matches!(event, Event::Ended(End::Failed { .. }));
         match (line.filter(|_| is_told), &self.bars) {

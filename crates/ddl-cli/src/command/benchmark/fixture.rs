@@ -1,5 +1,3 @@
-//! Plans for tests.
-
 use super::super::recipe::Recipe;
 use super::method::Method;
 use super::plan::{Plan, Settings, Training};

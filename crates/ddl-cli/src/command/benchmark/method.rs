@@ -1,5 +1,3 @@
-//! What is trained: a variant of the method, or the full one with another network.
-
 use ddl::Variant;
 use ddl::network::BackboneKind;
 use serde::{Deserialize, Serialize};
@@ -18,7 +16,6 @@ impl Method {
     pub(crate) const FULL: Self = Self::Of(Variant::Full);
     pub(super) const PERCEPTRON: Self = Self::On(BackboneKind::Perceptron);
 
-    /// All of them, as they are listed.
     pub(super) const ALL: [Self; 5] = [
         Self::FULL,
         Self::Of(Variant::NoGoalShift),
@@ -34,7 +31,6 @@ impl Method {
         }
     }
 
-    /// The option of `ddl train` that makes it.
     pub(super) fn option(self) -> &'static str {
         match self {
             Self::Of(_) => "--variant",

@@ -33,10 +33,8 @@ struct Layout {
 pub(crate) struct Settings {
     pub(crate) profile: Profile,
     pub(crate) convention: Convention,
-    /// Folder of the recordings, for a convention that has some.
     pub(crate) data: Option<PathBuf>,
     pub(crate) device: DeviceChoice,
-    /// How the program is built.
     pub(super) cargo_profile: String,
     pub(super) epochs: usize,
     /// Walkers trained on in each epoch; none is as many as the recipe says.
@@ -50,7 +48,6 @@ pub(crate) struct Settings {
     pub(crate) recipe: Training,
 }
 
-/// What every model is trained by: a recipe, and what is changed of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Training {
     pub(crate) name: Recipe,
@@ -216,10 +213,7 @@ impl Plan {
             .option("--threads", Some(threads))
     }
 
-    /// Writes `plan.json`, after making sure that what lies in `out` belongs to the same settings.
-    ///
-    /// Folds, variants and seeds may be added or left out from one call to the next; results made
-    /// under other settings are never mixed in.
+    /// Writes `plan.json`, where what lies in `out` belongs to the same settings but for folds, variants and seeds.
     pub(crate) fn write(&self, out: &Path) -> anyhow::Result<()> {
         let file = out.join("plan.json");
         match fs::read(&file) {

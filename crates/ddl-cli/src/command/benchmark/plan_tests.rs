@@ -1,5 +1,3 @@
-//! What a plan holds, says to the program, and refuses.
-
 use super::super::fixture::{self, plan, settings};
 use super::*;
 
@@ -71,7 +69,6 @@ fn the_arguments_are_those_the_program_knows() {
         "goals --json --model runs/x/eth-full-7/run --measure test --svg runs/x/eth-full-7/goals.svg \
          --output runs/x/eth-full-7/goals.json --device cpu --threads 2"
     );
-    // The perceptron is the full method with another backbone.
     let words = train(&published(&["eth"], &[Method::PERCEPTRON], &[7]).unwrap());
     assert!(
         words.contains("--fold eth --backbone perceptron --seed"),

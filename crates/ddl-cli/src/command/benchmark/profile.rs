@@ -30,21 +30,16 @@ impl fmt::Display for Profile {
 pub(super) struct Work {
     /// The first so many folds of a convention.
     pub(super) folds: usize,
-    /// Batches that the proposal network is trained on; none is the program's default.
     pub(super) proposal_steps: Option<u64>,
-    /// Test walkers scored; none is all.
     pub(super) test_walkers: Option<usize>,
     pub(super) epochs: usize,
-    /// Walkers trained on in each epoch; none is as many as the recipe says.
     pub(super) train_walkers: Option<usize>,
-    /// Instead of the recipe's.
     pub(super) optimiser: Option<Optimiser>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Optimiser {
     pub(super) batch_walkers: usize,
-    /// Largest step size of Adam.
     pub(super) learning_rate: f64,
     pub(super) schedule: LearningRateSchedule,
 }

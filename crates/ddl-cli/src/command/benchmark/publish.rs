@@ -14,7 +14,6 @@ use std::path::Path;
 use std::time::Duration;
 use time::OffsetDateTime;
 
-/// The page whose tables the README shows too.
 const HEADLINE: &str = "docs/benchmark.md";
 const README: &str = "README.md";
 
@@ -238,7 +237,6 @@ mod tests {
         }
     }
 
-    /// The README shows the headline, and no part of it.
     #[test]
     fn a_part_of_the_benchmark_does_not_reach_the_readme() {
         let all = || Settings {

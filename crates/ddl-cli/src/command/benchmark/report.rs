@@ -9,7 +9,6 @@ use ddl::data::{Convention, Dataset, locate};
 use ddl::{Protocol, Results};
 use std::path::{Path, PathBuf};
 
-/// Writes the report over finished runs, where there are some, and prints it; what it says to people.
 pub(super) fn write(
     plan: &Plan,
     runs: Vec<PathBuf>,

@@ -1,5 +1,3 @@
-//! What a command line trains, where the results go, and which names are refused.
-
 use super::*;
 use clap::Parser;
 

@@ -25,17 +25,14 @@ const ON_ONE_CARD: usize = 5;
 /// Share of a training that its first stage, the goals, is shown as.
 const GOALS: f64 = 0.15;
 
-/// Lines of a log that are shown when a task fails.
 const LAST_LINES: usize = 8;
 
 /// Works off up to `jobs` tasks at a time, each in processes with `threads` threads.
 #[derive(Debug)]
 pub(super) struct Workers {
-    /// The program, and what stands before the arguments of a task.
     pub(super) program: Vec<OsString>,
     pub(super) jobs: usize,
     pub(super) threads: usize,
-    /// What results name as the code that made them.
     pub(super) commit: String,
 }
 
@@ -45,7 +42,7 @@ pub(super) enum End {
     Finished { seconds: f64 },
     /// An earlier run finished it.
     Kept,
-    /// What went wrong, with the last lines of the log.
+    /// With the last lines of the log.
     Failed { reason: String },
     /// Stopped from outside, or not begun; a later run goes on from here.
     Interrupted,
@@ -59,7 +56,6 @@ pub(super) enum Event<'a> {
     Ended(&'a End),
 }
 
-/// Hears of tasks, from several threads at once.
 pub(super) type Watch<'a> = &'a (dyn Fn(&Task, Event<'_>) + Sync);
 
 /// Processes side by side and the threads of each. When nobody asks for a number: on the CPU one process a core; on CUDA all tasks up to five,
@@ -78,10 +74,7 @@ pub(super) fn side_by_side(
 }
 
 impl Workers {
-    /// Runs every task that is not finished, and returns how each ended, in the plan's order.
-    ///
-    /// A task that fails does not keep the others from running. After a wish to stop no task is begun, and running ones are asked to
-    /// save what they have.
+    /// How each task ended, in the plan's order. After a wish to stop none begins, and running ones are asked to save.
     pub(super) fn run(
         &self,
         plan: &Plan,
@@ -246,7 +239,6 @@ struct Record {
 impl Record {
     const FILE: &str = "finished.json";
 
-    /// Whether the task was finished and its scores are still there.
     fn is_of(task: &Task, out: &Path) -> bool {
         let text = fs::read(task.folder(out).join(Self::FILE)).ok();
         let record = text.and_then(|text| serde_json::from_slice::<Self>(&text).ok());

@@ -160,7 +160,6 @@ fn an_interrupt_lets_tasks_save_and_a_second_run_goes_on() {
     };
     let ends = bench.workers.run(&plan, &bench.out(), &watch, &interrupt);
     assert_eq!(ends, [End::Interrupted, End::Interrupted, End::Interrupted]);
-    // The third was not begun.
     assert!(!bench.out().join("c-full-1").exists());
     let saved = fs::read_to_string(bench.out().join("patient-full-1/run/epoch")).unwrap();
     let saved: u32 = saved.trim().parse().unwrap();

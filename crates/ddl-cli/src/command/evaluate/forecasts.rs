@@ -40,7 +40,6 @@ pub(crate) struct OtherProgram {
 }
 
 impl OtherProgram {
-    /// The built-in model to measure, where neither forecasts nor a model are given but a fold: its model.
     pub(crate) fn builtin_model(&self, recordings: &RecordingsAt) -> anyhow::Result<BuiltinModel> {
         self.windows.ensure_of_builtin_models()?;
         let fold = self.windows.fold.as_deref().unwrap_or_default();
@@ -57,7 +56,6 @@ impl OtherProgram {
         }
     }
 
-    /// Scores the file under each protocol, and writes the report where asked to.
     pub(crate) fn evaluate(
         &self,
         file: &Path,

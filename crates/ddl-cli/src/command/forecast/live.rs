@@ -151,7 +151,6 @@ struct Tracking {
     completion: Completion,
     units: Units,
     tracks: Option<LiveTracks>,
-    /// The first frame, until there is a second to learn from.
     first: Option<Frame>,
 }
 

@@ -19,7 +19,6 @@ struct Row {
     frame: FrameNumber,
     x: f64,
     y: f64,
-    /// Positions before the first that was seen, and in holes.
     padded: usize,
     filled: usize,
     /// Empty where the model does not say.

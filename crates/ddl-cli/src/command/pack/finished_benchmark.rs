@@ -10,12 +10,10 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What a model without its tracks is called in results.
 const FORECASTER: &str = "DDL without an expert library";
 /// What a repository can bear for each.
 const MOST_BYTES: usize = 2_000_000;
 
-/// What a model reached on the scene that it was trained without.
 #[derive(Debug, PartialEq, Serialize)]
 struct Reported {
     convention: Convention,
@@ -30,7 +28,6 @@ struct Reported {
     commit: String,
 }
 
-/// Packs the run of each fold, of the whole method and of one seed; the files, each with its number of weights.
 pub(super) fn pack(
     benchmark: &Path,
     seed: Option<u64>,

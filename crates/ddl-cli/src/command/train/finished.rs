@@ -63,7 +63,6 @@ pub(super) fn print(
     output::print(&format!("{run}: {done}\n{compared}next: {next}\n"))
 }
 
-/// The command to go on with: what can be measured is.
 fn next(request: &TrainingRequest, (only_goals, measured): (bool, bool), data: &str) -> String {
     let run = shell_word(request.out.path());
     let kept = request.validation > 0.0 || !request.validation_recordings.is_empty();
@@ -119,7 +118,6 @@ pub(super) fn compare_with_builtin(
     Ok((compared.pedestrians > 0).then_some(compared))
 }
 
-/// What came of it, for people: both errors, and a sentence.
 fn compared_words(compared: &Comparison) -> String {
     let Comparison {
         pedestrians,
