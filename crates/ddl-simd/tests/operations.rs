@@ -4,7 +4,7 @@
 
 use ddl_simd::{
     DEPTH, Dispatch, InstructionSet, Kernel, LANES, Lanes, Quad, Register, RegisterKernel, Simd,
-    WIDE_LANES, ZERO_QUAD,
+    TiledKernel, WIDE_LANES, ZERO_QUAD,
 };
 use proptest::prelude::*;
 
@@ -227,6 +227,36 @@ fn quads() {
                 assert_eq!(found[d].0[l], expected, "{dispatch:?}");
             }
         }
+    }
+}
+
+/// Notes the size of the tile that it is compiled for.
+struct OnTiles<'a>(&'a mut Vec<(usize, usize)>);
+
+impl TiledKernel for OnTiles<'_> {
+    #[inline(always)]
+    fn run<S: Simd, const R: usize, const V: usize>(self, _simd: S) {
+        self.0.push((R, V));
+    }
+}
+
+/// An accumulator holds sixteen numbers: one register of AVX-512 (of 32), two of AVX2 (of 16), so that the tile leaves
+/// registers for the operands.
+#[test]
+fn tiled_kernels_run_once_with_a_tile_that_the_registers_hold() {
+    for dispatch in each_set() {
+        let mut tiles = Vec::new();
+        dispatch.run(OnTiles(&mut tiles));
+        let [(rows, vectors)] = tiles[..] else {
+            panic!("{dispatch:?}: {tiles:?}")
+        };
+        assert!(8 % rows == 0 && (1..=2).contains(&vectors), "{dispatch:?}");
+        let (registers, available) = if dispatch.instruction_set() == InstructionSet::Avx512 {
+            (rows * vectors, 32)
+        } else {
+            (2 * rows * vectors, 16)
+        };
+        assert!((1..available).contains(&registers), "{dispatch:?}");
     }
 }
 
