@@ -26,9 +26,9 @@ use std::process::ExitCode;
     disable_help_subcommand = true,
     help_template = "{about}\n\n{usage-heading} {usage}\n\n{subcommands}{after-help}",
     after_help = "Trained models come with the program: `ddl forecast tracks.csv` works at once.\n\
-    `ddl COMMAND --help` lists options. Exit codes: 0 done, or whoever read the\n\
-    output has gone, 1 failed, 2 wrong arguments, 130 interrupted (a training is\n\
-    saved: the same command goes on)."
+    `ddl COMMAND --help` lists options. Exit codes: 0 success (also when the\n\
+    reader closes the output), 1 failure, 2 wrong arguments, 130 interrupted (a\n\
+    training is saved: the same command resumes it)."
 )]
 struct Cli {
     #[command(subcommand)]

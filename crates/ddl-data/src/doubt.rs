@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::{Observation, PedestrianId, PedestrianName, Position, Recording, TIME_STEP};
 
-/// Faster than anybody walks, m/s: who seems to is measured in pixels, or in steps of another length.
+/// No pedestrian walks faster, m/s. If half of the steps are, positions are probably in pixels, or steps are not 0.4 s.
 const IMPLAUSIBLE: f64 = 4.0;
 /// If the 90 % quantile of the walking speeds is below this (m/s), frames are closer together than 0.4 s.
 const CREEPING: f64 = 0.6;
@@ -15,10 +15,11 @@ const CREEPING: f64 = 0.6;
 const FAR: f64 = 2.0;
 /// A step beyond this is a track that jumps from one person to another, m/s: the fastest sprinters reach 12.
 const JUMP: f64 = 12.0;
-/// Where nobody comes farther than this over many steps, m, numbers are not metres: even who stands sways, and trackers tremble.
+/// Largest distance from the start, m, below which positions are probably not metres: even a standing pedestrian moves
+/// more than this over [`MANY_STEPS`] steps, and so does the noise of a tracker.
 const STILL: f64 = 0.02;
 const MANY_STEPS: usize = 20;
-/// Share of frames without somebody between their first and last from which on it is told.
+/// Share of frames between a pedestrian's first and last without a position, from which on a doubt is reported.
 const OFTEN: f64 = 0.03;
 
 /// Something that looks wrong; in words it says what may be done about it. Speeds are in m/s, distances in m.
@@ -27,7 +28,7 @@ const OFTEN: f64 = 0.03;
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum Doubt {
     #[error(
-        "nobody was seen at two frames {frame_step} apart, which are taken for 0.4 s: give the rate of the frames"
+        "no pedestrian has positions {frame_step} frames apart, which is taken for 0.4 s; give the frame rate"
     )]
     NoSteps { frame_step: i64 },
     #[error(
@@ -35,28 +36,28 @@ pub enum Doubt {
     )]
     Fast { median: f64 },
     #[error(
-        "nine in ten steps of those who walk are slower than {brisk:.2} m/s; are the rows of a pedestrian 0.4 s apart, or those of a faster camera?"
+        "nine in ten steps of walking pedestrians are slower than {brisk:.2} m/s; are the rows of a pedestrian 0.4 s apart, or closer?"
     )]
     Slow { brisk: f64 },
     #[error(
-        "nobody comes farther than {farthest:.3} m; are the positions in metres, or in degrees or kilometres?"
+        "no pedestrian moves farther than {farthest:.3} m; are the positions in metres, or in degrees or kilometres?"
     )]
     Still { farthest: f64 },
     #[error(
-        "people are not seen in {:.0} % of the frames between their first and their last; a step counts where somebody is seen at its very frame, so \
-         fill short gaps where the tracker can",
+        "pedestrians have no position in {:.0} % of the frames between their first and last; a forecast needs a position at \
+         exactly each step, so let the tracker fill short gaps if it can",
         100.0 * .share
     )]
     Unseen { share: f64 },
     #[error(
-        "pedestrian {} jumps at frame {}, {:.1} m/s over one step; does the track go on with somebody else?",
+        "pedestrian {} jumps at frame {}, {:.1} m/s over one step; does the track continue with another pedestrian?",
         .0.pedestrian,
         .0.frame,
         .0.speed
     )]
     Jump(Fastest),
     #[error(
-        "nobody was seen at 20 steps in a row: nothing can be trained on these tracks, or measured with them"
+        "no pedestrian was seen at 20 steps in a row: these tracks can neither train nor evaluate a model"
     )]
     NothingToLearnFrom,
 }

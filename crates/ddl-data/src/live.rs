@@ -217,8 +217,8 @@ impl LiveTracks {
         Some(LivePedestrian { id, seen })
     }
 
-    /// The window that ends at the last frame, of everybody in it who was seen, or completed, at each of the last 8
-    /// steps.
+    /// The window that ends at the last frame: the pedestrians of that frame that have a position, observed or completed,
+    /// at each of the last 8 steps.
     #[must_use]
     pub fn window(&self) -> Option<Window> {
         let last = self.last_frame?;

@@ -90,7 +90,7 @@ fn nobody_walks_through_a_wall_or_a_pillar_or_is_stuck() {
                 let inside = pillars.any(|p| distance(p.centre, place) < p.radius);
                 assert!(!inside, "{scene}: {place:?}");
             }
-            // Two minutes for at most 30 m and a rest: whoever takes longer is stuck.
+            // A pedestrian walks at most 30 m and rests once. One that takes longer than two minutes is stuck.
             let seconds = track.len() as f64 * TIME_STEP;
             assert!(seconds < 120.0, "{scene}: {seconds} s");
         }

@@ -40,9 +40,9 @@ const GROUP_DEVIATION: f64 = 0.2;
 ///
 /// # Where this differs
 /// `TrajNet++`'s dataset tool observes 9 frames and judges a group over 21, and takes one border of each sector; here
-/// both borders belong to it, so that mirror images are alike. There, who does not move from t - 3 to t walks along x;
-/// here nobody is ahead of it or beside it, and it has no course. It sees everybody present at a frame, here only
-/// those in the window for all 20.
+/// both borders belong to it, so that mirror images are alike. There, a
+/// pedestrian that does not move from t - 3 to t is taken to walk along x; here it has no direction, so no neighbour is
+/// ahead of it or beside it. There, all pedestrians of a frame are neighbours; here only those with all 20 steps.
 ///
 /// # References
 /// Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds", T-ITS 2021, section III.

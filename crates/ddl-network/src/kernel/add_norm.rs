@@ -7,7 +7,7 @@ mod tests;
 use super::columns::{load, store};
 use ddl_simd::{DEPTH, LANES, Lanes, Simd};
 pub(super) use rows::Decisions;
-use rows::{Four, USUAL, means};
+use rows::{Four, USUAL, each, means};
 
 /// Added to the variance.
 const EPSILON: f32 = 1e-5;
@@ -65,24 +65,25 @@ impl AddNorm {
         normal: &mut Normal<'_>,
         y: &mut [f32],
     ) {
-        match self.inside.len() {
-            USUAL => self.forward_rows(simd, USUAL, [x, t], decisions, normal, y),
-            vectors => self.forward_rows(simd, vectors, [x, t], decisions, normal, y),
+        if self.width == USUAL * LANES {
+            self.forward_rows::<S, true>(simd, [x, t], decisions, normal, y);
+        } else {
+            self.forward_rows::<S, false>(simd, [x, t], decisions, normal, y);
         }
     }
 
     #[inline(always)]
-    fn forward_rows<S: Simd>(
+    fn forward_rows<S: Simd, const FIXED: bool>(
         &self,
         simd: S,
-        vectors: usize,
         [x, t]: [&[f32]; 2],
         decisions: Option<(Decisions, usize)>,
         normal: &mut Normal<'_>,
         y: &mut [f32],
     ) {
-        let width = self.width;
-        let mut four = Four::new(vectors);
+        let width = self.fixed_width::<FIXED>();
+        let mut four = Four::<FIXED>::new(self.inside.len());
+        let vectors = four.vectors();
         let rows = x.len() / width;
         for first in (0..rows).step_by(DEPTH) {
             let count = DEPTH.min(rows - first);
@@ -101,25 +102,29 @@ impl AddNorm {
                     four.set(simd, r, v, simd.add(load(simd, x, at), term));
                 }
             }
-            let mean = means(simd, width, four.sums(simd));
+            let mean = each(simd, means(simd, width, four.sums(simd)));
             for r in 0..DEPTH {
                 for v in 0..vectors {
-                    let centred = simd.sub(four.get(simd, r, v), mean[r]);
-                    let inside = simd.load(&self.inside[v].0);
-                    four.set(simd, r, v, simd.mul(centred, inside));
+                    let mut centred = simd.sub(four.get(simd, r, v), mean[r]);
+                    if !FIXED {
+                        centred = simd.mul(centred, simd.load(&self.inside[v].0));
+                    }
+                    four.set(simd, r, v, centred);
                 }
             }
+            // One root and one division for four rows.
             let variance = means(simd, width, four.products(simd, &four));
+            let deviation = simd.sqrt(simd.add(variance, simd.splat(EPSILON)));
+            let scale = simd.div(simd.splat(1.0), deviation);
+            let mut scales = Lanes::ZERO;
+            simd.store(scale, &mut scales.0);
+            let scale = each(simd, scale);
             for r in 0..count {
-                let variance = simd.add(variance[r], simd.splat(EPSILON));
-                let scale = simd.div(simd.splat(1.0), simd.sqrt(variance));
-                let mut scales = Lanes::ZERO;
-                simd.store(scale, &mut scales.0);
-                normal.scales[first + r] = scales.0[0];
+                normal.scales[first + r] = scales.0[r];
                 let row = (first + r) * width..(first + r + 1) * width;
                 let (normal, y) = (&mut normal.numbers[row.clone()], &mut y[row]);
                 for v in 0..vectors {
-                    let number = simd.mul(four.get(simd, r, v), scale);
+                    let number = simd.mul(four.get(simd, r, v), scale[r]);
                     store(simd, number, normal, v * LANES);
                     let weight = simd.load(&self.weight[v].0);
                     let bias = simd.load(&self.bias[v].0);
@@ -141,29 +146,33 @@ impl AddNorm {
         of_inputs: [&mut [f32]; 2],
         of_weights: [&mut [f32]; 2],
     ) {
-        match self.inside.len() {
-            USUAL => self.backward_rows(simd, USUAL, normal, gy, decisions, of_inputs, of_weights),
-            vectors => {
-                self.backward_rows(simd, vectors, normal, gy, decisions, of_inputs, of_weights);
-            }
+        if self.width == USUAL * LANES {
+            self.backward_rows::<S, true>(simd, normal, gy, decisions, of_inputs, of_weights);
+        } else {
+            self.backward_rows::<S, false>(simd, normal, gy, decisions, of_inputs, of_weights);
         }
     }
 
-    #[expect(clippy::too_many_arguments, reason = "one more than it is called with")]
+    /// The width, known to the compiler where it is the usual one.
     #[inline(always)]
-    fn backward_rows<S: Simd>(
+    fn fixed_width<const FIXED: bool>(&self) -> usize {
+        if FIXED { USUAL * LANES } else { self.width }
+    }
+
+    #[inline(always)]
+    fn backward_rows<S: Simd, const FIXED: bool>(
         &self,
         simd: S,
-        vectors: usize,
         [numbers, scales]: [&[f32]; 2],
         gy: &[f32],
         decisions: Option<(Decisions, usize)>,
         [gx, gt]: [&mut [f32]; 2],
         [of_weight, of_bias]: [&mut [f32]; 2],
     ) {
-        let width = self.width;
-        let (mut normal, mut gradient) = (Four::new(vectors), Four::new(vectors));
-        let mut sums = [Four::new(vectors), Four::new(vectors)];
+        let width = self.fixed_width::<FIXED>();
+        let new = || Four::<FIXED>::new(self.inside.len());
+        let (mut normal, mut gradient, mut sums) = (new(), new(), [new(), new()]);
+        let vectors = normal.vectors();
         let rows = numbers.len() / width;
         for first in (0..rows).step_by(DEPTH) {
             let count = DEPTH.min(rows - first);
@@ -185,8 +194,9 @@ impl AddNorm {
                     bias.set(simd, 0, v, simd.add(of_y, bias.get(simd, 0, v)));
                 }
             }
-            let mean = means(simd, width, gradient.sums(simd));
+            let mean = each(simd, means(simd, width, gradient.sums(simd)));
             let product = means(simd, width, gradient.products(simd, &normal));
+            let product = each(simd, product);
             for r in 0..count {
                 let scale = simd.splat(scales[first + r]);
                 let row = (first + r) * width..(first + r + 1) * width;

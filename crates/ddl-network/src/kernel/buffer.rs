@@ -25,10 +25,19 @@ thread_local! {
 }
 
 impl Spares {
-    fn take(&mut self) -> Vec<f32> {
-        let buffer = self.buffers.pop().unwrap_or_default();
-        self.numbers -= buffer.len();
-        buffer
+    /// The smallest that holds `count` numbers, or a new one.
+    fn take(&mut self, count: usize) -> Vec<f32> {
+        let lengths = self.buffers.iter().map(Vec::len).enumerate();
+        let fitting = lengths.filter(|&(_, length)| length >= count);
+        if let Some((index, length)) = fitting.min_by_key(|&(_, length)| length) {
+            self.numbers -= length;
+            return self.buffers.swap_remove(index);
+        }
+        // Room for the new one, in place of one that was too small.
+        if let Some(small) = self.buffers.pop() {
+            self.numbers -= small.len();
+        }
+        vec![0.0; count]
     }
 
     fn keep(&mut self, buffer: Vec<f32>) {
@@ -50,10 +59,7 @@ pub struct Buffer {
 impl Buffer {
     /// `count` numbers, whatever was there before.
     pub fn any(count: usize) -> Self {
-        let mut numbers = SPARES.with_borrow_mut(Spares::take);
-        if numbers.len() < count + LANES {
-            numbers.resize(count + LANES, 0.0);
-        }
+        let numbers = SPARES.with_borrow_mut(|spares| spares.take(count + LANES));
         let aligned = numbers.as_ptr().align_offset(LANES * size_of::<f32>());
         let first = if aligned < LANES { aligned } else { 0 };
         Self {
@@ -127,6 +133,15 @@ mod tests {
             assert_eq!(kept, spares.numbers);
             assert!((1..=SPARE_NUMBERS).contains(&kept), "{kept} numbers");
         });
+    }
+
+    #[test]
+    fn the_smallest_spare_that_is_large_enough_is_taken() {
+        drop([300, 100, 200].map(Buffer::any));
+        let again = [150, 250, 50].map(Buffer::any);
+        let lengths = again.each_ref().map(|buffer| buffer.numbers.len() - LANES);
+        assert_eq!(lengths, [200, 300, 100]);
+        assert_eq!(Buffer::any(60).numbers.len() - LANES, 60);
     }
 
     #[test]

@@ -11,6 +11,7 @@ const CACHES: usize = 256 << 20;
 pub(crate) enum Clock {
     /// That of the processor, of all threads of the process together.
     Processor,
+    #[cfg(feature = "torch")]
     Wall,
 }
 
@@ -18,6 +19,7 @@ impl Clock {
     fn now(self) -> f64 {
         let time = clock_gettime(match self {
             Self::Processor => ClockId::ProcessCPUTime,
+            #[cfg(feature = "torch")]
             Self::Wall => ClockId::Monotonic,
         });
         time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64

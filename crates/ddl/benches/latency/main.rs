@@ -1,97 +1,87 @@
-//! What a forecast and a training step cost: `cargo bench -p ddl --features torch --bench latency`. One scene of 25
-//! simulated pedestrians with 20 hypotheses each, or a step of about 266 walkers. Figures are medians of turns, each
-//! after the caches are emptied: processor time, for two threads the time of the clock. Weights are untrained.
+//! What a forecast costs, `cargo bench -p ddl --bench latency`, and with `--features torch` a training step as well.
+//!
+//! A forecast is of 25 simulated pedestrians with 20 hypotheses each by a built-in model. A training step is of about
+//! 266 pedestrians with initial weights. Figures are medians of turns, each with empty caches: processor time for one
+//! thread, wall time for two.
 
 mod clock;
 mod scene;
+#[cfg(feature = "torch")]
 mod step;
-mod untrained;
 mod walk;
 
 use clock::{Clock, side_by_side};
 use ddl::data::{Dataset, Position, Window};
-use ddl::network::weights::load_weights;
-use ddl::network::{ForecastWindows as _, MotionNetwork, Noise, StepRule};
-use ddl::{Ddl, DeviceChoice, Forecaster as _, RunDirectory};
+use ddl::network::{
+    BackboneKind, ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule,
+};
+use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _, ModelSource};
 use std::error::Error;
 use std::io::Write as _;
-use std::path::Path;
 
 type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
-/// Widths of the feed-forward blocks; the first is the published one.
-const WIDTHS: [i64; 7] = [2048, 512, 256, 128, 64, 32, 16];
-
 fn main() -> Result<()> {
-    // `cargo bench` says so; anything else wants to see that it runs.
+    // `cargo bench` passes this argument; `cargo test` only checks that the benchmark runs.
     let turns = if std::env::args().any(|argument| argument == "--bench") {
-        11
+        21
     } else {
         1
     };
-    ddl::prepare(DeviceChoice::Cpu, Some(1))?;
     let dataset = Dataset::simulated(1);
     let window = scene::of(&dataset)?;
-    let folder = tempfile::tempdir()?;
-    let run = untrained::run(&dataset, folder.path())?;
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let forecasts = one.install(|| forecast(&window, turns))?;
     let mut out = std::io::stdout().lock();
-    let library = Ddl::load(run.path(), DeviceChoice::Cpu)?;
-    let library = library
-        .goal_model()
-        .estimator()
-        .map_or(0, |estimator| estimator.library().len());
-    writeln!(
-        out,
-        "\n{} pedestrians, 20 hypotheses, {library} experts, one thread, processor time",
-        window.len()
-    )?;
-    writeln!(out, "feed-forward  whole/ms  goals/ms network/ms   walk/ms")?;
-    for width in WIDTHS {
-        untrained::widen(&run, width)?;
-        let [whole, goals, network, walk] =
-            forecast(run.path(), &window, turns)?.map(|seconds| 1e3 * seconds);
-        writeln!(
-            out,
-            "{width:>12} {whole:>9.2} {goals:>9.2} {network:>10.2} {walk:>9.2}"
-        )?;
-    }
-    writeln!(out, "\ntraining step, published network")?;
+    writeln!(out, "\n{forecasts}")?;
+    #[cfg(feature = "torch")]
     for threads in [1, 2] {
         writeln!(out, "{}", step::measured(&dataset, threads, turns)?)?;
     }
     Ok(())
 }
 
-/// Seconds of the whole forecast, as a user asks for it, and of its parts: goals, network, walk.
-fn forecast(run: &Path, window: &Window, turns: usize) -> Result<[f64; 4]> {
-    let model = Ddl::load(run, DeviceChoice::Cpu)?;
-    let star = &model.config().star;
-    let network = MotionNetwork::new(star.clone(), 0)?;
-    let origin = model.config().network_origin();
-    let weights = load_weights(
-        network.weights().layout(),
-        &origin,
-        &RunDirectory::new(run).model(),
+/// The time of a whole forecast, and of its parts.
+fn forecast(window: &Window, turns: usize) -> Result<String> {
+    let model = Ddl::open(
+        &ModelSource::Builtin(BuiltinModel::Hotel),
+        DeviceChoice::Cpu,
     )?;
-    let network = network.with_weights(weights)?;
     let windows = std::slice::from_ref(window);
     let sets = model.goal_model().goals(windows)?.remove(0);
     let goals: Vec<Vec<Position>> = sets.iter().map(|set| set.goals().to_vec()).collect();
     let all = vec![goals.clone()];
-    let roll_out =
-        || network.forecast_windows(windows, &all, Noise::Expected, StepRule::Bounded, None);
-    let rollout = roll_out()?.remove(0);
-    let parts: [&mut dyn FnMut() -> Result<()>; 4] = [
-        &mut || model.forecast(window).map(drop).map_err(Into::into),
-        &mut || {
-            model
-                .goal_model()
-                .goals(windows)
-                .map(drop)
-                .map_err(Into::into)
-        },
-        &mut || roll_out().map(drop).map_err(Into::into),
+    let star = &model.config().star;
+    // Weights do not change the time.
+    let network = |backbone| {
+        let config = StarConfig {
+            backbone,
+            ..star.clone()
+        };
+        MotionNetwork::new(config, 1)
+    };
+    let [transformer, perceptron] = [BackboneKind::Star, BackboneKind::Perceptron].map(network);
+    let (transformer, perceptron) = (transformer?, perceptron?);
+    let roll_out = |network: &MotionNetwork| {
+        network.forecast_windows(windows, &all, Noise::Expected, StepRule::Bounded, None)
+    };
+    let rollout = roll_out(&transformer)?.remove(0);
+    let parts: [&mut dyn FnMut() -> Result<()>; 5] = [
+        &mut || Ok(model.forecast(window).map(drop)?),
+        &mut || Ok(model.goal_model().goals(windows).map(drop)?),
+        &mut || Ok(roll_out(&transformer).map(drop)?),
+        &mut || Ok(roll_out(&perceptron).map(drop)?),
         &mut || walk::all(star, window, &goals, &rollout),
     ];
-    side_by_side(Clock::Processor, turns, parts)
+    let times = side_by_side(Clock::Processor, turns, parts)?;
+    let [whole, goals, transformer, perceptron, walk] = times.map(|seconds| 1e3 * seconds);
+    Ok(format!(
+        "{} pedestrians, 20 hypotheses, one thread, processor time\n\
+         whole forecast                    {whole:>6.2} ms\n\
+         goals                             {goals:>6.2} ms\n\
+         network, Transformer              {transformer:>6.2} ms\n\
+         network, perceptron               {perceptron:>6.2} ms\n\
+         rollout in f64 and certificates   {walk:>6.2} ms",
+        window.len()
+    ))
 }

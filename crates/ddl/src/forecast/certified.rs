@@ -170,17 +170,18 @@ impl Walked<'_> {
         factors: &[[f64; 3]],
         clearance: Clearance,
     ) -> Result<Vec<Walk>, ForecastError> {
-        let alone = self.alone(factors)?;
         let hypotheses = self.hypotheses;
-        let likeliest: Vec<[Position; HORIZON]> = alone
-            .chunks_exact(hypotheses)
-            .zip(self.weights.chunks_exact(hypotheses))
-            .map(|(walks, weights)| {
+        let weights = self.weights.chunks_exact(hypotheses).enumerate();
+        let likeliest = weights
+            .map(|(i, weights)| {
                 let heaviest = weights.iter().copied().fold(0.0, f64::max);
                 let first = weights.iter().position(|weight| *weight >= heaviest);
-                walks[first.unwrap_or(0)].positions
+                let pair = i * hypotheses + first.unwrap_or(0);
+                let factors = &factors[pair * HORIZON..][..HORIZON];
+                let walk = self.one(pair, factors, |_, course, factors| course.walk(factors))?;
+                Ok(walk.positions)
             })
-            .collect();
+            .collect::<Result<Vec<_>, ForecastError>>()?;
         let others = (0..self.window.len())
             .map(|i| clearance.others(i, &likeliest))
             .collect::<Result<Vec<_>, _>>()
@@ -205,29 +206,36 @@ impl Walked<'_> {
         factors: &[[f64; 3]],
         mut of: impl FnMut(usize, &Course, &[[f64; 3]]) -> Result<R, DynamicsError>,
     ) -> Result<Vec<R>, ForecastError> {
-        let hypotheses = self.hypotheses;
-        let pairs = factors.chunks_exact(HORIZON).zip(&self.goals).enumerate();
+        let pairs = factors.chunks_exact(HORIZON).enumerate();
         pairs
-            .map(|(pair, (factors, &goal))| {
-                let (i, hypothesis) = (pair / hypotheses, pair % hypotheses);
-                let course = Course {
-                    start: self.window.observed(i)[OBSERVED - 1],
-                    goal,
-                    sigma: self.config.sigma,
-                    time_step: self.config.time_step,
-                    bounds: self.bounds(i),
-                };
-                of(i, &course, factors).map_err(|cause| {
-                    failed(CertificateError::Walk {
-                        recording: self.window.recording().to_owned(),
-                        start_frame: self.window.start_frame(),
-                        pedestrian: self.window.name(i),
-                        hypothesis,
-                        cause,
-                    })
-                })
-            })
+            .map(|(pair, factors)| self.one(pair, factors, &mut of))
             .collect()
+    }
+
+    /// The same of one hypothesis, number `pair` of those of all walkers.
+    fn one<R>(
+        &self,
+        pair: usize,
+        factors: &[[f64; 3]],
+        of: impl FnOnce(usize, &Course, &[[f64; 3]]) -> Result<R, DynamicsError>,
+    ) -> Result<R, ForecastError> {
+        let (i, hypothesis) = (pair / self.hypotheses, pair % self.hypotheses);
+        let course = Course {
+            start: self.window.observed(i)[OBSERVED - 1],
+            goal: self.goals[pair],
+            sigma: self.config.sigma,
+            time_step: self.config.time_step,
+            bounds: self.bounds(i),
+        };
+        of(i, &course, factors).map_err(|cause| {
+            failed(CertificateError::Walk {
+                recording: self.window.recording().to_owned(),
+                start_frame: self.window.start_frame(),
+                pedestrian: self.window.name(i),
+                hypothesis,
+                cause,
+            })
+        })
     }
 }
 

@@ -5,11 +5,12 @@ use crate::forecast::clearance::Clearance;
 use ddl_data::{HORIZON, Position};
 use ddl_dynamics::{
     ArrivingSchedule, Attractor, AvoidingFlow, CholeskyMetric, DynamicsError, Flow,
-    LyapunovCertificate, MotionBounds, NaturalGradientFlow, ObstacleSchedule, StableEuler,
-    rollout_into,
+    LyapunovCertificate, MetricSource, MotionBounds, NaturalGradientFlow, ObstacleSchedule,
+    StableEuler, State, rollout_into,
 };
 use ddl_network::StepRule;
 use nalgebra::Vector2;
+use std::cell::RefCell;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Gait {
@@ -47,7 +48,31 @@ pub(crate) struct Walk {
 }
 
 /// The flow to a goal, shaped by a metric a step.
-type ShapedFlow = NaturalGradientFlow<f64, 2, ArrivingSchedule<f64>>;
+type ShapedFlow = NaturalGradientFlow<f64, 2, Remembered>;
+
+/// Metrics that are computed once, where the steps and then their certificate ask for them.
+#[derive(Debug)]
+struct Remembered {
+    metrics: ArrivingSchedule<f64>,
+    /// By step, with the position that it was asked for at.
+    known: RefCell<Vec<(Vector2<f64>, CholeskyMetric<f64, 2>)>>,
+}
+
+impl MetricSource<f64, 2> for Remembered {
+    fn metric(&self, state: &State<'_, f64, 2>) -> Result<CholeskyMetric<f64, 2>, DynamicsError> {
+        let mut known = self.known.borrow_mut();
+        match known.get(state.step) {
+            Some((position, metric)) if *position == state.position => Ok(*metric),
+            _ => {
+                let metric = self.metrics.metric(state)?;
+                if known.len() == state.step {
+                    known.push((state.position, metric));
+                }
+                Ok(metric)
+            }
+        }
+    }
+}
 
 impl Course {
     /// Walks the course with `StableEuler` steps in `f64`, shaped by one factor (a, b, c) a step.
@@ -67,7 +92,10 @@ impl Course {
     fn flow(&self, factors: &[[f64; 3]]) -> Result<ShapedFlow, DynamicsError> {
         let attractor = Attractor::new(Vector2::from(self.goal))?;
         let metrics = self.metrics(factors)?;
-        let metrics = ArrivingSchedule::new(metrics, attractor, self.bounds, self.time_step)?;
+        let metrics = Remembered {
+            metrics: ArrivingSchedule::new(metrics, attractor, self.bounds, self.time_step)?,
+            known: RefCell::new(Vec::with_capacity(HORIZON)),
+        };
         Ok(NaturalGradientFlow::new(attractor, metrics))
     }
 

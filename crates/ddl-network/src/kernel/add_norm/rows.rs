@@ -6,29 +6,33 @@ use ddl_simd::{DEPTH, Lanes, Simd, Vectors};
 /// The usual width of a row, in vectors: loops over it are spelled out.
 pub(super) const USUAL: usize = 2;
 
-pub(super) struct Four {
+/// Four rows of the usual width where `FIXED`, of any other one otherwise.
+pub(super) struct Four<const FIXED: bool> {
     usual: [[Lanes; USUAL]; DEPTH],
     wide: Vec<[Lanes; DEPTH]>,
-    vectors: usize,
 }
 
-impl Four {
+impl<const FIXED: bool> Four<FIXED> {
     #[inline(always)]
     pub(super) fn new(vectors: usize) -> Self {
         Self {
             usual: [[Lanes::ZERO; USUAL]; DEPTH],
-            wide: if vectors == USUAL {
+            wide: if FIXED {
                 Vec::new()
             } else {
                 vec![[Lanes::ZERO; DEPTH]; vectors]
             },
-            vectors,
         }
     }
 
     #[inline(always)]
+    pub(super) fn vectors(&self) -> usize {
+        if FIXED { USUAL } else { self.wide.len() }
+    }
+
+    #[inline(always)]
     pub(super) fn get<S: Simd>(&self, simd: S, row: usize, vector: usize) -> S::Floats {
-        if self.vectors == USUAL {
+        if FIXED {
             simd.load(&self.usual[row][vector].0)
         } else {
             simd.load(&self.wide[vector][row].0)
@@ -37,7 +41,7 @@ impl Four {
 
     #[inline(always)]
     pub(super) fn set<S: Simd>(&mut self, simd: S, row: usize, vector: usize, value: S::Floats) {
-        if self.vectors == USUAL {
+        if FIXED {
             simd.store(value, &mut self.usual[row][vector].0);
         } else {
             simd.store(value, &mut self.wide[vector][row].0);
@@ -49,7 +53,7 @@ impl Four {
     pub(super) fn sums<S: Simd>(&self, simd: S) -> Vectors<S> {
         let mut sums = [simd.splat(0.0); DEPTH];
         for r in 0..DEPTH {
-            for v in 0..self.vectors {
+            for v in 0..self.vectors() {
                 sums[r] = simd.add(sums[r], self.get(simd, r, v));
             }
         }
@@ -60,7 +64,7 @@ impl Four {
     pub(super) fn products<S: Simd>(&self, simd: S, other: &Self) -> Vectors<S> {
         let mut sums = [simd.splat(0.0); DEPTH];
         for r in 0..DEPTH {
-            for v in 0..self.vectors {
+            for v in 0..self.vectors() {
                 let (a, b) = (self.get(simd, r, v), other.get(simd, r, v));
                 sums[r] = simd.mul_add(a, b, sums[r]);
             }
@@ -69,18 +73,23 @@ impl Four {
     }
 }
 
-/// Means over `width` numbers of sums that stand in four vectors, each in all lanes.
+/// Means over `width` numbers of sums that stand in four vectors: that of row k in the lanes 4 i + k.
 #[inline(always)]
-pub(super) fn means<S: Simd>(simd: S, width: usize, sums: Vectors<S>) -> Vectors<S> {
+pub(super) fn means<S: Simd>(simd: S, width: usize, sums: Vectors<S>) -> S::Floats {
     // Lane 4 i + k: a part of the sum of row k.
     let [a, b, c, d] = simd.transpose(sums);
     let parts = simd.add(simd.add(a, b), simd.add(c, d));
-    let mean = simd.mul(simd.sum_of_quarters(parts), simd.splat(1.0 / width as f32));
+    simd.mul(simd.sum_of_quarters(parts), simd.splat(1.0 / width as f32))
+}
+
+/// The numbers of four rows, row k in the lanes 4 i + k, each in all lanes of a vector of its own.
+#[inline(always)]
+pub(super) fn each<S: Simd>(simd: S, numbers: S::Floats) -> Vectors<S> {
     [
-        simd.spread::<0x00>(mean),
-        simd.spread::<0x55>(mean),
-        simd.spread::<0xaa>(mean),
-        simd.spread::<0xff>(mean),
+        simd.spread::<0x00>(numbers),
+        simd.spread::<0x55>(numbers),
+        simd.spread::<0xaa>(numbers),
+        simd.spread::<0xff>(numbers),
     ]
 }
 

@@ -82,22 +82,31 @@ pub(super) struct BlockRows {
 }
 
 impl BlockRows {
-    pub(super) fn zeros(rows: usize, columns: usize) -> Self {
+    /// Whatever was there before.
+    pub(super) fn any(rows: usize, columns: usize) -> Self {
         let spare = SPARES.with_borrow_mut(Vec::pop);
         let mut blocks = spare.unwrap_or_default();
-        blocks.clear();
         blocks.resize(rows * columns, Block::ZERO);
         Self { blocks, rows }
     }
 
+    pub(super) fn zeros(rows: usize, columns: usize) -> Self {
+        let mut result = Self::any(rows, columns);
+        result.blocks.fill(Block::ZERO);
+        result
+    }
+
     /// Rows of `width` numbers, followed by rows of zeros until there are a multiple of [`ROWS`].
     pub(super) fn padded(from: &[f32], width: usize) -> Self {
-        let rows = (from.len() / width).next_multiple_of(ROWS);
-        let mut result = Self::zeros(rows, width.div_ceil(BLOCK));
-        for (r, row) in from.chunks_exact(width).enumerate() {
-            for (c, piece) in row.chunks(BLOCK).enumerate() {
-                result.column_mut(c)[r] = Block::padded(piece);
+        let count = from.len() / width;
+        let mut result = Self::any(count.next_multiple_of(ROWS), width.div_ceil(BLOCK));
+        for column in 0..width.div_ceil(BLOCK) {
+            let (blocks, padding) = result.column_mut(column).split_at_mut(count);
+            for (block, row) in blocks.iter_mut().zip(from.chunks_exact(width)) {
+                let piece = &row[column * BLOCK..];
+                *block = Block::padded(&piece[..piece.len().min(BLOCK)]);
             }
+            padding.fill(Block::ZERO);
         }
         result
     }
@@ -112,6 +121,19 @@ impl BlockRows {
 
     pub(super) fn column_mut(&mut self, column: usize) -> &mut [Block] {
         &mut self.blocks[column * self.rows..][..self.rows]
+    }
+
+    /// Writes as many rows as `into` has, of `width` numbers each.
+    pub(super) fn write(&self, into: &mut [f32], width: usize) {
+        for (row, into) in into.chunks_exact_mut(width).enumerate() {
+            for (column, into) in into.chunks_mut(BLOCK).enumerate() {
+                let block = &self.column(column)[row].0;
+                match into.as_chunks_mut() {
+                    ([whole], []) => *whole = *block,
+                    (_, part) => part.copy_from_slice(&block[..part.len()]),
+                }
+            }
+        }
     }
 
     /// Adds the rows from `first` to those of `sums`, as many as these are.

@@ -39,7 +39,7 @@ impl FeedForward {
         let work = 2 * x.len() * weights.hidden;
         each(tiles, work, |(tile, (x, y)), (): &mut ()| {
             let x = BlockRows::padded(x, width);
-            let mut result = BlockRows::zeros(x.rows(), weights.columns);
+            let mut result = BlockRows::any(x.rows(), weights.columns);
             let tile = Tile {
                 weights,
                 decisions: decisions.as_ref(),
@@ -51,8 +51,7 @@ impl FeedForward {
                 None => self.dispatch.run(tile),
                 Some(squares) => self.pair_dispatch.run(PairForward { tile, squares }),
             }
-            y.fill(0.0);
-            result.add_to(0, y, width);
+            result.write(y, width);
         });
     }
 }
