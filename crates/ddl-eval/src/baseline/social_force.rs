@@ -211,6 +211,51 @@ mod tests {
         }
     }
 
+    /// Two meet, one overtakes, one stands. The expected positions (first, sixth and last step) are of a computation of
+    /// its own in Python, whose pushes are differences of the potential of fourth order.
+    #[test]
+    fn four_pedestrians_walk_as_computed_otherwise() {
+        let meets = ([-3.5, 0.0], [0.5, 0.0]);
+        let met = ([6.8, 0.3], [-0.4, 0.0]);
+        let overtakes = ([-4.55, 0.35], [0.56, 0.0]);
+        let stands = ([2.2, -0.9], [0.0, 0.0]);
+        let forecast = SocialForce
+            .forecast(&pedestrians(&[meets, met, overtakes, stands]))
+            .unwrap();
+        let expected = [
+            [
+                [0.4745062, -0.1296915],
+                [2.1477650, -0.6588748],
+                [4.8693702, -0.0855449],
+            ],
+            [
+                [3.6011670, 0.3004442],
+                [2.4114511, -0.0553602],
+                [0.0496122, 0.2551746],
+            ],
+            [
+                [-0.0747990, 0.3516986],
+                [2.5404642, 0.5912084],
+                [5.8585092, 0.9376679],
+            ],
+            [
+                [2.2000000, -0.9000000],
+                [2.2000000, -0.9000000],
+                [2.2000000, -0.9000000],
+            ],
+        ];
+        for (i, expected) in expected.into_iter().enumerate() {
+            let path = forecast.hypothesis(i, 0);
+            for (t, expected) in [0, 5, 11].into_iter().zip(expected) {
+                assert!(
+                    distance(path[t], expected) < 1e-6,
+                    "{i}, {t}: {:?}",
+                    path[t]
+                );
+            }
+        }
+    }
+
     #[test]
     fn who_overtakes_gives_way_and_the_order_of_pedestrians_does_not_matter() {
         let ahead = ([1.5, 0.0], [0.2, 0.0]);

@@ -198,6 +198,9 @@ mod tests {
     #[test]
     fn one_line_a_goal_with_its_weight() {
         let windows = [window(&[[0.0, 0.0]], &[[1.0, 0.0]])];
+        let sets = Corners(1).goals(&windows[0]).unwrap();
+        assert_eq!(sets[0].goals(), [[12.0, 0.0], [0.0, -24.0]]);
+        assert_eq!(sets[0].weights(), [0.25, 0.75]);
         let straight = StraightLine::to(Corners(1));
         let forecast = straight.forecast(&windows[0]).unwrap();
         assert_eq!(forecast.hypothesis(0, 0)[2], [3.0, 0.0]);
