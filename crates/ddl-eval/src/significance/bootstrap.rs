@@ -131,6 +131,24 @@ mod tests {
         assert_relative_eq!(twice.low, 2.0 * interval.low, epsilon = 1e-12);
     }
 
+    /// As numpy.percentile computes them.
+    #[test]
+    #[expect(clippy::float_cmp, reason = "quarters of small integers are exact")]
+    fn percentiles_lie_between_two_values_by_proportion() {
+        let sorted = [1.0, 2.0, 4.0, 8.0, 16.0];
+        let expected = [
+            (0.0, 1.0),
+            (0.25, 2.0),
+            (0.3125, 2.5),
+            (0.9375, 14.0),
+            (1.0, 16.0),
+        ];
+        for (share, expected) in expected {
+            assert_eq!(percentile(&sorted, share), expected, "{share}");
+        }
+        assert_eq!(percentile(&[3.0], 0.975), 3.0);
+    }
+
     #[test]
     fn folds_count_alike_and_are_resampled_apart() {
         let errors: Vec<f64> = (0..40).map(|i| f64::from(i % 2)).collect();
