@@ -120,6 +120,25 @@ fn bodies_hardly_overlap() {
 }
 
 #[test]
+fn pedestrians_enter_all_the_time_and_are_counted_as_they_do() {
+    for scene in CrowdScene::ALL {
+        let crowd = scene.simulate(SEED);
+        let (mut entered, mut last) = (Vec::new(), 0);
+        for people in scenes(&crowd) {
+            let newest = people.iter().map(|(id, _)| id.0).max().unwrap_or(last);
+            assert!(people.iter().all(|(id, _)| id.0 >= 1), "{scene}");
+            entered.push(newest.max(last) - last);
+            last = newest.max(last);
+        }
+        for part in entered.chunks(entered.len().div_ceil(4)) {
+            let new: i64 = part.iter().sum();
+            let share = new as f64 / last as f64;
+            assert!((0.1..0.4).contains(&share), "{scene}: {share} of {last}");
+        }
+    }
+}
+
+#[test]
 fn groups_stay_together() {
     for scene in CrowdScene::ALL {
         let crowd = scene.simulate(SEED);
