@@ -90,7 +90,9 @@ impl Arguments {
             let out = workspace.path("target/mutants").join(name);
             let call = || {
                 let mut call = Command::new(&tool);
+                // In one folder the tests of one mutant would overwrite those of another that is tested meanwhile.
                 call.current_dir(workspace.root())
+                    .env_remove("CARGO_TARGET_DIR")
                     .args(["mutants", "--package", name]);
                 call.args(patterns.iter().flat_map(|pattern| ["--file", pattern]));
                 call.args(EXCLUDED.iter().flat_map(|pattern| ["--exclude", pattern]));
