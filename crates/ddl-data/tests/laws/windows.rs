@@ -201,3 +201,14 @@ fn changing_positions_changes_those_alone() {
     assert!(observation.future(0).is_empty() && observation.end(0).is_none());
     assert_eq!(observation.track(0), window.observed(0));
 }
+
+#[test]
+fn a_rule_is_read_as_it_is_written() {
+    for rule in RULES {
+        assert_eq!(rule.to_string().parse(), Ok(rule));
+    }
+    for word in ["social-gan-0", "social-gan-", "social-gan-few", ""] {
+        let error = word.parse::<WindowRule>().unwrap_err().to_string();
+        assert!(error.contains("social-gan-1"), "{error}");
+    }
+}
