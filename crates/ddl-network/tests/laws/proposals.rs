@@ -121,3 +121,74 @@ fn only_near_neighbours_count_in_any_order() {
     seen.neighbours.truncate(8);
     assert!(apart(&crowd, &seen) < 1e-9);
 }
+
+/// What `ddl_star::TorchProposals` of the same configuration and seed gave, computed by libtorch 2.11 in `f32`.
+#[test]
+fn as_libtorch_proposes() {
+    let config = ProposalConfig {
+        members: 2,
+        ends: 3,
+        width: 8,
+        neighbour_width: 8,
+        heads: 2,
+        neighbours: 3,
+        ..ProposalConfig::default()
+    };
+    let walk = |[x, y]: Position, [dx, dy]: Position| -> [Position; OBSERVED] {
+        std::array::from_fn(|t| {
+            let s = t as f64 - 7.0;
+            [x + dx * s, y + dy * s + 0.01 * s * s]
+        })
+    };
+    let own = walk([0.0, 0.0], [0.5, 0.0]);
+    let neighbours = vec![
+        walk([1.0, 0.5], [0.4, 0.1]),
+        walk([2.5, -1.0], [-0.5, 0.0]),
+        walk([9.0, 0.0], [0.1, 0.1]),
+    ];
+    let alone = PedestrianView {
+        own,
+        neighbours: Vec::new(),
+    };
+    let among = PedestrianView { own, neighbours };
+    let network = ProposalNetwork::new(config, 7).unwrap();
+    let proposed = network.propose(&[among, alone]).unwrap();
+    let expected = [
+        (
+            [
+                [3.050_068, -5.211_099],
+                [5.246_086, 3.710_512],
+                [10.190_352, -0.028_048],
+                [9.667_665, -3.040_558],
+                [3.978_4, -0.869_034],
+                [5.007_796, -2.088_827],
+            ],
+            [
+                0.246_558, 0.132_021, 0.121_421, 0.101_904, 0.211_42, 0.186_676,
+            ],
+        ),
+        (
+            [
+                [2.408_604, -5.853_317],
+                [6.608_352, 3.723_035],
+                [9.838_581, -0.469_939],
+                [6.625_803, -0.934_764],
+                [5.870_481, -0.691_674],
+                [5.512_021, -0.994_553],
+            ],
+            [
+                0.244_301, 0.129_251, 0.126_448, 0.148_92, 0.179_421, 0.171_659,
+            ],
+        ),
+    ];
+    for (found, (ends, weights)) in proposed.iter().zip(expected) {
+        let off = found.ends.iter().zip(ends).map(|(&a, b)| distance(a, b));
+        assert!(off.fold(0.0, f64::max) < 3e-6, "{:?}", found.ends);
+        let off = found
+            .weights
+            .iter()
+            .zip(weights)
+            .map(|(a, b)| (a - b).abs());
+        assert!(off.fold(0.0, f64::max) < 2e-6, "{:?}", found.weights);
+    }
+}
