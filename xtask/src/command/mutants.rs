@@ -49,6 +49,9 @@ const NUMERIC: [(&str, &[&str]); 7] = [
 /// Errors and tests compute nothing that a forecast depends on.
 const EXCLUDED: [&str; 3] = ["**/error.rs", "**/tests.rs", "**/tests/**"];
 
+/// These functions only decide whether other threads are woken. No result depends on it.
+const WITHOUT_RESULT: &str = r"(in|replace) (\w+::)?work( |$)";
+
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// Only these crates; otherwise all with numeric code
@@ -96,6 +99,7 @@ impl Arguments {
                     .args(["mutants", "--package", name]);
                 call.args(patterns.iter().flat_map(|pattern| ["--file", pattern]));
                 call.args(EXCLUDED.iter().flat_map(|pattern| ["--exclude", pattern]));
+                call.args(["--exclude-re", WITHOUT_RESULT]);
                 call
             };
             let files = call().arg("--list-files").output();

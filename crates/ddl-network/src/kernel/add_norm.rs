@@ -85,6 +85,7 @@ impl AddNorm {
         let mut four = Four::<FIXED>::new(self.inside.len());
         let vectors = four.vectors();
         let rows = x.len() / width;
+        assert_eq!(normal.scales.len(), rows, "scales of the rows");
         for first in (0..rows).step_by(DEPTH) {
             let count = DEPTH.min(rows - first);
             for r in 0..count {
