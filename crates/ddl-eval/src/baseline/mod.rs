@@ -69,3 +69,32 @@ pub(crate) fn measure_among(
     }
     Ok(rows)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::walking;
+    use ddl_data::{Convention, WindowRule};
+
+    /// Constant velocity is right about somebody who keeps it; the oracle is asked only where the future is shown, the
+    /// noise only where more than one hypothesis is scored.
+    #[test]
+    fn each_protocol_has_its_baselines() {
+        let windows = [walking(&[([0.0, 0.0], [0.4, 0.0])], 20)];
+        let kinds = |protocol: Protocol| {
+            let (convention, rule) = (Convention::Star, WindowRule::Complete);
+            let conditions = Conditions::new(convention, rule, protocol, "yard", "mine");
+            let rows = measure(&conditions, &windows, 5).unwrap();
+            assert_eq!(
+                rows[0].conditions.forecaster,
+                "constant velocity (last step)"
+            );
+            assert!(rows[0].scores.min_fde < 1e-9);
+            let seeded = rows.iter().filter_map(|row| row.conditions.seed).collect();
+            (rows.len(), seeded)
+        };
+        assert_eq!(kinds(Protocol::Published), (6, vec![5]));
+        assert_eq!(kinds(Protocol::Fair), (5, vec![5]));
+        assert_eq!(kinds(Protocol::Single), (4, vec![]));
+    }
+}
