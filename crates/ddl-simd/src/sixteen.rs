@@ -95,12 +95,12 @@ impl<R: Register, const P: usize> Simd for Sixteen<R, P> {
     #[inline(always)]
     fn sum_of_quarters(self, a: Self::Floats) -> Self::Floats {
         let mut sum = a;
-        let mut parts = P;
-        while parts > 1 {
-            parts /= 2;
+        let mut parts = P / 2;
+        while parts > 0 {
             for p in 0..parts {
                 sum[p] = self.0.add(sum[p], sum[p + parts]);
             }
+            parts /= 2;
         }
         [self.0.sum_of_fours(sum[0]); P]
     }
