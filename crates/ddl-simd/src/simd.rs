@@ -69,6 +69,17 @@ pub trait Simd: Copy + Send + Sync {
     /// `a` where `bits` >= `least`, 0 elsewhere.
     fn keep(self, a: Self::Floats, bits: Self::Bits, least: u32) -> Self::Floats;
 
+    /// Lane 4 i + j of vector k is lane 4 i + k of `a`.
+    #[inline(always)]
+    fn spread_each(self, a: Self::Floats) -> Vectors<Self> {
+        [
+            self.spread::<0x00>(a),
+            self.spread::<0x55>(a),
+            self.spread::<0xaa>(a),
+            self.spread::<0xff>(a),
+        ]
+    }
+
     /// The vectors of a quad.
     #[inline(always)]
     fn read(self, quad: &Quad) -> Vectors<Self> {

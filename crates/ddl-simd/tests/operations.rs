@@ -33,6 +33,7 @@ impl Kernel for OnGroups<'_> {
             0x85eb_ca6b,
         );
         let [d, e, f, g] = simd.transpose([a, b, c, simd.sub(a, b)]);
+        let [s, t, u, v] = simd.spread_each(a);
         let results = [
             simd.splat(2.5),
             simd.add(a, b),
@@ -42,10 +43,10 @@ impl Kernel for OnGroups<'_> {
             simd.sqrt(a),
             simd.max(a, b),
             simd.zero_unless_positive(a, b),
-            simd.spread::<0x00>(a),
-            simd.spread::<0x55>(a),
-            simd.spread::<0xaa>(a),
-            simd.spread::<0xff>(a),
+            s,
+            t,
+            u,
+            v,
             simd.sum_of_quarters(a),
             simd.keep(a, mixed, 0x8000_0000),
             simd.keep(b, mixed, 0x2000_0000),

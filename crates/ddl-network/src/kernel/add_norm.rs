@@ -7,7 +7,7 @@ mod tests;
 use super::columns::{load, store};
 use ddl_simd::{DEPTH, LANES, Lanes, Simd};
 pub(super) use rows::Decisions;
-use rows::{Four, USUAL, each, means};
+use rows::{Four, USUAL, means};
 
 /// Added to the variance.
 const EPSILON: f32 = 1e-5;
@@ -103,7 +103,7 @@ impl AddNorm {
                     four.set(simd, r, v, simd.add(load(simd, x, at), term));
                 }
             }
-            let mean = each(simd, means(simd, width, four.sums(simd)));
+            let mean = simd.spread_each(means(simd, width, four.sums(simd)));
             for r in 0..DEPTH {
                 for v in 0..vectors {
                     let mut centred = simd.sub(four.get(simd, r, v), mean[r]);
@@ -119,7 +119,7 @@ impl AddNorm {
             let scale = simd.div(simd.splat(1.0), deviation);
             let mut scales = Lanes::ZERO;
             simd.store(scale, &mut scales.0);
-            let scale = each(simd, scale);
+            let scale = simd.spread_each(scale);
             for r in 0..count {
                 normal.scales[first + r] = scales.0[r];
                 let row = (first + r) * width..(first + r + 1) * width;
@@ -195,9 +195,9 @@ impl AddNorm {
                     bias.set(simd, 0, v, simd.add(of_y, bias.get(simd, 0, v)));
                 }
             }
-            let mean = each(simd, means(simd, width, gradient.sums(simd)));
+            let mean = simd.spread_each(means(simd, width, gradient.sums(simd)));
             let product = means(simd, width, gradient.products(simd, &normal));
-            let product = each(simd, product);
+            let product = simd.spread_each(product);
             for r in 0..count {
                 let scale = simd.splat(scales[first + r]);
                 let row = (first + r) * width..(first + r + 1) * width;

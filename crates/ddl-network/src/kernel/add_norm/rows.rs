@@ -82,17 +82,6 @@ pub(super) fn means<S: Simd>(simd: S, width: usize, sums: Vectors<S>) -> S::Floa
     simd.mul(simd.sum_of_quarters(parts), simd.splat(1.0 / width as f32))
 }
 
-/// The numbers of four rows, row k in the lanes 4 i + k, each in all lanes of a vector of its own.
-#[inline(always)]
-pub(super) fn each<S: Simd>(simd: S, numbers: S::Floats) -> Vectors<S> {
-    [
-        simd.spread::<0x00>(numbers),
-        simd.spread::<0x55>(numbers),
-        simd.spread::<0xaa>(numbers),
-        simd.spread::<0xff>(numbers),
-    ]
-}
-
 /// Which numbers of t are dropped: a function of (seed, row, column) alone, of 24 random bits.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::kernel) struct Decisions {

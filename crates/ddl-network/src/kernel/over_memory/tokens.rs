@@ -161,17 +161,6 @@ pub(super) fn dot<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>, start: S::Floa
     simd.add(start, simd.add(simd.add(a, b), simd.add(c, d)))
 }
 
-/// `weight` of each head at each of its numbers.
-#[inline(always)]
-fn spread<S: Simd>(simd: S, weight: S::Floats) -> Vectors<S> {
-    [
-        simd.spread::<0x00>(weight),
-        simd.spread::<0x55>(weight),
-        simd.spread::<0xaa>(weight),
-        simd.spread::<0xff>(weight),
-    ]
-}
-
 /// `sum` + `weight` of each head · its numbers.
 #[inline(always)]
 pub(super) fn accumulate<S: Simd>(
@@ -180,7 +169,7 @@ pub(super) fn accumulate<S: Simd>(
     weight: S::Floats,
     numbers: Vectors<S>,
 ) -> Vectors<S> {
-    let (mut sum, weights) = (sum, spread(simd, weight));
+    let (mut sum, weights) = (sum, simd.spread_each(weight));
     for part in 0..DEPTH {
         sum[part] = simd.mul_add(weights[part], numbers[part], sum[part]);
     }
@@ -190,7 +179,7 @@ pub(super) fn accumulate<S: Simd>(
 /// `weight` of each head · its numbers.
 #[inline(always)]
 pub(super) fn weighted<S: Simd>(simd: S, weight: S::Floats, numbers: Vectors<S>) -> Vectors<S> {
-    let (mut result, weights) = (numbers, spread(simd, weight));
+    let (mut result, weights) = (numbers, simd.spread_each(weight));
     for part in 0..DEPTH {
         result[part] = simd.mul(weights[part], numbers[part]);
     }
