@@ -1,0 +1,145 @@
+//! Consecutive stretches of one track, compared with a pedestrian all at once.
+
+use ddl_data::{OBSERVED, Position, TIME_STEP, WINDOW};
+
+/// Stretches compared at once: the loop over them becomes vector instructions.
+pub(crate) const LANES: usize = 8;
+/// Positions of a full piece.
+const PATH: usize = LANES + WINDOW - 1;
+/// The position of a stretch that plays the part of "now".
+pub(crate) const NOW: usize = OBSERVED - 1;
+/// Two velocities of two components, each divided by its scale.
+const VELOCITIES: usize = 4;
+/// Differences of this size count 1 in the squared distance: late and early velocity (m/s). That of positions is 1 m.
+const VELOCITY_SCALES: [f64; 2] = [0.4, 0.6];
+
+/// A pedestrian's motion over 8 positions: where now (m), late and early velocity in units of their scales.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Motion {
+    pub(crate) now: Position,
+    pub(crate) velocities: [f32; VELOCITIES],
+}
+
+impl Motion {
+    pub(crate) fn of(observed: &[Position; OBSERVED]) -> Self {
+        let velocity = |from: usize, scale: f64, axis: usize| {
+            let way = observed[from + 3][axis] - observed[from][axis];
+            (way / (3.0 * TIME_STEP * scale)) as f32
+        };
+        let [late, early] = VELOCITY_SCALES;
+        Self {
+            now: observed[NOW],
+            velocities: [
+                velocity(NOW - 3, late, 0),
+                velocity(NOW - 3, late, 1),
+                velocity(0, early, 0),
+                velocity(0, early, 1),
+            ],
+        }
+    }
+}
+
+/// Up to [`LANES`] stretches, each a step after the one before.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Piece {
+    /// Present positions relative to the first one of the piece: in `f32` they are exact to micrometres wherever the
+    /// origin of the coordinates is.
+    now: [[f32; LANES]; 2],
+    velocities: [[f32; LANES]; VELOCITIES],
+    len: usize,
+    path: [Position; PATH],
+}
+
+impl Piece {
+    /// The stretches of 20 to 27 positions.
+    pub(crate) fn of(path: &[Position]) -> Option<Self> {
+        let (first, rest) = path.split_first_chunk()?;
+        let mut piece = Self::new(first);
+        for position in rest {
+            if piece.is_full() {
+                return None;
+            }
+            piece.push(*position);
+        }
+        Some(piece)
+    }
+
+    pub(crate) fn new(stretch: &[Position; WINDOW]) -> Self {
+        let mut piece = Self {
+            // Lanes without a stretch are infinitely far from everybody.
+            now: [[f32::INFINITY; LANES]; 2],
+            velocities: [[f32::INFINITY; LANES]; VELOCITIES],
+            len: 0,
+            path: [[0.0; 2]; PATH],
+        };
+        piece.path[..WINDOW].copy_from_slice(stretch);
+        piece.index();
+        piece
+    }
+
+    /// The stretch that ends a step later. The piece must not be full.
+    pub(crate) fn push(&mut self, position: Position) {
+        self.path[self.len + WINDOW - 1] = position;
+        self.index();
+    }
+
+    /// Adds the motion of the stretch after the last.
+    fn index(&mut self) {
+        let lane = self.len;
+        let motion = Motion::of(&std::array::from_fn(|t| self.path[lane + t]));
+        for axis in 0..2 {
+            self.now[axis][lane] = (motion.now[axis] - self.path[NOW][axis]) as f32;
+        }
+        for (lanes, velocity) in self.velocities.iter_mut().zip(motion.velocities) {
+            lanes[lane] = velocity;
+        }
+        self.len += 1;
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.len
+    }
+
+    pub(crate) fn is_full(&self) -> bool {
+        self.len == LANES
+    }
+
+    /// The positions of all its stretches: one more than 19 for each.
+    pub(crate) fn path(&self) -> &[Position] {
+        &self.path[..self.len + WINDOW - 1]
+    }
+
+    /// 20 positions of the stretch of a lane.
+    pub(crate) fn stretch(&self, lane: usize) -> [Position; WINDOW] {
+        std::array::from_fn(|t| self.path[lane + t])
+    }
+
+    /// The motion at the start of its first stretch.
+    pub(crate) fn motion(&self) -> Motion {
+        Motion::of(&std::array::from_fn(|t| self.path[t]))
+    }
+
+    /// Squared distance of each stretch from a motion, not below 60 where there is none.
+    #[inline]
+    pub(crate) fn distances(&self, motion: &Motion) -> [f32; LANES] {
+        let mut distances = [0.0; LANES];
+        let now = [0, 1].map(|axis| (motion.now[axis] - self.path[NOW][axis]) as f32);
+        let lanes = self.now.iter().chain(&self.velocities);
+        for (wanted, lanes) in now.iter().chain(&motion.velocities).zip(lanes) {
+            for (distance, component) in distances.iter_mut().zip(lanes) {
+                let difference = wanted - component;
+                *distance += difference * difference;
+            }
+        }
+        distances
+    }
+
+    /// The least of the distances.
+    #[inline]
+    pub(crate) fn nearest(&self, motion: &Motion) -> f32 {
+        let least = |least, distance| if distance < least { distance } else { least };
+        self.distances(motion)
+            .into_iter()
+            .fold(f32::INFINITY, least)
+    }
+}
