@@ -40,48 +40,45 @@ fn full() -> (
     (memory, crowd, 4_000, queries.collect())
 }
 
-fn recall(criterion: &mut Criterion) {
-    let (memory, _, _, queries) = full();
-    let summary = memory.summary();
-    let name = format!(
-        "recall of 12 from {} stretches, {} tracks",
-        summary.stretches, summary.tracks
-    );
-    let mut next = queries.iter().cycle();
-    criterion.bench_function(&name, |b| {
-        b.iter(|| {
-            next.next()
-                .map(|(id, observed)| memory.recall(black_box(observed), Some(*id), 12))
-        });
-    });
-}
-
-/// Every frame is timed alone, for its percentiles; criterion's mean has the frames with forgetting in it.
-fn observe(criterion: &mut Criterion) {
-    let (mut memory, mut crowd, mut frame, _) = full();
+/// Times every run alone: of these the percentiles do not depend on what else the machine does.
+fn measure(criterion: &mut Criterion, name: &str, mut run: impl FnMut() -> Duration) {
     let mut times: Vec<Duration> = Vec::new();
-    criterion.bench_function("observe 25 people", |b| {
+    criterion.bench_function(name, |b| {
         b.iter_custom(|iterations| {
-            let mut total = Duration::ZERO;
-            for _ in 0..iterations {
-                let people = crowd.step();
-                let start = Instant::now();
-                memory.observe(frame, people).expect("valid");
-                let time = start.elapsed();
-                frame += 1;
-                total += time;
-                times.push(time);
-            }
-            total
+            let first = times.len();
+            times.extend((0..iterations).map(|_| run()));
+            times[first..].iter().sum()
         });
     });
     times.sort_unstable();
     let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
     let [median, most, worst] = [0.5, 0.99, 1.0].map(at);
-    println!(
-        "observe: median {median:?}, 99 % within {most:?}, worst {worst:?} of {} frames",
-        times.len()
-    );
+    println!("{name}: median {median:?}, 99 % within {most:?}, worst {worst:?}\n");
+}
+
+fn recall(criterion: &mut Criterion) {
+    let (memory, _, _, queries) = full();
+    let summary = memory.summary();
+    let (stretches, tracks) = (summary.stretches, summary.tracks);
+    let name = format!("recall of 12 from {stretches} stretches, {tracks} tracks");
+    let mut queries = queries.iter().cycle();
+    measure(criterion, &name, || {
+        let (id, observed) = queries.next().expect("a query");
+        let start = Instant::now();
+        black_box(memory.recall(black_box(observed), Some(*id), 12));
+        start.elapsed()
+    });
+}
+
+fn observe(criterion: &mut Criterion) {
+    let (mut memory, mut crowd, mut frame, _) = full();
+    measure(criterion, "observe 25 people", || {
+        let people = crowd.step();
+        let start = Instant::now();
+        memory.observe(frame, people).expect("valid");
+        frame += 1;
+        start.elapsed()
+    });
 }
 
 criterion_group!(benches, recall, observe);

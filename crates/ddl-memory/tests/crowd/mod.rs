@@ -1,4 +1,5 @@
 //! A crowd that crosses a square of 20 m: whoever leaves is replaced by somebody new.
+#![allow(unreachable_pub, reason = "a module of several tests")]
 
 use ddl_data::{PedestrianId, Position};
 
