@@ -53,7 +53,7 @@ fn measure(criterion: &mut Criterion, name: &str, mut run: impl FnMut() -> Durat
     times.sort_unstable();
     let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
     let [median, most, worst] = [0.5, 0.99, 1.0].map(at);
-    println!("{name}: median {median:?}, 99 % within {most:?}, worst {worst:?}\n");
+    eprintln!("{name}: median {median:?}, 99 % within {most:?}, worst {worst:?}\n");
 }
 
 fn recall(criterion: &mut Criterion) {

@@ -6,7 +6,7 @@
 //! file     "DDLSCENE"  version (u64: 1)  SHA-256 of all that follows (32 bytes)  content
 //! content  frame step, capacity, frames, raw frames watched, pedestrians, observations
 //!          n (0 or 1), n x last frame
-//!          n (0 or 1), n x (least x, least y, largest x, largest y)
+//!          positions: none, or least and largest x and y
 //!          n, n x track                                                 ended, in the order in which they ended
 //!          n, n x (last seen, last frame of the run, positions, track)  running, by increasing id
 //! track    number, id, n, n x positions                                 runs of 1 to 8 stretches: 20 to 27 positions
@@ -24,7 +24,7 @@ use sha2::{Digest as _, Sha256};
 use crate::limits::{is_capacity, is_frame, is_frame_step, is_near};
 use crate::memory::Seen;
 use crate::piece::{LANES, Piece};
-use crate::track::{MOST_PIECES, RunningTrack, Track};
+use crate::track::{LONGEST_RUN, MOST_PIECES, RunningTrack, Track};
 use crate::{MemoryError, SceneMemory};
 
 const MAGIC: &[u8; 8] = b"DDLSCENE";
@@ -151,11 +151,7 @@ impl Writer {
             .last_frame
             .iter()
             .for_each(|frame| self.signed(*frame));
-        self.count(u64::from(seen.corners.is_some()));
-        seen.corners
-            .iter()
-            .flatten()
-            .for_each(|corner| self.position(*corner));
+        self.positions(seen.corners.as_ref().map_or(&[], |corners| corners));
         self.count(memory.ended.len() as u64);
         memory.ended.iter().for_each(|track| self.track(track));
         self.count(memory.running.len() as u64);
@@ -219,14 +215,6 @@ impl Words<'_> {
         (0..count).map(|_| self.position()).collect()
     }
 
-    fn is_given(&mut self) -> Result<bool, String> {
-        match self.count()? {
-            0 => Ok(false),
-            1 => Ok(true),
-            count => Err(format!("{count} where 0 or 1 belongs")),
-        }
-    }
-
     fn track(&mut self, pedestrians: u64) -> Result<Track, String> {
         let number = self.count()?;
         if !(1..=pedestrians).contains(&number) {
@@ -256,7 +244,7 @@ impl Words<'_> {
         if run_end > last_seen || last_frame.is_none_or(|last| last_seen > last) {
             return Err("a track runs on behind the last frame".to_owned());
         }
-        let run = self.positions(1, WINDOW)?;
+        let run = self.positions(1, LONGEST_RUN)?;
         let track = self.track(pedestrians)?;
         Ok(RunningTrack {
             track,
@@ -276,15 +264,15 @@ impl Words<'_> {
         }
         let [frames, watched, pedestrians, observations] =
             [self.count()?, self.count()?, self.count()?, self.count()?];
-        let last_frame = if self.is_given()? {
-            Some(self.frame()?)
-        } else {
-            None
+        let last_frame = match self.count()? {
+            0 => None,
+            1 => Some(self.frame()?),
+            count => return Err(format!("{count} last frames")),
         };
-        let corners = if self.is_given()? {
-            Some([self.position()?, self.position()?])
-        } else {
-            None
+        let corners = match self.positions(0, 2)?[..] {
+            [] => None,
+            [low, high] => Some([low, high]),
+            _ => return Err("one corner without the other".to_owned()),
         };
         let mut ended = Vec::new();
         for _ in 0..self.count()? {

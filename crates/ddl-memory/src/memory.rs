@@ -146,14 +146,11 @@ impl SceneMemory {
                 self.seen.pedestrians = self.seen.pedestrians.saturating_add(1);
                 RunningTrack::new(self.seen.pedestrians, id, frame)
             });
-            let Some(complete) = running.see(frame, position, step) else {
-                continue;
-            };
-            if self.stretches == self.capacity {
-                self.make_room();
-            }
-            if let Some(running) = self.running.get_mut(&id) {
-                let gone = running.keep(complete);
+            if running.see(frame, position, step) {
+                if self.stretches == self.capacity {
+                    self.make_room();
+                }
+                let gone = self.running.get_mut(&id).map_or(1, RunningTrack::keep);
                 self.stretches = self.stretches + 1 - gone;
             }
         }

@@ -92,8 +92,7 @@ impl Piece {
     /// Adds the motion of the stretch after the last.
     fn index(&mut self) {
         let lane = self.len;
-        let motion = Motion::of(&std::array::from_fn(|t| self.path[lane + t]));
-        let components = motion.from(self.path[NOW]);
+        let components = self.motion_of(lane).from(self.path[NOW]);
         for (lanes, component) in self.motions.iter_mut().zip(components) {
             lanes[lane] = component;
         }
@@ -120,7 +119,11 @@ impl Piece {
 
     /// The motion at the start of its first stretch.
     pub(crate) fn motion(&self) -> Motion {
-        Motion::of(&std::array::from_fn(|t| self.path[t]))
+        self.motion_of(0)
+    }
+
+    fn motion_of(&self, lane: usize) -> Motion {
+        Motion::of(&std::array::from_fn(|t| self.path[lane + t]))
     }
 
     /// Squared distance of each stretch from a motion, infinite where there is none.

@@ -9,6 +9,9 @@ pub const LONGEST_ABSENCE: i64 = 8;
 /// Of one pedestrian at most so many runs of 8 stretches are kept, the latest: 102 s of somebody who stays.
 pub const MOST_PIECES: usize = 32;
 
+/// Positions of a stretch, and the one before them where it follows on another stretch.
+pub(crate) const LONGEST_RUN: usize = WINDOW + 1;
+
 /// A pedestrian of this memory.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Track {
@@ -53,7 +56,7 @@ impl Track {
 pub(crate) struct RunningTrack {
     pub(crate) track: Track,
     pub(crate) last_seen: i64,
-    /// The last positions without a hole, a step apart, at most 20.
+    /// The last positions without a hole, a step apart, at most [`LONGEST_RUN`].
     pub(crate) run: Vec<Position>,
     /// The frame of the last of them.
     pub(crate) run_end: i64,
@@ -65,7 +68,7 @@ impl RunningTrack {
         Self {
             track: Track { number, id, pieces },
             last_seen: frame,
-            run: Vec::with_capacity(WINDOW + 1),
+            run: Vec::with_capacity(LONGEST_RUN),
             run_end: frame,
         }
     }
@@ -75,34 +78,32 @@ impl RunningTrack {
         frame - self.last_seen > LONGEST_ABSENCE * step
     }
 
-    /// Adds a position. Returns whether a stretch is complete, which [`keep`](Self::keep) has to be told.
-    pub(crate) fn see(&mut self, frame: i64, position: Position, step: i64) -> Option<Complete> {
+    /// Adds a position. Returns whether a stretch is complete, for [`keep`](Self::keep).
+    pub(crate) fn see(&mut self, frame: i64, position: Position, step: i64) -> bool {
         self.last_seen = frame;
-        if !self.run.is_empty() {
-            let due = self.run_end + step;
-            if frame < due {
-                return None;
-            }
-            if frame > due {
-                self.run.clear();
-            }
+        let due = self.run_end + step;
+        if !self.run.is_empty() && frame < due {
+            return false;
         }
-        let continues = self.run.len() == WINDOW;
-        if continues {
+        if frame > due {
+            self.run.clear();
+        }
+        if self.run.len() == LONGEST_RUN {
             self.run.remove(0);
         }
         self.run.push(position);
         self.run_end = frame;
-        (self.run.len() == WINDOW).then_some(Complete { continues })
+        self.run.len() >= WINDOW
     }
 
-    /// Adds the complete stretch that the run is. Returns how many old ones went for it.
-    pub(crate) fn keep(&mut self, complete: Complete) -> usize {
-        let Some(stretch) = self.run.first_chunk::<WINDOW>() else {
+    /// Adds the stretch that ends the run. Returns how many old ones went for it.
+    pub(crate) fn keep(&mut self) -> usize {
+        let Some(stretch) = self.run.last_chunk::<WINDOW>() else {
             return 0;
         };
+        let continues = self.run.len() == LONGEST_RUN;
         match self.track.pieces.last_mut() {
-            Some(piece) if complete.continues && !piece.is_full() => {
+            Some(piece) if continues && !piece.is_full() => {
                 piece.push(stretch[WINDOW - 1]);
                 0
             }
@@ -117,11 +118,4 @@ impl RunningTrack {
             }
         }
     }
-}
-
-/// A stretch is complete.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Complete {
-    /// Whether it begins a step after another one.
-    continues: bool,
 }
