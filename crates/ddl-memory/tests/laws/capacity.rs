@@ -61,6 +61,23 @@ fn the_oldest_of_a_common_kind_go_first() {
     assert_eq!(memory.recall(&observed(100.0), None, 12).examples.len(), 1);
 }
 
+/// Everybody of the older half took a way of their own, and those of the newer half took the same: they stay.
+#[test]
+fn the_newer_half_stays() {
+    let mut memory = SceneMemory::new(1, 64).unwrap();
+    for walker in 0..65 {
+        let y = if walker < 32 {
+            -10.0 * walker as f64
+        } else {
+            50.0
+        };
+        walk(&mut memory, 100 * walker, y);
+    }
+    let observed = std::array::from_fn(|t| [0.5 * t as f64, 50.0]);
+    assert_eq!(memory.recall(&observed, None, 100).examples.len(), 33);
+    assert_eq!(memory.stretches(), 63);
+}
+
 #[test]
 fn who_stays_for_hours_does_not_fill_a_memory() {
     let mut memory = SceneMemory::new(1, 1_000).unwrap();
