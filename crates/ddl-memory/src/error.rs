@@ -19,8 +19,8 @@ pub enum MemoryError {
     #[error("frame {frame} is not below 2^53 in size")]
     FrameOutOfRange { frame: i64 },
     #[error(
-        "frame {frame} comes after frame {last}; give frames in order of time, each once, and call `interrupt` when the \
-         tracker starts anew"
+        "frame {frame} comes after frame {last}; give frames in order of time, each once, and call `interrupt` when \
+         the tracker starts anew"
     )]
     TooEarly { frame: i64, last: i64 },
     #[error("frame {frame}, pedestrian {pedestrian}: {position:?} is not finite")]
@@ -54,8 +54,8 @@ pub enum MemoryError {
         source: std::io::Error,
     },
     #[error(
-        "{} is not a scene memory that can be read: {problem}. Put back a copy, or remove the file and start with an empty \
-         memory",
+        "{} is not a scene memory that can be read: {problem}. Put back a copy, or remove the file and start with an \
+         empty memory",
         .path.display()
     )]
     File { path: PathBuf, problem: String },

@@ -22,8 +22,8 @@ const FORGOTTEN_AT_ONCE: usize = 32;
 ///   [`LONGEST_ABSENCE`](crate::LONGEST_ABSENCE) steps is gone, and whoever has that id later is another one.
 /// - The memory holds at most `capacity` stretches. Of one track it holds the latest
 ///   [`MOST_PIECES`](crate::MOST_PIECES) x 8.
-/// - A full memory makes room for 1/32 of its capacity. Of the older half of the ended tracks those go first that have the
-///   most newer tracks of their kind: in the middle of the track in the same square of 2 m, with a velocity in the same
+/// - A full memory makes room for 1/32 of its capacity. Of the older half of the ended tracks those go first that have
+///   the most newer tracks of their kind: in the middle of the track in the same square of 2 m, with a velocity in the same
 ///   square of 0.8 m/s. Where all tracks are running, the longest loses its oldest stretches.
 /// - Besides, it holds the people of the last 3.2 s.
 /// - The same frames give the same memory, in whichever order the people of a frame come.
@@ -126,8 +126,8 @@ impl SceneMemory {
     /// Adds everybody of one frame, positions in metres in the world, in any order. Frames must increase.
     ///
     /// # Errors
-    /// [`MemoryError`] for a frame out of range or not after the last, a position that is not finite or too far from the
-    /// origin, or a pedestrian who is there twice. Nothing has changed then.
+    /// [`MemoryError`] for a frame out of range or not after the last, a position that is not finite or too far from
+    /// the origin, or a pedestrian who is there twice. Nothing has changed then.
     pub fn observe(
         &mut self,
         frame: i64,

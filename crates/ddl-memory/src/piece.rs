@@ -107,7 +107,7 @@ impl Piece {
         self.len == LANES
     }
 
-    /// The positions of all its stretches: one more than 19 for each.
+    /// The positions of all its stretches: 19, and one for each.
     pub(crate) fn path(&self) -> &[Position] {
         &self.path[..self.len + WINDOW - 1]
     }

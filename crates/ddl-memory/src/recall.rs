@@ -15,8 +15,8 @@ pub const FARTHEST: f64 = 60.0;
 pub struct Recalled {
     /// Stretches of as many pedestrians, the nearest first.
     pub examples: Vec<Example>,
-    /// Sum of `exp(-d / 2)` over all pedestrians of the memory, `d` the squared distance of their nearest stretch: about
-    /// how many moved like this.
+    /// Sum of `exp(-d / 2)` over all pedestrians of the memory, `d` the squared distance of their nearest stretch:
+    /// about how many moved like this.
     pub support: f64,
 }
 
@@ -35,9 +35,9 @@ impl SceneMemory {
     /// stretch.
     ///
     /// The last of the observed positions (m, a step of 0.4 s apart) is now. The squared distance of a stretch is
-    /// `|dp|² / (1 m)² + |dv|² / (0.4 m/s)² + |de|² / (0.6 m/s)²`, with `dp` the difference of the eighth positions, `dv` that
-    /// of the velocities over the last 3 steps of the 8, and `de` over the first 3. It is computed in `f32`, to about
-    /// 1e-5 of itself, and must lie below [`FARTHEST`]. Ties go by age, then by id, then to the earlier stretch.
+    /// `|dp|² / (1 m)² + |dv|² / (0.4 m/s)² + |de|² / (0.6 m/s)²`, with `dp` the difference of the eighth positions,
+    /// `dv` that of the velocities over the last 3 steps of the 8, and `de` over the first 3. It is computed in `f32`,
+    /// to about 1e-5, and must lie below [`FARTHEST`]. Ties go by age, then by id, then to the earlier stretch.
     ///
     /// `own` is the id of this pedestrian, whose running track is left out. Positions that are not finite are like
     /// nobody's.

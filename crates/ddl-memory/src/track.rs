@@ -4,7 +4,8 @@ use ddl_data::{PedestrianId, Position, WINDOW};
 
 use crate::piece::{Motion, Piece};
 
-/// Steps of 0.4 s after which a pedestrian who has not been seen is gone (3.2 s): whoever has the id then is another one.
+/// Steps of 0.4 s (3.2 s in all) after which a pedestrian who has not been seen is gone: whoever has the id then is
+/// another one.
 pub const LONGEST_ABSENCE: i64 = 8;
 /// Of one pedestrian at most so many runs of 8 stretches are kept, the latest: 102 s of somebody who stays.
 pub const MOST_PIECES: usize = 32;

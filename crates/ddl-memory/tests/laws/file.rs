@@ -61,7 +61,8 @@ proptest! {
     /// Words of the content replaced where the digest fits: an error, or a memory that works.
     #[test]
     fn edited_files_do_no_harm(word in any::<prop::sample::Index>(), value in prop_oneof![
-        any::<u64>(), 0..300_u64, Just(f64::NAN.to_bits()), Just(1e8_f64.to_bits()), Just(u64::MAX), Just(i64::MIN as u64),
+        any::<u64>(), 0..300_u64, Just(f64::NAN.to_bits()), Just(1e8_f64.to_bits()), Just(u64::MAX),
+        Just(i64::MIN as u64),
     ]) {
         let (_folder, path) = folder();
         let frames = frames(2, 4, 60, 2);
