@@ -23,8 +23,8 @@ const FORGOTTEN_AT_ONCE: usize = 32;
 /// - The memory holds at most `capacity` stretches. Of one track it holds the latest
 ///   [`MOST_PIECES`](crate::MOST_PIECES) x 8.
 /// - A full memory makes room for 1/32 of its capacity. Of the older half of the ended tracks those go first that have
-///   the most newer tracks of their kind: in the middle of the track in the same square of 2 m, with a velocity in the same
-///   square of 0.8 m/s. Where all tracks are running, the longest loses its oldest stretches.
+///   the most newer tracks of their kind: in the middle of the track in the same square of 2 m, with a velocity in the
+///   same square of 0.8 m/s. Where all tracks are running, the longest loses its oldest stretches.
 /// - Besides, it holds the people of the last 3.2 s.
 /// - The same frames give the same memory, in whichever order the people of a frame come.
 ///
