@@ -1,0 +1,85 @@
+//! Cost of a full memory of 20,000 stretches: a recall, and a frame of 25 people.
+
+#[path = "../tests/crowd/mod.rs"]
+mod crowd;
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use crowd::Crowd;
+use ddl_data::{OBSERVED, PedestrianId, Position};
+use ddl_memory::SceneMemory;
+
+const PEOPLE: usize = 25;
+
+/// A memory that has forgotten already, its crowd, the next frame, and what the memory would be asked.
+fn full() -> (
+    SceneMemory,
+    Crowd,
+    i64,
+    Vec<(PedestrianId, [Position; OBSERVED])>,
+) {
+    let mut memory = SceneMemory::new(1, SceneMemory::DEFAULT_CAPACITY).expect("in range");
+    let mut crowd = Crowd::new(1, PEOPLE);
+    let mut last = Vec::new();
+    for frame in 0..4_000 {
+        let people = crowd.step();
+        memory.observe(frame, people.clone()).expect("valid");
+        last.push(people);
+    }
+    let last = &last[last.len() - OBSERVED..];
+    let observed = |id| {
+        last.iter()
+            .map(move |people| people.iter().find(|seen| seen.0 == id).map(|seen| seen.1))
+    };
+    let queries = last[OBSERVED - 1].iter().filter_map(|&(id, _)| {
+        let positions: Option<Vec<Position>> = observed(id).collect();
+        Some((id, positions?.try_into().ok()?))
+    });
+    (memory, crowd, 4_000, queries.collect())
+}
+
+/// Times every run alone: of these the percentiles do not depend on what else the machine does.
+fn measure(criterion: &mut Criterion, name: &str, mut run: impl FnMut() -> Duration) {
+    let mut times: Vec<Duration> = Vec::new();
+    criterion.bench_function(name, |b| {
+        b.iter_custom(|iterations| {
+            let first = times.len();
+            times.extend((0..iterations).map(|_| run()));
+            times[first..].iter().sum()
+        });
+    });
+    times.sort_unstable();
+    let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
+    let [median, most, worst] = [0.5, 0.99, 1.0].map(at);
+    eprintln!("{name}: median {median:?}, 99 % within {most:?}, worst {worst:?}\n");
+}
+
+fn recall(criterion: &mut Criterion) {
+    let (memory, _, _, queries) = full();
+    let summary = memory.summary();
+    let (stretches, tracks) = (summary.stretches, summary.tracks);
+    let name = format!("recall of 12 from {stretches} stretches, {tracks} tracks");
+    let mut queries = queries.iter().cycle();
+    measure(criterion, &name, || {
+        let (id, observed) = queries.next().expect("a query");
+        let start = Instant::now();
+        black_box(memory.recall(black_box(observed), Some(*id), 12));
+        start.elapsed()
+    });
+}
+
+fn observe(criterion: &mut Criterion) {
+    let (mut memory, mut crowd, mut frame, _) = full();
+    measure(criterion, "observe 25 people", || {
+        let people = crowd.step();
+        let start = Instant::now();
+        memory.observe(frame, people).expect("valid");
+        frame += 1;
+        start.elapsed()
+    });
+}
+
+criterion_group!(benches, recall, observe);
+criterion_main!(benches);

@@ -1,0 +1,78 @@
+//! A crowd that crosses a square of 20 m: whoever leaves is replaced by somebody new.
+#![allow(unreachable_pub, reason = "a module of several tests")]
+
+use ddl_data::{PedestrianId, Position};
+
+pub type People = Vec<(PedestrianId, Position)>;
+
+pub struct Crowd {
+    state: u64,
+    next_id: i64,
+    walkers: Vec<Walker>,
+}
+
+struct Walker {
+    id: i64,
+    position: Position,
+    heading: f64,
+    stride: f64,
+    steps_left: usize,
+}
+
+impl Crowd {
+    pub fn new(seed: u64, people: usize) -> Self {
+        let mut crowd = Self {
+            state: seed,
+            next_id: 0,
+            walkers: Vec::new(),
+        };
+        for _ in 0..people {
+            let mut walker = crowd.walker();
+            walker.steps_left = 1 + (crowd.random() * 40.0) as usize;
+            crowd.walkers.push(walker);
+        }
+        crowd
+    }
+
+    /// In 0..1 (Steele et al., Fast splittable pseudorandom number generators, 2014).
+    pub fn random(&mut self) -> f64 {
+        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn walker(&mut self) -> Walker {
+        self.next_id += 1;
+        let side = (self.random() * 4.0).floor() * std::f64::consts::FRAC_PI_2;
+        let along = 16.0 * (self.random() - 0.5);
+        let (sin, cos) = side.sin_cos();
+        Walker {
+            id: self.next_id,
+            position: [-10.0 * cos - along * sin, -10.0 * sin + along * cos],
+            heading: side + 0.8 * (self.random() - 0.5),
+            stride: 0.4 * (1.0 + 0.6 * self.random()),
+            steps_left: 25 + (self.random() * 30.0) as usize,
+        }
+    }
+
+    /// Everybody a step of 0.4 s later.
+    pub fn step(&mut self) -> People {
+        for index in 0..self.walkers.len() {
+            let turn = 0.1 * (self.random() - 0.5);
+            let walker = &mut self.walkers[index];
+            walker.heading += turn;
+            walker.position[0] += walker.stride * walker.heading.cos();
+            walker.position[1] += walker.stride * walker.heading.sin();
+            walker.steps_left -= 1;
+            if walker.steps_left == 0 {
+                self.walkers[index] = self.walker();
+            }
+        }
+        let people = self.walkers.iter();
+        people
+            .map(|walker| (PedestrianId(walker.id), walker.position))
+            .collect()
+    }
+}

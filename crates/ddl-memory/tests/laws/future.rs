@@ -1,0 +1,89 @@
+//! Nothing that was not observed yet is in an answer.
+
+use crate::{Frames, frames, memory_of, queries, step_of};
+use ddl_data::{PedestrianId, WINDOW};
+use ddl_memory::{Recalled, SceneMemory};
+
+/// The same frames with other positions from an index on.
+fn with_noise_from(frames: &Frames, from: usize) -> Frames {
+    let mut noisy = frames.clone();
+    for (index, (frame, people)) in noisy.iter_mut().enumerate().skip(from) {
+        for (id, position) in people {
+            let noise = ((*frame * 31 + id.0 * 17) % 23) as f64 - 11.0 + index as f64 * 0.01;
+            *position = [position[0] + noise, noise];
+        }
+    }
+    noisy
+}
+
+fn answers(memory: &SceneMemory, now: &Frames) -> Vec<Recalled> {
+    let queries = queries(now).into_iter();
+    queries
+        .map(|(id, observed)| memory.recall(&observed, Some(id), 12))
+        .collect()
+}
+
+/// Whether what a memory answers after the frames before `end` depends on a later one, or shows one. `fed` makes the
+/// memory that answers then.
+fn sees_the_future(
+    fed: impl Fn(&Frames, usize) -> SceneMemory,
+    frames: &Frames,
+    end: usize,
+) -> bool {
+    let now = frames[..end].to_vec();
+    let found = answers(&fed(frames, end), &now);
+    let was_seen = |person: PedestrianId, track: &[[f64; 2]; WINDOW]| {
+        now.windows(WINDOW).any(|window| {
+            let mut pairs = window.iter().zip(track);
+            pairs.all(|((_, people), position)| people.contains(&(person, *position)))
+        })
+    };
+    let examples = found.iter().flat_map(|recalled| &recalled.examples);
+    let mut people = now.iter().flat_map(|(_, people)| people);
+    let mut ids: Vec<PedestrianId> = people.by_ref().map(|(id, _)| *id).collect();
+    ids.sort_unstable();
+    ids.dedup();
+    let mut tracks = examples.map(|example| &example.track);
+    let shows = tracks.any(|track| !ids.iter().any(|id| was_seen(*id, track)));
+    shows || answers(&fed(&with_noise_from(frames, end), end), &now) != found
+}
+
+#[test]
+fn a_memory_does_not_see_the_future() {
+    let (mut noticed, mut examples) = (0, 0);
+    for seed in 0..8 {
+        let frames = frames(seed, 12, 90, 5);
+        for end in (30..85).step_by(5) {
+            let honest = |frames: &Frames, end: usize| memory_of(&frames[..end].to_vec(), 500);
+            assert!(!sees_the_future(honest, &frames, end), "seed {seed}, {end}");
+            // a memory that is one frame (0.4 s) ahead
+            let ahead = |frames: &Frames, end: usize| memory_of(&frames[..=end].to_vec(), 500);
+            noticed += usize::from(sees_the_future(ahead, &frames, end));
+            let recalled = answers(&honest(&frames, end), &frames[..end].to_vec());
+            examples += recalled
+                .iter()
+                .map(|recalled| recalled.examples.len())
+                .sum::<usize>();
+        }
+    }
+    assert!(
+        noticed > 80,
+        "of 88 memories that are ahead {noticed} were noticed"
+    );
+    assert!(examples > 1_000, "{examples} examples looked at");
+}
+
+#[test]
+fn what_comes_later_does_not_change_a_clone() {
+    let frames = frames(5, 15, 120, 1);
+    let (now, later) = (frames[..70].to_vec(), with_noise_from(&frames, 70));
+    let mut memory = memory_of(&now, 300);
+    let before = memory.clone();
+    let answered = answers(&before, &now);
+    for (frame, people) in &later[70..] {
+        memory.observe(*frame, people.clone()).unwrap();
+    }
+    assert_eq!(answers(&before, &now), answered);
+    assert_ne!(answers(&memory, &now), answered);
+    assert_eq!(step_of(&frames), 1);
+}

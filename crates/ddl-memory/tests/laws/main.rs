@@ -1,0 +1,64 @@
+//! What a scene memory must satisfy whatever it sees.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+#[path = "../crowd/mod.rs"]
+mod crowd;
+
+mod capacity;
+mod file;
+mod future;
+mod recall;
+mod refused;
+
+use crowd::{Crowd, People};
+use ddl_data::{OBSERVED, PedestrianId, Position};
+use ddl_memory::SceneMemory;
+use proptest::prelude::*;
+
+/// Frames and who was where in them.
+type Frames = Vec<(i64, People)>;
+
+/// A crowd of which some are missed now and then, and whose ids are used again.
+fn frames(seed: u64, people: usize, steps: usize, frame_step: i64) -> Frames {
+    let mut crowd = Crowd::new(seed, people);
+    let mut frame = |step: usize| {
+        let mut seen = crowd.step();
+        for (id, _) in &mut seen {
+            id.0 %= 3 * people as i64;
+        }
+        seen.retain(|_| crowd.random() > 0.02);
+        (step as i64 * frame_step, seen)
+    };
+    (0..steps).map(&mut frame).collect()
+}
+
+fn crowds() -> impl Strategy<Value = Frames> {
+    let sizes = (any::<u64>(), 1..12_usize, 1..120_usize, 1..12_i64);
+    sizes.prop_map(|(seed, people, steps, step)| frames(seed, people, steps, step))
+}
+
+fn step_of(frames: &Frames) -> i64 {
+    frames.get(1).map_or(1, |(frame, _)| *frame)
+}
+
+fn memory_of(frames: &Frames, capacity: usize) -> SceneMemory {
+    let mut memory = SceneMemory::new(step_of(frames), capacity).unwrap();
+    for (frame, people) in frames {
+        memory.observe(*frame, people.clone()).unwrap();
+    }
+    memory
+}
+
+/// Where those of the last frame were at the last 8, as the memory is asked.
+fn queries(frames: &Frames) -> Vec<(PedestrianId, [Position; OBSERVED])> {
+    let last = &frames[frames.len().saturating_sub(OBSERVED)..];
+    let place = |people: &People, id| people.iter().find(|seen| seen.0 == id).map(|seen| seen.1);
+    let query = |&(id, _): &(PedestrianId, Position)| {
+        let observed: Option<Vec<Position>> =
+            last.iter().map(|(_, seen)| place(seen, id)).collect();
+        Some((id, observed?.try_into().ok()?))
+    };
+    last.last().map_or(Vec::new(), |(_, people)| {
+        people.iter().filter_map(query).collect()
+    })
+}

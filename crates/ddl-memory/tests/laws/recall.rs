@@ -1,0 +1,199 @@
+//! A recall against all stretches looked at one by one, and what must not change it.
+
+use std::collections::BTreeMap;
+
+use crate::{Frames, memory_of, queries, step_of};
+use ddl_data::{OBSERVED, PedestrianId, Position, WINDOW};
+use ddl_memory::{FARTHEST, LONGEST_ABSENCE, Recalled, SceneMemory};
+use proptest::prelude::*;
+
+type Stretch = [Position; WINDOW];
+
+/// Every pedestrian's stretches, by id and the frame of the first sight; and whether the track runs on.
+fn stretches(frames: &Frames) -> Vec<(PedestrianId, bool, Vec<Stretch>)> {
+    let (step, now) = (step_of(frames), frames[frames.len() - 1].0);
+    let mut tracks: BTreeMap<(PedestrianId, i64), BTreeMap<i64, Position>> = BTreeMap::new();
+    let mut current: BTreeMap<PedestrianId, (i64, i64)> = BTreeMap::new();
+    for (frame, people) in frames {
+        for (id, position) in people {
+            let (first, last) = current.entry(*id).or_insert((*frame, *frame));
+            if frame - *last > LONGEST_ABSENCE * step {
+                *first = *frame;
+            }
+            *last = *frame;
+            tracks
+                .entry((*id, *first))
+                .or_default()
+                .insert(*frame, *position);
+        }
+    }
+    let pedestrian = |((id, _), track): ((PedestrianId, i64), BTreeMap<i64, Position>)| {
+        let stretch = |first: &i64| {
+            let at = |t: usize| track.get(&(first + t as i64 * step)).copied();
+            let positions: Option<Vec<Position>> = (0..WINDOW).map(at).collect();
+            positions?.try_into().ok()
+        };
+        let last = track.last_key_value().map_or(0, |(frame, _)| *frame);
+        let stretches = track.keys().filter_map(stretch).collect();
+        (id, now - last <= LONGEST_ABSENCE * step, stretches)
+    };
+    tracks.into_iter().map(pedestrian).collect()
+}
+
+fn distance(a: &[Position], b: &[Position]) -> f64 {
+    let squared = |d: [f64; 2], scale: f64| (d[0] * d[0] + d[1] * d[1]) / (scale * scale);
+    let between = |a: Position, b: Position| [a[0] - b[0], a[1] - b[1]];
+    let velocity = |track: &[Position], from: usize| {
+        between(track[from + 3], track[from]).map(|way| way / 1.2)
+    };
+    squared(between(a[7], b[7]), 1.0)
+        + squared(between(velocity(a, 4), velocity(b, 4)), 0.4)
+        + squared(between(velocity(a, 0), velocity(b, 0)), 0.6)
+}
+
+/// The least distance of each pedestrian but `own`, in order, below the farthest.
+fn reference(
+    frames: &Frames,
+    observed: &[Position; OBSERVED],
+    own: Option<PedestrianId>,
+) -> Vec<f64> {
+    let others = stretches(frames)
+        .into_iter()
+        .filter(|(id, runs, _)| !(*runs && Some(*id) == own));
+    let nearest = others.map(|(_, _, stretches)| {
+        let distances = stretches.iter().map(|stretch| distance(stretch, observed));
+        distances.fold(f64::INFINITY, f64::min)
+    });
+    let mut nearest: Vec<f64> = nearest.filter(|d| *d < FARTHEST).collect();
+    nearest.sort_by(f64::total_cmp);
+    nearest
+}
+
+fn is_near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-4 * (1.0 + a.abs())
+}
+
+fn is_alike(a: &Recalled, b: &Recalled) -> bool {
+    let pairs = a.examples.iter().zip(&b.examples);
+    a.examples.len() == b.examples.len()
+        && is_near(a.support, b.support)
+        && pairs
+            .into_iter()
+            .all(|(a, b)| is_near(a.distance, b.distance))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn a_recall_is_what_all_stretches_give(frames in crate::crowds(), count in 0..20_usize) {
+        let memory = memory_of(&frames, SceneMemory::DEFAULT_CAPACITY);
+        let all: Vec<Stretch> = stretches(&frames).into_iter().flat_map(|track| track.2).collect();
+        prop_assert_eq!(memory.stretches(), all.len());
+        for (id, observed) in queries(&frames) {
+            for own in [Some(id), None, Some(PedestrianId(-1))] {
+                let expected = reference(&frames, &observed, own);
+                let found = memory.recall(&observed, own, count);
+                prop_assert_eq!(found.examples.len(), expected.len().min(count));
+                let support: f64 = expected.iter().map(|d| (-d / 2.0).exp()).sum();
+                prop_assert!(is_near(found.support, support), "{} {}", found.support, support);
+                for (example, expected) in found.examples.iter().zip(expected) {
+                    prop_assert!(is_near(example.distance, expected));
+                    prop_assert!(is_near(distance(&example.track, &observed), expected));
+                    prop_assert!(all.contains(&example.track));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_order_of_people_does_not_matter(frames in crate::crowds(), seed in any::<u64>()) {
+        let memory = memory_of(&frames, 100);
+        let mut shuffled = frames.clone();
+        for (frame, people) in &mut shuffled {
+            people.sort_by_key(|(id, _)| (id.0 as u64 + *frame as u64).wrapping_mul(seed | 1));
+        }
+        prop_assert_eq!(memory_of(&shuffled, 100), memory);
+    }
+
+    /// Coordinates of UTM, of which an `f32` would know half a metre; and an origin that was wrong at first.
+    #[test]
+    fn far_from_the_origin_nothing_is_lost(
+        mut frames in crate::crowds(),
+        far in (-9.9e6..9.9e6, -9.9e6..9.9e6),
+    ) {
+        let first = PedestrianId(i64::MAX);
+        frames[0].1.push((first, [0.0; 2]));
+        let memory = memory_of(&frames, 1_000);
+        let mut moved = frames.clone();
+        for (_, position) in moved.iter_mut().flat_map(|(_, people)| people).filter(|seen| seen.0 != first) {
+            *position = [position[0] + far.0, position[1] + far.1];
+        }
+        let there = memory_of(&moved, 1_000);
+        for ((id, here), (_, far)) in queries(&frames).into_iter().zip(queries(&moved)) {
+            let (a, b) = (memory.recall(&here, Some(id), 12), there.recall(&far, Some(id), 12));
+            prop_assert!(is_alike(&a, &b), "{a:?} {b:?}");
+        }
+    }
+}
+
+/// Five who walk alike: two ended, one of them with the id of the one who asks.
+#[test]
+fn only_the_running_track_is_left_out() {
+    let mut memory = SceneMemory::new(1, 1_000).unwrap();
+    let at = |t: i64| [0.5 * t as f64, 0.0];
+    for (first, ids) in [(0, [4, 3].as_slice()), (100, &[3, 1, 2])] {
+        for t in 0..22 {
+            let people = ids.iter().map(|&id| (PedestrianId(id), at(t)));
+            memory.observe(first + t, people).unwrap();
+        }
+    }
+    let observed: [Position; OBSERVED] = std::array::from_fn(|t| at(t as i64 + 1));
+    let recalled = memory.recall(&observed, Some(PedestrianId(3)), 12);
+    assert_eq!(recalled.examples.len(), 4);
+    assert!((recalled.support - 4.0).abs() < 1e-9);
+    for example in &recalled.examples {
+        assert_eq!(example.track, std::array::from_fn(|t| at(t as i64 + 1)));
+    }
+    assert_eq!(memory.recall(&observed, None, 12).examples.len(), 5);
+    let support = memory.recall(&observed, None, 0).support;
+    assert!((support - 5.0).abs() < 1e-9);
+    let nobody = memory.recall(&[[f64::NAN, 0.0]; OBSERVED], None, 12);
+    assert_eq!((nobody.examples.len(), nobody.support), (0, 0.0));
+}
+
+/// Two who walked a millimetre to the left and to the right of the one who asks.
+#[test]
+fn ties_go_by_age() {
+    let mut memory = SceneMemory::new(1, 1_000).unwrap();
+    for (first, id, y) in [(0, 9, 0.001), (100, 2, -0.001)] {
+        for t in 0..20 {
+            let people = [(PedestrianId(id), [0.5 * t as f64, y])];
+            memory.observe(first + t, people).unwrap();
+        }
+    }
+    let observed = std::array::from_fn(|t| [0.5 * t as f64, 0.0]);
+    let sides = |count| {
+        let examples = memory.recall(&observed, None, count).examples;
+        let sides = examples.iter().map(|example| example.track[0][1] > 0.0);
+        sides.collect::<Vec<bool>>()
+    };
+    assert_eq!((sides(1), sides(2)), (vec![true], vec![true, false]));
+}
+
+/// A camera of ten frames a step: of a track the positions a step apart count, and a hole begins another run.
+#[test]
+fn frames_between_steps_give_no_stretches() {
+    let mut memory = SceneMemory::new(10, 1_000).unwrap();
+    let mut seen = |frames: std::ops::Range<i64>| {
+        for frame in frames {
+            let people = [(PedestrianId(1), [0.05 * frame as f64, 0.0])];
+            memory.observe(frame, people).unwrap();
+        }
+        memory.stretches()
+    };
+    assert_eq!([seen(3..193), seen(193..203), seen(203..213)], [0, 1, 2]);
+    assert_eq!([seen(214..304), seen(304..404), seen(404..405)], [2, 2, 3]);
+    assert_eq!(memory.summary().pedestrians, 1);
+    assert!((memory.summary().seconds - 16.04).abs() < 1e-9);
+}
