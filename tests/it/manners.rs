@@ -30,7 +30,7 @@ fn help_fits_a_screen_and_names_the_exit_codes() {
         "{help}"
     );
     for words in [
-        "Exit codes: 0 done, or whoever read",
+        "Exit codes: 0 success",
         "130 interrupted",
         "forecast",
         "view",
