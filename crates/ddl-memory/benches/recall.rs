@@ -40,7 +40,7 @@ fn full() -> (
     (memory, crowd, 4_000, queries.collect())
 }
 
-/// Times every run alone: of these the percentiles do not depend on what else the machine does.
+/// Times every run alone, for percentiles.
 fn measure(criterion: &mut Criterion, name: &str, mut run: impl FnMut() -> Duration) {
     let mut times: Vec<Duration> = Vec::new();
     criterion.bench_function(name, |b| {

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::limits::LARGEST_CAPACITY;
 
-/// Why a memory cannot be made, fed, written or read. A memory that was to be fed is as it was.
+/// Why a memory cannot be made, fed, written or read. After an error of `observe` the memory is unchanged.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
@@ -31,7 +31,7 @@ pub enum MemoryError {
     },
     #[error(
         "frame {frame}, pedestrian {pedestrian}: {position:?} does not lie within {COORDINATE_LIMIT} m of the origin; \
-         count from an origin near by"
+         use coordinates relative to a nearer origin"
     )]
     TooFar {
         pedestrian: PedestrianId,

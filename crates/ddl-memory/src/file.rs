@@ -31,7 +31,7 @@ const MAGIC: &[u8; 8] = b"DDLSCENE";
 const VERSION: u64 = 1;
 const WORD: usize = 8;
 const DIGEST: usize = 32;
-/// Bytes; twice what the largest capacity takes.
+/// Bytes: more than a memory of the largest capacity takes.
 const LARGEST_FILE: u64 = 1 << 28;
 
 impl SceneMemory {
@@ -51,8 +51,8 @@ impl SceneMemory {
         })
     }
 
-    /// Reads a memory as it was written. Where the tracker has started anew since then, [`interrupt`](Self::interrupt)
-    /// comes next.
+    /// Reads a memory as it was written. If the tracker has restarted since the file was written, call
+    /// [`interrupt`](Self::interrupt) next.
     ///
     /// # Errors
     /// [`MemoryError::Read`] if the file cannot be read, [`MemoryError::File`] if it is not what was written.
@@ -210,7 +210,9 @@ impl Words<'_> {
     fn positions(&mut self, least: usize, most: usize) -> Result<Vec<Position>, String> {
         let count = self.count()?;
         if !(least as u64..=most as u64).contains(&count) {
-            return Err(format!("{count} positions where {least} to {most} belong"));
+            return Err(format!(
+                "a list has {count} positions; {least} to {most} are allowed"
+            ));
         }
         (0..count).map(|_| self.position()).collect()
     }
@@ -218,7 +220,9 @@ impl Words<'_> {
     fn track(&mut self, pedestrians: u64) -> Result<Track, String> {
         let number = self.count()?;
         if !(1..=pedestrians).contains(&number) {
-            return Err(format!("number {number} of {pedestrians} pedestrians"));
+            return Err(format!(
+                "a track has number {number}, but the file counts {pedestrians} pedestrians"
+            ));
         }
         let id = PedestrianId(self.signed()?);
         let count = self.count()?;
@@ -242,7 +246,7 @@ impl Words<'_> {
     ) -> Result<RunningTrack, String> {
         let (last_seen, run_end) = (self.frame()?, self.frame()?);
         if run_end > last_seen || last_frame.is_none_or(|last| last_seen > last) {
-            return Err("a track runs on behind the last frame".to_owned());
+            return Err("a running track was last seen after the last frame".to_owned());
         }
         let run = self.positions(1, LONGEST_RUN)?;
         let track = self.track(pedestrians)?;
@@ -290,14 +294,18 @@ impl Words<'_> {
                 .last_key_value()
                 .is_some_and(|(last, _)| *last >= id)
             {
-                return Err(format!("pedestrian {id} comes too late or twice"));
+                return Err(format!(
+                    "running tracks are not in increasing order of id, at {id}"
+                ));
             }
             running.insert(id, next);
         }
         let tracks = running.values().map(|running| &running.track);
         let stretches = ended.iter().chain(tracks).map(Track::stretches).sum();
         if stretches > capacity {
-            return Err(format!("{stretches} stretches where {capacity} find room"));
+            return Err(format!(
+                "it holds {stretches} stretches, more than its capacity {capacity}"
+            ));
         }
         let seen = Seen {
             frames,

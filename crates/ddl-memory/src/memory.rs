@@ -16,7 +16,7 @@ const FORGOTTEN_AT_ONCE: usize = 32;
 ///
 /// A *stretch* is 20 positions of one pedestrian, a step of 0.4 s apart, all of them observed. Where frames come faster
 /// than steps, the positions of a track that count are those at whole steps after its first frame, or after the first
-/// frame behind a hole. Nothing is ever made of a frame that was not observed yet.
+/// frame behind a hole. A stretch holds positions of observed frames only.
 ///
 /// - A missing step ends a run of stretches. A pedestrian who has not been seen for longer than
 ///   [`LONGEST_ABSENCE`](crate::LONGEST_ABSENCE) steps is gone, and whoever has that id later is another one.
@@ -25,6 +25,7 @@ const FORGOTTEN_AT_ONCE: usize = 32;
 /// - A full memory makes room for 1/32 of its capacity. Of the older half of the ended tracks those go first that have
 ///   the most newer tracks of their kind: in the middle of the track in the same square of 2 m, with a velocity in the
 ///   same square of 0.8 m/s. Where all tracks are running, the longest loses its oldest stretches.
+/// - Running tracks are shortened only when no ended track is left.
 /// - Besides, it holds the people of the last 3.2 s.
 /// - The same frames give the same memory, in whichever order the people of a frame come.
 ///

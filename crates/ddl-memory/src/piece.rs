@@ -6,12 +6,12 @@ use ddl_data::{OBSERVED, Position, TIME_STEP, WINDOW};
 pub(crate) const LANES: usize = 8;
 /// Positions of a full piece.
 const PATH: usize = LANES + WINDOW - 1;
-/// The position of a stretch that plays the part of "now".
+/// Index of the present position in a stretch.
 pub(crate) const NOW: usize = OBSERVED - 1;
 /// Two velocities of two components, each divided by its scale.
 const VELOCITIES: usize = 4;
 const COMPONENTS: usize = 2 + VELOCITIES;
-/// Differences of this size count 1 in the squared distance: late and early velocity (m/s). That of positions is 1 m.
+/// Scales of late and early velocity (m/s): a difference of one scale adds 1 to the squared distance, as 1 m does.
 const VELOCITY_SCALES: [f64; 2] = [0.4, 0.6];
 
 /// A pedestrian's motion over 8 positions: where now (m), late and early velocity in units of their scales.
@@ -73,7 +73,7 @@ impl Piece {
 
     pub(crate) fn new(stretch: &[Position; WINDOW]) -> Self {
         let mut piece = Self {
-            // Lanes without a stretch are infinitely far from everybody.
+            // Unused lanes are infinite and never nearest.
             motions: [[f32::INFINITY; LANES]; COMPONENTS],
             len: 0,
             path: [[0.0; 2]; PATH],

@@ -39,8 +39,8 @@ impl SceneMemory {
     /// `dv` that of the velocities over the last 3 steps of the 8, and `de` over the first 3. It is computed in `f32`,
     /// to about 1e-5, and must lie below [`FARTHEST`]. Ties go by age, then by id, then to the earlier stretch.
     ///
-    /// `own` is the id of this pedestrian, whose running track is left out. Positions that are not finite are like
-    /// nobody's.
+    /// `own` is the id of this pedestrian, whose running track is left out. If a component of the
+    /// motion is not finite, nothing is recalled.
     #[must_use]
     pub fn recall(
         &self,

@@ -4,8 +4,7 @@ use ddl_data::{PedestrianId, Position, WINDOW};
 
 use crate::piece::{Motion, Piece};
 
-/// Steps of 0.4 s (3.2 s in all) after which a pedestrian who has not been seen is gone: whoever has the id then is
-/// another one.
+/// After so many steps of 0.4 s (3.2 s in all) without a position a track ends. The same id later starts a new track.
 pub const LONGEST_ABSENCE: i64 = 8;
 /// Of one pedestrian at most so many runs of 8 stretches are kept, the latest: 102 s of somebody who stays.
 pub const MOST_PIECES: usize = 32;
@@ -74,7 +73,7 @@ impl RunningTrack {
         }
     }
 
-    /// Whether nobody can be this pedestrian at the frame.
+    /// Whether the track has ended by this frame.
     pub(crate) fn is_gone(&self, frame: i64, step: i64) -> bool {
         frame - self.last_seen > LONGEST_ABSENCE * step
     }
@@ -97,7 +96,7 @@ impl RunningTrack {
         self.run.len() >= WINDOW
     }
 
-    /// Adds the stretch that ends the run. Returns how many old ones went for it.
+    /// Adds the stretch that ends the run. Returns the number of stretches removed for it.
     pub(crate) fn keep(&mut self) -> usize {
         let Some(stretch) = self.run.last_chunk::<WINDOW>() else {
             return 0;

@@ -178,7 +178,7 @@ fn what_is_no_path_is_refused() {
         length(2, f64::INFINITY)
     );
     assert_eq!(refused(&[[0.0, 0.0], [5e-324, 0.0]]), length(2, 5e-324));
-    // 16 times as far as its start is beyond the numbers, though the path itself is not.
+    // 16 times the distance of the start overflows `f64`; the path itself does not.
     let far = refused(&[[2e307, 0.0], [2e307, 1e300]]);
     assert_eq!(far, length(2, 1e300));
     let infinite = refused(&[[0.0, 0.0], [0.0, f64::INFINITY]]).to_string();

@@ -76,8 +76,8 @@ mod tests {
     use crate::fixture::walking;
     use ddl_data::{Convention, WindowRule};
 
-    /// Constant velocity is right about somebody who keeps it; the oracle is asked only where the future is shown, the
-    /// noise only where more than one hypothesis is scored.
+    /// Constant velocity is right about somebody who keeps it; the oracle is measured only under protocols that
+    /// show the future, the noise only under those that score several hypotheses.
     #[test]
     fn each_protocol_has_its_baselines() {
         let windows = [walking(&[([0.0, 0.0], [0.4, 0.0])], 20)];

@@ -211,8 +211,8 @@ mod tests {
         }
     }
 
-    /// Two meet, one overtakes, one stands. The expected positions (first, sixth and last step) are of a computation of
-    /// its own in Python, whose pushes are differences of the potential of fourth order.
+    /// Two meet, one overtakes, one stands. The expected positions (first, sixth and last step) were computed by a
+    /// separate Python program, whose pushes are differences of the potential of fourth order.
     #[test]
     fn four_pedestrians_walk_as_computed_otherwise() {
         let meets = ([-3.5, 0.0], [0.5, 0.0]);

@@ -113,7 +113,7 @@ impl AddNorm {
                     four.set(simd, r, v, centred);
                 }
             }
-            // One root and one division for four rows.
+            // Computes the root and the division of four rows at once.
             let variance = means(simd, width, four.products(simd, &four));
             let deviation = simd.sqrt(simd.add(variance, simd.splat(EPSILON)));
             let scale = simd.div(simd.splat(1.0), deviation);

@@ -33,7 +33,7 @@ impl Spares {
             self.numbers -= length;
             return self.buffers.swap_remove(index);
         }
-        // Room for the new one, in place of one that was too small.
+        // Drops a kept buffer that is too small, so that their number does not grow.
         if let Some(small) = self.buffers.pop() {
             self.numbers -= small.len();
         }

@@ -212,7 +212,7 @@ impl Walked<'_> {
             .collect()
     }
 
-    /// The same of one hypothesis, number `pair` of those of all walkers.
+    /// Runs `of` for one hypothesis; `pair` = pedestrian x hypotheses + hypothesis.
     fn one<R>(
         &self,
         pair: usize,

@@ -50,11 +50,13 @@ pub(crate) struct Walk {
 /// The flow to a goal, shaped by a metric a step.
 type ShapedFlow = NaturalGradientFlow<f64, 2, Remembered>;
 
-/// Metrics that are computed once, where the steps and then their certificate ask for them.
+/// Computes the metric of each step once, for the integrator and for the certificate.
+///
+/// An [`ArrivingSchedule`] reads the step and the position of a state, and nothing else of it.
 #[derive(Debug)]
 struct Remembered {
     metrics: ArrivingSchedule<f64>,
-    /// By step, with the position that it was asked for at.
+    /// Indexed by step: the position at which the metric was computed, and the metric.
     known: RefCell<Vec<(Vector2<f64>, CholeskyMetric<f64, 2>)>>,
 }
 

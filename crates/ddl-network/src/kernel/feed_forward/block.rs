@@ -82,7 +82,7 @@ pub(super) struct BlockRows {
 }
 
 impl BlockRows {
-    /// Whatever was there before.
+    /// Rows with arbitrary contents.
     pub(super) fn any(rows: usize, columns: usize) -> Self {
         let spare = SPARES.with_borrow_mut(Vec::pop);
         let mut blocks = spare.unwrap_or_default();
