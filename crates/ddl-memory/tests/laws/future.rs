@@ -53,13 +53,18 @@ fn a_memory_does_not_see_the_future() {
     let (mut noticed, mut examples) = (0, 0);
     for seed in 0..8 {
         let frames = frames(seed, 12, 90, 5);
+        let mut grown = memory_of(&frames[..25].to_vec(), 500);
         for end in (30..85).step_by(5) {
+            for (frame, people) in &frames[end - 5..end] {
+                grown.observe(*frame, people.clone()).unwrap();
+            }
             let honest = |frames: &Frames, end: usize| memory_of(&frames[..end].to_vec(), 500);
             assert!(!sees_the_future(honest, &frames, end), "seed {seed}, {end}");
             // a memory that is one frame (0.4 s) ahead
             let ahead = |frames: &Frames, end: usize| memory_of(&frames[..=end].to_vec(), 500);
             noticed += usize::from(sees_the_future(ahead, &frames, end));
             let recalled = answers(&honest(&frames, end), &frames[..end].to_vec());
+            assert_eq!(answers(&grown, &frames[..end].to_vec()), recalled);
             examples += recalled
                 .iter()
                 .map(|recalled| recalled.examples.len())

@@ -30,7 +30,7 @@ fn errors_change_nothing() {
             (
                 last + 6,
                 vec![other, (id, [0.0, -1.1e7])],
-                "count from an origin near by",
+                "use coordinates relative to a nearer origin",
             ),
         ] {
             let error = memory.observe(frame, people).unwrap_err().to_string();
