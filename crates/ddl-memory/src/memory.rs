@@ -18,8 +18,8 @@ const FORGOTTEN_AT_ONCE: usize = 32;
 /// than steps, the positions of a track that count are those at whole steps after its first frame, or after the first
 /// frame behind a hole. A stretch holds positions of observed frames only.
 ///
-/// - A missing step ends a run of stretches. A pedestrian who has not been seen for longer than
-///   [`LONGEST_ABSENCE`](crate::LONGEST_ABSENCE) steps is gone, and whoever has that id later is another one.
+/// - A missing step ends a run of stretches. A track ends after more than
+///   [`LONGEST_ABSENCE`](crate::LONGEST_ABSENCE) steps without a position. The same id later starts a new track.
 /// - The memory holds at most `capacity` stretches. Of one track it holds the latest
 ///   [`MOST_PIECES`](crate::MOST_PIECES) x 8.
 /// - A full memory makes room for 1/32 of its capacity. Of the older half of the ended tracks those go first that have
@@ -124,7 +124,7 @@ impl SceneMemory {
         self.stretches
     }
 
-    /// Adds everybody of one frame, positions in metres in the world, in any order. Frames must increase.
+    /// Adds the pedestrians of one frame in any order, with world positions in metres. Frame numbers must increase.
     ///
     /// # Errors
     /// [`MemoryError`] for a frame out of range or not after the last, a position that is not finite or too far from

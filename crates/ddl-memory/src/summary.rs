@@ -14,13 +14,13 @@ pub struct MemorySummary {
     pub tracks: usize,
     /// Pedestrians seen.
     pub pedestrians: u64,
-    /// Frames observed, those with nobody in them too.
+    /// Frames observed, empty ones included.
     pub frames: u64,
     /// Positions observed.
     pub observations: u64,
     /// Time watched, without interruptions (s).
     pub seconds: f64,
-    /// Least and largest x and y of all positions (m); `None` where nobody was seen.
+    /// Least and largest x and y of all positions (m); `None` without an observation.
     pub corners: Option<[Position; 2]>,
 }
 

@@ -1,4 +1,4 @@
-//! A crowd that crosses a square of 20 m: whoever leaves is replaced by somebody new.
+//! A crowd that crosses a square of 20 m. A new pedestrian replaces each one that leaves.
 #![allow(unreachable_pub, reason = "a module of several tests")]
 
 use ddl_data::{PedestrianId, Position};

@@ -158,8 +158,8 @@ fn only_the_running_track_is_left_out() {
     assert_eq!(memory.recall(&observed, None, 12).examples.len(), 5);
     let support = memory.recall(&observed, None, 0).support;
     assert!((support - 5.0).abs() < 1e-9);
-    let nobody = memory.recall(&[[f64::NAN, 0.0]; OBSERVED], None, 12);
-    assert_eq!((nobody.examples.len(), nobody.support), (0, 0.0));
+    let unlike = memory.recall(&[[f64::NAN, 0.0]; OBSERVED], None, 12);
+    assert_eq!((unlike.examples.len(), unlike.support), (0, 0.0));
 }
 
 /// Two who walked a millimetre to the left and to the right of the one who asks.
