@@ -61,9 +61,10 @@ const EXAMPLES: [(&str, &[&str]); 9] = [
 
 /// Those that are not run here: `cargo xtask page` runs `report_page`; the others measure recordings for
 /// minutes, some of other places, or draw a run's own test scene.
-const ELSEWHERE: [&str; 5] = [
+const ELSEWHERE: [&str; 6] = [
     "ddl calibrate",
     "ddl elsewhere",
+    "ddl regions",
     "ddl draw_forecast",
     "ddl-report report_page",
     "ddl-goal goal_validation",

@@ -1,11 +1,11 @@
-//! Forecasts and the future: whatever it is, they have the same bits under `fair` and `single`; and whoever needs it is
-//! refused.
+//! Forecasts and the future: whatever it is, they have the same bits under `fair`, `single` and `online`; and whoever
+//! needs it is refused.
 
-use ddl::data::{OBSERVED, Position, WINDOW, Window};
+use ddl::data::{Dataset, OBSERVED, Observation, Position, Recording, WINDOW, Window};
 use ddl::eval::baseline::{ConstantVelocity, GoalSource, StraightLine, TrueEnd, WeightedGoals};
 use ddl::eval::{Forecast, ForecastError, leak};
 use ddl::goal::{GoalEstimator, GoalEstimatorParams};
-use ddl::{Forecaster, Protocol, Variant};
+use ddl::{Ddl, Forecaster, Protocol, Remembering, Variant};
 use ddl_tests::one_forecast::One;
 use ddl_tests::{bits, crowd, drawn_model};
 
@@ -157,4 +157,68 @@ fn who_needs_the_future_is_refused() {
             assert!(protocol.forecast(forecaster, &windows).is_err());
         }
     }
+}
+
+/// The recording with everybody somewhere else after a frame.
+fn scrambled_after(recording: &Recording, last: i64) -> Recording {
+    let everything = recording.frames().iter().flat_map(|&f| recording.at(f));
+    let seen = everything.map(|seen| {
+        let mut position = seen.position;
+        if seen.frame > last {
+            // Each frame otherwise: nobody keeps a motion.
+            let angle = seen.frame as f64;
+            position = [
+                position[0] + 5.0 * angle.sin(),
+                3.0 * angle.cos() - position[1],
+            ];
+        }
+        Observation { position, ..*seen }
+    });
+    Recording::new(recording.name(), recording.frame_step(), seen.collect()).unwrap()
+}
+
+/// Forecasts under `online` of what is observed in a window whose recording is scrambled after a frame.
+fn online(model: &Ddl, window: &Window, last: i64) -> Vec<Vec<u64>> {
+    let dataset = crowd::dataset();
+    let recording = scrambled_after(dataset.recording(window.recording()).unwrap(), last);
+    let dataset = Dataset::own(vec![recording]).unwrap();
+    let windows = [window.without_future()];
+    let windows = model
+        .goal_model()
+        .remembering(&windows, &dataset, Remembering::Online);
+    let windows = windows.unwrap();
+    assert!(!windows[0].remembered(0).is_empty());
+    bits::of_all(&Protocol::Online.forecast(model, &windows).unwrap())
+}
+
+#[test]
+fn what_is_remembered_is_never_the_future() {
+    let model = drawn_model::of(Variant::Full);
+    for window in crowd::windows(4, 9).iter().skip(1) {
+        let now = window.frames()[OBSERVED - 1];
+        let never = i64::MAX;
+        let forecast = online(&model, window, never);
+        assert_eq!(online(&model, window, now), forecast);
+        // The past does count.
+        let step = window.frame_step();
+        assert_ne!(online(&model, window, now - 20 * step), forecast);
+    }
+}
+
+/// A memory that is 0.4 s ahead is found by the same comparison.
+#[test]
+fn a_memory_that_looks_ahead_is_found() {
+    let model = drawn_model::of(Variant::Full);
+    let mut found = 0;
+    for window in crowd::windows(4, 9).iter().skip(1) {
+        let now = window.frames()[OBSERVED - 1];
+        // The same observations, said to be made 0.8 s later: what is recalled ends up to 0.4 s after now.
+        let tracks = (0..window.len()).map(|i| window.observed(i).to_vec());
+        let (step, ids) = (window.frame_step(), window.pedestrians().to_vec());
+        let start = window.start_frame() + 2 * step;
+        let ahead = Window::new(window.recording(), start, step, ids, tracks.collect()).unwrap();
+        let never = i64::MAX;
+        found += usize::from(online(&model, &ahead, now) != online(&model, &ahead, never));
+    }
+    assert!(found > 0);
 }

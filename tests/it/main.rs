@@ -12,14 +12,17 @@ mod guarantee_on_real_people;
 #[cfg(unix)]
 mod guide;
 mod keep_clear;
+mod kept_memory;
 mod leak;
 mod leak_in_reports;
 mod live;
+mod live_memory;
 mod manners;
 mod other_program;
 mod own_recordings;
 mod packed;
 mod packed_benchmark;
+mod regions;
 mod tracks_as_they_come;
 
 #[test]

@@ -5,7 +5,8 @@ use crate::folder_contents::{self, Contents};
 use ddl::data::{Convention, Window, WindowRule};
 use ddl::network::weights::{numbers_digest, save_weights};
 use ddl::network::{
-    EpochReport, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig, TrainingConfig,
+    EpochReport, MemoryConfig, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig,
+    TrainingConfig,
 };
 use ddl::{Ddl, DeviceChoice, FORMAT, GoalRecipe, RunConfig, RunDirectory, TrainingData, Variant};
 use safetensors::tensor::{Dtype, TensorView};
@@ -75,9 +76,14 @@ pub fn goal_recipe(seed: u64) -> GoalRecipe {
             members: 2,
             width: 24,
             neighbour_width: 16,
+            memory: Some(MemoryConfig {
+                width: 16,
+                ..MemoryConfig::default()
+            }),
             ..ProposalConfig::default()
         };
         proposal.training.steps = 20;
+        proposal.training.memory.steps = 10;
         proposal.training.batch = 32;
     }
     recipe

@@ -9,7 +9,7 @@ pub(crate) fn ensure_not_input(output: Option<&Path>, input: &Path) -> anyhow::R
     let place = |path: &Path| path.canonicalize().ok();
     match output.and_then(place) {
         Some(file) if file.is_file() && Some(&file) == place(input).as_ref() => anyhow::bail!(
-            "--output {} is the file that is read: it would be lost; name another one",
+            "{} is the file that is read: it would be lost; name another one to be written",
             input.display()
         ),
         _ => Ok(()),

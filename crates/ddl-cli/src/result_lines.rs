@@ -29,7 +29,7 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
         }
         printed.push(common(first));
         let (errors, of) = match protocol {
-            Protocol::Single => ("ADE/FDE", "of one hypothesis"),
+            Protocol::Single | Protocol::OnlineSingle => ("ADE/FDE", "of one hypothesis"),
             _ => ("minADE/minFDE", "best of K"),
         };
         let of_table = || {

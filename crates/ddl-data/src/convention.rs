@@ -77,6 +77,14 @@ impl Convention {
         self.plan().folds.iter().map(|f| f.name.as_str())
     }
 
+    /// Names of the folds in which a memory of the place of the test recordings may hold training recordings
+    /// ([`Fold::place_memory_confirmed_by`](crate::Fold::place_memory_confirmed_by)).
+    pub fn folds_with_place_memory(self) -> impl Iterator<Item = &'static str> {
+        let folds = self.plan().folds.iter();
+        let confirmed = folds.filter(|fold| !fold.place_memory.is_empty());
+        confirmed.map(|fold| fold.name.as_str())
+    }
+
     pub(crate) fn plan(self) -> &'static ConventionPlan {
         match self {
             Self::Star => &PLANS.star,
@@ -116,6 +124,8 @@ pub(crate) struct ConventionPlan {
 pub(crate) struct RecordingPlan {
     pub(crate) name: String,
     pub(crate) file: Option<String>,
+    /// Recordings of one place are of one camera.
+    pub(crate) place: Option<String>,
     pub(crate) frame_step: i64,
 }
 
@@ -124,6 +134,9 @@ pub(crate) struct RecordingPlan {
 pub(crate) struct FoldPlan {
     pub(crate) name: String,
     pub(crate) test: Vec<String>,
+    /// The pair of [`Fold::place_memory_confirmed_by`](crate::Fold::place_memory_confirmed_by), if there is one.
+    #[serde(default)]
+    pub(crate) place_memory: Vec<String>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -165,5 +178,34 @@ mod tests {
                 assert_eq!(recording.file.is_some(), convention.format().is_some());
             }
         }
+    }
+
+    /// A memory of a place is confirmed by two other recordings of it.
+    #[test]
+    fn memories_are_confirmed_by_training_recordings_of_the_place() {
+        for convention in Convention::ALL {
+            let plan = convention.plan();
+            let place = |name: &String| {
+                let mut recordings = plan.recordings.iter();
+                let recording = recordings.find(|recording| recording.name == *name);
+                recording.and_then(|recording| recording.place.as_deref())
+            };
+            for fold in plan
+                .folds
+                .iter()
+                .filter(|fold| !fold.place_memory.is_empty())
+            {
+                let [first, second] = &fold.place_memory[..] else {
+                    panic!("{convention}, {}: not a pair", fold.name)
+                };
+                assert!(first != second && place(first).is_some());
+                for recording in &fold.test {
+                    assert_eq!([place(first), place(second)], [place(recording); 2]);
+                    assert!(!fold.place_memory.contains(recording));
+                }
+            }
+        }
+        let folds: Vec<&str> = Convention::Star.folds_with_place_memory().collect();
+        assert_eq!(folds, ["zara1", "zara2"]);
     }
 }

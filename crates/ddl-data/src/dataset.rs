@@ -140,7 +140,7 @@ impl Dataset {
     /// The fold that leaves no recording out: all are trained on, none is tested on. It is called [`Fold::WHOLE`].
     #[must_use]
     pub fn whole(&self) -> Fold<'_> {
-        Fold::new(Fold::WHOLE, &[], &self.recordings)
+        Fold::new(Fold::WHOLE, &[], &self.recordings, None)
     }
 
     /// The fold of this name: test on its recordings, train on all others.
@@ -156,16 +156,13 @@ impl Dataset {
         if self.convention == Convention::Own {
             let left_out = self.recordings.iter().find(|r| r.name() == name);
             let name = left_out.ok_or_else(unknown)?.name();
-            return Ok(Fold::new(name, &[name.to_owned()], &self.recordings));
+            return Ok(Fold::new(name, &[name.to_owned()], &self.recordings, None));
         }
-        let plan = self
-            .convention
-            .plan()
-            .folds
-            .iter()
-            .find(|f| f.name == name)
-            .ok_or_else(unknown)?;
-        Ok(Fold::new(&plan.name, &plan.test, &self.recordings))
+        let convention = self.convention.plan();
+        let mut folds = convention.folds.iter();
+        let plan = folds.find(|f| f.name == name).ok_or_else(unknown)?;
+        let planned = Some((convention, plan));
+        Ok(Fold::new(&plan.name, &plan.test, &self.recordings, planned))
     }
 
     /// Every fold, in order.

@@ -1,5 +1,6 @@
 //! Leave-one-out folds, and the chronological split that keeps validation apart from training.
 
+use crate::convention::{ConventionPlan, FoldPlan};
 use crate::error::DataError;
 use crate::recording::Recording;
 use crate::{Window, WindowRule};
@@ -11,6 +12,7 @@ pub struct Fold<'a> {
     test: Vec<&'a Recording>,
     training: Vec<&'a Recording>,
     set_apart: Vec<&'a Recording>,
+    planned: Option<(&'static ConventionPlan, &'static FoldPlan)>,
 }
 
 /// The windows of a fold's training recordings, divided by time.
@@ -40,7 +42,12 @@ impl<'a> Fold<'a> {
     /// Name of the fold that leaves no recording out ([`Dataset::whole`](crate::Dataset::whole)).
     pub const WHOLE: &'static str = "none";
 
-    pub(crate) fn new(name: &'a str, test_names: &[String], recordings: &'a [Recording]) -> Self {
+    pub(crate) fn new(
+        name: &'a str,
+        test_names: &[String],
+        recordings: &'a [Recording],
+        planned: Option<(&'static ConventionPlan, &'static FoldPlan)>,
+    ) -> Self {
         let test: Vec<_> = test_names
             .iter()
             .filter_map(|name| recordings.iter().find(|r| r.name() == name))
@@ -52,6 +59,7 @@ impl<'a> Fold<'a> {
             test,
             training,
             set_apart: Vec::new(),
+            planned,
         }
     }
 
@@ -90,6 +98,26 @@ impl<'a> Fold<'a> {
     /// Training recordings that are kept for validation whole.
     pub fn recordings_set_apart(&self) -> &[&'a Recording] {
         &self.set_apart
+    }
+
+    /// The training recordings of the place where a recording was made; none where places are not known.
+    #[must_use]
+    pub fn training_recordings_of_its_place(&self, recording: &str) -> Vec<&'a Recording> {
+        let place_of = |name: &str| {
+            let (convention, _) = self.planned?;
+            let mut recordings = convention.recordings.iter();
+            recordings.find(|r| r.name == name)?.place.as_deref()
+        };
+        let place = place_of(recording);
+        let same = |r: &&&Recording| place.is_some() && place_of(r.name()) == place;
+        self.training.iter().filter(same).copied().collect()
+    }
+
+    /// Two training recordings of the place of the test recordings that have confirmed that a memory of the place helps: goals
+    /// of the second were better with a memory of the first, for a model that was trained without the second. Where nothing is
+    /// confirmed, forecasts of the fold go without such a memory.
+    pub fn place_memory_confirmed_by(&self) -> &[String] {
+        self.planned.map_or(&[], |(_, fold)| &fold.place_memory)
     }
 
     /// The windows to test on, recording by recording, in order of time.

@@ -80,11 +80,8 @@ impl LiveTracks {
     /// # Errors
     /// [`LiveError::FrameStep`] if the step does not lie in 1..=2^31.
     pub fn with_frame_step(frame_step: i64) -> Result<Self, LiveError> {
-        if !is_frame_step(frame_step) {
-            return Err(LiveError::FrameStep { found: frame_step });
-        }
         Ok(Self {
-            frame_step,
+            frame_step: checked_frame_step(frame_step)?,
             ..Self::new()
         })
     }
@@ -147,33 +144,13 @@ impl LiveTracks {
     /// The tracks with one frame more, leaving these as they are.
     ///
     /// # Errors
-    /// [`LiveError`] for a frame out of range or not after the last, a position that is not finite, or somebody twice.
+    /// As [`checked_frame`].
     pub fn after(
         &self,
         frame: i64,
         people: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Self, LiveError> {
-        if !is_frame(frame) {
-            return Err(LiveError::FrameOutOfRange { frame });
-        }
-        if let Some(last) = self.last_frame.filter(|last| frame <= *last) {
-            return Err(LiveError::TooEarly { frame, last });
-        }
-        let mut people: Vec<(PedestrianId, Position)> = people.into_iter().collect();
-        people.sort_unstable_by_key(|&(id, _)| id);
-        for &(pedestrian, position) in &people {
-            if !is_finite(position) {
-                return Err(LiveError::NotFinite {
-                    pedestrian,
-                    frame,
-                    position,
-                });
-            }
-        }
-        if let Some(pair) = people.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-            let pedestrian = pair[0].0;
-            return Err(LiveError::Duplicate { pedestrian, frame });
-        }
+        let people = checked_frame(frame, self.last_frame, people)?;
         let mut earlier = self.walkers.iter().peekable();
         let mut walkers = Vec::with_capacity(people.len());
         for (id, position) in people {
@@ -277,7 +254,55 @@ impl LivePedestrian {
     }
 }
 
-/// Why a frame cannot be added to [`LiveTracks`], which are then as they were.
+/// The people of one frame in order of their ids, if the frame may come after the last one (`None`: there was none).
+///
+/// # Errors
+/// [`LiveError`] for a frame that is not below 2^53 in size or not after the last, a position that is not finite, or a
+/// pedestrian who is there twice.
+pub fn checked_frame(
+    frame: i64,
+    last: Option<i64>,
+    people: impl IntoIterator<Item = (PedestrianId, Position)>,
+) -> Result<Vec<(PedestrianId, Position)>, LiveError> {
+    if !is_frame(frame) {
+        return Err(LiveError::FrameOutOfRange { frame });
+    }
+    if let Some(last) = last.filter(|last| frame <= *last) {
+        return Err(LiveError::TooEarly { frame, last });
+    }
+    let mut people: Vec<(PedestrianId, Position)> = people.into_iter().collect();
+    people.sort_unstable_by_key(|&(id, _)| id);
+    for &(pedestrian, position) in &people {
+        if !is_finite(position) {
+            return Err(LiveError::NotFinite {
+                pedestrian,
+                frame,
+                position,
+            });
+        }
+    }
+    match people.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+        Some(pair) => Err(LiveError::Duplicate {
+            pedestrian: pair[0].0,
+            frame,
+        }),
+        None => Ok(people),
+    }
+}
+
+/// The number of raw frames in a step of 0.4 s, if it can be one.
+///
+/// # Errors
+/// [`LiveError::FrameStep`] if it does not lie in 1..=2^31.
+pub fn checked_frame_step(frame_step: i64) -> Result<i64, LiveError> {
+    if is_frame_step(frame_step) {
+        Ok(frame_step)
+    } else {
+        Err(LiveError::FrameStep { found: frame_step })
+    }
+}
+
+/// Why a frame cannot be added to [`LiveTracks`] or to a scene memory, which are then as they were.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
@@ -287,8 +312,8 @@ pub enum LiveError {
     #[error("frame {frame} is not below 2^53 in size")]
     FrameOutOfRange { frame: i64 },
     #[error(
-        "frame {frame} comes after frame {last}; push frames in order of time, each once, and clear the tracks when the tracker \
-         starts anew"
+        "frame {frame} comes after frame {last}; push frames in order of time, each once; when the tracker starts anew, clear \
+         the tracks, or interrupt the memory, before its first frame"
     )]
     TooEarly { frame: i64, last: i64 },
     #[error("frame {frame}, pedestrian {pedestrian}: {position:?} is not finite")]

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use crate::error::WindowError;
 use crate::neighbours::NeighbourMask;
 use crate::track::{is_finite, is_frame, is_frame_step};
-use crate::{MadeUp, OBSERVED, PedestrianId, PedestrianName, PedestrianNames, Position, WINDOW};
+use crate::{
+    MadeUp, OBSERVED, PedestrianId, PedestrianName, PedestrianNames, Position, Remembered, WINDOW,
+};
 
 /// The pedestrians of one scene over 8 observed steps and, where known, the 12 that follow.
 ///
@@ -35,6 +37,8 @@ pub struct Window {
     positions: Vec<Position>,
     /// One a pedestrian, or none where nothing is.
     made_up: Vec<MadeUp>,
+    /// One list a pedestrian, or none where nothing is remembered of anybody.
+    remembered: Vec<Vec<Remembered>>,
 }
 
 impl Window {
@@ -120,6 +124,7 @@ impl Window {
             names: PedestrianNames::default(),
             positions,
             made_up: Vec::new(),
+            remembered: Vec::new(),
         }
     }
 
@@ -154,6 +159,28 @@ impl Window {
     pub fn made_up(&self, i: usize) -> MadeUp {
         assert!(i < self.len(), "pedestrian {i} of {}", self.len());
         self.made_up.get(i).copied().unwrap_or_default()
+    }
+
+    /// The same, with what the place remembers for each pedestrian, by index: others who had moved like this one.
+    ///
+    /// All of it must have been observed by the last observed frame of the window, or in another recording of the place.
+    #[must_use]
+    pub fn with_remembered(self, remembered: impl FnMut(usize) -> Vec<Remembered>) -> Self {
+        let mut remembered: Vec<_> = (0..self.len()).map(remembered).collect();
+        if remembered.iter().all(Vec::is_empty) {
+            remembered.clear();
+        }
+        Self { remembered, ..self }
+    }
+
+    /// What the place remembers for the i-th pedestrian, the most alike first; empty unless it was
+    /// [given](Self::with_remembered).
+    ///
+    /// # Panics
+    /// If `i >= len()`.
+    pub fn remembered(&self, i: usize) -> &[Remembered] {
+        assert!(i < self.len(), "pedestrian {i} of {}", self.len());
+        self.remembered.get(i).map_or(&[], Vec::as_slice)
     }
 
     /// Name of the recording it is from.
@@ -244,7 +271,11 @@ impl Window {
             self.pedestrians.clone(),
             observed.copied().collect(),
         );
-        window.with_made_up(self.made_up.clone())
+        let remembered = self.remembered.clone();
+        Self {
+            remembered,
+            ..window.with_made_up(self.made_up.clone())
+        }
     }
 
     fn of_same(
@@ -268,11 +299,12 @@ impl Window {
         let pedestrians = kept.iter().map(|&i| self.pedestrians[i]).collect();
         let positions = kept.iter().flat_map(|&i| self.track(i)).copied().collect();
         let window = self.of_same(self.frames.clone(), pedestrians, positions);
-        Some(window.with_made_up(kept.iter().map(|&i| self.made_up(i)).collect()))
+        let window = window.with_made_up(kept.iter().map(|&i| self.made_up(i)).collect());
+        Some(window.with_remembered(|i| self.remembered(kept[i]).to_vec()))
     }
 
     /// The window with every position replaced by `f(i, step, position)`: pedestrian index, step from 0, position (m).
-    /// What `f` returns is not checked; keep it finite.
+    /// What `f` returns is not checked; keep it finite. What is remembered stays where it is.
     #[must_use]
     pub fn map_positions(&self, mut f: impl FnMut(usize, usize, Position) -> Position) -> Window {
         let mut mapped = self.clone();
@@ -284,9 +316,10 @@ impl Window {
     }
 
     /// The window as if time ran backwards: everybody walks its track from the end to the start, at the same frames.
+    /// Nothing is remembered: it was the past.
     #[must_use]
     pub fn reversed(&self) -> Window {
-        let mut reversed = self.clone();
+        let mut reversed = self.clone().with_remembered(|_| Vec::new());
         for track in reversed.positions.chunks_exact_mut(self.steps()) {
             track.reverse();
         }

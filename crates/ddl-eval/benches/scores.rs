@@ -1,21 +1,25 @@
-//! Time to score a fold as large as univ: 24,254 pedestrians with 20 hypotheses each, every metric and category.
+//! Time to score a fold as large as univ: 24,254 pedestrians with 20 hypotheses each, every metric and category; and what regions cost
+//! that follow what is seen.
 #![allow(
     missing_docs,
     reason = "criterion's macro makes a function without them"
 )]
 
 use std::hint::black_box;
+use std::sync::Arc;
 
-use criterion::{Criterion, criterion_group, criterion_main};
-use ddl_data::{PedestrianId, Position, WINDOW, Window};
+use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
+use ddl_data::{HORIZON, PedestrianId, Position, WINDOW, Window};
 use ddl_eval::{
-    Forecast, Forecaster, Scores,
+    AdaptiveRegions, Forecast, Forecaster, RegionTable, Scores,
     baseline::{ConstantVelocity, SocialForce},
 };
 
 /// Pedestrians of univ under the published rule.
 const PEDESTRIANS: usize = 24_254;
 const CROWD: usize = 25;
+/// Frames that regions follow before time begins anew.
+const FRAMES: usize = 500;
 /// Side of the square they begin in, m: as dense as univ.
 const SIDE: f64 = 14.0;
 
@@ -83,5 +87,32 @@ fn score(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, score);
+/// A frame of 25 pedestrians: the outcomes of the 12 forecasts before it, and its regions.
+fn adapt(criterion: &mut Criterion) {
+    let windows: Vec<Window> = windows().into_iter().take(FRAMES).collect();
+    let scores: Vec<[f64; HORIZON]> = (1..1000).map(|n| [f64::from(n) / 200.0; HORIZON]).collect();
+    let levels: Vec<f64> = (1..13).map(|n| f64::from(n) / 13.0).collect();
+    let table = Arc::new(RegionTable::of(&scores, &levels).expect("999 scores"));
+    let noisy = ConstantVelocity::angular_noise(1).forecast_all(&windows);
+    let spread = || vec![0.5; CROWD * HORIZON];
+    let forecasts: Vec<Forecast> = noisy
+        .expect("a forecast")
+        .into_iter()
+        .map(|f| {
+            f.with_spread(spread(), Arc::clone(&table))
+                .expect("a spread")
+        })
+        .collect();
+    let (mut regions, mut at) = (AdaptiveRegions::default(), 0);
+    criterion.bench_function("regions of 25 walkers follow a frame", |b| {
+        let next = || {
+            at = (at + 1) % FRAMES;
+            (&windows[at], forecasts[at].clone())
+        };
+        let follow = |(window, forecast)| regions.adapt(window, forecast);
+        b.iter_batched(next, follow, BatchSize::SmallInput);
+    });
+}
+
+criterion_group!(benches, score, adapt);
 criterion_main!(benches);

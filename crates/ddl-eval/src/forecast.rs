@@ -159,6 +159,19 @@ impl Forecast {
         self.spread.as_ref().map(|(_, regions)| regions.as_ref())
     }
 
+    pub(crate) fn shared_regions(&self) -> Option<Arc<RegionTable>> {
+        let (_, regions) = self.spread.as_ref()?;
+        Some(Arc::clone(regions))
+    }
+
+    /// The same forecast with another table of regions; without a spread as it is.
+    pub(crate) fn with_regions(self, regions: &Arc<RegionTable>) -> Self {
+        Self {
+            spread: self.spread.map(|(spread, _)| (spread, Arc::clone(regions))),
+            ..self
+        }
+    }
+
     /// How much the observed motion of pedestrian `i` is like that of the training, 0 to 1; `None` where unknown.
     pub fn familiarity(&self, i: usize) -> Option<f64> {
         self.familiarity.as_ref().map(|familiarity| familiarity[i])

@@ -26,6 +26,6 @@ pub use forecast::Forecast;
 pub use forecaster::Forecaster;
 pub use metric::stability::StabilityScores;
 pub use protocol::Protocol;
-pub use region::{Disc, RegionTable};
+pub use region::{AdaptiveRegions, Disc, RegionTable, TrackedQuantiles};
 pub use scene::Scene;
 pub use scores::Scores;

@@ -1,4 +1,4 @@
-//! The three rules of the game: what a forecaster may see, and how many guesses it has.
+//! The rules of the game: what a forecaster may see, and how many guesses it has.
 
 use std::{borrow::Cow, fmt, str::FromStr};
 
@@ -17,6 +17,10 @@ pub enum Protocol {
     Fair,
     /// One forecast: the [representative](Forecast::representative) hypothesis.
     Single,
+    /// As `Fair`, and besides the windows what was seen in their recording until then.
+    Online,
+    /// As `Single`, and besides the windows what was seen in their recording until then.
+    OnlineSingle,
 }
 
 impl Protocol {
@@ -24,14 +28,22 @@ impl Protocol {
     pub const MOST_HYPOTHESES: usize = 20;
 
     /// Every protocol, in the order of printing.
-    pub const ALL: [Self; 3] = [Self::Published, Self::Fair, Self::Single];
+    pub const ALL: [Self; 5] = [
+        Self::Published,
+        Self::Fair,
+        Self::Single,
+        Self::Online,
+        Self::OnlineSingle,
+    ];
 
-    /// `published`, `fair` or `single`.
+    /// `published`, `fair`, `single`, `online` or `online-single`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Published => "published",
             Self::Fair => "fair",
             Self::Single => "single",
+            Self::Online => "online",
+            Self::OnlineSingle => "online-single",
         }
     }
 
@@ -53,6 +65,14 @@ impl Protocol {
                  forecast (DDL: the neutral motion to its central goal), otherwise the hypothesis of least expected ADE under \
                  their own weights (all alike where there are none); nothing is chosen with the truth"
             }
+            Self::Online => {
+                "as `fair`, and besides the 8 observed frames the tracks of the SAME recording up to the last \
+                 observed frame, as a camera knows them that has watched it from the start; nothing later is read"
+            }
+            Self::OnlineSingle => {
+                "as `single`, and besides the 8 observed frames the tracks of the SAME recording up to the last \
+                 observed frame, as a camera knows them that has watched it from the start; nothing later is read"
+            }
         }
     }
 
@@ -66,15 +86,15 @@ impl Protocol {
                  and the published code keeps the epoch that is best on the TEST set. No system can \
                  reach these numbers in use; they serve to reproduce the published tables.",
             ),
-            Self::Fair | Self::Single => None,
+            Self::Fair | Self::Single | Self::Online | Self::OnlineSingle => None,
         }
     }
 
     /// The number of hypotheses a pedestrian may have: 20, or 1.
     pub const fn hypotheses(self) -> usize {
         match self {
-            Self::Published | Self::Fair => Self::MOST_HYPOTHESES,
-            Self::Single => 1,
+            Self::Published | Self::Fair | Self::Online => Self::MOST_HYPOTHESES,
+            Self::Single | Self::OnlineSingle => 1,
         }
     }
 
@@ -83,7 +103,12 @@ impl Protocol {
         matches!(self, Self::Published)
     }
 
-    /// The windows as a forecaster sees them: under `fair` and `single`, without their futures.
+    /// Whether forecasters are shown what was seen in the recording of a window before it.
+    pub const fn shows_past(self) -> bool {
+        matches!(self, Self::Online | Self::OnlineSingle)
+    }
+
+    /// The windows as a forecaster sees them: without their futures, but under `published`.
     pub fn visible(self, windows: &[Window]) -> Cow<'_, [Window]> {
         if self.shows_future() {
             Cow::Borrowed(windows)
@@ -92,7 +117,7 @@ impl Protocol {
         }
     }
 
-    /// Forecasts the windows as this protocol demands: their futures are cut off first under `fair` and `single`.
+    /// Forecasts the windows as this protocol demands: their futures are cut off first, but under `published`.
     ///
     /// # Errors
     /// The forecaster failed, or made more hypotheses than the protocol allows.
@@ -115,7 +140,7 @@ impl Protocol {
         forecasts: Vec<Forecast>,
         forecaster: &str,
     ) -> Result<Vec<Forecast>, ForecastError> {
-        if self == Self::Single {
+        if self.hypotheses() == 1 {
             return Ok(forecasts.iter().map(Forecast::single).collect());
         }
         match forecasts
@@ -144,7 +169,7 @@ impl FromStr for Protocol {
     type Err = UnknownName;
 
     fn from_str(word: &str) -> Result<Self, UnknownName> {
-        let expected = "published, fair, single";
+        let expected = "published, fair, single, online, online-single";
         UnknownName::find(word, &Self::ALL, Self::name, "protocol", expected)
     }
 }

@@ -20,6 +20,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::Forecast;
 
+mod adaptive;
+mod tracked;
+
+pub use adaptive::AdaptiveRegions;
+pub use tracked::TrackedQuantiles;
+
 /// Cells along each side of the grid on which the area of a region is measured.
 const CELLS: usize = 24;
 
@@ -138,13 +144,26 @@ impl Forecast {
     /// The score of the position `at` (m) of pedestrian `i`, `t` + 1 steps ahead; `None` for forecasts without a
     /// [spread](Self::spread).
     pub fn region_score(&self, i: usize, t: usize, at: Position) -> Option<f64> {
+        self.score_among(i, t, at, &self.log_weights(i))
+    }
+
+    /// The same, with the [`log_weights`](Self::log_weights) of the pedestrian at hand.
+    fn score_among(&self, i: usize, t: usize, at: Position, log_weights: &[f64]) -> Option<f64> {
         let spread = self.spread(i, t)?;
-        let of_hypothesis = |k: usize| {
+        let of_hypothesis = |(k, log_weight): (usize, &f64)| {
             let p = self.hypothesis(i, k)[t];
-            let off = (at[0] - p[0]).hypot(at[1] - p[1]) / spread;
-            0.5 * off * off - self.log_weight(i, k)
+            let off = [0, 1].map(|axis| (at[axis] - p[axis]) / spread);
+            0.5 * (off[0] * off[0] + off[1] * off[1]) - log_weight
         };
-        (0..self.hypotheses()).map(of_hypothesis).reduce(f64::min)
+        let scores = log_weights.iter().enumerate().map(of_hypothesis);
+        scores.reduce(f64::min)
+    }
+
+    /// ln of the weight of each hypothesis, in weights of the likeliest one of that pedestrian.
+    fn log_weights(&self, i: usize) -> Vec<f64> {
+        let heaviest = self.weight(i, self.most_likely(i));
+        let of_hypothesis = |k: usize| (self.weight(i, k) / heaviest).ln();
+        (0..self.hypotheses()).map(of_hypothesis).collect()
     }
 
     /// ln of the weight of a hypothesis, in weights of the likeliest one of that pedestrian.

@@ -2,47 +2,21 @@
 
 use std::path::PathBuf;
 
-use ddl_data::{COORDINATE_LIMIT, PedestrianId, Position};
+use ddl_data::LiveError;
 use thiserror::Error;
 
-use crate::limits::LARGEST_CAPACITY;
+use crate::memory::LARGEST_CAPACITY;
 
 /// Why a memory cannot be made, fed, written or read. After an error of `observe` the memory is unchanged.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum MemoryError {
-    #[error("the frame step must lie in 1..=2^31 raw frames, found {found}")]
-    FrameStep { found: i64 },
+    /// The frame step or a frame, as `ddl_data::LiveTracks` would refuse it.
+    #[error(transparent)]
+    Frame(#[from] LiveError),
     #[error("the capacity must lie in 1..={LARGEST_CAPACITY} stretches, found {found}")]
     Capacity { found: usize },
-    #[error("frame {frame} is not below 2^53 in size")]
-    FrameOutOfRange { frame: i64 },
-    #[error(
-        "frame {frame} comes after frame {last}; give frames in order of time, each once, and call `interrupt` when \
-         the tracker starts anew"
-    )]
-    TooEarly { frame: i64, last: i64 },
-    #[error("frame {frame}, pedestrian {pedestrian}: {position:?} is not finite")]
-    NotFinite {
-        pedestrian: PedestrianId,
-        frame: i64,
-        position: Position,
-    },
-    #[error(
-        "frame {frame}, pedestrian {pedestrian}: {position:?} does not lie within {COORDINATE_LIMIT} m of the origin; \
-         use coordinates relative to a nearer origin"
-    )]
-    TooFar {
-        pedestrian: PedestrianId,
-        frame: i64,
-        position: Position,
-    },
-    #[error("pedestrian {pedestrian} is in frame {frame} twice; keep one")]
-    Duplicate {
-        pedestrian: PedestrianId,
-        frame: i64,
-    },
     #[error("cannot write {}: {source}", .path.display())]
     Write {
         path: PathBuf,

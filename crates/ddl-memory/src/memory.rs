@@ -1,16 +1,21 @@
 //! The memory itself: fed frame by frame, never larger than its capacity.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
-use ddl_data::{PedestrianId, Position};
+use ddl_data::{PedestrianId, Position, checked_frame, checked_frame_step};
+use serde::{Deserialize, Serialize};
 
 use crate::MemoryError;
-use crate::forget::forget;
-use crate::limits::{is_capacity, is_frame, is_frame_step, is_near};
+use crate::piece::is_remembered;
 use crate::track::{RunningTrack, Track};
 
+/// Stretches; of the shortest tracks they take 180 MB.
+pub(crate) const LARGEST_CAPACITY: usize = 1 << 18;
 /// A full memory forgets this share of its capacity at once.
 const FORGOTTEN_AT_ONCE: usize = 32;
+/// It forgets among this share of the tracks, the oldest.
+const OLDEST: usize = 8;
 
 /// What one camera has seen so far.
 ///
@@ -20,12 +25,13 @@ const FORGOTTEN_AT_ONCE: usize = 32;
 ///
 /// - A missing step ends a run of stretches. A track ends after more than
 ///   [`LONGEST_ABSENCE`](crate::LONGEST_ABSENCE) steps without a position. The same id later starts a new track.
-/// - The memory holds at most `capacity` stretches. Of one track it holds the latest
-///   [`MOST_PIECES`](crate::MOST_PIECES) x 8.
-/// - A full memory makes room for 1/32 of its capacity. Of the older half of the ended tracks those go first that have
-///   the most newer tracks of their kind: in the middle of the track in the same square of 2 m, with a velocity in the
-///   same square of 0.8 m/s. Where all tracks are running, the longest loses its oldest stretches.
-/// - Running tracks are shortened only when no ended track is left.
+/// - Two stretches are alike where their squared distance, that of [`recall`](Self::recall), is below 1.
+/// - A track is kept in runs of up to 8 stretches. A run is not kept if its first and its last stretch are alike to some
+///   of an earlier run of the same track; the run right before it does not count. Of the others the latest
+///   [`MOST_PIECES`](crate::MOST_PIECES) are kept. So a pedestrian who stands for an hour takes the room of three runs.
+/// - The memory holds at most `capacity` stretches. A full memory makes room for 1/32 of them among the oldest eighth of
+///   the ended tracks: first go those whose middle is alike to a newer track, then the others, each time the oldest
+///   first. Where all tracks are running, the longest loses its oldest run.
 /// - Besides, it holds the people of the last 3.2 s.
 /// - The same frames give the same memory, in whichever order the people of a frame come.
 ///
@@ -57,21 +63,19 @@ pub struct SceneMemory {
 }
 
 /// What is counted and not forgotten.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Seen {
     pub(crate) frames: u64,
     pub(crate) watched: u64,
     pub(crate) pedestrians: u64,
-    pub(crate) observations: u64,
     /// Least and largest x and y (m).
-    pub(crate) corners: Option<[Position; 2]>,
+    pub(crate) extent: Option<[Position; 2]>,
 }
 
 impl Seen {
     fn add(&mut self, [x, y]: Position) {
-        let [low, high] = self.corners.unwrap_or([[x, y]; 2]);
-        self.observations = self.observations.saturating_add(1);
-        self.corners = Some([
+        let [low, high] = self.extent.unwrap_or([[x, y]; 2]);
+        self.extent = Some([
             [low[0].min(x), low[1].min(y)],
             [high[0].max(x), high[1].max(y)],
         ]);
@@ -85,12 +89,10 @@ impl SceneMemory {
     /// Nothing seen yet; so many raw frames make a step of 0.4 s, such as 10 of a camera at 25 frames a second.
     ///
     /// # Errors
-    /// [`MemoryError::FrameStep`] or [`MemoryError::Capacity`] for a number that is out of range.
+    /// [`MemoryError::Frame`] or [`MemoryError::Capacity`] for a number that is out of range.
     pub fn new(frame_step: i64, capacity: usize) -> Result<Self, MemoryError> {
-        if !is_frame_step(frame_step) {
-            return Err(MemoryError::FrameStep { found: frame_step });
-        }
-        if !is_capacity(capacity) {
+        let frame_step = checked_frame_step(frame_step)?;
+        if !(1..=LARGEST_CAPACITY).contains(&capacity) {
             return Err(MemoryError::Capacity { found: capacity });
         }
         Ok(Self {
@@ -102,6 +104,20 @@ impl SceneMemory {
             ended: Vec::new(),
             running: BTreeMap::new(),
         })
+    }
+
+    /// A memory of the same frame step and capacity that holds nothing.
+    #[must_use]
+    pub fn emptied(&self) -> Self {
+        Self {
+            frame_step: self.frame_step,
+            capacity: self.capacity,
+            last_frame: None,
+            seen: Seen::default(),
+            stretches: 0,
+            ended: Vec::new(),
+            running: BTreeMap::new(),
+        }
     }
 
     /// Raw frames in one step of 0.4 s.
@@ -126,33 +142,39 @@ impl SceneMemory {
 
     /// Adds the pedestrians of one frame in any order, with world positions in metres. Frame numbers must increase.
     ///
+    /// A memory accepts what [`LiveTracks`](ddl_data::LiveTracks) accepts. It does not remember a position whose x or y
+    /// is beyond 1e7 m. It remembers nobody if no two frames are a step apart, as when every third frame of a camera with
+    /// 10 frames a step is given: [`summary`](Self::summary) then counts pedestrians, but no stretches.
+    ///
     /// # Errors
-    /// [`MemoryError`] for a frame out of range or not after the last, a position that is not finite or too far from
-    /// the origin, or a pedestrian who is there twice. Nothing has changed then.
+    /// [`MemoryError::Frame`] for a frame that [`checked_frame`] refuses. Nothing has changed then.
     pub fn observe(
         &mut self,
         frame: i64,
         people: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<(), MemoryError> {
-        let people = self.checked(frame, people)?;
+        let people = checked_frame(frame, self.last_frame, people)?;
         let watched = self.last_frame.map_or(0, |last| frame.abs_diff(last));
         self.seen.watched = self.seen.watched.saturating_add(watched);
         self.seen.frames = self.seen.frames.saturating_add(1);
         self.last_frame = Some(frame);
         let step = self.frame_step;
         self.end_tracks(|track| track.is_gone(frame, step));
-        for (id, position) in people {
+        let people = people.into_iter();
+        for (id, position) in people.filter(|(_, position)| is_remembered(*position)) {
             self.seen.add(position);
-            let running = self.running.entry(id).or_insert_with(|| {
-                self.seen.pedestrians = self.seen.pedestrians.saturating_add(1);
-                RunningTrack::new(self.seen.pedestrians, id, frame)
-            });
-            if running.see(frame, position, step) {
-                if self.stretches == self.capacity {
-                    self.make_room();
+            match self.running.entry(id) {
+                Entry::Occupied(mut running) => {
+                    let (new, gone) = running.get_mut().see(frame, position, step);
+                    self.stretches = self.stretches + new - gone;
                 }
-                let gone = self.running.get_mut(&id).map_or(1, RunningTrack::keep);
-                self.stretches = self.stretches + 1 - gone;
+                Entry::Vacant(place) => {
+                    place.insert(RunningTrack::new(frame, position));
+                    self.seen.pedestrians = self.seen.pedestrians.saturating_add(1);
+                }
+            }
+            if self.stretches > self.capacity {
+                self.make_room();
             }
         }
         Ok(())
@@ -164,63 +186,43 @@ impl SceneMemory {
         self.last_frame = None;
     }
 
-    fn checked(
-        &self,
-        frame: i64,
-        people: impl IntoIterator<Item = (PedestrianId, Position)>,
-    ) -> Result<Vec<(PedestrianId, Position)>, MemoryError> {
-        if !is_frame(frame) {
-            return Err(MemoryError::FrameOutOfRange { frame });
-        }
-        if let Some(last) = self.last_frame.filter(|last| frame <= *last) {
-            return Err(MemoryError::TooEarly { frame, last });
-        }
-        let mut people: Vec<(PedestrianId, Position)> = people.into_iter().collect();
-        people.sort_unstable_by_key(|&(id, _)| id);
-        for &(pedestrian, position) in &people {
-            if !position.iter().all(|x| x.is_finite()) {
-                return Err(MemoryError::NotFinite {
-                    pedestrian,
-                    frame,
-                    position,
-                });
-            }
-            if !is_near(position) {
-                return Err(MemoryError::TooFar {
-                    pedestrian,
-                    frame,
-                    position,
-                });
-            }
-        }
-        match people.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-            Some(pair) => Err(MemoryError::Duplicate {
-                pedestrian: pair[0].0,
-                frame,
-            }),
-            None => Ok(people),
-        }
-    }
-
     fn end_tracks(&mut self, ends: impl Fn(&RunningTrack) -> bool) {
         let ending = self.running.extract_if(.., |_, running| ends(running));
-        for (_, mut running) in ending.filter(|(_, running)| !running.track.pieces.is_empty()) {
-            running.track.pieces.shrink_to_fit();
-            self.ended.push(running.track);
-        }
+        let tracks = ending.map(|(_, running)| running.track);
+        self.ended
+            .extend(tracks.filter(|track| track.stretches() > 0));
     }
 
-    /// Forgets until another stretch can be added.
     fn make_room(&mut self) {
         let enough = self.capacity - (self.capacity / FORGOTTEN_AT_ONCE).max(1);
         while self.stretches > enough && !self.ended.is_empty() {
-            self.stretches -= forget(&mut self.ended, self.stretches - enough);
+            self.forget_ended(enough);
         }
-        while self.stretches >= self.capacity {
+        while self.stretches > self.capacity {
             let tracks = self.running.values_mut().map(|running| &mut running.track);
-            let longest = tracks.max_by_key(|track| (track.stretches(), u64::MAX - track.number));
-            let Some(track) = longest else { return };
-            self.stretches -= track.forget_oldest();
+            let Some(longest) = tracks.max_by_key(|track| track.stretches()) else {
+                return;
+            };
+            self.stretches -= longest.forget_oldest();
         }
+    }
+
+    /// Removes tracks of the oldest eighth until few enough stretches are left: first those that newer tracks repeat.
+    fn forget_ended(&mut self, enough: usize) {
+        let oldest = self.ended.len().div_ceil(OLDEST);
+        for repeated_only in [true, false] {
+            for index in 0..oldest {
+                if self.stretches <= enough {
+                    break;
+                }
+                let [track, newer @ ..] = &mut self.ended[index..] else {
+                    break;
+                };
+                if !repeated_only || track.is_repeated_by(newer) {
+                    self.stretches -= std::mem::take(track).stretches();
+                }
+            }
+        }
+        self.ended.retain(|track| track.stretches() > 0);
     }
 }

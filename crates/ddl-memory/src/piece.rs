@@ -1,24 +1,36 @@
 //! Consecutive stretches of one track, compared with a pedestrian all at once.
 
-use ddl_data::{OBSERVED, Position, TIME_STEP, WINDOW};
+use ddl_data::{COORDINATE_LIMIT, OBSERVED, Position, TIME_STEP, WINDOW};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// Stretches compared at once: the loop over them becomes vector instructions.
-pub(crate) const LANES: usize = 8;
+const LANES: usize = 8;
+/// Positions that two pieces share where the second follows on the first: all of a stretch but its last.
+pub(crate) const SHARED: usize = WINDOW - 1;
 /// Positions of a full piece.
-const PATH: usize = LANES + WINDOW - 1;
+const PATH: usize = LANES + SHARED;
 /// Index of the present position in a stretch.
-pub(crate) const NOW: usize = OBSERVED - 1;
+const NOW: usize = OBSERVED - 1;
 /// Two velocities of two components, each divided by its scale.
 const VELOCITIES: usize = 4;
 const COMPONENTS: usize = 2 + VELOCITIES;
 /// Scales of late and early velocity (m/s): a difference of one scale adds 1 to the squared distance, as 1 m does.
 const VELOCITY_SCALES: [f64; 2] = [0.4, 0.6];
+/// Squared distance of two stretches that say much the same: those of two who walk 1 m apart.
+const ALIKE: f32 = 1.0;
+/// Present positions of a piece are so near to the first (m) that an `f32` tells micrometres; a walker gets 6 m far.
+const REACH: f64 = 30.0;
 
 /// A pedestrian's motion over 8 positions: where now (m), late and early velocity in units of their scales.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Motion {
-    pub(crate) now: Position,
-    pub(crate) velocities: [f32; VELOCITIES],
+    now: Position,
+    velocities: [f32; VELOCITIES],
+}
+
+/// Whether a position is near enough to the origin for distances in `f32` to be finite.
+pub(crate) fn is_remembered(position: Position) -> bool {
+    position.iter().all(|x| x.abs() <= COORDINATE_LIMIT)
 }
 
 impl Motion {
@@ -48,68 +60,71 @@ impl Motion {
     }
 }
 
-/// Up to [`LANES`] stretches, each a step after the one before.
-#[derive(Debug, Clone, PartialEq)]
+/// Positions a step apart, 1 to 27, and the up to 8 stretches of 20 that begin at the first ones. In a file it is the
+/// positions.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(try_from = "Vec<Position>")]
 pub(crate) struct Piece {
-    /// Motions relative to the present position of the first stretch.
+    /// Motions of the stretches relative to the present position of the first; those that are not there are infinite.
     motions: [[f32; LANES]; COMPONENTS],
-    len: usize,
-    path: [Position; PATH],
+    path: Vec<Position>,
 }
 
 impl Piece {
-    /// The stretches of 20 to 27 positions.
-    pub(crate) fn of(path: &[Position]) -> Option<Self> {
-        let (first, rest) = path.split_first_chunk()?;
-        let mut piece = Self::new(first);
-        for position in rest {
-            if piece.is_full() {
-                return None;
-            }
-            piece.push(*position);
-        }
-        Some(piece)
-    }
-
-    pub(crate) fn new(stretch: &[Position; WINDOW]) -> Self {
+    /// The first positions of a run, or the last ones of a piece.
+    fn of(path: &[Position]) -> Self {
         let mut piece = Self {
-            // Unused lanes are infinite and never nearest.
             motions: [[f32::INFINITY; LANES]; COMPONENTS],
-            len: 0,
-            path: [[0.0; 2]; PATH],
+            path: Vec::with_capacity(PATH),
         };
-        piece.path[..WINDOW].copy_from_slice(stretch);
-        piece.index();
+        for position in path {
+            piece.add(*position);
+        }
         piece
     }
 
-    /// The stretch that ends a step later. The piece must not be full.
-    pub(crate) fn push(&mut self, position: Position) {
-        self.path[self.len + WINDOW - 1] = position;
-        self.index();
+    pub(crate) fn begin(position: Position) -> Self {
+        Self::of(&[position])
     }
 
-    /// Adds the motion of the stretch after the last.
-    fn index(&mut self) {
-        let lane = self.len;
-        let components = self.motion_of(lane).from(self.path[NOW]);
+    fn add(&mut self, position: Position) {
+        self.path.push(position);
+        let Some(lane) = self.len().checked_sub(1) else {
+            return;
+        };
+        let components = self.motion(lane).from(self.path[NOW]);
         for (lanes, component) in self.motions.iter_mut().zip(components) {
             lanes[lane] = component;
         }
-        self.len += 1;
     }
 
+    /// Adds the next position, or gives the piece that begins with it where this one is full or too far away.
+    pub(crate) fn push(&mut self, position: Position) -> Option<Self> {
+        if self.path.len() >= SHARED {
+            let lane = self.len();
+            let way = |axis| self.path[lane + NOW][axis] - self.path[NOW][axis];
+            if lane == LANES || f64::hypot(way(0), way(1)) > REACH {
+                let mut next = self.rest();
+                next.add(position);
+                return Some(next);
+            }
+        }
+        self.add(position);
+        None
+    }
+
+    /// What a piece that follows on this one begins with: no stretch yet, but a position short of one.
+    pub(crate) fn rest(&self) -> Self {
+        Self::of(&self.path[self.path.len().saturating_sub(SHARED)..])
+    }
+
+    /// Stretches.
     pub(crate) fn len(&self) -> usize {
-        self.len
+        self.path.len().saturating_sub(SHARED)
     }
 
-    pub(crate) fn is_full(&self) -> bool {
-        self.len == LANES
-    }
-
-    /// The positions of all its stretches: 19, and one for each.
     pub(crate) fn path(&self) -> &[Position] {
-        &self.path[..self.len + WINDOW - 1]
+        &self.path
     }
 
     /// 20 positions of the stretch of a lane.
@@ -117,19 +132,31 @@ impl Piece {
         std::array::from_fn(|t| self.path[lane + t])
     }
 
-    /// The motion at the start of its first stretch.
-    pub(crate) fn motion(&self) -> Motion {
-        self.motion_of(0)
-    }
-
-    fn motion_of(&self, lane: usize) -> Motion {
+    /// The motion of the stretch of a lane.
+    fn motion(&self, lane: usize) -> Motion {
         Motion::of(&std::array::from_fn(|t| self.path[lane + t]))
     }
 
-    /// Squared distance of each stretch from a motion, infinite where there is none.
+    /// The motion of its first stretch.
+    pub(crate) fn first_motion(&self) -> Option<Motion> {
+        (self.len() > 0).then(|| self.motion(0))
+    }
+
+    /// Whether one of its stretches lies within [`ALIKE`] of a motion.
+    pub(crate) fn is_alike(&self, motion: &Motion) -> bool {
+        self.nearest(motion) < ALIKE
+    }
+
+    /// Whether both its first and its last stretch are alike to stretches of another piece. It must have a stretch.
+    pub(crate) fn is_repeated_by(&self, other: &Self) -> bool {
+        other.is_alike(&self.motion(0)) && other.is_alike(&self.motion(self.len() - 1))
+    }
+
+    /// Squared distance of each stretch from a motion, infinite or NaN where there is none.
     #[inline]
-    pub(crate) fn distances(&self, motion: &Motion) -> [f32; LANES] {
-        let wanted = motion.from(self.path[NOW]);
+    fn distances(&self, motion: &Motion) -> [f32; LANES] {
+        let origin = self.path.get(NOW).copied().unwrap_or_default();
+        let wanted = motion.from(origin);
         let mut distances = [0.0; LANES];
         for (wanted, lanes) in wanted.into_iter().zip(&self.motions) {
             for lane in 0..LANES {
@@ -156,5 +183,38 @@ impl Piece {
             }
         }
         least[0]
+    }
+
+    /// The first of the stretches that are nearest to a motion.
+    pub(crate) fn nearest_lane(&self, motion: &Motion) -> usize {
+        let distances = self.distances(motion);
+        (1..self.len()).fold(0, |least, lane| {
+            if distances[lane] < distances[least] {
+                lane
+            } else {
+                least
+            }
+        })
+    }
+}
+
+impl Serialize for Piece {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.path.serialize(serializer)
+    }
+}
+
+impl TryFrom<Vec<Position>> for Piece {
+    type Error = String;
+
+    fn try_from(path: Vec<Position>) -> Result<Self, String> {
+        if !(1..=PATH).contains(&path.len()) {
+            let found = path.len();
+            return Err(format!("a run has {found} positions, of 1 to {PATH}"));
+        }
+        match path.iter().find(|position| !is_remembered(**position)) {
+            Some(position) => Err(format!("position {position:?} is too far from the origin")),
+            None => Ok(Self::of(&path)),
+        }
     }
 }

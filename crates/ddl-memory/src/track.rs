@@ -1,24 +1,19 @@
 //! One pedestrian's stretches, and the track of one who may be seen again.
 
-use ddl_data::{PedestrianId, Position, WINDOW};
+use ddl_data::Position;
+use serde::{Deserialize, Serialize};
 
-use crate::piece::{Motion, Piece};
+use crate::piece::{Motion, Piece, SHARED};
 
 /// After so many steps of 0.4 s (3.2 s in all) without a position a track ends. The same id later starts a new track.
 pub const LONGEST_ABSENCE: i64 = 8;
-/// Of one pedestrian at most so many runs of 8 stretches are kept, the latest: 102 s of somebody who stays.
+/// Of one pedestrian at most so many runs of 8 stretches are kept, the latest: 102 s of somebody who roams about.
 pub const MOST_PIECES: usize = 32;
 
-/// Positions of a stretch, and the one before them where it follows on another stretch.
-pub(crate) const LONGEST_RUN: usize = WINDOW + 1;
-
-/// A pedestrian of this memory.
-#[derive(Debug, Clone, PartialEq)]
+/// A pedestrian of this memory: pieces, the oldest first. Only the last may be without a stretch.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(transparent)]
 pub(crate) struct Track {
-    /// Pedestrians are counted as they come, those of one frame by their ids.
-    pub(crate) number: u64,
-    pub(crate) id: PedestrianId,
-    /// Oldest first.
     pub(crate) pieces: Vec<Piece>,
 }
 
@@ -27,95 +22,99 @@ impl Track {
         self.pieces.iter().map(Piece::len).sum()
     }
 
-    /// The squared distance of its stretch that is nearest to a motion.
-    pub(crate) fn nearest(&self, motion: &Motion) -> f32 {
-        let distances = self.pieces.iter().map(|piece| piece.nearest(motion));
-        distances.fold(f32::INFINITY, f32::min)
+    /// The piece with the stretch that is nearest to a motion, the first of those, and its squared distance.
+    pub(crate) fn nearest(&self, motion: &Motion) -> Option<(f32, &Piece)> {
+        let distances = self.pieces.iter();
+        let distances = distances.map(|piece| (piece.nearest(motion), piece));
+        distances.reduce(|least, next| if next.0 < least.0 { next } else { least })
     }
 
-    /// The first stretch at that distance from a motion.
-    pub(crate) fn stretch_at(&self, motion: &Motion, distance: f32) -> Option<[Position; WINDOW]> {
-        self.pieces.iter().find_map(|piece| {
-            let distances = piece.distances(motion);
-            let lane = distances.iter().position(|found| *found <= distance)?;
-            Some(piece.stretch(lane))
-        })
+    /// Whether a stretch from its middle is alike to one of other tracks.
+    pub(crate) fn is_repeated_by(&self, others: &[Self]) -> bool {
+        let middle = self.pieces.get(self.pieces.len().saturating_sub(1) / 2);
+        let mut others = others.iter().flat_map(|track| &track.pieces);
+        middle
+            .and_then(Piece::first_motion)
+            .is_some_and(|motion| others.any(|other| other.is_alike(&motion)))
     }
 
-    /// Removes the oldest piece and tells how many stretches it had.
+    /// Adds a piece. The last piece so far goes if it repeats an earlier one; the one right before it does not count.
+    /// Returns how many stretches are gone.
+    fn add(&mut self, piece: Piece) -> usize {
+        let gone = match &self.pieces[..] {
+            [.., last] if last.len() == 0 => self.pieces.pop(),
+            [earlier @ .., _, last] if earlier.iter().any(|old| last.is_repeated_by(old)) => {
+                self.pieces.pop()
+            }
+            pieces if pieces.len() == MOST_PIECES => Some(self.pieces.remove(0)),
+            _ => None,
+        };
+        self.pieces.push(piece);
+        gone.map_or(0, |piece| piece.len())
+    }
+
+    /// Removes the oldest piece, but of the only one what the next stretch needs. Returns how many stretches are gone.
     pub(crate) fn forget_oldest(&mut self) -> usize {
-        if self.pieces.is_empty() {
+        let Some(first) = self.pieces.first_mut() else {
             return 0;
+        };
+        let gone = first.len();
+        *first = first.rest();
+        if self.pieces.len() > 1 {
+            self.pieces.remove(0);
         }
-        self.pieces.remove(0).len()
+        gone
+    }
+
+    /// All its positions, in order of time.
+    pub(crate) fn positions(&self) -> Vec<Position> {
+        let mut positions: Vec<Position> = Vec::new();
+        for piece in &self.pieces {
+            let path = piece.path();
+            let shared = path.get(..SHARED);
+            let follows = shared.is_some_and(|shared| positions.ends_with(shared));
+            positions.extend(&path[if follows { SHARED } else { 0 }..]);
+        }
+        positions
     }
 }
 
 /// The track of somebody who was seen a short time ago.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RunningTrack {
+    /// The frame of its last position.
+    pub(crate) last: i64,
     pub(crate) track: Track,
-    pub(crate) last_seen: i64,
-    /// The last positions without a hole, a step apart, at most [`LONGEST_RUN`].
-    pub(crate) run: Vec<Position>,
-    /// The frame of the last of them.
-    pub(crate) run_end: i64,
 }
 
 impl RunningTrack {
-    pub(crate) fn new(number: u64, id: PedestrianId, frame: i64) -> Self {
-        let pieces = Vec::new();
+    pub(crate) fn new(frame: i64, position: Position) -> Self {
+        let pieces = vec![Piece::begin(position)];
         Self {
-            track: Track { number, id, pieces },
-            last_seen: frame,
-            run: Vec::with_capacity(LONGEST_RUN),
-            run_end: frame,
+            last: frame,
+            track: Track { pieces },
         }
     }
 
     /// Whether the track has ended by this frame.
     pub(crate) fn is_gone(&self, frame: i64, step: i64) -> bool {
-        frame - self.last_seen > LONGEST_ABSENCE * step
+        frame - self.last > LONGEST_ABSENCE * step
     }
 
-    /// Adds a position. Returns whether a stretch is complete, for [`keep`](Self::keep).
-    pub(crate) fn see(&mut self, frame: i64, position: Position, step: i64) -> bool {
-        self.last_seen = frame;
-        let due = self.run_end + step;
-        if !self.run.is_empty() && frame < due {
-            return false;
+    /// Adds a position, unless it lies between two steps. Returns how many stretches are new, and how many are gone.
+    pub(crate) fn see(&mut self, frame: i64, position: Position, step: i64) -> (usize, usize) {
+        let due = self.last + step;
+        if frame < due {
+            return (0, 0);
         }
-        if frame > due {
-            self.run.clear();
-        }
-        if self.run.len() == LONGEST_RUN {
-            self.run.remove(0);
-        }
-        self.run.push(position);
-        self.run_end = frame;
-        self.run.len() >= WINDOW
-    }
-
-    /// Adds the stretch that ends the run. Returns the number of stretches removed for it.
-    pub(crate) fn keep(&mut self) -> usize {
-        let Some(stretch) = self.run.last_chunk::<WINDOW>() else {
-            return 0;
+        self.last = frame;
+        let next = match self.track.pieces.last_mut() {
+            Some(piece) if frame == due => match piece.push(position) {
+                None => return (usize::from(piece.len() > 0), 0),
+                Some(next) => next,
+            },
+            _ => Piece::begin(position),
         };
-        let continues = self.run.len() == LONGEST_RUN;
-        match self.track.pieces.last_mut() {
-            Some(piece) if continues && !piece.is_full() => {
-                piece.push(stretch[WINDOW - 1]);
-                0
-            }
-            _ => {
-                let is_most = self.track.pieces.len() == MOST_PIECES;
-                self.track.pieces.push(Piece::new(stretch));
-                if is_most {
-                    self.track.forget_oldest()
-                } else {
-                    0
-                }
-            }
-        }
+        (next.len(), self.track.add(next))
     }
 }

@@ -18,8 +18,8 @@ mod training_report;
 pub mod weights;
 
 pub use config::{
-    BackboneKind, LearningRateSchedule, NetworkFrame, Objective, ProposalConfig, ProposalTraining,
-    StarConfig, TrainingConfig, Variant,
+    BackboneKind, LearningRateSchedule, MemoryConfig, MemoryTraining, NetworkFrame, Objective,
+    ProposalConfig, ProposalTraining, StarConfig, TrainingConfig, Variant,
 };
 pub use error::NetworkError;
 pub use forecast::{

@@ -4,10 +4,13 @@
 
 mod ends;
 mod layers;
+mod member;
 mod network;
+mod remembered;
 mod seen;
 
 pub use ends::{END_UNIT, PedestrianView, ProposalExample, ProposeEnds, ProposedEnds};
-pub use layers::{MemberAffine, ProposalLayers, WAYPOINTS};
+pub use layers::{AttentionLayers, MemberAffine, ProposalLayers, ReadoutLayers, WAYPOINTS};
 pub use network::ProposalNetwork;
+pub use remembered::{LIKENESSES, REMEMBERED_FEATURES};
 pub use seen::{NEIGHBOUR_FEATURES, RECENT};

@@ -25,6 +25,12 @@ pub struct Literature {
     pub table_one: Vec<PublishedRow>,
     /// The best published systems measured in the `star` convention: minADE20/minFDE20.
     pub star_convention: Vec<PublishedRow>,
+    /// The best published systems measured in the `social-gan` convention: minADE20/minFDE20.
+    pub social_gan_convention: Vec<PublishedRow>,
+    /// One forecast in the `social-gan` convention, windows of at least one pedestrian: ADE/FDE.
+    pub social_gan_single: Vec<PublishedRow>,
+    /// Joint errors of 20 forecasts on the scene eth of the `social-gan` convention.
+    pub social_gan_joint_eth: Vec<JointRow>,
     /// Table II of the DDL paper: `star` convention, protocol `published`.
     pub ablation: Vec<AblationRow>,
     /// Baselines on all test windows of the `star` convention, cut by the published rule. Rows on goals are of the
@@ -48,6 +54,18 @@ pub struct PublishedRow {
     pub folds: [[f64; 2]; 5],
     /// The mean as printed; it may differ from the mean of the printed folds by rounding.
     pub mean: [f64; 2],
+}
+
+/// Published joint errors of one scene.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JointRow {
+    /// Name of the method.
+    pub method: String,
+    /// Who published it, and where.
+    pub source: String,
+    /// JADE and JFDE (m).
+    pub joint: [f64; 2],
 }
 
 /// One row of the ablation, Table II of the DDL paper.
@@ -82,15 +100,35 @@ pub struct MeasuredRow {
 
 /// Table I of the DDL paper, with the source and the convention of each row.
 pub fn table_one() -> Table {
-    published_table(&LITERATURE.table_one)
+    published_table(&LITERATURE.table_one, 2)
 }
 
 /// The best published systems in the `star` convention.
 pub fn star_convention_table() -> Table {
-    published_table(&LITERATURE.star_convention)
+    published_table(&LITERATURE.star_convention, 2)
 }
 
-fn published_table(rows: &[PublishedRow]) -> Table {
+/// The best published systems in the `social-gan` convention.
+pub fn social_gan_convention_table() -> Table {
+    published_table(&LITERATURE.social_gan_convention, 2)
+}
+
+/// One forecast in the `social-gan` convention.
+pub fn social_gan_single_table() -> Table {
+    published_table(&LITERATURE.social_gan_single, 3)
+}
+
+/// Joint errors on the scene eth of the `social-gan` convention.
+pub fn social_gan_joint_table() -> Table {
+    let mut table = Table::new(["method", "JADE m", "JFDE m", "source"]).text_column("source");
+    for row in &LITERATURE.social_gan_joint_eth {
+        let [ade, fde] = row.joint.map(|error| format!("{error:.3}"));
+        table.row([row.method.clone(), ade, fde, row.source.clone()]);
+    }
+    table
+}
+
+fn published_table(rows: &[PublishedRow], digits: usize) -> Table {
     let mut table = table_of_folds(&["method"], &["mean", "convention", "source"])
         .text_column("convention")
         .text_column("source");
@@ -103,7 +141,7 @@ fn published_table(rows: &[PublishedRow]) -> Table {
         let source: Vec<&str> = source.map(String::as_str).collect();
         let start = [row.method.clone()].into_iter();
         let end = [convention, source.join("; ")];
-        table.row(start.chain(cells(&row.folds, row.mean)).chain(end));
+        table.row(start.chain(cells(&row.folds, row.mean, digits)).chain(end));
     }
     table
 }
@@ -115,7 +153,7 @@ pub fn ablation_table() -> Table {
         .text_column("dynamics");
     for row in &LITERATURE.ablation {
         let start = [row.variant.clone()].into_iter().chain(row.components());
-        table.row(start.chain(cells(&row.folds, row.mean)));
+        table.row(start.chain(cells(&row.folds, row.mean, 2)));
     }
     table
 }
@@ -147,9 +185,9 @@ fn table_of_folds(start: &[&str], end: &[&str]) -> Table {
     Table::new([start, &FOLDS, end].concat())
 }
 
-fn cells(folds: &[[f64; 2]; 5], mean: [f64; 2]) -> impl Iterator<Item = String> {
+fn cells(folds: &[[f64; 2]; 5], mean: [f64; 2], digits: usize) -> impl Iterator<Item = String> {
     let all = folds.iter().copied().chain([mean]);
-    all.map(|[ade, fde]| format!("{ade:.2}/{fde:.2}"))
+    all.map(move |[ade, fde]| format!("{ade:.digits$}/{fde:.digits$}"))
 }
 
 #[cfg(test)]
@@ -161,7 +199,9 @@ mod tests {
         let published = LITERATURE
             .table_one
             .iter()
-            .chain(&LITERATURE.star_convention);
+            .chain(&LITERATURE.star_convention)
+            .chain(&LITERATURE.social_gan_convention)
+            .chain(&LITERATURE.social_gan_single);
         let rows = published.map(|row| (&row.method, row.folds, row.mean));
         let ablation = LITERATURE.ablation.iter();
         for (name, folds, mean) in
@@ -192,6 +232,18 @@ mod tests {
                 5,
                 published(&all.star_convention),
                 11.752,
+            ),
+            (
+                all.social_gan_convention.len(),
+                8,
+                published(&all.social_gan_convention),
+                21.18,
+            ),
+            (
+                all.social_gan_single.len(),
+                3,
+                published(&all.social_gan_single),
+                25.831,
             ),
             (all.ablation.len(), 4, ablation.sum(), 13.8),
             (all.measured.len(), 12, ade.sum(), 25.374),

@@ -2,13 +2,17 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use ddl_data::Remembered;
 use ddl_network::weights::Origin;
 use ddl_network::{
-    DeviceChoice, NetworkError, PedestrianView, ProposalConfig, ProposalExample, ProposalNetwork,
-    ProposalTraining, ProposeEnds as _, ProposedEnds,
+    DeviceChoice, MemoryTraining, NetworkError, PedestrianView, ProposalConfig, ProposalExample,
+    ProposalNetwork, ProposalTraining, ProposeEnds as _, ProposedEnds,
 };
 use ddl_star::{ComputeDevice, ProposalTrainer, StarError, TorchProposals};
 use std::f64::consts::TAU;
+
+/// Steps in which the memory branch learns.
+const MEMORY_STEPS: u64 = 8;
 
 fn device() -> ComputeDevice {
     ComputeDevice::open(DeviceChoice::Cpu).unwrap()
@@ -38,6 +42,24 @@ fn view(speed: f64, neighbours: usize) -> PedestrianView {
         neighbours: (0..neighbours)
             .map(|j| walk(-0.8, 2.0 + j as f64, 0.3 * j as f64))
             .collect(),
+        remembered: Vec::new(),
+    }
+}
+
+/// Somebody who was seen before: at first like [`view`] at 1 m/s, then turning by `angle` (radians).
+fn earlier(angle: f64) -> Remembered {
+    let (sin, cos) = angle.sin_cos();
+    let track = std::array::from_fn(|t| {
+        let way = 0.4 * (t as f64 - 7.0);
+        if t < 8 {
+            [way, 0.1]
+        } else {
+            [way * cos, 0.1 + way * sin]
+        }
+    });
+    Remembered {
+        track,
+        distance: 0.01 + angle.abs(),
     }
 }
 
@@ -62,6 +84,10 @@ fn training(steps: u64) -> ProposalTraining {
         steps,
         batch: 32,
         learning_rate: 4e-3,
+        memory: MemoryTraining {
+            steps: MEMORY_STEPS,
+            ..MemoryTraining::default()
+        },
         ..ProposalTraining::default()
     }
 }
@@ -89,7 +115,8 @@ fn trained(steps: u64) -> TorchProposals {
     while !trainer.is_finished() {
         trainer.step().unwrap();
     }
-    assert_eq!(trainer.steps(), (steps, steps));
+    let all = steps + MEMORY_STEPS;
+    assert_eq!(trainer.steps(), (all, all));
     trainer.into_network().unwrap()
 }
 
@@ -112,6 +139,57 @@ fn it_learns_where_walkers_go_on_a_fork() {
 }
 
 #[test]
+fn what_earlier_pedestrians_did_decides_and_the_rest_of_the_network_stays() {
+    // All are seen walking alike; where they turn, earlier ones have turned.
+    let angle = |i: i32| f64::from(i % 2 * 2 - 1) * TAU / 6.0;
+    let examples: Vec<ProposalExample> = (0..60)
+        .map(|i| {
+            let mut view = view(1.0, 0);
+            view.remembered = vec![earlier(angle(i))];
+            let track = earlier(angle(i)).track;
+            let future = std::array::from_fn(|t| [track[t + 8][0], track[t + 8][1] - 0.1]);
+            ProposalExample { view, future }
+        })
+        .collect();
+    let config = ProposalConfig { ends: 1, ..small() };
+    let with_memory = |steps: u64| {
+        let network = TorchProposals::new(config.clone(), 3, device()).unwrap();
+        let mut training = training(60);
+        training.memory.steps = steps;
+        // Mirror images would be remembered mirrored: the fork is learned by the side of the earlier pedestrian.
+        let mut trainer = ProposalTrainer::new(network, &examples, &[], training).unwrap();
+        while !trainer.is_finished() {
+            trainer.step().unwrap();
+        }
+        let weights = trainer.into_network().unwrap().parameters().to_weights();
+        let plain = ProposalNetwork::new(config.clone(), 1).unwrap();
+        plain.with_weights(weights.unwrap()).unwrap()
+    };
+    let views: Vec<_> = examples.iter().map(|of| of.view.clone()).collect();
+    // One end of each member from the observation alone, then one of each memory branch.
+    let error = |network: &ProposalNetwork, which: std::ops::Range<usize>| {
+        let proposed = network.propose(&views).unwrap();
+        let off = |(proposed, example): (&ProposedEnds, &ProposalExample)| {
+            let [x, y] = example.future[11];
+            let ends = proposed.ends[which.clone()].iter();
+            let off = ends.map(|end| (end[0] - x).hypot(end[1] - y));
+            off.sum::<f64>() / which.len() as f64
+        };
+        let all = proposed.iter().zip(&examples).map(off).sum::<f64>();
+        all / examples.len() as f64
+    };
+    let trained = with_memory(150);
+    let (alone, remembering) = (error(&trained, 0..2), error(&trained, 2..4));
+    assert!(
+        alone > 2.0 && remembering < 0.7,
+        "{alone:.2} m alone, {remembering:.2} m with memory"
+    );
+    let strangers: Vec<_> = (0..3).map(|i| view(0.7 * f64::from(i), 2)).collect();
+    let proposed = |network: &ProposalNetwork| network.propose(&strangers).unwrap();
+    assert_eq!(proposed(&trained), proposed(&with_memory(1)));
+}
+
+#[test]
 fn plain_numbers_propose_what_libtorch_proposes() {
     let mut views: Vec<PedestrianView> = (0..70_u8)
         .map(|i| view(0.03 * f64::from(i), usize::from(i % 11)))
@@ -119,6 +197,10 @@ fn plain_numbers_propose_what_libtorch_proposes() {
     views[5].neighbours.push([[40.0, 3.0]; 8]);
     views[6].neighbours = vec![[[40.0, 3.0]; 8]];
     views[7].neighbours = vec![views[7].own];
+    // More than are looked at, and fewer; some remember nothing.
+    for (i, view) in (0_u8..).zip(&mut views) {
+        view.remembered = (0..i % 15).map(|j| earlier(0.2 * f64::from(j))).collect();
+    }
     for torch in [network(), trained(20)] {
         let weights = torch.parameters().to_weights().unwrap();
         let plain = ProposalNetwork::new(small(), 1).unwrap();
@@ -133,7 +215,12 @@ fn plain_numbers_propose_what_libtorch_proposes() {
                 [proposed.ends.as_flattened(), &proposed.weights].concat()
             };
             let (ours, known) = (numbers(ours), numbers(known));
-            assert_eq!((ours.len(), known.len()), (36, 36));
+            let numbers = if views[i].remembered.is_empty() {
+                36
+            } else {
+                72
+            };
+            assert_eq!((ours.len(), known.len()), (numbers, numbers));
             for (ours, known) in ours.into_iter().zip(known) {
                 assert!((ours - known).abs() < 1e-5, "view {i}: {ours} {known}");
             }
@@ -146,22 +233,23 @@ fn a_resumed_training_ends_with_the_same_weights() {
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("state.safetensors");
     let begin = || ProposalTrainer::new(network(), &examples(), &[], training(12)).unwrap();
-    let mut first = begin();
-    for _ in 0..5 {
-        first.step().unwrap();
-    }
-    first.save(&Origin::default(), &state).unwrap();
-    let mut second = begin();
-    second.resume(&Origin::default(), &state).unwrap();
-    assert_eq!(second.steps(), (5, 12));
-    while !second.is_finished() {
-        second.step().unwrap();
-    }
     let weights = |network: TorchProposals| network.parameters().to_weights().unwrap();
-    assert_eq!(
-        weights(second.into_network().unwrap()),
-        weights(trained(12))
-    );
+    let whole = weights(trained(12));
+    // Before, at the end of and after what is learned from the observation alone.
+    for done in [5, 12, 15] {
+        let mut first = begin();
+        for _ in 0..done {
+            first.step().unwrap();
+        }
+        first.save(&Origin::default(), &state).unwrap();
+        let mut second = begin();
+        second.resume(&Origin::default(), &state).unwrap();
+        assert_eq!(second.steps(), (done, 12 + MEMORY_STEPS));
+        while !second.is_finished() {
+            second.step().unwrap();
+        }
+        assert_eq!(weights(second.into_network().unwrap()), whole, "{done}");
+    }
 
     let bytes = std::fs::read(&state).unwrap();
     std::fs::write(&state, &bytes[..bytes.len() / 2]).unwrap();
@@ -184,7 +272,7 @@ fn what_cannot_be_learned_from_is_refused() {
         matches!(error, StarError::ProposalNonFinite { step: 0, .. }),
         "{error}"
     );
-    assert_eq!(trainer.steps(), (0, 5));
+    assert_eq!(trainer.steps(), (0, 5 + MEMORY_STEPS));
     assert!(error.to_string().contains("of the examples"), "{error}");
 
     // The sound ones before them are not blamed.

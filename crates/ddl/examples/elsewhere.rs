@@ -42,7 +42,8 @@ a disc of the same area as the region of 90 % at 4.8 s, metres. *Certified*: sha
 arrival included. *Familiarity*: mean; 0.5 where motions are as ordinary as in training. *Faster than 3 m/s*: number of pedestrian-windows whose mean
 observed speed is above 3 m/s; minADE of the model and of straight lines on these.
 
-A region holds its share on average over places like those that it was calibrated on. In a single recording it holds more or less, as the tables by recording show. Familiarity
+A region as it was calibrated, which these are, holds its share on average over places like those that it was calibrated on. In a single recording it holds more or less, as
+the tables by recording show; [regions that follow a place](regions.md) come to hold it there too. Familiarity
 tells of single motions; it does not rank recordings by their errors.
 
 *dut*: pedestrians beside a vehicle, filmed from above (Yang et al., *Top-view trajectories*, IV 2019). *edinburgh*: a forum filmed from above (Majecka, *Statistical models

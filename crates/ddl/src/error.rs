@@ -9,6 +9,13 @@ pub enum DdlError {
     Data(#[from] ddl_data::DataError),
     #[error(transparent)]
     Live(#[from] ddl_data::LiveError),
+    #[error(
+        "the memory has {memory} raw frames in a step of 0.4 s, the tracks {camera}: use a memory that was made at this rate, or \
+         an empty one"
+    )]
+    MemoryFrameStep { camera: i64, memory: i64 },
+    #[error(transparent)]
+    Memory(#[from] ddl_memory::MemoryError),
     #[error(transparent)]
     Goal(#[from] ddl_goal::GoalError),
     #[error(transparent)]

@@ -6,3 +6,4 @@ pub(crate) mod live;
 pub(crate) mod name;
 pub(crate) mod shaped;
 pub(crate) mod walk;
+pub(crate) mod watched_place;

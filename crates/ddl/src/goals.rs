@@ -4,5 +4,6 @@ pub(crate) mod experts;
 pub(crate) mod model;
 pub(crate) mod reach;
 pub(crate) mod recipe;
+pub(crate) mod remembering;
 pub(crate) mod sets;
 pub(crate) mod views;

@@ -11,6 +11,7 @@ pub mod live_tracks;
 pub mod model_files;
 pub mod own_tracks;
 pub mod report;
+pub mod scene_memory;
 pub mod stream;
 pub mod tracks;
 
@@ -18,7 +19,7 @@ pub mod tracks;
 pub type Reader = (&'static str, fn(&[u8]));
 
 /// The readers that need no libtorch.
-pub const READERS: [Reader; 20] = [
+pub const READERS: [Reader; 21] = [
     ("table", tracks::table),
     ("star_csv", tracks::star_csv),
     ("social_gan", tracks::social_gan),
@@ -34,6 +35,7 @@ pub const READERS: [Reader; 20] = [
     ("report", report::read),
     ("moments", report::read_moments),
     ("goal_library", goal_library::read),
+    ("scene_memory", scene_memory::read),
     ("packed_model", model_files::packed_model::read),
     ("run_config", model_files::json::read_run_config),
     ("metrics", model_files::json::read_metrics),

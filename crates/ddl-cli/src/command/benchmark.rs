@@ -62,13 +62,13 @@ pub(crate) struct Benchmark {
         default_value = "full"
     )]
     variants: Vec<String>,
-    /// Protocols to score under: published, fair, single; with published every model is trained by the paper's recipe, without
+    /// Protocols to score under: published, fair, single, online, online-single; with published every model is trained by the paper's recipe, without
     /// it by the recommended one, and the last epoch alone is kept
     #[arg(
         long = "protocol",
         value_delimiter = ',',
         value_name = "NAMES",
-        default_value = "fair,single"
+        default_value = "fair,single,online,online-single"
     )]
     protocols: Vec<Protocol>,
     /// Seeds; the report gives means and standard deviations over them
@@ -200,6 +200,12 @@ impl Benchmark {
         } else {
             Recipe::Recommended
         };
+        if name == Recipe::Published && protocols.iter().any(|protocol| protocol.shows_past()) {
+            bail!(
+                "the protocol published measures the paper's recipe, whose models remember nothing of a place: measure online \
+                 and online-single without it"
+            );
+        }
         let work = self.profile.work(name);
         let known: Vec<&str> = convention.fold_names().collect();
         let folds: Vec<String> = if self.folds.is_empty() {

@@ -1,3 +1,5 @@
+mod place_memory;
+
 use super::Telling;
 use crate::clock::Clock;
 use crate::telling::tell;
@@ -6,6 +8,7 @@ use crate::{output, recordings};
 use clap::Args;
 use ddl::BuiltinModel;
 use ddl::data::{Recording, Summary, WindowRule};
+use place_memory::{MemoryPicture, PlaceMemory};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -16,15 +19,21 @@ use std::path::{Path, PathBuf};
 /// How many pedestrians, for how long, how fast; how many pedestrian-windows can be forecast, and from how many a model can learn: a pedestrian counts
 /// once in every window.
 /// Files that cannot be read are named on standard error, and the others told of all the same (exit code 1).
+/// Of the memory of a place, which `ddl forecast - --memory` writes, it tells what was seen there.
 #[derive(Debug, Args)]
 #[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
-#[command(after_help = "Examples:\n  ddl data tracks.csv\n  ddl data recordings --fps 25 --json")]
+#[command(
+    after_help = "Examples:\n  ddl data tracks.csv\n  ddl data recordings --fps 25 --json\n  \
+        ddl data hall.memory --svg hall.svg"
+)]
 pub(crate) struct Data {
-    /// Files of tracks, in any format that `ddl forecast` reads, or folders of such files
+    /// Files of tracks, in any format that `ddl forecast` reads, or folders of such files; or memories of places
     #[arg(value_name = "TRACKS", required = true)]
     paths: Vec<PathBuf>,
     #[command(flatten)]
     units: Units,
+    #[command(flatten)]
+    picture: MemoryPicture,
     #[command(flatten)]
     telling: Telling,
 }
@@ -32,7 +41,16 @@ pub(crate) struct Data {
 impl Data {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         let files = recordings::files(&self.paths, &self.units)?;
-        let (read, errors) = recordings::read_each(&files, &self.units);
+        let (memories, of_tracks): (Vec<PathBuf>, _) = files
+            .iter()
+            .cloned()
+            .partition(|file| place_memory::is_in(file));
+        let (memories, not_memories) = place_memory::read_each(memories);
+        let (read, mut errors) = recordings::read_each(&of_tracks, &self.units);
+        errors.extend(not_memories);
+        if errors.is_empty() {
+            self.picture.draw(&memories)?;
+        }
         recordings::tell_notes(read.iter().map(|(_, in_steps)| in_steps));
         let summaries = read
             .iter()
@@ -46,11 +64,17 @@ impl Data {
             total.add(&summary);
         }
         if self.telling.json {
-            output::print_json(&json!({"recordings": of_each, "total": total}))?;
+            let of_memories: Vec<Value> = memories.iter().map(PlaceMemory::facts).collect();
+            output::print_json(
+                &json!({"recordings": of_each, "memories": of_memories, "total": total}),
+            )?;
             return recordings::all_read(errors, files.len());
         }
         if total.recordings > 1 {
             writeln!(text, "{total}")?;
+        }
+        for memory in &memories {
+            writeln!(text, "{memory}")?;
         }
         output::print(&text)?;
         warn_of_unfamiliar(read.iter().map(|(_, in_steps)| &in_steps.recording))?;

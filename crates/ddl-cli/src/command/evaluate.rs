@@ -33,7 +33,7 @@ pub(crate) struct Evaluate {
     other: OtherProgram,
     #[command(flatten)]
     recordings: RecordingsAt,
-    /// published, fair or single; may be repeated
+    /// published, fair, single, online or online-single; may be repeated
     #[arg(long = "protocol", default_values = ["fair", "single"])]
     protocols: Vec<Protocol>,
     /// Measure on the validation part of the training recordings instead of the test scene; of own recordings that the model does not know, on what

@@ -1,4 +1,5 @@
 mod json_lines;
+mod kept_memory;
 mod live;
 mod table;
 
@@ -11,6 +12,7 @@ use anyhow::bail;
 use clap::{Args, ValueEnum};
 use ddl::data::{HORIZON, OBSERVED, Window};
 use ddl::dynamics::LyapunovCertificate;
+use ddl::eval::AdaptiveRegions;
 use ddl::{Calibration, CertifiedForecast, Ddl, Forecaster as _};
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -22,6 +24,7 @@ use std::path::PathBuf;
         ddl forecast tracks.csv --output forecasts.csv\n  \
         ddl forecast camera.csv --fps 25 --homography H.txt --last\n  \
         tracker | ddl forecast - --fps 10 --one --format jsonl\n  \
+        tracker | ddl forecast - --fps 10 --memory hall.memory\n  \
         ddl forecast --model runs/eth tracks.csv --last --format jsonl --certificate")]
 pub(crate) struct Forecast {
     #[command(flatten)]
@@ -37,6 +40,12 @@ pub(crate) struct Forecast {
     /// One forecast a pedestrian instead of 20: to one central goal that sums up the 20
     #[arg(long)]
     one: bool,
+    /// With `-`: the file of what was seen in this place, which forecasts learn from; made where there is none, and written every minute and at the end
+    ///
+    /// Name a file for each camera. A memory of another place is found out by the first 30 pedestrians: it is left as it is, and forecasts go on without it.
+    /// `ddl data FILE` tells what it holds.
+    #[arg(long, value_name = "FILE")]
+    memory: Option<PathBuf>,
     /// Attach to every hypothesis the evidence that it comes nearer to its goal at every step
     ///
     /// A certificate holds when the distance to the goal falls at every one of the 12 steps, along a
@@ -48,8 +57,9 @@ pub(crate) struct Forecast {
     certificate: bool,
     /// Regions that hold the pedestrian with these probabilities at each step, such as 0.5,0.9: discs about the hypotheses
     ///
-    /// csv: a column of radii (metres) for each, empty where a hypothesis has no disc; jsonl: the discs of each step. They hold on average over
-    /// places like those they were calibrated on; in a single new recording they hold more or less (docs/elsewhere.md).
+    /// csv: a column of radii (metres) for each, empty where a hypothesis has no disc; jsonl: the discs of each step. The first were calibrated on
+    /// other places. From frame to frame they follow what is seen, so that they hold their share in this place too (docs/regions.md); with --last
+    /// nothing was forecast before, and they are the first.
     #[arg(long, value_name = "PROBABILITIES", value_delimiter = ',', value_parser = probability, conflicts_with = "one")]
     region: Vec<f64>,
     #[command(flatten)]
@@ -71,6 +81,15 @@ const LOOKED_THROUGH: usize = 100;
 /// Bytes of a file that few expect of some tracks.
 const LARGE: usize = 50 << 20;
 
+/// What one text of forecasts leaves to the next.
+#[derive(Debug, Default)]
+struct Onward {
+    headed: bool,
+    /// Whether unfamiliar motions were warned of, which is done once.
+    warned: bool,
+    regions: AdaptiveRegions,
+}
+
 struct Moment<'a> {
     window: &'a Window,
     forecast: &'a ddl::Forecast,
@@ -85,14 +104,23 @@ impl Forecast {
         if let Some((_, twice)) = levels.find(|(i, level)| self.region[..*i].contains(level)) {
             bail!("--region names {twice} twice; name each probability once");
         }
+        if self.memory.is_some() && !self.tracks.are_live() {
+            bail!(
+                "--memory is for tracks as they come; write them to standard input: `tracker | ddl forecast - --memory FILE`"
+            );
+        }
         if self.tracks.are_live() {
             return live::run(&self);
         }
         ensure_not_input(self.output.as_deref(), self.tracks.file())?;
         let model = self.model()?;
         let observed = self.tracks.observed(model.config())?;
-        let told = (true, &mut false);
-        let text = self.text(&model, &observed.windows, observed.clock, told)?;
+        let text = self.text(
+            &model,
+            &observed.windows,
+            observed.clock,
+            &mut Onward::default(),
+        )?;
         write_output(self.output.as_deref(), &text)?;
         self.warn_of_flood(&text);
         observed.tell_what_is_made_up();
@@ -123,22 +151,24 @@ impl Forecast {
         Ok(self.clear.of(model)?)
     }
 
-    /// What is forecast from the windows, as it is written; `headed` by the names of columns where there are any. Unfamiliar motions are warned of once,
-    /// which `warned` keeps.
+    /// What is forecast from the windows, in order of time, as it is written; the first text is headed by the names of columns where there are any.
     fn text(
         &self,
         model: &Ddl,
         windows: &[Window],
         clock: Clock,
-        (headed, warned): (bool, &mut bool),
+        onward: &mut Onward,
     ) -> anyhow::Result<String> {
-        let (certified, forecasts);
+        let (mut certified, mut forecasts);
         let moments: Vec<Moment<'_>> = if self.certificate {
             certified = if self.one {
                 model.forecast_one_certified(windows)?
             } else {
                 model.forecast_certified(windows)?
             };
+            if !self.region.is_empty() {
+                certified = onward.adapted_certified(windows, certified);
+            }
             let pairs = windows.iter().zip(&certified);
             pairs.map(|pair| Moment::certified(pair, clock)).collect()
         } else {
@@ -147,11 +177,15 @@ impl Forecast {
             } else {
                 model.forecast_all(windows)?
             };
+            if !self.region.is_empty() {
+                forecasts = onward.adapted(windows, forecasts);
+            }
             let pairs = windows.iter().zip(&forecasts);
             pairs.map(|pair| Moment::plain(pair, clock)).collect()
         };
         warn_of_violation(&moments);
-        *warned = *warned || self.warn_of_unfamiliar(&moments);
+        onward.warned = onward.warned || self.warn_of_unfamiliar(&moments);
+        let headed = !std::mem::replace(&mut onward.headed, true);
         match self.format {
             OutputFormat::Csv => table::csv(&moments, headed, &self.region),
             OutputFormat::Jsonl => json_lines::json_lines(&moments, &self.region),
@@ -185,6 +219,26 @@ impl Forecast {
             moment.observed_until(),
         ));
         true
+    }
+}
+
+impl Onward {
+    fn adapted(&mut self, windows: &[Window], forecasts: Vec<ddl::Forecast>) -> Vec<ddl::Forecast> {
+        let pairs = windows.iter().zip(forecasts);
+        pairs
+            .map(|(window, forecast)| self.regions.adapt(window, forecast))
+            .collect()
+    }
+
+    fn adapted_certified(
+        &mut self,
+        windows: &[Window],
+        mut certified: Vec<CertifiedForecast>,
+    ) -> Vec<CertifiedForecast> {
+        for (window, certified) in windows.iter().zip(&mut certified) {
+            certified.forecast = self.regions.adapt(window, certified.forecast.clone());
+        }
+        certified
     }
 }
 

@@ -6,7 +6,7 @@ use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use ddl::data::{OBSERVED, PedestrianName};
 use ddl::goal::GoalSet;
-use ddl::{EvaluationSplit, GoalEvaluation};
+use ddl::{EvaluationSplit, GoalEvaluation, Remembering};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -26,6 +26,9 @@ pub(crate) struct Goals {
     /// Compare the goals with the true ends of the recordings the model was trained without, or of your own (--data)
     #[arg(long, value_enum, conflicts_with_all = ["file", "last", "whole"])]
     measure: Option<Measure>,
+    /// Measure with what is remembered of the place
+    #[arg(long, value_enum, requires = "measure")]
+    memory: Option<Memory>,
     /// Recordings to measure on: the folder of those that the model is of, or your own, a folder or a file [default: `$DDL_DATASETS`, then
     /// `datasets/eth_ucy`]
     #[arg(long)]
@@ -48,6 +51,14 @@ enum Measure {
     Test,
     /// What was kept for validation
     Validation,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Memory {
+    /// Training recordings of the same place, whether they have been confirmed to help or not
+    Place,
+    /// The recording until then, as in the protocol `online`
+    Online,
 }
 
 #[derive(Serialize)]
@@ -103,7 +114,11 @@ impl Goals {
             Measure::Test => EvaluationSplit::Test,
             Measure::Validation => EvaluationSplit::Validation,
         };
-        let measured = ddl::evaluate_goals(&model, &dataset, on)?;
+        let memory = self.memory.map(|memory| match memory {
+            Memory::Place => Remembering::Place,
+            Memory::Online => Remembering::Online,
+        });
+        let measured = ddl::evaluate_goals(&model, &dataset, (on, memory))?;
         if let Some(path) = &self.svg {
             write_output(Some(path), &ddl::goal_picture(&model, &measured)?)?;
         }

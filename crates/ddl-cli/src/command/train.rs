@@ -328,7 +328,10 @@ impl Train {
                     GoalRecipe::proposed(self.seed)
                 };
                 if let (Some(proposal), Some(steps)) = (&mut recipe.proposal, steps) {
-                    proposal.training.steps = steps;
+                    let training = &mut proposal.training;
+                    let memory = training.memory.steps as f64 / training.steps as f64;
+                    training.memory.steps = (memory * steps as f64).ceil() as u64;
+                    training.steps = steps;
                 }
                 Ok(recipe)
             }

@@ -1,8 +1,8 @@
 //! Laws of windows, neighbours and rotations, on made-up recordings.
 
 use ddl_data::{
-    NeighbourMask, OBSERVED, Observation, PedestrianId, Position, Recording, Rotation, Window,
-    WindowError, WindowRule,
+    NeighbourMask, OBSERVED, Observation, PedestrianId, Position, Recording, Remembered, Rotation,
+    Window, WindowError, WindowRule,
 };
 use proptest::prelude::*;
 
@@ -218,4 +218,30 @@ fn rules_are_read_by_name() {
         let error = word.parse::<WindowRule>().unwrap_err().to_string();
         assert!(error.contains("social-gan-1"), "{error}");
     }
+}
+
+#[test]
+fn what_is_remembered_stays_with_its_pedestrian() {
+    let tracks = (0..3).map(|i| vec![[f64::from(i), 0.0]; 20]).collect();
+    let ids = (1..4).map(PedestrianId).collect();
+    let remembered = |i: usize| Remembered {
+        track: [[i as f64, 1.0]; 20],
+        distance: i as f64,
+    };
+    let window = Window::new("yard", 0, 10, ids, tracks).unwrap();
+    assert!((0..3).all(|i| window.remembered(i).is_empty()));
+    let remembering = window
+        .clone()
+        .with_remembered(|i| (0..i).map(|_| remembered(i)).collect());
+    assert_eq!(remembering.remembered(2), [remembered(2); 2]);
+    assert_eq!(
+        remembering.without_future().remembered(2),
+        [remembered(2); 2]
+    );
+    let kept = remembering.keeping(|i| i != 1).unwrap();
+    assert_eq!(kept.remembered(0), []);
+    assert_eq!(kept.remembered(1), [remembered(2); 2]);
+    // It was the past.
+    assert_eq!(remembering.reversed(), window.reversed());
+    assert_eq!(remembering.with_remembered(|_| Vec::new()), window);
 }

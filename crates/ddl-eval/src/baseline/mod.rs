@@ -12,7 +12,7 @@ pub use constant_velocity::ConstantVelocity;
 pub use social_force::SocialForce;
 pub use straight_line::{GoalSource, StraightLine, TrueEnd, WeightedGoals};
 
-use crate::{Conditions, Forecaster, MeasureError, Protocol, ResultRow};
+use crate::{Conditions, Forecaster, MeasureError, ResultRow};
 
 /// Seed of the baseline with angular noise: the same everywhere, so that its rows agree.
 pub const NOISE_SEED: u64 = 1;
@@ -56,7 +56,7 @@ pub(crate) fn measure_among(
         row(&ConstantVelocity::last_step(), None)?,
         row(&ConstantVelocity::mean_observed(), None)?,
     ];
-    if conditions.protocol != Protocol::Single {
+    if conditions.protocol.hypotheses() > 1 {
         rows.push(row(
             &ConstantVelocity::angular_noise(noise_seed),
             Some(noise_seed),
@@ -73,6 +73,7 @@ pub(crate) fn measure_among(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Protocol;
     use crate::fixture::walking;
     use ddl_data::{Convention, WindowRule};
 

@@ -2,11 +2,13 @@
 #![allow(unreachable_pub, reason = "a module of several tests")]
 
 use ddl_data::{PedestrianId, Position};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
 
 pub type People = Vec<(PedestrianId, Position)>;
 
 pub struct Crowd {
-    state: u64,
+    rng: ChaCha8Rng,
     next_id: i64,
     walkers: Vec<Walker>,
 }
@@ -22,7 +24,7 @@ struct Walker {
 impl Crowd {
     pub fn new(seed: u64, people: usize) -> Self {
         let mut crowd = Self {
-            state: seed,
+            rng: ChaCha8Rng::seed_from_u64(seed),
             next_id: 0,
             walkers: Vec::new(),
         };
@@ -34,13 +36,9 @@ impl Crowd {
         crowd
     }
 
-    /// In 0..1 (Steele et al., Fast splittable pseudorandom number generators, 2014).
+    /// In 0..1.
     pub fn random(&mut self) -> f64 {
-        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        self.rng.random()
     }
 
     fn walker(&mut self) -> Walker {

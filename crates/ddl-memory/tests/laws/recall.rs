@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::{Frames, memory_of, queries, step_of};
-use ddl_data::{OBSERVED, PedestrianId, Position, WINDOW};
-use ddl_memory::{FARTHEST, LONGEST_ABSENCE, Recalled, SceneMemory};
+use ddl_data::{OBSERVED, PedestrianId, Position, Remembered, WINDOW};
+use ddl_memory::{FARTHEST, LONGEST_ABSENCE, SceneMemory};
 use proptest::prelude::*;
 
 type Stretch = [Position; WINDOW];
@@ -73,13 +73,9 @@ fn is_near(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-4 * (1.0 + a.abs())
 }
 
-fn is_alike(a: &Recalled, b: &Recalled) -> bool {
-    let pairs = a.examples.iter().zip(&b.examples);
-    a.examples.len() == b.examples.len()
-        && is_near(a.support, b.support)
-        && pairs
-            .into_iter()
-            .all(|(a, b)| is_near(a.distance, b.distance))
+fn is_alike(a: &[Remembered], b: &[Remembered]) -> bool {
+    let mut pairs = a.iter().zip(b);
+    a.len() == b.len() && pairs.all(|(a, b)| is_near(a.distance, b.distance))
 }
 
 proptest! {
@@ -94,10 +90,8 @@ proptest! {
             for own in [Some(id), None, Some(PedestrianId(-1))] {
                 let expected = reference(&frames, &observed, own);
                 let found = memory.recall(&observed, own, count);
-                prop_assert_eq!(found.examples.len(), expected.len().min(count));
-                let support: f64 = expected.iter().map(|d| (-d / 2.0).exp()).sum();
-                prop_assert!(is_near(found.support, support), "{} {}", found.support, support);
-                for (example, expected) in found.examples.iter().zip(expected) {
+                prop_assert_eq!(found.len(), expected.len().min(count));
+                for (example, expected) in found.iter().zip(expected) {
                     prop_assert!(is_near(example.distance, expected));
                     prop_assert!(is_near(distance(&example.track, &observed), expected));
                     prop_assert!(all.contains(&example.track));
@@ -150,16 +144,39 @@ fn only_the_running_track_is_left_out() {
     }
     let observed: [Position; OBSERVED] = std::array::from_fn(|t| at(t as i64 + 1));
     let recalled = memory.recall(&observed, Some(PedestrianId(3)), 12);
-    assert_eq!(recalled.examples.len(), 4);
-    assert!((recalled.support - 4.0).abs() < 1e-9);
-    for example in &recalled.examples {
+    assert_eq!(recalled.len(), 4);
+    for example in &recalled {
         assert_eq!(example.track, std::array::from_fn(|t| at(t as i64 + 1)));
     }
-    assert_eq!(memory.recall(&observed, None, 12).examples.len(), 5);
-    let support = memory.recall(&observed, None, 0).support;
-    assert!((support - 5.0).abs() < 1e-9);
+    assert_eq!(memory.recall(&observed, None, 12).len(), 5);
+    assert!(memory.recall(&observed, None, 0).is_empty());
     let unlike = memory.recall(&[[f64::NAN, 0.0]; OBSERVED], None, 12);
-    assert_eq!((unlike.examples.len(), unlike.support), (0, 0.0));
+    assert!(unlike.is_empty());
+}
+
+/// A tracker whose origin is corrected while somebody walks: before and after, as exact as anywhere.
+#[test]
+fn a_jump_of_the_tracker_costs_no_precision() {
+    for far in [40.0, 5e3, 9.9e6] {
+        let mut memory = SceneMemory::new(1, 1_000).unwrap();
+        let at = |t: usize| [0.5 * t as f64 + if t < 23 { 0.0 } else { far }, 0.0];
+        for t in 0..60 {
+            memory
+                .observe(t as i64, [(PedestrianId(1), at(t))])
+                .unwrap();
+        }
+        assert_eq!(memory.stretches(), 41);
+        for first in (0..41).filter(|first| !(14..24).contains(first)) {
+            let observed = std::array::from_fn(|t| [at(first + t)[0] + 1e-3, 0.0]);
+            let found = memory.recall(&observed, None, 1)[0];
+            assert_eq!(found.track, std::array::from_fn(|t| at(first + t)));
+            assert!(
+                (found.distance - 1e-6).abs() < 1e-7,
+                "{far} {first} {}",
+                found.distance
+            );
+        }
+    }
 }
 
 /// Two who walked a millimetre to the left and to the right of the one who asks.
@@ -174,7 +191,7 @@ fn ties_go_by_age() {
     }
     let observed = std::array::from_fn(|t| [0.5 * t as f64, 0.0]);
     let sides = |count| {
-        let examples = memory.recall(&observed, None, count).examples;
+        let examples = memory.recall(&observed, None, count);
         let sides = examples.iter().map(|example| example.track[0][1] > 0.0);
         sides.collect::<Vec<bool>>()
     };
@@ -196,4 +213,37 @@ fn frames_between_steps_give_no_stretches() {
     assert_eq!([seen(214..304), seen(304..404), seen(404..405)], [2, 2, 3]);
     assert_eq!(memory.summary().pedestrians, 1);
     assert!((memory.summary().seconds - 16.04).abs() < 1e-9);
+    // Every third frame: none of them are a step apart.
+    let mut memory = SceneMemory::new(10, 1_000).unwrap();
+    for frame in (0..600).step_by(3) {
+        memory
+            .observe(frame, [(PedestrianId(1), [0.0; 2])])
+            .unwrap();
+    }
+    let summary = memory.summary();
+    assert_eq!(
+        (summary.frames, summary.pedestrians, summary.stretches),
+        (200, 1, 0)
+    );
+}
+
+/// The held positions of everybody, each once, a hole left out; those without a stretch not at all.
+#[test]
+fn tracks_are_the_positions_held() {
+    let mut memory = SceneMemory::new(1, 1_000).unwrap();
+    let at = |t: i64| [0.5 * t as f64, 0.0];
+    for t in 0..70 {
+        let third = (t > 60).then_some((PedestrianId(3), [1.0; 2]));
+        let second = (t < 25).then_some((PedestrianId(2), [0.5 * t as f64, 3.0]));
+        let first = (t != 47).then_some((PedestrianId(1), at(t)));
+        memory
+            .observe(t, [first, second, third].into_iter().flatten())
+            .unwrap();
+    }
+    let tracks: Vec<Vec<Position>> = memory.tracks().collect();
+    let second: Vec<Position> = (0..25).map(|t| [at(t)[0], 3.0]).collect();
+    assert_eq!(
+        tracks,
+        [second, (0..70).filter(|t| *t != 47).map(at).collect()]
+    );
 }

@@ -1,6 +1,6 @@
 //! What is refused leaves the memory as it was.
 
-use ddl_data::PedestrianId;
+use ddl_data::{LiveError, LiveTracks, PedestrianId};
 use ddl_memory::{MemoryError, SceneMemory};
 
 #[test]
@@ -13,7 +13,7 @@ fn errors_change_nothing() {
         let other = (PedestrianId(1), here);
         for (frame, people, problem) in [
             (last, vec![], "comes after frame"),
-            (last - 1, vec![other], "call `interrupt`"),
+            (last - 1, vec![other], "interrupt the memory"),
             (i64::MIN, vec![other], "not below 2^53"),
             (1 << 53, vec![], "not below 2^53"),
             (
@@ -27,11 +27,6 @@ fn errors_change_nothing() {
                 vec![other, (id, [0.0, f64::INFINITY])],
                 "not finite",
             ),
-            (
-                last + 6,
-                vec![other, (id, [0.0, -1.1e7])],
-                "use coordinates relative to a nearer origin",
-            ),
         ] {
             let error = memory.observe(frame, people).unwrap_err().to_string();
             assert!(error.contains(problem), "{error}");
@@ -42,11 +37,38 @@ fn errors_change_nothing() {
     memory.observe((1 << 53) - 1, [(id, [1e7, -1e7])]).unwrap();
 }
 
+/// A live forecast must not fail because of the memory.
+#[test]
+fn what_live_tracks_take_is_taken() {
+    let mut memory = SceneMemory::new(1, 200).unwrap();
+    let mut tracks = LiveTracks::new();
+    let far = [1.1e7, -1e16, f64::MAX, f64::MIN];
+    for frame in 0..100 {
+        let x = match frame {
+            30 | 60.. => far[frame as usize % 4],
+            _ => 0.4 * frame as f64,
+        };
+        let people = [
+            (PedestrianId(1), [x, 0.0]),
+            (PedestrianId(2), [0.0, frame as f64]),
+        ];
+        tracks.push(frame, people).unwrap();
+        memory.observe(frame, people).unwrap();
+    }
+    // Of the first pedestrian frames 0 to 29 and 31 to 59.
+    assert_eq!(memory.summary().extent, Some([[0.0, 0.0], [23.6, 99.0]]));
+    let observed = std::array::from_fn(|t| [0.4 * t as f64, 0.0]);
+    assert!(memory.recall(&observed, None, 2)[0].distance < 1e-9);
+    assert!(memory.recall(&[[f64::MAX, 0.0]; 8], None, 2).is_empty());
+}
+
 #[test]
 fn a_memory_needs_a_step_and_a_capacity() {
     for step in [0, -1, (1 << 31) + 1, i64::MIN] {
         let error = SceneMemory::new(step, 1);
-        assert!(matches!(error, Err(MemoryError::FrameStep { found }) if found == step));
+        assert!(
+            matches!(error, Err(MemoryError::Frame(LiveError::FrameStep { found })) if found == step)
+        );
     }
     for capacity in [0, (1 << 18) + 1, usize::MAX] {
         let error = SceneMemory::new(1, capacity);

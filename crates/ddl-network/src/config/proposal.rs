@@ -1,5 +1,6 @@
 //! Shape of the proposal network, and how it is trained.
 
+use super::memory::{MemoryConfig, MemoryTraining};
 use super::range::{at_least_one, not_negative, positive, require};
 use crate::NetworkError;
 use serde::{Deserialize, Serialize};
@@ -26,6 +27,9 @@ pub struct ProposalConfig {
     pub neighbour_range: f64,
     /// Seconds between two positions.
     pub time_step: f64,
+    /// The part that looks at earlier pedestrians of the place; `None` without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub memory: Option<MemoryConfig>,
 }
 
 impl Default for ProposalConfig {
@@ -40,6 +44,7 @@ impl Default for ProposalConfig {
             neighbours: 8,
             neighbour_range: 6.0,
             time_step: 0.4,
+            memory: Some(MemoryConfig::default()),
         }
     }
 }
@@ -52,9 +57,14 @@ impl ProposalConfig {
     pub fn least_numbers(&self) -> u64 {
         let [members, ends, width, near] =
             [self.members, self.ends, self.width, self.neighbour_width].map(|size| size as u64);
-        let layers = self.layers as u64;
         // hidden layers, attention, and for each end a place, three waypoints and a probability
-        members * (layers * width * width + near * (3 * near + width) + 9 * width * ends)
+        let part = |layers: usize, hidden: u64, near: u64| {
+            let layers = width * hidden + (layers as u64 - 1) * hidden * hidden;
+            layers + near * (3 * near + width) + 9 * hidden * ends
+        };
+        let of_memory =
+            |memory: &MemoryConfig| part(memory.layers, memory.hidden as u64, memory.width as u64);
+        members * (part(self.layers, width, near) + self.memory.as_ref().map_or(0, of_memory))
     }
 
     /// Checks every field.
@@ -84,7 +94,8 @@ impl ProposalConfig {
             "a divisor of neighbour_width",
         )?;
         not_negative("neighbour_range", self.neighbour_range)?;
-        positive("time_step", self.time_step)
+        positive("time_step", self.time_step)?;
+        self.memory.as_ref().map_or(Ok(()), MemoryConfig::check)
     }
 }
 
@@ -124,6 +135,9 @@ pub struct ProposalTraining {
     pub reversed: f64,
     /// Seed of initial weights, batches and augmentation.
     pub seed: u64,
+    /// How the memory branch is trained, in a network that has one.
+    #[serde(default)]
+    pub memory: MemoryTraining,
 }
 
 impl Default for ProposalTraining {
@@ -144,6 +158,7 @@ impl Default for ProposalTraining {
             blindness: 0.3,
             reversed: 0.3,
             seed: 1,
+            memory: MemoryTraining::default(),
         }
     }
 }
@@ -173,12 +188,13 @@ impl ProposalTraining {
         not_negative("scale", self.scale)?;
         not_negative("turn", self.turn)?;
         not_negative("jitter", self.jitter)?;
-        not_negative("neighbour_jitter", self.neighbour_jitter)
+        not_negative("neighbour_jitter", self.neighbour_jitter)?;
+        self.memory.check()
     }
 
-    /// How many of the nearest ends share the loss of a step, a fraction counting for the last.
-    pub fn relaxed_at(&self, step: u64) -> f64 {
-        let done = step as f64 / self.steps as f64;
+    /// How many of the nearest ends share the loss of a step of so many, a fraction counting for the last.
+    pub fn relaxed_at(&self, step: u64, steps: u64) -> f64 {
+        let done = step as f64 / steps as f64;
         let left = if self.relaxed_share > 0.0 {
             (1.0 - done / self.relaxed_share).max(0.0)
         } else {
@@ -195,8 +211,8 @@ mod tests {
     #[test]
     fn the_winner_takes_all_in_the_end() {
         let training = ProposalTraining::default();
-        assert!((training.relaxed_at(0) - 10.0).abs() < 1e-12);
-        assert!((training.relaxed_at(450) - 5.5).abs() < 1e-12);
-        assert!((training.relaxed_at(1499) - 1.0).abs() < 1e-12);
+        assert!((training.relaxed_at(0, 1500) - 10.0).abs() < 1e-12);
+        assert!((training.relaxed_at(450, 1500) - 5.5).abs() < 1e-12);
+        assert!((training.relaxed_at(1499, 1500) - 1.0).abs() < 1e-12);
     }
 }

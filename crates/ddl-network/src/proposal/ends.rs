@@ -2,7 +2,7 @@
 
 use crate::weights::Weights;
 use crate::{NetworkError, ProposalConfig};
-use ddl_data::{HORIZON, OBSERVED, Position};
+use ddl_data::{HORIZON, OBSERVED, Position, Remembered};
 use std::fmt::Debug;
 
 /// Ends lie within a few metres of where the present velocity leads: the unit of the last layer (m).
@@ -16,6 +16,8 @@ pub struct PedestrianView {
     pub own: [Position; OBSERVED],
     /// Others in the scene, nearest first at the last observed step; any number of them.
     pub neighbours: Vec<[Position; OBSERVED]>,
+    /// What earlier pedestrians of the place did who had moved like this one, the most alike first; any number of them.
+    pub remembered: Vec<Remembered>,
 }
 
 /// A pedestrian with its future, in the frame of the view (metres).
@@ -27,10 +29,11 @@ pub struct ProposalExample {
     pub future: [Position; HORIZON],
 }
 
-/// Ends proposed for one pedestrian, those of all members one after the other.
+/// Ends proposed for one pedestrian, those of all members one after the other, then those of all memory branches.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProposedEnds {
-    /// Ends in the pedestrian's frame (metres), members x K of them.
+    /// Ends in the pedestrian's frame (metres): members x K of them, twice as many where something is remembered and the
+    /// network has a memory branch.
     pub ends: Vec<Position>,
     /// Probability of each to be the nearest to the true end; sums to 1.
     pub weights: Vec<f64>,
@@ -50,7 +53,7 @@ pub trait ProposeEnds: Debug + Send + Sync {
     /// Proposes ends for each of the pedestrians.
     ///
     /// # Shapes
-    /// One [`ProposedEnds`] a view, in their order: `members * ends` places, in metres ahead and to the left.
+    /// One [`ProposedEnds`] a view, in their order: places in metres ahead and to the left.
     ///
     /// # Errors
     /// When the implementation fails, for want of memory for instance.

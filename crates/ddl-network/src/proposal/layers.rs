@@ -1,5 +1,6 @@
 //! The learned tensors of the proposal network.
 
+use super::remembered::REMEMBERED_FEATURES;
 use super::seen::NEIGHBOUR_FEATURES;
 use crate::ProposalConfig;
 use crate::weights::Layout;
@@ -60,20 +61,23 @@ impl MemberAffine {
     }
 }
 
-/// All affine maps of the network.
+/// Affine maps of an attention over others: neighbours, or earlier pedestrians.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ProposalLayers {
-    /// Of a pedestrian's positions and velocities.
-    pub own: MemberAffine,
-    /// Of a neighbour's features.
-    pub neighbour: [MemberAffine; 2],
-    /// What a pedestrian asks its neighbours.
+pub struct AttentionLayers {
+    /// From the features of another to its code.
+    pub code: [MemberAffine; 2],
+    /// What a pedestrian asks the others.
     pub query: MemberAffine,
-    /// What a neighbour is compared by.
+    /// What another is compared by.
     pub key: MemberAffine,
-    /// What a neighbour contributes.
+    /// What another contributes.
     pub value: MemberAffine,
-    /// Hidden layers with short cuts.
+}
+
+/// Affine maps from what is known of a pedestrian to its ends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReadoutLayers {
+    /// Hidden layers, with short cuts between those of one width.
     pub hidden: Vec<MemberAffine>,
     /// To the ends.
     pub ends: MemberAffine,
@@ -81,6 +85,73 @@ pub struct ProposalLayers {
     pub waypoints: MemberAffine,
     /// To the logarithms of the ends' probabilities.
     pub logits: MemberAffine,
+}
+
+/// All affine maps of the network.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProposalLayers {
+    /// Of a pedestrian's positions and velocities.
+    pub own: MemberAffine,
+    /// Over the neighbours.
+    pub neighbours: AttentionLayers,
+    /// From both.
+    pub readout: ReadoutLayers,
+    /// Over earlier pedestrians of the place, with what it adds to the ends, waypoints and logits of the
+    /// [`readout`](Self::readout), from whose last hidden layer it starts.
+    pub memory: Option<(AttentionLayers, ReadoutLayers)>,
+}
+
+/// Declares layers one after the other.
+struct Declaring<'a> {
+    layout: &'a mut Layout,
+    members: usize,
+    ends: usize,
+    width: usize,
+}
+
+impl Declaring<'_> {
+    fn affine(&mut self, name: &str, sizes: [usize; 2], gain: f64) -> MemberAffine {
+        MemberAffine::new(self.layout, name, self.members, sizes, gain)
+    }
+
+    fn attention(&mut self, names: [&str; 2], features: usize, near: usize) -> AttentionLayers {
+        let [code, whole] = names;
+        let width = self.width;
+        AttentionLayers {
+            code: [
+                self.affine(&format!("{code}.0"), [features, near], 1.0),
+                self.affine(&format!("{code}.1"), [near, near], 1.0),
+            ],
+            query: self.affine(&format!("{whole}query"), [width, near], 0.5),
+            key: self.affine(&format!("{whole}key"), [near, near], 0.5),
+            value: self.affine(&format!("{whole}value"), [near, near], 1.0),
+        }
+    }
+
+    /// `gains`: of ends and waypoints, and of logits.
+    fn readout(
+        &mut self,
+        name: &str,
+        (layers, width, near): (usize, usize, usize),
+        gains: [f64; 2],
+    ) -> ReadoutLayers {
+        let ends = self.ends;
+        let first = self.width + near + 1;
+        let hidden = (0..layers)
+            .map(|layer| {
+                let inputs = if layer == 0 { first } else { width };
+                self.affine(&format!("{name}hidden.{layer}"), [inputs, width], 1.0)
+            })
+            .collect();
+        let points = ends * WAYPOINTS.len() * 2;
+        let [of_places, of_logits] = gains;
+        ReadoutLayers {
+            hidden,
+            ends: self.affine(&format!("{name}ends"), [width, ends * 2], of_places),
+            waypoints: self.affine(&format!("{name}waypoints"), [width, points], of_places),
+            logits: self.affine(&format!("{name}logits"), [width, ends], of_logits),
+        }
+    }
 }
 
 impl ProposalLayers {
@@ -93,28 +164,26 @@ impl ProposalLayers {
             config.neighbour_width,
         ]
         .map(|n| n as usize);
-        let mut affine = |name: &str, inputs: usize, outputs: usize, gain: f64| {
-            MemberAffine::new(layout, name, members, [inputs, outputs], gain)
+        let mut declaring = Declaring {
+            layout,
+            members,
+            ends,
+            width,
         };
         let own_features = OBSERVED * 2 + (OBSERVED - 1) * 2;
         Self {
-            own: affine("own", own_features, width, 1.0),
-            neighbour: [
-                affine("neighbour.0", NEIGHBOUR_FEATURES, near, 1.0),
-                affine("neighbour.1", near, near, 1.0),
-            ],
-            query: affine("query", width, near, 0.5),
-            key: affine("key", near, near, 0.5),
-            value: affine("value", near, near, 1.0),
-            hidden: (0..config.layers)
-                .map(|layer| {
-                    let inputs = if layer == 0 { width + near + 1 } else { width };
-                    affine(&format!("hidden.{layer}"), inputs, width, 1.0)
-                })
-                .collect(),
-            ends: affine("ends", width, ends * 2, 0.3),
-            waypoints: affine("waypoints", width, ends * WAYPOINTS.len() * 2, 0.3),
-            logits: affine("logits", width, ends, 0.1),
+            own: declaring.affine("own", [own_features, width], 1.0),
+            neighbours: declaring.attention(["neighbour", ""], NEIGHBOUR_FEATURES, near),
+            readout: declaring.readout("", (config.layers, width, near), [0.3, 0.1]),
+            memory: config.memory.as_ref().map(|memory| {
+                let [near, hidden] = [memory.width, memory.hidden].map(|n| n as usize);
+                let names = ["memory.code", "memory."];
+                // It begins with almost the ends that are there without it.
+                (
+                    declaring.attention(names, REMEMBERED_FEATURES, near),
+                    declaring.readout("memory.", (memory.layers, hidden, near), [0.03, 0.03]),
+                )
+            }),
         }
     }
 }

@@ -9,14 +9,21 @@ pub const RECENT: usize = 3;
 /// Inputs of a neighbour: direction, nearness twice, relative and own velocity, closing speed.
 pub const NEIGHBOUR_FEATURES: usize = 9;
 
+/// Features of some others of each pedestrian.
+#[derive(Default)]
+pub(super) struct OthersRows {
+    /// How many others each pedestrian has, `[B]`.
+    pub(super) counts: Vec<usize>,
+    /// `[sum of counts, features]`.
+    pub(super) features: Vec<f32>,
+}
+
 #[derive(Default)]
 pub(super) struct SeenRows {
     /// `[B, 30]`: positions and velocities.
     pub(super) own: Vec<f32>,
-    /// How many neighbours each of them sees.
-    pub(super) counts: Vec<usize>,
-    /// `[sum of counts, 9]`.
-    pub(super) neighbours: Vec<f32>,
+    /// `[.., 9]`.
+    pub(super) neighbours: OthersRows,
     /// Where the present velocity leads by the end of the horizon, `[B]`, metres.
     pub(super) onward: Vec<Position>,
 }
@@ -24,11 +31,7 @@ pub(super) struct SeenRows {
 impl SeenRows {
     pub(super) fn of(views: &[PedestrianView], config: &ProposalConfig) -> Self {
         let time_step = config.time_step;
-        let seconds = RECENT as f64 * time_step;
-        let recent = |track: &[Position; OBSERVED]| {
-            let (now, then) = (track[OBSERVED - 1], track[OBSERVED - 1 - RECENT]);
-            [0, 1].map(|axis| (now[axis] - then[axis]) / seconds)
-        };
+        let recent = |track: &[Position]| velocity(track, OBSERVED - 1, time_step);
         let mut seen = Self::default();
         for view in views {
             let own = &view.own;
@@ -43,7 +46,8 @@ impl SeenRows {
             seen.onward
                 .push(own_velocity.map(|v| v * HORIZON as f64 * time_step));
             let here = own[OBSERVED - 1];
-            let before = seen.neighbours.len();
+            let neighbours = &mut seen.neighbours;
+            let before = neighbours.features.len();
             for neighbour in view.neighbours.iter().take(config.neighbours) {
                 let there = neighbour[OBSERVED - 1];
                 let offset = [there[0] - here[0], there[1] - here[1]];
@@ -66,11 +70,17 @@ impl SeenRows {
                     velocity[1],
                     closing,
                 ];
-                seen.neighbours.extend(features.map(|x| x as f32));
+                neighbours.features.extend(features.map(|x| x as f32));
             }
-            let rows = (seen.neighbours.len() - before) / NEIGHBOUR_FEATURES;
-            seen.counts.push(rows);
+            let rows = (neighbours.features.len() - before) / NEIGHBOUR_FEATURES;
+            neighbours.counts.push(rows);
         }
         seen
     }
+}
+
+/// Mean velocity over the [`RECENT`] steps that end at index `until` (m/s).
+pub(super) fn velocity(track: &[Position], until: usize, time_step: f64) -> Position {
+    let (now, then) = (track[until], track[until - RECENT]);
+    [0, 1].map(|axis| (now[axis] - then[axis]) / (RECENT as f64 * time_step))
 }

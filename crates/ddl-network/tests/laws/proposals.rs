@@ -1,7 +1,7 @@
 //! Proposals: what they are, what they depend on, and what they do not.
 
 use super::scenes::{WINDOWS, distance, with_threads};
-use ddl_data::{OBSERVED, Position, Window};
+use ddl_data::{OBSERVED, Position, Remembered, WINDOW, Window};
 use ddl_network::{
     PedestrianView, ProposalConfig, ProposalNetwork, ProposeEnds as _, ProposedEnds,
 };
@@ -35,6 +35,7 @@ fn seen(window: &Window, i: usize) -> PedestrianView {
     PedestrianView {
         own: relative(i),
         neighbours: others.map(relative).collect(),
+        remembered: Vec::new(),
     }
 }
 
@@ -45,6 +46,9 @@ static VIEWS: LazyLock<Vec<PedestrianView>> = LazyLock::new(|| {
         .flat_map(|window| (0..window.len()).map(|i| seen(window, i)))
         .collect();
     views.extend([0.0, 1.0, 1.6].map(|speed| view(speed, 0)));
+    for (i, view) in views.iter_mut().enumerate() {
+        view.remembered = (0..i % 15).map(|j| earlier(0.3 * j as f64)).collect();
+    }
     assert!(views.len() > 100);
     views
 });
@@ -59,6 +63,16 @@ fn view(speed: f64, neighbours: usize) -> PedestrianView {
         neighbours: (0..neighbours)
             .map(|j| walk(-0.8, 2.0 + j as f64, 0.3 * j as f64))
             .collect(),
+        remembered: Vec::new(),
+    }
+}
+
+/// Somebody who went on at a distance of `aside` metres.
+fn earlier(aside: f64) -> Remembered {
+    let track: [Position; WINDOW] = std::array::from_fn(|t| [0.4 * (t as f64 - 7.0), aside]);
+    Remembered {
+        track,
+        distance: aside * aside,
     }
 }
 
@@ -85,12 +99,49 @@ proptest! {
         let alone = network.propose(&views[i..=i]).unwrap();
         prop_assert_eq!(bits(&alone[0]), bits(&together[i]));
         let ends = network.config().members * network.config().ends;
+        let ends = if views[i].remembered.is_empty() { ends } else { 2 * ends };
         prop_assert_eq!(together[i].ends.len(), ends as usize);
         prop_assert_eq!(together[i].weights.len(), ends as usize);
         let sum: f64 = together[i].weights.iter().sum();
         prop_assert!((sum - 1.0).abs() < 1e-9);
         prop_assert!(together[i].ends.as_flattened().iter().all(|x| x.is_finite()));
     }
+}
+
+#[test]
+fn what_is_proposed_from_the_observation_alone_stays_beside_what_is_remembered() {
+    let network = network(small());
+    let memory = network.config().memory.clone().unwrap();
+    let mut remembering = view(1.2, 2);
+    let alone = network.propose(&[remembering.clone()]).unwrap().remove(0);
+    remembering.remembered = (1..5).map(|j| earlier(0.2 * f64::from(j))).collect();
+    let share = memory.share * (-0.04_f64 / memory.fade).exp();
+    let both = network.propose(&[remembering.clone()]).unwrap().remove(0);
+    assert_eq!(both.ends[..12], alone.ends);
+    for (both, alone) in both.weights.iter().zip(&alone.weights) {
+        assert!((both - alone * (1.0 - share)).abs() < 1e-12);
+    }
+    let of_memory: f64 = both.weights[12..].iter().sum();
+    assert!((of_memory - share).abs() < 1e-9);
+    // Not more of them are looked at than the network is made for, and these in any order.
+    remembering.remembered = (0..20).map(|j| earlier(0.1 * f64::from(j))).collect();
+    let mut looked_at = remembering.clone();
+    looked_at.remembered.truncate(memory.remembered);
+    let ends = |view: &PedestrianView| {
+        network
+            .propose(std::slice::from_ref(view))
+            .unwrap()
+            .remove(0)
+            .ends
+    };
+    assert_eq!(ends(&remembering), ends(&looked_at));
+    let forwards = ends(&looked_at);
+    looked_at.remembered.reverse();
+    let pairs = forwards.iter().zip(ends(&looked_at));
+    assert!(pairs.map(|(&a, b)| distance(a, b)).fold(0.0, f64::max) < 1e-4);
+    // And each counts.
+    looked_at.remembered.pop();
+    assert_ne!(ends(&looked_at), forwards);
 }
 
 fn apart(a: &PedestrianView, b: &PedestrianView) -> f64 {
@@ -149,8 +200,13 @@ fn as_libtorch_proposes() {
     let alone = PedestrianView {
         own,
         neighbours: Vec::new(),
+        remembered: Vec::new(),
     };
-    let among = PedestrianView { own, neighbours };
+    let among = PedestrianView {
+        own,
+        neighbours,
+        remembered: Vec::new(),
+    };
     let network = ProposalNetwork::new(config, 7).unwrap();
     let proposed = network.propose(&[among, alone]).unwrap();
     let expected = [

@@ -38,6 +38,13 @@ pub(super) const SCENE: PlotLayout = PlotLayout {
     steps: 10.0,
 };
 
+/// One place; two lines of text stand above it, the legend on the right.
+pub(super) const PLACE: PlotLayout = PlotLayout {
+    before: [62.0, 66.0],
+    after: [278.0, 56.0],
+    ..SCENE
+};
+
 /// One of several plots of the same size; two lines of title and one of text stand above it.
 pub(super) const PANEL: PlotLayout = PlotLayout {
     smallest: [300.0; 2],

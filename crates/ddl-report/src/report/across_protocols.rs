@@ -19,8 +19,10 @@ const NOTE: &str = "The same windows and folds in every line, from the published
 pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
     let mut parts = Vec::new();
     for oracle in groups.iter().filter(|g| g.protocol == Protocol::Published) {
-        let mut comparable: Vec<&ResultGroup<'_>> =
-            groups.iter().filter(|g| g.same_windows(oracle)).collect();
+        let mut comparable: Vec<&ResultGroup<'_>> = groups
+            .iter()
+            .filter(|g| g.same_windows(oracle) && !g.protocol.shows_past())
+            .collect();
         // From the published pipeline to the honest one.
         comparable.sort_by_key(|g| g.protocol != Protocol::Published);
         if comparable.len() < 2 {

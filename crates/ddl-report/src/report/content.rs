@@ -5,14 +5,18 @@ use ddl_data::Convention;
 use super::{
     ablation, across_protocols, categories,
     group::{ResultGroup, groups},
-    metrics, published, section, significance,
+    metrics, published, section, significance, watching,
 };
 use crate::document::{Document, Part};
 use ddl_eval::ResultRow;
 
 pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
     let groups = groups(rows);
-    let mut parts: Vec<Part> = groups.iter().flat_map(section::parts).collect();
+    let of_group = |group| {
+        let watching = watching::parts(group, &groups);
+        section::parts(group).into_iter().chain(watching)
+    };
+    let mut parts: Vec<Part> = groups.iter().flat_map(of_group).collect();
     if !groups.is_empty() {
         parts.push(Part::heading("How to read the tables"));
         parts.push(Part::List(

@@ -60,7 +60,9 @@ pub(crate) fn order(protocol: Protocol) -> usize {
     match protocol {
         Protocol::Fair => 0,
         Protocol::Single => 1,
-        Protocol::Published => 2,
+        Protocol::Online => 2,
+        Protocol::OnlineSingle => 3,
+        Protocol::Published => 4,
     }
 }
 

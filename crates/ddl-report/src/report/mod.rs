@@ -19,6 +19,7 @@ mod recordings;
 mod section;
 mod significance;
 mod spread;
+mod watching;
 
 pub(crate) use group::{ResultGroup, TableLine, groups, order};
 

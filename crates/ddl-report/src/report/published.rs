@@ -30,6 +30,17 @@ pub(super) fn parts(rows: &[ResultRow]) -> Vec<Part> {
         Part::Table(literature::table_one()),
         Part::subheading("Best published systems in the `star` convention (minADE20/minFDE20)"),
         Part::Table(literature::star_convention_table()),
+        Part::subheading("Best published systems in the `social-gan` convention (minADE20/minFDE20)"),
+        Part::Table(literature::social_gan_convention_table()),
+        Part::subheading("One forecast in the `social-gan` convention (ADE/FDE)"),
+        Part::Paragraph(
+            "Windows of at least one pedestrian: compare with window rule `social-gan` (at least 1 pedestrians) under `single`, and \
+             leave univ out, whose windows are others."
+                .to_owned(),
+        ),
+        Part::Table(literature::social_gan_single_table()),
+        Part::subheading("Joint errors on eth in the `social-gan` convention"),
+        Part::Table(literature::social_gan_joint_table()),
         Part::heading("Reference values of baselines"),
         Part::Paragraph(
             "Measured once on all test windows of the `star` convention, window rule `published`; ADE/FDE in metres."

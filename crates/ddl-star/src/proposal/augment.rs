@@ -1,7 +1,7 @@
 //! Changes to a batch that leave a plausible scene. A fold's windows overlap: what identifies a walker must change from
 //! visit to visit, or it is learned by heart.
 
-use super::data::Views;
+use super::data::{RememberedViews, Views};
 use ddl_network::ProposalTraining;
 use tch::{Kind, Tensor};
 
@@ -50,6 +50,28 @@ pub(crate) fn augment(
         own,
         neighbours,
         present: &views.present * seeing,
+        remembered: remembering(&views.remembered, &matrix, training),
     };
     (augmented, future.matmul(&matrix))
+}
+
+/// What is remembered, turned by `matrix`, each track elsewhere by some centimetres, and for some pedestrians only in part.
+/// Shapes: `matrix` `[M, B, 2, 2]`.
+fn remembering(
+    remembered: &RememberedViews,
+    matrix: &Tensor,
+    training: &ProposalTraining,
+) -> RememberedViews {
+    let (memory, size) = (&training.memory, remembered.present.size());
+    let options = (matrix.kind(), matrix.device());
+    let uniform = |others: i64| Tensor::rand([size[0], size[1], others], options);
+    let tracks = remembered.tracks.matmul(&matrix.unsqueeze(2));
+    let whole_track = tracks.narrow(3, 0, 1);
+    let whole = uniform(1).ge(memory.partial).to_kind(options.0);
+    let kept = uniform(size[2]).lt_tensor(&uniform(1)).to_kind(options.0);
+    RememberedViews {
+        tracks: &tracks + whole_track.randn_like() * memory.jitter,
+        distances: remembered.distances.shallow_clone(),
+        present: &remembered.present * kept.maximum(&whole),
+    }
 }

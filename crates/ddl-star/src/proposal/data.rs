@@ -2,7 +2,7 @@
 
 use crate::StarError;
 use crate::model::tensor;
-use ddl_data::OBSERVED;
+use ddl_data::{OBSERVED, WINDOW};
 use ddl_network::{PedestrianView, ProposalConfig};
 use tch::{Device, Kind, Tensor};
 
@@ -13,17 +13,66 @@ pub(crate) struct Views {
     pub(crate) own: Tensor,
     pub(crate) neighbours: Tensor,
     pub(crate) present: Tensor,
+    pub(crate) remembered: RememberedViews,
+}
+
+/// Earlier pedestrians of the place, G of each view; G is 0 for a network without a memory branch.
+/// Shapes: `tracks` `[.., G, 20, 2]`, `distances` `[.., G]`, `present` `[.., G]` (1 or 0).
+#[derive(Debug)]
+pub(crate) struct RememberedViews {
+    pub(crate) tracks: Tensor,
+    pub(crate) distances: Tensor,
+    pub(crate) present: Tensor,
+}
+
+impl RememberedViews {
+    fn new<'a>(
+        views: impl Iterator<Item = &'a PedestrianView>,
+        count: i64,
+        config: &ProposalConfig,
+        options: (Kind, Device),
+    ) -> Result<Self, StarError> {
+        let slots = config.memory.as_ref().map_or(0, |memory| memory.remembered);
+        let (mut tracks, mut distances, mut present) = (Vec::new(), Vec::new(), Vec::new());
+        for view in views {
+            let taken = view.remembered.len().min(slots);
+            for other in &view.remembered[..taken] {
+                tracks.extend_from_slice(other.track.as_flattened());
+                distances.push(other.distance);
+                present.push(1.0);
+            }
+            let empty = slots - taken;
+            tracks.resize(tracks.len() + empty * WINDOW * 2, 0.0);
+            distances.resize(distances.len() + empty, 0.0);
+            present.resize(present.len() + empty, 0.0);
+        }
+        let (slots, steps) = (slots as i64, WINDOW as i64);
+        Ok(Self {
+            tracks: tensor(&tracks, &[count, slots, steps, 2], options)?,
+            distances: tensor(&distances, &[count, slots], options)?,
+            present: tensor(&present, &[count, slots], options)?,
+        })
+    }
+
+    fn map(&self, of: impl Fn(&Tensor) -> Tensor) -> Self {
+        Self {
+            tracks: of(&self.tracks),
+            distances: of(&self.distances),
+            present: of(&self.present),
+        }
+    }
 }
 
 impl Views {
     pub(crate) fn new<'a>(
-        views: impl ExactSizeIterator<Item = &'a PedestrianView>,
+        views: impl ExactSizeIterator<Item = &'a PedestrianView> + Clone,
         config: &ProposalConfig,
         device: Device,
         kind: Kind,
     ) -> Result<Self, StarError> {
         let (count, slots) = (views.len() as i64, config.neighbours);
         let track = (OBSERVED * 2) as i64;
+        let remembered = RememberedViews::new(views.clone(), count, config, (kind, device))?;
         let (mut own, mut neighbours, mut present) = (Vec::new(), Vec::new(), Vec::new());
         for view in views {
             own.extend_from_slice(view.own.as_flattened());
@@ -40,6 +89,7 @@ impl Views {
             own: tensor(&own, &[count, track / 2, 2])?,
             neighbours: tensor(&neighbours, &[count, slots, track / 2, 2])?,
             present: tensor(&present, &[count, slots])?,
+            remembered,
         })
     }
 
@@ -51,6 +101,7 @@ impl Views {
             own: take(&self.own),
             neighbours: take(&self.neighbours),
             present: take(&self.present),
+            remembered: self.remembered.map(take),
         }
     }
 
@@ -65,6 +116,7 @@ impl Views {
             own: repeat(&self.own),
             neighbours: repeat(&self.neighbours),
             present: repeat(&self.present),
+            remembered: self.remembered.map(repeat),
         }
     }
 }

@@ -4,9 +4,10 @@ use super::data::Views;
 use crate::StarError;
 use crate::device::ComputeDevice;
 use crate::model::{Parameters, numbers};
-use ddl_data::{HORIZON, OBSERVED};
+use ddl_data::{HORIZON, OBSERVED, Position, WINDOW};
 use ddl_network::proposal::{
-    END_UNIT, MemberAffine, NEIGHBOUR_FEATURES, ProposalLayers, RECENT, WAYPOINTS,
+    AttentionLayers, END_UNIT, LIKENESSES, MemberAffine, ProposalLayers, RECENT, ReadoutLayers,
+    WAYPOINTS,
 };
 use ddl_network::seed::{Stage, stream};
 use ddl_network::weights::{Layout, Weights};
@@ -97,7 +98,7 @@ impl TorchProposals {
     /// Proposes ends for each of the walkers.
     ///
     /// # Shapes
-    /// One [`ProposedEnds`] a view, in their order: `members * ends` places, in metres ahead and to the left.
+    /// One [`ProposedEnds`] a view, in their order: places in metres ahead and to the left.
     ///
     /// # Errors
     /// [`StarError::Torch`] when libtorch fails, for want of memory for instance.
@@ -107,27 +108,88 @@ impl TorchProposals {
         for chunk in views.chunks(CHUNK) {
             let views = Views::new(chunk.iter(), &self.config, self.device.torch(), self.kind)?
                 .for_each_of(self.config.members);
-            let proposals = self.forward(&views);
-            let members = self.config.members as f64;
-            let weights = proposals.logits.softmax(-1, Kind::Double) / members;
-            // [M, B, K, ..] -> [B, M K, ..]
-            let ends = numbers(&proposals.ends.transpose(0, 1))?;
-            let weights = numbers(&weights.transpose(0, 1))?;
+            let alone = self.forward(&views);
+            // [M, B, K, ..] -> B times [M K, ..]
             let each = (self.config.members * self.config.ends) as usize;
-            proposed.extend(
-                ends.chunks_exact(2 * each)
-                    .zip(weights.chunks_exact(each))
-                    .map(|(ends, weights)| ProposedEnds {
-                        ends: ends.chunks_exact(2).map(|end| [end[0], end[1]]).collect(),
-                        weights: weights.to_vec(),
-                    }),
-            );
+            let members = self.config.members as f64;
+            let listed = |proposals: &Proposals| -> Result<_, StarError> {
+                let weights = proposals.logits.softmax(-1, Kind::Double) / members;
+                let ends = numbers(&proposals.ends.transpose(0, 1))?;
+                let ends: Vec<Position> = ends.as_chunks::<2>().0.to_vec();
+                Ok((ends, numbers(&weights.transpose(0, 1))?))
+            };
+            let (ends, weights) = listed(&alone)?;
+            let ends = ends.chunks_exact(each).map(<[_]>::to_vec);
+            let weights = weights.chunks_exact(each).map(<[_]>::to_vec);
+            let mut of_chunk: Vec<ProposedEnds> = ends
+                .zip(weights)
+                .map(|(ends, weights)| ProposedEnds { ends, weights })
+                .collect();
+            let remembers = chunk.iter().any(|view| !view.remembered.is_empty());
+            let branch = self.config.memory.as_ref().filter(|_| remembers);
+            if let Some((memory, proposals)) = branch.zip(self.forward_remembering(&views)) {
+                let (ends, weights) = listed(&proposals)?;
+                let others = ends.chunks_exact(each).zip(weights.chunks_exact(each));
+                for ((view, proposed), (ends, weights)) in
+                    chunk.iter().zip(&mut of_chunk).zip(others)
+                {
+                    if let Some(most_alike) = view.remembered.first() {
+                        let share = memory.share_at(most_alike.distance);
+                        for weight in &mut proposed.weights {
+                            *weight *= 1.0 - share;
+                        }
+                        proposed.ends.extend(ends);
+                        proposed
+                            .weights
+                            .extend(weights.iter().map(|weight| weight * share));
+                    }
+                }
+            }
+            proposed.extend(of_chunk);
         }
         Ok(proposed)
     }
 
+    /// What is proposed from the observation alone.
     /// Shapes: `views` `[M, B, ..]` -> `[M, B, K, ..]`.
     pub(crate) fn forward(&self, views: &Views) -> Proposals {
+        let readings = self.read(&self.layers.readout, &self.hidden_layer(views));
+        self.placed(readings, views)
+    }
+
+    /// What the memory branch proposes; `None` without one. No gradient reaches the rest of the network.
+    /// Shapes: `views` `[M, B, ..]` -> `[M, B, K, ..]`.
+    pub(crate) fn forward_remembering(&self, views: &Views) -> Option<Proposals> {
+        let (attention, readout) = self.layers.memory.as_ref()?;
+        let memory = self.config.memory.as_ref()?;
+        let (alone, code) = tch::no_grad(|| {
+            let hidden = self.hidden_layer(views);
+            (self.read(&self.layers.readout, &hidden), hidden)
+        });
+        let remembered = &views.remembered;
+        let features = self.remembered_features(views);
+        let context = self.attend(
+            attention,
+            &code,
+            &features,
+            &remembered.present,
+            memory.heads,
+        );
+        let alike = (&remembered.distances * (-1.0 / LIKENESSES[0])).exp() * &remembered.present;
+        let support = sum(&alike).log1p();
+        let hidden = self.through(&readout.hidden, code, context, support);
+        let more = self.read(readout, &hidden);
+        let readings = Proposals {
+            ends: alone.ends + more.ends,
+            waypoints: alone.waypoints + more.waypoints,
+            logits: alone.logits + more.logits,
+        };
+        Some(self.placed(readings, views))
+    }
+
+    /// The last hidden layer of the network without a memory branch.
+    /// Shapes: -> `[M, B, width]`.
+    fn hidden_layer(&self, views: &Views) -> Tensor {
         let size = views.own.size();
         let (m, b) = (size[0], size[1]);
         let own_velocity = self.velocities(&views.own);
@@ -139,62 +201,123 @@ impl TorchProposals {
             -1,
         );
         let code = self.affine(self.layers.own, &features).gelu("none");
-        let (context, seen) = self.look_around(&code, views);
-        let mut hidden = Tensor::cat(&[code.shallow_clone(), context, seen * 0.1], -1);
+        let (features, distance) = self.neighbour_features(views);
+        let seen = &views.present * distance.lt(self.config.neighbour_range);
+        let neighbours = &self.layers.neighbours;
+        let context = self.attend(neighbours, &code, &features, &seen, self.config.heads);
+        let hidden = &self.layers.readout.hidden;
+        self.through(hidden, code, context, sum(&seen) * 0.1)
+    }
+
+    /// Hidden layers, with short cuts between those of one width.
+    /// Shapes: `code` `[M, B, width]`, `context` `[M, B, ..]`, `amount` `[M, B, 1]` -> `[M, B, width]`.
+    fn through(
+        &self,
+        layers: &[MemberAffine],
+        code: Tensor,
+        context: Tensor,
+        amount: Tensor,
+    ) -> Tensor {
+        let mut hidden = Tensor::cat(&[code.shallow_clone(), context, amount], -1);
         let mut short_cut = code;
-        for &layer in &self.layers.hidden {
-            hidden = self.affine(layer, &hidden).gelu("none") + &short_cut;
+        for &layer in layers {
+            hidden = self.affine(layer, &hidden).gelu("none");
+            if hidden.size() == short_cut.size() {
+                hidden += &short_cut;
+            }
             short_cut = hidden.shallow_clone();
         }
-        let (ends, points) = (self.config.ends, WAYPOINTS.len() as i64);
-        let onward = self.recent_velocity(&views.own) * (HORIZON as f64 * self.config.time_step);
-        let offsets = self
-            .affine(self.layers.ends, &hidden)
-            .reshape([m, b, ends, 2])
-            * END_UNIT;
-        let ends_at = offsets + onward.unsqueeze(2);
-        let shares = Tensor::from_slice(&WAYPOINTS)
-            .to_kind(self.kind)
-            .to_device(self.device.torch())
-            .reshape([points, 1]);
-        let on_the_way = ends_at.unsqueeze(3) * shares;
-        let waypoints = self.affine(self.layers.waypoints, &hidden);
+        hidden
+    }
+
+    /// What a readout says, before it is placed: ends about the straight way, waypoints about the way to the ends.
+    fn read(&self, layers: &ReadoutLayers, hidden: &Tensor) -> Proposals {
+        let size = hidden.size();
+        let (m, b, ends, points) = (size[0], size[1], self.config.ends, WAYPOINTS.len() as i64);
+        let offsets = self.affine(layers.ends, hidden).reshape([m, b, ends, 2]) * END_UNIT;
+        let waypoints = self.affine(layers.waypoints, hidden);
         Proposals {
-            waypoints: waypoints.reshape([m, b, ends, points, 2]) + on_the_way,
-            ends: ends_at,
-            logits: self.affine(self.layers.logits, &hidden),
+            ends: offsets,
+            waypoints: waypoints.reshape([m, b, ends, points, 2]),
+            logits: self.affine(layers.logits, hidden),
         }
     }
 
-    /// What the walker makes of its neighbours, and how many there are.
-    /// Shapes: `code` `[M, B, width]` -> `[M, B, neighbour_width]`, `[M, B, 1]`.
-    fn look_around(&self, code: &Tensor, views: &Views) -> (Tensor, Tensor) {
-        let size = views.present.size();
+    fn placed(&self, readings: Proposals, views: &Views) -> Proposals {
+        let onward = self.recent_velocity(&views.own) * (HORIZON as f64 * self.config.time_step);
+        let ends = readings.ends + onward.unsqueeze(2);
+        let shares = Tensor::from_slice(&WAYPOINTS)
+            .to_kind(self.kind)
+            .to_device(self.device.torch())
+            .reshape([WAYPOINTS.len() as i64, 1]);
+        let on_the_way = ends.unsqueeze(3) * shares;
+        Proposals {
+            waypoints: readings.waypoints + on_the_way,
+            ends,
+            logits: readings.logits,
+        }
+    }
+
+    /// What somebody makes of others: attention with one more choice of score 0, nobody.
+    /// Shapes: `code` `[M, B, width]`, `features` `[M, B, J, ..]`, `present` `[M, B, J]` (1 or 0) -> `[M, B, code width]`.
+    fn attend(
+        &self,
+        layers: &AttentionLayers,
+        code: &Tensor,
+        features: &Tensor,
+        present: &Tensor,
+        heads: i64,
+    ) -> Tensor {
+        let size = features.size();
         let (m, b, slots) = (size[0], size[1], size[2]);
-        let (heads, near) = (self.config.heads, self.config.neighbour_width);
-        let (features, distance) = self.neighbour_features(views);
-        let seen = &views.present * distance.lt(self.config.neighbour_range);
-        let flat = features.reshape([m, b * slots, NEIGHBOUR_FEATURES as i64]);
-        let codes = self.affine(self.layers.neighbour[0], &flat).gelu("none");
-        let codes = self.affine(self.layers.neighbour[1], &codes).gelu("none");
-        let per_head = |x: Tensor| x.reshape([m, b, -1, heads, near / heads]);
-        let query = per_head(self.affine(self.layers.query, code));
-        let key = per_head(self.affine(self.layers.key, &codes));
-        let value = per_head(self.affine(self.layers.value, &codes));
+        let flat = features.reshape([m, b * slots, size[3]]);
+        let codes = self.affine(layers.code[0], &flat).gelu("none");
+        let codes = self.affine(layers.code[1], &codes).gelu("none");
+        let near = codes.size()[2];
+        let per_head = |x: Tensor, others: i64| x.reshape([m, b, others, heads, near / heads]);
+        let query = per_head(self.affine(layers.query, code), 1);
+        let key = per_head(self.affine(layers.key, &codes), slots);
+        let value = per_head(self.affine(layers.value, &codes), slots);
         let scores = (query * key).sum_dim_intlist([-1i64].as_slice(), false, None::<Kind>)
             / ((near / heads) as f64).sqrt();
-        let hidden = seen.eq(0.0).unsqueeze(-1);
+        let hidden = present.eq(0.0).unsqueeze(-1);
         let scores = scores.masked_fill(&hidden, f64::NEG_INFINITY);
         // One more choice of score 0: nobody.
         let nobody = Tensor::zeros([m, b, 1, heads], (self.kind, self.device.torch()));
         let attention = Tensor::cat(&[scores, nobody], 2)
             .softmax(2, None::<Kind>)
             .narrow(2, 0, slots);
-        let context = (attention.unsqueeze(-1) * value)
+        (attention.unsqueeze(-1) * value)
             .sum_dim_intlist([2i64].as_slice(), false, None::<Kind>)
-            .reshape([m, b, near]);
-        let count = seen.sum_dim_intlist([-1i64].as_slice(), true, None::<Kind>);
-        (context, count)
+            .reshape([m, b, near])
+    }
+
+    /// Shapes: -> `[M, B, G, 17]`.
+    fn remembered_features(&self, views: &Views) -> Tensor {
+        let tracks = &views.remembered.tracks;
+        let own = views.own.unsqueeze(2);
+        let at = |track: &Tensor, step: usize| track.select(-2, step as i64);
+        let here = at(&own, OBSERVED - 1);
+        let [now, halfway, end] =
+            [OBSERVED - 1, OBSERVED + HORIZON / 2 - 1, WINDOW - 1].map(|step| at(tracks, step));
+        let seconds = HORIZON as f64 * self.config.time_step;
+        let late = self.velocity(&own, OBSERVED - 1);
+        let its_late = self.velocity(tracks, OBSERVED - 1);
+        let its_early = self.velocity(tracks, RECENT);
+        let pairs = [
+            &now - &here,
+            &its_late - &late,
+            its_early - self.velocity(&own, RECENT),
+            (&end - &now - &late * seconds) / END_UNIT,
+            (&end - &here - &late * seconds) / END_UNIT,
+            (&halfway - &now - &late * (seconds / 2.0)) / END_UNIT,
+            its_late,
+        ];
+        let axis = |axis: i64| pairs.iter().map(move |pair| pair.select(-1, axis));
+        let likeness = |scale: &f64| (&views.remembered.distances / -*scale).exp();
+        let likenesses = LIKENESSES.iter().map(likeness);
+        let features: Vec<Tensor> = axis(0).chain(axis(1)).chain(likenesses).collect();
+        Tensor::stack(&features, -1)
     }
 
     /// Shapes: -> `[M, B, J, 9]` and distances `[M, B, J]` (metres) at the last observed step.
@@ -202,11 +325,10 @@ impl TorchProposals {
         let last = views.neighbours.select(-2, OBSERVED as i64 - 1);
         let here = views.own.select(-2, OBSERVED as i64 - 1).unsqueeze(2);
         let offset = last - here;
-        let sum = |x: Tensor| x.sum_dim_intlist([-1i64].as_slice(), true, None::<Kind>);
-        let distance = (sum(offset.square()) + 1e-6).sqrt();
+        let distance = (sum(&offset.square()) + 1e-6).sqrt();
         let velocity = self.recent_velocity(&views.neighbours);
         let relative = &velocity - self.recent_velocity(&views.own).unsqueeze(2);
-        let closing = sum(&offset * &relative) / &distance;
+        let closing = sum(&(&offset * &relative)) / &distance;
         let features = Tensor::cat(
             &[
                 &offset / (&distance + 1.0),
@@ -229,10 +351,20 @@ impl TorchProposals {
 
     /// Mean velocity over the last [`RECENT`] steps (m/s): `[.., T, 2]` -> `[.., 2]`.
     fn recent_velocity(&self, track: &Tensor) -> Tensor {
-        let last = OBSERVED as i64 - 1;
-        let seconds = RECENT as f64 * self.config.time_step;
-        (track.select(-2, last) - track.select(-2, last - RECENT as i64)) / seconds
+        self.velocity(track, OBSERVED - 1)
     }
+
+    /// Mean velocity over the [`RECENT`] steps that end at a step (m/s): `[.., T, 2]` -> `[.., 2]`.
+    fn velocity(&self, track: &Tensor, until: usize) -> Tensor {
+        let seconds = RECENT as f64 * self.config.time_step;
+        let at = |step: usize| track.select(-2, step as i64);
+        (at(until) - at(until - RECENT)) / seconds
+    }
+}
+
+/// Sum over the last dimension, which is kept.
+fn sum(x: &Tensor) -> Tensor {
+    x.sum_dim_intlist([-1i64].as_slice(), true, None::<Kind>)
 }
 
 /// Proposals by libtorch. Tensors may move between threads, but not be shared: one call at a time.

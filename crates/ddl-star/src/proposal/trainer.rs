@@ -32,7 +32,8 @@ struct ProposalProgress {
     distance: f64,
 }
 
-/// A proposal network in training. A run that was stopped, saved and resumed gives the weights of one that was not.
+/// A proposal network in training: first what it proposes from the observation alone, then its memory branch, if it has
+/// one. A run that was stopped, saved and resumed gives the weights of one that was not.
 #[derive(Debug)]
 pub struct ProposalTrainer {
     network: TorchProposals,
@@ -95,12 +96,15 @@ impl ProposalTrainer {
 
     /// Steps done, and steps in all.
     pub fn steps(&self) -> (u64, u64) {
-        (self.progress.steps, self.training.steps)
+        let memory = self.network.config().memory.as_ref();
+        let of_memory = memory.map_or(0, |_| self.training.memory.steps);
+        (self.progress.steps, self.training.steps + of_memory)
     }
 
     /// Whether all steps are done.
     pub fn is_finished(&self) -> bool {
-        self.progress.steps >= self.training.steps
+        let (done, all) = self.steps();
+        done >= all
     }
 
     /// Ends training and hands the network over, with the running mean of its weights.
@@ -135,8 +139,11 @@ impl ProposalTrainer {
             progress: vec![0.0; 2],
             vectors: vec![(AVERAGED, &self.average)],
         };
-        let (parameters, most) = (self.network.parameters(), self.training.steps);
+        let (parameters, (_, most)) = (self.network.parameters(), self.steps());
         let steps = checkpoint::load(parameters, &mut self.adam, &mut extra, most, origin, path)?;
+        if let Some(of_memory) = steps.checked_sub(self.training.steps) {
+            self.adam.set_steps(of_memory);
+        }
         self.progress = ProposalProgress {
             steps,
             distance: extra.progress[1],
@@ -153,49 +160,84 @@ impl ProposalTrainer {
         let _one_thread = OneThread::begin();
         let step = self.progress.steps;
         let training = &self.training;
+        // Steps of this part of the training: done, and in all.
+        let (done, all) = match step.checked_sub(training.steps) {
+            None => (step, training.steps),
+            Some(done) => (done, training.memory.steps),
+        };
+        let remembering = step >= training.steps;
+        if remembering && done == 0 {
+            self.begin_memory_branch()?;
+        }
+        let training = &self.training;
         let (rows, views, future) = self.batch(step);
         let weights = LossWeights {
-            relaxed: training.relaxed_at(step),
+            relaxed: training.relaxed_at(done, all),
             waypoints: training.waypoint_weight,
             probability: training.probability_weight,
         };
-        let proposals = self.network.forward(&views);
+        let branch = remembering.then(|| self.network.forward_remembering(&views));
+        let proposals = branch
+            .flatten()
+            .unwrap_or_else(|| self.network.forward(&views));
         let (loss, distance) = winner_takes_all(&proposals, &future, weights);
         let parameters = self.network.parameters();
         let gradient = parameters.gradient_of(&loss)?;
         let norm = gradient.norm();
         let (distance, norm_value) = (distance.double_value(&[]), norm.double_value(&[]));
-        for (quantity, value) in [("loss", distance), ("gradient norm", norm_value)] {
-            if !value.is_finite() {
-                let row = rows.int64_value(&[0, 0]) as usize;
-                // the reversed examples lie behind the others
-                let reversed = row >= self.onward;
-                let example = if reversed { row - self.onward } else { row };
-                return Err(StarError::ProposalNonFinite {
-                    step,
-                    quantity,
-                    value,
-                    example,
-                    reversed,
-                });
-            }
-        }
-        let rate =
-            training.learning_rate * LearningRateSchedule::Cosine.factor(step, training.steps);
+        self.ensure_finite(
+            step,
+            &rows,
+            [("loss", distance), ("gradient norm", norm_value)],
+        )?;
+        let rate = training.learning_rate * LearningRateSchedule::Cosine.factor(done, all);
         // Members learn apart: the norm of all their gradients grows with the root of their number.
         let clip = training.gradient_clip * (self.network.config().members as f64).sqrt();
         self.adam
             .step(parameters, &gradient, &norm, clip, rate, &self.gate);
         let _guard = tch::no_grad_guard();
         // Young means follow quickly, so that the initial weights are soon forgotten.
-        let kept = AVERAGE.min((step as f64 + 1.0) / (step as f64 + 10.0));
+        let kept = AVERAGE.min((done as f64 + 1.0) / (done as f64 + 10.0));
         let _ = self.average.lerp_(&parameters.flat().detach(), 1.0 - kept);
-        let kept = if step == 0 { 0.0 } else { REPORTED };
+        let kept = if done == 0 { 0.0 } else { REPORTED };
         self.progress.distance = kept * self.progress.distance + (1.0 - kept) * distance;
         self.progress.steps += 1;
         Ok(ProposalStep {
             done: self.progress.steps,
             distance: self.progress.distance,
+        })
+    }
+
+    /// From here on the rest of the network is the mean of its weights, and no gradient reaches it: without moments,
+    /// Adam leaves it as it is.
+    fn begin_memory_branch(&mut self) -> Result<(), StarError> {
+        let _guard = tch::no_grad_guard();
+        let parameters = self.network.parameters();
+        parameters.flat().shallow_clone().f_copy_(&self.average)?;
+        self.adam = Adam::new(parameters);
+        Ok(())
+    }
+
+    fn ensure_finite(
+        &self,
+        step: u64,
+        rows: &Tensor,
+        quantities: [(&'static str, f64); 2],
+    ) -> Result<(), StarError> {
+        let Some((quantity, value)) = quantities.into_iter().find(|(_, value)| !value.is_finite())
+        else {
+            return Ok(());
+        };
+        let row = rows.int64_value(&[0, 0]) as usize;
+        // the reversed examples lie behind the others
+        let reversed = row >= self.onward;
+        let example = if reversed { row - self.onward } else { row };
+        Err(StarError::ProposalNonFinite {
+            step,
+            quantity,
+            value,
+            example,
+            reversed,
         })
     }
 

@@ -11,6 +11,7 @@ mod step;
 
 use clock::{Clock, side_by_side};
 use ddl::data::{Dataset, Position, Window};
+use ddl::memory::SceneMemory;
 use ddl::network::{
     BackboneKind, ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule,
 };
@@ -30,7 +31,8 @@ fn main() -> Result<()> {
     let dataset = Dataset::simulated(1);
     let window = scene::of(&dataset)?;
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let forecasts = one.install(|| forecast(&window, turns))?;
+    let memory = memory_of(&dataset)?;
+    let forecasts = one.install(|| forecast(&window, &memory, turns))?;
     let mut out = std::io::stdout().lock();
     writeln!(out, "\n{forecasts}")?;
     #[cfg(feature = "torch")]
@@ -40,8 +42,21 @@ fn main() -> Result<()> {
     Ok(())
 }
 
+/// Earlier pedestrians recalled for each pedestrian, as a memory branch looks at them.
+const REMEMBERED: usize = 12;
+
+/// A memory of all the simulated scenes, as full as these make it.
+fn memory_of(dataset: &Dataset) -> Result<SceneMemory> {
+    let step = dataset.recordings()[0].frame_step();
+    let mut memory = SceneMemory::new(step, SceneMemory::DEFAULT_CAPACITY)?;
+    for recording in dataset.recordings() {
+        memory.watch(recording)?;
+    }
+    Ok(memory)
+}
+
 /// The time of a whole forecast, and of its parts.
-fn forecast(window: &Window, turns: usize) -> Result<String> {
+fn forecast(window: &Window, memory: &SceneMemory, turns: usize) -> Result<String> {
     let model = Ddl::open(
         &ModelSource::Builtin(BuiltinModel::Hotel),
         DeviceChoice::Cpu,
@@ -64,22 +79,26 @@ fn forecast(window: &Window, turns: usize) -> Result<String> {
     let roll_out = |network: &MotionNetwork| {
         network.forecast_windows(windows, &all, Noise::Expected, StepRule::Bounded, None)
     };
-    let parts: [&mut dyn FnMut() -> Result<()>; 4] = [
+    let remembering = || memory.recalling(window.clone(), REMEMBERED);
+    let parts: [&mut dyn FnMut() -> Result<()>; 5] = [
+        &mut || Ok(model.forecast(&remembering()).map(drop)?),
         &mut || Ok(model.forecast(window).map(drop)?),
         &mut || Ok(model.goal_model().goals(windows).map(drop)?),
         &mut || Ok(roll_out(&transformer).map(drop)?),
         &mut || Ok(roll_out(&perceptron).map(drop)?),
     ];
     let times = side_by_side(Clock::Processor, turns, parts)?;
-    let [whole, goals, transformer, perceptron] = times.map(|seconds| 1e3 * seconds);
+    let [with_memory, whole, goals, transformer, perceptron] = times.map(|seconds| 1e3 * seconds);
     Ok(format!(
         "{} pedestrians, 20 hypotheses, one thread, processor time\n\
          whole forecast                                 {whole:>6.2} ms\n\
          goals                                          {goals:>6.2} ms\n\
          network, Transformer                           {transformer:>6.2} ms\n\
          network, perceptron                            {perceptron:>6.2} ms\n\
-         the rest: rollout in f64, certificates, spread {rest:>6.2} ms",
+         the rest: rollout in f64, certificates, spread {rest:>6.2} ms\n\
+         whole forecast with a memory of {stretches} stretches {with_memory:>6.2} ms",
         window.len(),
+        stretches = memory.stretches(),
         rest = whole - goals - transformer,
     ))
 }

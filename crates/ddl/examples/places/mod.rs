@@ -22,30 +22,42 @@ pub(crate) struct Place {
     pub(crate) windows: Vec<Window>,
 }
 
+/// Folder and frames a second of `FOLDER=FPS`.
+fn parts(place: &str) -> Result<(&str, &str), Box<dyn Error>> {
+    Ok(place.split_once('=').ok_or("a place is FOLDER=FPS")?)
+}
+
+/// All recordings of `FOLDER=FPS`, csv files in metres, in steps of 0.4 s, by name.
+pub(crate) fn recordings(place: &str) -> Result<Vec<Recording>, Box<dyn Error>> {
+    let (folder, rate) = parts(place)?;
+    let frame_time = 1.0 / rate.parse::<f64>()?;
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)?
+        .map(|entry| Ok(entry?.path()))
+        .collect::<std::io::Result<_>>()?;
+    files.sort();
+    let recordings = files.iter().map(|file| {
+        let name = file.file_stem().unwrap_or_default().to_string_lossy();
+        let recording = parse_recording(&std::fs::read(file)?, &name, Format::Table)?;
+        Ok(recording.in_steps(frame_time)?.recording)
+    });
+    recordings.collect()
+}
+
 impl Place {
-    /// Reads `FOLDER=FPS`, csv files in metres, in steps of 0.4 s; as many windows, evenly spread, as hold about `pedestrians`.
+    /// Of `FOLDER=FPS`, csv files in metres, in steps of 0.4 s, as many windows, evenly spread, as hold about `pedestrians`.
     pub(crate) fn read(
         place: &str,
         part: Part,
         pedestrians: usize,
     ) -> Result<Self, Box<dyn Error>> {
-        let (folder, rate) = place.split_once('=').ok_or("a place is FOLDER=FPS")?;
-        let frame_time = 1.0 / rate.parse::<f64>()?;
-        let mut files: Vec<PathBuf> = std::fs::read_dir(folder)?
-            .map(|entry| Ok(entry?.path()))
-            .collect::<std::io::Result<_>>()?;
-        files.sort();
-        let (alone, rest) = (files.len() == 1, part == Part::Rest);
-        let of_part = files
-            .iter()
+        let all = recordings(place)?;
+        let (alone, rest) = (all.len() == 1, part == Part::Rest);
+        let of_part = all
+            .into_iter()
             .enumerate()
             .filter(|(at, _)| alone || (at % 2 == 1) == rest);
-        let recordings = of_part.map(|(_, file)| {
-            let name = file.file_stem().unwrap_or_default().to_string_lossy();
-            let recording = parse_recording(&std::fs::read(file)?, &name, Format::Table)?;
-            Ok(recording.in_steps(frame_time)?.recording)
-        });
-        let recordings: Vec<Recording> = recordings.collect::<Result<_, Box<dyn Error>>>()?;
+        let recordings: Vec<Recording> = of_part.map(|(_, recording)| recording).collect();
+        let (folder, rate) = parts(place)?;
         let windows = recordings
             .iter()
             .flat_map(|r| r.windows(WindowRule::Complete));

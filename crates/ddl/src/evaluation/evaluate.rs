@@ -1,22 +1,28 @@
 use crate::error::DdlError;
-use crate::evaluation::manner::{GivenGoals, Manner, Way};
+use crate::evaluation::manner::{GivenGoals, Manner, Way, memory_words};
 use crate::evaluation::published::Published;
 use crate::evaluation::rows::{Forecasted, ResultRows};
 use crate::evaluation::split::EvaluationSplit;
 use crate::evaluation::straight_lines::straight_lines;
 use crate::evaluation::test_set::TestSet;
+use crate::goals::model::GoalModel;
+use crate::goals::remembering::Remembering;
 use crate::goals::sets;
 use crate::model::ddl::Ddl;
 use crate::training::words;
 use ddl_data::{Dataset, Window};
 use ddl_eval::baseline::WeightedGoals;
 use ddl_eval::{Forecast, ForecastError, Forecaster as _, Protocol, ResultRow};
-use ddl_goal::QuerySpan;
+use ddl_goal::{GoalSet, QuerySpan};
 use ddl_report::{Moment, gallery};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
 const WALKERS_A_REPORT: usize = 128;
+/// Protocols under which the windows alone are seen.
+const ALONE: [Protocol; 2] = [Protocol::Fair, Protocol::Single];
+/// Protocols under which their recordings have been watched until then.
+const WATCHING: [Protocol; 2] = [Protocol::Online, Protocol::OnlineSingle];
 /// Walkers of the test set on which the published protocol chooses its epoch, at most.
 const SELECTION_WALKERS: usize = 250;
 
@@ -68,14 +74,9 @@ pub fn evaluate(
 ) -> Result<Evaluation, DdlError> {
     let part = (request.on, request.validation_recordings.as_slice());
     let test = TestSet::of_run(model.goal_model(), dataset, part, request.test_walkers)?;
-    let passes = usize::from(request.protocols.contains(&Protocol::Published))
-        + usize::from(
-            request
-                .protocols
-                .iter()
-                .any(|protocol| !protocol.shows_future()),
-        );
-    let total = test.walkers() * passes;
+    let asked = |some: &[Protocol]| some.iter().any(|p| request.protocols.contains(p));
+    let passes = [&[Protocol::Published][..], &ALONE, &WATCHING].map(asked);
+    let total = test.walkers() * passes.iter().filter(|asked| **asked).count();
     let mut measuring = Measuring {
         model,
         test: &test,
@@ -88,12 +89,40 @@ pub fn evaluate(
     if request.protocols.contains(&Protocol::Published) {
         rows.extend(measuring.published()?);
     }
-    let honest = measuring.honest()?;
+    let remembering = |what| model.goal_model().remembering(&test.windows, dataset, what);
+    let windows = if model.goal_model().remembers_place(dataset)? && asked(&ALONE) {
+        remembering(Remembering::Place)?
+    } else {
+        test.windows.clone()
+    };
+    let honest = measuring.honest(&ALONE, &windows)?;
     rows.extend(honest.rows);
+    if asked(&WATCHING) {
+        let windows = remembering(Remembering::Online)?;
+        rows.extend(measuring.honest(&WATCHING, &windows)?.rows);
+    }
     Ok(Evaluation {
         rows,
         moments: honest.moments,
     })
+}
+
+/// The goals that a manner is given, where the model has these of its own; of the published ones another estimator knows.
+fn goals_for(
+    given: GivenGoals,
+    model: &GoalModel,
+    windows: &[Window],
+    own: &[Vec<GoalSet>],
+) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
+    match given {
+        GivenGoals::Own | GivenGoals::Published => Ok(own.to_vec()),
+        GivenGoals::Central => Ok(sets::only_central(windows, own)),
+        GivenGoals::WithoutLibrary => model.goals_without_library(windows),
+        GivenGoals::WithoutMemory => {
+            let nothing = |window: &Window| window.clone().with_remembered(|_| Vec::new());
+            model.goals(&windows.iter().map(nothing).collect::<Vec<_>>())
+        }
+    }
 }
 
 /// Forecasts of the model and straight lines to its own goals, one each a window.
@@ -113,20 +142,18 @@ struct Measuring<'a, O> {
 }
 
 impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
-    /// `fair` and `single`: one set of forecasts serves both.
-    fn honest(&mut self) -> Result<Evaluation, DdlError> {
-        let protocols: Vec<Protocol> = Protocol::ALL
-            .into_iter()
-            .filter(|p| !p.shows_future() && self.asked(*p))
-            .collect();
+    /// Protocols that show the same of the windows: one set of forecasts serves all of them.
+    fn honest(&mut self, of: &[Protocol], windows: &[Window]) -> Result<Evaluation, DdlError> {
+        let protocols: Vec<Protocol> = of.iter().copied().filter(|p| self.asked(*p)).collect();
         let Some(&first) = protocols.first() else {
             return Ok(Evaluation::default());
         };
         let model = self.model;
-        let manners = Manner::all(model, &self.request.protocols);
+        let mut manners = Manner::all(model, &self.request.protocols);
+        manners.retain(|manner| protocols.contains(&manner.protocol));
         let goal = "the estimated goals";
         // Straight lines lead to many goals.
-        let lines_asked = protocols.iter().any(|&p| p != Protocol::Single);
+        let lines_asked = protocols.iter().any(|p| p.hypotheses() > 1);
         // Its library is copied: only where it is asked for.
         let given = |manner: &Manner| manner.goals == GivenGoals::Published;
         let published = if manners.iter().any(given) {
@@ -138,18 +165,12 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         } else {
             None
         };
-        let forecasts = self.forecast(first, manners.len(), |windows| {
+        let forecasts = self.forecast((first, windows), manners.len(), |windows| {
             let goals = model.goal_model().goals(windows)?;
             let towards = |manner: &Manner| {
-                let goals = match (manner.goals, &published) {
-                    (GivenGoals::Central, _) => sets::only_central(windows, &goals),
-                    (GivenGoals::WithoutLibrary, _) => {
-                        model.goal_model().goals_without_library(windows)?
-                    }
-                    (GivenGoals::Published, Some(estimator)) => {
-                        sets::retrieved(estimator, windows)?
-                    }
-                    _ => goals.clone(),
+                let goals = match &published {
+                    Some(estimator) if given(manner) => sets::retrieved(estimator, windows)?,
+                    _ => goals_for(manner.goals, model.goal_model(), windows, &goals)?,
                 };
                 match manner.way {
                     Way::Shaped(gait) => model.forecast_towards(windows, goals, gait),
@@ -166,7 +187,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             })
         })?;
         let mut rows = Vec::new();
-        for protocol in protocols {
+        for &protocol in &protocols {
             let admit =
                 |forecasts: &[Forecast], name: &str| protocol.admit(forecasts.to_vec(), name);
             let mut forecasted = Vec::new();
@@ -181,15 +202,16 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                     ));
                 }
             }
-            if protocol != Protocol::Single {
+            if protocol.hypotheses() > 1 {
                 let lines = admit(&forecasts.lines, "straight line")?;
-                let recipe = format!("goals {}", model.goal_model().words());
+                let goals = model.goal_model().words() + &memory_words(protocol, model);
+                let recipe = format!("goals {goals}");
                 forecasted.push(Forecasted::lines_to(goal, recipe, lines));
             }
             let selection = words::selection(model.config().patience);
             rows.extend(self.rows(protocol, selection).of(&forecasted)?);
         }
-        let moments = if self.asked(Protocol::Fair) {
+        let moments = if protocols.contains(&Protocol::Fair) {
             self.moments(&forecasts.model[0])?
         } else {
             Vec::new()
@@ -231,7 +253,8 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let tick = || self.report(0, protocol);
         let best = Published::best_on_test(model, &estimator, &windows, tick)?;
         let goal = "the estimated goal nearest the TRUE end";
-        let mut forecasts = self.forecast(protocol, 1, |windows| {
+        let test = self.test;
+        let mut forecasts = self.forecast((protocol, &test.windows), 1, |windows| {
             let goals = sets::nearest_true_end(&estimator, windows)?;
             let certain: Vec<Vec<WeightedGoals>> = goals
                 .iter()
@@ -264,7 +287,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
     /// the protocol does.
     fn forecast(
         &mut self,
-        protocol: Protocol,
+        (protocol, windows): (Protocol, &[Window]),
         manners: usize,
         of: impl Fn(&[Window]) -> Result<Forecasts, ForecastError>,
     ) -> Result<Forecasts, DdlError> {
@@ -273,8 +296,8 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             lines: Vec::new(),
         };
         let mut done = 0;
-        while done < self.test.windows.len() {
-            let rest = &self.test.windows[done..];
+        while done < windows.len() {
+            let rest = &windows[done..];
             let mut walkers = 0;
             let count = rest
                 .iter()

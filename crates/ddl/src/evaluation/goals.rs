@@ -2,6 +2,7 @@ use crate::error::DdlError;
 use crate::evaluation::split::EvaluationSplit;
 use crate::evaluation::test_set::TestSet;
 use crate::goals::model::GoalModel;
+use crate::goals::remembering::Remembering;
 use ddl_data::{Dataset, Position, Window};
 use ddl_eval::metric::calibration::Calibration;
 use ddl_goal::GoalSet;
@@ -76,18 +77,21 @@ impl GoalErrors {
 /// Measures the goals of a run on the test windows of its fold (headline rule, all walkers) or on its
 /// validation windows.
 ///
-/// The goals see the 8 observed frames alone.
+/// The goals see the 8 observed frames, and what is remembered of the place.
 ///
 /// # Errors
 /// When the data is not what the run was trained on, or goals cannot be estimated.
 pub fn evaluate_goals(
     model: &GoalModel,
     dataset: &Dataset,
-    on: EvaluationSplit,
+    (on, what): (EvaluationSplit, Option<Remembering>),
 ) -> Result<MeasuredGoals, DdlError> {
     let test = TestSet::of_run(model, dataset, (on, &[]), None)?;
     let rule = test.rules.first().map(|(rule, _)| *rule);
-    let windows: Vec<Window> = test.headline().cloned().collect();
+    let mut windows: Vec<Window> = test.headline().cloned().collect();
+    if let Some(what) = what {
+        windows = model.remembering(&windows, dataset, what)?;
+    }
     let observed: Vec<Window> = windows.iter().map(Window::without_future).collect();
     let started = Instant::now();
     let sets = model.goals(&observed)?;

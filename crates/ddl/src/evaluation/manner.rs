@@ -22,6 +22,8 @@ pub(crate) enum GivenGoals {
     /// The one that stands for its own.
     Central,
     WithoutLibrary,
+    /// Without training recordings of the same place.
+    WithoutMemory,
     /// Those of the published estimator, without its look at the first future frame.
     Published,
 }
@@ -33,14 +35,37 @@ pub(crate) enum Way {
     Neutral(Option<Clearance>),
 }
 
+/// What is remembered under a protocol, in the same words for all folds of a convention: they share a line.
+pub(crate) fn memory_words(protocol: Protocol, model: &Ddl) -> String {
+    let convention = model.config().data.convention;
+    let folds: Vec<&str> = convention.folds_with_place_memory().collect();
+    let of_place = format!(
+        "training recordings of the same place (folds {})",
+        folds.join(", ")
+    );
+    match (protocol.shows_past(), folds.is_empty()) {
+        _ if model.goal_model().memory().is_none() => String::new(),
+        (false, true) => String::new(),
+        (false, false) => format!(", with a memory of {of_place}"),
+        (true, true) => ", with a memory of the recording until then".to_owned(),
+        (true, false) => format!(", with a memory of the recording until then and of {of_place}"),
+    }
+}
+
 impl Manner {
     pub(crate) fn goal_words(&self, model: &Ddl) -> String {
-        match self.goals {
+        let goals = model.goal_model();
+        let words = match self.goals {
             // Of the published goals the name of the row tells.
-            GivenGoals::Own | GivenGoals::Central | GivenGoals::Published => {
-                model.goal_model().words()
-            }
-            GivenGoals::WithoutLibrary => model.goal_model().recipe().words_without_library(),
+            GivenGoals::Own
+            | GivenGoals::Central
+            | GivenGoals::Published
+            | GivenGoals::WithoutMemory => goals.words(),
+            GivenGoals::WithoutLibrary => goals.recipe().words_without_library(),
+        };
+        match self.goals {
+            GivenGoals::WithoutMemory | GivenGoals::Published => words,
+            _ => words + &memory_words(self.protocol, model),
         }
     }
 
@@ -67,9 +92,13 @@ impl Manner {
         let careful = model.clearance().map(minding);
         for (clearance, change) in [(None, None)].into_iter().chain(careful) {
             let shaped = Way::Shaped(Gait::Stable(clearance));
-            add(Protocol::Fair, GivenGoals::Own, shaped, change.clone());
             let neutral = Way::Neutral(clearance);
-            add(Protocol::Single, GivenGoals::Central, neutral, change);
+            for protocol in [Protocol::Fair, Protocol::Online] {
+                add(protocol, GivenGoals::Own, shaped, change.clone());
+            }
+            for protocol in [Protocol::Single, Protocol::OnlineSingle] {
+                add(protocol, GivenGoals::Central, neutral, change.clone());
+            }
         }
         let said = |change: &str| Some(change.to_owned());
         // A network that has learned whole stable walks has never seen where plain steps would lead it: they diverge.
@@ -85,6 +114,10 @@ impl Manner {
             if model.goal_model().has_library_beside_network() {
                 let change = said(WITHOUT_LIBRARY);
                 add(Protocol::Fair, GivenGoals::WithoutLibrary, stable, change);
+            }
+            if model.goal_model().memory().is_some() {
+                let change = said("without a memory of the place");
+                add(Protocol::Fair, GivenGoals::WithoutMemory, stable, change);
             }
             if asked.contains(&Protocol::Published) {
                 let change = said("with the published goals, all 20 kept");

@@ -1,8 +1,10 @@
 use crate::error::DdlError;
 use crate::forecast::certified::{self, CertifiedForecast};
+use crate::forecast::watched_place::{OtherPlace, WatchedPlace};
 use crate::model::ddl::Ddl;
 use ddl_data::{Completion, LiveTracks, OBSERVED, PedestrianId, Position, Window};
-use ddl_eval::{Forecast, ForecastError, Forecaster};
+use ddl_eval::{AdaptiveRegions, Forecast, ForecastError, Forecaster};
+use ddl_memory::SceneMemory;
 use std::borrow::Borrow;
 
 /// A forecaster that is fed one frame at a time, 0.4 s apart or faster, and remembers what it has to.
@@ -14,7 +16,9 @@ use std::borrow::Borrow;
 /// with one model.
 ///
 /// # What is kept from frame to frame
-/// What was seen during the last 8 steps of those who are there, so that memory is bounded by the people present.
+/// What was seen during the last 8 steps of those who are there, so that memory is bounded by the people present; and the
+/// memory of the place, bounded by its capacity, where one is [asked for](Self::remembering).
+/// Where [regions adapt](Self::adapting_regions), also the forecasts of the last 4.8 s.
 /// Nothing of the networks: their tokens are relative to goals and to the scene, which are others at every frame.
 ///
 /// # Errors
@@ -42,6 +46,8 @@ use std::borrow::Borrow;
 pub struct LiveForecaster<M = Ddl> {
     model: M,
     tracks: LiveTracks,
+    regions: Option<AdaptiveRegions>,
+    place: Option<WatchedPlace>,
 }
 
 /// What is forecast from one frame on.
@@ -68,6 +74,8 @@ impl<M> LiveForecaster<M> {
         Self {
             model,
             tracks: LiveTracks::new(),
+            regions: None,
+            place: None,
         }
     }
 
@@ -77,7 +85,10 @@ impl<M> LiveForecaster<M> {
     /// [`DdlError::Live`] if the step does not lie in 1..=2^31.
     pub fn with_frame_step(model: M, frame_step: i64) -> Result<Self, DdlError> {
         let tracks = LiveTracks::with_frame_step(frame_step)?;
-        Ok(Self { model, tracks })
+        Ok(Self {
+            tracks,
+            ..Self::new(model)
+        })
     }
 
     /// The same, with incomplete observations filled in as the completion allows; [`Window::made_up`] counts the filled-in
@@ -86,6 +97,22 @@ impl<M> LiveForecaster<M> {
     pub fn completing(self, completion: Completion) -> Self {
         let tracks = self.tracks.completing(completion);
         Self { tracks, ..self }
+    }
+
+    /// The same, with regions that keep their share in this place: they follow what is seen, as [`AdaptiveRegions`] tells.
+    /// Everything else of the forecasts has the same bits. What another watch of the place
+    /// [learned](AdaptiveRegions::learned) is taken up by [`AdaptiveRegions::resuming`].
+    #[must_use]
+    pub fn adapting_regions(self, regions: AdaptiveRegions) -> Self {
+        Self {
+            regions: Some(regions),
+            ..self
+        }
+    }
+
+    /// The regions that adapt, where they were asked to.
+    pub fn regions(&self) -> Option<&AdaptiveRegions> {
+        self.regions.as_ref()
     }
 
     /// What forecasts.
@@ -99,9 +126,27 @@ impl<M> LiveForecaster<M> {
         self.model
     }
 
-    /// Forgets everybody and the last frame: any frame may come next, as when a tracker starts anew.
+    /// Forgets everybody and the last frame: any frame may come next, as when a tracker starts anew. What is remembered of
+    /// the place stays, and what regions have learned of it.
     pub fn clear(&mut self) {
         self.tracks.clear();
+        if let Some(regions) = &mut self.regions {
+            regions.clear();
+        }
+        if let Some(place) = &mut self.place {
+            place.interrupt();
+        }
+    }
+
+    /// What is remembered of the place, to be [saved](SceneMemory::write); `None` unless the forecaster was asked to
+    /// [remember](LiveForecaster::remembering).
+    pub fn memory(&self) -> Option<&SceneMemory> {
+        self.place.as_ref().map(WatchedPlace::memory)
+    }
+
+    /// Why the memory that was given is no longer used; `None` while it is.
+    pub fn refused_memory(&self) -> Option<&OtherPlace> {
+        self.place.as_ref()?.refused()
     }
 
     /// What is remembered of the frames so far.
@@ -116,16 +161,31 @@ impl<M> LiveForecaster<M> {
         people: impl IntoIterator<Item = (PedestrianId, Position)>,
         forecast: impl FnOnce(&M, &Window) -> Result<F, ForecastError>,
     ) -> Result<Option<LiveForecast<F>>, DdlError> {
-        let tracks = self.tracks.after(frame, people)?;
+        let people: Vec<_> = people.into_iter().collect();
+        let tracks = self.tracks.after(frame, people.iter().copied())?;
         let now = match tracks.window() {
             None => None,
             Some(window) => {
+                let window = match &self.place {
+                    Some(place) => place.recalling(window),
+                    None => window,
+                };
                 let forecast = forecast(&self.model, &window)?;
                 Some(LiveForecast { window, forecast })
             }
         };
+        if let Some(place) = &mut self.place {
+            place.observe(frame, people, now.as_ref().map(|now| &now.window))?;
+        }
         self.tracks = tracks;
         Ok(now)
+    }
+
+    fn adapted(&mut self, window: &Window, forecast: Forecast) -> Forecast {
+        match &mut self.regions {
+            Some(regions) => regions.adapt(window, forecast),
+            None => forecast,
+        }
     }
 }
 
@@ -141,11 +201,39 @@ impl<M: Forecaster> LiveForecaster<M> {
         frame: i64,
         people: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Option<LiveForecast>, DdlError> {
-        self.push_with(frame, people, M::forecast)
+        let now = self.push_with(frame, people, M::forecast)?;
+        Ok(now.map(|LiveForecast { window, forecast }| {
+            let forecast = self.adapted(&window, forecast);
+            LiveForecast { window, forecast }
+        }))
     }
 }
 
 impl<M: Borrow<Ddl>> LiveForecaster<M> {
+    /// The same, with a memory of the place, such as [`SceneMemory::new`] or one that was [read](SceneMemory::read): what earlier
+    /// pedestrians did where these are counts in the forecasts, and the memory grows with every frame.
+    ///
+    /// A forecast uses what was observed before its frame. A memory that already holds [`OtherPlace::FEWEST_STRETCHES`] is
+    /// tried on the first pedestrians; where it is of another place, it is [refused](Self::refused_memory): forecasts go on
+    /// with an empty one.
+    ///
+    /// # Errors
+    /// When the model has no memory branch, or the memory another number of raw frames in a step.
+    pub fn remembering(self, memory: SceneMemory) -> Result<Self, DdlError> {
+        let place = WatchedPlace::new(self.model.borrow(), memory)?;
+        let (camera, its) = (self.tracks.frame_step(), place.memory().frame_step());
+        if camera != its {
+            return Err(DdlError::MemoryFrameStep {
+                camera,
+                memory: its,
+            });
+        }
+        Ok(Self {
+            place: Some(place),
+            ..self
+        })
+    }
+
     /// The same, with the evidence for every hypothesis that it goes to its goal: what [`Ddl::forecast_certified`] says of the
     /// window.
     ///
@@ -158,10 +246,19 @@ impl<M: Borrow<Ddl>> LiveForecaster<M> {
         people: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Option<LiveForecast<CertifiedForecast>>, DdlError> {
         certified::ensure_flow(self.model.borrow().config().star.variant)?;
-        self.push_with(frame, people, |model, window| {
+        let now = self.push_with(frame, people, |model, window| {
             let windows = std::slice::from_ref(window);
             // one window in, one forecast out
             Ok(model.borrow().forecast_certified(windows)?.remove(0))
-        })
+        })?;
+        Ok(now.map(|LiveForecast { window, forecast }| {
+            let certified = forecast;
+            let forecast = self.adapted(&window, certified.forecast);
+            let forecast = CertifiedForecast {
+                forecast,
+                ..certified
+            };
+            LiveForecast { window, forecast }
+        }))
     }
 }

@@ -3,6 +3,7 @@ use crate::error::DdlError;
 use crate::goals::experts;
 use crate::goals::reach;
 use crate::goals::recipe::GoalRecipe;
+use crate::goals::remembering::{Remembering, remembering};
 use crate::goals::sets;
 use crate::goals::views;
 use crate::model::packed::{self, Unpacked};
@@ -10,13 +11,15 @@ use crate::model::source::ModelSource;
 use crate::run::config::RunConfig;
 use crate::run::directory::RunDirectory;
 use crate::run::enough_weights;
+use crate::run::training_data::fold_of;
 use crate::trust::calibration::Calibration;
 use crate::trust::familiarity::TrainingMotions;
-use ddl_data::{Position, WINDOW, Window};
+use ddl_data::{Convention, Dataset, Fold, Position, Recording, WINDOW, Window};
 use ddl_eval::ForecastError;
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
+use ddl_memory::Playback;
 use ddl_network::weights::load_weights;
-use ddl_network::{DeviceChoice, ForecastWindows, ProposeEnds, ProposedEnds};
+use ddl_network::{DeviceChoice, ForecastWindows, MemoryConfig, ProposeEnds, ProposedEnds};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -194,7 +197,72 @@ impl GoalModel {
             .map_or(0, |recipe| recipe.network.parameter_count())
     }
 
-    /// The goals of every pedestrian of every window, from the observed frames alone.
+    /// The windows with what is remembered of their places, for windows of the dataset's recordings.
+    ///
+    /// # Errors
+    /// When the model has no memory branch.
+    pub fn remembering(
+        &self,
+        windows: &[Window],
+        dataset: &Dataset,
+        what: Remembering,
+    ) -> Result<Vec<Window>, DdlError> {
+        let count = self.remembered_at_once()?;
+        let fold = self.fold_with_places(dataset)?;
+        let of_place = |recording: &str| -> Vec<&Recording> {
+            let known = fold.as_ref().filter(|fold| {
+                what == Remembering::Place || !fold.place_memory_confirmed_by().is_empty()
+            });
+            known.map_or_else(Vec::new, |fold| {
+                fold.training_recordings_of_its_place(recording)
+            })
+        };
+        let playback = match what {
+            Remembering::Place => None,
+            Remembering::Online => Some(Playback::Onward),
+        };
+        let recordings: Vec<&Recording> = dataset.recordings().iter().collect();
+        remembering(&recordings, windows, of_place, playback, count)
+    }
+
+    /// Earlier pedestrians that its memory branch looks at for each pedestrian.
+    /// How many earlier pedestrians its memory branch is given for each pedestrian.
+    ///
+    /// # Errors
+    /// When it has no memory branch.
+    pub fn remembered_at_once(&self) -> Result<usize, DdlError> {
+        let memory = self.memory().ok_or_else(|| {
+            self.source.wrong(
+                "has no memory branch, without which nothing of a place can be remembered; train a model with this version of \
+                 the program",
+            )
+        })?;
+        Ok(memory.remembered)
+    }
+
+    /// The fold that the model was trained on, where the dataset is of its convention.
+    fn fold_with_places<'a>(&self, dataset: &'a Dataset) -> Result<Option<Fold<'a>>, DdlError> {
+        let data = &self.config.data;
+        if dataset.convention() != data.convention || data.convention == Convention::Own {
+            return Ok(None);
+        }
+        let fold = fold_of(dataset, &data.fold)?;
+        Ok(Some(fold.set_apart(&data.validation_recordings)?))
+    }
+
+    /// Whether `fair` and `single` forecasts remember training recordings of the place of the test recordings.
+    pub(crate) fn remembers_place(&self, dataset: &Dataset) -> Result<bool, DdlError> {
+        let fold = self.fold_with_places(dataset)?;
+        let confirmed = fold.is_some_and(|fold| !fold.place_memory_confirmed_by().is_empty());
+        Ok(confirmed && self.memory().is_some())
+    }
+
+    /// The memory branch of its proposal network, if there is one.
+    pub(crate) fn memory(&self) -> Option<&MemoryConfig> {
+        self.config.goals.proposal.as_ref()?.network.memory.as_ref()
+    }
+
+    /// The goals of every pedestrian of every window, from the observed frames and what the windows remember.
     ///
     /// On the CPU a pedestrian's goals have the same bits alone and among others.
     ///

@@ -37,6 +37,20 @@ impl Default for ProposalRecipe {
     }
 }
 
+impl ProposalRecipe {
+    fn words(&self) -> String {
+        let Self {
+            network, training, ..
+        } = self;
+        let (members, steps) = (network.members, training.steps);
+        let memory = match network.memory {
+            Some(_) => format!(" and {} more for what is remembered", training.memory.steps),
+            None => String::new(),
+        };
+        format!("proposed by {members} networks trained {steps} steps{memory}")
+    }
+}
+
 impl GoalRecipe {
     /// Goals proposed by a network: the default.
     #[must_use]
@@ -79,10 +93,7 @@ impl GoalRecipe {
     pub fn words_without_library(&self) -> String {
         match &self.proposal {
             None => "none: they would be retrieved, and there is no expert library".to_owned(),
-            Some(proposal) => format!(
-                "proposed by {} networks trained {} steps, no expert library",
-                proposal.network.members, proposal.training.steps
-            ),
+            Some(proposal) => format!("{}, no expert library", proposal.words()),
         }
     }
 
@@ -92,8 +103,9 @@ impl GoalRecipe {
         match &self.proposal {
             None => "retrieved".to_owned(),
             Some(proposal) => format!(
-                "proposed by {} networks trained {} steps, and retrieved (share {})",
-                proposal.network.members, proposal.training.steps, proposal.retrieved_share
+                "{}, and retrieved (share {})",
+                proposal.words(),
+                proposal.retrieved_share
             ),
         }
     }

@@ -1,6 +1,6 @@
 //! What a proposal network sees of the walkers of a window.
 
-use ddl_data::{OBSERVED, Position, Window};
+use ddl_data::{OBSERVED, Position, Remembered, Window};
 use ddl_goal::{HeadingFrame, TrackError};
 use ddl_network::{PedestrianView, ProposalExample, motion_unit};
 
@@ -27,6 +27,14 @@ pub(crate) fn of_window(
                 own: in_frame((&frame, unit), window.observed(i)),
                 neighbours: nearest(window, i, neighbours)
                     .map(|j| in_frame((&frame, unit), window.observed(j)))
+                    .collect(),
+                remembered: window
+                    .remembered(i)
+                    .iter()
+                    .map(|other| Remembered {
+                        track: in_frame((&frame, unit), &other.track),
+                        ..*other
+                    })
                     .collect(),
             };
             Ok(Seen { frame, unit, view })

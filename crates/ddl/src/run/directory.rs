@@ -75,6 +75,25 @@ impl RunDirectory {
         self.0.join("proposal-state.safetensors")
     }
 
+    /// Takes over the trained goals of another run that is to have the same, so that they are not trained again. Whether they are
+    /// the same shows when they are loaded: files of other goals are refused then.
+    ///
+    /// # Errors
+    /// When a file cannot be read or written.
+    pub fn take_goals_of(&self, other: &Self) -> Result<(), DdlError> {
+        for (from, to) in [
+            (other.experts(), self.experts()),
+            (other.proposal(), self.proposal()),
+        ] {
+            if from.is_file() && !to.exists() {
+                std::fs::create_dir_all(&self.0).map_err(|error| DdlError::io(&self.0, error))?;
+                let bytes = std::fs::read(&from).map_err(|error| DdlError::io(&from, error))?;
+                write_atomically(&to, &bytes)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Results.
     pub fn report(&self) -> PathBuf {
         self.0.join("report.json")

@@ -1,4 +1,4 @@
-//! One process works in a run at a time.
+//! One process works in a run, or writes a file, at a time.
 
 use crate::error::DdlError;
 use std::fs::{File, OpenOptions, TryLockError};
@@ -8,7 +8,7 @@ use std::path::Path;
 /// Name of the file that is locked. It stays, empty: whoever removed it would take it from under one who waits.
 const FILE: &str = ".lock";
 
-/// The right to write into the directory of a run, given back when dropped; the system holds it for the process. `None`
+/// The right to write into the directory of a run, or to a file, given back when dropped; the system holds it for the process. `None`
 /// inside is a directory in which nothing can be written anyway, or a file system that knows no locks.
 #[derive(Debug)]
 pub struct RunLock(#[expect(dead_code, reason = "held, never read")] Option<File>);
@@ -19,33 +19,46 @@ impl RunLock {
     /// # Errors
     /// [`DdlError::Run`] when another process has it.
     pub fn take(folder: &Path) -> Result<Self, DdlError> {
-        let Some(file) = open(folder)? else {
+        let taken = "another process is at work in this directory; wait until it is done, or choose another one";
+        Self::take_by(&folder.join(FILE), || DdlError::run(folder, taken))
+    }
+
+    /// Takes one file, at once or not at all, by a file beside it whose name has `.lock` besides.
+    ///
+    /// # Errors
+    /// [`DdlError::Run`] when another process has it.
+    pub fn take_file(path: &Path) -> Result<Self, DdlError> {
+        let mut beside = path.as_os_str().to_owned();
+        beside.push(FILE);
+        let taken =
+            "another process writes this file; wait until it is done, or choose another one";
+        Self::take_by(Path::new(&beside), || DdlError::run(path, taken))
+    }
+
+    fn take_by(lock: &Path, taken: impl FnOnce() -> DdlError) -> Result<Self, DdlError> {
+        let Some(file) = open(lock)? else {
             return Ok(Self(None));
         };
         match file.try_lock() {
             Ok(()) => Ok(Self(Some(file))),
-            Err(TryLockError::WouldBlock) => Err(DdlError::run(
-                folder,
-                "another process is at work in this directory; wait until it is done, or choose another one",
-            )),
+            Err(TryLockError::WouldBlock) => Err(taken()),
             Err(TryLockError::Error(_)) => Ok(Self(None)),
         }
     }
 
     /// Takes the directory as soon as nobody else has it, to write results of work that is done.
     pub(crate) fn wait(folder: &Path) -> Result<Self, DdlError> {
-        let file = open(folder)?;
+        let file = open(&folder.join(FILE))?;
         Ok(Self(file.filter(|file| file.lock().is_ok())))
     }
 }
 
-fn open(folder: &Path) -> Result<Option<File>, DdlError> {
-    let path = folder.join(FILE);
+fn open(path: &Path) -> Result<Option<File>, DdlError> {
     let file = OpenOptions::new()
         .create(true)
         .truncate(false)
         .write(true)
-        .open(&path);
+        .open(path);
     match file {
         Ok(file) => Ok(Some(file)),
         // a finished run may lie where nothing can be written, and is still finished
@@ -57,7 +70,7 @@ fn open(folder: &Path) -> Result<Option<File>, DdlError> {
         {
             Ok(None)
         }
-        Err(error) => Err(DdlError::io(&path, error)),
+        Err(error) => Err(DdlError::io(path, error)),
     }
 }
 
@@ -82,5 +95,17 @@ mod tests {
         assert!(RunLock::take(folder.path()).is_err());
         drop(waited);
         RunLock::take(folder.path()).unwrap();
+    }
+
+    #[test]
+    fn files_in_one_folder_are_taken_each_by_itself() {
+        let folder = tempfile::tempdir().unwrap();
+        let [hall, gate] = ["hall.memory", "gate.memory"].map(|name| folder.path().join(name));
+        let first = RunLock::take_file(&hall).unwrap();
+        let message = RunLock::take_file(&hall).unwrap_err().to_string();
+        assert!(message.contains("hall.memory"), "{message}");
+        RunLock::take_file(&gate).unwrap();
+        drop(first);
+        RunLock::take_file(&hall).unwrap();
     }
 }

@@ -31,6 +31,7 @@ pub fn goals_trained_further(seed: u64) -> GoalRecipe {
         proposal.training.steps = 300;
         proposal.training.learning_rate = 3e-4;
         proposal.training.relaxed_ends = 1.0;
+        proposal.training.memory.steps = 600;
     }
     recipe
 }

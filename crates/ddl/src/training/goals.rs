@@ -3,10 +3,12 @@
 use crate::error::DdlError;
 use crate::goals::experts;
 use crate::goals::recipe::ProposalRecipe;
+use crate::goals::remembering::remembering;
 use crate::goals::views;
 use crate::run::directory::{RunDirectory, SAVE_EVERY};
-use ddl_data::Window;
+use ddl_data::{Recording, Window};
 use ddl_goal::GoalError;
+use ddl_memory::Playback;
 use ddl_network::ProposalStep;
 use ddl_network::weights::{Origin, Weights, save_weights};
 use ddl_star::{ComputeDevice, ProposalTrainer, TorchProposals};
@@ -21,7 +23,7 @@ pub(crate) fn train(
         Option<Weights>,
         impl FnOnce(Weights) -> Result<Weights, DdlError>,
     ),
-    windows: &[Window],
+    (windows, recordings): (&[Window], &[&Recording]),
     (run, origin): (&RunDirectory, &Origin),
     device: ComputeDevice,
     mut observe: impl FnMut((u64, u64), &ProposalStep) -> ControlFlow<()>,
@@ -32,13 +34,23 @@ pub(crate) fn train(
     let Some(recipe) = recipe.filter(|_| !run.proposal().is_file()) else {
         return Ok(());
     };
-    let seen = |windows: &[Window]| {
-        views::examples(windows, recipe.network.neighbours, recipe.network.time_step)
-            .map_err(GoalError::from)
+    let network = &recipe.network;
+    let seen = |windows: Vec<Window>, playback: Playback| {
+        let windows = match &network.memory {
+            Some(memory) => {
+                let nothing = |_: &str| Vec::new();
+                let count = memory.remembered;
+                remembering(recordings, &windows, nothing, Some(playback), count)?
+            }
+            None => windows,
+        };
+        let examples = views::examples(&windows, network.neighbours, network.time_step);
+        Ok::<_, DdlError>(examples.map_err(GoalError::from)?)
     };
-    let examples = seen(windows)?;
     let whole = windows.iter().filter(|window| window.has_future());
-    let reversed = seen(&whole.map(Window::reversed).collect::<Vec<_>>())?;
+    let reversed = whole.clone().map(Window::reversed).collect();
+    let examples = seen(whole.cloned().collect(), Playback::Onward)?;
+    let reversed = seen(reversed, Playback::Backward)?;
     let network = TorchProposals::new(recipe.network.clone(), recipe.training.seed, device)?;
     if let Some(start) = start {
         network.parameters().set(&start)?;

@@ -79,7 +79,7 @@ pub(super) fn train(
     goals::train(
         config.goals.proposal.as_ref(),
         (proposal, better),
-        &windows,
+        (&windows, fold.training_recordings()),
         (run, &config.goals_origin()),
         device.torch()?,
         |steps, step| {

@@ -1,6 +1,6 @@
 //! The smallest networks there are: what is fuzzed is the reading.
 
-use ddl::network::{MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig};
+use ddl::network::{MemoryConfig, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig};
 use ddl::{RunConfig, Variant};
 
 use crate::drawn_model;
@@ -25,6 +25,14 @@ pub(super) fn config() -> RunConfig {
             neighbour_width: 1,
             heads: 1,
             neighbours: 1,
+            memory: Some(MemoryConfig {
+                remembered: 1,
+                width: 1,
+                heads: 1,
+                hidden: 1,
+                layers: 1,
+                ..MemoryConfig::default()
+            }),
             ..ProposalConfig::default()
         };
     }

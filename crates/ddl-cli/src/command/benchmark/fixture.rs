@@ -17,8 +17,8 @@ pub(super) fn settings(name: Recipe) -> Settings {
         proposal_steps: Some(30),
         test_walkers: None,
         protocols: match name {
-            Recipe::Recommended => vec![Protocol::Fair, Protocol::Single],
-            Recipe::Published => Protocol::ALL.to_vec(),
+            Recipe::Recommended => Protocol::ALL[1..].to_vec(),
+            Recipe::Published => Protocol::ALL[..3].to_vec(),
         },
         recipe: Training {
             name,

@@ -141,13 +141,25 @@ impl Plan {
                 });
             }
         }
-        // The sort is stable: equal tasks stay in the order they were asked for.
-        tasks.sort_by(|one, other| other.cost().total_cmp(&one.cost()));
+        // The sort is stable: equal tasks stay in the order they were asked for. Goals are those of the first method, and trained
+        // with it.
+        let first = |task: &Task| methods.first() == Some(&task.variant);
+        tasks.sort_by(|one, other| {
+            let by_cost = other.cost().total_cmp(&one.cost());
+            first(other).cmp(&first(one)).then(by_cost)
+        });
         Ok(Self {
             format: FORMAT,
             settings,
             tasks,
         })
+    }
+
+    /// The task before this one that trains the same goals.
+    pub(super) fn with_same_goals(&self, task: &Task) -> Option<&Task> {
+        let same = |other: &&Task| (&other.fold, other.seed) == (&task.fold, task.seed);
+        let first = self.tasks.iter().find(same)?;
+        (first != task).then_some(first)
     }
 
     pub(super) fn train_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {

@@ -24,7 +24,7 @@ pub(super) fn with_results(
         let table = first_table(report, protocol)
             .with_context(|| format!("the report has no table of protocol {protocol}"))?;
         let error = match protocol {
-            Protocol::Single => "ADE/FDE in metres of one hypothesis",
+            Protocol::Single | Protocol::OnlineSingle => "ADE/FDE in metres of one hypothesis",
             _ => "minADE/minFDE in metres of the best of up to 20 hypotheses",
         };
         results.extend([

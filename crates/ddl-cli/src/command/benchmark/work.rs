@@ -5,8 +5,8 @@ use super::plan::{Plan, Task};
 use crate::interrupt::Interrupt;
 use crate::progress::ProgressLine;
 use anyhow::Context as _;
-use ddl::DeviceChoice;
 use ddl::data::{remove_half_written, write_whole};
+use ddl::{DeviceChoice, RunDirectory};
 use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -132,6 +132,15 @@ impl Workers {
         // Nobody else is at work there now; the folder of the run is the program's own.
         remove_half_written(&task.folder(out));
         let start = Instant::now();
+        if let Some(other) = plan
+            .with_same_goals(task)
+            .filter(|task| Record::is_of(task, out))
+        {
+            let (here, there) = (task.run_folder(out), other.run_folder(out));
+            if let Err(error) = RunDirectory::new(here).take_goals_of(&RunDirectory::new(there)) {
+                return failure(task, out, &error.to_string());
+            }
+        }
         let train = task.train_cost / task.cost();
         let steps = [
             (plan.train_arguments(task, out, self.threads), 0.0, train),

@@ -1,11 +1,13 @@
 //! `ddl forecast -`: from a tracker's lines, a forecast a frame.
 
-use super::Forecast;
+use super::kept_memory::KeptMemory;
+use super::{Forecast, Onward};
 use crate::clock::Clock;
 use crate::recordings;
-use crate::telling::tell;
+use crate::telling::{tell, words};
 use crate::units::{Units, live_step};
 use anyhow::{Context as _, bail};
+use ddl::Ddl;
 use ddl::data::{
     Completion, Doubt, Frame, FrameReader, Homography, LiveTracks, MadeUp, Observation, Recording,
     Window,
@@ -20,17 +22,30 @@ const LONGEST_STEP: i64 = 1000;
 /// Forecasts from every frame as soon as it is whole, until standard input ends or nobody reads on.
 pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
     let model = forecast.model()?;
+    let memory = KeptMemory::open(forecast.memory.as_deref(), &model)?;
+    let answered = answer(forecast, &model, &memory);
+    // however the stream ended, what was seen is kept
+    let kept = memory.end();
+    if let (Err(_), Err(error)) = (&answered, &kept) {
+        tell(format_args!("error: {}", words(error)));
+    }
+    answered.and(kept)
+}
+
+fn answer(forecast: &Forecast, model: &Ddl, memory: &KeptMemory) -> anyhow::Result<()> {
     let units = forecast.tracks.live_units(model.config())?;
     let homography = units.homography()?;
     if let Some(note) = units.note_of_run(false) {
         tell(format_args!("note: {note}"));
     }
     let mut tracking = Tracking::new(forecast.tracks.completion(), units)?;
+    memory.begin(model, tracking.frame_step())?;
     let mut output = Output::open(forecast.output.as_deref())?;
     let mut frames = FrameReader::new(stdin().lock(), "standard input");
-    let (mut headed, mut empty, mut looked_at, mut warned) = (true, true, false, false);
+    let (mut onward, mut empty, mut looked_at) = (Onward::default(), true, false);
     let mut wrong = None;
     while wrong.is_none() {
+        memory.write_when_due();
         let frame = frames.next_frame().or_else(|error| {
             // what came before the bad line is not lost
             wrong = Some(error);
@@ -40,15 +55,17 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
         empty = false;
         let frame = on_the_ground(frame, homography.as_ref())?;
         let names = frame.names.clone();
-        let Some(window) = tracking.push(frame, frames.rate())? else {
+        let seen = (frame.number, frame.people.clone());
+        let window = tracking.push(frame, frames.rate())?;
+        memory.begin(model, tracking.frame_step())?;
+        let Some(window) = memory.watch(&seen, window)? else {
             continue;
         };
         let window = window.with_names(names);
         if !looked_at {
             looked_at = warn_of_speeds(&window)?;
         }
-        let text = forecast.text(&model, &[window], Clock::WHOLE, (headed, &mut warned))?;
-        headed = false;
+        let text = forecast.text(model, &[window], Clock::WHOLE, &mut onward)?;
         output
             .write(&text)
             .with_context(|| match &forecast.output {
@@ -67,7 +84,7 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
             "standard input holds no tracks: the first line is frame,pedestrian,x,y, then a row for each person and frame"
         );
     }
-    if headed {
+    if !onward.headed {
         bail!(
             "standard input: nobody was seen long enough to be forecast; give --fps where frame numbers are not 0.4 s apart, or --frame-step"
         );
@@ -166,6 +183,11 @@ impl Tracking {
             tracks,
             first: None,
         })
+    }
+
+    /// Raw frames in a step, as soon as that is known.
+    fn frame_step(&self) -> Option<i64> {
+        self.tracks.as_ref().map(LiveTracks::frame_step)
     }
 
     /// Adds a frame; the window that ends there, if anybody can be forecast. `rate`: frames that follow each other in a second, where the lines say so.

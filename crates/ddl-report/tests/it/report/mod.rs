@@ -390,3 +390,35 @@ fn own_recordings_have_a_row_each_and_one_for_all() {
     measured.blocks.pop();
     assert!(!markdown([measured]).contains("By recording"));
 }
+
+#[test]
+fn watching_is_measured_by_quarters_against_the_same_model_without_it() {
+    let alone = five_folds(Protocol::Fair, 1, 0.2);
+    let mut online = five_folds(Protocol::Online, 1, 0.1);
+    for row in &mut online {
+        // Nothing is known yet in the first three of ten blocks, and one block says nothing.
+        for block in &mut row.blocks[..3] {
+            block.min_fde = 4.0;
+        }
+        row.blocks.remove(9);
+        // Other words about what is remembered make no other model.
+        row.conditions.recipe = Some("with a memory".to_owned());
+    }
+    let page = markdown(alone.iter().cloned().chain(online.clone()));
+    let (before, section) = page.split_once("### Error over watching time").unwrap();
+    assert!(before.contains("## Protocol `online`"));
+    // Nine blocks in quarters: 0 to 2, 3 and 4, 5 and 6, 7 and 8; without watching ten: 0 to 2, 3 and 4, 5 to 7, 8 and 9.
+    let expected = [
+        "0.400 (+0.0 %)",
+        "0.200 (-50.0 %)",
+        "0.200 (-50.0 %)",
+        "0.200 (-50.0 %)",
+    ];
+    assert_eq!(
+        cells(line(section, "| DDL "))[1..],
+        [&["eth"], &expected[..]].concat()
+    );
+    // It stands under its own protocol, and nowhere without something to compare with.
+    assert!(!markdown(online).contains("watching time"));
+    assert!(!markdown(alone).contains("watching time"));
+}

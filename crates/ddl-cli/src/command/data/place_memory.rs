@@ -1,0 +1,138 @@
+//! What the memory of a place holds, told and drawn.
+
+use super::many;
+use crate::output::{ensure_not_input, write_output};
+use anyhow::bail;
+use clap::Args;
+use ddl::data::Position;
+use ddl::memory::{MemorySummary, SceneMemory};
+use ddl::report::figure;
+use serde_json::{Value, json};
+use std::fmt::{Display, Formatter};
+use std::fs::File;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+/// Bytes by which a memory is told from tracks.
+const FIRST: u64 = 16;
+
+pub(super) struct PlaceMemory {
+    file: PathBuf,
+    memory: SceneMemory,
+}
+
+/// Where the picture of a memory goes.
+#[derive(Debug, Args)]
+pub(super) struct MemoryPicture {
+    /// Draw the memory of a place as SVG: where many walk, and where they come and go
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+}
+
+/// Whether a file holds a memory. Pipes do not: what is read of them is gone.
+pub(super) fn is_in(file: &Path) -> bool {
+    let mut first = Vec::new();
+    let read = |file: File| file.take(FIRST).read_to_end(&mut first);
+    file.is_file() && File::open(file).and_then(read).is_ok() && SceneMemory::begins(&first)
+}
+
+pub(super) fn read_each(files: Vec<PathBuf>) -> (Vec<PlaceMemory>, Vec<anyhow::Error>) {
+    let (mut memories, mut errors) = (Vec::new(), Vec::new());
+    for file in files {
+        match SceneMemory::read(&file) {
+            Ok(memory) => memories.push(PlaceMemory { file, memory }),
+            Err(error) => errors.push(error.into()),
+        }
+    }
+    (memories, errors)
+}
+
+impl PlaceMemory {
+    pub(super) fn facts(&self) -> Value {
+        let MemorySummary {
+            stretches,
+            tracks,
+            pedestrians,
+            frames,
+            seconds,
+            extent,
+            ..
+        } = self.memory.summary();
+        let [low, high] = extent.map_or([None; 2], |corners| corners.map(Some));
+        json!({
+            "file": self.file.display().to_string(),
+            "stretches": stretches,
+            "capacity": self.memory.capacity(),
+            "tracks": tracks,
+            "pedestrians": pedestrians,
+            "frames": frames,
+            "seconds": seconds,
+            "frame_step": self.memory.frame_step(),
+            "low": low,
+            "high": high,
+        })
+    }
+
+    /// How much it holds, and of what.
+    fn numbers(&self) -> String {
+        let summary = self.memory.summary();
+        format!(
+            "{} of at most {} stretches, of {}; {} seen in {}",
+            summary.stretches,
+            self.memory.capacity(),
+            many(summary.tracks, "track", "tracks"),
+            many(
+                usize::try_from(summary.pedestrians).unwrap_or(usize::MAX),
+                "pedestrian",
+                "pedestrians"
+            ),
+            duration(summary.seconds),
+        )
+    }
+}
+
+fn duration(seconds: f64) -> String {
+    if seconds < 6000.0 {
+        format!("{:.1} minutes", seconds / 60.0)
+    } else {
+        format!("{:.1} hours", seconds / 3600.0)
+    }
+}
+
+impl Display for PlaceMemory {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        writeln!(f, "{}, the memory of a place", self.file.display())?;
+        writeln!(f, "  {}", self.numbers())?;
+        write!(f, "  {} frames a step of 0.4 s; ", self.memory.frame_step())?;
+        match self.memory.summary().extent {
+            None => write!(f, "nobody was seen"),
+            Some([low, high]) => write!(
+                f,
+                "x from {:.2} to {:.2} m, y from {:.2} to {:.2} m",
+                low[0], high[0], low[1], high[1]
+            ),
+        }
+    }
+}
+
+impl MemoryPicture {
+    pub(super) fn draw(&self, memories: &[PlaceMemory]) -> anyhow::Result<()> {
+        let Some(picture) = &self.svg else {
+            return Ok(());
+        };
+        let [PlaceMemory { file, memory }] = memories else {
+            bail!(
+                "--svg draws the memory of one place, and {} given; name one file that `ddl forecast - --memory FILE` wrote",
+                match memories.len() {
+                    0 => "none was".to_owned(),
+                    count => format!("{count} were"),
+                }
+            );
+        };
+        ensure_not_input(Some(picture), file)?;
+        let tracks: Vec<Vec<Position>> = memory.tracks().collect();
+        let title = file.file_name().unwrap_or_default().to_string_lossy();
+        let drawn = figure::place(&title, &memories[0].numbers(), &tracks);
+        write_output(Some(picture), &drawn)
+    }
+}

@@ -1,0 +1,308 @@
+//! Regions that keep their share in a new place, by what is seen there.
+
+use std::collections::VecDeque;
+
+use ddl_data::{HORIZON, OBSERVED, PedestrianId, Position, Window};
+
+use super::tracked::{Outcomes, TrackedQuantiles};
+use crate::Forecast;
+
+/// Fed every forecast of one place in order of time, it gives each the regions that have held their share there so far.
+///
+/// The regions of a forecast `t` steps ahead are judged when the pedestrian is seen there, so `t` steps later, and
+/// change later regions from then on. Who is not in the window of that frame is not judged. Nothing depends on the
+/// order of the pedestrians, or on anything that comes after the frame.
+///
+/// It begins with the table of the first forecast that has one. Forecasts without regions pass as they are.
+///
+/// # What is kept
+/// What was [learned](Self::learned), a few numbers, which can be saved and [taken up](Self::resuming) again; and the
+/// forecasts of the last 4.8 s, which are not saved.
+///
+/// # Examples
+/// ```
+/// use ddl_data::{HORIZON, PedestrianId, Window};
+/// use ddl_eval::{AdaptiveRegions, Forecast, RegionTable};
+///
+/// let scores: Vec<_> = (1..100).map(|n| [f64::from(n) / 20.0; HORIZON]).collect();
+/// let table = std::sync::Arc::new(RegionTable::of(&scores, &[0.5, 0.9]).expect("99 scores"));
+/// let mut regions = AdaptiveRegions::default();
+/// for frame in 0..100 {
+///     // somebody who stands, and a forecast that says so
+///     let window = Window::new("yard", frame, 1, vec![PedestrianId(1)], vec![vec![[1.0, 2.0]; 8]])?;
+///     let forecast = Forecast::equally_likely(1, 1, vec![[1.0, 2.0]; HORIZON])?
+///         .with_spread(vec![0.5; HORIZON], table.clone())?;
+///     let fixed = forecast.region_radius(0, 0, 5, 0.9);
+///     let adapted = regions.adapt(&window, forecast).region_radius(0, 0, 5, 0.9);
+///     assert_eq!(adapted < fixed, frame >= 6, "smaller as soon as its first outcome is known");
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct AdaptiveRegions {
+    learned: Option<TrackedQuantiles>,
+    /// The last frame, and those before it whose forecasts are not all judged; oldest first.
+    pending: VecDeque<Pending>,
+}
+
+/// A forecast that waits for its outcomes.
+#[derive(Debug, Clone)]
+struct Pending {
+    /// The last frame observed.
+    frame: i64,
+    pedestrians: Vec<PedestrianId>,
+    forecast: Forecast,
+    /// `[N][K]`: ln of the weight in weights of the likeliest hypothesis.
+    log_weights: Vec<f64>,
+}
+
+impl AdaptiveRegions {
+    /// Goes on from what was learned before.
+    #[must_use]
+    pub fn resuming(learned: TrackedQuantiles) -> Self {
+        Self {
+            learned: Some(learned),
+            pending: VecDeque::new(),
+        }
+    }
+
+    /// What was learned; `None` before the first forecast that has regions.
+    pub fn learned(&self) -> Option<&TrackedQuantiles> {
+        self.learned.as_ref()
+    }
+
+    /// Forgets the forecasts not judged yet, as when a tracker starts anew; what was learned stays.
+    pub fn clear(&mut self) {
+        self.pending.clear();
+    }
+
+    /// Learns where everybody of the window is at its last observed frame, and gives the forecast from there the regions
+    /// that follow from it. A frame that is not after the one before [clears](Self::clear) first.
+    ///
+    /// # Panics
+    /// When the forecast has fewer pedestrians than the window.
+    #[must_use]
+    pub fn adapt(&mut self, window: &Window, forecast: Forecast) -> Forecast {
+        let Some(table) = forecast.shared_regions() else {
+            return forecast;
+        };
+        let learned = self
+            .learned
+            .get_or_insert_with(|| TrackedQuantiles::new(table));
+        let (now, step) = (window.frames()[OBSERVED - 1], window.frame_step());
+        if self.pending.back().is_some_and(|last| last.frame >= now) {
+            self.pending.clear();
+        }
+        let share = self.pending.back().map_or(1.0, |last| {
+            ((now - last.frame) as f64 / step as f64).min(1.0)
+        });
+        let judged = self.pending.iter();
+        let outcomes: Vec<Outcomes> = judged
+            .filter_map(|pending| pending.outcomes(window))
+            .collect();
+        learned.learn(&outcomes, share);
+        let forecast = forecast.with_regions(learned.table());
+        let over = |pending: &Pending| now - pending.frame >= HORIZON as i64 * step;
+        while self.pending.front().is_some_and(over) {
+            self.pending.pop_front();
+        }
+        self.pending.push_back(Pending::new(window, &forecast));
+        forecast
+    }
+}
+
+impl Pending {
+    fn new(window: &Window, forecast: &Forecast) -> Self {
+        Self {
+            frame: window.frames()[OBSERVED - 1],
+            pedestrians: window.pedestrians().to_vec(),
+            forecast: forecast.clone(),
+            log_weights: (0..window.len())
+                .flat_map(|i| forecast.log_weights(i))
+                .collect(),
+        }
+    }
+
+    /// The scores of those who are in the window, at its last observed frame; `None` where that is none of the steps
+    /// forecast, or nobody is.
+    fn outcomes(&self, window: &Window) -> Option<Outcomes> {
+        let after = window.frames()[OBSERVED - 1] - self.frame;
+        let steps = after / window.frame_step();
+        if after % window.frame_step() != 0 || !(1..=HORIZON as i64).contains(&steps) {
+            return None;
+        }
+        let step = steps as usize - 1;
+        let position = |id: &PedestrianId| -> Option<Position> {
+            let i = window.pedestrians().iter().position(|other| other == id)?;
+            Some(window.observed(i)[OBSERVED - 1])
+        };
+        let scores: Vec<f64> = self
+            .pedestrians
+            .iter()
+            .enumerate()
+            .filter_map(|(i, id)| self.score(i, step, position(id)?))
+            .collect();
+        let table = self.forecast.shared_regions()?;
+        (!scores.is_empty()).then_some(Outcomes {
+            step,
+            table,
+            scores,
+        })
+    }
+
+    /// As [`Forecast::region_score`].
+    fn score(&self, i: usize, t: usize, at: Position) -> Option<f64> {
+        let k = self.forecast.hypotheses();
+        let log_weights = &self.log_weights[i * k..][..k];
+        self.forecast.score_among(i, t, at, log_weights)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+    use std::sync::Arc;
+
+    use proptest::{collection::vec, prelude::*};
+
+    use super::*;
+    use crate::RegionTable;
+
+    /// Where everybody is, frame by frame.
+    type Tracks = Vec<Vec<Position>>;
+
+    const PEOPLE: usize = 4;
+
+    fn tracks() -> impl Strategy<Value = Tracks> {
+        let step = vec([-0.8..0.8f64, -0.8..0.8f64], PEOPLE);
+        vec(step, 40..60).prop_map(|steps| {
+            let mut at = vec![[0.0; 2]; PEOPLE];
+            let moved = steps.into_iter().map(|steps| {
+                for (at, step) in at.iter_mut().zip(steps) {
+                    *at = [at[0] + step[0], at[1] + step[1]];
+                }
+                at.clone()
+            });
+            moved.collect()
+        })
+    }
+
+    /// The forecasts of two hypotheses, to stand still or to go on, of the people in this order, up to each frame.
+    fn forecasts(tracks: &Tracks, order: [usize; PEOPLE]) -> Vec<(Window, Forecast)> {
+        let scores: Vec<[f64; HORIZON]> =
+            (1..100).map(|n| [f64::from(n) / 30.0; HORIZON]).collect();
+        let table = Arc::new(RegionTable::of(&scores, &[0.3, 0.5, 0.9]).unwrap());
+        let until = |last: usize| {
+            // the second is away for a while
+            let here = |i: &&usize| **i != 1 || !(20..30).contains(&last);
+            let people: Vec<usize> = order.iter().filter(here).copied().collect();
+            let observed = |&i: &usize| (last - 7..=last).map(|t| tracks[t][i]).collect();
+            let window = Window::new(
+                "yard",
+                last as i64 - 7,
+                1,
+                people.iter().map(|&i| PedestrianId(i as i64)).collect(),
+                people.iter().map(observed).collect(),
+            );
+            let window = window.unwrap();
+            let mut walks = Vec::new();
+            for i in 0..window.len() {
+                let [.., before, at] = window.observed(i) else {
+                    unreachable!("8 positions")
+                };
+                let on = |t: usize| [0, 1].map(|a| at[a] + t as f64 * (at[a] - before[a]));
+                walks.extend([*at; HORIZON]);
+                walks.extend((1..=HORIZON).map(on));
+            }
+            let weights = [0.6, 0.4].repeat(window.len());
+            let forecast = Forecast::new(window.len(), 2, walks, weights, None).unwrap();
+            let spread = vec![0.7; HORIZON * window.len()];
+            let forecast = forecast.with_spread(spread, Arc::clone(&table)).unwrap();
+            (window, forecast)
+        };
+        (7..tracks.len()).map(until).collect()
+    }
+
+    fn adapted(regions: &mut AdaptiveRegions, stream: &[(Window, Forecast)]) -> Vec<RegionTable> {
+        let adapt = |(window, forecast): &(Window, Forecast)| {
+            let adapted = regions.adapt(window, forecast.clone());
+            adapted.regions().unwrap().clone()
+        };
+        stream.iter().map(adapt).collect()
+    }
+
+    const ORDER: [usize; PEOPLE] = [0, 1, 2, 3];
+
+    proptest! {
+        #[test]
+        fn what_comes_later_changes_nothing(tracks in tracks(), other in tracks(), from in 10..40usize) {
+            let before = adapted(&mut AdaptiveRegions::default(), &forecasts(&tracks, ORDER));
+            let mut changed = tracks.clone();
+            for (at, other) in changed.iter_mut().zip(other).skip(from) {
+                *at = other;
+            }
+            let after = adapted(&mut AdaptiveRegions::default(), &forecasts(&changed, ORDER));
+            let known = from - 7;
+            prop_assert_eq!(&before[..known], &after[..known]);
+        }
+
+        #[test]
+        fn the_order_of_people_does_not_matter(tracks in tracks(), order in Just(ORDER).prop_shuffle()) {
+            let one = adapted(&mut AdaptiveRegions::default(), &forecasts(&tracks, ORDER));
+            let other = adapted(&mut AdaptiveRegions::default(), &forecasts(&tracks, order));
+            prop_assert_eq!(one, other);
+        }
+
+        #[test]
+        fn what_is_saved_goes_on_as_what_was_cleared(tracks in tracks(), at in 0..30usize) {
+            let stream = forecasts(&tracks, ORDER);
+            let mut never_saved = AdaptiveRegions::default();
+            adapted(&mut never_saved, &stream[..=at]);
+            let text = serde_json::to_string(never_saved.learned().unwrap()).unwrap();
+            let mut restored = AdaptiveRegions::resuming(serde_json::from_str(&text).unwrap());
+            never_saved.clear();
+            let on = adapted(&mut never_saved, &stream[at + 1..]);
+            prop_assert_eq!(on, adapted(&mut restored, &stream[at + 1..]));
+        }
+
+        #[test]
+        fn every_score_is_that_of_the_forecast(tracks in tracks()) {
+            let stream = forecasts(&tracks, ORDER);
+            for pair in stream.windows(6) {
+                let [(window, forecast), .., (later, _)] = pair else { unreachable!() };
+                let outcomes = Pending::new(window, forecast).outcomes(later).unwrap();
+                prop_assert_eq!(outcomes.step, 4);
+                let mut expected = Vec::new();
+                for (i, id) in window.pedestrians().iter().enumerate() {
+                    if let Some(j) = later.pedestrians().iter().position(|other| other == id) {
+                        expected.push(forecast.region_score(i, 4, later.observed(j)[7]).unwrap());
+                    }
+                }
+                prop_assert_eq!(outcomes.scores, expected);
+            }
+        }
+    }
+
+    #[test]
+    fn the_first_frames_have_the_table_as_it_is_and_forecasts_without_regions_pass() {
+        let tracks = (0..30)
+            .map(|t| vec![[0.3 * f64::from(t), 1.0]; PEOPLE])
+            .collect();
+        let stream = forecasts(&tracks, ORDER);
+        let mut regions = AdaptiveRegions::default();
+        let bare = Forecast::equally_likely(PEOPLE, 1, vec![[0.0; 2]; PEOPLE * HORIZON]).unwrap();
+        assert_eq!(regions.adapt(&stream[0].0, bare.clone()), bare);
+        assert_eq!(regions.learned(), None);
+        let (window, forecast) = &stream[0];
+        assert_eq!(&regions.adapt(window, forecast.clone()), forecast);
+        // time that goes backwards is a new beginning, and so no outcome
+        let learned = regions.learned().cloned();
+        let _ = regions.adapt(window, forecast.clone());
+        assert_eq!(regions.learned().cloned(), learned);
+        let _ = regions.adapt(&stream[1].0, stream[1].1.clone());
+        assert_ne!(regions.learned().cloned(), learned);
+        // 4.8 s later everything is judged or gone
+        assert!(regions.pending.len() <= HORIZON);
+    }
+}

@@ -1,0 +1,98 @@
+//! A recording watched again: its windows, each with what was known of the place at that moment.
+
+use ddl_data::{OBSERVED, Recording, Window};
+
+use crate::{MemoryError, SceneMemory};
+
+/// In which order the frames of a recording are watched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Playback {
+    /// As they were recorded.
+    Onward,
+    /// From the last to the first, for windows that are [reversed](Window::reversed).
+    Backward,
+}
+
+impl Playback {
+    fn time(self, frame: i64) -> i64 {
+        match self {
+            Self::Onward => frame,
+            Self::Backward => -frame,
+        }
+    }
+
+    /// The moment from which is forecast.
+    fn now(self, window: &Window) -> i64 {
+        match self {
+            Self::Onward => window.frames()[OBSERVED - 1],
+            // The frames of a reversed window are those of the window.
+            Self::Backward => -window.frames()[window.steps() - OBSERVED],
+        }
+    }
+}
+
+impl SceneMemory {
+    /// The windows of one recording, each with what this memory recalls for its pedestrians, at most `count` for each,
+    /// after it has also watched the recording before the last observed frame of the window. Nothing later is read.
+    ///
+    /// Backward, watching begins at the last frame of the windows.
+    ///
+    /// # Errors
+    /// [`MemoryError`] when the recording has another number of raw frames a step than the memory.
+    pub fn replay(
+        mut self,
+        recording: &Recording,
+        playback: Playback,
+        windows: Vec<Window>,
+        count: usize,
+    ) -> Result<Vec<Window>, MemoryError> {
+        self.interrupt();
+        let ends = |window: &Window| window.frames()[window.steps() - 1];
+        let last = windows.iter().map(ends).max();
+        let frames = recording.frames().iter().copied();
+        let mut frames: Vec<i64> = frames.filter(|frame| Some(*frame) <= last).collect();
+        frames.sort_unstable_by_key(|frame| playback.time(*frame));
+        let mut frames = frames.into_iter().peekable();
+        let mut order: Vec<usize> = (0..windows.len()).collect();
+        order.sort_by_key(|&index| playback.now(&windows[index]));
+        let mut windows = windows;
+        for index in order {
+            let now = playback.now(&windows[index]);
+            while let Some(frame) = frames.next_if(|frame| playback.time(*frame) < now) {
+                let people = recording.at(frame).iter();
+                let people = people.map(|seen| (seen.pedestrian, seen.position));
+                self.observe(playback.time(frame), people)?;
+            }
+            windows[index] = self.recalling(windows[index].clone(), count);
+        }
+        Ok(windows)
+    }
+
+    /// The window with what this memory recalls for its pedestrians, at most `count` for each; their own running tracks are left
+    /// out.
+    #[must_use]
+    pub fn recalling(&self, window: Window, count: usize) -> Window {
+        let recall = |i: usize| match window.observed(i).first_chunk() {
+            Some(observed) => self.recall(observed, Some(window.pedestrians()[i]), count),
+            None => Vec::new(),
+        };
+        let remembered: Vec<_> = (0..window.len()).map(recall).collect();
+        let mut remembered = remembered.into_iter();
+        window.with_remembered(|_| remembered.next().unwrap_or_default())
+    }
+
+    /// Watches a whole recording, and whatever is watched next as a recording of its own.
+    ///
+    /// # Errors
+    /// As [`observe`](Self::observe).
+    pub fn watch(&mut self, recording: &Recording) -> Result<(), MemoryError> {
+        self.interrupt();
+        for &frame in recording.frames() {
+            let people = recording.at(frame).iter();
+            let people = people.map(|seen| (seen.pedestrian, seen.position));
+            self.observe(frame, people)?;
+        }
+        self.interrupt();
+        Ok(())
+    }
+}

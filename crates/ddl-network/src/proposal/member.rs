@@ -1,0 +1,216 @@
+//! One member of the ensemble on plain numbers.
+
+use super::layers::{AttentionLayers, MemberAffine, ProposalLayers, ReadoutLayers};
+use super::remembered::RememberedRows;
+use super::seen::{OthersRows, SeenRows};
+use crate::kernel::{Buffer, LinearKernel, gelu};
+use crate::weights::Weights;
+use crate::{MemoryConfig, ProposalConfig};
+
+/// What a readout says of B pedestrians: `[B, K * 2]` and `[B, K]`.
+pub(super) struct Readings {
+    pub(super) ends: Buffer,
+    pub(super) logits: Buffer,
+}
+
+#[derive(Debug)]
+pub(super) struct MemberKernels {
+    own: LinearKernel,
+    neighbours: AttentionKernels,
+    readout: ReadoutKernels,
+    memory: Option<(AttentionKernels, ReadoutKernels)>,
+}
+
+#[derive(Debug)]
+struct AttentionKernels {
+    code: [LinearKernel; 2],
+    query: LinearKernel,
+    key: LinearKernel,
+    value: LinearKernel,
+    heads: usize,
+}
+
+#[derive(Debug)]
+struct ReadoutKernels {
+    hidden: Vec<LinearKernel>,
+    ends: LinearKernel,
+    logits: LinearKernel,
+}
+
+impl MemberKernels {
+    pub(super) fn new(
+        config: &ProposalConfig,
+        layers: &ProposalLayers,
+        weights: &Weights,
+        member: usize,
+    ) -> Self {
+        let of = |layer: MemberAffine| kernel(layer, member, weights);
+        let attention = |layers: &AttentionLayers, heads: i64| AttentionKernels {
+            code: layers.code.map(of),
+            query: of(layers.query),
+            key: of(layers.key),
+            value: of(layers.value),
+            heads: heads as usize,
+        };
+        let readout = |layers: &ReadoutLayers| ReadoutKernels {
+            hidden: layers.hidden.iter().map(|&layer| of(layer)).collect(),
+            ends: of(layers.ends),
+            logits: of(layers.logits),
+        };
+        let memory = |(over, from): &(AttentionLayers, ReadoutLayers), config: &MemoryConfig| {
+            (attention(over, config.heads), readout(from))
+        };
+        Self {
+            own: of(layers.own),
+            neighbours: attention(&layers.neighbours, config.heads),
+            readout: readout(&layers.readout),
+            memory: layers
+                .memory
+                .as_ref()
+                .zip(config.memory.as_ref())
+                .map(|(layers, config)| memory(layers, config)),
+        }
+    }
+
+    /// What is proposed from the observation alone and, for those of whom something is remembered, with that too.
+    pub(super) fn read(
+        &self,
+        seen: &SeenRows,
+        remembered: &RememberedRows,
+    ) -> (Readings, Option<Readings>) {
+        let mut code = self.own.forward(&seen.own);
+        gelu(&mut code);
+        let context = self.neighbours.look(&code, &seen.neighbours);
+        let counts = seen.neighbours.counts.iter();
+        let hidden = (self.readout).hidden_layer(code, &context, counts.map(|&n| n as f32 * 0.1));
+        let readings = self.readout.read(&hidden);
+        let memory = self.memory.as_ref().filter(|_| !remembered.of.is_empty());
+        let with_memory = memory.map(|(attention, readout)| {
+            let hidden = rows_of(&hidden, &remembered.of, seen.onward.len());
+            let context = attention.look(&hidden, &remembered.others);
+            let support = remembered.support.iter().copied();
+            let mut offsets = readout.read(&readout.hidden_layer(hidden, &context, support));
+            for (offsets, base) in [
+                (&mut offsets.ends, &readings.ends),
+                (&mut offsets.logits, &readings.logits),
+            ] {
+                let base = rows_of(base, &remembered.of, seen.onward.len());
+                for (offset, base) in offsets.iter_mut().zip(base.iter()) {
+                    *offset += base;
+                }
+            }
+            offsets
+        });
+        (readings, with_memory)
+    }
+}
+
+impl ReadoutKernels {
+    /// What ends and probabilities are read from, `[B, width]`: of what a pedestrian is known by, `[B, width]`, the others,
+    /// `[B, ..]`, and how much there is of them, `[B]`.
+    fn hidden_layer(
+        &self,
+        code: Buffer,
+        context: &Buffer,
+        amounts: impl ExactSizeIterator<Item = f32>,
+    ) -> Buffer {
+        let pedestrians = amounts.len();
+        let [width, near] = [&code, context].map(|rows| rows.len() / pedestrians);
+        let mut hidden = Buffer::any(pedestrians * (width + near + 1));
+        let rows = hidden.chunks_exact_mut(width + near + 1).zip(amounts);
+        let inputs = code.chunks_exact(width).zip(context.chunks_exact(near));
+        for ((row, amount), (code, context)) in rows.zip(inputs) {
+            row[..width].copy_from_slice(code);
+            row[width..width + near].copy_from_slice(context);
+            row[width + near] = amount;
+        }
+        let mut short_cut = code;
+        for layer in &self.hidden {
+            hidden = layer.forward(&hidden);
+            gelu(&mut hidden);
+            if short_cut.len() == hidden.len() {
+                for (number, short_cut) in hidden.iter_mut().zip(short_cut.iter()) {
+                    *number += short_cut;
+                }
+            }
+            short_cut = hidden.clone();
+        }
+        hidden
+    }
+
+    fn read(&self, hidden: &Buffer) -> Readings {
+        Readings {
+            ends: self.ends.forward(hidden),
+            logits: self.logits.forward(hidden),
+        }
+    }
+}
+
+impl AttentionKernels {
+    /// What the pedestrians make of the others, `[B, code width]`: attention with one more choice of score 0, nobody.
+    fn look(&self, asking: &Buffer, others: &OthersRows) -> Buffer {
+        let query = self.query.forward(asking);
+        let near = query.len() / others.counts.len();
+        let mut context = Buffer::zeros(query.len());
+        if others.features.is_empty() {
+            return context;
+        }
+        let mut codes = self.code[0].forward(&others.features);
+        gelu(&mut codes);
+        codes = self.code[1].forward(&codes);
+        gelu(&mut codes);
+        let (keys, values) = (self.key.forward(&codes), self.value.forward(&codes));
+        let depth = near / self.heads;
+        let scale = 1.0 / (depth as f32).sqrt();
+        let mut first = 0;
+        let rows = query.chunks_exact(near).zip(context.chunks_exact_mut(near));
+        for ((query, context), &count) in rows.zip(&others.counts) {
+            let own = first * near..(first + count) * near;
+            first += count;
+            let (keys, values) = (&keys[own.clone()], &values[own]);
+            for head in 0..self.heads {
+                let part = head * depth..(head + 1) * depth;
+                let dot = |key: &[f32]| -> f32 {
+                    let pairs = query[part.clone()].iter().zip(&key[part.clone()]);
+                    pairs.map(|(q, k)| q * k).sum()
+                };
+                let scores: Vec<f32> = keys
+                    .chunks_exact(near)
+                    .map(|key| dot(key) * scale)
+                    .collect();
+                let largest = scores.iter().copied().fold(0.0, f32::max);
+                let powers: Vec<f32> = scores.iter().map(|score| (score - largest).exp()).collect();
+                let sum = (-largest).exp() + powers.iter().sum::<f32>();
+                for (power, value) in powers.iter().zip(values.chunks_exact(near)) {
+                    let weight = power / sum;
+                    let parts = context[part.clone()].iter_mut().zip(&value[part.clone()]);
+                    for (sum, value) in parts {
+                        *sum += weight * value;
+                    }
+                }
+            }
+        }
+        context
+    }
+}
+
+/// Some rows of `count` many.
+fn rows_of(numbers: &Buffer, rows: &[usize], count: usize) -> Buffer {
+    let width = numbers.len() / count;
+    let mut taken = Buffer::any(rows.len() * width);
+    for (taken, &row) in taken.chunks_exact_mut(width).zip(rows) {
+        taken.copy_from_slice(&numbers[row * width..(row + 1) * width]);
+    }
+    taken
+}
+
+fn kernel(layer: MemberAffine, member: usize, weights: &Weights) -> LinearKernel {
+    let [inputs, outputs] = layer.sizes();
+    let [weight, bias] = layer.of_member(member).map(|span| &weights.numbers()[span]);
+    // The kernel takes W by outputs.
+    let by_outputs = (0..outputs).flat_map(|o| (0..inputs).map(move |i| weight[i * outputs + o]));
+    let numbers: Vec<f32> = by_outputs.chain(bias.iter().copied()).collect();
+    let mut kernel = LinearKernel::zeros(inputs, outputs);
+    kernel.update(&numbers);
+    kernel
+}

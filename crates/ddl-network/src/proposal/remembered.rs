@@ -1,0 +1,70 @@
+//! What pedestrians know of earlier ones, as the numbers that the memory branch reads.
+
+use super::ends::{END_UNIT, PedestrianView};
+use super::seen::{OthersRows, RECENT, velocity};
+use crate::MemoryConfig;
+use ddl_data::{HORIZON, OBSERVED, WINDOW};
+
+/// Inputs of an earlier pedestrian: where it was, its late and early velocity beside one's own, how far it went, where it
+/// was at the end and half-way, each beside going straight on, its late velocity, and [likenesses](LIKENESSES).
+pub const REMEMBERED_FEATURES: usize = 14 + LIKENESSES.len();
+/// Squared distances over which an input exp(-d / ..) falls off.
+pub const LIKENESSES: [f64; 3] = [2.0, 8.0, 32.0];
+
+/// What the memory branch reads of pedestrians of whom something is remembered.
+#[derive(Default)]
+pub(super) struct RememberedRows {
+    /// Which of the views these are.
+    pub(super) of: Vec<usize>,
+    /// `[.., 17]`.
+    pub(super) others: OthersRows,
+    /// ln(1 + sum of exp(-d / 2)), `[B]`: of how many is known that they moved alike.
+    pub(super) support: Vec<f32>,
+    /// Share of the probability that the ends of the branch have, `[B]`.
+    pub(super) shares: Vec<f64>,
+}
+
+impl RememberedRows {
+    pub(super) fn of(views: &[PedestrianView], config: &MemoryConfig, time_step: f64) -> Self {
+        let mut rows = Self::default();
+        for (index, view) in views.iter().enumerate() {
+            let remembered = &view.remembered[..view.remembered.len().min(config.remembered)];
+            let Some(most_alike) = remembered.first() else {
+                continue;
+            };
+            rows.of.push(index);
+            rows.shares.push(config.share_at(most_alike.distance));
+            rows.others.counts.push(remembered.len());
+            let own = &view.own;
+            let here = own[OBSERVED - 1];
+            let late = velocity(own, OBSERVED - 1, time_step);
+            let early = velocity(own, RECENT, time_step);
+            let seconds = HORIZON as f64 * time_step;
+            let mut support = 0.0;
+            for other in remembered {
+                let track = &other.track;
+                let [now, halfway, end] =
+                    [OBSERVED - 1, OBSERVED + HORIZON / 2 - 1, WINDOW - 1].map(|t| track[t]);
+                let its_late = velocity(track, OBSERVED - 1, time_step);
+                let its_early = velocity(track, RECENT, time_step);
+                let features = [0, 1].map(|axis| {
+                    [
+                        now[axis] - here[axis],
+                        its_late[axis] - late[axis],
+                        its_early[axis] - early[axis],
+                        (end[axis] - now[axis] - late[axis] * seconds) / END_UNIT,
+                        (end[axis] - here[axis] - late[axis] * seconds) / END_UNIT,
+                        (halfway[axis] - now[axis] - late[axis] * seconds / 2.0) / END_UNIT,
+                        its_late[axis],
+                    ]
+                });
+                let likenesses = LIKENESSES.map(|scale| (-other.distance / scale).exp());
+                support += likenesses[0];
+                let all = features.as_flattened().iter().chain(&likenesses);
+                rows.others.features.extend(all.map(|x| *x as f32));
+            }
+            rows.support.push(f64::ln_1p(support) as f32);
+        }
+        rows
+    }
+}

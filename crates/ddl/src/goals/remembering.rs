@@ -1,0 +1,51 @@
+//! Windows with what is remembered of their places.
+
+use crate::error::DdlError;
+use ddl_data::{Recording, Window};
+use ddl_memory::{Playback, SceneMemory};
+use std::collections::BTreeMap;
+
+/// What is remembered of a place when a window of it is forecast.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Remembering {
+    /// The training recordings of the same place.
+    Place,
+    /// The recording of the window before its last observed frame and, where
+    /// [confirmed](ddl_data::Fold::place_memory_confirmed_by), the training recordings of the same place.
+    Online,
+}
+
+/// The windows, in their order, each with at most `count` earlier pedestrians for each of its pedestrians: of the
+/// recordings that `of_place` gives for the name of its own recording and, with a playback, of this one until then.
+pub(crate) fn remembering<'a>(
+    recordings: &[&'a Recording],
+    windows: &[Window],
+    of_place: impl Fn(&str) -> Vec<&'a Recording>,
+    playback: Option<Playback>,
+    count: usize,
+) -> Result<Vec<Window>, DdlError> {
+    let mut of_recording: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (index, window) in windows.iter().enumerate() {
+        let indices = of_recording.entry(window.recording()).or_default();
+        indices.push(index);
+    }
+    let mut all = windows.to_vec();
+    for recording in recordings {
+        let Some(indices) = of_recording.remove(recording.name()) else {
+            continue;
+        };
+        let mut memory = SceneMemory::new(recording.frame_step(), SceneMemory::DEFAULT_CAPACITY)?;
+        for other in of_place(recording.name()) {
+            memory.watch(other)?;
+        }
+        let some = indices.iter().map(|&index| windows[index].clone());
+        let some: Vec<Window> = match playback {
+            Some(playback) => memory.replay(recording, playback, some.collect(), count)?,
+            None => some.map(|window| memory.recalling(window, count)).collect(),
+        };
+        for (index, window) in indices.into_iter().zip(some) {
+            all[index] = window;
+        }
+    }
+    Ok(all)
+}

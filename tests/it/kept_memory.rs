@@ -1,0 +1,269 @@
+//! The memory of a place that `ddl forecast - --memory` keeps in a file, and what `ddl data` tells of it.
+
+use ddl::data::{PedestrianId, Position};
+use ddl::memory::SceneMemory;
+use ddl::{Ddl, DeviceChoice, LiveForecaster, Variant};
+use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
+use ddl_tests::place::{Place, json_lines};
+use ddl_tests::{crowd, drawn_model, program};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::ops::Range;
+use std::process::{Child, Stdio};
+
+const LINE: &str = "forecast - --model run --threads 1 --whole --format jsonl --frame-step 10";
+const KEPT: &str = "--memory hall.memory";
+
+/// People of a simulated scene for so many frames of 0.4 s.
+fn rows(steps: Range<i64>) -> Vec<Row> {
+    own_tracks::of_scene("corridor", FRAME_STEP * steps.start..FRAME_STEP * steps.end)
+}
+
+fn moved(rows: Vec<Row>) -> Vec<Row> {
+    let by = |(frame, id, x, y): Row| (frame, id, x + 500.0, y - 300.0);
+    rows.into_iter().map(by).collect()
+}
+
+fn frames(rows: &[Row]) -> BTreeMap<i64, Vec<(PedestrianId, Position)>> {
+    let mut frames = BTreeMap::<_, Vec<_>>::new();
+    for &(frame, id, x, y) in rows {
+        let frame = frames.entry(frame).or_default();
+        frame.push((PedestrianId(id), [x, y]));
+    }
+    frames
+}
+
+/// A memory of these people, written to a file.
+fn remember(place: &Place, name: &str, rows: &[Row], frame_step: i64) {
+    let mut memory = SceneMemory::new(frame_step, SceneMemory::DEFAULT_CAPACITY).unwrap();
+    for (frame, people) in frames(rows) {
+        memory.observe(frame, people).unwrap();
+    }
+    memory.write(&place.at(name)).unwrap();
+}
+
+fn hypotheses_of(live: &mut LiveForecaster<&Ddl>, rows: &[Row]) -> Vec<Value> {
+    let mut all = Vec::new();
+    for (frame, people) in frames(rows) {
+        let Some(now) = live.push(frame, people).unwrap() else {
+            continue;
+        };
+        let forecast = &now.forecast;
+        for i in 0..now.window.len() {
+            let of = |k: usize| json!([forecast.weight(i, k), forecast.hypothesis(i, k)]);
+            all.push((0..forecast.hypotheses()).map(of).collect::<Value>());
+        }
+    }
+    all
+}
+
+fn hypotheses_in(lines: &str) -> Vec<Value> {
+    let of = |line: Value| -> Value {
+        let hypotheses = line["hypotheses"].as_array().unwrap().iter();
+        hypotheses
+            .map(|one| json!([one["weight"], one["positions"]]))
+            .collect()
+    };
+    json_lines::<Value>(lines).into_iter().map(of).collect()
+}
+
+#[test]
+fn a_stream_cut_in_two_goes_on_with_what_was_seen() {
+    let place = Place::with_model();
+    let model = Ddl::load(&place.at("run"), DeviceChoice::Cpu).unwrap();
+    let empty = SceneMemory::new(FRAME_STEP, SceneMemory::DEFAULT_CAPACITY).unwrap();
+    let live = LiveForecaster::with_frame_step(&model, FRAME_STEP).unwrap();
+    let mut live = live.remembering(empty).unwrap();
+    let [first, second] = [rows(0..50), rows(50..90)];
+    // A wrong line ends the first part; what was seen until then is kept all the same.
+    let input = own_tracks::csv(&first) + "500,1,left,2\n";
+    let before = place.run_on(&input, &format!("{LINE} {KEPT}"));
+    assert_eq!(before.code, Some(1), "{before:?}");
+    assert!(before.stderr.contains("line "), "{before:?}");
+    assert_eq!(
+        hypotheses_in(&before.stdout),
+        hypotheses_of(&mut live, &first)
+    );
+    assert_eq!(
+        &SceneMemory::read(&place.at("hall.memory")).unwrap(),
+        live.memory().unwrap()
+    );
+    live.clear();
+    let input = own_tracks::csv(&second);
+    let after = place.run_on(&input, &format!("{LINE} {KEPT}")).succeeds();
+    let after = hypotheses_in(&after);
+    assert_eq!(after, hypotheses_of(&mut live, &second));
+    let forgetful = place.run_on(&input, LINE).succeeds();
+    assert!(after.len() > 20 && after != hypotheses_in(&forgetful));
+    assert_eq!(
+        &SceneMemory::read(&place.at("hall.memory")).unwrap(),
+        live.memory().unwrap()
+    );
+    // a rate that is learned from the first two frames is as good as one that is given
+    let learned =
+        "forecast - --model run --threads 1 --whole --format jsonl --memory learned.memory";
+    place.run_on(&own_tracks::csv(&first), learned).succeeds();
+    let learned = SceneMemory::read(&place.at("learned.memory")).unwrap();
+    assert_eq!(learned.summary().frames, 50);
+}
+
+#[test]
+fn a_memory_of_another_place_stays_as_it_is() {
+    let place = Place::with_model();
+    remember(&place, "hall.memory", &rows(0..300), FRAME_STEP);
+    let before = place.read("hall.memory");
+    for steps in [200, 40] {
+        let elsewhere = own_tracks::csv(&moved(rows(0..steps)));
+        let finished = place.run_on(&elsewhere, &format!("{LINE} {KEPT}"));
+        assert_eq!(finished.code, Some(0), "{finished:?}");
+        let told = "warning: hall.memory: the memory is of another place";
+        assert_eq!(finished.stderr.matches(told).count(), 1, "{finished:?}");
+        assert!(place.read("hall.memory") == before, "{steps} steps");
+    }
+    let here = own_tracks::csv(&rows(300..400));
+    let finished = place.run_on(&here, &format!("{LINE} {KEPT}"));
+    assert!(!finished.stderr.contains("place"), "{finished:?}");
+    finished.succeeds();
+    assert!(place.read("hall.memory") != before);
+}
+
+#[test]
+fn what_cannot_be_kept_is_refused_at_once_and_nothing_is_overwritten() {
+    let place = Place::with_model();
+    remember(&place, "slow.memory", &rows(0..30), 1);
+    place.write("damaged.memory", &place.read("slow.memory")[..900]);
+    place.write("folder/hall.memory", "");
+    let before = ["slow.memory", "damaged.memory", "tracks.csv"].map(|file| place.read(file));
+    let input = own_tracks::csv(&rows(0..12));
+    for (options, words) in [
+        (
+            "--memory slow.memory",
+            "slow.memory: the memory has 1 raw frames",
+        ),
+        (
+            "--memory damaged.memory",
+            "damaged.memory is not a scene memory",
+        ),
+        ("--memory tracks.csv", "tracks.csv is not a scene memory"),
+        ("--memory folder", "cannot write folder"),
+        (
+            "--memory nowhere/hall.memory",
+            "cannot write nowhere/hall.memory",
+        ),
+    ] {
+        let finished = place.run_on(&input, &format!("{LINE} {options}"));
+        let message = finished.fails();
+        assert!(message.contains(words), "{options}: {message}");
+    }
+    let after = ["slow.memory", "damaged.memory", "tracks.csv"].map(|file| place.read(file));
+    assert!(before == after);
+    place.all_fail(&[
+        "forecast tracks.csv --model run --memory hall.memory => ddl forecast - --memory FILE",
+        "data damaged.memory --svg hall.svg => damaged.memory is not a scene memory",
+    ]);
+    // and of other files it is told all the same
+    let finished = place.run("data damaged.memory tracks.csv");
+    assert_eq!(finished.code, Some(1));
+    assert!(finished.stdout.starts_with("tracks.csv\n"), "{finished:?}");
+    assert!(
+        finished.stderr.starts_with("error: damaged.memory"),
+        "{finished:?}"
+    );
+}
+
+#[test]
+fn a_model_without_a_memory_branch_is_refused_before_anything_is_read() {
+    let place = Place::empty();
+    let mut config = drawn_model::config(Variant::Full);
+    let proposal = config.goals.proposal.as_mut().unwrap();
+    proposal.network.memory = None;
+    let windows = crowd::training_windows().into_iter().step_by(50);
+    drawn_model::write(config, &windows.collect::<Vec<_>>(), &place.at("run"));
+    place.all_fail(&["forecast - --model run --memory hall.memory => has no memory branch"]);
+}
+
+/// A program that has read the first frames of a stream that goes on.
+fn at_work(place: &Place) -> Child {
+    let mut command = program::command(place.path(), &format!("{LINE} {KEPT}"));
+    let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
+    let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
+    let input = child.stdin.as_mut().unwrap();
+    input
+        .write_all((own_tracks::csv(&rows(0..30)) + "\n").as_bytes())
+        .unwrap();
+    let mut line = String::new();
+    let output = child.stdout.as_mut().unwrap();
+    BufReader::new(output).read_line(&mut line).unwrap();
+    assert!(line.contains("observed_until"), "{line}");
+    child
+}
+
+#[test]
+fn a_second_program_is_refused_and_one_that_is_stopped_writes_what_it_saw() {
+    let place = Place::with_model();
+    let first = at_work(&place);
+    let second = place.run_on("", &format!("{LINE} {KEPT}")).fails();
+    assert!(
+        second.contains("another process writes this file"),
+        "{second}"
+    );
+    #[cfg(unix)]
+    {
+        use ddl_tests::processes;
+        processes::signal(first.id(), "TERM");
+        let finished = first.wait_with_output().unwrap();
+        assert_eq!(finished.status.code(), Some(130));
+        let kept = SceneMemory::read(&place.at("hall.memory")).unwrap();
+        assert!(kept.summary().frames >= 8);
+    }
+    #[cfg(not(unix))]
+    drop(first);
+}
+
+#[test]
+fn data_tells_what_a_memory_holds_and_draws_it() {
+    let place = Place::with_model();
+    let walked = rows(0..200);
+    remember(&place, "hall.memory", &walked, FRAME_STEP);
+    let summary = SceneMemory::read(&place.at("hall.memory"))
+        .unwrap()
+        .summary();
+    let facts = place.json("data hall.memory tracks.csv --json");
+    let memory = &facts["memories"][0];
+    assert_eq!(memory["stretches"], summary.stretches);
+    assert_eq!(memory["tracks"], summary.tracks);
+    assert_eq!(memory["pedestrians"], summary.pedestrians);
+    assert_eq!(
+        (&memory["capacity"], &memory["frame_step"]),
+        (&20_000.into(), &FRAME_STEP.into())
+    );
+    assert_eq!(memory["low"], json!(summary.extent.unwrap()[0]));
+    assert_eq!(facts["recordings"].as_array().unwrap().len(), 1);
+    let told = place.ok("data hall.memory --svg hall.svg");
+    let stretches = format!("{} of at most 20000 stretches", summary.stretches);
+    for words in [
+        "hall.memory, the memory of a place",
+        &stretches,
+        "10 frames a step",
+        "x from ",
+    ] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    let drawn = place.text("hall.svg");
+    for part in [
+        "<svg",
+        &stretches,
+        "class=\"walked w4\"",
+        "class=\"come\"",
+        "class=\"leave\"",
+        "x (m)",
+    ] {
+        assert!(drawn.contains(part), "{part}");
+    }
+    place.all_fail(&[
+        "data tracks.csv --svg hall.svg => none was given",
+        "data hall.memory hall.memory --svg both.svg => 2 were given",
+        "data hall.memory --svg hall.memory => would be lost",
+    ]);
+}

@@ -1,0 +1,108 @@
+//! A forecaster that remembers the place it watches.
+
+use ddl::data::{Observation, PedestrianId, Position, Recording, Window};
+use ddl::memory::{Playback, SceneMemory};
+use ddl::{DdlError, Forecaster as _, LiveForecaster, Variant};
+use ddl_tests::{bits, crowd, drawn_model};
+
+fn empty(recording: &Recording) -> SceneMemory {
+    SceneMemory::new(recording.frame_step(), SceneMemory::DEFAULT_CAPACITY).unwrap()
+}
+
+fn people(recording: &Recording, frame: i64) -> Vec<(PedestrianId, Position)> {
+    let seen = recording.at(frame).iter();
+    seen.map(|seen| (seen.pedestrian, seen.position)).collect()
+}
+
+/// A recording of a simulated scene until a step, everybody moved by so much.
+fn scene(name: &str, steps: usize, by: f64) -> Recording {
+    let dataset = crowd::dataset();
+    let whole = dataset.recording(name).unwrap();
+    let frames = whole.frames().iter().take(steps);
+    let seen = frames.flat_map(|&frame| whole.at(frame));
+    let moved = seen.map(|seen| Observation {
+        position: seen.position.map(|x| x + by),
+        ..*seen
+    });
+    Recording::new("live", whole.frame_step(), moved.collect()).unwrap()
+}
+
+#[test]
+fn forecasts_are_those_of_the_recording_watched_again() {
+    let model = drawn_model::of(Variant::Full);
+    let recording = scene("corridor", 60, 0.0);
+    let windows = recording.observed_windows();
+    let replayed = empty(&recording).replay(&recording, Playback::Onward, windows, 12);
+    let mut replayed = replayed.unwrap().into_iter();
+    let live = LiveForecaster::with_frame_step(&model, recording.frame_step()).unwrap();
+    let mut live = live.remembering(empty(&recording)).unwrap();
+    let remembers = |window: &Window| (0..window.len()).any(|i| !window.remembered(i).is_empty());
+    let (mut remembering, mut changed) = (0, 0);
+    for &frame in recording.frames() {
+        let Some(now) = live.push(frame, people(&recording, frame)).unwrap() else {
+            continue;
+        };
+        let window = replayed.next().unwrap();
+        assert!(now.window == window, "frame {frame}");
+        assert_eq!(
+            bits::of(&now.forecast),
+            bits::of(&model.forecast(&window).unwrap())
+        );
+        remembering += usize::from(remembers(&window));
+        let forgetful = model.forecast(&window.with_remembered(|_| Vec::new()));
+        changed += usize::from(bits::of(&forgetful.unwrap()) != bits::of(&now.forecast));
+    }
+    assert!(replayed.next().is_none());
+    assert!(
+        remembering > 20 && changed == remembering,
+        "{changed} of {remembering}"
+    );
+    assert!(live.memory().unwrap().stretches() > 100);
+}
+
+#[test]
+fn a_memory_of_another_place_is_refused() {
+    let model = drawn_model::of(Variant::Full);
+    let here = scene("corridor", 300, 0.0);
+    let mut memory = empty(&here);
+    memory.watch(&here).unwrap();
+    for (name, by, is_refused) in [("corridor", 0.0, false), ("plaza", 500.0, true)] {
+        let watched = scene(name, 120, by);
+        let live = LiveForecaster::with_frame_step(&model, watched.frame_step()).unwrap();
+        let mut live = live.remembering(memory.clone()).unwrap();
+        for &frame in watched.frames() {
+            live.push(frame, people(&watched, frame)).unwrap();
+        }
+        let kept = live.memory().unwrap();
+        let refused = live.refused_memory();
+        assert_eq!(refused.is_some(), is_refused, "{name}: {refused:?}");
+        // The place that is watched is remembered all the same, the other one not.
+        let least = if is_refused { 1 } else { memory.stretches() };
+        assert!(kept.stretches() > least, "{name}");
+        if let Some(other) = refused {
+            assert!(other.to_string().contains("of another place"), "{other}");
+            assert!(kept.stretches() < memory.stretches());
+            let [low, _] = kept.summary().extent.unwrap();
+            assert!(low[0] > 400.0);
+        }
+    }
+}
+
+#[test]
+fn a_memory_of_another_rate_or_for_a_model_without_a_branch_is_refused_at_once() {
+    let model = drawn_model::of(Variant::Full);
+    let recording = scene("corridor", 9, 0.0);
+    let error = LiveForecaster::new(&model)
+        .remembering(empty(&recording))
+        .unwrap_err();
+    assert!(
+        matches!(
+            error,
+            DdlError::MemoryFrameStep {
+                camera: 1,
+                memory: 10
+            }
+        ),
+        "{error}"
+    );
+}

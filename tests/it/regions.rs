@@ -1,0 +1,140 @@
+//! Regions that follow what is seen: in the program on a real recording, and frame by frame.
+
+use ddl::data::{Convention, Dataset, PedestrianId, Position, Recording};
+use ddl::eval::AdaptiveRegions;
+use ddl::{DdlError, Forecaster as _, LiveForecaster, Variant};
+use ddl_tests::own_tracks::{self, Row};
+use ddl_tests::place::{Place, json_lines};
+use ddl_tests::{bits, drawn_model, recordings};
+use serde::Deserialize;
+
+/// Frames of the recording that are forecast from.
+const FRAMES: usize = 600;
+
+#[derive(Debug, Deserialize)]
+struct Line {
+    observed_until: i64,
+    pedestrian: i64,
+    frames: Vec<i64>,
+    regions: Vec<Region>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Region {
+    probability: f64,
+    discs: Vec<Vec<[f64; 3]>>,
+}
+
+fn rows(recording: &Recording, frames: usize) -> Vec<Row> {
+    let end = recording.frames()[frames];
+    let seen = recording.observations().iter();
+    seen.filter(|seen| seen.frame < end)
+        .map(|seen| {
+            let [x, y] = seen.position;
+            (seen.frame, seen.pedestrian.0, x, y)
+        })
+        .collect()
+}
+
+/// Share of the positions seen later that the regions of a line hold, of lines from that frame on.
+fn held(lines: &[Line], recording: &Recording, from: i64) -> f64 {
+    let (mut inside, mut seen) = (0, 0);
+    for line in lines.iter().filter(|line| line.observed_until >= from) {
+        assert!((line.regions[0].probability - 0.9).abs() < 1e-9);
+        for (frame, discs) in line.frames.iter().zip(&line.regions[0].discs) {
+            let here = recording.at(*frame).iter();
+            let id = PedestrianId(line.pedestrian);
+            let Some(seen_there) = here.clone().find(|seen| seen.pedestrian == id) else {
+                continue;
+            };
+            let [x, y] = seen_there.position;
+            seen += 1;
+            inside += usize::from(
+                discs
+                    .iter()
+                    .any(|disc| (disc[0] - x).hypot(disc[1] - y) <= disc[2]),
+            );
+        }
+    }
+    assert!(seen > 1000, "{seen} positions");
+    f64::from(u32::try_from(inside).unwrap()) / f64::from(seen)
+}
+
+#[test]
+fn the_regions_of_the_program_come_to_hold_what_they_say_and_know_nothing_of_later() {
+    let Some(folder) = recordings::star_folder() else {
+        return;
+    };
+    let dataset = Dataset::load(Convention::Star, &folder).unwrap();
+    let recording = dataset.recording("hotel").unwrap();
+    let place = Place::empty();
+    let (all, half) = (rows(recording, FRAMES), rows(recording, FRAMES / 2));
+    place.write_tracks("all.csv", &all);
+    place.write_tracks("half.csv", &half);
+    let options = "--model hotel --whole --frame-step 10 --region 0.9 --format jsonl --threads 1";
+    let whole = place.ok(&format!("forecast all.csv {options}"));
+    let until_half = place.ok(&format!("forecast half.csv {options}"));
+    assert!(!until_half.is_empty() && whole.starts_with(&until_half));
+    let streamed = place.run_on(&own_tracks::csv(&all), &format!("forecast - {options}"));
+    assert!(streamed.succeeds() == whole, "a stream has other forecasts");
+    let lines: Vec<Line> = json_lines(&whole);
+    let share = held(&lines, recording, recording.frames()[FRAMES / 2]);
+    assert!((0.87..0.95).contains(&share), "{share}");
+    // with --last nothing is forecast before, and so nothing learned
+    let last: Vec<Line> = json_lines(&place.ok(&format!("forecast all.csv --last {options}")));
+    let from_all = &lines[lines.len() - last.len()..];
+    let radius = |line: &Line| line.regions[0].discs[11][0][2];
+    assert!(
+        last.iter()
+            .zip(from_all)
+            .all(|(fixed, adapted)| (radius(fixed) - radius(adapted)).abs() > 1e-9)
+    );
+}
+
+#[test]
+fn a_live_forecaster_adapts_and_an_error_teaches_nothing() {
+    let model = drawn_model::of(Variant::Full);
+    let rows = own_tracks::three_people(30);
+    let step = own_tracks::FRAME_STEP;
+    let people = |frame: i64| -> Vec<(PedestrianId, Position)> {
+        let here = rows.iter().filter(|row| row.0 == frame);
+        here.map(|&(_, id, x, y)| (PedestrianId(id), [x, y]))
+            .collect()
+    };
+    let live = LiveForecaster::with_frame_step(&model, step).unwrap();
+    let mut plain = live.clone();
+    let mut adapting = live.adapting_regions(AdaptiveRegions::default());
+    let mut certified = adapting.clone();
+    let mut expected = AdaptiveRegions::default();
+    for frame in (0..30).map(|frame| frame * step) {
+        if frame >= 8 * step {
+            let mut far = people(frame);
+            far[0].1 = [f64::MAX, 0.0];
+            let before = adapting.regions().unwrap().learned().cloned();
+            let error = adapting.push(frame, far).unwrap_err();
+            assert!(matches!(error, DdlError::Forecast(_)), "{error}");
+            assert_eq!(adapting.regions().unwrap().learned().cloned(), before);
+        }
+        let now = adapting.push(frame, people(frame)).unwrap();
+        let evidence = certified.push_certified(frame, people(frame)).unwrap();
+        let fixed = plain.push(frame, people(frame)).unwrap();
+        let (Some(now), Some(evidence), Some(fixed)) = (now, evidence, fixed) else {
+            assert!(frame < 7 * step);
+            continue;
+        };
+        assert_eq!(bits::of(&now.forecast), bits::of(&fixed.forecast));
+        assert_eq!(evidence.forecast.forecast, now.forecast);
+        let forecast = model.forecast(&now.window).unwrap();
+        assert_eq!(now.forecast, expected.adapt(&now.window, forecast));
+        assert_eq!(
+            now.forecast == fixed.forecast,
+            frame == 7 * step,
+            "the first forecast alone has the regions as they come"
+        );
+    }
+    // a tracker that starts anew keeps what was learned
+    let learned = adapting.regions().unwrap().learned().cloned();
+    adapting.clear();
+    assert_eq!(adapting.regions().unwrap().learned().cloned(), learned);
+    assert!(adapting.push(0, people(0)).unwrap().is_none());
+}
