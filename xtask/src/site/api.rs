@@ -47,7 +47,8 @@ pub(super) fn build(
 ) -> Result<()> {
     // Crates that are gone, or dependencies from another call, would be in every list and search.
     super::remove(made)?;
-    // rustdoc links to another crate's item only if that crate's folder is there, and cargo documents crates side by side.
+    // rustdoc links to another crate's item only if that crate's folder is there. Cargo removes a crate's folder before
+    // it runs rustdoc for it: one job at a time, so that no other crate is rendered meanwhile.
     for library in libraries {
         let folder = made.join(&library.module);
         fs::create_dir_all(&folder)
@@ -57,6 +58,7 @@ pub(super) fn build(
     let features = "ddl-cli/torch,ddl-cli/doc-only";
     let arguments = [
         "doc",
+        "--jobs=1",
         "--workspace",
         "--no-deps",
         "--quiet",
