@@ -2,6 +2,7 @@
 
 use super::range::{not_negative, positive, require};
 use crate::NetworkError;
+use ddl_data::Remembered;
 use serde::{Deserialize, Serialize};
 
 /// Shape of the memory branch: attention over earlier pedestrians of the place, and a readout of its own. Its ends are
@@ -19,10 +20,10 @@ pub struct MemoryConfig {
     pub hidden: i64,
     /// Hidden layers after they have been taken in.
     pub layers: usize,
-    /// Share of the probability that the ends of the branch have, where somebody is remembered who moved exactly alike.
-    pub share: f64,
-    /// The share falls off by exp(-d / this), d the squared distance of the most alike.
+    /// An earlier pedestrian at the squared distance d counts exp(-d / this).
     pub fade: f64,
+    /// Count of earlier pedestrians at which the ends of the branch have half of the probability.
+    pub half: f64,
 }
 
 impl Default for MemoryConfig {
@@ -33,8 +34,8 @@ impl Default for MemoryConfig {
             heads: 4,
             hidden: 64,
             layers: 1,
-            share: 0.8,
-            fade: 32.0,
+            fade: 8.0,
+            half: 0.5,
         }
     }
 }
@@ -63,19 +64,18 @@ impl MemoryConfig {
             &self.heads,
             "a divisor of memory.width",
         )?;
-        let share = self.share;
-        require(
-            (0.0..=1.0).contains(&share),
-            "memory.share",
-            &share,
-            "0 to 1",
-        )?;
-        positive("memory.fade", self.fade)
+        positive("memory.fade", self.fade)?;
+        positive("memory.half", self.half)
     }
 
-    /// Share of the probability of the ends of the branch, where the most alike that is remembered is at this squared distance.
-    pub fn share_at(&self, distance: f64) -> f64 {
-        self.share * (-distance / self.fade).exp()
+    /// Share of the probability that the ends of the branch have: n / (n + `half`), where n is the sum of exp(-d / `fade`) over the
+    /// earlier pedestrians that are looked at, d the squared distance of each. 0 where there are none.
+    pub fn share(&self, remembered: &[Remembered]) -> f64 {
+        let looked_at = remembered.iter().take(self.remembered);
+        let alike: f64 = looked_at
+            .map(|other| (-other.distance / self.fade).exp())
+            .sum();
+        alike / (alike + self.half)
     }
 }
 

@@ -57,10 +57,10 @@ impl ProposalConfig {
     pub fn least_numbers(&self) -> u64 {
         let [members, ends, width, near] =
             [self.members, self.ends, self.width, self.neighbour_width].map(|size| size as u64);
-        // hidden layers, attention, and for each end a place, three waypoints and a probability
+        // hidden layers, attention, and for each end a place and a probability: packed models have no waypoints
         let part = |layers: usize, hidden: u64, near: u64| {
             let layers = width * hidden + (layers as u64 - 1) * hidden * hidden;
-            layers + near * (3 * near + width) + 9 * hidden * ends
+            layers + near * (3 * near + width) + 3 * hidden * ends
         };
         let of_memory =
             |memory: &MemoryConfig| part(memory.layers, memory.hidden as u64, memory.width as u64);

@@ -145,10 +145,15 @@ impl Declaring<'_> {
             .collect();
         let points = ends * WAYPOINTS.len() * 2;
         let [of_places, of_logits] = gains;
+        let to_ends = self.affine(&format!("{name}ends"), [width, ends * 2], of_places);
+        let waypoints = self.affine(&format!("{name}waypoints"), [width, points], of_places);
+        for tensor in [waypoints.tensor, waypoints.tensor + 1] {
+            self.layout.mark_training_only(tensor);
+        }
         ReadoutLayers {
             hidden,
-            ends: self.affine(&format!("{name}ends"), [width, ends * 2], of_places),
-            waypoints: self.affine(&format!("{name}waypoints"), [width, points], of_places),
+            ends: to_ends,
+            waypoints,
             logits: self.affine(&format!("{name}logits"), [width, ends], of_logits),
         }
     }

@@ -29,11 +29,11 @@ impl RememberedRows {
         let mut rows = Self::default();
         for (index, view) in views.iter().enumerate() {
             let remembered = &view.remembered[..view.remembered.len().min(config.remembered)];
-            let Some(most_alike) = remembered.first() else {
+            if remembered.is_empty() {
                 continue;
-            };
+            }
             rows.of.push(index);
-            rows.shares.push(config.share_at(most_alike.distance));
+            rows.shares.push(config.share(remembered));
             rows.others.counts.push(remembered.len());
             let own = &view.own;
             let here = own[OBSERVED - 1];

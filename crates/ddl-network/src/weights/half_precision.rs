@@ -18,7 +18,8 @@ pub struct HalfTensor {
 }
 
 impl Weights {
-    /// The learned tensors, in order, rounded to half precision.
+    /// The learned tensors that forecasts need, in order, rounded to half precision: all but those that
+    /// [only training reads](crate::weights::TensorLayout::is_training_only).
     ///
     /// # Errors
     /// [`NetworkError::Weights`] for a number that half precision has no room for: NaN, or at least 65,520 in size.
@@ -26,7 +27,8 @@ impl Weights {
     /// # Numerics
     /// A number is rounded to 11 significant bits: off by at most 2^-11 of its size, or by 2^-25 where it is smaller than 2^-14.
     pub fn to_half(&self) -> Result<Vec<HalfTensor>, NetworkError> {
-        self.iter()
+        let needed = self.iter().filter(|(tensor, _)| !tensor.is_training_only());
+        needed
             .map(|(tensor, numbers)| {
                 let halves: Vec<f16> = numbers.iter().map(|&x| f16::from_f32(x)).collect();
                 if !halves.iter().all(|half| half.is_finite()) {
@@ -46,21 +48,28 @@ impl Weights {
             .collect()
     }
 
-    /// The learned tensors of a layout from what was rounded of those of another network of the same configuration.
+    /// The learned tensors of a layout from what was rounded of those of another network of the same configuration. Those that only
+    /// training reads are 0.
     ///
     /// # Errors
     /// [`NetworkError::Weights`] when there are other names, shapes or counts of tensors than the layout has, or one holds NaN or
     /// infinity.
     pub fn from_half(layout: &Arc<Layout>, tensors: &[HalfTensor]) -> Result<Self, NetworkError> {
-        let known = |name: &str| layout.tensors().iter().any(|tensor| tensor.name() == name);
+        let needed = || {
+            layout
+                .tensors()
+                .iter()
+                .filter(|tensor| !tensor.is_training_only())
+        };
+        let known = |name: &str| needed().any(|tensor| tensor.name() == name);
         if let Some(other) = tensors.iter().find(|tensor| !known(&tensor.name)) {
             return Err(NetworkError::weights(
                 &other.name,
                 "is no tensor of this network",
             ));
         }
-        let mut numbers = Vec::with_capacity(layout.count());
-        for wanted in layout.tensors() {
+        let mut numbers = vec![0.0; layout.count()];
+        for wanted in needed() {
             let name = wanted.name();
             let mut named = tensors.iter().filter(|tensor| tensor.name == name);
             let (Some(tensor), None) = (named.next(), named.next()) else {
@@ -80,9 +89,11 @@ impl Weights {
                 return Err(NetworkError::weights(name, problem));
             }
             let (halves, _) = tensor.bytes.as_chunks();
-            let start = numbers.len();
-            numbers.extend(halves.iter().map(|&half| f16::from_le_bytes(half).to_f32()));
-            if !numbers[start..].iter().all(|number| number.is_finite()) {
+            let numbers = &mut numbers[wanted.span()];
+            for (number, &half) in numbers.iter_mut().zip(halves) {
+                *number = f16::from_le_bytes(half).to_f32();
+            }
+            if !numbers.iter().all(|number| number.is_finite()) {
                 return Err(NetworkError::weights(name, "holds NaN or infinite numbers"));
             }
         }

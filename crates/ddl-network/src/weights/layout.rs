@@ -28,6 +28,7 @@ pub struct TensorLayout {
     shape: Vec<usize>,
     initial: Initial,
     first: usize,
+    training_only: bool,
 }
 
 impl TensorLayout {
@@ -44,6 +45,11 @@ impl TensorLayout {
     /// Where its numbers stand among those of all tensors.
     pub fn span(&self) -> Range<usize> {
         self.first..self.first + self.shape.iter().product::<usize>()
+    }
+
+    /// Whether only the training loss reads it, so that a model that is handed on goes without it.
+    pub fn is_training_only(&self) -> bool {
+        self.training_only
     }
 }
 
@@ -132,6 +138,7 @@ impl Layout {
             shape: shape.to_vec(),
             initial,
             first: self.count,
+            training_only: false,
         });
         self.count += shape.iter().product::<usize>();
         self.tensors.len() - 1
@@ -145,6 +152,14 @@ impl Layout {
     /// Declares a tensor of equal numbers.
     pub fn constant(&mut self, name: String, shape: &[usize], value: f64) -> usize {
         self.tensor(name, shape, Initial::Constant(value))
+    }
+
+    /// Says that only the training loss reads this tensor.
+    ///
+    /// # Panics
+    /// When no tensor has this number.
+    pub fn mark_training_only(&mut self, tensor: usize) {
+        self.tensors[tensor].training_only = true;
     }
 
     /// Declares an affine map whose weight and bias begin uniform in ±1/sqrt(inputs).

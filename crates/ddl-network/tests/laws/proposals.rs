@@ -115,7 +115,11 @@ fn what_is_proposed_from_the_observation_alone_stays_beside_what_is_remembered()
     let mut remembering = view(1.2, 2);
     let alone = network.propose(&[remembering.clone()]).unwrap().remove(0);
     remembering.remembered = (1..5).map(|j| earlier(0.2 * f64::from(j))).collect();
-    let share = memory.share * (-0.04_f64 / memory.fade).exp();
+    let alike: f64 = [0.04, 0.16, 0.36, 0.64]
+        .map(|d: f64| (-d / 8.0).exp())
+        .iter()
+        .sum();
+    let share = alike / (alike + 0.5);
     let both = network.propose(&[remembering.clone()]).unwrap().remove(0);
     assert_eq!(both.ends[..12], alone.ends);
     for (both, alone) in both.weights.iter().zip(&alone.weights) {

@@ -133,8 +133,8 @@ impl TorchProposals {
                 for ((view, proposed), (ends, weights)) in
                     chunk.iter().zip(&mut of_chunk).zip(others)
                 {
-                    if let Some(most_alike) = view.remembered.first() {
-                        let share = memory.share_at(most_alike.distance);
+                    if !view.remembered.is_empty() {
+                        let share = memory.share(&view.remembered);
                         for weight in &mut proposed.weights {
                             *weight *= 1.0 - share;
                         }

@@ -19,7 +19,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 /// Version of the file's layout.
-pub(super) const LAYOUT: u32 = 2;
+pub(super) const LAYOUT: u32 = 3;
 pub(super) const ENTRY: &str = "ddl";
 /// Heads the names of the forecasting network's tensors.
 pub(super) const NETWORK: &str = "network.";

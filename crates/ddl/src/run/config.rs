@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Version of the run directory's layout.
-pub const FORMAT: u32 = 6;
+pub const FORMAT: u32 = 7;
 
 /// The part of `config.json` that every version of the layout has.
 #[derive(Deserialize)]
