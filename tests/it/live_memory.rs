@@ -1,8 +1,8 @@
 //! A forecaster that remembers the place it watches.
 
-use ddl::data::{Observation, PedestrianId, Position, Recording, Window};
+use ddl::data::{LiveTracks, Observation, PedestrianId, Position, Recording, Window};
 use ddl::memory::{Playback, SceneMemory};
-use ddl::{DdlError, Forecaster as _, LiveForecaster, Variant};
+use ddl::{DdlError, Forecaster as _, LiveForecaster, Variant, WatchedPlace};
 use ddl_tests::{bits, crowd, drawn_model};
 
 fn empty(recording: &Recording) -> SceneMemory {
@@ -88,8 +88,40 @@ fn a_memory_of_another_place_is_refused() {
     }
 }
 
+/// A few who walk where nobody did may be the first of the place to do so.
 #[test]
-fn a_memory_of_another_rate_or_for_a_model_without_a_branch_is_refused_at_once() {
+fn few_pedestrians_do_not_refuse_a_memory_and_some_alike_accept_it_early() {
+    let model = drawn_model::of(Variant::Full);
+    let here = scene("corridor", 300, 0.0);
+    let mut memory = empty(&here);
+    memory.watch(&here).unwrap();
+    let tried = |by: f64, steps: i64| {
+        let watched = scene("corridor", 120, by);
+        let mut place = WatchedPlace::new(&model, memory.clone()).unwrap();
+        let mut tracks = LiveTracks::with_frame_step(watched.frame_step()).unwrap();
+        for &frame in &watched.frames()[..steps as usize] {
+            let seen = people(&watched, frame);
+            tracks = tracks.after(frame, seen.iter().copied()).unwrap();
+            place
+                .observe(frame, seen, tracks.window().as_ref())
+                .unwrap();
+        }
+        place
+    };
+    let mut elsewhere = tried(500.0, 9);
+    let few = elsewhere.on_trial().unwrap();
+    assert!((1..13).contains(&few), "{few}");
+    elsewhere.end_trial();
+    assert_eq!(elsewhere.on_trial(), Some(few));
+    assert_eq!(elsewhere.refused(), None);
+    // In its own place it is accepted before 30 were seen.
+    let accepted = (9..120).find(|&steps| tried(0.0, steps).on_trial().is_none());
+    let seen = tried(500.0, accepted.unwrap()).on_trial();
+    assert!(seen.is_some_and(|seen| (5..30).contains(&seen)), "{seen:?}");
+}
+
+#[test]
+fn a_memory_of_another_rate_is_refused_at_once() {
     let model = drawn_model::of(Variant::Full);
     let recording = scene("corridor", 9, 0.0);
     let error = LiveForecaster::new(&model)

@@ -100,7 +100,7 @@ impl<'a> Fold<'a> {
         &self.set_apart
     }
 
-    /// The training recordings of the place where a recording was made; none where places are not known.
+    /// The other training recordings of the place where a recording was made; none where places are not known.
     #[must_use]
     pub fn training_recordings_of_its_place(&self, recording: &str) -> Vec<&'a Recording> {
         let place_of = |name: &str| {
@@ -109,7 +109,10 @@ impl<'a> Fold<'a> {
             recordings.find(|r| r.name == name)?.place.as_deref()
         };
         let place = place_of(recording);
-        let same = |r: &&&Recording| place.is_some() && place_of(r.name()) == place;
+        // The recording itself would tell its own future, where its end is kept for validation.
+        let same = |r: &&&Recording| {
+            r.name() != recording && place.is_some() && place_of(r.name()) == place
+        };
         self.training.iter().filter(same).copied().collect()
     }
 

@@ -66,11 +66,11 @@ impl Protocol {
                  their own weights (all alike where there are none); nothing is chosen with the truth"
             }
             Self::Online => {
-                "as `fair`, and besides the 8 observed frames the tracks of the SAME recording up to the last \
+                "as `fair`, and besides the 8 observed frames the tracks of the SAME recording before the last \
                  observed frame, as a camera knows them that has watched it from the start; nothing later is read"
             }
             Self::OnlineSingle => {
-                "as `single`, and besides the 8 observed frames the tracks of the SAME recording up to the last \
+                "as `single`, and besides the 8 observed frames the tracks of the SAME recording before the last \
                  observed frame, as a camera knows them that has watched it from the start; nothing later is read"
             }
         }

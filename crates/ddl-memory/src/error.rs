@@ -15,6 +15,10 @@ pub enum MemoryError {
     /// The frame step or a frame, as `ddl_data::LiveTracks` would refuse it.
     #[error(transparent)]
     Frame(#[from] LiveError),
+    #[error(
+        "the memory has {memory} raw frames in a step of 0.4 s, the recording {recording}: a memory is of one frame rate"
+    )]
+    OtherFrameStep { memory: i64, recording: i64 },
     #[error("the capacity must lie in 1..={LARGEST_CAPACITY} stretches, found {found}")]
     Capacity { found: usize },
     #[error("cannot write {}: {source}", .path.display())]

@@ -115,6 +115,9 @@ fn checked(stored: Stored<'_>) -> Result<SceneMemory, String> {
     memory.seen = stored.seen;
     memory.ended = stored.ended.into_owned();
     memory.running = stored.running.into_owned();
+    if memory.ended.iter().any(|track| track.stretches() == 0) {
+        return Err("a track that has ended holds no stretch".to_owned());
+    }
     let of_running = memory.running.values();
     let last_frames = of_running.clone().map(|running| running.last);
     for frame in last_frames.clone().chain(memory.last_frame) {

@@ -64,6 +64,7 @@ pub struct SceneMemory {
 
 /// What is counted and not forgotten.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(crate) struct Seen {
     pub(crate) frames: u64,
     pub(crate) watched: u64,
@@ -95,23 +96,19 @@ impl SceneMemory {
         if !(1..=LARGEST_CAPACITY).contains(&capacity) {
             return Err(MemoryError::Capacity { found: capacity });
         }
-        Ok(Self {
-            frame_step,
-            capacity,
-            last_frame: None,
-            seen: Seen::default(),
-            stretches: 0,
-            ended: Vec::new(),
-            running: BTreeMap::new(),
-        })
+        Ok(Self::empty(frame_step, capacity))
     }
 
     /// A memory of the same frame step and capacity that holds nothing.
     #[must_use]
     pub fn emptied(&self) -> Self {
+        Self::empty(self.frame_step, self.capacity)
+    }
+
+    fn empty(frame_step: i64, capacity: usize) -> Self {
         Self {
-            frame_step: self.frame_step,
-            capacity: self.capacity,
+            frame_step,
+            capacity,
             last_frame: None,
             seen: Seen::default(),
             stretches: 0,

@@ -46,6 +46,7 @@ impl SceneMemory {
         windows: Vec<Window>,
         count: usize,
     ) -> Result<Vec<Window>, MemoryError> {
+        self.ensure_step_of(recording)?;
         self.interrupt();
         let ends = |window: &Window| window.frames()[window.steps() - 1];
         let last = windows.iter().map(ends).max();
@@ -84,8 +85,9 @@ impl SceneMemory {
     /// Watches a whole recording, and whatever is watched next as a recording of its own.
     ///
     /// # Errors
-    /// As [`observe`](Self::observe).
+    /// [`MemoryError`] when the recording has another number of raw frames a step than the memory. Nothing has changed then.
     pub fn watch(&mut self, recording: &Recording) -> Result<(), MemoryError> {
+        self.ensure_step_of(recording)?;
         self.interrupt();
         for &frame in recording.frames() {
             let people = recording.at(frame).iter();
@@ -94,5 +96,14 @@ impl SceneMemory {
         }
         self.interrupt();
         Ok(())
+    }
+
+    fn ensure_step_of(&self, recording: &Recording) -> Result<(), MemoryError> {
+        let (memory, recording) = (self.frame_step(), recording.frame_step());
+        if memory == recording {
+            Ok(())
+        } else {
+            Err(MemoryError::OtherFrameStep { memory, recording })
+        }
     }
 }

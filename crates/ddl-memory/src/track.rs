@@ -81,6 +81,7 @@ impl Track {
 
 /// The track of somebody who was seen a short time ago.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(crate) struct RunningTrack {
     /// The frame of its last position.
     pub(crate) last: i64,

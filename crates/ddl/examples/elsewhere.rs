@@ -6,13 +6,13 @@
 
 mod places;
 
-use ddl::data::{HORIZON, OBSERVED, Position, TIME_STEP, Window};
+use ddl::data::{Dataset, HORIZON, OBSERVED, Position, TIME_STEP, Window};
 use ddl::eval::baseline::ConstantVelocity;
 use ddl::eval::metric::displacement::DisplacementErrors;
 use ddl::eval::metric::stability::StabilityScores;
 use ddl::eval::significance::{BlockErrors, BlockMetric, block_errors, paired_difference};
 use ddl::eval::{Scene, Scores};
-use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster, Protocol};
+use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster, Protocol, Remembering};
 use places::{Part, Place};
 use std::error::Error;
 
@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!(
             "- **{}**: {}, {} frames a second, {} pedestrian-windows",
             place.name,
-            match place.recordings {
+            match place.recordings.len() {
                 1 => "1 recording".to_owned(),
                 recordings => format!("{recordings} recordings"),
             },
@@ -91,6 +91,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             .find(|(name, _)| *name == BuiltinModel::default());
         if let Some((name, model)) = default {
             print_recordings(name.name(), model, &place.windows)?;
+            print_watching(name.name(), model, place)?;
         }
     }
     println!("{NOTES}");
@@ -218,6 +219,73 @@ fn print_recordings(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), B
             ours.familiarity.unwrap_or(f64::NAN),
         );
     }
+    Ok(())
+}
+
+/// The same windows with a memory of their recording until then, as a camera has it that has watched from the start.
+fn print_watching(name: &str, model: &Ddl, place: &Place) -> Result<(), Box<dyn Error>> {
+    let dataset = Dataset::own(place.recordings.clone())?;
+    let goals = model.goal_model();
+    let online = goals.remembering(&place.windows, &dataset, Remembering::Online)?;
+    let minutes = |recording: &str| {
+        let of_name = dataset.recordings().iter().find(|r| r.name() == recording);
+        of_name.map_or(0.0, |recording| {
+            let frames = recording.frames();
+            let steps =
+                (frames[frames.len() - 1] - frames[0]) as f64 / recording.frame_step() as f64;
+            steps * TIME_STEP / 60.0
+        })
+    };
+    println!(
+        "\nWith a memory of the recording (protocols `online` and `online-single`, numbers of their own):\n\n\
+         | recording (`{name}`) | minutes | pedestrian-windows | `fair` | `online` | minFDE | `single` | `online-single` | FDE |\n\
+         |---|---|---|---|---|---|---|---|---|"
+    );
+    let of_one = || {
+        place
+            .windows
+            .chunk_by(|a, b| a.recording() == b.recording())
+            .zip(online.chunk_by(|a, b| a.recording() == b.recording()))
+    };
+    for (alone, watching) in of_one() {
+        let recording = alone[0].recording();
+        let minutes = format!("{:.1}", minutes(recording));
+        print_change(recording, &minutes, model, (alone, watching))?;
+    }
+    if of_one().count() > 1 {
+        print_change("all", "", model, (&place.windows, &online))?;
+    }
+    Ok(())
+}
+
+fn print_change(
+    recording: &str,
+    minutes: &str,
+    model: &Ddl,
+    (alone, watching): (&[Window], &[Window]),
+) -> Result<(), Box<dyn Error>> {
+    let scored = |windows: &[Window]| {
+        let seen = Protocol::Online.visible(windows);
+        let scores = [model.forecast_all(&seen)?, model.forecast_one(&seen)?];
+        let [many, one] = scores.map(|forecasts| Scores::evaluate(windows, &forecasts));
+        Ok::<_, Box<dyn Error>>([many?, one?])
+    };
+    let (before, after) = (scored(alone)?, scored(watching)?);
+    let cells = before.iter().zip(&after).map(|(before, after)| {
+        format!(
+            "{:.3}/{:.3} | {:.3}/{:.3} | {:+.1} %",
+            before.min_ade,
+            before.min_fde,
+            after.min_ade,
+            after.min_fde,
+            100.0 * (after.min_fde / before.min_fde - 1.0)
+        )
+    });
+    println!(
+        "| {recording} | {minutes} | {} | {} |",
+        before[0].pedestrians,
+        cells.collect::<Vec<_>>().join(" | ")
+    );
     Ok(())
 }
 

@@ -40,7 +40,7 @@ pub(crate) struct Forecast {
     /// One forecast a pedestrian instead of 20: to one central goal that sums up the 20
     #[arg(long)]
     one: bool,
-    /// With `-`: the file of what was seen in this place, which forecasts learn from; made where there is none, and written every minute and at the end
+    /// With `-`: the scene memory, earlier tracks of this place, which forecasts look at; made where there is none, and written every minute and at the end
     ///
     /// Name a file for each camera. A memory of another place is found out by the first 30 pedestrians: it is left as it is, and forecasts go on without it.
     /// `ddl data FILE` tells what it holds.

@@ -160,3 +160,41 @@ fn folds_never_train_on_what_they_test_on() {
         "{error}"
     );
 }
+
+#[test]
+fn a_memory_of_the_place_holds_other_training_recordings_alone() {
+    for convention in [Convention::Star, Convention::SocialGan] {
+        let Some(dataset) = recordings::load(convention) else {
+            return;
+        };
+        let names = |recordings: &[&Recording]| -> BTreeSet<String> {
+            recordings.iter().map(|r| r.name().to_owned()).collect()
+        };
+        for fold in dataset.folds() {
+            let training = names(fold.training_recordings());
+            let (mut all, mut of_test) = (0, BTreeSet::new());
+            for recording in dataset.recordings() {
+                let name = recording.name();
+                let others = names(&fold.training_recordings_of_its_place(name));
+                assert!(
+                    others.is_subset(&training) && !others.contains(name),
+                    "{name}"
+                );
+                all += others.len();
+                if !training.contains(name) {
+                    of_test.extend(others);
+                }
+            }
+            assert!(all > 0);
+            let expected: &[&str] = match fold.name() {
+                "univ" => &["uni_examples"],
+                "zara1" => &["zara02", "zara03"],
+                "zara2" => &["zara01", "zara03"],
+                _ => &[],
+            };
+            assert!(of_test.iter().eq(expected), "{}", fold.name());
+            let confirmed = fold.place_memory_confirmed_by();
+            assert!(confirmed.iter().all(|name| of_test.contains(name)));
+        }
+    }
+}

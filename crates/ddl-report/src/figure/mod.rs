@@ -11,6 +11,7 @@ mod goal_case;
 mod goals;
 mod legend;
 pub(crate) mod marks;
+pub(crate) mod over_time;
 pub(crate) mod pedestrian;
 mod place;
 pub(crate) mod plan;

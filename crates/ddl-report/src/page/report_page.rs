@@ -95,11 +95,17 @@ impl<'a> Page<'a> {
         figures.extend(gallery_section::figures(self.moments));
         figures.extend(training_section::figures(self.curves));
         let mut used: Vec<String> = Vec::new();
-        let named = |(name, drawing): (String, Drawing)| {
-            let name = unused(identifier(&name), &mut used);
-            (format!("{name}.svg"), drawing.to_file(""))
+        let figures = figures
+            .into_iter()
+            .map(|(name, drawing)| (name, drawing.to_file("")))
+            .chain(self.report.watching_figures());
+        let named = |(name, text): (String, String)| {
+            (
+                format!("{}.svg", unused(identifier(&name), &mut used)),
+                text,
+            )
         };
-        Ok(figures.into_iter().map(named).collect())
+        Ok(figures.map(named).collect())
     }
 
     fn check(&self) -> Result<(), PageError> {

@@ -100,6 +100,11 @@ impl Report {
         content::document(&self.title, &self.rows)
     }
 
+    /// Error over watching time, a figure for each table of that name: names and SVG files.
+    pub(crate) fn watching_figures(&self) -> Vec<(String, String)> {
+        watching::figures(&self.rows)
+    }
+
     /// The report as JSON, a line a row, from which [`Report::from_json`] makes the same report, bit by bit.
     ///
     /// # Errors

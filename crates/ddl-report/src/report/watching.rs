@@ -1,19 +1,47 @@
 //! What watching is worth, by how long a recording has been watched: `online` forecasts beside those that the same model
 //! makes without it.
 
-use super::group::{ResultGroup, TableLine};
+use super::group::{ResultGroup, TableLine, groups};
 use crate::document::{Part, Table};
-use ddl_eval::Protocol;
+use crate::figure::over_time::{OverTime, TimePanel, Values};
 use ddl_eval::significance::BlockErrors;
+use ddl_eval::{Protocol, ResultRow};
 
 const QUARTERS: usize = 4;
+/// Blocks whose mean is a point of a curve.
+const SLIDING: usize = 6;
+/// Of the 20 s in which the windows of a block start, in minutes.
+const BLOCK_MINUTES: f64 = 1.0 / 3.0;
 
 const NOTE: &str = "By quarters of the time from the first to the last window of a recording. In brackets: the change against the same model \
-    without the memory of the recording, on the same windows. These are numbers of two protocols: the change says what watching is \
-    worth to a camera, and is no progress of the method.";
+    without the memory of the recording, on the same windows. The two numbers come from different protocols: the change measures what \
+    the memory of the recording is worth, not an improvement of the method.";
 
-/// A table for each online group: a row for each model and recording, a column for each quarter of the recording.
-pub(super) fn parts(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<Part> {
+/// One model on one recording, with and without the memory of it.
+struct Watched {
+    forecaster: String,
+    /// Blocks of the recording, means over seeds.
+    watching: Vec<BlockErrors>,
+    alone: Vec<BlockErrors>,
+}
+
+impl Watched {
+    fn recording(&self) -> &str {
+        &self.watching[0].recording
+    }
+
+    fn panel(&self) -> TimePanel {
+        let both = [&self.alone, &self.watching];
+        TimePanel {
+            name: self.recording().to_owned(),
+            notes: both.map(|blocks| format!("{:.3} m", mean(blocks.iter()))),
+            curves: both.map(|blocks| sliding(blocks)),
+        }
+    }
+}
+
+/// The models of an online group on each recording, where they were also scored without watching.
+fn watched(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<Watched> {
     let without = match group.protocol {
         Protocol::Online => Protocol::Fair,
         Protocol::OnlineSingle => Protocol::Single,
@@ -23,10 +51,8 @@ pub(super) fn parts(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<
     let Some(other) = others.find(|g| g.protocol == without && g.same_windows(group)) else {
         return Vec::new();
     };
-    let columns = ["first quarter", "second", "third", "last"];
-    let mut table =
-        Table::new(["forecaster", "recording"].into_iter().chain(columns)).text_column("recording");
-    for (line, label) in group.labelled() {
+    let mut all = Vec::new();
+    for (line, forecaster) in group.labelled() {
         let same = |other: &&TableLine<'_>| is_same_model(line, other);
         let Some(alone) = other.lines.iter().find(same) else {
             continue;
@@ -36,29 +62,84 @@ pub(super) fn parts(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<
                 continue;
             };
             for recording in watching.chunk_by(|a, b| a.recording == b.recording) {
-                let mean = |blocks: &[BlockErrors]| by_quarter(&recording[0].recording, blocks);
-                let cells = mean(&watching).into_iter().zip(mean(&alone));
-                let start = [label.clone(), recording[0].recording.clone()];
-                table.row(start.into_iter().chain(cells.map(cell)));
+                let same = |block: &&BlockErrors| block.recording == recording[0].recording;
+                let alone: Vec<BlockErrors> = alone.iter().filter(same).cloned().collect();
+                if !alone.is_empty() {
+                    all.push(Watched {
+                        forecaster: forecaster.clone(),
+                        watching: recording.to_vec(),
+                        alone,
+                    });
+                }
             }
         }
     }
-    if table.rows().is_empty() {
+    all
+}
+
+/// A table for each online group: a row for each model and recording, a column for each quarter of the recording.
+pub(super) fn parts(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<Part> {
+    let all = watched(group, groups);
+    if all.is_empty() {
         return Vec::new();
     }
-    let error = if group.protocol.hypotheses() == 1 {
-        "FDE"
-    } else {
-        "minFDE"
-    };
+    let columns = ["first quarter", "second", "third", "last"];
+    let mut table =
+        Table::new(["forecaster", "recording"].into_iter().chain(columns)).text_column("recording");
+    for watched in &all {
+        let cells = by_quarter(&watched.watching).into_iter();
+        let cells = cells.zip(by_quarter(&watched.alone)).map(cell);
+        let start = [watched.forecaster.clone(), watched.recording().to_owned()];
+        table.row(start.into_iter().chain(cells));
+    }
     vec![
         Part::subheading("Error over watching time"),
         Part::Paragraph(NOTE.to_owned()),
         Part::Table(table.captioned(format!(
-            "{error} in metres, mean over the pedestrians of a quarter and over seeds. {}",
+            "{} in metres, mean over the pedestrians of a quarter and over seeds. {}",
+            error(group.protocol),
             group.conditions_in_words()
         ))),
     ]
+}
+
+/// The first model of each online group with and without the memory of each recording: names and SVG files.
+pub(crate) fn figures(rows: &[ResultRow]) -> Vec<(String, String)> {
+    let groups = groups(rows);
+    let figure = |group: &ResultGroup<'_>| {
+        let all = watched(group, &groups);
+        let first = all.first()?.forecaster.clone();
+        let of_first = all.iter().filter(|watched| watched.forecaster == first);
+        let title = format!(
+            "{} in metres over watching time, {SLIDING} blocks of 20 s at a time. Convention {}, window rule {}",
+            error(group.protocol),
+            group.convention,
+            group.window_rule
+        );
+        let drawn = OverTime {
+            title: &title,
+            keys: [
+                "without a memory of the recording",
+                "with what was seen in it until then",
+            ],
+            values: Values::Metres,
+            panels: of_first.map(Watched::panel).collect(),
+        };
+        let name = format!(
+            "watching {} {} {}",
+            group.protocol, group.convention, group.window_rule
+        );
+        Some((name, drawn.to_file()))
+    };
+    groups.iter().filter_map(figure).collect()
+}
+
+fn error(protocol: Protocol) -> &'static str {
+    if protocol.hypotheses() == 1 {
+        "FDE"
+    } else {
+        "minFDE"
+    }
 }
 
 fn is_same_model(line: &TableLine<'_>, other: &TableLine<'_>) -> bool {
@@ -69,17 +150,35 @@ fn is_same_model(line: &TableLine<'_>, other: &TableLine<'_>) -> bool {
 }
 
 /// Mean minFDE of each quarter of a recording (m); `None` for one in which no window starts.
-fn by_quarter(recording: &str, blocks: &[BlockErrors]) -> [Option<f64>; QUARTERS] {
-    let of_recording = || blocks.iter().filter(|block| block.recording == recording);
-    let first = of_recording().map(|block| block.block).min().unwrap_or(0);
-    let last = of_recording().map(|block| block.block).max().unwrap_or(0);
-    let quarter = |block: i64| (block - first) * QUARTERS as i64 / (last - first + 1);
+fn by_quarter(blocks: &[BlockErrors]) -> [Option<f64>; QUARTERS] {
+    let first = blocks.iter().map(|block| block.block).min().unwrap_or(0);
+    let last = blocks.iter().map(|block| block.block).max().unwrap_or(0);
+    let quarter =
+        |block: &BlockErrors| (block.block - first) * QUARTERS as i64 / (last - first + 1);
     std::array::from_fn(|wanted| {
-        let of_quarter = || of_recording().filter(|block| quarter(block.block) == wanted as i64);
-        let pedestrians: usize = of_quarter().map(|block| block.pedestrians).sum();
-        let sum: f64 = of_quarter().map(|block| block.min_fde).sum();
-        (pedestrians > 0).then(|| sum / pedestrians as f64)
+        let of_quarter = || {
+            blocks
+                .iter()
+                .filter(|block| quarter(block) == wanted as i64)
+        };
+        of_quarter().next().map(|_| mean(of_quarter()))
     })
+}
+
+/// Minutes since the first window, and the mean minFDE (m) of some blocks until then.
+fn sliding(blocks: &[BlockErrors]) -> Vec<[f64; 2]> {
+    let first = blocks.first().map_or(0, |block| block.block);
+    let minutes = |block: &BlockErrors| (block.block - first + 1) as f64 * BLOCK_MINUTES;
+    let windows = blocks.windows(SLIDING.min(blocks.len()).max(1));
+    let point = |blocks: &[BlockErrors]| Some([minutes(blocks.last()?), mean(blocks.iter())]);
+    windows.filter_map(point).collect()
+}
+
+/// Mean minFDE over the pedestrians of some blocks, m.
+fn mean<'a>(blocks: impl Iterator<Item = &'a BlockErrors>) -> f64 {
+    let sums = blocks.map(|block| (block.pedestrians as f64, block.min_fde));
+    let (pedestrians, sum) = sums.fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
+    sum / pedestrians
 }
 
 fn cell((watching, alone): (Option<f64>, Option<f64>)) -> String {

@@ -18,7 +18,7 @@ pub(crate) struct Place {
     #[allow(dead_code, reason = "for tables")]
     pub(crate) rate: String,
     #[allow(dead_code, reason = "for tables")]
-    pub(crate) recordings: usize,
+    pub(crate) recordings: Vec<Recording>,
     pub(crate) windows: Vec<Window>,
 }
 
@@ -58,10 +58,10 @@ impl Place {
             .filter(|(at, _)| alone || (at % 2 == 1) == rest);
         let recordings: Vec<Recording> = of_part.map(|(_, recording)| recording).collect();
         let (folder, rate) = parts(place)?;
-        let windows = recordings
+        let mut windows: Vec<Window> = recordings
             .iter()
-            .flat_map(|r| r.windows(WindowRule::Complete));
-        let mut windows: Vec<Window> = windows.collect();
+            .flat_map(|r| r.windows(WindowRule::Complete))
+            .collect();
         if alone {
             let later = windows.split_off(windows.len() / 2);
             windows = if rest { later } else { windows };
@@ -72,7 +72,7 @@ impl Place {
         Ok(Self {
             name: name.to_string_lossy().into_owned(),
             rate: rate.to_owned(),
-            recordings: recordings.len(),
+            recordings,
             windows: windows.into_iter().step_by(every).collect(),
         })
     }

@@ -77,6 +77,9 @@ pub fn evaluate(
     let asked = |some: &[Protocol]| some.iter().any(|p| request.protocols.contains(p));
     let passes = [&[Protocol::Published][..], &ALONE, &WATCHING].map(asked);
     let total = test.walkers() * passes.iter().filter(|asked| **asked).count();
+    if asked(&WATCHING) {
+        model.goal_model().remembered_at_once()?;
+    }
     let mut measuring = Measuring {
         model,
         test: &test,

@@ -115,7 +115,8 @@ impl Manner {
                 let change = said(WITHOUT_LIBRARY);
                 add(Protocol::Fair, GivenGoals::WithoutLibrary, stable, change);
             }
-            if model.goal_model().memory().is_some() {
+            let mut with_memory = model.config().data.convention.folds_with_place_memory();
+            if model.goal_model().memory().is_some() && with_memory.next().is_some() {
                 let change = said("without a memory of the place");
                 add(Protocol::Fair, GivenGoals::WithoutMemory, stable, change);
             }

@@ -11,8 +11,8 @@ use std::borrow::Borrow;
 ///
 /// Once somebody has been seen for 8 steps in a row (or as often as a [`Completion`] asks for), every
 /// [`push`](Self::push) forecasts everybody of whom that is true, with the bits of [`Forecaster::forecast`] on the
-/// window that [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far; of
-/// gaps, see [`LiveTracks`]. The forecaster is owned, or borrowed: `LiveForecaster::new(&model)` watches several places
+/// window that [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far (with a memory:
+/// on that window with what the memory recalls; with regions that adapt: all but the regions); of gaps, see [`LiveTracks`]. The forecaster is owned, or borrowed: `LiveForecaster::new(&model)` watches several places
 /// with one model.
 ///
 /// # What is kept from frame to frame

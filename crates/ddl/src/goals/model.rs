@@ -225,7 +225,6 @@ impl GoalModel {
         remembering(&recordings, windows, of_place, playback, count)
     }
 
-    /// Earlier pedestrians that its memory branch looks at for each pedestrian.
     /// How many earlier pedestrians its memory branch is given for each pedestrian.
     ///
     /// # Errors
@@ -233,8 +232,8 @@ impl GoalModel {
     pub fn remembered_at_once(&self) -> Result<usize, DdlError> {
         let memory = self.memory().ok_or_else(|| {
             self.source.wrong(
-                "has no memory branch, without which nothing of a place can be remembered; train a model with this version of \
-                 the program",
+                "has no memory branch, without which nothing of a place can be remembered; train a model whose goals are proposed, \
+                 with this version of the program",
             )
         })?;
         Ok(memory.remembered)

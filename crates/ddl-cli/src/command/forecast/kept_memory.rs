@@ -165,13 +165,24 @@ impl MemoryFile {
     fn write(&mut self) -> anyhow::Result<()> {
         self.written = Instant::now();
         let place = self.place.as_ref();
-        let kept = place.filter(|place| place.refused().is_none() && !place.is_on_trial());
+        let kept = place.filter(|place| {
+            let decided = place.refused().is_none() && place.on_trial().is_none();
+            // A file without a frame would only fix the frame rate of the next stream.
+            decided && place.memory().last_frame().is_some()
+        });
         kept.map_or(Ok(()), |place| Ok(place.memory().write(&self.path)?))
     }
 
     fn end(&mut self) -> anyhow::Result<()> {
         if let Some(place) = &mut self.place {
             place.end_trial();
+            if let Some(tried) = place.on_trial() {
+                tell(format_args!(
+                    "warning: {}: {tried} pedestrians were seen for 8 steps, too few to tell whether the memory is of this place; the file \
+                     stays as it is",
+                    self.path.display()
+                ));
+            }
         }
         self.tell_refusal();
         self.write()
@@ -181,6 +192,10 @@ impl MemoryFile {
 /// Whether a file can be written and replaced there; nothing of it changes.
 fn ensure_writable(path: &Path) -> std::io::Result<()> {
     if path.exists() {
+        // To open a pipe would wait for its reader.
+        if !path.is_file() {
+            return Err(std::io::Error::other("it is no file"));
+        }
         File::options().write(true).open(path)?;
     }
     let folder = path

@@ -7,6 +7,7 @@ use ddl_eval::significance::BlockErrors;
 use ddl_eval::{
     Category, CategoryScores, Conditions, MotionKind, Protocol, ResultRow, Scores, StabilityScores,
 };
+use ddl_report::page::Page;
 use ddl_report::{Report, ReportError};
 
 fn scores(min_ade: f64) -> Scores {
@@ -418,6 +419,13 @@ fn watching_is_measured_by_quarters_against_the_same_model_without_it() {
         cells(line(section, "| DDL "))[1..],
         [&["eth"], &expected[..]].concat()
     );
+    // And a curve of each is drawn for every recording.
+    let report = Report::new("watching", alone.iter().cloned().chain(online.clone())).unwrap();
+    let figures = Page::new(&report).figures().unwrap();
+    let named = |name: &str| figures.iter().find(|(file, _)| file.starts_with(name));
+    let (_, drawn) = named("watching-online").unwrap();
+    assert_eq!(drawn.matches("curve c0").count(), 1 + 5);
+    assert!(drawn.contains("0.400 m") && !drawn.contains("NaN"));
     // It stands under its own protocol, and nowhere without something to compare with.
     assert!(!markdown(online).contains("watching time"));
     assert!(!markdown(alone).contains("watching time"));

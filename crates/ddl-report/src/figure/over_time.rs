@@ -1,0 +1,164 @@
+//! Two curves over the time of several recordings, a panel each.
+
+use super::{
+    drawing::{Drawing, PLOT_STYLE},
+    scale::{Scale, ticks},
+};
+
+const COLUMNS: usize = 3;
+/// Space around everything, and between the panels, across and up, pixels.
+const EDGE: f64 = 20.0;
+const BETWEEN: [f64; 2] = [56.0, 66.0];
+/// The plot of a panel, and what stands to the left of it, pixels.
+const PLOT: [f64; 2] = [270.0, 150.0];
+const LEFT: f64 = 40.0;
+/// Height of heading and legend, pixels.
+const HEAD: f64 = 84.0;
+const SAMPLE: f64 = 28.0;
+/// Width of a note, pixels.
+const NOTE: f64 = 92.0;
+/// Classes of the two curves.
+const CLASSES: [&str; 2] = ["c1", "c0"];
+
+/// Curves of several recordings, a panel each.
+#[derive(Debug)]
+pub(crate) struct OverTime<'a> {
+    pub(crate) title: &'a str,
+    /// What the two curves of each panel are.
+    pub(crate) keys: [&'a str; 2],
+    pub(crate) values: Values,
+    pub(crate) panels: Vec<TimePanel>,
+}
+
+/// What is drawn upwards.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Values {
+    /// Shares from the lowest to 1, with a band of 2 % about an aim.
+    Shares { lowest: f64, aim: f64 },
+    /// Errors in metres, from 0, each panel on a scale of its own.
+    Metres,
+}
+
+/// Two curves of one recording.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct TimePanel {
+    pub(crate) name: String,
+    /// What stands beside the name, in the colours of the curves.
+    pub(crate) notes: [String; 2],
+    /// Time (minutes, rising) and value.
+    pub(crate) curves: [Vec<[f64; 2]>; 2],
+}
+
+impl OverTime<'_> {
+    /// The text of an SVG file. The same input gives the same bytes.
+    pub(crate) fn to_file(&self) -> String {
+        let count = self.panels.len();
+        let across = |count: usize| count as f64 * (PLOT[0] + BETWEEN[0]);
+        let up = |count: usize| count as f64 * (PLOT[1] + BETWEEN[1]);
+        let size = [
+            EDGE + LEFT + across(count.min(COLUMNS)) - BETWEEN[0] + EDGE,
+            HEAD + up(count.div_ceil(COLUMNS)) + EDGE,
+        ];
+        let mut drawing = Drawing::new(size[0], size[1], self.title);
+        drawing.text("heading", [EDGE, EDGE + 14.0], self.title);
+        self.draw_legend(&mut drawing);
+        for (at, panel) in self.panels.iter().enumerate() {
+            let left = EDGE + LEFT + across(at % COLUMNS);
+            let top = HEAD + 26.0 + up(at / COLUMNS);
+            panel.draw(&mut drawing, [left, top], self.values);
+        }
+        drawing.to_file(PLOT_STYLE)
+    }
+
+    fn draw_legend(&self, drawing: &mut Drawing) {
+        let y = EDGE + 40.0;
+        let mut left = EDGE;
+        for (class, words) in CLASSES.into_iter().zip(self.keys) {
+            drawing.path(&format!("curve {class}"), &[[left, y], [left + SAMPLE, y]]);
+            drawing.text("key", [left + SAMPLE + 8.0, y + 4.0], words);
+            left += SAMPLE + 36.0 + 6.7 * words.len() as f64;
+        }
+        if let Values::Shares { aim, .. } = self.values {
+            drawing.rectangle("aim", [[left, y - 6.0], [left + SAMPLE, y + 6.0]]);
+            let percent = 100.0 * aim;
+            let words = format!("{} to {} %, the aim", percent - 2.0, percent + 2.0);
+            drawing.text("key", [left + SAMPLE + 8.0, y + 4.0], words);
+        }
+    }
+}
+
+impl TimePanel {
+    fn draw(&self, drawing: &mut Drawing, [left, top]: [f64; 2], values: Values) {
+        let [right, bottom] = [left + PLOT[0], top + PLOT[1]];
+        let points = || self.curves.iter().flatten();
+        let longest = points().fold(0.0, |longest, point| point[0].max(longest));
+        let time = Scale::from_zero(longest, [left, right]);
+        drawing.text("title", [left, top - 10.0], self.name.as_str());
+        let ends = [right - NOTE, right];
+        for ((class, note), end) in CLASSES.into_iter().zip(&self.notes).zip(ends) {
+            let class = format!("small end {class}");
+            drawing.text(&class, [end, top - 10.0], note.as_str());
+        }
+        let largest = points().fold(0.0, |largest, point| point[1].max(largest));
+        let metres = Scale::from_zero(largest, [bottom, top]);
+        let up = |value: f64| match values {
+            Values::Shares { lowest, .. } => {
+                bottom - (value - lowest) / (1.0 - lowest) * (bottom - top)
+            }
+            Values::Metres => metres.at(value),
+        };
+        if let Values::Shares { lowest, aim } = values {
+            let [low, high] = [-0.02, 0.02].map(|off| up((aim + off).clamp(lowest, 1.0)));
+            drawing.rectangle("aim", [[left, high], [right, low]]);
+        }
+        for (tick, label) in time.ticks() {
+            let x = time.at(tick);
+            drawing.line("grid", [x, top], [x, bottom]);
+            drawing.text("small middle", [x, bottom + 16.0], label);
+        }
+        let ticks: Vec<(f64, String)> = match values {
+            Values::Shares { lowest, .. } => ticks(lowest, 1.0, 0.1)
+                .map(|(tick, _)| (tick, format!("{:.0} %", 100.0 * tick)))
+                .collect(),
+            Values::Metres => metres.ticks(),
+        };
+        for (tick, label) in ticks {
+            let y = up(tick);
+            drawing.line("grid", [left, y], [right, y]);
+            drawing.text("small end", [left - 6.0, y + 4.0], label);
+        }
+        for (class, curve) in CLASSES.into_iter().zip(&self.curves) {
+            let points = curve.iter().map(|&[at, value]| [time.at(at), up(value)]);
+            let class = format!("curve {class}");
+            drawing.path(&class, &points.collect::<Vec<_>>());
+        }
+        drawing.rectangle("frame", [[left, top], [right, bottom]]);
+        drawing.text("small end", [right, bottom + 30.0], "minutes");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_drawn_from_zero_on_a_scale_of_the_panel() {
+        let panel = |largest: f64| TimePanel {
+            name: format!("{largest} m"),
+            notes: ["0.1 m", "0.2 m"].map(str::to_owned),
+            curves: [0.5, 1.0].map(|share| vec![[0.0, share * largest], [2.0, 0.0]]),
+        };
+        let drawn = OverTime {
+            title: "Errors",
+            keys: ["without", "with"],
+            values: Values::Metres,
+            panels: vec![panel(0.4), panel(4.0)],
+        };
+        let svg = drawn.to_file();
+        assert_eq!(svg.matches("curve c0").count(), 1 + 2);
+        for label in ["0.4", "4", "0.2 m", "without"] {
+            assert!(svg.lines().any(|line| line == label), "{label}: {svg}");
+        }
+        assert!(!svg.contains("the aim") && !svg.contains("NaN"));
+    }
+}
