@@ -4,6 +4,7 @@
 
 mod agreement;
 mod from_training;
+mod golden_forecasts;
 mod own_training;
 mod train_resume;
 mod training_memory;

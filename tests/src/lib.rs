@@ -15,6 +15,7 @@ pub mod drawn_model;
 pub mod example;
 pub mod figures;
 pub mod folder_contents;
+pub mod golden;
 pub mod guide;
 #[cfg(unix)]
 pub mod mount;

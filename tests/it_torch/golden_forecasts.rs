@@ -1,0 +1,29 @@
+//! The file of golden forecasts, against libtorch. With `DDL_WRITE_GOLDEN=1` the test writes the file anew, as is needed when the
+//! built-in models were trained anew.
+
+use ddl::{BuiltinModel, Ddl, ModelSource};
+use ddl_tests::golden::{self, Golden};
+
+#[test]
+fn golden_forecasts_are_those_of_libtorch() {
+    let of =
+        |model: BuiltinModel| Golden::of(&Ddl::reference(&ModelSource::Builtin(model)).unwrap());
+    if std::env::var_os("DDL_WRITE_GOLDEN").is_some() {
+        let models = BuiltinModel::ALL.map(|model| {
+            let rows = of(model).into_iter();
+            let rows: Vec<String> = rows
+                .map(|row| serde_json::to_string(&row).unwrap())
+                .collect();
+            format!("\"{model}\": [\n{}\n]", rows.join(",\n"))
+        });
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/golden/forecasts.json");
+        std::fs::write(file, format!("{{\n{}\n}}\n", models.join(",\n"))).unwrap();
+        return;
+    }
+    let file = golden::file();
+    for model in BuiltinModel::ALL {
+        for (found, known) in of(model).iter().zip(&file[model.name()]) {
+            found.assert_near(known, model.name());
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Forecasts of a scene made up for this purpose, as a file in the repository keeps them (`tests/golden`).
+
+use ddl::data::{PedestrianId, Position, Window};
+use ddl::{Ddl, Forecaster as _};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Positions differ by rounding in single precision; metres.
+const OFF: f64 = 1e-4;
+/// So do weights, and places of goals.
+const LITTLE: f64 = 1e-5;
+
+/// What is forecast of one pedestrian; positions in metres, the likeliest hypothesis first.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Golden {
+    pedestrian: i64,
+    familiarity: f64,
+    /// The last position of the one forecast.
+    one: Position,
+    weights: Vec<f64>,
+    goals: Vec<Position>,
+    step_1: Vec<Position>,
+    step_6: Vec<Position>,
+}
+
+/// What the file says, by model.
+pub fn file() -> BTreeMap<String, Vec<Golden>> {
+    serde_json::from_str(include_str!("../golden/forecasts.json")).expect("the file is sound")
+}
+
+/// Ten pedestrians: side by side, head on, turning, standing, running, slowing down, trembling, far from all.
+fn window() -> Window {
+    let mut tracks: BTreeMap<i64, Vec<Position>> = BTreeMap::new();
+    for row in include_str!("../golden/tracks.csv").lines().skip(1) {
+        let number = |field: &str| field.parse::<f64>().expect("a number");
+        let fields: Vec<f64> = row.split(',').map(number).collect();
+        let track = tracks.entry(fields[1] as i64).or_default();
+        track.push([fields[2], fields[3]]);
+    }
+    let pedestrians = tracks.keys().map(|&id| PedestrianId(id)).collect();
+    let tracks = tracks.into_values().collect();
+    Window::new("golden", 0, 10, pedestrians, tracks).expect("a window")
+}
+
+impl Golden {
+    /// The forecasts of a model, rounded as the file holds them.
+    pub fn of(model: &Ddl) -> Vec<Self> {
+        let window = window();
+        let forecast = model.forecast(&window).expect("a forecast");
+        let one = model.forecast_one(std::slice::from_ref(&window));
+        let one = one.expect("one forecast each").remove(0);
+        let familiarity = model.goal_model().familiarity(&window);
+        let of_pedestrian = |i: usize| {
+            let mut order: Vec<usize> = (0..forecast.hypotheses()).collect();
+            order.sort_by(|&a, &b| forecast.weight(i, b).total_cmp(&forecast.weight(i, a)));
+            let each = |of: &dyn Fn(usize) -> Position| -> Vec<Position> {
+                order
+                    .iter()
+                    .map(|&h| of(h).map(|x| rounded(x, 7)))
+                    .collect()
+            };
+            let weight = |&h: &usize| rounded(forecast.weight(i, h), 9);
+            Self {
+                pedestrian: window.pedestrians()[i].0,
+                familiarity: rounded(familiarity[i], 9),
+                one: one.hypothesis(i, 0)[11].map(|x| rounded(x, 7)),
+                weights: order.iter().map(weight).collect(),
+                goals: each(&|h| forecast.goal(i, h).expect("a goal")),
+                step_1: each(&|h| forecast.hypothesis(i, h)[0]),
+                step_6: each(&|h| forecast.hypothesis(i, h)[5]),
+            }
+        };
+        (0..window.len()).map(of_pedestrian).collect()
+    }
+
+    /// Panics, naming what differs, unless both are the same up to rounding.
+    pub fn assert_near(&self, known: &Self, model: &str) {
+        let name = format!("{model}, pedestrian {}", known.pedestrian);
+        assert_eq!(self.pedestrian, known.pedestrian, "{name}");
+        assert!(
+            (self.familiarity - known.familiarity).abs() < 1e-9,
+            "{name}"
+        );
+        assert!(apart(self.one, known.one) <= OFF, "{name}: one");
+        assert_eq!(self.weights.len(), known.weights.len(), "{name}");
+        for k in 0..known.weights.len() {
+            let (found, expected) = (self.weights[k], known.weights[k]);
+            assert!(
+                (found - expected).abs() < LITTLE,
+                "{name}, weight {k}: {found} {expected}"
+            );
+            for (what, found, expected, off) in [
+                ("goal", &self.goals, &known.goals, LITTLE),
+                ("step 1", &self.step_1, &known.step_1, OFF),
+                ("step 6", &self.step_6, &known.step_6, OFF),
+            ] {
+                let (found, expected) = (found[k], expected[k]);
+                let near = apart(found, expected) <= off;
+                assert!(near, "{name}, {what} {k}: {found:?} {expected:?}");
+            }
+        }
+    }
+}
+
+fn rounded(number: f64, decimals: i32) -> f64 {
+    let unit = 10.0_f64.powi(decimals);
+    (number * unit).round() / unit
+}
+
+fn apart(a: Position, b: Position) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
