@@ -31,7 +31,7 @@ fn main() -> Result<()> {
     let dataset = Dataset::simulated(1);
     let window = scene::of(&dataset)?;
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let memory = memory_of(&dataset)?;
+    let memory = memory_of(&dataset, if turns > 1 { FULL } else { 1 })?;
     let forecasts = one.install(|| forecast(&window, &memory, turns))?;
     let mut out = std::io::stdout().lock();
     writeln!(out, "\n{forecasts}")?;
@@ -42,17 +42,25 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// Earlier pedestrians recalled for each pedestrian, as a memory branch looks at them.
-const REMEMBERED: usize = 12;
+/// Stretches of a memory that is all but full.
+const FULL: usize = SceneMemory::DEFAULT_CAPACITY * 9 / 10;
 
-/// A memory of all the simulated scenes, as full as these make it.
-fn memory_of(dataset: &Dataset) -> Result<SceneMemory> {
+/// A memory of all the simulated scenes, and of other crowds in them until it holds so many stretches.
+fn memory_of(dataset: &Dataset, stretches: usize) -> Result<SceneMemory> {
     let step = dataset.recordings()[0].frame_step();
     let mut memory = SceneMemory::new(step, SceneMemory::DEFAULT_CAPACITY)?;
-    for recording in dataset.recordings() {
-        memory.watch(recording)?;
+    let mut seed = 2;
+    let mut crowds = dataset.clone();
+    loop {
+        for recording in crowds.recordings() {
+            memory.watch(recording)?;
+        }
+        if memory.stretches() >= stretches {
+            return Ok(memory);
+        }
+        crowds = Dataset::simulated(seed);
+        seed += 1;
     }
-    Ok(memory)
 }
 
 /// The time of a whole forecast, and of its parts.
@@ -79,7 +87,8 @@ fn forecast(window: &Window, memory: &SceneMemory, turns: usize) -> Result<Strin
     let roll_out = |network: &MotionNetwork| {
         network.forecast_windows(windows, &all, Noise::Expected, StepRule::Bounded, None)
     };
-    let remembering = || memory.recalling(window.clone(), REMEMBERED);
+    let count = model.goal_model().remembered_at_once()?;
+    let remembering = || memory.recalling(window.clone(), count);
     let parts: [&mut dyn FnMut() -> Result<()>; 5] = [
         &mut || Ok(model.forecast(&remembering()).map(drop)?),
         &mut || Ok(model.forecast(window).map(drop)?),
