@@ -125,7 +125,7 @@ fn packed(config: &str, tensors: &[HalfTensor]) -> Vec<u8> {
         [byte >> 4, byte & 15].map(|digit| char::from(b"0123456789abcdef"[usize::from(digit)]))
     };
     let sha256: String = hasher.finalize().iter().flat_map(digits).collect();
-    let entry = serde_json::json!({ "layout": 2, "config": config, "sha256": sha256 });
+    let entry = serde_json::json!({ "layout": 3, "config": config, "sha256": sha256 });
     let header = HashMap::from([("ddl".to_owned(), entry.to_string())]);
     let views = tensors.iter().filter_map(|tensor| {
         let view = TensorView::new(Dtype::F16, tensor.shape.clone(), &tensor.bytes).ok()?;
