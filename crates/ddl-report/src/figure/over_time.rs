@@ -3,6 +3,7 @@
 use super::{
     drawing::{Drawing, PLOT_STYLE},
     scale::{Scale, ticks},
+    wrap::wrapped,
 };
 
 const COLUMNS: usize = 3;
@@ -60,7 +61,8 @@ impl OverTime<'_> {
             HEAD + up(count.div_ceil(COLUMNS)) + EDGE,
         ];
         let mut drawing = Drawing::new(size[0], size[1], self.title);
-        drawing.text("heading", [EDGE, EDGE + 14.0], self.title);
+        let heading = wrapped(self.title, 16.0, size[0] - 2.0 * EDGE, 1).concat();
+        drawing.text("heading", [EDGE, EDGE + 14.0], heading);
         self.draw_legend(&mut drawing);
         for (at, panel) in self.panels.iter().enumerate() {
             let left = EDGE + LEFT + across(at % COLUMNS);

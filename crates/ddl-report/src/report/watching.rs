@@ -8,8 +8,8 @@ use ddl_eval::significance::BlockErrors;
 use ddl_eval::{Protocol, ResultRow};
 
 const QUARTERS: usize = 4;
-/// Blocks whose mean is a point of a curve.
-const SLIDING: usize = 6;
+/// Blocks whose mean is a point of a curve: those of a minute.
+const SLIDING: usize = 3;
 /// Of the 20 s in which the windows of a block start, in minutes.
 const BLOCK_MINUTES: f64 = 1.0 / 3.0;
 
@@ -111,7 +111,7 @@ pub(crate) fn figures(rows: &[ResultRow]) -> Vec<(String, String)> {
         let first = all.first()?.forecaster.clone();
         let of_first = all.iter().filter(|watched| watched.forecaster == first);
         let title = format!(
-            "{} in metres over watching time, {SLIDING} blocks of 20 s at a time. Convention {}, window rule {}",
+            "{} over watching time (m, mean of a minute); {}, windows {}",
             error(group.protocol),
             group.convention,
             group.window_rule
