@@ -202,15 +202,14 @@ impl Watched {
     }
 
     /// Least and largest share of a minute after the first quarter.
-    fn range(&self, kind: usize, level: usize) -> [f64; 2] {
+    fn range(&self, kind: usize, level: usize) -> Option<[f64; 2]> {
         let from = (0.25 * self.minutes()).max(SLIDING);
         let sliding = self.sliding(kind, level).into_iter();
         let shares = sliding
             .filter(|point| point[0] >= from)
             .map(|point| point[1]);
-        shares.fold([1.0, 0.0], |[low, high], share| {
-            [low.min(share), high.max(share)]
-        })
+        let ranges = shares.map(|share| [share; 2]);
+        ranges.reduce(|[low, high], [other, _]| [low.min(other), high.max(other)])
     }
 }
 
@@ -266,7 +265,11 @@ fn print_table(recordings: &[Watched]) {
         for (kind, name) in ["fixed", "adaptive"].into_iter().enumerate() {
             let later = watched.later();
             let percent = |moments: &[Moment], level: usize| 100.0 * share(moments, kind, level);
-            let [low, high] = watched.range(kind, MOST).map(|share| 100.0 * share);
+            let range = watched
+                .range(kind, MOST)
+                .map_or("-".to_owned(), |[low, high]| {
+                    format!("{:.0} to {:.0}", 100.0 * low, 100.0 * high)
+                });
             let [mean, least] = reliability(&watched.moments, kind);
             let mut row = match kind {
                 0 => format!(
@@ -280,7 +283,7 @@ fn print_table(recordings: &[Watched]) {
             };
             let _ = write!(
                 row,
-                " {name} | {:.1} | {:.1} | {low:.0} to {high:.0} | {:.2} | {:.1} | {:.1} | {:.2} | {:.1} / {:.1} |",
+                " {name} | {:.1} | {:.1} | {range} | {:.2} | {:.1} | {:.1} | {:.2} | {:.1} / {:.1} |",
                 percent(&watched.moments, MOST),
                 percent(later, MOST),
                 radius(later, kind, 1),
