@@ -9,8 +9,8 @@ use ddl_tests::program::Finished;
 use ddl_tests::trained_model::{TRAIN, finish};
 use std::io::{BufRead as _, BufReader};
 
-/// Steps of the proposal network, before those of the forecasting network.
-const GOAL_STEPS: usize = 12;
+/// Steps of the proposal network, 12 and then 24 of its memory branch, before those of the forecasting network.
+const GOAL_STEPS: usize = 36;
 
 /// Trains so many steps, then asks the program to end, and waits.
 fn interrupted(place: &Place, steps: usize, signal: &str) -> Finished {
