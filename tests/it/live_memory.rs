@@ -88,7 +88,7 @@ fn a_memory_of_another_place_is_refused() {
     }
 }
 
-/// A few who walk where nobody did may be the first of the place to do so.
+/// A few pedestrians without a similar trajectory do not show that the memory is of another place.
 #[test]
 fn few_pedestrians_do_not_refuse_a_memory_and_some_alike_accept_it_early() {
     let model = drawn_model::of(Variant::Full);

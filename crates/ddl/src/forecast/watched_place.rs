@@ -14,8 +14,8 @@ const TRIED: usize = 30;
 /// A memory is refused where a smaller share than this of them walk as somebody did in the memory. Of 65 pairs of parts of
 /// recordings of one camera the smallest share was 0.30, of 89 pairs of two cameras 7 in 8 are below 0.15 (docs/memory.md).
 const LEAST_SHARE: f64 = 0.15;
-/// Fewer pedestrians do not tell that a memory is of another place: with a share of 0.30, the smallest of one camera, all of 12 walk
-/// as nobody did in 1.4 % of the cases.
+/// With fewer pedestrians a memory is not refused: at the smallest share of one camera, 0.30, none of 12 pedestrians has a similar
+/// trajectory in the memory with a probability of 1.4 %.
 const FEWEST_TRIED: usize = 13;
 
 /// A memory that is fed with what is forecast from: the part of a [`LiveForecaster`](crate::LiveForecaster) that remembers,
