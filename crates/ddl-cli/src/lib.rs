@@ -14,7 +14,6 @@ mod units;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
 use std::ffi::OsString;
-use std::process::ExitCode;
 
 /// Forecasts of walking people that converge to their goals.
 // It fits a screen of 24 lines of 80 columns, which a test measures.
@@ -58,7 +57,7 @@ enum Command {
 ///
 /// Writes to the process's standard output and standard error. Arguments that cannot be parsed end the process with
 /// exit code 2, `--help` and `--version` with 0.
-pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> ExitCode {
+pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> u8 {
     let result = match Cli::parse_from(arguments).command {
         Command::Forecast(command) => command.run(),
         Command::View(command) => command.run(),
@@ -76,9 +75,9 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
         Command::Man(command) => command.run(Cli::command()),
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         // as in `ddl info | head -1`
-        Err(error) if telling::reader_has_gone(&error) => ExitCode::SUCCESS,
+        Err(error) if telling::reader_has_gone(&error) => 0,
         Err(error) => {
             let interrupted = matches!(
                 error.downcast_ref::<ddl::DdlError>(),
@@ -86,7 +85,7 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
             );
             let who = if interrupted { "ddl" } else { "error" };
             telling::tell(format_args!("{who}: {}", telling::words(&error)));
-            ExitCode::from(if interrupted { 130 } else { 1 })
+            if interrupted { 130 } else { 1 }
         }
     }
 }

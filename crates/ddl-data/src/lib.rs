@@ -31,7 +31,7 @@ pub use dataset::Dataset;
 pub use doubt::{Doubt, Fastest};
 pub use error::{DataError, FormatError, RecordingError, WindowError};
 pub use fold::{Fold, SocialGanSplit, TrainingSplit};
-pub use format::{Format, Frame, FrameReader, parse_recording, read_recording};
+pub use format::{Format, Frame, FrameReader, parse_recording, read_recording, write_recording};
 pub use homography::{Homography, HomographyError};
 pub use live::{LiveError, LiveTracks, checked_frame, checked_frame_step};
 pub use locate::{DATASETS_VARIABLE, locate};

@@ -89,6 +89,32 @@ impl Recording {
         })
     }
 
+    /// The recording whose frame step is the most common difference of two successive frames (the smaller one of two
+    /// equally common; 1 where there is only one frame).
+    ///
+    /// # Errors
+    /// As [`Recording::new`].
+    pub fn in_usual_step(
+        name: impl Into<Arc<str>>,
+        observations: Vec<Observation>,
+    ) -> Result<Self, RecordingError> {
+        let recording = Self::new(name, 1, observations)?;
+        let mut counts = BTreeMap::<i64, usize>::new();
+        for pair in recording.frames.windows(2) {
+            let difference = pair[1] - pair[0];
+            if is_frame_step(difference) {
+                *counts.entry(difference).or_default() += 1;
+            }
+        }
+        // Ascending by difference, and `max_by_key` keeps the last of equals: hence reversed.
+        let usual = counts.into_iter().rev().max_by_key(|&(_, count)| count);
+        let frame_step = usual.map_or(1, |(difference, _)| difference);
+        Ok(Self {
+            frame_step,
+            ..recording
+        })
+    }
+
     pub(crate) fn with_observations(
         &self,
         frame_step: i64,
@@ -107,6 +133,12 @@ impl Recording {
 
     pub(crate) fn with_names(self, names: PedestrianNames) -> Self {
         Self { names, ..self }
+    }
+
+    /// The same recording, whose pedestrians are known by these words.
+    #[must_use]
+    pub fn with_words(self, words: BTreeMap<PedestrianId, Arc<str>>) -> Self {
+        self.with_names(PedestrianNames::new(words))
     }
 
     /// How the file names its pedestrians.

@@ -1,5 +1,7 @@
 //! What every model and every baseline is to the evaluation.
 
+use std::sync::Arc;
+
 use ddl_data::Window;
 
 use crate::{Forecast, error::ForecastError};
@@ -43,4 +45,4 @@ macro_rules! forward {
         }
     )*};
 }
-forward!(&F, Box<F>);
+forward!(&F, Box<F>, Arc<F>);

@@ -3,6 +3,7 @@
 pub(crate) mod certified;
 pub(crate) mod clearance;
 pub(crate) mod live;
+pub(crate) mod memory_file;
 pub(crate) mod name;
 pub(crate) mod shaped;
 pub(crate) mod walk;

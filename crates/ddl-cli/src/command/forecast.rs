@@ -109,6 +109,15 @@ impl Forecast {
                 "--memory is for tracks as they come; write them to standard input: `tracker | ddl forecast - --memory FILE`"
             );
         }
+        if let Some(memory) = &self.memory {
+            ensure_not_input(self.output.as_deref(), memory)?;
+            if self.output.as_ref() == Some(memory) {
+                bail!(
+                    "--output and --memory name one file, {}; name another one for the forecasts",
+                    memory.display()
+                );
+            }
+        }
         if self.tracks.are_live() {
             return live::run(&self);
         }

@@ -11,11 +11,13 @@ mod star_csv;
 mod stream;
 mod table;
 mod trajnet;
+mod write;
 
 use std::path::Path;
 
 pub use kind::Format;
 pub use stream::{Frame, FrameReader};
+pub use write::write_recording;
 
 use crate::error::{DataError, FormatProblem};
 use crate::recording::Recording;

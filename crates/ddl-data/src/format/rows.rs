@@ -7,7 +7,6 @@ use super::place::FilePlace;
 use crate::error::{DataError, FormatError, FormatProblem};
 use crate::names::Numbering;
 use crate::recording::Recording;
-use crate::track::is_frame_step;
 use crate::{Observation, PedestrianId, PedestrianNames, Position};
 
 pub(super) const FIELDS: &str = "frame, pedestrian, x, y";
@@ -51,9 +50,8 @@ pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Record
     }
     let (mut placed, names) = numbered(rows);
     refuse_duplicates(&mut placed, &names, origin)?;
-    let frame_step = infer_frame_step(&placed);
     let observations = placed.into_iter().map(|(seen, _)| seen).collect();
-    let recording = Recording::new(origin, frame_step, observations);
+    let recording = Recording::in_usual_step(origin, observations);
     let recording = recording.map_err(|source| DataError::Recording {
         name: origin.to_owned(),
         source,
@@ -105,21 +103,4 @@ fn refuse_duplicates(
             Err(pair[1].1.wrong(origin, problem))
         }
     }
-}
-
-/// The most common difference of two successive frames; 1 if there is only one frame.
-fn infer_frame_step(sorted: &[Placed]) -> i64 {
-    let mut counts = BTreeMap::<i64, usize>::new();
-    for pair in sorted.windows(2) {
-        let difference = pair[1].0.frame - pair[0].0.frame;
-        if is_frame_step(difference) {
-            *counts.entry(difference).or_default() += 1;
-        }
-    }
-    // Ascending by difference, and `max_by_key` keeps the last of equals: hence reversed.
-    counts
-        .into_iter()
-        .rev()
-        .max_by_key(|&(_, count)| count)
-        .map_or(1, |(difference, _)| difference)
 }

@@ -149,6 +149,19 @@ impl<M> LiveForecaster<M> {
         self.place.as_ref()?.refused()
     }
 
+    /// The place that is remembered, for its [file](crate::MemoryFile).
+    pub fn place(&self) -> Option<&WatchedPlace> {
+        self.place.as_ref()
+    }
+
+    /// Decides whether the memory that was given is of this place by those seen so far, where no more are to come
+    /// ([`WatchedPlace::end_trial`]).
+    pub fn end_trial(&mut self) {
+        if let Some(place) = &mut self.place {
+            place.end_trial();
+        }
+    }
+
     /// What is remembered of the frames so far.
     pub fn tracks(&self) -> &LiveTracks {
         &self.tracks

@@ -1,0 +1,116 @@
+//! Recordings as files: what a reader of the format takes back, number by number.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+use serde_json::json;
+
+use super::kind::Format;
+use crate::error::DataError;
+use crate::recording::Recording;
+use crate::{Observation, PedestrianName};
+
+#[derive(Serialize)]
+struct TrackLine {
+    track: TrackFields,
+}
+
+#[derive(Serialize)]
+struct TrackFields {
+    f: i64,
+    p: PedestrianName,
+    x: f64,
+    y: f64,
+}
+
+/// The recording as a file of the format, in order of frames; [`parse_recording`](crate::parse_recording) gives the same positions to
+/// the last bit. The height and the velocities of [`Format::Obsmat`], which no reader of tracks takes, are written as 0.
+///
+/// # Errors
+/// [`DataError::Own`] where pedestrians are words, which [`Format::Table`] and [`Format::TrajNet`] alone can name.
+pub fn write_recording(recording: &Recording, format: Format) -> Result<Vec<u8>, DataError> {
+    let all = recording.observations();
+    let name = |seen: &Observation| recording.names().of(seen.pedestrian);
+    if !matches!(format, Format::Table | Format::TrajNet) {
+        let word = all
+            .iter()
+            .map(name)
+            .find(|name| matches!(name, PedestrianName::Word(_)));
+        if let Some(word) = word {
+            let problem = format!(
+                "the format {format} names pedestrians by numbers, and {word} is a word; write the format {} or {}",
+                Format::Table,
+                Format::TrajNet
+            );
+            return Err(DataError::Own { problem });
+        }
+    }
+    let mut text = String::new();
+    match format {
+        Format::StarCsv => text += &star_csv(all),
+        Format::SocialGan => lines(&mut text, all, |seen| {
+            let [x, y] = seen.position;
+            format!("{}\t{}\t{x:?}\t{y:?}", seen.frame, seen.pedestrian)
+        }),
+        Format::Obsmat => lines(&mut text, all, |seen| {
+            let [x, y] = seen.position;
+            format!("{} {} {x:?} 0 {y:?} 0 0 0", seen.frame, seen.pedestrian)
+        }),
+        Format::Table => {
+            text += "frame,pedestrian,x,y\n";
+            lines(&mut text, all, |seen| {
+                let [x, y] = seen.position;
+                format!("{},{},{x:?},{y:?}", seen.frame, csv_field(&name(seen)))
+            });
+        }
+        Format::TrajNet => {
+            if let Some(fps) = recording.rate() {
+                text += &json!({"scene": {"fps": fps}}).to_string();
+                text.push('\n');
+            }
+            for seen in all {
+                let [x, y] = seen.position;
+                let track = TrackFields {
+                    f: seen.frame,
+                    p: name(seen),
+                    x,
+                    y,
+                };
+                let line = serde_json::to_string(&TrackLine { track });
+                text += &line.map_err(|error| DataError::Own {
+                    problem: error.to_string(),
+                })?;
+                text.push('\n');
+            }
+        }
+    }
+    Ok(text.into_bytes())
+}
+
+fn lines(text: &mut String, all: &[Observation], line: impl Fn(&Observation) -> String) {
+    for seen in all {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{}", line(seen));
+    }
+}
+
+/// Four lines: frames, pedestrians, y and x.
+fn star_csv(all: &[Observation]) -> String {
+    let line = |field: fn(&Observation) -> String| {
+        let fields: Vec<String> = all.iter().map(field).collect();
+        fields.join(",") + "\n"
+    };
+    line(|seen| seen.frame.to_string())
+        + &line(|seen| seen.pedestrian.to_string())
+        + &line(|seen| format!("{:?}", seen.position[1]))
+        + &line(|seen| format!("{:?}", seen.position[0]))
+}
+
+fn csv_field(name: &PedestrianName) -> String {
+    let text = name.to_string();
+    if text.contains(['"', ',', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text
+    }
+}

@@ -1,0 +1,225 @@
+"""The compiled module. Arrays that go in are of float64 or int64 and in one piece."""
+
+import os
+from collections.abc import Callable, Sequence
+from typing import Any, final
+
+from numpy.typing import ArrayLike, NDArray
+
+from ddl_forecast._arrays import Flags, Floats, Integers
+
+__all__ = [
+    "Flow",
+    "GoalEstimator",
+    "Live",
+    "Model",
+    "Recording",
+    "SearchIndex",
+    "SlidingIndex",
+    "TestSet",
+    "__version__",
+    "baseline",
+    "collisions",
+    "conventions",
+    "displacement_errors",
+    "evaluate_model",
+    "kde_nll",
+    "mahalanobis",
+    "main",
+    "region_radii",
+    "report",
+    "scores",
+    "set_num_threads",
+    "spread_between",
+    "value",
+    "value_and_gradient",
+    "windows",
+    "write_forecasts",
+]
+__version__: str
+
+_Path = str | os.PathLike[str]
+
+def main(arguments: list[str]) -> int: ...
+def set_num_threads(threads: int) -> None:
+    """Compute on so many threads; otherwise on as many as the processor has, or as RAYON_NUM_THREADS says."""
+
+@final
+class Model:
+    @staticmethod
+    def open(name: _Path, clearance: float | None) -> Model: ...
+    @staticmethod
+    def builtin_names() -> list[str]: ...
+    @property
+    def hypotheses(self) -> int: ...
+    @property
+    def variant(self) -> str: ...
+    @property
+    def parameter_count(self) -> int: ...
+    def forecast(
+        self, past: Sequence[Floats], asked: Sequence[int], samples: int, whole: bool, certificates: bool
+    ) -> list[dict[str, Any]]: ...
+    def forecast_recording(
+        self, recording: Recording, last: bool, samples: int, whole: bool, certificates: bool
+    ) -> list[dict[str, Any]]: ...
+    def goals(self, past: Floats, asked: int, whole: bool) -> tuple[Floats, Floats]: ...
+    def page(self, recording: Recording, most: int) -> str: ...
+
+@final
+class Recording:
+    def __new__(
+        cls,
+        frame: Integers,
+        id: Integers,
+        x: Floats,
+        y: Floats,
+        words: list[str] | None,
+        fps: float | None,
+        frame_step: int | None,
+        name: str,
+    ) -> Recording: ...
+    @staticmethod
+    def read(
+        path: _Path,
+        *,
+        format: str | None = None,
+        fps: float | None = None,
+        frame_step: int | None = None,
+        homography: list[list[float]] | None = None,
+    ) -> Recording: ...
+    def write(self, path: _Path, *, format: str = "table") -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def frame_step(self) -> float: ...
+    def __len__(self) -> int: ...
+    def columns(self) -> tuple[NDArray[Any], ArrayLike, Floats, Floats]: ...
+    def doubt(self) -> str | None: ...
+
+@final
+class Live:
+    def __new__(cls, model: Model, fps: float, memory: _Path | None, whole: bool, certificates: bool) -> Live: ...
+    def observe(self, frame: int, ids: Integers, xy: Floats) -> dict[str, Any] | None: ...
+    def clear(self) -> None: ...
+    def remembered(self) -> int: ...
+    def refused(self) -> str | None: ...
+    def close(self) -> str | None: ...
+
+def region_radii(weights: Floats, spread: Floats, region_table: str, level: float) -> Floats: ...
+def write_forecasts(
+    path: _Path, forecasts: Sequence[tuple[str, int, list[int], Floats, Floats, Floats, Floats | None]]
+) -> None: ...
+def value(
+    x: ArrayLike,
+    y: ArrayLike,
+    gamma: float = 1.0,
+    *,
+    cost: str = "squared_euclidean",
+    band: int | None = None,
+    normalised: bool = False,
+) -> float:
+    """Soft-DTW of two sequences.
+
+    Parameters
+    ----------
+    x, y
+        (n, components) and (m, components), or (n,) and (m,).
+    gamma
+        Smoothing, in the unit of the cost; 0 is hard DTW.
+    cost
+        ``"squared_euclidean"`` or ``"euclidean"``, of two steps.
+    band
+        Steps that the two may be apart; None for all.
+    normalised
+        D(x, y) - (D(x, x) + D(y, y)) / 2, which is 0 for x = y and never negative.
+
+    Raises
+    ------
+    ValueError
+        A sequence is empty or not finite, or the components differ.
+    """
+
+def value_and_gradient(
+    x: ArrayLike,
+    y: ArrayLike,
+    gamma: float = 1.0,
+    *,
+    cost: str = "squared_euclidean",
+    band: int | None = None,
+    normalised: bool = False,
+) -> tuple[float, Floats]:
+    """Soft-DTW, and its gradient (n, components) by ``x``; parameters and errors as for :func:`value`."""
+
+@final
+class SearchIndex:
+    def __new__(
+        cls,
+        candidates: Sequence[ArrayLike],
+        gamma: float = 1.0,
+        *,
+        cost: str = "squared_euclidean",
+        band: int | None = None,
+    ) -> SearchIndex: ...
+    def __len__(self) -> int: ...
+    def nearest(self, queries: Sequence[ArrayLike], n: int) -> tuple[Integers, Floats]: ...
+
+@final
+class SlidingIndex:
+    def __new__(
+        cls,
+        tracks: Sequence[ArrayLike],
+        length: int,
+        gamma: float = 1.0,
+        *,
+        tail: int = 0,
+        cost: str = "squared_euclidean",
+        band: int | None = None,
+    ) -> SlidingIndex: ...
+    def __len__(self) -> int: ...
+    def nearest(self, query: ArrayLike, n: int) -> tuple[Integers, Integers, Floats]: ...
+
+@final
+class GoalEstimator:
+    def __new__(cls, experts: Floats, *, similar: int = 800, goals: int = 20, seed: int = 0) -> GoalEstimator: ...
+    def __len__(self) -> int: ...
+    def estimate(self, past: Floats) -> tuple[Floats, Floats]: ...
+
+@final
+class Flow:
+    def __new__(cls, goal: tuple[float, float], metrics: Floats, obstacles: Floats, margin: float) -> Flow: ...
+    def velocity(self, position: Floats, step: int) -> Floats: ...
+    def rollout(self, start: Floats, dt: float, steps: int) -> Floats: ...
+    def certificate(self, path: Floats, dt: float) -> dict[str, Any]: ...
+
+def baseline(name: str, past: Floats, asked: int, whole: bool, seed: int, goals: Floats | None) -> dict[str, Any]: ...
+def displacement_errors(paths: Floats, truth: Floats) -> tuple[Floats, Floats]: ...
+def kde_nll(paths: Floats, truth: Floats, weights: Floats | None) -> Floats: ...
+def mahalanobis(paths: Floats, truth: Floats, weights: Floats | None) -> tuple[Floats, Floats]: ...
+def spread_between(paths: Floats) -> tuple[Floats, Floats]: ...
+def collisions(paths: Floats, radius: float) -> tuple[Flags, Floats]: ...
+def scores(
+    paths: Sequence[Floats],
+    truth: Sequence[Floats],
+    past: Sequence[Floats],
+    weights: Sequence[Floats | None],
+    goals: Sequence[Floats | None],
+) -> str: ...
+def conventions() -> list[tuple[str, list[str]]]: ...
+def windows(
+    convention: str, folder: _Path | None, fold: str, part: str, rule: str | None, recording: Recording | None
+) -> list[dict[str, Any]]: ...
+
+@final
+class TestSet:
+    def __new__(cls, convention: str, folder: _Path | None, fold: str, rule: str | None) -> TestSet: ...
+    def __len__(self) -> int: ...
+    def recordings(self) -> list[Recording]: ...
+    def observed(self, index: int) -> dict[str, Any]: ...
+    def score(
+        self, protocol: str, name: str, forecasts: Sequence[tuple[Floats, Floats | None, Floats | None]]
+    ) -> str: ...
+
+def evaluate_model(
+    model: Model, folder: _Path | None, protocols: list[str], progress: Callable[[int, int], Any] | None
+) -> list[str]: ...
+def report(title: str, rows: list[str]) -> str: ...

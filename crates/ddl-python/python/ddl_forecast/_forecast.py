@@ -1,0 +1,194 @@
+"""What is forecast."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ddl_forecast import _core
+from ddl_forecast._arrays import Flags, Floats, Integers
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True, eq=False)
+class Certificates:
+    """The evidence that every hypothesis comes nearer to its goal at each of the 12 steps.
+
+    It is about the forecast: the forecast is stable. It does not say that the pedestrian does as forecast.
+    """
+
+    #: (n, k, 13) distance to the goal, metres, the last observed position first; it falls.
+    potentials: Floats
+    #: (n, k) smallest eigenvalue of P over the steps; above 0.
+    min_eigenvalue: Floats
+    #: (n, k) what the strictest step is shorter than allowed, as a share.
+    min_step_margin: Floats
+    #: (n, k) largest angle between the velocity and the direction to the goal, radians; below a quarter turn.
+    largest_angle: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Forecast:
+    """k weighted hypotheses of the next 4.8 s for each of n pedestrians.
+
+    Rows of pedestrians who cannot be forecast, because they were not seen in the last frame or only once, are NaN; ``valid`` tells them.
+    """
+
+    #: (n, k, 12, 2) positions, metres, 0.4 s apart; the first is 0.4 s after the last observation.
+    paths: Floats
+    #: (n, k) probability of each hypothesis; they sum to 1.
+    weights: Floats
+    #: (n, k, 2) where each hypothesis heads, metres; None for forecasts without goals.
+    goals: Floats | None
+    #: (n,) how much the observed motion is like those that the model was trained on, 0 to 1; below 0.01 forecasts are doubtful.
+    familiarity: Floats
+    #: (n, k) whether the certificate of each hypothesis holds; None for models without dynamics, and for baselines.
+    certified: Flags | None
+    #: (n, 12) standard deviation about the right hypothesis, metres; None for forecasts without regions.
+    spread: Floats | None
+    #: (n, 8, 2) what was forecast from, metres, holes filled and late beginnings padded.
+    past: Floats
+    #: (n, 2) how many of the 8 positions were padded at the start, and filled in holes.
+    made_up: Integers
+    #: The evidence, where ``certificates=True`` asked for it.
+    certificates: Certificates | None = None
+    #: Whom the rows are of: indices of the array, or the ids of the tracks.
+    ids: NDArray[Any] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    #: Last observed frame; None for arrays.
+    frame: float | None = None
+    #: The 12 frames that are forecast; None for arrays.
+    frames: NDArray[Any] | None = None
+    #: Name of the recording, where there is one.
+    recording: str = ""
+    _region_table: str | None = field(default=None, repr=False)
+
+    @classmethod
+    def _of(cls, parts: dict[str, Any], ids: Sequence[Hashable] | None = None) -> Forecast:
+        evidence = parts.pop("certificates")
+        table = parts.pop("region_table")
+        frames = parts.pop("frames", None)
+        given = parts.pop("ids", None)
+        names = ids if ids is not None else given
+        if names is None:
+            names = range(len(parts["paths"]))
+        return cls(
+            **parts,
+            certificates=None if evidence is None else Certificates(**evidence),
+            ids=np.array(names),
+            frames=None if frames is None else np.array(frames),
+            _region_table=table,
+        )
+
+    def __len__(self) -> int:
+        return len(self.paths)
+
+    @property
+    def valid(self) -> Flags:
+        """(n,) whether each pedestrian could be forecast."""
+        return ~np.isnan(self.weights[:, 0]) if self.weights.size else np.zeros(len(self.paths), dtype=np.bool_)
+
+    def most_likely(self) -> Floats:
+        """(n, 12, 2) the path of the heaviest hypothesis of each pedestrian, metres."""
+        heaviest = np.argmax(np.nan_to_num(self.weights, nan=-1.0), axis=1)
+        chosen: Floats = self.paths[np.arange(len(self.paths)), heaviest]
+        return chosen
+
+    def mean(self) -> Floats:
+        """(n, 12, 2) the weighted mean of the hypotheses, metres."""
+        mean: Floats = np.einsum("nk,nkts->nts", self.weights, self.paths)
+        return mean
+
+    def regions(self, level: float = 0.9) -> Floats:
+        """(n, k, 12) radii, metres: the pedestrian is within such a radius of one of ``paths`` with the probability ``level``.
+
+        NaN where a hypothesis has no disc. Calibrated on places that the model was not trained on.
+
+        Raises
+        ------
+        ValueError
+            The forecast has no regions (one hypothesis, a baseline), or there is none of this level.
+        """
+        if self.spread is None or self._region_table is None:
+            raise ValueError("this forecast has no regions: they belong to the 20 hypotheses of a model, not to one forecast or a baseline")
+        return _core.region_radii(self.weights, self.spread, self._region_table, level)
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """Columns of a table, a row a position, for ``pandas.DataFrame`` or ``polars.DataFrame``.
+
+        Columns: observed_until, pedestrian, hypothesis, weight, frame, x, y, goal_x, goal_y, certified. Hypotheses are in order of
+        their weights, the heaviest first.
+        """
+        return table([self])
+
+    def plot(self, ax: Axes | None = None, *, level: float | None = None) -> Axes:
+        """Draw the scene with matplotlib: pasts, hypotheses by weight, goals; with ``level`` the region of that probability at the end."""
+        from ddl_forecast._plot import draw
+
+        return draw(self, ax, level)
+
+
+def table(forecasts: Sequence[Forecast]) -> dict[str, NDArray[Any]]:
+    """Columns of several forecasts together."""
+    columns: dict[str, list[NDArray[Any]]] = {}
+    for forecast in forecasts:
+        for name, values in _columns(forecast).items():
+            columns.setdefault(name, []).append(values)
+    return {name: np.concatenate(parts) for name, parts in columns.items()}
+
+
+def _columns(forecast: Forecast) -> dict[str, NDArray[Any]]:
+    rows = np.flatnonzero(forecast.valid)
+    n, (k, steps) = len(rows), forecast.paths.shape[1:3]
+    weights = forecast.weights[rows]
+    order = np.argsort(-weights, axis=1, kind="stable")
+
+    def each(values: NDArray[Any]) -> NDArray[Any]:
+        return np.take_along_axis(values[rows], order.reshape(order.shape + (1,) * (values.ndim - 2)), axis=1)
+
+    def repeated(values: NDArray[Any]) -> NDArray[Any]:
+        return np.repeat(values.reshape(-1), steps)
+
+    paths = each(forecast.paths)
+    frames = np.arange(1, steps + 1) if forecast.frames is None else forecast.frames
+    until = 0 if forecast.frame is None else forecast.frame
+    columns: dict[str, NDArray[Any]] = {
+        "observed_until": np.full(n * k * steps, until),
+        "pedestrian": np.repeat(forecast.ids[rows], k * steps),
+        "hypothesis": repeated(np.tile(np.arange(k), (n, 1))),
+        "weight": repeated(each(forecast.weights)),
+        "frame": np.tile(frames, n * k),
+        "x": paths[..., 0].reshape(-1),
+        "y": paths[..., 1].reshape(-1),
+    }
+    if forecast.goals is not None:
+        goals = each(forecast.goals)
+        columns |= {"goal_x": repeated(goals[..., 0]), "goal_y": repeated(goals[..., 1])}
+    if forecast.certified is not None:
+        columns["certified"] = repeated(each(forecast.certified))
+    return columns
+
+
+def write_forecasts(path: str | os.PathLike[str], forecasts: Sequence[Forecast]) -> None:
+    """Write forecasts as the JSON lines that ``ddl evaluate --forecasts`` reads, with all digits."""
+    rows = []
+    for forecast in forecasts:
+        if forecast.frame is None or not forecast.recording or forecast.ids.dtype.kind not in "iu":
+            raise ValueError("forecasts of recordings whose pedestrians are numbered can be written; these are of arrays or words")
+        keep = forecast.valid
+        rows.append((
+            forecast.recording,
+            int(forecast.frame),
+            [int(one) for one in forecast.ids[keep]],
+            np.ascontiguousarray(forecast.past[keep]),
+            np.ascontiguousarray(forecast.paths[keep]),
+            np.ascontiguousarray(forecast.weights[keep]),
+            None if forecast.goals is None else np.ascontiguousarray(forecast.goals[keep]),
+        ))
+    _core.write_forecasts(path, rows)

@@ -1,0 +1,124 @@
+"""Forecasts of a place that is watched."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Hashable, Iterable
+from types import TracebackType
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ddl_forecast import _core
+from ddl_forecast._forecast import Forecast
+from ddl_forecast._forecaster import Forecaster
+
+
+class Live:
+    """Forecasts frame by frame, of one camera or robot.
+
+    Forecasts have the bits of :meth:`Forecaster.forecast_recording` of the same frames, but for regions, which follow what is seen so
+    that they hold their share in this place too.
+
+    Parameters
+    ----------
+    forecaster
+        One may serve several places.
+    fps
+        Frame numbers in a second, of which 0.4 s must be a whole number: 2.5, 5, 10, 12.5, 25 for instance.
+    memory
+        File of a scene memory: what earlier pedestrians did in this place counts in the forecasts. It is made where there is none, and
+        written as frames come, about every minute, and by :meth:`close`. A memory of another place is found out by the first
+        pedestrians: a warning is given, and the file is left as it is.
+    whole, certificates
+        As for :meth:`Forecaster.forecast`.
+
+    Examples
+    --------
+    >>> with Live(Forecaster(), fps=2.5) as live:
+    ...     for frame in range(8):
+    ...         forecast = live.observe(frame, ["ann", "bob"], [[0.5 * frame, 0.0], [9.0 - 0.5 * frame, 1.0]])
+    >>> forecast.ids.tolist(), forecast.frames.tolist()[:2]
+    (['ann', 'bob'], [8, 9])
+    """
+
+    def __init__(
+        self,
+        forecaster: Forecaster,
+        *,
+        fps: float,
+        memory: str | os.PathLike[str] | None = None,
+        whole: bool = False,
+        certificates: bool = False,
+    ) -> None:
+        self._core = _core.Live(forecaster._core, fps, memory, whole, certificates)
+        self._numbers: dict[Hashable, int] = {}
+        self._words: dict[int, Hashable] = {}
+        self._told = False
+
+    def observe(self, frame: int, ids: Iterable[Hashable], xy: ArrayLike) -> Forecast | None:
+        """Add a frame, which must come after the last one, and forecast from it.
+
+        Parameters
+        ----------
+        frame
+            Its number. A frame that is left out is a gap.
+        ids
+            Who is there: n whole numbers or words, the same for the same pedestrian in every frame.
+        xy
+            (n, 2) positions, metres.
+
+        Returns
+        -------
+        A forecast of everybody seen now and often enough before; None while that is nobody.
+
+        Raises
+        ------
+        ValueError
+            A frame out of order, somebody twice, or a position that is not finite. Nothing has changed then: the frame may be given
+            again without it.
+        """
+        people = list(ids)
+        numbers = np.array([self._number(one) for one in people], dtype=np.int64)
+        positions = np.ascontiguousarray(xy, dtype=np.float64).reshape(-1, 2)
+        parts = self._core.observe(int(frame), numbers, positions)
+        self._tell_refusal()
+        if parts is None:
+            return None
+        return Forecast._of(parts, [self._words.get(one, one) for one in parts["ids"]])
+
+    def _number(self, one: Hashable) -> int:
+        if isinstance(one, (int, np.integer)) and not self._numbers:
+            return int(one)
+        number = self._numbers.setdefault(one, len(self._numbers))
+        self._words[number] = one
+        return number
+
+    def _tell_refusal(self) -> None:
+        why = None if self._told else self._core.refused()
+        if why is not None:
+            self._told = True
+            warnings.warn(f"{why}; its file stays as it is", stacklevel=3)
+
+    @property
+    def remembered(self) -> int:
+        """Stretches of 3.2 s and more that are remembered of the place; 0 without a memory."""
+        return self._core.remembered()
+
+    def clear(self) -> None:
+        """Forget who is there, as when a tracker starts anew: any frame may come next. The memory stays."""
+        self._core.clear()
+
+    def close(self) -> None:
+        """Write the memory and let go of its file; a warning tells where it stays as it was. Without a memory nothing happens."""
+        why = self._core.close()
+        if why is not None and not self._told:
+            self._told = True
+            warnings.warn(why, stacklevel=2)
+
+    def __enter__(self) -> Live:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()

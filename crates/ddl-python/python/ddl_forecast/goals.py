@@ -1,0 +1,48 @@
+"""Goals from similar tracks: where pedestrians who moved alike went.
+
+The goals of a trained model are :meth:`ddl_forecast.Forecaster.goals`; this is the estimator alone, with tracks of your own.
+"""
+
+from __future__ import annotations
+
+from numpy.typing import ArrayLike
+
+from ddl_forecast import _core
+from ddl_forecast._arrays import Floats, floats
+
+__all__ = ["GoalEstimator"]
+
+
+class GoalEstimator:
+    """Finds the tracks that begin most alike, by soft-DTW in the frame of the heading, and sums up their ends in a few goals.
+
+    Parameters
+    ----------
+    experts
+        (m, 20, 2) whole tracks, metres, 0.4 s apart.
+    similar
+        How many similar tracks vote.
+    goals
+        Goals a pedestrian.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> speeds = np.linspace(0.5, 1.5, 60)
+    >>> experts = np.stack([np.linspace([0, 0], [7.6 * speed, 0.3 * speed], 20) for speed in speeds])
+    >>> estimator = GoalEstimator(experts, similar=10, goals=3)
+    >>> goals, weights = estimator.estimate(experts[30:31, :8])
+    >>> goals.shape, bool(np.isclose(weights.sum(), 1.0))
+    ((1, 3, 2), True)
+    """
+
+    def __init__(self, experts: ArrayLike, *, similar: int = 800, goals: int = 20, seed: int = 0) -> None:
+        tracks = floats(experts, 3, "experts", "(m, 20, 2)")
+        self._core = _core.GoalEstimator(tracks, similar=similar, goals=goals, seed=seed)
+
+    def __len__(self) -> int:
+        return len(self._core)
+
+    def estimate(self, past: ArrayLike) -> tuple[Floats, Floats]:
+        """(n, goals, 2) positions in 4.8 s, metres, and (n, goals) weights, from (n, 8, 2) observed positions."""
+        return self._core.estimate(floats(past, 3, "past", "(n, 8, 2)"))

@@ -1,0 +1,135 @@
+//! Between numpy arrays and positions.
+
+use ddl::data::{COORDINATE_LIMIT, HORIZON, Position};
+use numpy::ndarray::IntoDimension;
+use numpy::{
+    Element, IntoPyArray as _, PyArrayMethods as _, PyReadonlyArray, PyReadonlyArray2,
+    PyReadonlyArray3, PyUntypedArrayMethods as _,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// An array of this shape out of a vector, which it takes over.
+pub(crate) fn array<T: Element>(
+    py: Python<'_>,
+    flat: Vec<T>,
+    shape: impl IntoDimension,
+) -> PyResult<Py<PyAny>> {
+    let flat = flat.into_pyarray(py);
+    Ok(flat.reshape(shape)?.into_any().unbind())
+}
+
+/// Positions as numbers, without a copy.
+pub(crate) fn numbers(positions: Vec<Position>) -> Vec<f64> {
+    positions.into_flattened()
+}
+
+/// The numbers of an array that lies in one piece, as the Python side hands it over.
+pub(crate) fn flat<'a, T: Element, D: numpy::ndarray::Dimension>(
+    name: &str,
+    array: &'a PyReadonlyArray<'_, T, D>,
+) -> PyResult<&'a [T]> {
+    // A slice is also had of an array in Fortran order, with its numbers in another order.
+    let slice = array.as_slice().ok().filter(|_| array.is_c_contiguous());
+    slice.ok_or_else(|| {
+        PyValueError::new_err(format!(
+            "{name} must lie in memory in one piece, in C order"
+        ))
+    })
+}
+
+/// `(n, steps, 2)`: n tracks of that many positions (metres), all finite; with `nan`, NaN stands for a position that was not seen.
+pub(crate) fn tracks(
+    name: &str,
+    array: &PyReadonlyArray3<'_, f64>,
+    steps: usize,
+    nan: bool,
+) -> PyResult<Vec<Vec<Position>>> {
+    let shape = array.shape();
+    if shape[1..] != [steps, 2] {
+        return Err(PyValueError::new_err(format!(
+            "{name} must have the shape (n, {steps}, 2): n pedestrians, {steps} positions 0.4 s apart, x and y in metres; found {shape:?}"
+        )));
+    }
+    let positions = flat(name, array)?.as_chunks::<2>().0;
+    for (index, position) in positions.iter().enumerate() {
+        let unseen = nan && position.iter().all(|coordinate| coordinate.is_nan());
+        let fine = |coordinate: &f64| coordinate.abs() <= COORDINATE_LIMIT;
+        if !unseen && !position.iter().all(fine) {
+            let [i, t] = [index / steps, index % steps];
+            let rule = if nan {
+                "NaN in both where the pedestrian was not seen"
+            } else {
+                "no NaN"
+            };
+            return Err(PyValueError::new_err(format!(
+                "{name}[{i}, {t}] is {position:?}: a position is two finite numbers of at most 1e7 m, {rule}"
+            )));
+        }
+    }
+    let tracks = positions.chunks_exact(steps).map(<[Position]>::to_vec);
+    Ok(tracks.collect())
+}
+
+/// `(n, 2)` positions (metres), all finite.
+pub(crate) fn points(name: &str, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Position>> {
+    let shape = array.shape();
+    if shape[1] != 2 {
+        return Err(PyValueError::new_err(format!(
+            "{name} must have the shape (n, 2): x and y in metres; found {shape:?}"
+        )));
+    }
+    let points = flat(name, array)?.as_chunks::<2>().0;
+    if let Some(row) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+        return Err(PyValueError::new_err(format!(
+            "{name}[{row}] is {:?}: positions must be finite numbers",
+            points[row]
+        )));
+    }
+    Ok(points.to_vec())
+}
+
+/// Hypotheses `(n, k, 12, 2)` with weights `(n, k)`, or 1/k each, and goals `(n, k, 2)` if there are any.
+pub(crate) fn forecast(
+    paths: &PyReadonlyArray<'_, f64, numpy::ndarray::Ix4>,
+    weights: Option<&PyReadonlyArray2<'_, f64>>,
+    goals: Option<&PyReadonlyArray3<'_, f64>>,
+) -> PyResult<ddl::Forecast> {
+    let shape = paths.shape();
+    if shape[2..] != [HORIZON, 2] {
+        return Err(PyValueError::new_err(format!(
+            "paths must have the shape (n, k, 12, 2): n pedestrians, k hypotheses, 12 positions 0.4 s apart, x and y in metres; found {shape:?}"
+        )));
+    }
+    let [n, k] = [shape[0], shape[1]];
+    if let Some(goals) = goals
+        && goals.shape() != [n, k, 2]
+    {
+        return Err(PyValueError::new_err(format!(
+            "goals must have the shape ({n}, {k}, 2) of these paths; found {:?}",
+            goals.shape()
+        )));
+    }
+    if let Some(weights) = weights
+        && weights.shape() != [n, k]
+    {
+        return Err(PyValueError::new_err(format!(
+            "weights must have the shape ({n}, {k}) of these paths; found {:?}",
+            weights.shape()
+        )));
+    }
+    let positions = flat("paths", paths)?.as_chunks::<2>().0.to_vec();
+    let weights = match weights {
+        Some(weights) => flat("weights", weights)?.to_vec(),
+        None => vec![1.0 / k.max(1) as f64; n * k],
+    };
+    let goals = match goals {
+        Some(goals) => Some(flat("goals", goals)?.as_chunks::<2>().0.to_vec()),
+        None => None,
+    };
+    ddl::Forecast::new(n, k, positions, weights, goals)
+        .map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
+/// Numbers of an array of any kind that Python code handed over as float64.
+pub(crate) type Paths<'py> = PyReadonlyArray<'py, f64, numpy::ndarray::Ix4>;

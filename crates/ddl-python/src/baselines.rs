@@ -1,0 +1,87 @@
+//! Forecasts that need no training.
+
+use crate::errors::of_any;
+use crate::forecasts::{Forecasted, parts};
+use crate::observed::{Observed, completion};
+use ddl::Forecaster;
+use ddl::data::Window;
+use ddl::eval::ForecastError;
+use ddl::eval::baseline::{
+    ConstantAcceleration, ConstantVelocity, GoalSource, SocialForce, StraightLine, WeightedGoals,
+};
+use numpy::{PyReadonlyArray3, PyUntypedArrayMethods as _};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// A baseline of that name, on the first `asked` pedestrians.
+#[pyfunction]
+#[pyo3(signature = (name, past, asked, whole, seed, goals))]
+pub(crate) fn baseline<'py>(
+    py: Python<'py>,
+    name: &str,
+    past: PyReadonlyArray3<'py, f64>,
+    asked: usize,
+    whole: bool,
+    seed: u64,
+    goals: Option<PyReadonlyArray3<'py, f64>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let scene = Observed::new(&past, asked, completion(whole))?;
+    let forecaster: Box<dyn Forecaster> = match name {
+        "constant_velocity" => Box::new(ConstantVelocity::last_step()),
+        "mean_velocity" => Box::new(ConstantVelocity::mean_observed()),
+        "angular_noise" => Box::new(ConstantVelocity::angular_noise(seed)),
+        "constant_acceleration" => Box::new(ConstantAcceleration::bounded()),
+        "social_force" => Box::new(SocialForce),
+        "straight_line" => Box::new(StraightLine::to(given(goals.as_ref(), &scene)?)),
+        _ => {
+            return Err(PyValueError::new_err(format!(
+                "there is no baseline {name:?}"
+            )));
+        }
+    };
+    let forecast = scene
+        .window
+        .as_ref()
+        .map(|window| forecaster.forecast(window));
+    let forecast = forecast.transpose().map_err(|error| of_any(&error))?;
+    let forecast = forecast.map(Forecasted::Plain);
+    parts(py, &scene, forecast.as_ref(), 1)
+}
+
+/// The goals `(n, k, 2)` of those in the window, equally likely.
+fn given(goals: Option<&PyReadonlyArray3<'_, f64>>, scene: &Observed) -> PyResult<GivenGoals> {
+    let goals = goals.ok_or_else(|| PyValueError::new_err("goals are missing"))?;
+    let shape = goals.shape();
+    if shape[0] != scene.rows.len() || shape[2] != 2 || shape[1] == 0 {
+        return Err(PyValueError::new_err(format!(
+            "goals must have the shape ({}, k, 2); found {shape:?}",
+            scene.rows.len()
+        )));
+    }
+    let k = shape[1];
+    let flat = crate::arrays::flat("goals", goals)?.as_chunks::<2>().0;
+    let mut of_window = vec![None; scene.window.as_ref().map_or(0, Window::len)];
+    for (i, row) in scene.rows.iter().enumerate() {
+        if let Some(row) = row {
+            let goals = WeightedGoals::new(flat[i * k..][..k].to_vec(), vec![1.0 / k as f64; k]);
+            of_window[*row] = Some(goals.map_err(|error| of_any(&error))?);
+        }
+    }
+    let all: Option<Vec<WeightedGoals>> = of_window.into_iter().collect();
+    let all =
+        all.ok_or_else(|| PyValueError::new_err("neighbours have no goals; leave them out"))?;
+    Ok(GivenGoals(all))
+}
+
+struct GivenGoals(Vec<WeightedGoals>);
+
+impl GoalSource for GivenGoals {
+    fn name(&self) -> String {
+        "the given goals".to_owned()
+    }
+
+    fn goals(&self, _window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
+        Ok(self.0.clone())
+    }
+}

@@ -1,0 +1,136 @@
+//! Flows to a goal in the plane.
+
+use crate::arrays::{array, flat, points};
+use crate::errors::of_any;
+use ddl::dynamics::{
+    Attractor, AvoidingFlow, Ball, CholeskyMetric, DynamicsError, Flow as _, LyapunovCertificate,
+    MetricSchedule, NaturalGradientFlow, StableEuler, State, rollout,
+};
+use nalgebra::{Matrix2, Vector2};
+use numpy::{PyReadonlyArray2, PyReadonlyArray3};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Without obstacles this is the free flow.
+type Avoiding = AvoidingFlow<f64, 2, MetricSchedule<f64, 2>, Vec<Ball<f64, 2>>>;
+
+#[pyclass(frozen, module = "ddl_forecast._core")]
+pub(crate) struct Flow(Avoiding);
+
+#[pymethods]
+impl Flow {
+    /// `metrics` `(steps, 2, 2)`, symmetric and positive definite; the last one counts on. `obstacles` `(m, 3)`: x, y and radius.
+    #[new]
+    #[pyo3(signature = (goal, metrics, obstacles, margin))]
+    fn new(
+        goal: [f64; 2],
+        metrics: PyReadonlyArray3<'_, f64>,
+        obstacles: PyReadonlyArray2<'_, f64>,
+        margin: f64,
+    ) -> PyResult<Self> {
+        let attractor = Attractor::new(goal.into()).map_err(wrong)?;
+        let matrices = flat("P", &metrics)?.as_chunks::<4>().0.iter().enumerate();
+        let metrics = matrices.map(|(step, &[xx, xy, yx, yy])| metric(step, [xx, xy, yx, yy]));
+        let metrics: Vec<_> = metrics.collect::<PyResult<_>>()?;
+        let schedule = MetricSchedule::new(metrics).map_err(wrong)?;
+        let balls = flat("obstacles", &obstacles)?.as_chunks::<3>().0.iter();
+        let balls = balls.map(|&[x, y, radius]| Ball::new(Vector2::new(x, y), radius));
+        let balls: Vec<_> = balls.collect::<Result<_, _>>().map_err(wrong)?;
+        let free = NaturalGradientFlow::new(attractor, schedule);
+        Ok(Self(AvoidingFlow::new(free, balls, margin).map_err(wrong)?))
+    }
+
+    fn velocity(
+        &self,
+        py: Python<'_>,
+        position: PyReadonlyArray2<'_, f64>,
+        step: usize,
+    ) -> PyResult<Py<PyAny>> {
+        let points = points("position", &position)?;
+        let velocities = points.iter().map(|&point| {
+            let state = State::new(point.into(), step, 0.0, &[]);
+            let velocity = self.0.velocity(&state).map_err(wrong)?;
+            Ok([velocity.x, velocity.y])
+        });
+        let velocities: Vec<[f64; 2]> = velocities.collect::<PyResult<_>>()?;
+        let shape = [velocities.len(), 2];
+        array(py, velocities.into_flattened(), shape)
+    }
+
+    /// `(n, steps + 1, 2)`, the start first, by steps whose distance to the goal falls.
+    fn rollout(
+        &self,
+        py: Python<'_>,
+        start: PyReadonlyArray2<'_, f64>,
+        dt: f64,
+        steps: usize,
+    ) -> PyResult<Py<PyAny>> {
+        let starts = points("start", &start)?;
+        let walk = |&start: &[f64; 2]| {
+            let path = rollout(&self.0, &StableEuler, start.into(), dt, steps);
+            path.map_err(wrong)
+        };
+        let paths: Vec<Vec<Vector2<f64>>> = starts.iter().map(walk).collect::<PyResult<_>>()?;
+        let numbers = paths.iter().flatten().flat_map(|p| [p.x, p.y]).collect();
+        array(py, numbers, [starts.len(), steps + 1, 2])
+    }
+
+    /// The evidence about a path `(steps + 1, 2)`.
+    fn certificate<'py>(
+        &self,
+        py: Python<'py>,
+        path: PyReadonlyArray2<'py, f64>,
+        dt: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let path: Vec<Vector2<f64>> = points("path", &path)?.into_iter().map(Into::into).collect();
+        let certificate = LyapunovCertificate::of_rollout(&self.0, &path, dt).map_err(wrong)?;
+        let violation = certificate.holds().err();
+        let potentials: Vec<f64> = certificate.potentials().collect();
+        let length = [potentials.len()];
+        let dict = PyDict::new(py);
+        dict.set_item("holds", violation.is_none())?;
+        dict.set_item(
+            "violation",
+            violation.map(|violation| violation.to_string()),
+        )?;
+        dict.set_item("potentials", array(py, potentials, length)?)?;
+        let eigenvalue = certificate.min_eigenvalue().unwrap_or(f64::NAN);
+        dict.set_item("min_eigenvalue", eigenvalue)?;
+        let margin = certificate.min_step_margin().unwrap_or(f64::NAN);
+        dict.set_item("min_step_margin", margin)?;
+        dict.set_item("largest_angle", certificate.largest_angle())?;
+        Ok(dict)
+    }
+}
+
+/// P = L L^T + sigma I of a symmetric positive definite matrix, with half of its smallest eigenvalue as sigma.
+fn metric(step: usize, [xx, xy, yx, yy]: [f64; 4]) -> PyResult<CholeskyMetric<f64, 2>> {
+    let matrix = Matrix2::new(xx, xy, yx, yy);
+    let finite = matrix.iter().all(|x| x.is_finite());
+    let smallest = if finite {
+        matrix.symmetric_eigenvalues().min()
+    } else {
+        f64::NAN
+    };
+    let symmetric = (xy - yx).abs() <= 1e-12 * (xx.abs() + yy.abs());
+    // NaN is not positive
+    if !(symmetric && smallest > 0.0) {
+        return Err(PyValueError::new_err(format!(
+            "P[{step}] is [[{xx}, {xy}], [{yx}, {yy}]]: it must be symmetric with positive eigenvalues, so that v = -P grad Phi descends"
+        )));
+    }
+    let sigma = 0.5 * smallest;
+    let rest = matrix - Matrix2::from_diagonal_element(sigma);
+    let factor = rest.cholesky().map(|of| of.l());
+    let factor = factor.ok_or_else(|| {
+        PyValueError::new_err(format!(
+            "P[{step}] is too near a matrix with an eigenvalue of 0"
+        ))
+    })?;
+    CholeskyMetric::new(factor, sigma).map_err(wrong)
+}
+
+fn wrong(error: DynamicsError) -> PyErr {
+    of_any(&error)
+}

@@ -1,0 +1,43 @@
+//! Errors of the crates as Python's own exceptions.
+
+use pyo3::PyErr;
+use pyo3::exceptions::{
+    PyFileNotFoundError, PyIsADirectoryError, PyKeyboardInterrupt, PyOSError, PyPermissionError,
+    PyValueError,
+};
+use std::error::Error;
+use std::io::ErrorKind;
+
+/// An error of input or output as the `OSError` of its kind, every other one as a `ValueError`; the message says what is wrong, where,
+/// and what to do.
+pub(crate) fn raised(error: impl Into<ddl::DdlError>) -> PyErr {
+    let error = error.into();
+    if matches!(error, ddl::DdlError::Interrupted) {
+        return PyKeyboardInterrupt::new_err(());
+    }
+    if let ddl::DdlError::Data(ddl::data::DataError::NotFound { .. }) = error {
+        return PyFileNotFoundError::new_err(error.to_string());
+    }
+    of_any(&error)
+}
+
+/// The same for errors that are not errors of the facade.
+pub(crate) fn of_any(error: &(dyn Error + 'static)) -> PyErr {
+    let mut cause = Some(error);
+    while let Some(one) = cause {
+        if let Some(io) = one.downcast_ref::<std::io::Error>() {
+            return of_io(io.kind(), error.to_string());
+        }
+        cause = one.source();
+    }
+    PyValueError::new_err(error.to_string())
+}
+
+fn of_io(kind: ErrorKind, message: String) -> PyErr {
+    match kind {
+        ErrorKind::NotFound => PyFileNotFoundError::new_err(message),
+        ErrorKind::PermissionDenied => PyPermissionError::new_err(message),
+        ErrorKind::IsADirectory => PyIsADirectoryError::new_err(message),
+        _ => PyOSError::new_err(message),
+    }
+}

@@ -1,0 +1,241 @@
+//! The benchmark, for models of one's own: windows without their futures out, forecasts in, scores out.
+
+use crate::arrays::{Paths, array, forecast, numbers};
+use crate::errors::{of_any, raised};
+use crate::forecasts::names;
+use crate::interruptible::{Stop, run_telling};
+use crate::model::Model;
+use crate::recording::Recording;
+use ddl::data::{Convention, Dataset, HORIZON, OBSERVED, Window, WindowRule, locate};
+use ddl::eval::{Conditions, Protocol, ResultRow};
+use ddl::report::Report;
+use ddl::{DdlError, EvaluationRequest, EvaluationSplit};
+use numpy::{PyReadonlyArray2, PyReadonlyArray3};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::channel;
+
+fn parsed<T: std::str::FromStr<Err: std::error::Error + 'static>>(word: &str) -> PyResult<T> {
+    word.parse().map_err(|error| of_any(&error))
+}
+
+fn dataset(convention: Convention, folder: Option<PathBuf>) -> Result<Dataset, DdlError> {
+    if convention == Convention::Simulated {
+        return Ok(Dataset::simulated(0));
+    }
+    let folder = locate(convention, folder.as_deref())?;
+    Ok(Dataset::load(convention, &folder)?)
+}
+
+/// The conventions, with their folds.
+#[pyfunction]
+pub(crate) fn conventions() -> Vec<(&'static str, Vec<&'static str>)> {
+    let planned = Convention::ALL
+        .into_iter()
+        .filter(|of| *of != Convention::Own);
+    planned
+        .map(|of| (of.name(), of.fold_names().collect()))
+        .collect()
+}
+
+/// The windows of a fold, or of a recording, with their futures.
+#[pyfunction]
+#[pyo3(signature = (convention, folder, fold, part, rule, recording))]
+pub(crate) fn windows<'py>(
+    py: Python<'py>,
+    convention: &str,
+    folder: Option<PathBuf>,
+    fold: &str,
+    part: &str,
+    rule: Option<&str>,
+    recording: Option<&Recording>,
+) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let convention: Convention = parsed(convention)?;
+    let rule: WindowRule = match rule {
+        Some(rule) => parsed(rule)?,
+        None => convention.headline_rule(),
+    };
+    let windows = if let Some(recording) = recording {
+        recording.tracks.windows(rule)
+    } else {
+        let dataset = dataset(convention, folder).map_err(raised)?;
+        let fold = dataset.fold(fold).map_err(raised)?;
+        match part {
+            "test" => fold.test_windows(rule),
+            "training" => fold.training_windows(rule),
+            _ => {
+                return Err(PyValueError::new_err(format!(
+                    "part must be 'test' or 'training', found {part:?}"
+                )));
+            }
+        }
+    };
+    windows
+        .iter()
+        .map(|window| window_parts(py, window))
+        .collect()
+}
+
+fn window_parts<'py>(py: Python<'py>, window: &Window) -> PyResult<Bound<'py, PyDict>> {
+    let n = window.len();
+    let dict = PyDict::new(py);
+    dict.set_item("recording", window.recording())?;
+    dict.set_item("frame", window.frames()[OBSERVED - 1])?;
+    dict.set_item("frame_step", window.frame_step())?;
+    dict.set_item("ids", names(py, window)?)?;
+    let past = (0..n).flat_map(|i| window.observed(i).to_vec()).collect();
+    dict.set_item("past", array(py, numbers(past), [n, OBSERVED, 2])?)?;
+    if window.has_future() {
+        let future = (0..n).flat_map(|i| window.future(i).to_vec()).collect();
+        dict.set_item("future", array(py, numbers(future), [n, HORIZON, 2])?)?;
+    }
+    Ok(dict)
+}
+
+/// The test windows of a fold. Their futures stay in here.
+#[pyclass(frozen, module = "ddl_forecast._core")]
+pub(crate) struct TestSet {
+    convention: Convention,
+    rule: WindowRule,
+    fold: String,
+    windows: Vec<Window>,
+    recordings: Vec<Recording>,
+}
+
+#[pymethods]
+impl TestSet {
+    #[new]
+    #[pyo3(signature = (convention, folder, fold, rule))]
+    fn new(
+        convention: &str,
+        folder: Option<PathBuf>,
+        fold: &str,
+        rule: Option<&str>,
+    ) -> PyResult<Self> {
+        let convention: Convention = parsed(convention)?;
+        let rule: WindowRule = match rule {
+            Some(rule) => parsed(rule)?,
+            None => convention.headline_rule(),
+        };
+        let dataset = dataset(convention, folder).map_err(raised)?;
+        let fold_of = dataset.fold(fold).map_err(raised)?;
+        let recordings = fold_of.test_recordings().iter().map(|tracks| Recording {
+            tracks: Arc::new((*tracks).clone()),
+            parts: 1,
+        });
+        Ok(Self {
+            convention,
+            rule,
+            fold: fold.to_owned(),
+            windows: fold_of.test_windows(rule),
+            recordings: recordings.collect(),
+        })
+    }
+
+    fn __len__(&self) -> usize {
+        self.windows.len()
+    }
+
+    /// The recordings tested on.
+    fn recordings(&self) -> Vec<Recording> {
+        self.recordings.clone()
+    }
+
+    /// The recording of a window, its last observed frame, the past `(n, 8, 2)` of its pedestrians, and their ids.
+    fn observed<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
+        let window = self.windows.get(index).map(Window::without_future);
+        let window = window.ok_or_else(|| PyValueError::new_err("there is no such window"))?;
+        window_parts(py, &window)
+    }
+
+    /// The scores of a forecast a window under a protocol, as a JSON object.
+    fn score(
+        &self,
+        protocol: &str,
+        name: &str,
+        forecasts: Vec<(
+            Paths<'_>,
+            Option<PyReadonlyArray2<'_, f64>>,
+            Option<PyReadonlyArray3<'_, f64>>,
+        )>,
+    ) -> PyResult<String> {
+        let protocol: Protocol = parsed(protocol)?;
+        let made = forecasts
+            .iter()
+            .enumerate()
+            .map(|(index, (paths, weights, goals))| {
+                forecast(paths, weights.as_ref(), goals.as_ref()).map_err(|error| {
+                    let frame = self.windows.get(index).map(Window::start_frame);
+                    PyValueError::new_err(format!(
+                        "window {index} of {} (start frame {frame:?}): {error}",
+                        self.fold
+                    ))
+                })
+            });
+        let made: Vec<ddl::Forecast> = made.collect::<PyResult<_>>()?;
+        let admitted = protocol.admit(made, name).map_err(|error| of_any(&error))?;
+        let conditions = Conditions::new(self.convention, self.rule, protocol, &self.fold, name);
+        let row = ResultRow::score(conditions, &self.windows, &admitted)
+            .map_err(|error| of_any(&error))?;
+        serde_json::to_string(&row).map_err(|error| of_any(&error))
+    }
+}
+
+/// The rows of the model on its own fold, as JSON objects; `progress(done, total)` is called as pedestrians are forecast.
+#[pyfunction]
+pub(crate) fn evaluate_model(
+    py: Python<'_>,
+    model: &Model,
+    folder: Option<PathBuf>,
+    protocols: Vec<String>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Vec<String>> {
+    let protocols = protocols.iter().map(|word| parsed(word));
+    let request = EvaluationRequest {
+        protocols: protocols.collect::<PyResult<_>>()?,
+        on: EvaluationSplit::Test,
+        validation_recordings: Vec::new(),
+        test_walkers: None,
+        commit: String::new(),
+    };
+    let model = Arc::clone(&model.0);
+    let (sender, receiver) = channel();
+    let work = move |stop: &Stop| {
+        let dataset = dataset(model.config().data.convention, folder)?;
+        ddl::evaluate(&model, &dataset, &request, |now| {
+            // The caller has gone where nobody receives.
+            let told = sender.send(now.walkers);
+            if told.is_err() || stop.is_asked() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        })
+    };
+    let tell = |py: Python<'_>| {
+        if let (Some(progress), Some(now)) = (&progress, receiver.try_iter().last()) {
+            progress.call1(py, now)?;
+        }
+        Ok(())
+    };
+    let evaluated = run_telling(py, work, tell)?;
+    let rows = evaluated.map_err(raised)?.rows;
+    let rows = rows.iter().map(serde_json::to_string);
+    rows.collect::<Result<_, _>>()
+        .map_err(|error| of_any(&error))
+}
+
+/// A report of rows, as markdown.
+#[pyfunction]
+pub(crate) fn report(title: &str, rows: Vec<String>) -> PyResult<String> {
+    let rows = rows.iter().map(|row| serde_json::from_str(row));
+    let rows: Vec<ResultRow> = rows
+        .collect::<Result<_, _>>()
+        .map_err(|error| of_any(&error))?;
+    let report = Report::new(title, rows).map_err(|error| of_any(&error))?;
+    Ok(report.to_markdown())
+}

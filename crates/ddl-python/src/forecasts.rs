@@ -1,0 +1,280 @@
+//! Forecasts as arrays.
+
+use crate::arrays::{Paths, array, forecast, numbers};
+use crate::errors::of_any;
+use crate::observed::Observed;
+use ddl::data::{HORIZON, OBSERVED, PedestrianId, PedestrianName, Window};
+use ddl::eval::RegionTable;
+use ddl::{CertifiedForecast, Forecast};
+use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::PathBuf;
+
+/// A forecast, with the evidence of its certificates where that was asked for.
+#[derive(Debug)]
+pub(crate) enum Forecasted {
+    Plain(Forecast),
+    Certified(CertifiedForecast),
+}
+
+impl Forecasted {
+    pub(crate) fn forecast(&self) -> &Forecast {
+        match self {
+            Self::Plain(forecast) => forecast,
+            Self::Certified(certified) => &certified.forecast,
+        }
+    }
+}
+
+/// A forecast of the pedestrians asked for, `hypotheses` each; NaN for those who could not be forecast.
+///
+/// Keys and shapes are those of `ForecastParts` in `_core.pyi`.
+pub(crate) fn parts<'py>(
+    py: Python<'py>,
+    observed: &Observed,
+    forecasted: Option<&Forecasted>,
+    hypotheses: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let forecast = forecasted.map(Forecasted::forecast);
+    let rows = &observed.rows;
+    let (n, k) = (
+        rows.len(),
+        forecast.map_or(hypotheses, Forecast::hypotheses),
+    );
+    let of_row = |row: &Option<usize>| Some((forecast?, (*row)?));
+    let pairs = || {
+        rows.iter()
+            .flat_map(move |row| (0..k).map(move |k| (row, k)))
+    };
+    let paths = pairs().flat_map(|(row, k)| match of_row(row) {
+        Some((forecast, i)) => forecast.hypothesis(i, k).to_vec(),
+        None => vec![[f64::NAN; 2]; HORIZON],
+    });
+    let weights =
+        pairs().map(|(row, k)| of_row(row).map_or(f64::NAN, |(forecast, i)| forecast.weight(i, k)));
+    let goals = pairs().map(|(row, k)| {
+        let goal = of_row(row).and_then(|(forecast, i)| forecast.goal(i, k));
+        goal.unwrap_or([f64::NAN; 2])
+    });
+    let certified = pairs().map(|(row, k)| {
+        let verdict = of_row(row).and_then(|(forecast, i)| forecast.certified(i, k));
+        verdict.unwrap_or(false)
+    });
+    let spread = rows.iter().flat_map(|row| {
+        (0..HORIZON).map(move |t| {
+            let spread = of_row(row).and_then(|(forecast, i)| forecast.spread(i, t));
+            spread.unwrap_or(f64::NAN)
+        })
+    });
+    let familiarity = rows.iter().map(|row| {
+        let familiarity = of_row(row).and_then(|(forecast, i)| forecast.familiarity(i));
+        familiarity.unwrap_or(f64::NAN)
+    });
+    let has = |of: fn(&Forecast) -> bool| forecast.is_none_or(of);
+    let dict = PyDict::new(py);
+    observed_rows(py, observed, &dict)?;
+    dict.set_item(
+        "paths",
+        array(py, numbers(paths.collect()), [n, k, HORIZON, 2])?,
+    )?;
+    dict.set_item("weights", array(py, weights.collect(), [n, k])?)?;
+    let goals = if has(Forecast::has_goals) {
+        Some(array(py, numbers(goals.collect()), [n, k, 2])?)
+    } else {
+        None
+    };
+    dict.set_item("goals", goals)?;
+    let certified = if has(Forecast::has_certificates) {
+        Some(array(py, certified.collect(), [n, k])?)
+    } else {
+        None
+    };
+    dict.set_item("certified", certified)?;
+    let table = forecast.and_then(Forecast::regions);
+    let spread = match table {
+        Some(_) => Some(array(py, spread.collect(), [n, HORIZON])?),
+        None => None,
+    };
+    dict.set_item("spread", spread)?;
+    dict.set_item("familiarity", array(py, familiarity.collect(), [n])?)?;
+    dict.set_item("region_table", table.map(json).transpose()?)?;
+    let evidence = match forecasted {
+        Some(Forecasted::Certified(certified)) => Some(certificates(py, certified, rows)?),
+        _ => None,
+    };
+    dict.set_item("certificates", evidence)?;
+    Ok(dict)
+}
+
+/// What was forecast from, and how much of it was made up.
+fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) -> PyResult<()> {
+    let (window, rows) = (observed.window.as_ref(), &observed.rows);
+    let n = rows.len();
+    let made_up = rows.iter().flat_map(|row| {
+        let made_up = window.zip(*row).map(|(window, i)| window.made_up(i));
+        made_up.map_or([0; 2], |made_up| {
+            [made_up.padded as i64, made_up.filled as i64]
+        })
+    });
+    let past = rows.iter().flat_map(|row| match window.zip(*row) {
+        Some((window, i)) => window.observed(i).to_vec(),
+        None => vec![[f64::NAN; 2]; OBSERVED],
+    });
+    let past = array(py, numbers(past.collect()), [n, OBSERVED, 2])?;
+    dict.set_item("past", past)?;
+    dict.set_item("made_up", array(py, made_up.collect(), [n, 2])?)
+}
+
+/// The same, with who was forecast from which frame on; `parts` of a frame are counted as one.
+pub(crate) fn named_parts<'py>(
+    py: Python<'py>,
+    window: &Window,
+    forecasted: &Forecasted,
+    frame_parts: i64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let observed = Observed::of_window(window.clone());
+    let dict = parts(py, &observed, Some(forecasted), 0)?;
+    dict.set_item("ids", names(py, window)?)?;
+    let frames = window.frames();
+    let ahead = (1..=HORIZON as i64).map(|t| frames[OBSERVED - 1] + t * window.frame_step());
+    let number = |frame: i64| frame_number(py, frame, frame_parts);
+    dict.set_item("frame", number(frames[OBSERVED - 1])?)?;
+    let ahead: Vec<Py<PyAny>> = ahead.map(number).collect::<PyResult<_>>()?;
+    dict.set_item("frames", ahead)?;
+    dict.set_item("recording", window.recording())?;
+    Ok(dict)
+}
+
+/// A frame as the tracks number it: whole, or between two frames where these do not meet the steps of 0.4 s.
+pub(crate) fn frame_number(py: Python<'_>, frame: i64, parts: i64) -> PyResult<Py<PyAny>> {
+    if frame % parts == 0 {
+        Ok((frame / parts).into_pyobject(py)?.into_any().unbind())
+    } else {
+        let between = frame as f64 / parts as f64;
+        Ok(between.into_pyobject(py)?.into_any().unbind())
+    }
+}
+
+/// The pedestrians of a window: numbers, or words where the recording has words.
+pub(crate) fn names<'py>(py: Python<'py>, window: &Window) -> PyResult<Bound<'py, PyList>> {
+    let list = PyList::empty(py);
+    for i in 0..window.len() {
+        match window.name(i) {
+            PedestrianName::Number(number) => list.append(number)?,
+            PedestrianName::Word(word) => list.append(word)?,
+        }
+    }
+    Ok(list)
+}
+
+fn certificates<'py>(
+    py: Python<'py>,
+    certified: &CertifiedForecast,
+    rows: &[Option<usize>],
+) -> PyResult<Bound<'py, PyDict>> {
+    let (n, k) = (rows.len(), certified.forecast.hypotheses());
+    let mut potentials = Vec::with_capacity(n * k * (HORIZON + 1));
+    let [mut eigenvalues, mut margins, mut angles] = [const { Vec::new() }; 3];
+    for row in rows {
+        for k in 0..k {
+            let Some(i) = *row else {
+                potentials.extend([f64::NAN; HORIZON + 1]);
+                for of in [&mut eigenvalues, &mut margins, &mut angles] {
+                    of.push(f64::NAN);
+                }
+                continue;
+            };
+            let certificate = certified.certificate(i, k);
+            potentials.extend(certificate.potentials());
+            eigenvalues.push(certificate.min_eigenvalue().unwrap_or(f64::NAN));
+            margins.push(certificate.min_step_margin().unwrap_or(f64::NAN));
+            angles.push(certificate.largest_angle());
+        }
+    }
+    let dict = PyDict::new(py);
+    dict.set_item("potentials", array(py, potentials, [n, k, HORIZON + 1])?)?;
+    dict.set_item("min_eigenvalue", array(py, eigenvalues, [n, k])?)?;
+    dict.set_item("min_step_margin", array(py, margins, [n, k])?)?;
+    dict.set_item("largest_angle", array(py, angles, [n, k])?)?;
+    Ok(dict)
+}
+
+fn json(table: &RegionTable) -> PyResult<String> {
+    serde_json::to_string(table).map_err(|error| of_any(&error))
+}
+
+/// Radii `(n, k, 12)` of the discs about the hypotheses in the region of a level; NaN where there is no disc.
+#[pyfunction]
+pub(crate) fn region_radii<'py>(
+    py: Python<'py>,
+    weights: PyReadonlyArray2<'py, f64>,
+    spread: PyReadonlyArray2<'py, f64>,
+    region_table: &str,
+    level: f64,
+) -> PyResult<Py<PyAny>> {
+    let table: RegionTable = serde_json::from_str(region_table).map_err(|error| of_any(&error))?;
+    let [low, high] = table.range();
+    if !(low..=high).contains(&level) {
+        return Err(PyValueError::new_err(format!(
+            "level must be a probability of {low} to {high}, found {level}"
+        )));
+    }
+    let [n, k] = [weights.shape()[0], weights.shape()[1]];
+    let rows = weights.as_array();
+    let known: Vec<usize> = (0..n).filter(|&i| !rows[[i, 0]].is_nan()).collect();
+    let mut radii = vec![f64::NAN; n * k * HORIZON];
+    if !known.is_empty() {
+        let of_known = known.iter().flat_map(|&i| rows.row(i).to_vec()).collect();
+        let spreads = known
+            .iter()
+            .flat_map(|&i| spread.as_array().row(i).to_vec());
+        let positions = vec![[0.0; 2]; known.len() * k * HORIZON];
+        let forecast = Forecast::new(known.len(), k, positions, of_known, None)
+            .and_then(|forecast| forecast.with_spread(spreads.collect(), table.into()))
+            .map_err(|error| of_any(&error))?;
+        for (place, i) in known.into_iter().enumerate() {
+            for k_of in 0..k {
+                for t in 0..HORIZON {
+                    let radius = forecast.region_radius(place, k_of, t, level);
+                    radii[(i * k + k_of) * HORIZON + t] = radius.unwrap_or(f64::NAN);
+                }
+            }
+        }
+    }
+    array(py, radii, [n, k, HORIZON])
+}
+
+/// Writes forecasts as JSON lines, which `ddl evaluate --forecasts` reads.
+#[pyfunction]
+pub(crate) fn write_forecasts(
+    path: PathBuf,
+    forecasts: Vec<(
+        String,
+        i64,
+        Vec<i64>,
+        PyReadonlyArray3<'_, f64>,
+        Paths<'_>,
+        PyReadonlyArray2<'_, f64>,
+        Option<PyReadonlyArray3<'_, f64>>,
+    )>,
+) -> PyResult<()> {
+    let mut windows = Vec::new();
+    let mut written = Vec::new();
+    for (recording, frame, ids, past, paths, weights, goals) in forecasts {
+        let tracks = crate::arrays::tracks("past", &past, OBSERVED, false)?;
+        let ids = ids.into_iter().map(PedestrianId).collect();
+        let start = frame - (OBSERVED as i64 - 1);
+        let window =
+            Window::new(recording, start, 1, ids, tracks).map_err(|error| of_any(&error))?;
+        written.push(forecast(&paths, Some(&weights), goals.as_ref())?);
+        windows.push(window);
+    }
+    let file = File::create(&path)
+        .map_err(|source| crate::errors::raised(ddl::DdlError::Io { path, source }))?;
+    ddl::eval::external::write_forecasts(&windows, &written, BufWriter::new(file))
+        .map_err(|error| of_any(&error))
+}

@@ -1,0 +1,110 @@
+//! Work that leaves Python's lock free, stops at Ctrl-C, and survives a fork of the process.
+
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// From one look for Ctrl-C to the next.
+const PAUSE: Duration = Duration::from_millis(50);
+
+struct Pool {
+    /// The threads of a pool are not there in a forked child, which makes its own.
+    process: u32,
+    count: usize,
+    threads: Arc<ThreadPool>,
+}
+
+static POOL: Mutex<Option<Pool>> = Mutex::new(None);
+
+/// Whether the caller of some work has gone.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Stop(Arc<AtomicBool>);
+
+impl Stop {
+    pub(crate) fn is_asked(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Does the work on the threads of the package, without Python's lock. Ctrl-C ends the call within 50 ms; the work is told by its
+/// argument, and ends when it looks there.
+pub(crate) fn run<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&Stop) -> T + Send + 'static,
+) -> PyResult<T> {
+    run_telling(py, work, |_| Ok(()))
+}
+
+/// The same; `tell` is called with Python's lock every 50 ms, and may end the call by an exception.
+pub(crate) fn run_telling<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&Stop) -> T + Send + 'static,
+    mut tell: impl FnMut(Python<'_>) -> PyResult<()>,
+) -> PyResult<T> {
+    let pool = pool(None)?;
+    let (sender, mut receiver) = channel();
+    let stop = Stop::default();
+    let seen = stop.clone();
+    pool.spawn(move || {
+        let done = catch_unwind(AssertUnwindSafe(|| work(&seen)));
+        // Nobody waits any more after Ctrl-C.
+        let _ = sender.send(done);
+    });
+    loop {
+        let (waited, same) = py.detach(move || (receiver.recv_timeout(PAUSE), receiver));
+        receiver = same;
+        match waited {
+            Ok(Ok(done)) => return Ok(done),
+            Ok(Err(panic)) => resume_unwind(panic),
+            Err(RecvTimeoutError::Timeout) => {
+                if let Err(signal) = py.check_signals().and_then(|()| tell(py)) {
+                    stop.0.store(true, Ordering::Relaxed);
+                    return Err(signal);
+                }
+            }
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(PyRuntimeError::new_err("a thread of ddl_forecast has gone"));
+            }
+        }
+    }
+}
+
+/// The pool of this process; with another number of threads, a new one.
+fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
+    let mut held = POOL.lock().unwrap_or_else(PoisonError::into_inner);
+    let process = std::process::id();
+    let wanted = threads.or(held.as_ref().map(|held| held.count));
+    if let Some(held) = &*held
+        && held.process == process
+        && wanted == Some(held.count)
+    {
+        return Ok(Arc::clone(&held.threads));
+    }
+    // 0: as many as the processor has, or as the environment variable RAYON_NUM_THREADS says
+    let threads = wanted.unwrap_or(0);
+    let built = ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = Arc::new(built.map_err(|error| PyRuntimeError::new_err(error.to_string()))?);
+    let old = held.replace(Pool {
+        process,
+        count: threads,
+        threads: Arc::clone(&pool),
+    });
+    if let Some(old) = old.filter(|old| old.process != process) {
+        // Its threads are those of the parent: there is nothing to join.
+        std::mem::forget(old);
+    }
+    Ok(pool)
+}
+
+#[pyfunction]
+pub(crate) fn set_num_threads(threads: usize) -> PyResult<()> {
+    if threads == 0 {
+        return Err(PyValueError::new_err("threads must be at least 1, found 0"));
+    }
+    pool(Some(threads)).map(drop)
+}

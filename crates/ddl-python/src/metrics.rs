@@ -1,0 +1,181 @@
+//! Every metric of the evaluation, on arrays.
+
+use crate::arrays::{Paths, array, forecast, tracks};
+use crate::errors::of_any;
+use ddl::data::{HORIZON, OBSERVED, PedestrianId, Position, Window};
+use ddl::eval::metric::amd::DistributionErrors;
+use ddl::eval::metric::collision::{closest_approach, collides};
+use ddl::eval::metric::displacement::DisplacementErrors;
+use ddl::eval::metric::diversity::Diversity;
+use ddl::eval::metric::kde::kde_nll as kde_of;
+use ddl::eval::{Forecast, Scene, Scores};
+use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// A scene with its true future; without a past, who moves how is unknown, and each stands where its future begins.
+fn window(
+    start_frame: i64,
+    truth: &PyReadonlyArray3<'_, f64>,
+    past: Option<&PyReadonlyArray3<'_, f64>>,
+) -> PyResult<Window> {
+    let truth = tracks("truth", truth, HORIZON, false)?;
+    let pasts = match past {
+        Some(past) => tracks("past", past, OBSERVED, false)?,
+        None => truth
+            .iter()
+            .map(|future| vec![future[0]; OBSERVED])
+            .collect(),
+    };
+    if pasts.len() != truth.len() {
+        return Err(PyValueError::new_err(format!(
+            "past is of {} pedestrians, truth of {}",
+            pasts.len(),
+            truth.len()
+        )));
+    }
+    let whole: Vec<Vec<Position>> = pasts
+        .into_iter()
+        .zip(truth)
+        .map(|(past, future)| [past, future].concat())
+        .collect();
+    let ids = (0..whole.len() as i64).map(PedestrianId).collect();
+    Window::new("scene", start_frame, 1, ids, whole).map_err(|error| of_any(&error))
+}
+
+fn of_scene<T>(
+    truth: &PyReadonlyArray3<'_, f64>,
+    forecast: &Forecast,
+    of: impl FnOnce(&Scene<'_>) -> PyResult<T>,
+) -> PyResult<T> {
+    let window = window(0, truth, None)?;
+    let scene = Scene::new(&window, forecast).map_err(|error| of_any(&error))?;
+    of(&scene)
+}
+
+/// ADE `(n, k)` and FDE `(n, k)` of every hypothesis, metres.
+#[pyfunction]
+pub(crate) fn displacement_errors(
+    py: Python<'_>,
+    paths: Paths<'_>,
+    truth: PyReadonlyArray3<'_, f64>,
+) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+    let forecast = forecast(&paths, None, None)?;
+    of_scene(&truth, &forecast, |scene| {
+        let errors = DisplacementErrors::of(scene);
+        let shape = [errors.pedestrians(), errors.hypotheses()];
+        let all = |of: fn(&DisplacementErrors, usize) -> &[f64]| {
+            let rows = (0..errors.pedestrians()).flat_map(|i| of(&errors, i).to_vec());
+            array(py, rows.collect(), shape)
+        };
+        Ok((all(DisplacementErrors::ade)?, all(DisplacementErrors::fde)?))
+    })
+}
+
+/// KDE-NLL `(n,)`, nats.
+#[pyfunction]
+pub(crate) fn kde_nll(
+    py: Python<'_>,
+    paths: Paths<'_>,
+    truth: PyReadonlyArray3<'_, f64>,
+    weights: Option<PyReadonlyArray2<'_, f64>>,
+) -> PyResult<Py<PyAny>> {
+    let forecast = forecast(&paths, weights.as_ref(), None)?;
+    of_scene(&truth, &forecast, |scene| {
+        let all = (0..scene.pedestrians()).map(|i| kde_of(scene, i));
+        array(py, several(all)?, [scene.pedestrians()])
+    })
+}
+
+/// Mahalanobis distances `(n,)` of the truth, and the mean covariances `(n, 3)` as xx, xy, yy.
+#[pyfunction]
+pub(crate) fn mahalanobis(
+    py: Python<'_>,
+    paths: Paths<'_>,
+    truth: PyReadonlyArray3<'_, f64>,
+    weights: Option<PyReadonlyArray2<'_, f64>>,
+) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+    let forecast = forecast(&paths, weights.as_ref(), None)?;
+    of_scene(&truth, &forecast, |scene| {
+        let n = scene.pedestrians();
+        let all: Vec<DistributionErrors> =
+            several((0..n).map(|i| DistributionErrors::of(scene, i)))?;
+        let distances = all.iter().map(|of| of.mahalanobis).collect();
+        let covariances = all.iter().map(|of| of.covariance);
+        let covariances = covariances.flat_map(|of| [of.xx, of.xy, of.yy]).collect();
+        Ok((array(py, distances, [n])?, array(py, covariances, [n, 3])?))
+    })
+}
+
+/// Mean distances between two hypotheses, of the paths `(n,)` and of the ends `(n,)`, metres.
+#[pyfunction]
+pub(crate) fn spread_between(py: Python<'_>, paths: Paths<'_>) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+    let forecast = forecast(&paths, None, None)?;
+    let truth: Vec<Vec<Position>> = (0..forecast.pedestrians())
+        .map(|i| vec![[0.0; 2]; OBSERVED + forecast.hypothesis(i, 0).len()])
+        .collect();
+    let ids = (0..truth.len() as i64).map(PedestrianId).collect();
+    let window = Window::new("scene", 0, 1, ids, truth).map_err(|error| of_any(&error))?;
+    let scene = Scene::new(&window, &forecast).map_err(|error| of_any(&error))?;
+    let n = forecast.pedestrians();
+    let all: Vec<Diversity> = several((0..n).map(|i| Diversity::of(&scene, i)))?;
+    let paths = all.iter().map(|of| of.path).collect();
+    let ends = all.iter().map(|of| of.ends).collect();
+    Ok((array(py, paths, [n])?, array(py, ends, [n])?))
+}
+
+/// Whether each of `(n, t, 2)` tracks comes nearer than two radii to another, `(n,)`, and the nearest that it comes to any, metres.
+#[pyfunction]
+pub(crate) fn collisions(
+    py: Python<'_>,
+    paths: PyReadonlyArray3<'_, f64>,
+    radius: f64,
+) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+    let steps = paths.shape()[1];
+    if steps == 0 {
+        return Err(PyValueError::new_err("paths have no step"));
+    }
+    let tracks = tracks("paths", &paths, steps, false)?;
+    let all: Vec<&[Position]> = tracks.iter().map(Vec::as_slice).collect();
+    let n = all.len();
+    let nearest = |i: usize| {
+        let others = (0..n).filter(|j| *j != i);
+        others.fold(f64::INFINITY, |least, j| {
+            least.min(closest_approach(all[i], all[j]))
+        })
+    };
+    let collides = collides(&all, radius);
+    let nearest = (0..n).map(nearest).collect();
+    Ok((array(py, collides, [n])?, array(py, nearest, [n])?))
+}
+
+/// All scores of some scenes together, as a JSON object.
+#[pyfunction]
+pub(crate) fn scores(
+    paths: Vec<Paths<'_>>,
+    truth: Vec<PyReadonlyArray3<'_, f64>>,
+    past: Vec<PyReadonlyArray3<'_, f64>>,
+    weights: Vec<Option<PyReadonlyArray2<'_, f64>>>,
+    goals: Vec<Option<PyReadonlyArray3<'_, f64>>>,
+) -> PyResult<String> {
+    let lengths = [truth.len(), past.len(), weights.len(), goals.len()];
+    if lengths.iter().any(|length| *length != paths.len()) {
+        return Err(PyValueError::new_err(
+            "paths, truth, past, weights and goals must be of as many scenes",
+        ));
+    }
+    let (mut windows, mut forecasts) = (Vec::new(), Vec::new());
+    for (index, paths) in paths.iter().enumerate() {
+        windows.push(window(index as i64, &truth[index], Some(&past[index]))?);
+        let (weights, goals) = (weights[index].as_ref(), goals[index].as_ref());
+        forecasts.push(forecast(paths, weights, goals)?);
+    }
+    let scores = Scores::evaluate(&windows, &forecasts).map_err(|error| of_any(&error))?;
+    serde_json::to_string(&scores).map_err(|error| of_any(&error))
+}
+
+fn several<T>(all: impl Iterator<Item = Option<T>>) -> PyResult<Vec<T>> {
+    all.collect::<Option<_>>().ok_or_else(|| {
+        PyValueError::new_err("paths have one hypothesis; this metric is of several")
+    })
+}

@@ -1,0 +1,255 @@
+//! A trained model.
+
+use crate::arrays::{array, numbers};
+use crate::errors::{of_any, raised};
+use crate::forecasts::{Forecasted, named_parts, parts};
+use crate::interruptible::{Stop, run};
+use crate::observed::{Observed, completion};
+use crate::recording::Recording;
+use ddl::data::{OBSERVED, Window};
+use ddl::eval::ForecastError;
+use ddl::report::Moment;
+use ddl::report::page::Viewer;
+use ddl::{Clearance, Ddl, DdlError, DeviceChoice, Forecaster as _, ModelSource};
+use numpy::PyReadonlyArray3;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Pedestrians that are forecast from one look for Ctrl-C to the next.
+const TOGETHER: usize = 64;
+
+#[pyclass(frozen, module = "ddl_forecast._core")]
+#[derive(Debug)]
+pub(crate) struct Model(pub(crate) Arc<Ddl>);
+
+/// How to forecast.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Manner {
+    pub(crate) one: bool,
+    pub(crate) certificates: bool,
+}
+
+impl Manner {
+    pub(crate) fn new(model: &Ddl, samples: usize, certificates: bool) -> PyResult<Self> {
+        let all = model.goal_model().clusters();
+        if samples != 1 && samples != all {
+            return Err(PyValueError::new_err(format!(
+                "samples must be {all}, all hypotheses of the model, or 1, its one forecast; found {samples}. Weights and regions are those \
+                 of all {all}: for fewer, take the heaviest of them"
+            )));
+        }
+        Ok(Self {
+            one: samples == 1,
+            certificates,
+        })
+    }
+
+    fn forecast(self, model: &Ddl, windows: &[Window]) -> Result<Vec<Forecasted>, ForecastError> {
+        let plain = |all: Vec<ddl::Forecast>| all.into_iter().map(Forecasted::Plain).collect();
+        let certified =
+            |all: Vec<ddl::CertifiedForecast>| all.into_iter().map(Forecasted::Certified).collect();
+        Ok(match (self.one, self.certificates) {
+            (false, false) => plain(model.forecast_all(windows)?),
+            (true, false) => plain(model.forecast_one(windows)?),
+            (false, true) => certified(model.forecast_certified(windows)?),
+            (true, true) => certified(model.forecast_one_certified(windows)?),
+        })
+    }
+
+    /// A forecast a window, some pedestrians at a time; less of them where the caller has gone.
+    pub(crate) fn forecast_until(
+        self,
+        model: &Ddl,
+        windows: &[Window],
+        stop: &Stop,
+    ) -> Result<Vec<Forecasted>, DdlError> {
+        let mut all = Vec::with_capacity(windows.len());
+        while all.len() < windows.len() && !stop.is_asked() {
+            let rest = &windows[all.len()..];
+            let mut pedestrians = 0;
+            let enough = |window: &Window| {
+                pedestrians += window.len();
+                pedestrians >= TOGETHER
+            };
+            let count = rest
+                .iter()
+                .position(enough)
+                .map_or(rest.len(), |last| last + 1);
+            all.extend(self.forecast(model, &rest[..count])?);
+        }
+        Ok(all)
+    }
+}
+
+#[pymethods]
+impl Model {
+    /// The built-in model of that name, or what lies at that path.
+    #[staticmethod]
+    fn open(py: Python<'_>, name: PathBuf, clearance: Option<f64>) -> PyResult<Self> {
+        let opened = run(py, move |_| {
+            let source = ModelSource::named(&name);
+            let model = Ddl::open(&source, DeviceChoice::Cpu)?;
+            match clearance {
+                None => Ok(model),
+                Some(distance) => model.keeping_clear(Clearance::new(distance)?),
+            }
+        })?;
+        Ok(Self(Arc::new(opened.map_err(raised)?)))
+    }
+
+    #[staticmethod]
+    fn builtin_names() -> Vec<&'static str> {
+        ddl::BuiltinModel::ALL.map(ddl::BuiltinModel::name).to_vec()
+    }
+
+    #[getter]
+    fn hypotheses(&self) -> usize {
+        self.0.goal_model().clusters()
+    }
+
+    #[getter]
+    fn variant(&self) -> String {
+        self.0.config().star.variant.to_string()
+    }
+
+    #[getter]
+    fn parameter_count(&self) -> usize {
+        self.0.parameter_count() + self.0.goal_model().parameter_count()
+    }
+
+    /// A forecast for each scene; of `past[i]` the first `asked[i]` pedestrians are forecast.
+    #[pyo3(signature = (past, asked, samples, whole, certificates))]
+    fn forecast<'py>(
+        &self,
+        py: Python<'py>,
+        past: Vec<PyReadonlyArray3<'py, f64>>,
+        asked: Vec<usize>,
+        samples: usize,
+        whole: bool,
+        certificates: bool,
+    ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let manner = Manner::new(&self.0, samples, certificates)?;
+        let scenes = past.iter().zip(asked);
+        let scenes: Vec<Observed> = scenes
+            .map(|(past, asked)| Observed::new(past, asked, completion(whole)))
+            .collect::<PyResult<_>>()?;
+        let windows: Vec<Window> = scenes.iter().filter_map(|of| of.window.clone()).collect();
+        let mut forecasts = self.forecasts(py, manner, windows)?.into_iter();
+        let of_scene = |scene: &Observed| {
+            let forecast = scene.window.is_some().then(|| forecasts.next()).flatten();
+            parts(py, scene, forecast.as_ref(), samples)
+        };
+        scenes.iter().map(of_scene).collect()
+    }
+
+    /// A forecast for each frame of the recording that has anybody to forecast, or for the last of them.
+    fn forecast_recording<'py>(
+        &self,
+        py: Python<'py>,
+        recording: &Recording,
+        last: bool,
+        samples: usize,
+        whole: bool,
+        certificates: bool,
+    ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let manner = Manner::new(&self.0, samples, certificates)?;
+        let mut windows = recording.observed(whole);
+        if last {
+            windows.drain(..windows.len().saturating_sub(1));
+        }
+        let forecasts = self.forecasts(py, manner, windows.clone())?;
+        let pairs = windows.iter().zip(&forecasts);
+        pairs
+            .map(|(window, forecast)| named_parts(py, window, forecast, recording.parts))
+            .collect()
+    }
+
+    /// Goals `(n, k, 2)` and weights `(n, k)`, and how familiar the motions are, `(n,)`; NaN for those who cannot be forecast.
+    fn goals(
+        &self,
+        py: Python<'_>,
+        past: PyReadonlyArray3<'_, f64>,
+        asked: usize,
+        whole: bool,
+    ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+        let scene = Observed::new(&past, asked, completion(whole))?;
+        let k = self.hypotheses();
+        let mut goals = vec![[f64::NAN; 2]; asked * k];
+        let mut weights = vec![f64::NAN; asked * k];
+        if let Some(window) = scene.window {
+            let model = Arc::clone(&self.0);
+            let sets = run(py, move |_| model.goal_model().goals(&[window]))?;
+            let mut sets = sets.map_err(|error| of_any(&error))?;
+            let sets = sets.pop().unwrap_or_default();
+            for (i, row) in scene.rows.iter().enumerate() {
+                if let Some(set) = row.and_then(|row| sets.get(row)) {
+                    goals[i * k..][..k].copy_from_slice(set.goals());
+                    weights[i * k..][..k].copy_from_slice(set.weights());
+                }
+            }
+        }
+        let goals = array(py, numbers(goals), [asked, k, 2])?;
+        Ok((goals, array(py, weights, [asked, k])?))
+    }
+
+    /// A page with a player of moments of the recording.
+    fn page(&self, py: Python<'_>, recording: &Recording, most: usize) -> PyResult<String> {
+        let windows = recording.observed(false);
+        if windows.is_empty() {
+            return Err(PyValueError::new_err(
+                "nobody in the recording was seen at two steps in a row; is fps right?",
+            ));
+        }
+        let count = windows.len().min(most.max(1));
+        let shown: Vec<Window> = (1..=count)
+            .map(|k| windows[k * windows.len() / count - 1].clone())
+            .collect();
+        let manner = Manner::new(&self.0, self.hypotheses(), false)?;
+        let forecasts = self.forecasts(py, manner, shown.clone())?;
+        let moments = shown.iter().zip(&forecasts).map(|(window, forecast)| {
+            let seen = recording.tracks.onward(window);
+            let mut moment = Moment::under_way(self.0.name(), window, forecast.forecast(), &seen)?;
+            moment.frame = window.frames()[OBSERVED - 1] / recording.parts;
+            Ok(moment)
+        });
+        let moments: Vec<Moment> = moments
+            .collect::<Result<_, ddl::eval::EvaluationError>>()
+            .map_err(|error| of_any(&error))?;
+        let lead = format!(
+            "{count} of {} moments of {}: what was observed of each pedestrian, where each may go in the next 4.8 s, and what then happened \
+             as far as it was seen.",
+            windows.len(),
+            recording.tracks.name()
+        );
+        let notes = [format!(
+            "Forecast by {} ({}).",
+            self.0.name(),
+            self.0.source()
+        )];
+        let viewer = Viewer {
+            title: recording.tracks.name(),
+            lead: &lead,
+            notes: &notes,
+            moments: &moments,
+        };
+        viewer.to_html().map_err(|error| of_any(&error))
+    }
+}
+
+impl Model {
+    fn forecasts(
+        &self,
+        py: Python<'_>,
+        manner: Manner,
+        windows: Vec<Window>,
+    ) -> PyResult<Vec<Forecasted>> {
+        let model = Arc::clone(&self.0);
+        let forecasts = run(py, move |stop| {
+            manner.forecast_until(&model, &windows, stop)
+        })?;
+        forecasts.map_err(raised)
+    }
+}

@@ -1,0 +1,61 @@
+//! What was observed in a scene, as a window to forecast from.
+
+use crate::arrays::tracks;
+use ddl::data::{Completion, LiveTracks, OBSERVED, PedestrianId, Window};
+use numpy::PyReadonlyArray3;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// The pedestrians of a scene who can be forecast, and where each of them stands in the array of the user.
+#[derive(Debug, Clone)]
+pub(crate) struct Observed {
+    /// `None` where nobody can be forecast.
+    pub(crate) window: Option<Window>,
+    /// Index in the window of each pedestrian asked for; `None` for one who cannot be forecast.
+    pub(crate) rows: Vec<Option<usize>>,
+}
+
+impl Observed {
+    /// Of `(n, 8, 2)` positions, the first `asked` pedestrians; the others are there only to be minded.
+    pub(crate) fn new(
+        past: &PyReadonlyArray3<'_, f64>,
+        asked: usize,
+        completion: Completion,
+    ) -> PyResult<Self> {
+        let tracks = tracks("past", past, OBSERVED, true)?;
+        let mut live = LiveTracks::new().completing(completion);
+        for frame in 0..OBSERVED {
+            let seen = tracks.iter().enumerate().filter_map(|(i, track)| {
+                let position = track[frame];
+                let is_seen = !position[0].is_nan();
+                is_seen.then_some((PedestrianId(i as i64), position))
+            });
+            live.push(frame as i64, seen)
+                .map_err(|error| PyValueError::new_err(error.to_string()))?;
+        }
+        let window = live.window();
+        let mut rows = vec![None; asked];
+        for (index, id) in window.iter().flat_map(Window::pedestrians).enumerate() {
+            if let Some(row) = rows.get_mut(id.0 as usize) {
+                *row = Some(index);
+            }
+        }
+        Ok(Self { window, rows })
+    }
+
+    /// Everybody of a window, in its order.
+    pub(crate) fn of_window(window: Window) -> Self {
+        let rows = (0..window.len()).map(Some).collect();
+        let window = Some(window);
+        Self { window, rows }
+    }
+}
+
+/// Holes are filled and late beginnings padded, as the program does, unless only whole observations count.
+pub(crate) fn completion(whole: bool) -> Completion {
+    if whole {
+        Completion::NONE
+    } else {
+        Completion::USUAL
+    }
+}

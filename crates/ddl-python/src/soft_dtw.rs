@@ -1,0 +1,421 @@
+//! Soft-DTW of numpy arrays of any length and of up to 128 components a step.
+
+use crate::arrays::array;
+use crate::errors::of_any;
+use crate::interruptible::run;
+use ddl::softdtw::{
+    Band, Cost, SearchIndex as Index, SlidingIndex as Sliding, SoftDtw, WindowNeighbour,
+};
+use numpy::{PyArray2, PyArrayMethods as _, PyReadonlyArray2, PyUntypedArrayMethods as _};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// Evaluates `$body` with `$D` the number of components that are computed with: those asked for, or the next larger one there is, where
+/// the others are 0 in every step and change no distance.
+macro_rules! in_dimension {
+    ($components:expr, $D:ident => $body:expr) => {
+        match $components {
+            1 => {
+                const $D: usize = 1;
+                $body
+            }
+            2 => {
+                const $D: usize = 2;
+                $body
+            }
+            3..=4 => {
+                const $D: usize = 4;
+                $body
+            }
+            5..=16 => {
+                const $D: usize = 16;
+                $body
+            }
+            17..=128 => {
+                const $D: usize = 128;
+                $body
+            }
+            found => Err(PyValueError::new_err(format!(
+                "a step must have 1 to 128 components, found {found}"
+            ))),
+        }
+    };
+}
+
+/// A sequence: an array `(steps, components)`, or `(steps,)` of single numbers; taken as it is where it is of float64 and in one piece.
+fn sequence<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArray2<'py, f64>> {
+    if let Ok(array) = object.cast::<PyArray2<f64>>()
+        && array.is_c_contiguous()
+    {
+        return Ok(array.readonly());
+    }
+    let numpy = object.py().import("numpy")?;
+    let array = numpy.call_method1("ascontiguousarray", (object, "float64"))?;
+    let array = match array.getattr("ndim")?.extract::<usize>()? {
+        1 => array.call_method1("reshape", (-1, 1))?,
+        _ => array,
+    };
+    let array = array.cast_into::<PyArray2<f64>>().map_err(|_| {
+        PyValueError::new_err(format!(
+            "{name} must have the shape (steps, components) or (steps,)"
+        ))
+    })?;
+    Ok(array.readonly())
+}
+
+/// The steps of a sequence with `D` components, the last of which may be added as 0.
+fn steps<'a, const D: usize>(
+    array: &'a PyReadonlyArray2<'_, f64>,
+    components: usize,
+    name: &str,
+) -> PyResult<Cow<'a, [[f64; D]]>> {
+    let shape = array.shape();
+    if shape[1] != components {
+        return Err(PyValueError::new_err(format!(
+            "{name} has {} components a step where {components} are expected; all sequences must have as many",
+            shape[1]
+        )));
+    }
+    let flat = array.as_slice()?;
+    if components == D {
+        return Ok(Cow::Borrowed(flat.as_chunks::<D>().0));
+    }
+    let widened = flat.chunks_exact(components).map(|step| {
+        let mut wide = [0.0; D];
+        wide[..components].copy_from_slice(step);
+        wide
+    });
+    Ok(Cow::Owned(widened.collect()))
+}
+
+fn distance(gamma: f64, cost: &str, band: Option<usize>) -> PyResult<SoftDtw> {
+    let cost = match cost {
+        "squared_euclidean" => Cost::SquaredEuclidean,
+        "euclidean" => Cost::Euclidean,
+        _ => {
+            return Err(PyValueError::new_err(format!(
+                "cost must be 'squared_euclidean' or 'euclidean', found {cost:?}"
+            )));
+        }
+    };
+    let dtw = SoftDtw::new(gamma, cost).map_err(|error| of_any(&error))?;
+    Ok(match band {
+        None => dtw,
+        Some(radius) => dtw.with_band(Band::new(radius)),
+    })
+}
+
+/// Cells from which on the lock is left to other threads.
+const LONG: usize = 20_000;
+
+/// Computes without Python's lock where that takes longer than to leave it.
+fn unlocked<T: Send>(py: Python<'_>, cells: usize, work: impl Send + FnOnce() -> T) -> T {
+    if cells < LONG {
+        work()
+    } else {
+        py.detach(work)
+    }
+}
+
+/// Soft-DTW of two sequences.
+///
+/// Parameters
+/// ----------
+/// x, y
+///     (n, components) and (m, components), or (n,) and (m,).
+/// gamma
+///     Smoothing, in the unit of the cost; 0 is hard DTW.
+/// cost
+///     "squared_euclidean" or "euclidean", of two steps.
+/// band
+///     Steps that the two may be apart; None for all.
+/// normalised
+///     D(x, y) - (D(x, x) + D(y, y)) / 2, which is 0 for x = y and never negative.
+///
+/// Raises
+/// ------
+/// ValueError
+///     A sequence is empty or not finite, or the components differ.
+#[pyfunction]
+#[pyo3(signature = (x, y, gamma = 1.0, *, cost = "squared_euclidean", band = None, normalised = false))]
+pub(crate) fn value(
+    py: Python<'_>,
+    x: &Bound<'_, PyAny>,
+    y: &Bound<'_, PyAny>,
+    gamma: f64,
+    cost: &str,
+    band: Option<usize>,
+    normalised: bool,
+) -> PyResult<f64> {
+    let dtw = distance(gamma, cost, band)?;
+    let (x, y) = (sequence(x, "x")?, sequence(y, "y")?);
+    let components = x.shape()[1];
+    in_dimension!(components, D => {
+        let x = steps::<D>(&x, components, "x")?;
+        let y = steps::<D>(&y, components, "y")?;
+        let (x, y) = (&*x, &*y);
+        let computed = unlocked(py, x.len() * y.len(), || {
+            if normalised { dtw.normalised(x, y) } else { dtw.value(x, y) }
+        });
+        computed.map_err(|error| of_any(&error))
+    })
+}
+
+/// Soft-DTW, and its gradient (n, components) by `x`; parameters and errors as for `value`.
+#[pyfunction]
+#[pyo3(signature = (x, y, gamma = 1.0, *, cost = "squared_euclidean", band = None, normalised = false))]
+pub(crate) fn value_and_gradient(
+    py: Python<'_>,
+    x: &Bound<'_, PyAny>,
+    y: &Bound<'_, PyAny>,
+    gamma: f64,
+    cost: &str,
+    band: Option<usize>,
+    normalised: bool,
+) -> PyResult<(f64, Py<PyAny>)> {
+    let dtw = distance(gamma, cost, band)?;
+    let (x, y) = (sequence(x, "x")?, sequence(y, "y")?);
+    let components = x.shape()[1];
+    in_dimension!(components, D => {
+        let x = steps::<D>(&x, components, "x")?;
+        let y = steps::<D>(&y, components, "y")?;
+        let (x, y) = (&*x, &*y);
+        let computed = unlocked(py, x.len() * y.len(), || {
+            if normalised {
+                dtw.normalised_and_gradient(x, y)
+            } else {
+                dtw.value_and_gradient(x, y)
+            }
+        });
+        let (value, gradient) = computed.map_err(|error| of_any(&error))?;
+        let length = gradient.len();
+        let flat = if components == D {
+            gradient.into_flattened()
+        } else {
+            gradient.iter().flat_map(|step| &step[..components]).copied().collect()
+        };
+        Ok((value, array(py, flat, [length, components])?))
+    })
+}
+
+/// A search index whose number of components is known when the program runs.
+trait Search: Send + Sync {
+    fn nearest(
+        &self,
+        queries: &[PyReadonlyArray2<'_, f64>],
+        components: usize,
+    ) -> PyResult<Box<dyn FnOnce(usize) -> Found + Send>>;
+    fn len(&self) -> usize;
+}
+
+/// Index, and place in it, of each neighbour with its distance; a list a query.
+type Found = Result<Vec<Vec<WindowNeighbour>>, String>;
+
+impl<const D: usize> Search for Arc<Index<D>> {
+    fn nearest(
+        &self,
+        queries: &[PyReadonlyArray2<'_, f64>],
+        components: usize,
+    ) -> PyResult<Box<dyn FnOnce(usize) -> Found + Send>> {
+        let queries = all_steps::<D>(queries, components, "queries")?;
+        let index = Arc::clone(self);
+        Ok(Box::new(move |n| {
+            let found = index.nearest_batch(&queries, n);
+            let found = found.map_err(|error| error.to_string())?;
+            let of_query = |found: Vec<ddl::softdtw::Neighbour>| {
+                let neighbours = found.into_iter().map(|found| WindowNeighbour {
+                    track: found.index,
+                    offset: 0,
+                    distance: found.distance,
+                });
+                neighbours.collect()
+            };
+            Ok(found.into_iter().map(of_query).collect())
+        }))
+    }
+
+    fn len(&self) -> usize {
+        Index::len(self)
+    }
+}
+
+impl<const D: usize> Search for Arc<Sliding<D>> {
+    fn nearest(
+        &self,
+        queries: &[PyReadonlyArray2<'_, f64>],
+        components: usize,
+    ) -> PyResult<Box<dyn FnOnce(usize) -> Found + Send>> {
+        let queries = all_steps::<D>(queries, components, "queries")?;
+        let index = Arc::clone(self);
+        Ok(Box::new(move |n| {
+            let found = index.nearest_windows_batch(&queries, n);
+            let found = found.map_err(|error| error.to_string())?;
+            Ok(found.into_iter().flatten().collect())
+        }))
+    }
+
+    fn len(&self) -> usize {
+        Sliding::len(self)
+    }
+}
+
+fn all_steps<const D: usize>(
+    arrays: &[PyReadonlyArray2<'_, f64>],
+    components: usize,
+    name: &str,
+) -> PyResult<Vec<Vec<[f64; D]>>> {
+    let each = arrays.iter().enumerate().map(|(index, array)| {
+        let name = format!("{name}[{index}]");
+        Ok(steps::<D>(array, components, &name)?.into_owned())
+    });
+    each.collect()
+}
+
+fn sequences<'py>(
+    objects: &[Bound<'py, PyAny>],
+    name: &str,
+) -> PyResult<Vec<PyReadonlyArray2<'py, f64>>> {
+    let each = objects.iter().enumerate();
+    each.map(|(index, object)| sequence(object, &format!("{name}[{index}]")))
+        .collect()
+}
+
+fn components_of(arrays: &[PyReadonlyArray2<'_, f64>], name: &str) -> PyResult<usize> {
+    let first = arrays.first();
+    let first = first.ok_or_else(|| {
+        PyValueError::new_err(format!("{name} is empty; give at least one sequence"))
+    })?;
+    Ok(first.shape()[1])
+}
+
+/// Searches without Python's lock; Ctrl-C ends the call.
+fn search(
+    py: Python<'_>,
+    index: &dyn Search,
+    components: usize,
+    queries: &[Bound<'_, PyAny>],
+    n: usize,
+) -> PyResult<Vec<Vec<WindowNeighbour>>> {
+    let queries = sequences(queries, "queries")?;
+    let work = index.nearest(&queries, components)?;
+    run(py, move |_| work(n))?.map_err(PyValueError::new_err)
+}
+
+#[pyclass(frozen, module = "ddl_forecast._core")]
+pub(crate) struct SearchIndex {
+    index: Box<dyn Search>,
+    components: usize,
+}
+
+#[pymethods]
+impl SearchIndex {
+    #[new]
+    #[pyo3(signature = (candidates, gamma = 1.0, *, cost = "squared_euclidean", band = None))]
+    fn new(
+        py: Python<'_>,
+        candidates: Vec<Bound<'_, PyAny>>,
+        gamma: f64,
+        cost: &str,
+        band: Option<usize>,
+    ) -> PyResult<Self> {
+        let dtw = distance(gamma, cost, band)?;
+        let arrays = sequences(&candidates, "candidates")?;
+        let components = components_of(&arrays, "candidates")?;
+        let index: Box<dyn Search> = in_dimension!(components, D => {
+            let candidates = all_steps::<D>(&arrays, components, "candidates")?;
+            let built = run(py, move |_| Index::build(&dtw, &candidates))?;
+            let built: Box<dyn Search> = Box::new(Arc::new(built.map_err(|error| of_any(&error))?));
+            Ok(built)
+        })?;
+        Ok(Self { index, components })
+    }
+
+    fn __len__(&self) -> usize {
+        self.index.len()
+    }
+
+    /// Indices `(q, n)` and distances `(q, n)`, nearest first.
+    fn nearest(
+        &self,
+        py: Python<'_>,
+        queries: Vec<Bound<'_, PyAny>>,
+        n: usize,
+    ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+        let found = search(py, &*self.index, self.components, &queries, n)?;
+        let shape = [found.len(), n.min(self.index.len())];
+        let flat = || found.iter().flatten();
+        let indices = flat().map(|found| found.track as i64).collect();
+        let distances = flat().map(|found| found.distance).collect();
+        Ok((array(py, indices, shape)?, array(py, distances, shape)?))
+    }
+}
+
+#[pyclass(frozen, module = "ddl_forecast._core")]
+pub(crate) struct SlidingIndex {
+    index: Box<dyn Search>,
+    components: usize,
+    length: usize,
+}
+
+#[pymethods]
+impl SlidingIndex {
+    #[new]
+    #[pyo3(signature = (tracks, length, gamma = 1.0, *, tail = 0, cost = "squared_euclidean", band = None))]
+    fn new(
+        py: Python<'_>,
+        tracks: Vec<Bound<'_, PyAny>>,
+        length: usize,
+        gamma: f64,
+        tail: usize,
+        cost: &str,
+        band: Option<usize>,
+    ) -> PyResult<Self> {
+        let dtw = distance(gamma, cost, band)?;
+        let arrays = sequences(&tracks, "tracks")?;
+        let components = components_of(&arrays, "tracks")?;
+        let index: Box<dyn Search> = in_dimension!(components, D => {
+            let tracks = all_steps::<D>(&arrays, components, "tracks")?;
+            let built = run(py, move |_| Sliding::build(&dtw, &tracks, length, tail))?;
+            let built: Box<dyn Search> = Box::new(Arc::new(built.map_err(|error| of_any(&error))?));
+            Ok(built)
+        })?;
+        Ok(Self {
+            index,
+            components,
+            length,
+        })
+    }
+
+    fn __len__(&self) -> usize {
+        self.index.len()
+    }
+
+    /// For every window of the track `query`: tracks `(w, n)`, offsets `(w, n)` and distances `(w, n)` of the nearest windows.
+    fn nearest(
+        &self,
+        py: Python<'_>,
+        query: Bound<'_, PyAny>,
+        n: usize,
+    ) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
+        let steps = sequence(&query, "query")?.shape()[0];
+        if steps < self.length {
+            return Err(PyValueError::new_err(format!(
+                "query has {steps} steps, fewer than the {} of a window",
+                self.length
+            )));
+        }
+        let found = search(py, &*self.index, self.components, &[query], n)?;
+        let shape = [found.len(), n.min(self.index.len())];
+        let flat = || found.iter().flatten();
+        let tracks = flat().map(|found| found.track as i64).collect();
+        let offsets = flat().map(|found| found.offset as i64).collect();
+        let distances = flat().map(|found| found.distance).collect();
+        Ok((
+            array(py, tracks, shape)?,
+            array(py, offsets, shape)?,
+            array(py, distances, shape)?,
+        ))
+    }
+}

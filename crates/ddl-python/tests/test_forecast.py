@@ -1,0 +1,198 @@
+"""Forecasts of arrays, recordings and live frames."""
+
+import json
+import pickle
+
+import numpy as np
+import pytest
+from conftest import run
+
+import ddl_forecast as ddl
+from ddl_forecast import baselines, metrics
+
+
+def test_shapes_and_laws(forecaster, crossing):
+    forecast = forecaster.forecast(crossing, certificates=True)
+    assert forecast.paths.shape == (25, 20, 12, 2)
+    assert forecast.weights.shape == (25, 20) and np.allclose(forecast.weights.sum(axis=1), 1)
+    assert forecast.goals.shape == (25, 20, 2) and forecast.familiarity.shape == (25,)
+    assert forecast.valid.all() and forecast.certified.all()
+    assert (np.diff(forecast.certificates.potentials, axis=2) <= 0).all()
+    assert (forecast.certificates.min_eigenvalue > 0).all()
+    assert forecast.most_likely().shape == forecast.mean().shape == (25, 12, 2)
+    small, large = forecast.regions(0.5), forecast.regions(0.9)
+    discs = ~np.isnan(small)
+    assert discs.any(axis=1).all() and (large[discs] > small[discs]).all()
+    one = forecaster.forecast(crossing, samples=1)
+    assert one.paths.shape == (25, 1, 12, 2) and (one.weights == 1).all()
+
+
+def test_who_was_not_seen_is_nan_and_changes_nobody(forecaster, crossing):
+    alone = forecaster.forecast(crossing[:3])
+    absent = np.full((1, 8, 2), np.nan)
+    gone = crossing[3:4].copy()
+    gone[0, -1] = np.nan
+    forecast = forecaster.forecast(np.concatenate([crossing[:2], absent, crossing[2:3], gone]))
+    assert forecast.valid.tolist() == [True, True, False, True, False]
+    assert np.isnan(forecast.paths[~forecast.valid]).all() and np.isnan(forecast.familiarity[2])
+    assert np.array_equal(forecast.paths[forecast.valid], alone.paths)
+    assert np.isnan(forecast.regions(0.9)[2]).all()
+    nobody = forecaster.forecast(np.empty((0, 8, 2)))
+    assert len(nobody) == 0 and nobody.paths.shape == (0, 20, 12, 2)
+
+
+def test_neighbours_are_minded_and_not_forecast(forecaster, crossing):
+    both = forecaster.forecast(crossing[:5])
+    first = forecaster.forecast(crossing[:2], neighbours=crossing[2:5])
+    assert np.array_equal(first.paths, both.paths[:2])
+    assert len(first) == 2
+
+
+@pytest.mark.parametrize(
+    ("past", "words"),
+    [
+        (np.zeros((3, 7, 2)), "(n, 8, 2)"),
+        (np.zeros((8, 2)), "(n, 8, 2)"),
+        (np.full((2, 8, 2), np.inf), "past[0, 0] is [inf, inf]"),
+        (np.where(np.arange(32).reshape(2, 8, 2) == 21, np.nan, 1.0), "past[1, 2]"),
+        (np.full((2, 8, 2), 1e9), "1e7 m"),
+        ([["a"]], "array of numbers"),
+    ],
+)
+def test_wrong_arrays_are_named(forecaster, past, words):
+    with pytest.raises(ValueError, match="past") as error:
+        forecaster.forecast(past)
+    assert words in str(error.value)
+
+
+def test_wrong_models_and_samples(tmp_path, forecaster, crossing):
+    with pytest.raises(FileNotFoundError, match="hotel"):
+        ddl.Forecaster("corridor")
+    broken = tmp_path / "broken.ddl"
+    broken.write_bytes(b"\x10\0\0\0\0\0\0\0{}")
+    with pytest.raises(ValueError, match=r"broken\.ddl"):
+        ddl.Forecaster(broken)
+    with pytest.raises(ValueError, match="samples must be 20"):
+        forecaster.forecast(crossing, samples=7)
+    with pytest.raises(ValueError, match="probability"):
+        forecaster.forecast(crossing).regions(1.5)
+    with pytest.raises(ValueError, match="no regions"):
+        baselines.constant_velocity(crossing).regions()
+
+
+def test_every_builtin_model_forecasts(crossing):
+    ends = [ddl.Forecaster(name).forecast(crossing).paths[0, 0, -1] for name in ("eth", "hotel", "univ", "zara1", "zara2")]
+    assert len({tuple(end) for end in ends}) == 5
+
+
+def test_pickled_and_many_scenes(forecaster, crossing):
+    again = pickle.loads(pickle.dumps(forecaster))
+    forecast = again.forecast(crossing)
+    assert np.array_equal(forecast.paths, forecaster.forecast(crossing).paths)
+    kept = pickle.loads(pickle.dumps(forecast))
+    assert np.array_equal(kept.regions(0.9), forecast.regions(0.9), equal_nan=True)
+    scenes = forecaster.forecast_all([crossing[:4], crossing[4:9], crossing])
+    for scene, past in zip(scenes, (crossing[:4], crossing[4:9], crossing), strict=True):
+        assert np.array_equal(scene.paths, forecaster.forecast(past).paths)
+
+
+def test_keeping_clear(crossing):
+    free, clear = ddl.Forecaster(), ddl.Forecaster(keep_clear=0.5)
+    assert repr(pickle.loads(pickle.dumps(clear))) == "Forecaster('hotel', keep_clear=0.5)"
+    towards = np.stack([np.linspace([-4, 0.05], [-1, 0.05], 8), np.linspace([4, 0], [1, 0], 8)])
+    near = [metrics.closest_approach(of.forecast(towards).most_likely())[0] for of in (free, clear)]
+    assert near[1] > near[0]
+
+
+def test_bits_of_the_program(forecaster, tracks, program):
+    lines = run(program, "forecast", tracks, "--format", "jsonl", "--last", "--region", "0.9", check=True).stdout.splitlines()
+    told = {line["pedestrian"]: line for line in map(json.loads, lines)}
+    recording = ddl.read(tracks)
+    (forecast,) = forecaster.forecast_recording(recording, last=True)
+    assert set(told) == set(forecast.ids.tolist()) and len(told) > 3
+    for i, one in enumerate(forecast.ids.tolist()):
+        line = told[one]
+        assert [h["positions"] for h in line["hypotheses"]] == forecast.paths[i].tolist()
+        assert [h["weight"] for h in line["hypotheses"]] == forecast.weights[i].tolist()
+        assert [h["goal"] for h in line["hypotheses"]] == forecast.goals[i].tolist()
+        assert line["familiarity"] == forecast.familiarity[i] and line["frames"] == forecast.frames.tolist()
+        assert (line["padded"], line["filled"]) == tuple(forecast.made_up[i])
+        discs = [sorted(disc[2] for disc in step) for step in line["regions"][0]["discs"]]
+        radii = forecast.regions(0.9)[i]
+        assert discs == [sorted(radius for radius in step if not np.isnan(radius)) for step in radii.T]
+
+
+def test_tables_of_numpy_pandas_and_polars(forecaster, tracks, program, tmp_path):
+    pandas, polars = pytest.importorskip("pandas"), pytest.importorskip("polars")
+    made = tmp_path / "made.csv"
+    run(program, "forecast", tracks, "--output", made, check=True)
+    frame = pandas.read_csv(tracks)
+    columns = forecaster.forecast_table(frame.frame, frame.pedestrian, frame.x, frame.y)
+    ours, theirs = pandas.DataFrame(columns), pandas.read_csv(made)
+    assert len(ours) == len(theirs)
+    for name in ("observed_until", "pedestrian", "hypothesis", "frame"):
+        assert (ours[name] == theirs[name]).all(), name
+    for name in ("x", "y", "goal_x", "goal_y"):
+        assert np.allclose(ours[name], theirs[name], atol=6e-5), name
+    table = polars.read_csv(tracks)
+    again = forecaster.forecast_table(table["frame"], table["pedestrian"], table["x"], table["y"])
+    assert all(np.array_equal(columns[name], again[name]) for name in columns)
+    words = forecaster.forecast_table(table["frame"], ["p" + str(one) for one in table["pedestrian"]], table["x"], table["y"])
+    assert words["pedestrian"].dtype.kind == "U" and np.allclose(np.sort(words["x"]), np.sort(columns["x"]), atol=1e-3)
+
+
+def test_live_has_the_bits_of_the_recording(forecaster, tracks, tmp_path):
+    recording = ddl.read(tracks)
+    frame, one, x, y = recording.frame, recording.id, recording.x, recording.y
+    expected = {forecast.frame: forecast for forecast in forecaster.forecast_recording(recording)}
+    memory = tmp_path / "plaza.memory"
+    with ddl.Live(forecaster, fps=2.5 * recording.frame_step) as live:
+        for at in np.unique(frame):
+            now = frame == at
+            forecast = live.observe(at, one[now], np.column_stack([x[now], y[now]]))
+            if forecast is None:
+                assert at not in expected
+                continue
+            assert np.array_equal(forecast.paths, expected[at].paths) and np.array_equal(forecast.ids, expected[at].ids)
+    with ddl.Live(forecaster, fps=2.5 * recording.frame_step, memory=memory) as live:
+        for at in np.unique(frame):
+            now = frame == at
+            forecast = live.observe(at, one[now], np.column_stack([x[now], y[now]]))
+        assert live.remembered > 20
+    assert memory.is_file()
+    assert not np.array_equal(forecast.paths, expected[frame[-1]].paths)
+    with ddl.Live(forecaster, fps=2.5 * recording.frame_step, memory=memory) as live:
+        assert live.remembered > 20
+        with pytest.raises(ValueError, match="another process"):
+            ddl.Live(forecaster, fps=2.5 * recording.frame_step, memory=memory)
+
+
+def test_live_refuses_what_is_wrong_and_goes_on(forecaster):
+    with pytest.raises(ValueError, match=r"0\.4 s are a whole number"):
+        ddl.Live(forecaster, fps=24)
+    live = ddl.Live(forecaster, fps=2.5)
+    for frame in range(7):
+        assert live.observe(frame, ["a", "b"], [[0.4 * frame, 0], [5, 0.4 * frame]]) is None or frame > 0
+    with pytest.raises(ValueError, match="after"):
+        live.observe(3, ["a"], [[0, 0]])
+    with pytest.raises(ValueError, match="finite"):
+        live.observe(7, ["a"], [[np.nan, 0]])
+    with pytest.raises(ValueError, match="one position for each id"):
+        live.observe(7, ["a", "b"], [[0, 0]])
+    forecast = live.observe(7, ["a", "b"], [[2.8, 0], [5, 2.8]])
+    assert forecast is not None and forecast.ids.tolist() == ["a", "b"]
+    live.clear()
+    assert live.observe(0, ["a"], [[0, 0]]) is None
+
+
+def test_goals_and_baselines(forecaster, crossing):
+    goals, weights = forecaster.goals(crossing)
+    forecast = forecaster.forecast(crossing)
+    assert np.array_equal(goals, forecast.goals) and np.array_equal(weights, forecast.weights)
+    last = crossing[:, -1] + 12 * (crossing[:, -1] - crossing[:, -2])
+    assert np.allclose(baselines.constant_velocity(crossing).paths[:, 0, -1], last)
+    lines = baselines.straight_line(crossing, goals)
+    assert np.allclose(lines.paths[:, :, -1], goals) and lines.paths.shape == (25, 20, 12, 2)
+    assert baselines.angular_noise(crossing, seed=3).paths.shape == (25, 20, 12, 2)
+    for of in (baselines.mean_velocity, baselines.constant_acceleration, baselines.social_force):
+        assert of(crossing).paths.shape == (25, 1, 12, 2)

@@ -1,0 +1,61 @@
+"""Files and columns of tracks."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import ddl_forecast as ddl
+from ddl_forecast._recording import FORMATS
+
+
+@pytest.mark.parametrize("format", FORMATS)
+def test_what_is_written_is_read(format, tmp_path, tracks):
+    recording = ddl.read(tracks)
+    path = tmp_path / ("tracks.txt" if format in ("social-gan", "obsmat") else "tracks.ndjson" if format == "trajnet" else "tracks.csv")
+    recording.write(path, format=format)
+    for back in (ddl.read(path), ddl.read(path, format=format)):
+        for column in ("frame", "id", "x", "y"):
+            assert np.array_equal(getattr(back, column), getattr(recording, column)), column
+    again = pickle.loads(pickle.dumps(recording))
+    assert np.array_equal(again.x, recording.x) and again.frame_step == recording.frame_step
+
+
+def test_words_and_rates(tmp_path):
+    frame = np.repeat(np.arange(0, 40), 2)
+    recording = ddl.Recording(frame, ["ann", "bob"] * 40, np.arange(80) * 0.01, np.zeros(80), fps=24, name="lobby")
+    assert recording.frame_step == pytest.approx(9.6) and set(recording.id.tolist()) == {"ann", "bob"}
+    assert recording.frame[-1] == 39 and recording.frame[-3] == pytest.approx(29.4)
+    with pytest.raises(ValueError, match="resampled"):
+        recording.write(tmp_path / "x.csv")
+    whole = ddl.Recording(frame, ["ann, a", "bob"] * 40, np.arange(80) * 0.01, np.zeros(80))
+    whole.write(tmp_path / "words.csv")
+    assert set(ddl.read(tmp_path / "words.csv").id.tolist()) == {"ann, a", "bob"}
+    with pytest.raises(ValueError, match="word"):
+        whole.write(tmp_path / "words.txt", format="obsmat")
+
+
+def test_what_is_wrong_is_named(tmp_path):
+    good = {"frame": [0, 1], "id": [1, 1], "x": [0.0, 0.5], "y": [0.0, 0.0]}
+    for change, words in [
+        ({"x": [0.0, np.nan]}, "row 1, column x"),
+        ({"frame": [0, 0.5]}, "row 1, column frame"),
+        ({"x": ["a", "b"]}, "column x"),
+        ({"frame": [0, 0]}, "twice"),
+        ({"y": [0.0]}, "one length"),
+        ({"fps": -1}, "fps"),
+        ({"fps": 5, "frame_step": 2}, "not both"),
+    ]:
+        with pytest.raises(ValueError, match=r".") as error:
+            ddl.Recording(**{**good, **change})
+        assert words in str(error.value)
+    with pytest.raises(FileNotFoundError, match="nowhere"):
+        ddl.read(tmp_path / "nowhere.csv")
+    bad = tmp_path / "bad.csv"
+    bad.write_text("frame,pedestrian,x,y\n0,1,2.0,3.0\n10,1,2.5,oops\n")
+    with pytest.raises(ValueError, match="line 3, field 4"):
+        ddl.read(bad)
+    with pytest.raises(ValueError, match="format must be one of"):
+        ddl.read(bad, format="excel")
+    fast = ddl.Recording(np.arange(20), np.ones(20, int), np.arange(20) * 40.0, np.zeros(20))
+    assert fast.doubt()
