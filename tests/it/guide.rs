@@ -21,7 +21,6 @@ pages! {
     the_first_page: "docs/index.md",
     start: "docs/start.md",
     own_data: "docs/own-data.md",
-    python_page: "docs/python.md",
     rust: "docs/rust.md",
     robots: "docs/robots.md",
     troubleshooting: "docs/troubleshooting.md",

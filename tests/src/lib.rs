@@ -30,7 +30,6 @@ pub mod place;
 pub mod processes;
 pub mod program;
 pub mod progress;
-pub mod python_packages;
 pub mod recordings;
 pub mod safetensors_file;
 pub mod skip;

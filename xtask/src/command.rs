@@ -10,6 +10,7 @@ mod fuzz;
 mod mutants;
 mod package;
 mod page;
+mod python;
 mod setup;
 mod test;
 
@@ -47,6 +48,8 @@ pub(crate) enum Command {
     Tidy,
     /// Check what comes in from outside, by deny.toml
     Deny,
+    /// Build the wheel of the Python package and test it in a virtual environment of its own
+    Python(python::Arguments),
     /// Pack the crates as for a registry, and check what is in the packages
     Package(package::Arguments),
     /// Everything that must hold before a change goes in: format, tidy, lints, docs, tests
@@ -68,6 +71,7 @@ impl Command {
             Self::Mutants(arguments) => arguments.run(workspace),
             Self::Tidy => tidy::run(workspace),
             Self::Deny => deny::run(workspace),
+            Self::Python(arguments) => arguments.run(workspace),
             Self::Package(arguments) => arguments.run(workspace),
             Self::Ci => ci::run(workspace),
         }

@@ -81,6 +81,15 @@ impl Workspace {
         command
     }
 
+    /// Another program at the workspace root, which calls cargo itself.
+    pub(crate) fn program(&self, path: &Path) -> Cmd<'_> {
+        let mut command = self.shell.cmd(path);
+        for name in variables_to_remove() {
+            command = command.env_remove(name);
+        }
+        command
+    }
+
     /// The same as [`Workspace::cargo`], for callers that need pipes.
     pub(crate) fn cargo_process(&self) -> Command {
         let mut command = Command::new(cargo_program());

@@ -4,7 +4,6 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 pub mod class;
-mod python;
 
 use crate::console::{self, Command};
 use crate::page_run::{Depth, PageFolder};
@@ -52,7 +51,6 @@ pub fn check_to(page: &str, depth: fn(&str, &Command) -> Depth) {
     }
     let faults = folder.run(&to_run);
     assert!(faults.is_empty(), "{page}\n{}", faults.join("\n"));
-    python::run(page, &text, &folder);
 }
 
 /// Packages, examples, benchmarks and tests that a call of cargo names exist.

@@ -3,11 +3,10 @@
 use std::env;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
 
-use super::{LIMIT, run_within};
+use crate::debian;
 use crate::workspace::find_on_path;
 
 const NAMES: [&str; 5] = [
@@ -31,10 +30,10 @@ pub(super) fn find_or_install() -> Result<PathBuf> {
     if let Some(found) = find() {
         return Ok(found);
     }
-    if find_on_path(OsStr::new("apt-get")).is_none() || !is_root() {
+    if !debian::can_install() {
         bail!("no browser to check pages with: {ADVICE}");
     }
-    install()?;
+    debian::install(&PACKAGES).context(ADVICE)?;
     find().with_context(|| {
         format!("apt-get installed no browser that is on the search path: {ADVICE}")
     })
@@ -47,31 +46,4 @@ fn named_one(named: &OsStr) -> Result<PathBuf> {
             Path::new(named).display()
         )
     })
-}
-
-fn is_root() -> bool {
-    let output = Command::new("id").arg("-u").output();
-    output.is_ok_and(|output| output.status.success() && output.stdout.trim_ascii() == b"0")
-}
-
-fn install() -> Result<()> {
-    eprintln!(
-        "no browser here: installing {} with apt-get, once",
-        PACKAGES.join(" and ")
-    );
-    let apt = |arguments: &[&str]| {
-        let mut command = Command::new("apt-get");
-        command
-            .args(["-q", "-o", "Acquire::Retries=3"])
-            .args(["-o", "DPkg::Lock::Timeout=120"])
-            .args(arguments)
-            .env("DEBIAN_FRONTEND", "noninteractive")
-            .stdin(Stdio::null())
-            .stdout(Stdio::from(std::io::stderr()));
-        run_within(&mut command, LIMIT)
-            .with_context(|| format!("`apt-get {}` failed; {ADVICE}", arguments.join(" ")))
-    };
-    apt(&["update"])?;
-    let install = ["install", "-y", "--no-install-recommends"];
-    apt(&[&install[..], &PACKAGES[..]].concat())
 }

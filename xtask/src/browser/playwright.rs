@@ -6,8 +6,9 @@ use std::process::Stdio;
 
 use anyhow::{Context, Result};
 
-use super::{LIMIT, run_within};
+use super::LIMIT;
 use crate::cache;
+use crate::process::run_within;
 use crate::python::{self, Python};
 
 const REQUIREMENT: &str = "playwright==1.65.2";

@@ -5,13 +5,13 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use ddl_data::Convention;
 
-use super::{benchmark, data, deny, docs, package, page, set_up, test};
+use super::{benchmark, data, deny, docs, package, page, python, set_up, test};
 use crate::tidy;
 use crate::workspace::{Workspace, step};
 
 type Check = (&'static str, fn(&Workspace) -> Result<()>);
 
-const CHECKS: [Check; 11] = [
+const CHECKS: [Check; 12] = [
     ("format", format),
     ("tidy", tidy::run),
     ("packages", package::check),
@@ -22,6 +22,7 @@ const CHECKS: [Check; 11] = [
     ("documentation site", docs::check),
     ("benchmark", benchmark::smoke),
     ("report page in a browser", page::check),
+    ("Python package", python::check),
     // Last, and the last to print: what a reader of the log looks for is the test results.
     ("tests", test::run_all),
 ];

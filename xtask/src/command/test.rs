@@ -80,7 +80,7 @@ fn cargo_test(workspace: &Workspace, selection: &[&str], rest: &[String]) -> Res
 }
 
 /// The folder of recordings, absolute, because every test runs in its own package's folder.
-fn recordings(workspace: &Workspace) -> Result<Option<PathBuf>> {
+pub(super) fn recordings(workspace: &Workspace) -> Result<Option<PathBuf>> {
     if let Some(folder) = env::var_os("DDL_DATASETS").filter(|value| !value.is_empty()) {
         return absolute(Path::new(&folder)).map(Some);
     }

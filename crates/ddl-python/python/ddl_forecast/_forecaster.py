@@ -122,7 +122,7 @@ class Forecaster:
         certificates: bool = False,
     ) -> list[Forecast]:
         """Forecast many scenes, each as :meth:`forecast` does, on all threads."""
-        others = [None] * len(pasts) if neighbours is None else list(neighbours)
+        others: list[ArrayLike | None] = [None] * len(pasts) if neighbours is None else list(neighbours)
         if len(others) != len(pasts):
             raise ValueError(f"{len(pasts)} scenes but neighbours of {len(others)}")
         scenes = [scene(past, other) for past, other in zip(pasts, others, strict=True)]

@@ -1,0 +1,67 @@
+"""Every example: of the docstrings, of the guide's pages, and the notebook."""
+
+import doctest
+import importlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+MODULES = ["ddl_forecast", "ddl_forecast._evaluation", "ddl_forecast._forecast", "ddl_forecast._forecaster", "ddl_forecast._live"]
+MODULES += ["ddl_forecast._recording", "ddl_forecast.baselines", "ddl_forecast.dynamics", "ddl_forecast.goals", "ddl_forecast.metrics"]
+MODULES += ["ddl_forecast.soft_dtw"]
+CHECKOUT = Path(__file__).resolve().parents[3]
+PAGES = ["docs/python.md", "docs/scale.md", "crates/ddl-python/README.md"]
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_docstrings(module):
+    result = doctest.testmod(importlib.import_module(module))
+    assert result.failed == 0 and (result.attempted > 0 or module == "ddl_forecast._forecast")
+
+
+def blocks(page):
+    text = (CHECKOUT / page).read_text()
+    return re.findall(r"```python\n(.*?)```", text, flags=re.S)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_pages(page, tracks, tmp_path, recordings):
+    """The blocks of a page run one after the other in a folder with tracks, and are typed."""
+    shutil.copy(tracks, tmp_path / "tracks.csv")
+    (tmp_path / "recordings").mkdir()
+    for part in range(2):
+        shutil.copy(tracks, tmp_path / "recordings" / f"day{part}.csv")
+    script = tmp_path / "page.py"
+    script.write_text("\n".join(blocks(page)))
+    environment = {**os.environ, "MPLBACKEND": "Agg", "RAYON_NUM_THREADS": "1", "PYTHONPATH": str(CHECKOUT / "crates/ddl-python/examples")}
+    ran = subprocess.run([sys.executable, script], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300, check=False)
+    assert ran.returncode == 0, ran.stderr
+    pictures = os.environ.get("DDL_PAGE_PICTURES")
+    if pictures:
+        for picture in tmp_path.glob("*.png"):
+            shutil.copy(picture, pictures)
+    strict = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--disable-error-code=import-untyped", "--allow-untyped-calls", script]
+    typed = subprocess.run(strict, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
+    assert typed.returncode == 0, typed.stdout
+
+
+def test_examples_are_typed():
+    examples = sorted((CHECKOUT / "crates/ddl-python/examples").glob("*.py"))
+    strict = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--disable-error-code=import-untyped", "--allow-untyped-calls", *examples]
+    typed = subprocess.run(strict, cwd=examples[0].parent, capture_output=True, text=True, timeout=300, check=False)
+    assert typed.returncode == 0, typed.stdout
+
+
+def test_the_notebook(tmp_path):
+    nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
+    notebook = nbformat.read(CHECKOUT / "crates/ddl-python/examples/gallery.ipynb", as_version=4)
+    assert not any(cell.get("outputs") for cell in notebook.cells), "clear the outputs before committing"
+    nbclient.NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    shown = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    assert sum("image/png" in output.get("data", {}) for output in shown) == 3
+    assert any("iframe" in output.get("data", {}).get("text/html", "") for output in shown)

@@ -1,0 +1,182 @@
+//! `cargo xtask python`: the wheel of the Python package, tested in a virtual environment of its own.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use clap::{Args, ValueEnum};
+use xshell::Cmd;
+
+use crate::debian;
+use crate::python::Python;
+use crate::workspace::{Workspace, absolute, program_on_path, step};
+
+/// What the environment of the tests has beside the wheel, in pinned versions.
+const REQUIREMENTS: &str = "crates/ddl-python/tests/requirements.txt";
+/// A wheel that is larger is not what `pip install` should fetch.
+const LARGEST: u64 = 12_000_000;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Folder for the wheel
+    #[arg(long, value_name = "DIR", default_value = "target/python")]
+    out: PathBuf,
+    /// How it is compiled; quick: in less time, for tests
+    #[arg(long, value_enum, default_value = "release")]
+    build: Build,
+    /// Only build it
+    #[arg(long)]
+    no_tests: bool,
+    /// Handed to pytest, as in `-- -k live`
+    #[arg(last = true)]
+    rest: Vec<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Build {
+    Release,
+    Quick,
+}
+
+impl Build {
+    fn profile(self) -> &'static str {
+        match self {
+            Self::Release => "wheel",
+            Self::Quick => "dev",
+        }
+    }
+}
+
+impl Arguments {
+    pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
+        let out = workspace.root().join(&self.out);
+        let environment = out.join("environment");
+        make_environment(workspace, &environment)?;
+        let wheel = build(workspace, &environment, &absolute(&out)?, self.build)?;
+        println!("{}", wheel.display());
+        if !self.no_tests {
+            test(workspace, &environment, &wheel, &self.rest)?;
+        }
+        Ok(())
+    }
+}
+
+/// The last but one step of `ci`.
+pub(super) fn check(workspace: &Workspace) -> Result<()> {
+    Arguments {
+        out: PathBuf::from("target/python"),
+        build: Build::Quick,
+        no_tests: false,
+        rest: Vec::new(),
+    }
+    .run(workspace)
+}
+
+/// A new virtual environment with what tests and building need.
+fn make_environment(workspace: &Workspace, folder: &Path) -> Result<()> {
+    let python = Python::with_pip()?;
+    if folder.exists() {
+        fs::remove_dir_all(folder)
+            .with_context(|| format!("{} cannot be removed", folder.display()))?;
+    }
+    let made = python.module("venv").arg(folder).status();
+    if !made.is_ok_and(|status| status.success()) {
+        bail!(
+            "no virtual environment could be made: install Python's venv, on Debian or Ubuntu with `apt install python3-venv`"
+        );
+    }
+    let pip = in_environment(workspace, folder, "pip")
+        .args(["install", "--quiet", "--disable-pip-version-check"])
+        .args(["--only-binary=:all:", "--requirement", REQUIREMENTS]);
+    step("pip install", &pip)
+}
+
+fn build(workspace: &Workspace, environment: &Path, out: &Path, how: Build) -> Result<PathBuf> {
+    let wheels = out.join("wheels");
+    if wheels.exists() {
+        fs::remove_dir_all(&wheels)
+            .with_context(|| format!("{} cannot be removed", wheels.display()))?;
+    }
+    let maturin = in_environment(workspace, environment, "maturin")
+        .args(["build", "--quiet", "--profile", how.profile()])
+        .args(["--manifest-path", "crates/ddl-python/Cargo.toml", "--out"])
+        .arg(&wheels)
+        .arg("--interpreter")
+        .arg(environment.join("bin/python"));
+    step("maturin build", &maturin)?;
+    let built = fs::read_dir(&wheels).context("maturin made no wheel")?;
+    let wheel = built
+        .filter_map(Result::ok)
+        .map(|entry| entry.path())
+        .find(|path| path.extension().is_some_and(|extension| extension == "whl"))
+        .context("maturin made no wheel")?;
+    let size = fs::metadata(&wheel)?.len();
+    if how == Build::Release && size > LARGEST {
+        bail!(
+            "{} has {size} bytes, more than {LARGEST}: find out what grew",
+            wheel.display()
+        );
+    }
+    Ok(wheel)
+}
+
+fn test(workspace: &Workspace, environment: &Path, wheel: &Path, rest: &[String]) -> Result<()> {
+    let install = in_environment(workspace, environment, "pip")
+        .args([
+            "install",
+            "--quiet",
+            "--disable-pip-version-check",
+            "--no-deps",
+            "--force-reinstall",
+        ])
+        .arg(wheel);
+    step("pip install of the wheel", &install)?;
+    bring_in_broker();
+    let tests = workspace.path("crates/ddl-python/tests");
+    let checks = [
+        ("mypy", vec!["-m", "mypy", "--strict", "-p", "ddl_forecast"]),
+        (
+            "stubtest",
+            vec!["-m", "mypy.stubtest", "ddl_forecast._core"],
+        ),
+    ];
+    for (name, arguments) in checks {
+        // not in a folder from which the package could be imported without being installed
+        let check = in_environment(workspace, environment, "python").args(arguments);
+        step(name, &check)?;
+    }
+    let mut pytest = in_environment(workspace, environment, "python")
+        .args(["-m", "pytest", "--quiet", "--durations", "5", "-c"])
+        .arg(workspace.path("crates/ddl-python/pyproject.toml"))
+        .arg(tests)
+        .args(rest)
+        .env("MPLBACKEND", "Agg");
+    // In CI the benchmark has just built it.
+    let program = workspace.path("target/release/ddl");
+    if std::env::var_os("CI").is_some() && program.is_file() {
+        pytest = pytest.env("DDL_PROGRAM", program);
+    }
+    if let Some(folder) = super::test::recordings(workspace)? {
+        pytest = pytest.env("DDL_DATASETS", folder);
+    }
+    step("pytest", &pytest)
+}
+
+/// The MQTT broker of a test, where that can be; the test says itself what it lacks, and fails in CI.
+fn bring_in_broker() {
+    if !program_on_path("mosquitto_sub".as_ref()) && debian::can_install() {
+        let installed = debian::install(&["mosquitto", "mosquitto-clients"]);
+        if let Err(error) = installed {
+            eprintln!("{error:#}");
+        }
+    }
+}
+
+/// A program of the environment, which sees what a plain cargo would see.
+fn in_environment<'a>(workspace: &'a Workspace, environment: &Path, program: &str) -> Cmd<'a> {
+    let path = environment.join("bin").join(program);
+    workspace
+        .program(&path)
+        .env("VIRTUAL_ENV", environment)
+        .env_remove("PYTHONPATH")
+}
