@@ -4,6 +4,7 @@
     reason = "the lanes stay in registers only when what works on them is inlined"
 )]
 
+use crate::exp2::{Lanes, STRIP};
 use crate::scalar::{Scalar, widened};
 
 /// Distance between two steps, the entries of the cost matrix Δ(x, y).
@@ -35,8 +36,17 @@ impl Cost {
 pub(crate) trait Metric: Copy {
     fn between<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> f64;
 
-    /// Derivative of the cost with respect to `a`; that with respect to `b` is its negative.
-    fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D];
+    /// The costs of several pairs of steps, component by component: each has the bits of [`between`](Self::between).
+    fn of_lanes<const D: usize>(self, a: &[Lanes; D], b: &[Lanes; D]) -> Lanes;
+
+    /// Derivative of each cost with respect to `a`; that with respect to `b` is its negative.
+    fn slopes<const D: usize>(self, a: &[Lanes; D], b: &[Lanes; D]) -> [Lanes; D];
+
+    /// The same for one pair.
+    fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D] {
+        let [a, b] = [a, b].map(|step| step.map(|component| [component; STRIP]));
+        self.slopes(&a, &b).map(|slopes| slopes[0])
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -56,12 +66,26 @@ impl Metric for Squared {
     }
 
     #[inline(always)]
-    fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D] {
-        let mut slope = [0.0; D];
+    fn of_lanes<const D: usize>(self, a: &[Lanes; D], b: &[Lanes; D]) -> Lanes {
+        let mut sums = [0.0; STRIP];
         for k in 0..D {
-            slope[k] = 2.0 * (a[k] - b[k]);
+            for l in 0..STRIP {
+                let difference = a[k][l] - b[k][l];
+                sums[l] += difference * difference;
+            }
         }
-        slope
+        sums
+    }
+
+    #[inline(always)]
+    fn slopes<const D: usize>(self, a: &[Lanes; D], b: &[Lanes; D]) -> [Lanes; D] {
+        let mut slopes = [[0.0; STRIP]; D];
+        for k in 0..D {
+            for l in 0..STRIP {
+                slopes[k][l] = 2.0 * (a[k][l] - b[k][l]);
+            }
+        }
+        slopes
     }
 }
 
@@ -69,26 +93,57 @@ impl Metric for Length {
     #[inline(always)]
     fn between<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> f64 {
         let squared = Squared.between(a, b);
-        // Squares overflow above 1e154 and lose digits below 1e-154: there the differences are scaled first.
-        if (1e-280..=1e280).contains(&squared) {
+        if is_plain(squared) {
             squared.sqrt()
         } else {
             scaled_length(a, b)
         }
     }
 
+    #[inline(always)]
+    fn of_lanes<const D: usize>(self, a: &[Lanes; D], b: &[Lanes; D]) -> Lanes {
+        let squared = Squared.of_lanes(a, b);
+        let mut lengths = [0.0; STRIP];
+        for l in 0..STRIP {
+            lengths[l] = squared[l].sqrt();
+        }
+        if !squared.iter().all(|&squared| is_plain(squared)) {
+            lengths = scaled_lengths(a, b, squared);
+        }
+        lengths
+    }
+
     /// At `a == b` there is no derivative; 0 is the subgradient of least norm.
     #[inline(always)]
-    fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D] {
-        let length = self.between(a, b);
-        let mut slope = [0.0; D];
-        if length > 0.0 {
-            for k in 0..D {
-                slope[k] = (a[k] - b[k]) / length;
+    fn slopes<const D: usize>(self, a: &[Lanes; D], b: &[Lanes; D]) -> [Lanes; D] {
+        let lengths = self.of_lanes(a, b);
+        let mut slopes = [[0.0; STRIP]; D];
+        for k in 0..D {
+            for l in 0..STRIP {
+                if lengths[l] > 0.0 {
+                    slopes[k][l] = (a[k][l] - b[k][l]) / lengths[l];
+                }
             }
         }
-        slope
+        slopes
     }
+}
+
+/// Squares overflow above 1e154 and lose digits below 1e-154: there the differences are scaled first.
+#[inline(always)]
+fn is_plain(squared: f64) -> bool {
+    (1e-280..=1e280).contains(&squared)
+}
+
+#[cold]
+fn scaled_lengths<const D: usize>(a: &[Lanes; D], b: &[Lanes; D], squared: Lanes) -> Lanes {
+    std::array::from_fn(|l| {
+        if is_plain(squared[l]) {
+            squared[l].sqrt()
+        } else {
+            scaled_length(&a.map(|lanes| lanes[l]), &b.map(|lanes| lanes[l]))
+        }
+    })
 }
 
 #[cold]
@@ -110,6 +165,7 @@ mod tests {
     #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
     use super::{Cost, Length, Metric};
+    use crate::exp2::STRIP;
 
     #[test]
     fn the_euclidean_cost_neither_overflows_nor_underflows() {
@@ -119,8 +175,10 @@ mod tests {
         }
         let smallest = f64::from_bits(1);
         assert_eq!(Cost::Euclidean.between(&[smallest], &[0.0]), smallest);
-        assert_eq!(Length.slope(&[smallest], &[0.0]), [1.0]);
-        assert_eq!(Length.slope(&[2.0, 3.0], &[2.0, 3.0]), [0.0, 0.0]);
+        let slopes = Length.slopes(&[[smallest; STRIP]], &[[0.0; STRIP]]);
+        assert_eq!(slopes, [[1.0; STRIP]]);
+        let step = [[2.0; STRIP], [3.0; STRIP]];
+        assert_eq!(Length.slopes(&step, &step), [[0.0; STRIP]; 2]);
         assert_eq!(Cost::Euclidean.between(&[1.0; 3], &[1.0; 3]), 0.0);
         assert_eq!(
             Cost::Euclidean.between(&[3.0e30_f32, 0.0], &[0.0, 4.0e30]),

@@ -5,8 +5,23 @@
 )]
 
 /// Cells computed together: neighbours on an antidiagonal, one a row.
-pub(crate) const STRIP: usize = 4;
+pub(crate) const STRIP: usize = 8;
 pub(crate) type Lanes = [f64; STRIP];
+
+/// The lanes moved down by one row, `top` above them.
+#[inline(always)]
+pub(crate) fn below<T: Copy>(lanes: &[T; STRIP], top: T) -> [T; STRIP] {
+    // Taken apart and put together, so that they are moved within registers.
+    let [a, b, c, d, e, f, g, _] = *lanes;
+    [top, a, b, c, d, e, f, g]
+}
+
+/// The lanes moved up by one row, `bottom` below them.
+#[inline(always)]
+pub(crate) fn above<T: Copy>(lanes: &[T; STRIP], bottom: T) -> [T; STRIP] {
+    let [_, b, c, d, e, f, g, h] = *lanes;
+    [b, c, d, e, f, g, h, bottom]
+}
 
 /// Adding and subtracting 1.5 · 2^52 rounds a number below 2^51 to an integer, which then sits in the low bits of the sum.
 pub(crate) const ROUNDING: f64 = 6_755_399_441_055_744.0;
@@ -49,14 +64,14 @@ pub(crate) fn exp2_minus(t: &Lanes) -> (Lanes, Lanes) {
 mod tests {
     #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
-    use super::exp2_minus;
+    use super::{STRIP, exp2_minus};
 
     #[test]
     fn it_is_exp2_to_two_units_of_roundoff() {
         let mut worst = 0.0_f64;
         for i in 0..400_000_u32 {
             let t = f64::from(i) * 1.234_567e-3;
-            let ([whole, ..], [power, ..]) = exp2_minus(&[t; 4]);
+            let ([whole, ..], [power, ..]) = exp2_minus(&[t; STRIP]);
             assert!(whole == whole.round() && (t - whole).abs() <= 0.5);
             // The library's own exp2 errs by up to half a unit in the last place more.
             worst = worst.max((power / (whole - t).exp2() - 1.0).abs());
@@ -67,7 +82,7 @@ mod tests {
     #[test]
     fn whole_numbers_are_exact_up_to_the_largest() {
         for t in [0.0, 1.0, 37.0, 2.0_f64.powi(51) - 1.0] {
-            assert_eq!(exp2_minus(&[t; 4]), ([t; 4], [1.0; 4]));
+            assert_eq!(exp2_minus(&[t; STRIP]), ([t; STRIP], [1.0; STRIP]));
         }
     }
 }

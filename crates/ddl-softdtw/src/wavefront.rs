@@ -1,4 +1,4 @@
-//! The recursion of soft-DTW in the exponential domain, four rows at a time along antidiagonals.
+//! The recursion of soft-DTW in the exponential domain, eight rows at a time along antidiagonals.
 //!
 //! With R(i, j) = exp(−r(i, j)/γ) the smoothed minimum is a sum,
 //!
@@ -18,26 +18,29 @@
 //! less than (D + 12) u (|v| + γ (n + m)).
 //!
 //! # Order
-//! Four consecutive rows (a strip) advance together, each one column behind the row above it: the cells of a step are
+//! Eight consecutive rows (a strip) advance together, each one column behind the row above it: the cells of a step are
 //! independent of each other. One row is kept between strips.
 #![expect(
     clippy::inline_always,
     reason = "the lanes stay in registers only when what works on them is inlined"
 )]
 
+use ddl_simd::{Dispatch, Register, RegisterKernel};
+
 use crate::cost::{Cost, Length, Metric, Squared};
 use crate::exp2::{Lanes, STRIP};
-use crate::grid::{Grid, Strip};
+use crate::grid::{Grid, Slanted, Strip};
 use crate::scalar::Scalar;
 use crate::weight::{Plain, Scaled, Weight};
 
 /// Exponents are exact integers while the whole parts of all t along a path sum to no more than this.
 const EXACT: f64 = 4_503_599_627_370_496.0; // 2^52
-/// Plain numbers suffice while all t along a path sum to no more than this: R is then at least 2^−700, and for sequences
-/// that fit on the stack it is at most 3^64 = 2^102.
+/// Plain numbers suffice while all t along a path sum to no more than this, and the path has at most so many cells: R is then from
+/// 2^−700 to 3^600 = 2^951.
 const PLAIN: f64 = 700.0;
+const LONGEST_PLAIN: f64 = 600.0;
 /// Entries of the working memory that fit on the stack.
-const SHORT: usize = 32;
+const SHORT: usize = 48;
 /// Significands are brought back to [1, 2) every so many columns and rows. Between two of these a path has at most 2 · 128
 /// cells, an antidiagonal each, and each multiplies the significand by 2^−1/2 to (1 + √2) √2 < 2^1.78: in all by
 /// 2^−128 to 2^456, which leaves room for addends that are 2^700 smaller.
@@ -47,9 +50,6 @@ const STRETCH: usize = 128;
 pub(crate) trait StepRecord {
     /// The addends of each cell, from (i−1, j−1), (i−1, j) and (i, j−1), and their sums.
     fn step(&mut self, addends: &[Lanes; 3], sums: &Lanes);
-
-    /// Forget every step: the recursion begins again.
-    fn restart(&mut self);
 }
 
 pub(crate) struct Forget;
@@ -57,49 +57,69 @@ pub(crate) struct Forget;
 impl StepRecord for Forget {
     #[inline(always)]
     fn step(&mut self, _: &[Lanes; 3], _: &Lanes) {}
+}
 
-    fn restart(&mut self) {}
+/// Compiled for each instruction set: the loops over lanes become vectors of its width. Every operation is rounded by itself, so that all
+/// give the same bits.
+struct Forwards<'a, 'b, T, const D: usize, R> {
+    grid: &'a Grid<'b, T, D>,
+    record: &'a mut R,
+}
+
+impl<T: Scalar, const D: usize, R: StepRecord> RegisterKernel for Forwards<'_, '_, T, D, R> {
+    type Output = Option<f64>;
+
+    #[inline(always)]
+    fn run<S: Register>(self, _: S) -> Option<f64> {
+        let columns = Slanted::of(self.grid.columns);
+        self.grid.value_here(&columns, self.record)
+    }
 }
 
 impl<T: Scalar, const D: usize> Grid<'_, T, D> {
     /// The soft-DTW value, or `None` where costs are so large against γ that the log domain must be used.
     pub(crate) fn value(&self, record: &mut impl StepRecord) -> Option<f64> {
+        let forwards = Forwards { grid: self, record };
+        Dispatch::detect().run_on_registers(forwards)
+    }
+
+    #[inline(always)]
+    pub(crate) fn value_here(
+        &self,
+        columns: &Slanted,
+        record: &mut impl StepRecord,
+    ) -> Option<f64> {
         let scale = std::f64::consts::LOG2_E / self.gamma;
         if !scale.is_finite() {
             return None;
         }
-        // Entry c + 3 is column c. A step reads entry d + 3 (column d) for its first lane and writes entry d (column d − 3)
-        // from its last; three entries before and after the columns take what the slanted ends of a strip read and write.
+        // Entry c + 7 is column c. A step reads entry d + 7 (column d) for its first lane and writes entry d (column d − 7)
+        // from its last; seven entries before and after the columns take what the slanted ends of a strip read and write.
         let length = self.columns.len() + 2 * (STRIP - 1);
         let path = (self.rows.len() + self.columns.len()) as f64;
-        let mut end = None;
-        if length <= SHORT && self.rows.len() <= SHORT {
-            let row = &mut [Plain::NONE_ONE; SHORT][..length];
-            end = self.run::<Plain>(scale, PLAIN / path, row, record);
-            if end.is_none() {
-                record.restart();
-            }
-        }
-        if end.is_none() {
+        let bound = self.cost_bound() * scale;
+        let end = if path <= LONGEST_PLAIN && bound * path <= PLAIN {
+            let mut short = [Plain::NONE_ONE; SHORT];
+            let mut long = Vec::new();
+            let row = row_of(&mut short, &mut long, length, Plain::NONE_ONE);
+            self.run::<Plain>(scale, PLAIN / path, columns, row, record)
+        } else {
             let mut short = [Scaled::NONE_ONE; SHORT];
             let mut long = Vec::new();
-            let row = if length <= SHORT {
-                &mut short[..length]
-            } else {
-                long.resize(length, Scaled::NONE_ONE);
-                &mut long
-            };
-            end = self.run::<Scaled<Lanes>>(scale, EXACT / path, row, record);
-        }
+            let row = row_of(&mut short, &mut long, length, Scaled::NONE_ONE);
+            self.run::<Scaled<Lanes>>(scale, EXACT / path, columns, row, record)
+        };
         let (significand, exponent) = end?;
         Some(-self.gamma * (exponent * std::f64::consts::LN_2 + significand.ln()))
     }
 
     /// R of the last cell as significand and exponent, or `None` when some t exceeds `limit`.
+    #[inline(always)]
     fn run<W: Weight>(
         &self,
         scale: f64,
         limit: f64,
+        columns: &Slanted,
         row: &mut [W::One],
         record: &mut impl StepRecord,
     ) -> Option<(f64, f64)> {
@@ -109,16 +129,23 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
             let t_max = &mut largest;
             match (self.cost, self.band) {
                 (Cost::SquaredEuclidean, None) => {
-                    self.advance::<W, _, false>(Squared, &strip, scale, row, t_max, record);
+                    advance::<W, _, D, false>(
+                        Squared,
+                        &strip,
+                        (scale, columns),
+                        row,
+                        t_max,
+                        record,
+                    );
                 }
                 (Cost::SquaredEuclidean, Some(_)) => {
-                    self.advance::<W, _, true>(Squared, &strip, scale, row, t_max, record);
+                    advance::<W, _, D, true>(Squared, &strip, (scale, columns), row, t_max, record);
                 }
                 (Cost::Euclidean, None) => {
-                    self.advance::<W, _, false>(Length, &strip, scale, row, t_max, record);
+                    advance::<W, _, D, false>(Length, &strip, (scale, columns), row, t_max, record);
                 }
                 (Cost::Euclidean, Some(_)) => {
-                    self.advance::<W, _, true>(Length, &strip, scale, row, t_max, record);
+                    advance::<W, _, D, true>(Length, &strip, (scale, columns), row, t_max, record);
                 }
             }
             if largest.iter().any(|&t| t > limit) {
@@ -132,62 +159,73 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         }
         Some(W::parts(row[self.columns.len() + STRIP - 2]))
     }
+}
 
-    /// One strip: `row` holds the row above it before, its last row after. `largest` takes the largest t of each lane.
-    #[inline(always)]
-    fn advance<W: Weight, M: Metric, const BANDED: bool>(
-        &self,
-        metric: M,
-        strip: &Strip<D>,
-        scale: f64,
-        row: &mut [W::One],
-        largest: &mut Lanes,
-        record: &mut impl StepRecord,
-    ) {
-        let (start, end) = (strip.start, strip.end);
-        let row = &mut row[..end + STRIP];
-        let mut cells = W::NONE;
-        let mut diagonal = match strip.corner {
-            Some(lane) => W::origin(lane),
-            None => W::NONE.below(row[start + STRIP - 2]),
-        };
-        let mut t_max = *largest;
-        let mut y = self.window(start);
-        let mut next = start;
-        while next <= end {
-            let stop = end.min(next | (STRETCH - 1));
-            for d in next..=stop {
-                if d > start {
-                    y = [self.column(d, 0), y[0], y[1], y[2]];
-                }
-                let mut t = [0.0; STRIP];
-                for l in 0..STRIP {
-                    t[l] = metric.between(&strip.x[l], &y[l]) * scale;
-                }
-                let up = cells.below(row[d + STRIP - 1]);
-                let (reached, (addends, sums)) = W::cells(&diagonal, &up, &cells, &t);
-                cells = reached;
-                if BANDED {
-                    let step = d as f64;
-                    let mut inside = [false; STRIP];
-                    for l in 0..STRIP {
-                        inside[l] = strip.first[l] <= step && step <= strip.last[l];
-                        t[l] = if inside[l] { t[l] } else { 0.0 };
-                    }
-                    cells = cells.within(inside);
-                }
-                for (t_max, t) in t_max.iter_mut().zip(t) {
-                    *t_max = if t > *t_max { t } else { *t_max };
-                }
-                record.step(&addends, &sums);
-                diagonal = up;
-                row[d] = cells.last();
+/// One strip: `row` holds the row above it before, its last row after. `largest` takes the largest t of each lane.
+#[inline(always)]
+fn advance<W: Weight, M: Metric, const D: usize, const BANDED: bool>(
+    metric: M,
+    strip: &Strip<D>,
+    (scale, columns): (f64, &Slanted),
+    row: &mut [W::One],
+    largest: &mut Lanes,
+    record: &mut impl StepRecord,
+) {
+    let (start, end) = (strip.start, strip.end);
+    let row = &mut row[..end + STRIP];
+    let mut cells = W::NONE;
+    let mut diagonal = match strip.corner {
+        Some(lane) => W::origin(lane),
+        None => W::NONE.below(row[start + STRIP - 2]),
+    };
+    let mut t_max = *largest;
+    let mut next = start;
+    while next <= end {
+        let stop = end.min(next | (STRETCH - 1));
+        for d in next..=stop {
+            let mut t = metric.of_lanes(&strip.x, &columns.window(d));
+            for t in &mut t {
+                *t *= scale;
             }
-            // The diagonal of the next step may stay as it is: the step after that takes its own from these.
-            cells = cells.normalised();
-            next = stop + 1;
+            let up = cells.below(row[d + STRIP - 1]);
+            let (reached, (addends, sums)) = W::cells(&diagonal, &up, &cells, &t);
+            cells = reached;
+            if BANDED {
+                let step = d as f64;
+                let mut inside = [false; STRIP];
+                for l in 0..STRIP {
+                    inside[l] = strip.first[l] <= step && step <= strip.last[l];
+                    t[l] = if inside[l] { t[l] } else { 0.0 };
+                }
+                cells = cells.within(inside);
+            }
+            for (t_max, t) in t_max.iter_mut().zip(t) {
+                *t_max = if t > *t_max { t } else { *t_max };
+            }
+            record.step(&addends, &sums);
+            diagonal = up;
+            row[d] = cells.last();
         }
-        *largest = t_max;
+        // The diagonal of the next step may stay as it is: the step after that takes its own from these.
+        cells = cells.normalised();
+        next = stop + 1;
+    }
+    *largest = t_max;
+}
+
+/// The working memory of so many entries: on the stack where it fits there.
+#[inline(always)]
+fn row_of<'a, One: Copy>(
+    short: &'a mut [One; SHORT],
+    long: &'a mut Vec<One>,
+    length: usize,
+    none: One,
+) -> &'a mut [One] {
+    if length <= SHORT {
+        &mut short[..length]
+    } else {
+        long.resize(length, none);
+        long
     }
 }
 
@@ -195,11 +233,13 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
 mod tests {
     use proptest::prelude::*;
 
-    use super::{EXACT, Forget, PLAIN, SHORT};
+    use ddl_simd::{Dispatch, InstructionSet};
+
+    use super::{EXACT, Forget, Forwards, PLAIN, SHORT};
     use crate::band::Band;
     use crate::cost::Cost;
     use crate::exp2::Lanes;
-    use crate::grid::Grid;
+    use crate::grid::{Grid, Slanted};
     use crate::weight::{Plain, Scaled, Weight};
 
     proptest! {
@@ -215,15 +255,36 @@ mod tests {
             let grid = Grid { rows: &x, columns: &y, gamma: 1.0, cost: Cost::SquaredEuclidean, band };
             let path = (x.len() + y.len()) as f64;
             let scale = 10.0_f64.powf(scale);
-            let plain = grid.run::<Plain>(scale, PLAIN / path, &mut [Plain::NONE_ONE; SHORT], &mut Forget);
+            let columns = Slanted::of(grid.columns);
+            let mut row = [Plain::NONE_ONE; SHORT];
+            let plain = grid.run::<Plain>(scale, PLAIN / path, &columns, &mut row, &mut Forget);
             let mut row = [Scaled::NONE_ONE; SHORT];
-            let scaled = grid.run::<Scaled<Lanes>>(scale, EXACT / path, &mut row, &mut Forget);
+            let scaled = grid.run::<Scaled<Lanes>>(scale, EXACT / path, &columns, &mut row, &mut Forget);
             let (significand, exponent) = scaled.expect("costs far below the limit");
             prop_assert!((1.0..2.0).contains(&significand));
             // The largest squared distance is 8: only where the plain kind cannot hold R it may refuse.
             prop_assert!(plain.is_some() || 8.0 * scale * path > PLAIN);
             if let Some(plain) = plain {
                 prop_assert_eq!(plain, (significand, exponent));
+            }
+        }
+
+        #[test]
+        fn every_instruction_set_gives_the_same_bits(
+            x in prop::collection::vec(prop::array::uniform3(-3.0..3.0_f64), 1..40),
+            y in prop::collection::vec(prop::array::uniform3(-3.0..3.0_f64), 1..40),
+            gamma in 0.01..10.0_f64, squared in any::<bool>(),
+        ) {
+            let cost = if squared { Cost::SquaredEuclidean } else { Cost::Euclidean };
+            let grid = Grid { rows: &x, columns: &y, gamma, cost, band: None };
+            let value = |set| {
+                let record = &mut Forget;
+                let forwards = Forwards { grid: &grid, record };
+                Dispatch::new(set).map(|dispatch| dispatch.run_on_registers(forwards))
+            };
+            let portable = value(InstructionSet::Portable);
+            for set in InstructionSet::available() {
+                prop_assert_eq!(value(set), portable);
             }
         }
     }

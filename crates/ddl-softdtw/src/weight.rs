@@ -4,7 +4,7 @@
     reason = "the lanes stay in registers only when what works on them is inlined"
 )]
 
-use crate::exp2::{Lanes, ROUNDING, STRIP, exp2_minus};
+use crate::exp2::{Lanes, ROUNDING, STRIP, below, exp2_minus};
 
 /// Exponent of a cell that no path reaches: far below every other, far from overflow.
 const NOTHING: f64 = -1_152_921_504_606_846_976.0; // −2^60
@@ -75,10 +75,9 @@ impl Weight for Scaled<Lanes> {
 
     #[inline(always)]
     fn below(&self, top: Scaled<f64>) -> Self {
-        let (s, e) = (&self.significand, &self.exponent);
         Self {
-            significand: [top.significand, s[0], s[1], s[2]],
-            exponent: [top.exponent, e[0], e[1], e[2]],
+            significand: below(&self.significand, top.significand),
+            exponent: below(&self.exponent, top.exponent),
         }
     }
 
@@ -175,7 +174,7 @@ impl Weight for Plain {
 
     #[inline(always)]
     fn below(&self, top: f64) -> Self {
-        Self([top, self.0[0], self.0[1], self.0[2]])
+        Self(below(&self.0, top))
     }
 
     #[inline(always)]
