@@ -17,11 +17,7 @@ use std::sync::Arc;
 macro_rules! in_dimension {
     ($components:expr, $D:ident => $body:expr) => {
         match $components {
-            1 => {
-                const $D: usize = 1;
-                $body
-            }
-            2 => {
+            1..=2 => {
                 const $D: usize = 2;
                 $body
             }
@@ -29,11 +25,15 @@ macro_rules! in_dimension {
                 const $D: usize = 4;
                 $body
             }
-            5..=16 => {
-                const $D: usize = 16;
+            5..=8 => {
+                const $D: usize = 8;
                 $body
             }
-            17..=128 => {
+            9..=32 => {
+                const $D: usize = 32;
+                $body
+            }
+            33..=128 => {
                 const $D: usize = 128;
                 $body
             }

@@ -26,7 +26,7 @@ def folder(tracks, tmp_path):
     made = tmp_path / "recordings"
     made.mkdir()
     for part in range(6):
-        (made / f"part{part}.csv").write_text("\n".join([header, *rows[: 400 + 150 * part]]) + "\n")
+        (made / f"part{part}.csv").write_text("\n".join([header, *rows[: 200 + 60 * part]]) + "\n")
     return made
 
 

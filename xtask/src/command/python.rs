@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use xshell::Cmd;
 
 use crate::debian;
@@ -21,9 +21,6 @@ pub(crate) struct Arguments {
     /// Folder for the wheel
     #[arg(long, value_name = "DIR", default_value = "target/python")]
     out: PathBuf,
-    /// How it is compiled; quick: in less time, for tests
-    #[arg(long, value_enum, default_value = "release")]
-    build: Build,
     /// Only build it
     #[arg(long)]
     no_tests: bool,
@@ -32,27 +29,12 @@ pub(crate) struct Arguments {
     rest: Vec<String>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Build {
-    Release,
-    Quick,
-}
-
-impl Build {
-    fn profile(self) -> &'static str {
-        match self {
-            Self::Release => "wheel",
-            Self::Quick => "dev",
-        }
-    }
-}
-
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let out = workspace.root().join(&self.out);
         let environment = out.join("environment");
         make_environment(workspace, &environment)?;
-        let wheel = build(workspace, &environment, &absolute(&out)?, self.build)?;
+        let wheel = build(workspace, &environment, &absolute(&out)?)?;
         println!("{}", wheel.display());
         if !self.no_tests {
             test(workspace, &environment, &wheel, &self.rest)?;
@@ -65,7 +47,6 @@ impl Arguments {
 pub(super) fn check(workspace: &Workspace) -> Result<()> {
     Arguments {
         out: PathBuf::from("target/python"),
-        build: Build::Quick,
         no_tests: false,
         rest: Vec::new(),
     }
@@ -91,14 +72,14 @@ fn make_environment(workspace: &Workspace, folder: &Path) -> Result<()> {
     step("pip install", &pip)
 }
 
-fn build(workspace: &Workspace, environment: &Path, out: &Path, how: Build) -> Result<PathBuf> {
+fn build(workspace: &Workspace, environment: &Path, out: &Path) -> Result<PathBuf> {
     let wheels = out.join("wheels");
     if wheels.exists() {
         fs::remove_dir_all(&wheels)
             .with_context(|| format!("{} cannot be removed", wheels.display()))?;
     }
     let maturin = in_environment(workspace, environment, "maturin")
-        .args(["build", "--quiet", "--profile", how.profile()])
+        .args(["build", "--quiet", "--profile", "wheel"])
         .args(["--manifest-path", "crates/ddl-python/Cargo.toml", "--out"])
         .arg(&wheels)
         .arg("--interpreter")
@@ -111,7 +92,7 @@ fn build(workspace: &Workspace, environment: &Path, out: &Path, how: Build) -> R
         .find(|path| path.extension().is_some_and(|extension| extension == "whl"))
         .context("maturin made no wheel")?;
     let size = fs::metadata(&wheel)?.len();
-    if how == Build::Release && size > LARGEST {
+    if size > LARGEST {
         bail!(
             "{} has {size} bytes, more than {LARGEST}: find out what grew",
             wheel.display()
