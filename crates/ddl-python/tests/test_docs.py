@@ -57,6 +57,14 @@ def test_examples_are_typed():
     assert typed.returncode == 0, typed.stdout
 
 
+def test_a_torch_model():
+    pytest.importorskip("torch")
+    program = [sys.executable, CHECKOUT / "crates/ddl-python/examples/own_model_torch.py", "simulated", "3"]
+    ran = subprocess.run(program, capture_output=True, text=True, timeout=600, check=False)
+    assert ran.returncode == 0, ran.stderr
+    assert "perceptron" in ran.stdout and float(ran.stdout.split()[-2].split("/")[0]) < 2
+
+
 def test_the_notebook(tmp_path):
     nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
     notebook = nbformat.read(CHECKOUT / "crates/ddl-python/examples/gallery.ipynb", as_version=4)

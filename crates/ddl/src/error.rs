@@ -10,8 +10,8 @@ pub enum DdlError {
     #[error(transparent)]
     Live(#[from] ddl_data::LiveError),
     #[error(
-        "the memory has {memory} raw frames in a step of 0.4 s, the tracks {camera}: use a memory that was made at this rate, or \
-         an empty one"
+        "the memory was made with {memory} frames in a step of 0.4 s ({} a second), these tracks have {camera} ({} a second): use a \
+         memory of this rate, or a new file", rate(*.memory), rate(*.camera)
     )]
     MemoryFrameStep { camera: i64, memory: i64 },
     #[error(transparent)]
@@ -84,6 +84,11 @@ pub enum DdlError {
     /// The caller asked to stop. Training has saved its steps; an evaluation starts anew.
     #[error("interrupted; what training has saved stays, and the same command goes on from there")]
     Interrupted,
+}
+
+/// Frames in a second, where so many make a step of 0.4 s.
+fn rate(frame_step: i64) -> f64 {
+    frame_step as f64 / ddl_data::TIME_STEP
 }
 
 /// What to keep where the validation part of so many recordings holds no window.
