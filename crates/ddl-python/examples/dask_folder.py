@@ -10,20 +10,10 @@ import os
 import sys
 from pathlib import Path
 
-import pandas as pd
 from dask.distributed import Client, LocalCluster, as_completed
+from forecast_file import forecast_file
 
 import ddl_forecast as ddl
-
-
-def forecast_file(path: str, out: str, forecaster: ddl.Forecaster) -> str:
-    """The forecasts of one recording as a csv table, with all digits."""
-    columns = forecaster.forecast_table(*(pd.read_csv(path)[name] for name in ("frame", "pedestrian", "x", "y")))
-    made = Path(out) / Path(path).name
-    hidden = made.with_name(f".{made.name}.{os.getpid()}")
-    pd.DataFrame(columns).to_csv(hidden, index=False)
-    hidden.replace(made)
-    return str(made)
 
 
 def forecast_folder(client: Client, folder: Path, out: Path, model: str = "hotel") -> list[str]:

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import ray
-from dask_folder import forecast_file
+from forecast_file import forecast_file
 
 import ddl_forecast as ddl
 

@@ -35,13 +35,13 @@ def test_dask_gives_the_bits_of_one_process_though_a_worker_dies(folder, tmp_pat
     monkeypatch.syspath_prepend(EXAMPLES)
     monkeypatch.setenv("PYTHONPATH", str(EXAMPLES))
     monkeypatch.setenv("RAYON_NUM_THREADS", "1")
-    import dask_folder
+    from forecast_file import forecast_file
 
     plain = tmp_path / "plain"
     plain.mkdir()
     forecaster = ddl.Forecaster()
     for path in sorted(folder.glob("*.csv")):
-        dask_folder.forecast_file(str(path), str(plain), forecaster)
+        forecast_file(str(path), str(plain), forecaster)
     out = tmp_path / "out"
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, distributed.Client(cluster) as client:
         victims = [worker["pid"] for worker in client.run(lambda: {"pid": os.getpid()}).values()]
@@ -59,11 +59,11 @@ def test_dask_gives_the_bits_of_one_process_though_a_worker_dies(folder, tmp_pat
 
 def slow_forecast(path, out, forecaster):
     """Long enough to be killed in the middle."""
-    import dask_folder
+    from forecast_file import forecast_file
 
     Path(out).mkdir(exist_ok=True)
     time.sleep(0.3)
-    return dask_folder.forecast_file(path, out, forecaster)
+    return forecast_file(path, out, forecaster)
 
 
 def free_port():
