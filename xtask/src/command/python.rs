@@ -13,13 +13,15 @@ use crate::workspace::{Workspace, absolute, program_on_path, step};
 
 /// What the environment of the tests has beside the wheel, in pinned versions.
 const REQUIREMENTS: &str = "crates/ddl-python/tests/requirements.txt";
+/// The virtual environment, beside the wheel.
+const ENVIRONMENT: &str = "environment";
 /// A wheel that is larger is not what `pip install` should fetch.
 const LARGEST: u64 = 12_000_000;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// Folder for the wheel
-    #[arg(long, value_name = "DIR", default_value = "target/python")]
+    #[arg(long, value_name = "DIR", default_value = FOLDER)]
     out: PathBuf,
     /// Only build it
     #[arg(long)]
@@ -29,28 +31,37 @@ pub(crate) struct Arguments {
     rest: Vec<String>,
 }
 
+/// Where the wheel and the environment of its tests lie, unless told otherwise.
+const FOLDER: &str = "target/python";
+
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
-        let out = workspace.root().join(&self.out);
-        let environment = out.join("environment");
-        make_environment(workspace, &environment)?;
-        let wheel = build(workspace, &environment, &absolute(&out)?)?;
+        let out = absolute(&workspace.root().join(&self.out))?;
+        let wheel = make(workspace, &out)?;
         println!("{}", wheel.display());
         if !self.no_tests {
-            test(workspace, &environment, &wheel, &self.rest)?;
+            test(workspace, &out, &wheel, &self.rest)?;
         }
         Ok(())
     }
 }
 
-/// The last but one step of `ci`.
-pub(super) fn check(workspace: &Workspace) -> Result<()> {
-    Arguments {
-        out: PathBuf::from("target/python"),
-        no_tests: false,
-        rest: Vec::new(),
-    }
-    .run(workspace)
+/// The first half of the check in `ci`.
+pub(super) fn build_wheel(workspace: &Workspace) -> Result<()> {
+    make(workspace, &workspace.path(FOLDER)).map(drop)
+}
+
+/// The second half: the tests of the wheel that the first has made.
+pub(super) fn test_built(workspace: &Workspace) -> Result<()> {
+    let out = workspace.path(FOLDER);
+    test(workspace, &out, &wheel_in(&out)?, &[])
+}
+
+/// The environment and the wheel.
+fn make(workspace: &Workspace, out: &Path) -> Result<PathBuf> {
+    let environment = out.join(ENVIRONMENT);
+    make_environment(workspace, &environment)?;
+    build(workspace, &environment, out)
 }
 
 /// A new virtual environment with what tests and building need.
@@ -85,12 +96,7 @@ fn build(workspace: &Workspace, environment: &Path, out: &Path) -> Result<PathBu
         .arg("--interpreter")
         .arg(environment.join("bin/python"));
     step("maturin build", &maturin)?;
-    let built = fs::read_dir(&wheels).context("maturin made no wheel")?;
-    let wheel = built
-        .filter_map(Result::ok)
-        .map(|entry| entry.path())
-        .find(|path| path.extension().is_some_and(|extension| extension == "whl"))
-        .context("maturin made no wheel")?;
+    let wheel = wheel_in(out)?;
     let size = fs::metadata(&wheel)?.len();
     if size > LARGEST {
         bail!(
@@ -101,7 +107,17 @@ fn build(workspace: &Workspace, environment: &Path, out: &Path) -> Result<PathBu
     Ok(wheel)
 }
 
-fn test(workspace: &Workspace, environment: &Path, wheel: &Path, rest: &[String]) -> Result<()> {
+fn wheel_in(out: &Path) -> Result<PathBuf> {
+    let built = fs::read_dir(out.join("wheels")).context("there is no wheel")?;
+    built
+        .filter_map(Result::ok)
+        .map(|entry| entry.path())
+        .find(|path| path.extension().is_some_and(|extension| extension == "whl"))
+        .context("there is no wheel")
+}
+
+fn test(workspace: &Workspace, out: &Path, wheel: &Path, rest: &[String]) -> Result<()> {
+    let environment = &out.join(ENVIRONMENT);
     let install = in_environment(workspace, environment, "pip")
         .args([
             "install",
@@ -133,7 +149,7 @@ fn test(workspace: &Workspace, environment: &Path, wheel: &Path, rest: &[String]
         .args(rest)
         .env("MPLBACKEND", "Agg");
     // In CI the benchmark has just built it.
-    let program = workspace.path("target/release/ddl");
+    let program = workspace.path("target/debug/ddl");
     if std::env::var_os("CI").is_some() && program.is_file() {
         pytest = pytest.env("DDL_PROGRAM", program);
     }
