@@ -142,23 +142,26 @@ fn what_cannot_be_kept_is_refused_at_once_and_nothing_is_overwritten() {
     for (options, words) in [
         (
             "--memory slow.memory",
-            "slow.memory: the memory has 1 raw frames",
+            "slow.memory: the memory was made with 1 frames",
         ),
         (
             "--memory damaged.memory",
             "damaged.memory is not a scene memory",
         ),
         ("--memory tracks.csv", "tracks.csv is not a scene memory"),
-        ("--memory folder", "cannot write folder"),
+        ("--memory folder", "folder: cannot write this file"),
         (
             "--memory nowhere/hall.memory",
-            "cannot write nowhere/hall.memory",
+            "nowhere/hall.memory: cannot write this file",
         ),
     ] {
         let finished = place.run_on(&input, &format!("{LINE} {options}"));
         let message = finished.fails();
         assert!(message.contains(words), "{options}: {message}");
     }
+    // The forecasts would be lost under the memory.
+    let same = place.run_on(&input, &format!("{LINE} {KEPT} --output hall.memory"));
+    assert!(same.fails().contains("name one file"));
     let after = ["slow.memory", "damaged.memory", "tracks.csv"].map(|file| place.read(file));
     assert!(before == after);
     place.all_fail(&[
@@ -173,6 +176,27 @@ fn what_cannot_be_kept_is_refused_at_once_and_nothing_is_overwritten() {
         finished.stderr.starts_with("error: damaged.memory"),
         "{finished:?}"
     );
+}
+
+/// A link leads to the file, also before it is there, and the lock is that of the file.
+#[cfg(unix)]
+#[test]
+fn a_link_is_followed() {
+    let place = Place::with_model();
+    std::os::unix::fs::symlink("hall.memory", place.at("link.memory")).unwrap();
+    let input = own_tracks::csv(&rows(0..60));
+    let finished = place.run_on(&input, &format!("{LINE} --memory link.memory"));
+    assert!(
+        finished.stderr.contains("link.memory remembers"),
+        "{finished:?}"
+    );
+    finished.succeeds();
+    assert!(
+        std::fs::symlink_metadata(place.at("link.memory"))
+            .unwrap()
+            .is_symlink()
+    );
+    assert!(!place.read("hall.memory").is_empty() && place.at("hall.memory.lock").is_file());
 }
 
 #[test]

@@ -10,7 +10,8 @@ import ddl_forecast as ddl
 
 def forecast_file(path: str, out: str, forecaster: ddl.Forecaster) -> str:
     """The forecasts of one recording as a csv table, with all digits."""
-    columns = forecaster.forecast_table(*(pd.read_csv(path)[name] for name in ("frame", "pedestrian", "x", "y")))
+    tracks = pd.read_csv(path, float_precision="round_trip")
+    columns = forecaster.forecast_table(tracks.frame, tracks.pedestrian, tracks.x, tracks.y)
     made = Path(out) / Path(path).name
     hidden = made.with_name(f".{made.name}.{os.getpid()}")
     pd.DataFrame(columns).to_csv(hidden, index=False)

@@ -41,7 +41,8 @@ class Forecaster:
     def __call__(self, past: Floats) -> Floats:
         with torch.no_grad():
             ahead = self.net(torch.tensor(np.diff(past, axis=1), dtype=torch.float32)).reshape(-1, 12, 2)
-        return past[:, -1:] + ahead.double().numpy()
+        path: Floats = past[:, -1:] + ahead.double().numpy()
+        return path
 
 
 if __name__ == "__main__":

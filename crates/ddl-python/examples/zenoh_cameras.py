@@ -11,6 +11,7 @@ camera must come in order.
 
 import argparse
 import json
+import sys
 import threading
 from pathlib import Path
 
@@ -34,7 +35,7 @@ class Cameras:
             seen = json.loads(payload)
             frame = seen["frame"]
             forecast = self.watch(name, seen["fps"]).observe(seen["frame"], seen["ids"], seen["xy"])
-        except (KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError, OverflowError, OSError) as error:
             return {"frame": frame, "error": f"{type(error).__name__}: {error}"}
         if forecast is None:
             return {"frame": frame, "ids": [], "paths": [], "weights": []}
@@ -52,8 +53,11 @@ class Cameras:
         return self.watches[name]
 
     def close(self) -> None:
-        for watch in self.watches.values():
-            watch.close()
+        for name, watch in self.watches.items():
+            try:
+                watch.close()
+            except OSError as error:
+                print(f"{name}: {error}", file=sys.stderr)
 
 
 def main() -> None:

@@ -1,7 +1,7 @@
 //! Forecasts that need no training.
 
 use crate::errors::of_any;
-use crate::forecasts::{Forecasted, parts};
+use crate::forecasts::{Forecasted, Nobody, parts};
 use crate::observed::{Observed, completion};
 use ddl::Forecaster;
 use ddl::data::Window;
@@ -27,7 +27,7 @@ pub(crate) fn baseline<'py>(
     goals: Option<PyReadonlyArray3<'py, f64>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let scene = Observed::new(&past, asked, completion(whole))?;
-    let forecaster: Box<dyn Forecaster> = match name {
+    let forecaster: Box<dyn Forecaster + Send + Sync> = match name {
         "constant_velocity" => Box::new(ConstantVelocity::last_step()),
         "mean_velocity" => Box::new(ConstantVelocity::mean_observed()),
         "angular_noise" => Box::new(ConstantVelocity::angular_noise(seed)),
@@ -46,7 +46,14 @@ pub(crate) fn baseline<'py>(
         .map(|window| forecaster.forecast(window));
     let forecast = forecast.transpose().map_err(|error| of_any(&error))?;
     let forecast = forecast.map(Forecasted::Plain);
-    parts(py, &scene, forecast.as_ref(), 1)
+    let goals = goals.map(|goals| goals.shape()[1]);
+    let many = if name == "angular_noise" { 20 } else { 1 };
+    let nobody = Nobody {
+        hypotheses: goals.unwrap_or(many),
+        goals: goals.is_some(),
+        ..Nobody::default()
+    };
+    parts(py, &scene, forecast.as_ref(), nobody)
 }
 
 /// The goals `(n, k, 2)` of those in the window, equally likely.

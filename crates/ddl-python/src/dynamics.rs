@@ -12,6 +12,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+/// Positions of one call, all paths together: a GB and a half.
+const MOST_POSITIONS: usize = 100_000_000;
+
 /// Without obstacles this is the free flow.
 type Avoiding = AvoidingFlow<f64, 2, MetricSchedule<f64, 2>, Vec<Ball<f64, 2>>>;
 
@@ -67,11 +70,15 @@ impl Flow {
         steps: usize,
     ) -> PyResult<Py<PyAny>> {
         let starts = points("start", &start)?;
-        let walk = |&start: &[f64; 2]| {
-            let path = rollout(&self.0, &StableEuler, start.into(), dt, steps);
-            path.map_err(wrong)
-        };
-        let paths: Vec<Vec<Vector2<f64>>> = starts.iter().map(walk).collect::<PyResult<_>>()?;
+        if steps.saturating_mul(starts.len()) > MOST_POSITIONS {
+            return Err(PyValueError::new_err(format!(
+                "{steps} steps from {} places are more than {MOST_POSITIONS} positions",
+                starts.len()
+            )));
+        }
+        let walk = |&start: &[f64; 2]| rollout(&self.0, &StableEuler, start.into(), dt, steps);
+        let paths = py.detach(|| starts.iter().map(walk).collect::<Result<Vec<_>, _>>());
+        let paths: Vec<Vec<Vector2<f64>>> = paths.map_err(wrong)?;
         let numbers = paths.iter().flatten().flat_map(|p| [p.x, p.y]).collect();
         array(py, numbers, [starts.len(), steps + 1, 2])
     }

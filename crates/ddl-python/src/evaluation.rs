@@ -2,8 +2,8 @@
 
 use crate::arrays::{Paths, array, forecast, numbers};
 use crate::errors::{of_any, raised};
-use crate::forecasts::names;
-use crate::interruptible::{Stop, run_telling};
+use crate::forecasts::{frame_number, names};
+use crate::interruptible::{Stop, run, run_telling};
 use crate::model::Model;
 use crate::recording::Recording;
 use ddl::data::{Convention, Dataset, HORIZON, OBSERVED, Window, WindowRule, locate};
@@ -62,7 +62,7 @@ pub(crate) fn windows<'py>(
     let windows = if let Some(recording) = recording {
         recording.tracks.windows(rule)
     } else {
-        let dataset = dataset(convention, folder).map_err(raised)?;
+        let dataset = run(py, move |_| dataset(convention, folder))?.map_err(raised)?;
         let fold = dataset.fold(fold).map_err(raised)?;
         match part {
             "test" => fold.test_windows(rule),
@@ -74,18 +74,18 @@ pub(crate) fn windows<'py>(
             }
         }
     };
-    windows
-        .iter()
-        .map(|window| window_parts(py, window))
-        .collect()
+    let parts = recording.map_or(1, |recording| recording.parts);
+    let all = windows.iter();
+    all.map(|window| window_parts(py, window, parts)).collect()
 }
 
-fn window_parts<'py>(py: Python<'py>, window: &Window) -> PyResult<Bound<'py, PyDict>> {
+fn window_parts<'py>(py: Python<'py>, window: &Window, parts: i64) -> PyResult<Bound<'py, PyDict>> {
     let n = window.len();
     let dict = PyDict::new(py);
     dict.set_item("recording", window.recording())?;
-    dict.set_item("frame", window.frames()[OBSERVED - 1])?;
-    dict.set_item("frame_step", window.frame_step())?;
+    let last = frame_number(py, window.frames()[OBSERVED - 1], parts)?;
+    dict.set_item("frame", last)?;
+    dict.set_item("frame_step", frame_number(py, window.frame_step(), parts)?)?;
     dict.set_item("ids", names(py, window)?)?;
     let past = (0..n).flat_map(|i| window.observed(i).to_vec()).collect();
     dict.set_item("past", array(py, numbers(past), [n, OBSERVED, 2])?)?;
@@ -102,7 +102,7 @@ pub(crate) struct TestSet {
     convention: Convention,
     rule: WindowRule,
     fold: String,
-    windows: Vec<Window>,
+    windows: Arc<Vec<Window>>,
     recordings: Vec<Recording>,
 }
 
@@ -111,6 +111,7 @@ impl TestSet {
     #[new]
     #[pyo3(signature = (convention, folder, fold, rule))]
     fn new(
+        py: Python<'_>,
         convention: &str,
         folder: Option<PathBuf>,
         fold: &str,
@@ -121,7 +122,7 @@ impl TestSet {
             Some(rule) => parsed(rule)?,
             None => convention.headline_rule(),
         };
-        let dataset = dataset(convention, folder).map_err(raised)?;
+        let dataset = run(py, move |_| dataset(convention, folder))?.map_err(raised)?;
         let fold_of = dataset.fold(fold).map_err(raised)?;
         let recordings = fold_of.test_recordings().iter().map(|tracks| Recording {
             tracks: Arc::new((*tracks).clone()),
@@ -131,7 +132,7 @@ impl TestSet {
             convention,
             rule,
             fold: fold.to_owned(),
-            windows: fold_of.test_windows(rule),
+            windows: Arc::new(fold_of.test_windows(rule)),
             recordings: recordings.collect(),
         })
     }
@@ -149,12 +150,35 @@ impl TestSet {
     fn observed<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
         let window = self.windows.get(index).map(Window::without_future);
         let window = window.ok_or_else(|| PyValueError::new_err("there is no such window"))?;
-        window_parts(py, &window)
+        window_parts(py, &window, 1)
+    }
+
+    /// Checks a forecast of a window: its shape, its numbers, and as many hypotheses as the protocol allows.
+    #[staticmethod]
+    fn check(
+        protocol: &str,
+        name: &str,
+        pedestrians: usize,
+        paths: Paths<'_>,
+        weights: Option<PyReadonlyArray2<'_, f64>>,
+        goals: Option<PyReadonlyArray3<'_, f64>>,
+    ) -> PyResult<()> {
+        let protocol: Protocol = parsed(protocol)?;
+        let made = forecast(&paths, weights.as_ref(), goals.as_ref())?;
+        if made.pedestrians() != pedestrians {
+            return Err(PyValueError::new_err(format!(
+                "{} pedestrians were forecast where {pedestrians} were given",
+                made.pedestrians()
+            )));
+        }
+        let admitted = protocol.admit(vec![made], name);
+        admitted.map(drop).map_err(|error| of_any(&error))
     }
 
     /// The scores of a forecast a window under a protocol, as a JSON object.
     fn score(
         &self,
+        py: Python<'_>,
         protocol: &str,
         name: &str,
         forecasts: Vec<(
@@ -179,8 +203,11 @@ impl TestSet {
         let made: Vec<ddl::Forecast> = made.collect::<PyResult<_>>()?;
         let admitted = protocol.admit(made, name).map_err(|error| of_any(&error))?;
         let conditions = Conditions::new(self.convention, self.rule, protocol, &self.fold, name);
-        let row = ResultRow::score(conditions, &self.windows, &admitted)
-            .map_err(|error| of_any(&error))?;
+        let windows = Arc::clone(&self.windows);
+        let row = run(py, move |_| {
+            ResultRow::score(conditions, &windows, &admitted)
+        })?;
+        let row = row.map_err(|error| of_any(&error))?;
         serde_json::to_string(&row).map_err(|error| of_any(&error))
     }
 }
@@ -231,11 +258,11 @@ pub(crate) fn evaluate_model(
 
 /// A report of rows, as markdown.
 #[pyfunction]
-pub(crate) fn report(title: &str, rows: Vec<String>) -> PyResult<String> {
+pub(crate) fn report(py: Python<'_>, title: &str, rows: Vec<String>) -> PyResult<String> {
     let rows = rows.iter().map(|row| serde_json::from_str(row));
     let rows: Vec<ResultRow> = rows
         .collect::<Result<_, _>>()
         .map_err(|error| of_any(&error))?;
     let report = Report::new(title, rows).map_err(|error| of_any(&error))?;
-    Ok(report.to_markdown())
+    run(py, move |_| report.to_markdown())
 }

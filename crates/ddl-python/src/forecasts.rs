@@ -5,13 +5,11 @@ use crate::errors::of_any;
 use crate::observed::Observed;
 use ddl::data::{HORIZON, OBSERVED, PedestrianId, PedestrianName, Window};
 use ddl::eval::RegionTable;
-use ddl::{CertifiedForecast, Forecast};
+use ddl::{Calibration, CertifiedForecast, Forecast};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::PathBuf;
 
 /// A forecast, with the evidence of its certificates where that was asked for.
@@ -30,20 +28,34 @@ impl Forecasted {
     }
 }
 
-/// A forecast of the pedestrians asked for, `hypotheses` each; NaN for those who could not be forecast.
+/// What a forecast has where nobody could be forecast: as much as if somebody could.
+#[derive(Debug, Clone, Copy, Default)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each says whether one field is there"
+)]
+pub(crate) struct Nobody {
+    pub(crate) hypotheses: usize,
+    pub(crate) goals: bool,
+    pub(crate) certified: bool,
+    pub(crate) regions: bool,
+    pub(crate) certificates: bool,
+}
+
+/// A forecast of the pedestrians asked for; NaN for those who could not be forecast.
 ///
-/// Keys and shapes are those of `ForecastParts` in `_core.pyi`.
+/// Keys and shapes are those of the fields of `Forecast` in `_forecast.py`.
 pub(crate) fn parts<'py>(
     py: Python<'py>,
     observed: &Observed,
     forecasted: Option<&Forecasted>,
-    hypotheses: usize,
+    nobody: Nobody,
 ) -> PyResult<Bound<'py, PyDict>> {
     let forecast = forecasted.map(Forecasted::forecast);
     let rows = &observed.rows;
     let (n, k) = (
         rows.len(),
-        forecast.map_or(hypotheses, Forecast::hypotheses),
+        forecast.map_or(nobody.hypotheses, Forecast::hypotheses),
     );
     let of_row = |row: &Option<usize>| Some((forecast?, (*row)?));
     let pairs = || {
@@ -74,7 +86,6 @@ pub(crate) fn parts<'py>(
         let familiarity = of_row(row).and_then(|(forecast, i)| forecast.familiarity(i));
         familiarity.unwrap_or(f64::NAN)
     });
-    let has = |of: fn(&Forecast) -> bool| forecast.is_none_or(of);
     let dict = PyDict::new(py);
     observed_rows(py, observed, &dict)?;
     dict.set_item(
@@ -82,19 +93,22 @@ pub(crate) fn parts<'py>(
         array(py, numbers(paths.collect()), [n, k, HORIZON, 2])?,
     )?;
     dict.set_item("weights", array(py, weights.collect(), [n, k])?)?;
-    let goals = if has(Forecast::has_goals) {
+    let goals = if forecast.map_or(nobody.goals, Forecast::has_goals) {
         Some(array(py, numbers(goals.collect()), [n, k, 2])?)
     } else {
         None
     };
     dict.set_item("goals", goals)?;
-    let certified = if has(Forecast::has_certificates) {
+    let certified = if forecast.map_or(nobody.certified, Forecast::has_certificates) {
         Some(array(py, certified.collect(), [n, k])?)
     } else {
         None
     };
     dict.set_item("certified", certified)?;
-    let table = forecast.and_then(Forecast::regions);
+    let table = match forecast {
+        Some(forecast) => forecast.regions(),
+        None => nobody.regions.then(|| &Calibration::fitted().regions),
+    };
     let spread = match table {
         Some(_) => Some(array(py, spread.collect(), [n, HORIZON])?),
         None => None,
@@ -103,7 +117,8 @@ pub(crate) fn parts<'py>(
     dict.set_item("familiarity", array(py, familiarity.collect(), [n])?)?;
     dict.set_item("region_table", table.map(json).transpose()?)?;
     let evidence = match forecasted {
-        Some(Forecasted::Certified(certified)) => Some(certificates(py, certified, rows)?),
+        Some(Forecasted::Certified(certified)) => Some(certificates(py, Some(certified), rows, k)?),
+        None if nobody.certificates => Some(certificates(py, None, rows, k)?),
         _ => None,
     };
     dict.set_item("certificates", evidence)?;
@@ -137,7 +152,7 @@ pub(crate) fn named_parts<'py>(
     frame_parts: i64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let observed = Observed::of_window(window.clone());
-    let dict = parts(py, &observed, Some(forecasted), 0)?;
+    let dict = parts(py, &observed, Some(forecasted), Nobody::default())?;
     dict.set_item("ids", names(py, window)?)?;
     let frames = window.frames();
     let ahead = (1..=HORIZON as i64).map(|t| frames[OBSERVED - 1] + t * window.frame_step());
@@ -173,15 +188,16 @@ pub(crate) fn names<'py>(py: Python<'py>, window: &Window) -> PyResult<Bound<'py
 
 fn certificates<'py>(
     py: Python<'py>,
-    certified: &CertifiedForecast,
+    certified: Option<&CertifiedForecast>,
     rows: &[Option<usize>],
+    k: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (n, k) = (rows.len(), certified.forecast.hypotheses());
+    let n = rows.len();
     let mut potentials = Vec::with_capacity(n * k * (HORIZON + 1));
     let [mut eigenvalues, mut margins, mut angles] = [const { Vec::new() }; 3];
     for row in rows {
         for k in 0..k {
-            let Some(i) = *row else {
+            let Some((certified, i)) = certified.zip(*row) else {
                 potentials.extend([f64::NAN; HORIZON + 1]);
                 for of in [&mut eigenvalues, &mut margins, &mut angles] {
                     of.push(f64::NAN);
@@ -273,8 +289,8 @@ pub(crate) fn write_forecasts(
         written.push(forecast(&paths, Some(&weights), goals.as_ref())?);
         windows.push(window);
     }
-    let file = File::create(&path)
-        .map_err(|source| crate::errors::raised(ddl::DdlError::Io { path, source }))?;
-    ddl::eval::external::write_forecasts(&windows, &written, BufWriter::new(file))
-        .map_err(|error| of_any(&error))
+    let mut text = Vec::new();
+    ddl::eval::external::write_forecasts(&windows, &written, &mut text)
+        .map_err(|error| of_any(&error))?;
+    ddl::write_atomically(&path, &text).map_err(crate::errors::raised)
 }

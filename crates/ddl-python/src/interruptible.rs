@@ -19,7 +19,15 @@ struct Pool {
     threads: Arc<ThreadPool>,
 }
 
-static POOL: Mutex<Option<Pool>> = Mutex::new(None);
+/// Who computes on a pool. A worker that waits for a part of its work takes up other work meanwhile: a live frame must not wait for a
+/// long call of another thread so.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum User {
+    Calls,
+    Live,
+}
+
+static POOLS: [Mutex<Option<Pool>>; 2] = [Mutex::new(None), Mutex::new(None)];
 
 /// Whether the caller of some work has gone.
 #[derive(Debug, Clone, Default)]
@@ -37,16 +45,33 @@ pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&Stop) -> T + Send + 'static,
 ) -> PyResult<T> {
-    run_telling(py, work, |_| Ok(()))
+    run_on(User::Calls, py, work, |_| Ok(()))
+}
+
+/// The same for live frames.
+pub(crate) fn run_live<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&Stop) -> T + Send + 'static,
+) -> PyResult<T> {
+    run_on(User::Live, py, work, |_| Ok(()))
 }
 
 /// The same; `tell` is called with Python's lock every 50 ms, and may end the call by an exception.
 pub(crate) fn run_telling<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&Stop) -> T + Send + 'static,
+    tell: impl FnMut(Python<'_>) -> PyResult<()>,
+) -> PyResult<T> {
+    run_on(User::Calls, py, work, tell)
+}
+
+fn run_on<T: Send + 'static>(
+    user: User,
+    py: Python<'_>,
+    work: impl FnOnce(&Stop) -> T + Send + 'static,
     mut tell: impl FnMut(Python<'_>) -> PyResult<()>,
 ) -> PyResult<T> {
-    let pool = pool(None)?;
+    let pool = pool(user, None)?;
     let (sender, mut receiver) = channel();
     let stop = Stop::default();
     let seen = stop.clone();
@@ -75,8 +100,10 @@ pub(crate) fn run_telling<T: Send + 'static>(
 }
 
 /// The pool of this process; with another number of threads, a new one.
-fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
-    let mut held = POOL.lock().unwrap_or_else(PoisonError::into_inner);
+fn pool(user: User, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
+    let mut held = POOLS[user as usize]
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner);
     let process = std::process::id();
     let wanted = threads.or(held.as_ref().map(|held| held.count));
     if let Some(held) = &*held
@@ -101,10 +128,22 @@ fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     Ok(pool)
 }
 
+/// Waits without Python's lock until `attempt` gives something; Ctrl-C ends the wait.
+pub(crate) fn wait_for<T>(py: Python<'_>, mut attempt: impl FnMut() -> Option<T>) -> PyResult<T> {
+    loop {
+        if let Some(found) = attempt() {
+            return Ok(found);
+        }
+        py.detach(|| std::thread::sleep(Duration::from_millis(1)));
+        py.check_signals()?;
+    }
+}
+
 #[pyfunction]
 pub(crate) fn set_num_threads(threads: usize) -> PyResult<()> {
     if threads == 0 {
         return Err(PyValueError::new_err("threads must be at least 1, found 0"));
     }
-    pool(Some(threads)).map(drop)
+    pool(User::Live, Some(threads))?;
+    pool(User::Calls, Some(threads)).map(drop)
 }

@@ -3,7 +3,7 @@
 use crate::arrays::points;
 use crate::errors::raised;
 use crate::forecasts::{Forecasted, named_parts};
-use crate::interruptible::run;
+use crate::interruptible::{run_live, wait_for};
 use crate::model::Model;
 use crate::observed::completion;
 use ddl::data::{PedestrianId, Position, Window, whole_frame_step};
@@ -15,10 +15,13 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 #[pyclass(frozen, module = "ddl_forecast._core")]
-pub(crate) struct Live(Arc<Mutex<Watching>>);
+pub(crate) struct Live(Slot);
+
+/// A watch, unless a call has taken it out: while that computes, no lock is held that another call could wait for.
+type Slot = Arc<Mutex<Option<Box<Watching>>>>;
 
 struct Watching {
     live: LiveForecaster<Arc<Ddl>>,
@@ -26,12 +29,15 @@ struct Watching {
     certificates: bool,
 }
 
+/// What a frame gave: a forecast, if anybody could be forecast, and why the memory could not be written, if it could not.
+type Answer = (Option<(Window, Forecasted)>, Option<String>);
+
 impl Watching {
     fn observe(
         &mut self,
         frame: i64,
         seen: Vec<(PedestrianId, Position)>,
-    ) -> Result<Option<(Window, Forecasted)>, DdlError> {
+    ) -> Result<Answer, DdlError> {
         let forecast = if self.certificates {
             let now = self.live.push_certified(frame, seen)?;
             now.map(|now| (now.window, Forecasted::Certified(now.forecast)))
@@ -39,13 +45,58 @@ impl Watching {
             let now = self.live.push(frame, seen)?;
             now.map(|now| (now.window, Forecasted::Plain(now.forecast)))
         };
+        let mut unwritten = None;
         if let (Some(file), Some(place)) = (&mut self.file, self.live.place())
             && file.is_due()
         {
-            file.write(place)?;
+            // The frame has been taken: its forecast must not be lost to a full disk.
+            unwritten = file.write(place).err().map(|error| error.to_string());
         }
-        Ok(forecast)
+        Ok((forecast, unwritten))
     }
+
+    /// Writes the memory; where that works, lets go of its file.
+    fn close(&mut self) -> Result<Option<String>, DdlError> {
+        self.live.end_trial();
+        let told = match (&mut self.file, self.live.place()) {
+            (Some(file), Some(place)) => file.end(place)?,
+            _ => None,
+        };
+        self.file = None;
+        Ok(told)
+    }
+}
+
+/// A watch that a call has taken out. It goes back when this is dropped, also after a panic and when the caller has gone.
+struct Turn {
+    slot: Slot,
+    watching: Option<Box<Watching>>,
+}
+
+impl Turn {
+    /// Waits for the watch, behind other calls.
+    fn take(py: Python<'_>, slot: &Slot) -> PyResult<Self> {
+        let watching = wait_for(py, || held(slot).take())?;
+        Ok(Self {
+            slot: Arc::clone(slot),
+            watching: Some(watching),
+        })
+    }
+
+    /// `None` never happens: the watch is there until this is dropped.
+    fn watching(&mut self) -> Option<&mut Watching> {
+        self.watching.as_deref_mut()
+    }
+}
+
+impl Drop for Turn {
+    fn drop(&mut self) {
+        *held(&self.slot) = self.watching.take();
+    }
+}
+
+fn held(slot: &Slot) -> MutexGuard<'_, Option<Box<Watching>>> {
+    slot.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[pymethods]
@@ -85,21 +136,22 @@ impl Live {
             live = live.remembering(memory).map_err(raised)?;
             file = Some(opened);
         }
-        Ok(Self(Arc::new(Mutex::new(Watching {
+        let watching = Watching {
             live,
             file,
             certificates,
-        }))))
+        };
+        Ok(Self(Arc::new(Mutex::new(Some(Box::new(watching))))))
     }
 
-    /// A forecast, or nothing while nobody has been seen often enough.
+    /// A forecast, or nothing while nobody has been seen often enough; and why the memory could not be written, if it could not.
     fn observe<'py>(
         &self,
         py: Python<'py>,
         frame: i64,
         ids: PyReadonlyArray1<'py, i64>,
         xy: PyReadonlyArray2<'py, f64>,
-    ) -> PyResult<Option<Bound<'py, PyDict>>> {
+    ) -> PyResult<(Option<Bound<'py, PyDict>>, Option<String>)> {
         let positions = points("xy", &xy)?;
         if ids.len() != positions.len() {
             return Err(PyValueError::new_err(format!(
@@ -110,50 +162,49 @@ impl Live {
         }
         let seen = ids.as_array().into_iter().map(|id| PedestrianId(*id));
         let seen: Vec<_> = seen.zip(positions).collect();
-        let watching = Arc::clone(&self.0);
-        let now = run(py, move |_| lock(&watching).observe(frame, seen))?;
-        let Some((window, forecast)) = now.map_err(raised)? else {
-            return Ok(None);
+        let mut turn = Turn::take(py, &self.0)?;
+        let now = run_live(py, move |_| {
+            let watching = turn.watching();
+            watching.map(|watching| watching.observe(frame, seen))
+        })?;
+        let Some((forecast, unwritten)) = now.transpose().map_err(raised)? else {
+            return Ok((None, None));
         };
-        named_parts(py, &window, &forecast, 1).map(Some)
+        let parts = forecast.map(|(window, forecast)| named_parts(py, &window, &forecast, 1));
+        Ok((parts.transpose()?, unwritten))
     }
 
     /// Forgets who is there; the memory stays.
-    fn clear(&self) {
-        lock(&self.0).live.clear();
+    fn clear(&self, py: Python<'_>) -> PyResult<()> {
+        let mut turn = Turn::take(py, &self.0)?;
+        if let Some(watching) = turn.watching() {
+            watching.live.clear();
+        }
+        Ok(())
     }
 
     /// Earlier stretches that are remembered; 0 without a memory.
-    fn remembered(&self) -> usize {
-        let watching = lock(&self.0);
-        watching.live.memory().map_or(0, SceneMemory::stretches)
+    fn remembered(&self, py: Python<'_>) -> PyResult<usize> {
+        let mut turn = Turn::take(py, &self.0)?;
+        let memory = turn.watching().and_then(|watching| watching.live.memory());
+        Ok(memory.map_or(0, SceneMemory::stretches))
     }
 
     /// Why the memory that was given is not used, if it is not.
-    fn refused(&self) -> Option<String> {
-        let watching = lock(&self.0);
-        watching.live.refused_memory().map(ToString::to_string)
+    fn refused(&self, py: Python<'_>) -> PyResult<Option<String>> {
+        let mut turn = Turn::take(py, &self.0)?;
+        let refused = turn
+            .watching()
+            .and_then(|watching| watching.live.refused_memory());
+        Ok(refused.map(ToString::to_string))
     }
 
     /// Writes the memory and lets go of its file; what is to be told, if anything.
     fn close(&self, py: Python<'_>) -> PyResult<Option<String>> {
-        let watching = Arc::clone(&self.0);
-        let told = run(py, move |_| {
-            let mut watching = lock(&watching);
-            let Some(mut file) = watching.file.take() else {
-                return Ok(None);
-            };
-            watching.live.end_trial();
-            match watching.live.place() {
-                Some(place) => file.end(place),
-                None => Ok(None),
-            }
+        let mut turn = Turn::take(py, &self.0)?;
+        let told = run_live(py, move |_| {
+            turn.watching().map_or(Ok(None), Watching::close)
         })?;
         told.map_err(raised)
     }
-}
-
-/// A forecaster is whole after every call, also after a panic.
-fn lock(watching: &Mutex<Watching>) -> std::sync::MutexGuard<'_, Watching> {
-    watching.lock().unwrap_or_else(PoisonError::into_inner)
 }

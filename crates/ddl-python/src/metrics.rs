@@ -2,6 +2,7 @@
 
 use crate::arrays::{Paths, array, forecast, tracks};
 use crate::errors::of_any;
+use crate::interruptible::run;
 use ddl::data::{HORIZON, OBSERVED, PedestrianId, Position, Window};
 use ddl::eval::metric::amd::DistributionErrors;
 use ddl::eval::metric::collision::{closest_approach, collides};
@@ -144,14 +145,17 @@ pub(crate) fn collisions(
             least.min(closest_approach(all[i], all[j]))
         })
     };
-    let collides = collides(&all, radius);
-    let nearest = (0..n).map(nearest).collect();
+    let (collides, nearest) = py.detach(|| {
+        let nearest: Vec<f64> = (0..n).map(nearest).collect();
+        (collides(&all, radius), nearest)
+    });
     Ok((array(py, collides, [n])?, array(py, nearest, [n])?))
 }
 
 /// All scores of some scenes together, as a JSON object.
 #[pyfunction]
 pub(crate) fn scores(
+    py: Python<'_>,
     paths: Vec<Paths<'_>>,
     truth: Vec<PyReadonlyArray3<'_, f64>>,
     past: Vec<PyReadonlyArray3<'_, f64>>,
@@ -170,7 +174,8 @@ pub(crate) fn scores(
         let (weights, goals) = (weights[index].as_ref(), goals[index].as_ref());
         forecasts.push(forecast(paths, weights, goals)?);
     }
-    let scores = Scores::evaluate(&windows, &forecasts).map_err(|error| of_any(&error))?;
+    let scores = run(py, move |_| Scores::evaluate(&windows, &forecasts))?;
+    let scores = scores.map_err(|error| of_any(&error))?;
     serde_json::to_string(&scores).map_err(|error| of_any(&error))
 }
 

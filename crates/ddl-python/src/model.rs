@@ -2,7 +2,7 @@
 
 use crate::arrays::{array, numbers};
 use crate::errors::{of_any, raised};
-use crate::forecasts::{Forecasted, named_parts, parts};
+use crate::forecasts::{Forecasted, Nobody, named_parts, parts};
 use crate::interruptible::{Stop, run};
 use crate::observed::{Observed, completion};
 use crate::recording::Recording;
@@ -90,7 +90,9 @@ impl Model {
     #[staticmethod]
     fn open(py: Python<'_>, name: PathBuf, clearance: Option<f64>) -> PyResult<Self> {
         let opened = run(py, move |_| {
-            let source = ModelSource::named(&name);
+            // A folder of that name does not stand in the way of a built-in model: `./hotel` names it.
+            let builtin = name.to_str().and_then(|name| name.parse().ok());
+            let source = builtin.map_or_else(|| ModelSource::at(&name), ModelSource::Builtin);
             let model = Ddl::open(&source, DeviceChoice::Cpu)?;
             match clearance {
                 None => Ok(model),
@@ -113,6 +115,13 @@ impl Model {
     #[getter]
     fn variant(&self) -> String {
         self.0.config().star.variant.to_string()
+    }
+
+    /// The convention and the fold that it was trained on.
+    #[getter]
+    fn trained_on(&self) -> (String, String) {
+        let data = &self.0.config().data;
+        (data.convention.to_string(), data.fold.clone())
     }
 
     #[getter]
@@ -138,9 +147,16 @@ impl Model {
             .collect::<PyResult<_>>()?;
         let windows: Vec<Window> = scenes.iter().filter_map(|of| of.window.clone()).collect();
         let mut forecasts = self.forecasts(py, manner, windows)?.into_iter();
+        let nobody = Nobody {
+            hypotheses: if samples == 1 { 1 } else { self.hypotheses() },
+            goals: self.0.config().star.variant.uses_goal(),
+            certified: self.0.config().star.variant.dynamics() || samples == 1,
+            regions: samples > 1,
+            certificates,
+        };
         let of_scene = |scene: &Observed| {
             let forecast = scene.window.is_some().then(|| forecasts.next()).flatten();
-            parts(py, scene, forecast.as_ref(), samples)
+            parts(py, scene, forecast.as_ref(), nobody)
         };
         scenes.iter().map(of_scene).collect()
     }
@@ -167,7 +183,7 @@ impl Model {
             .collect()
     }
 
-    /// Goals `(n, k, 2)` and weights `(n, k)`, and how familiar the motions are, `(n,)`; NaN for those who cannot be forecast.
+    /// Goals `(n, k, 2)` and weights `(n, k)`; NaN for those who cannot be forecast.
     fn goals(
         &self,
         py: Python<'_>,

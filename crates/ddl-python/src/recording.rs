@@ -4,8 +4,8 @@ use crate::arrays::array;
 use crate::errors::{of_any, raised};
 use crate::observed::completion;
 use ddl::data::{
-    Format, Homography, Observation, PedestrianId, PedestrianName, Recording as Tracks, Window,
-    read_recording, write_recording,
+    Format, Homography, Observation, PedestrianId, PedestrianName, Recording as Tracks,
+    RecordingError, Window, read_recording, write_recording,
 };
 use numpy::{PyReadonlyArray1, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -114,8 +114,14 @@ impl Recording {
                 position,
             ));
         }
-        let mut tracks =
-            Tracks::in_usual_step(name, observations).map_err(|error| of_any(&error))?;
+        let made = Tracks::in_usual_step(name, observations);
+        let mut tracks = made.map_err(|error| match (&error, &words) {
+            (RecordingError::Duplicate { pedestrian, frame }, Some(words)) => {
+                let word = words.get(pedestrian.0 as usize).map_or("", String::as_str);
+                PyValueError::new_err(format!("pedestrian {word:?} is in frame {frame} twice"))
+            }
+            _ => of_any(&error),
+        })?;
         if let Some(words) = words {
             let numbered = (0..)
                 .map(PedestrianId)
@@ -128,6 +134,7 @@ impl Recording {
     #[staticmethod]
     #[pyo3(signature = (path, *, format = None, fps = None, frame_step = None, homography = None))]
     fn read(
+        py: Python<'_>,
         path: PathBuf,
         format: Option<&str>,
         fps: Option<f64>,
@@ -143,7 +150,9 @@ impl Recording {
             })?;
             Format::guess(&path, &bytes)
         };
-        let mut tracks = read_recording(&path, format).map_err(raised)?;
+        let mut tracks = py
+            .detach(|| read_recording(&path, format))
+            .map_err(raised)?;
         if let Some(rows) = homography {
             let homography = Homography::new(rows).map_err(|error| of_any(&error))?;
             tracks = homography

@@ -107,6 +107,8 @@ fn distance(gamma: f64, cost: &str, band: Option<usize>) -> PyResult<SoftDtw> {
     })
 }
 
+/// Cells of a gradient, of 24 bytes each: 12 GB.
+const MOST_CELLS: usize = 500_000_000;
 /// Cells from which on the lock is left to other threads.
 const LONG: usize = 20_000;
 
@@ -132,7 +134,7 @@ fn unlocked<T: Send>(py: Python<'_>, cells: usize, work: impl Send + FnOnce() ->
 /// band
 ///     Steps that the two may be apart; None for all.
 /// normalised
-///     D(x, y) - (D(x, x) + D(y, y)) / 2, which is 0 for x = y and never negative.
+///     D(x, y) - (D(x, x) + D(y, y)) / 2, which is 0 for x = y.
 ///
 /// Raises
 /// ------
@@ -182,6 +184,14 @@ pub(crate) fn value_and_gradient(
         let x = steps::<D>(&x, components, "x")?;
         let y = steps::<D>(&y, components, "y")?;
         let (x, y) = (&*x, &*y);
+        if x.len().saturating_mul(y.len()) > MOST_CELLS {
+            return Err(PyValueError::new_err(format!(
+                "a gradient of {} x {} steps needs more memory than is asked for here ({MOST_CELLS} cells of 24 bytes); give a band, or take \
+                 fewer steps",
+                x.len(),
+                y.len()
+            )));
+        }
         let computed = unlocked(py, x.len() * y.len(), || {
             if normalised {
                 dtw.normalised_and_gradient(x, y)

@@ -30,8 +30,10 @@ def blocks(page):
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_pages(page, tracks, tmp_path, recordings):
+def test_pages(page, tracks, tmp_path, request):
     """The blocks of a page run one after the other in a folder with tracks, and are typed."""
+    if "evaluate(" in (CHECKOUT / page).read_text():
+        request.getfixturevalue("recordings")
     shutil.copy(tracks, tmp_path / "tracks.csv")
     (tmp_path / "recordings").mkdir()
     for part in range(2):

@@ -85,3 +85,45 @@ def test_a_forecaster_on_its_fold(recordings):
     results = ddl.evaluate(ddl.Forecaster("hotel"), protocols=["single"], progress=lambda *now: told.append(now))
     rows = [row for row in results.rows if row["conditions"]["window_rule"] == "published"]
     assert rows[0]["scores"]["min_ade"] < 0.25 and told
+
+
+def test_arrays_that_a_model_uses_again_change_nothing():
+    out = np.empty((500, 1, 12, 2))
+
+    def reusing(past):
+        out[: len(past)] = constant_velocity(past)
+        return out[: len(past)]
+
+    scores = [ddl.evaluate(way, convention="simulated", folds=["doorway"]).mean("min_fde") for way in (constant_velocity, reusing)]
+    assert scores[0] == scores[1]
+
+
+def test_wrong_arguments_are_found_at_once_and_models_are_told_apart():
+    calls = []
+
+    def model(past):
+        calls.append(1)
+        return constant_velocity(past)
+
+    for change, words in [
+        ({"protocols": ["fairr"]}, "protocols"),
+        ({"protocols": "fair"}, "protocols"),
+        ({"protocols": ["published"]}, "protocols"),
+        ({"folds": ["plaza", "nowhere"]}, "nowhere"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            ddl.evaluate(model, convention="simulated", **change)
+    assert not calls
+    with pytest.raises(ValueError, match="no model for the fold doorway"):
+        ddl.evaluate({"plaza": model}, convention="simulated", folds=["plaza", "doorway"])
+    with pytest.raises(ValueError, match="trained without star hotel"):
+        ddl.evaluate({"eth": ddl.Forecaster("hotel")})
+    with pytest.raises(ValueError, match="no fold 'hotel'|trained without"):
+        ddl.evaluate(ddl.Forecaster("hotel"), convention="simulated")
+    one = ddl.evaluate(constant_velocity, convention="simulated", folds=["plaza"], name="a")
+    two = ddl.evaluate(lambda past: 0 * constant_velocity(past), convention="simulated", folds=["plaza"], name="b")
+    with pytest.raises(ValueError, match="choose by name"):
+        (one + two).mean()
+    assert (one + two).mean(name="a") == one.mean() != (one + two).mean(name="b")
+    with pytest.raises(ValueError, match="no score"):
+        one.mean("goal_fde")

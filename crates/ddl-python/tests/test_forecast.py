@@ -1,7 +1,9 @@
 """Forecasts of arrays, recordings and live frames."""
 
+import itertools
 import json
 import pickle
+import threading
 
 import numpy as np
 import pytest
@@ -126,7 +128,7 @@ def test_tables_of_numpy_pandas_and_polars(forecaster, tracks, program, tmp_path
     pandas, polars = pytest.importorskip("pandas"), pytest.importorskip("polars")
     made = tmp_path / "made.csv"
     run(program, "forecast", tracks, "--output", made, check=True)
-    frame = pandas.read_csv(tracks)
+    frame = pandas.read_csv(tracks, float_precision="round_trip")  # otherwise the last digit differs
     columns = forecaster.forecast_table(frame.frame, frame.pedestrian, frame.x, frame.y)
     ours, theirs = pandas.DataFrame(columns), pandas.read_csv(made)
     assert len(ours) == len(theirs)
@@ -172,7 +174,8 @@ def test_live_refuses_what_is_wrong_and_goes_on(forecaster):
         ddl.Live(forecaster, fps=24)
     live = ddl.Live(forecaster, fps=2.5)
     for frame in range(7):
-        assert live.observe(frame, ["a", "b"], [[0.4 * frame, 0], [5, 0.4 * frame]]) is None or frame > 0
+        seen_often_enough = live.observe(frame, ["a", "b"], [[0.4 * frame, 0], [5, 0.4 * frame]]) is not None
+        assert seen_often_enough == (frame > 0)
     with pytest.raises(ValueError, match="after"):
         live.observe(3, ["a"], [[0, 0]])
     with pytest.raises(ValueError, match="finite"):
@@ -183,6 +186,84 @@ def test_live_refuses_what_is_wrong_and_goes_on(forecaster):
     assert forecast is not None and forecast.ids.tolist() == ["a", "b"]
     live.clear()
     assert live.observe(0, ["a"], [[0, 0]]) is None
+    with pytest.raises(ValueError, match=r"\(n, 2\)"):
+        live.observe(1, ["a", "b", "c"], [[0, 1, 2], [3, 4, 5]])
+    with pytest.raises(ValueError, match="neither"):
+        live.observe(1, [("a", 1)], [[0, 0]])
+    with pytest.raises(TypeError):
+        live.observe(1.5, ["a"], [[0, 0]])
+
+
+def test_numbers_and_words_are_different_pedestrians(forecaster):
+    live = ddl.Live(forecaster, fps=2.5)
+    for frame in range(10):
+        ids = [0, "ann"] if frame % 2 else ["ann", 0]
+        places = {0: [0.5 * frame, 0.0], "ann": [9 - 0.5 * frame, 4.0]}
+        forecast = live.observe(frame, ids, [places[one] for one in ids])
+    found = {one: forecast.past[i, -1].tolist() for i, one in enumerate(forecast.ids.tolist())}
+    assert found == {0: [4.5, 0.0], "ann": [4.5, 4.0]}
+    assert len(ddl.Live(forecaster, fps=2.5).observe(0, [], []) or []) == 0
+
+
+def test_words_of_those_who_have_gone_are_forgotten(forecaster, monkeypatch):
+    monkeypatch.setattr("ddl_forecast._live.MOST_WORDS", 20)
+    live = ddl.Live(forecaster, fps=2.5)
+    for frame in range(60):
+        forecast = live.observe(frame, ["stays", f"passes {frame}"], [[0.4 * frame, 0.0], [5.0, 5.0]])
+    assert len(live._words) <= 20 and forecast.ids.tolist() == ["stays"]
+
+
+def test_calls_of_several_threads_take_turns(forecaster, crossing, tmp_path):
+    """Also with a close in between, and with as many threads as there are."""
+    live = ddl.Live(forecaster, fps=2.5, memory=tmp_path / "turns.memory")
+    turn = itertools.count()
+    failed = []
+
+    def watch():
+        for _ in range(15):
+            try:
+                live.observe(next(turn), list(range(25)), crossing[:, 0] + 0.01)
+            except ValueError as error:  # another thread was faster with a later frame
+                if "after" not in str(error):
+                    failed.append(error)
+            assert live.remembered >= 0
+            live.close()
+
+    threads = [threading.Thread(target=watch) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(60)
+    assert not failed and not any(thread.is_alive() for thread in threads)
+
+
+def test_a_scene_of_nobody_has_all_fields(forecaster, crossing):
+    absent = np.full((2, 8, 2), np.nan)
+    some, nobody = forecaster.forecast(crossing[:2], certificates=True), forecaster.forecast(absent, certificates=True)
+    assert nobody.paths.shape == (2, 20, 12, 2) and np.isnan(nobody.regions(0.9)).all()
+    for name in ("paths", "weights", "goals", "certified", "spread", "familiarity"):
+        assert getattr(some, name).shape == getattr(nobody, name).shape, name
+    assert some.certificates.potentials.shape == nobody.certificates.potentials.shape
+    assert baselines.angular_noise(absent).paths.shape == (2, 20, 12, 2) and baselines.constant_velocity(absent).goals is None
+
+
+def test_forecasts_are_written_for_the_program(forecaster, tracks, tmp_path):
+    forecasts = forecaster.forecast_recording(ddl.read(tracks))
+    ddl.write_forecasts(tmp_path / "made.jsonl", forecasts)
+    lines = [json.loads(line) for line in (tmp_path / "made.jsonl").read_text().splitlines()]
+    assert len(lines) == sum(len(forecast) for forecast in forecasts)
+    assert lines[0]["hypotheses"][3]["positions"] == forecasts[0].paths[0, 3].tolist()
+    with pytest.raises(ValueError, match="numbered"):
+        ddl.write_forecasts(tmp_path / "made.jsonl", [forecaster.forecast(np.zeros((1, 8, 2)))])
+    assert len((tmp_path / "made.jsonl").read_text().splitlines()) == len(lines)
+
+
+def test_a_folder_named_like_a_builtin_model_is_not_in_the_way(tmp_path, monkeypatch, crossing):
+    (tmp_path / "hotel").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert pickle.loads(pickle.dumps(ddl.Forecaster())).forecast(crossing).valid.all()
+    with pytest.raises(ValueError, match="hotel"):
+        ddl.Forecaster("./hotel")
 
 
 def test_goals_and_baselines(forecaster, crossing):

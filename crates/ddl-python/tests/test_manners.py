@@ -1,10 +1,10 @@
 """How the package behaves: lock, threads, interruption, memory, forks, the console script, the import."""
 
 import os
-import pickle
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 
@@ -13,7 +13,7 @@ import pytest
 from conftest import run
 
 import ddl_forecast as ddl
-from ddl_forecast import soft_dtw
+from ddl_forecast import metrics, soft_dtw
 
 
 def crowd(count):
@@ -89,33 +89,72 @@ def test_ctrl_c_ends_a_long_call():
     program.stdout.close()
 
 
-def test_a_forked_child_forecasts(forecaster, crossing):
-    expected = forecaster.forecast(crossing).paths
+def test_a_forked_child_computes(forecaster, crossing):
+    """Everything that uses several threads, which a forked child does not have."""
+    truth = np.repeat(crossing[None, :, -1:], 2, axis=0)[:, :, 0][:, :, None] + np.zeros((2, 25, 12, 2))
+    paths = [truth[0][:, None], truth[1][:, None]]
+
+    def everything():
+        scores = metrics.scores(paths, list(truth), [crossing, crossing])
+        report = ddl.evaluate(lambda past: past[:, -1:, None] + np.zeros((len(past), 1, 12, 2)), convention="simulated", folds=["doorway"])
+        walks = [np.cumsum(crossing[i], axis=0) for i in range(25)]
+        nearest = soft_dtw.SearchIndex(walks).nearest(walks[0], 3)[1]
+        return f"{forecaster.forecast(crossing).paths.sum()} {scores['min_ade']} {report.to_markdown()} {nearest}"
+
+    expected = everything()
     read, write = os.pipe()
     child = os.fork()
     if child == 0:
-        os.write(write, pickle.dumps(forecaster.forecast(crossing).paths)[:1] + str(float(forecaster.forecast(crossing).paths.sum())).encode())
-        os._exit(0)
+        try:
+            signal.alarm(60)
+            with os.fdopen(write, "w") as answer:
+                answer.write(everything())
+        finally:
+            os._exit(0)
     os.close(write)
-    with os.fdopen(read, "rb") as answer:
+    with os.fdopen(read) as answer:
         text = answer.read()
     os.waitpid(child, 0)
-    assert float(text[1:]) == float(expected.sum())
+    assert text == expected
+
+
+def test_ctrl_c_while_a_frame_is_forecast_closes_the_watch():
+    """The memory is written by a `with` that an interrupt leaves, also on one thread."""
+    script = """
+import signal, sys, time, os, threading
+import numpy as np
+import ddl_forecast as ddl
+ddl.set_num_threads(int(sys.argv[2]))
+rng = np.random.default_rng(0)
+starts, steps = rng.uniform(0, 40, (900, 2)), rng.normal(0, .4, (900, 2))
+threading.Timer(6.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+try:
+    with ddl.Live(ddl.Forecaster(), fps=2.5, memory=sys.argv[1]) as live:
+        for frame in range(1000):
+            live.observe(frame, range(900), starts + frame * steps)
+except KeyboardInterrupt:
+    print("closed", os.path.exists(sys.argv[1]))
+"""
+    for threads in ("1", "2"):
+        with tempfile.TemporaryDirectory() as folder:
+            ran = run(sys.executable, "-c", script, f"{folder}/place.memory", threads)
+            assert ran.stdout.split() == ["closed", "True"], ran.stderr
 
 
 def test_contiguous_arrays_are_not_copied():
-    x = np.zeros((200_000, 2))
-    y = np.zeros((1, 2))
-    soft_dtw.value(x, y)
-    begin = time.perf_counter()
-    for _ in range(5):
-        soft_dtw.value(x, y)
-    plain = time.perf_counter() - begin
-    turned = np.asfortranarray(x)
-    begin = time.perf_counter()
-    for _ in range(5):
-        soft_dtw.value(turned, y)
-    assert plain < 1.5 * (time.perf_counter() - begin)
+    """A copy of the long one would be 64 MB more at the peak."""
+    script = """
+import re, sys
+import numpy as np
+from ddl_forecast import soft_dtw
+peak = lambda: int(re.search(r"VmHWM:\\s+(\\d+)", open("/proc/self/status").read())[1])
+x, y = np.ones((4_000_000, 2), order="F" if sys.argv[1] == "turned" else "C"), np.zeros((1, 2))
+before = peak()
+soft_dtw.value(x, y)
+print((peak() - before) // 1024)
+"""
+    plain, turned = (int(run(sys.executable, "-c", script, kind, check=True).stdout) for kind in ("plain", "turned"))
+    assert turned - plain > 50, (plain, turned)
 
 
 def test_the_import_is_quick():

@@ -35,6 +35,21 @@ def test_words_and_rates(tmp_path):
         whole.write(tmp_path / "words.txt", format="obsmat")
 
 
+def test_misaligned_and_strided_arrays_are_copied(tmp_path):
+    packet = b"....." + np.arange(4.0).tobytes()
+    x = np.frombuffer(packet, "<f8", offset=5)
+    recording = ddl.Recording([0, 1, 2, 3], [1, 1, 1, 1], x, np.arange(8.0)[::2])
+    assert recording.x.tolist() == [0, 1, 2, 3] and recording.y.tolist() == [0, 2, 4, 6]
+
+
+def test_windows_of_a_resampled_recording_have_its_frames():
+    frame = np.arange(0, 24 * 12)
+    recording = ddl.Recording(frame, np.ones(len(frame), int), frame / 24, np.zeros(len(frame)), fps=24)
+    window = ddl.windows(recording)[0]
+    assert window.frame_step == pytest.approx(9.6) and window.frame in recording.frame
+    assert np.allclose(window.past[0, -1, 0], window.frame / 24)
+
+
 def test_what_is_wrong_is_named(tmp_path):
     good = {"frame": [0, 1], "id": [1, 1], "x": [0.0, 0.5], "y": [0.0, 0.0]}
     for change, words in [
@@ -43,6 +58,13 @@ def test_what_is_wrong_is_named(tmp_path):
         ({"x": ["a", "b"]}, "column x"),
         ({"frame": [0, 0]}, "twice"),
         ({"y": [0.0]}, "one length"),
+        ({"id": ["a", None]}, "row 1, column id"),
+        ({"id": ["a", "a"], "frame": [0, 0]}, "in frame 0 twice"),
+        ({"id": [1.0, np.inf]}, "row 1, column id"),
+        ({"id": [True, False]}, "column id"),
+        ({"frame": [0, 2**60]}, "row 1, column frame"),
+        ({"x": np.ma.masked_equal([0.0, 1.0], 1.0)}, "masked"),
+        ({"x": [[0.0, 1.0]]}, "one dimension"),
         ({"fps": -1}, "fps"),
         ({"fps": 5, "frame_step": 2}, "not both"),
     ]:

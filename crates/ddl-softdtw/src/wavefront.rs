@@ -102,7 +102,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
             let mut short = [Plain::NONE_ONE; SHORT];
             let mut long = Vec::new();
             let row = row_of(&mut short, &mut long, length, Plain::NONE_ONE);
-            self.run::<Plain>(scale, PLAIN / path, columns, row, record)
+            self.run::<Plain>(scale, f64::INFINITY, columns, row, record)
         } else {
             let mut short = [Scaled::NONE_ONE; SHORT];
             let mut long = Vec::new();

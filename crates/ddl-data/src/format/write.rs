@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 
 use serde::Serialize;
-use serde_json::json;
 
 use super::kind::Format;
 use crate::error::DataError;
@@ -24,7 +23,7 @@ struct TrackFields {
 }
 
 /// The recording as a file of the format, in order of frames; [`parse_recording`](crate::parse_recording) gives the same positions to
-/// the last bit. The height and the velocities of [`Format::Obsmat`], which no reader of tracks takes, are written as 0.
+/// the last bit. How fast frames follow each other is not written. The height and the velocities of [`Format::Obsmat`], which no reader of tracks takes, are written as 0.
 ///
 /// # Errors
 /// [`DataError::Own`] where pedestrians are words, which [`Format::Table`] and [`Format::TrajNet`] alone can name.
@@ -64,10 +63,6 @@ pub fn write_recording(recording: &Recording, format: Format) -> Result<Vec<u8>,
             });
         }
         Format::TrajNet => {
-            if let Some(fps) = recording.rate() {
-                text += &json!({"scene": {"fps": fps}}).to_string();
-                text.push('\n');
-            }
             for seen in all {
                 let [x, y] = seen.position;
                 let track = TrackFields {

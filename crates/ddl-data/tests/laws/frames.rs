@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use ddl_data::{
     Convention, DataError, Format, Frame, FrameReader, Observation, PedestrianId, Position,
-    Recording, parse_recording,
+    Recording, parse_recording, write_recording,
 };
 use proptest::prelude::*;
 
@@ -42,6 +42,9 @@ fn check(recording: &Recording) {
     for format in Format::ALL {
         let text = written(&rows, format);
         let back = parse_recording(text.as_bytes(), "t", format).unwrap();
+        assert_eq!(back.observations(), recording.observations(), "{format}");
+        let ours = write_recording(recording, format).unwrap();
+        let back = parse_recording(&ours, "t", format).unwrap();
         assert_eq!(back.observations(), recording.observations(), "{format}");
         if format != Format::StarCsv {
             let text = written(recording.observations(), format);

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -10,10 +12,15 @@ Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 
+#: Whole numbers beyond it are not exact as float64.
+LARGEST = 2**53
+
+
 def floats(values: ArrayLike, dimensions: int, name: str, shape: str) -> Floats:
     """The values as float64 in C order; an error names the shape that is expected."""
+    unmasked(values, name)
     try:
-        array = np.ascontiguousarray(values, dtype=np.float64)
+        array = np.require(values, np.float64, ["C", "A"])
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name} must be an array of numbers of the shape {shape}: {error}") from None
     if array.ndim != dimensions:
@@ -27,33 +34,49 @@ def scene(past: ArrayLike, neighbours: ArrayLike | None) -> tuple[Floats, int]:
     if neighbours is None:
         return array, len(array)
     others = floats(neighbours, 3, "neighbours", "(m, 8, 2)")
-    if others.shape[1:] != array.shape[1:]:
-        raise ValueError(f"neighbours must have the shape (m, 8, 2); found {others.shape}")
+    for name, found in (("past", array), ("neighbours", others)):
+        if found.shape[1:] != (8, 2):
+            raise ValueError(f"{name} must have the shape (n, 8, 2); found {found.shape}")
     return np.concatenate([array, others]), len(array)
 
 
 def numbered(ids: ArrayLike) -> tuple[Integers, list[str] | None]:
     """Pedestrians as whole numbers, and the word that each number stands for; nothing where they are whole numbers already."""
-    array = np.asarray(ids)
-    if array.dtype.kind in "iu":
-        return np.ascontiguousarray(array, dtype=np.int64), None
-    if array.dtype.kind == "f":
+    array = column(ids, "id")
+    if array.dtype.kind in "iuf":
         return whole(array, "id"), None
-    words, coded = np.unique(array.astype(np.str_), return_inverse=True)
-    return np.ascontiguousarray(coded, dtype=np.int64).reshape(-1), words.tolist()
+    words = []
+    for row, value in enumerate(array.tolist()):
+        if isinstance(value, bool) or not isinstance(value, (str, int)):
+            raise ValueError(f"row {row}, column id: {value!r} is neither a whole number nor a word")
+        words.append(str(value))
+    known, coded = np.unique(np.array(words, dtype=np.str_), return_inverse=True)
+    return np.ascontiguousarray(coded, dtype=np.int64).reshape(-1), known.tolist()
 
 
 def whole(values: ArrayLike, name: str) -> Integers:
-    """Whole numbers, such as frames; fractions are refused."""
-    array = np.asarray(values)
-    if array.dtype.kind in "iu":
-        return np.ascontiguousarray(array, dtype=np.int64)
-    try:
-        numbers = np.asarray(array, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"column {name} must hold whole numbers: {error}") from None
-    wrong = np.flatnonzero(~(numbers == np.round(numbers)))
+    """Whole numbers below 2^53 in size, such as frames; fractions are refused."""
+    array = column(values, name)
+    if array.dtype.kind not in "iuf":
+        raise ValueError(f"column {name} must hold whole numbers; found {array.dtype}")
+    wrong = np.flatnonzero(~((np.abs(array.astype(np.float64)) < LARGEST) & (array == np.round(array))))
     if len(wrong):
         row = int(wrong[0])
-        raise ValueError(f"row {row}, column {name}: {numbers.flat[row]} is not a whole number; count frames: 0, 1, 2, and so on")
-    return np.ascontiguousarray(numbers, dtype=np.int64)
+        hint = "; count frames: 0, 1, 2, and so on" if name == "frame" else ""
+        raise ValueError(f"row {row}, column {name}: {array[row]} is not a whole number below 2^53 in size{hint}")
+    return np.require(array, np.int64, ["C", "A"])
+
+
+def column(values: ArrayLike, name: str) -> NDArray[Any]:
+    """An array of one dimension."""
+    unmasked(values, name)
+    array = np.asarray(values)
+    if array.ndim != 1:
+        raise ValueError(f"column {name} must have one dimension; found the shape {array.shape}")
+    return array
+
+
+def unmasked(values: ArrayLike, name: str) -> None:
+    """Refuses masked values, which would count as if they were not masked."""
+    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+        raise ValueError(f"{name} has masked values: leave these rows out, or fill past with NaN")

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Union
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ddl_forecast import _core
 from ddl_forecast._arrays import Floats, floats
@@ -36,10 +36,10 @@ class Window:
     future: Floats
     #: Who they are: whole numbers or words.
     ids: NDArray[Any]
-    #: Last observed frame.
-    frame: int
+    #: Last observed frame; between two frames where positions were taken there.
+    frame: float
     #: Frame numbers in 0.4 s.
-    frame_step: int
+    frame_step: float
     #: Name of the recording.
     recording: str
 
@@ -87,22 +87,35 @@ class Results:
         """Tables, one for each convention, window rule and protocol, with means over the folds."""
         return _core.report(title, self._rows)
 
-    def mean(self, score: str = "min_ade", *, protocol: str = "fair") -> float:
-        """Mean over folds of a score of the model's own rows under a protocol.
+    def mean(self, score: str = "min_ade", *, protocol: str = "fair", name: str | None = None, rule: str | None = None) -> float:
+        """Mean over folds of a score of one model under a protocol.
+
+        ``name`` and ``rule`` (as ``conditions["window_rule"]`` has it) choose among several models and window rules.
 
         Raises
         ------
         ValueError
-            There is no such row.
+            There is no such row, there are several for a fold, or a row has no such score.
         """
         values: dict[str, float] = {}
         for row in self.rows:
             conditions = row["conditions"]
-            if conditions["protocol"] == protocol:
-                values.setdefault(conditions["fold"], row["scores"][score])
+            if conditions["protocol"] != protocol:
+                continue
+            if name not in (None, conditions["forecaster"]) or rule not in (None, _words(conditions["window_rule"])):
+                continue
+            if conditions["fold"] in values:
+                raise ValueError(f"there are several rows of {conditions['fold']} under {protocol}; choose by name and rule: {self._choices(protocol)}")
+            if row["scores"].get(score) is None:
+                raise ValueError(f"the rows have no score {score!r}")
+            values[conditions["fold"]] = row["scores"][score]
         if not values:
-            raise ValueError(f"there is no row of the protocol {protocol!r}")
+            raise ValueError(f"there is no such row of the protocol {protocol!r}")
         return float(np.mean(list(values.values())))
+
+    def _choices(self, protocol: str) -> list[tuple[str, str]]:
+        of_protocol = [row["conditions"] for row in self.rows if row["conditions"]["protocol"] == protocol]
+        return sorted({(one["forecaster"], _words(one["window_rule"])) for one in of_protocol})
 
     def __add__(self, other: Results) -> Results:
         return Results([*self._rows, *other._rows])
@@ -112,6 +125,14 @@ class Results:
 
     def __repr__(self) -> str:
         return f"Results({len(self)} rows)"
+
+
+def _words(rule: Any) -> str:
+    """A window rule in a word, also one with a number."""
+    return rule if isinstance(rule, str) else "-".join(f"{name}-{number}" for name, of in rule.items() for number in of.values())
+
+
+PROTOCOLS = ("fair", "single", "online", "online-single")
 
 
 def evaluate(
@@ -140,7 +161,7 @@ def evaluate(
     protocols
         ``fair``: at most 20 hypotheses, the best is scored. ``single``: one forecast; of several hypotheses the one of least expected
         ADE. ``online``, ``online-single``: the function gets a second argument, a mapping of the columns frame, id, x and y of what was
-        seen in the same recording until then.
+        seen in the same recording up to the last observed frame, that of ``past[:, -1]``.
     convention, rule, data
         As for :func:`windows`.
     name
@@ -162,16 +183,29 @@ def evaluate(
     >>> round(results.mean("min_ade"), 3) > 0
     True
     """
-    if isinstance(model, Forecaster):
-        return _of_forecaster(model, protocols, data, progress)
+    if isinstance(protocols, str) or not set(protocols) <= set(PROTOCOLS):
+        raise ValueError(f"protocols must be a list of some of {', '.join(PROTOCOLS)}; found {protocols!r}")
     known = dict(_core.conventions())
     if convention not in known:
         raise ValueError(f"convention must be one of {', '.join(known)}; found {convention!r}")
-    asked = folds if folds is not None else [*model] if isinstance(model, Mapping) else known[convention]
+    if isinstance(model, Forecaster):
+        model = {model._core.trained_on[1]: model}
+    asked = list(folds) if folds is not None else [*model] if isinstance(model, Mapping) else known[convention]
+    for fold in asked:
+        if fold not in known[convention]:
+            raise ValueError(f"there is no fold {fold!r} in the convention {convention}; it has {', '.join(known[convention])}")
+        if isinstance(model, Mapping) and fold not in model:
+            raise ValueError(f"there is no model for the fold {fold}; there are some for {', '.join(model)}")
+        of_fold = model[fold] if isinstance(model, Mapping) else model
+        if isinstance(of_fold, Forecaster) and of_fold._core.trained_on != (convention, fold):
+            trained = " ".join(of_fold._core.trained_on)
+            raise ValueError(f"{of_fold!r} was trained without {trained}, and has seen what it would be measured on as {convention} {fold}")
     rows = Results([])
     for fold in asked:
         of_fold = model[fold] if isinstance(model, Mapping) else model
         if isinstance(of_fold, Forecaster):
+            if rule is not None:
+                raise ValueError("a Forecaster is measured under the rules of its convention's tables: leave rule out")
             rows += _of_forecaster(of_fold, protocols, data, progress)
             continue
         tests = _core.TestSet(convention, data, fold, rule)
@@ -195,22 +229,34 @@ def _measured(
         for index in range(len(tests)):
             window = tests.observed(index)
             earlier = (seen[window["recording"]].until(window["frame"]),) if watching else ()
-            made.append(_prediction(model(window["past"], *earlier), index, title))
+            count = len(window["past"])
+            made.append(_prediction(model(window["past"], *earlier), (protocol, name, count), f"window {index} of {title}"))
             told.update(index + 1, len(tests))
     return tests.score(protocol, name, made)
 
 
-def _prediction(made: Prediction, index: int, title: str) -> tuple[Floats, Floats | None, Floats | None]:
+def _prediction(
+    made: Prediction, asked: tuple[str, str, int], title: str
+) -> tuple[Floats, Floats | None, Floats | None]:
+    """A copy of what was returned, so that a model that uses its arrays again changes nothing that was forecast before."""
+    goals: Floats | None = None
+    weights: ArrayLike | None
     if isinstance(made, Forecast):
         if not made.valid.all():
-            raise ValueError(f"window {index} of {title}: some pedestrians were not forecast")
-        return made.paths, made.weights, made.goals
-    paths, weights = made if isinstance(made, tuple) else (made, None)
-    array = np.asarray(paths, dtype=np.float64)
+            raise ValueError(f"{title}: some pedestrians were not forecast")
+        paths, weights, goals = made.paths, made.weights, made.goals
+    else:
+        paths, weights = made if isinstance(made, tuple) else (made, None)
+    array = np.array(paths, dtype=np.float64)
     if array.ndim == 3:
         array = array[:, None]
-    given = None if weights is None else floats(weights, 2, "weights", "(n, k)")
-    return floats(array, 4, "paths", "(n, k, 12, 2)"), given, None
+    try:
+        array = floats(array, 4, "paths", "(n, k, 12, 2)")
+        given = None if weights is None else floats(weights, 2, "weights", "(n, k)").copy()
+        _core.TestSet.check(*asked, array, given, goals)
+    except ValueError as error:
+        raise ValueError(f"{title}: {error}") from None
+    return array, given, None if goals is None else goals.copy()
 
 
 class _Seen:

@@ -81,7 +81,7 @@ class Forecast:
         return cls(
             **parts,
             certificates=None if evidence is None else Certificates(**evidence),
-            ids=np.array(names),
+            ids=_ids(list(names)),
             frames=None if frames is None else np.array(frames),
             _region_table=table,
         )
@@ -134,6 +134,15 @@ class Forecast:
         return draw(self, ax, level)
 
 
+def _ids(names: list[Any]) -> NDArray[Any]:
+    """Numbers or words as an array of their kind, both together as objects."""
+    if len({isinstance(name, str) for name in names}) > 1:
+        mixed = np.empty(len(names), dtype=object)
+        mixed[:] = names
+        return mixed
+    return np.array(names) if names else np.empty(0, dtype=np.int64)
+
+
 def table(forecasts: Sequence[Forecast]) -> dict[str, NDArray[Any]]:
     """Columns of several forecasts together."""
     columns: dict[str, list[NDArray[Any]]] = {}
@@ -181,6 +190,8 @@ def write_forecasts(path: str | os.PathLike[str], forecasts: Sequence[Forecast])
     for forecast in forecasts:
         if forecast.frame is None or not forecast.recording or forecast.ids.dtype.kind not in "iu":
             raise ValueError("forecasts of recordings whose pedestrians are numbered can be written; these are of arrays or words")
+        if forecast.frame != int(forecast.frame):
+            raise ValueError(f"frame {forecast.frame} lies between two frames, because the recording was resampled; such forecasts cannot be written")
         keep = forecast.valid
         rows.append((
             forecast.recording,

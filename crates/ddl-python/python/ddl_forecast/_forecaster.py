@@ -25,7 +25,8 @@ class Forecaster:
     ----------
     model
         A built-in model: ``"hotel"`` (for new places), ``"eth"``, ``"univ"``, ``"zara1"`` or ``"zara2"``, each named by the scene of
-        ETH/UCY that it was trained without. Or a path: the folder of a training, or a packed model.
+        ETH/UCY that it was trained without. Or a path: the folder of a training, or a packed model (``./hotel`` for a folder of that
+        name).
     keep_clear
         Distance in metres, such as 0.4, that pedestrians keep from where the others most likely go; None to walk as if alone.
 
@@ -50,7 +51,8 @@ class Forecaster:
         names = _core.Model.builtin_names()
         if name not in names and not os.path.exists(name):
             raise FileNotFoundError(f"there is no model {name!r}: give a path, or the name of a built-in model ({', '.join(names)})")
-        self._name = os.path.abspath(name) if os.path.exists(name) else name
+        # A folder of that name does not stand in the way of a built-in model.
+        self._name = name if name in names else os.path.abspath(name)
         self._keep_clear = keep_clear
         self._core = _core.Model.open(self._name, keep_clear)
 

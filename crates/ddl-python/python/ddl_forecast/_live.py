@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import operator
 import os
+import threading
 import warnings
 from collections.abc import Hashable, Iterable
 from types import TracebackType
@@ -11,8 +13,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ddl_forecast import _core
+from ddl_forecast._arrays import Integers, floats
 from ddl_forecast._forecast import Forecast
 from ddl_forecast._forecaster import Forecaster
+
+
+#: What is known by a word is numbered from here on.
+FIRST_WORD = 2**52
+#: Words that are remembered: far more than anybody who may still be there.
+MOST_WORDS = 100_000
 
 
 class Live:
@@ -53,8 +62,10 @@ class Live:
         certificates: bool = False,
     ) -> None:
         self._core = _core.Live(forecaster._core, fps, memory, whole, certificates)
-        self._numbers: dict[Hashable, int] = {}
-        self._words: dict[int, Hashable] = {}
+        self._numbers: dict[str, int] = {}
+        self._words: dict[int, str] = {}
+        self._next = FIRST_WORD
+        self._turn = threading.Lock()
         self._told = False
 
     def observe(self, frame: int, ids: Iterable[Hashable], xy: ArrayLike) -> Forecast | None:
@@ -80,20 +91,41 @@ class Live:
             again without it.
         """
         people = list(ids)
-        numbers = np.array([self._number(one) for one in people], dtype=np.int64)
-        positions = np.ascontiguousarray(xy, dtype=np.float64).reshape(-1, 2)
-        parts = self._core.observe(int(frame), numbers, positions)
+        positions = np.empty((0, 2)) if len(people) == 0 and np.size(xy) == 0 else floats(xy, 2, "xy", "(n, 2)")
+        with self._turn:
+            numbers = np.array([self._number(one) for one in people], dtype=np.int64)
+            parts, unwritten = self._core.observe(operator.index(frame), numbers, positions)
+            self._forget(numbers)
+            words = self._words
+            names = None if parts is None else [words.get(one, one) for one in parts["ids"]]
         self._tell_refusal()
-        if parts is None:
-            return None
-        return Forecast._of(parts, [self._words.get(one, one) for one in parts["ids"]])
+        if unwritten is not None:
+            warnings.warn(f"the memory was not written and is tried again in a minute: {unwritten}", stacklevel=2)
+        return None if parts is None else Forecast._of(parts, names)
 
     def _number(self, one: Hashable) -> int:
-        if isinstance(one, (int, np.integer)) and not self._numbers:
-            return int(one)
-        number = self._numbers.setdefault(one, len(self._numbers))
-        self._words[number] = one
-        return number
+        """Numbers as they are, words from a place on where no tracker counts."""
+        if isinstance(one, (int, np.integer)) and not isinstance(one, bool):
+            number = int(one)
+            if abs(number) >= FIRST_WORD:
+                raise ValueError(f"the id {one} is not below 2^52 in size; give it as a word")
+            return number
+        if not isinstance(one, str):
+            raise ValueError(f"the id {one!r} is neither a whole number nor a word")
+        if one not in self._numbers:
+            self._numbers[one] = self._next
+            self._words[self._next] = one
+            self._next += 1
+        return self._numbers[one]
+
+    def _forget(self, seen: Integers) -> None:
+        """Words of pedestrians who have gone, so that a stream of days stays small: all but those of the last frames."""
+        if len(self._words) <= MOST_WORDS:
+            return
+        keep = {int(one) for one in seen}
+        for number in list(self._words)[: len(self._words) - MOST_WORDS // 2]:
+            if number not in keep:
+                del self._numbers[self._words.pop(number)]
 
     def _tell_refusal(self) -> None:
         why = None if self._told else self._core.refused()

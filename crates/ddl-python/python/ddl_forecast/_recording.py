@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ddl_forecast import _core
-from ddl_forecast._arrays import Floats, numbered, whole
+from ddl_forecast._arrays import Floats, column, numbered, whole
 
 #: Formats of files of tracks, by name.
 FORMATS = ("table", "trajnet", "social-gan", "star-csv", "obsmat")
@@ -102,7 +102,8 @@ class Recording:
     def write(self, path: str | os.PathLike[str], *, format: str = "table") -> None:
         """Write a file that :func:`read` takes back, position by position, in one of :data:`FORMATS`.
 
-        The file is there whole or not at all. Words as pedestrians can be written as ``table`` and ``trajnet``.
+        The file is there whole or not at all. Words as pedestrians can be written as ``table`` and ``trajnet``. No format keeps
+        ``fps``: give it to :func:`read` again.
         """
         self._core.write(path, format=format)
 
@@ -125,8 +126,9 @@ def _rebuilt(frame: Any, id: Any, x: Any, y: Any, step: int, name: str) -> Recor
 
 
 def _column(values: ArrayLike, name: str) -> Floats:
+    array = column(values, name)
     try:
-        return np.ascontiguousarray(values, dtype=np.float64).reshape(-1)
+        return np.require(array, np.float64, ["C", "A"])
     except (TypeError, ValueError) as error:
         raise ValueError(f"column {name} must hold numbers: {error}") from None
 

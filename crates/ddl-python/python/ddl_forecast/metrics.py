@@ -93,7 +93,7 @@ def miss(paths: ArrayLike, truth: ArrayLike, *, distance: float = 2.0) -> Flags:
 
 
 def kde_nll(paths: ArrayLike, truth: ArrayLike, weights: ArrayLike | None = None) -> Floats:
-    """(n,) negative log-likelihood of the truth under a kernel density of the hypotheses, nats, at least -20 a step."""
+    """(n,) negative log-likelihood of the truth under a kernel density of the hypotheses, nats; the log-likelihood of a step counts as -20 at least."""
     return _core.kde_nll(_paths(paths), _truth(truth), _weights(weights))
 
 
@@ -131,9 +131,9 @@ def closest_approach(paths: ArrayLike) -> Floats:
 
 
 def scores(
-    paths: ArrayLike | Sequence[ArrayLike],
-    truth: ArrayLike | Sequence[ArrayLike],
-    past: ArrayLike | Sequence[ArrayLike],
+    paths: Floats | Sequence[ArrayLike],
+    truth: Floats | Sequence[ArrayLike],
+    past: Floats | Sequence[ArrayLike],
     *,
     weights: ArrayLike | Sequence[ArrayLike] | None = None,
     goals: ArrayLike | Sequence[ArrayLike] | None = None,
@@ -142,7 +142,7 @@ def scores(
 
     ``past`` (n, 8, 2) tells kinds of motion apart. The keys are those of ``report.json``, the fields of `ddl_eval::Scores`.
     """
-    one = isinstance(paths, np.ndarray) and paths.ndim == 4
+    one = np.ndim(paths[0]) == 3 if len(paths) else False
 
     def each(values: Any) -> list[Any]:
         return [values] if one else list(values)

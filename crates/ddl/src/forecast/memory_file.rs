@@ -13,6 +13,8 @@ use std::time::{Duration, Instant};
 /// A file is never written over by a memory that is, or may be, of another place.
 #[derive(Debug)]
 pub struct MemoryFile {
+    /// As it was named.
+    named: PathBuf,
     path: PathBuf,
     written: Instant,
     _lock: RunLock,
@@ -27,12 +29,17 @@ impl MemoryFile {
     /// # Errors
     /// When it could not be written later, another process writes it, or it holds no whole memory.
     pub fn open(path: &Path) -> Result<(Self, Option<SceneMemory>), DdlError> {
-        let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        ensure_writable(&path).map_err(|error| DdlError::io(&path, error))?;
+        let named = path.to_owned();
+        let path = resolved(path);
+        ensure_writable(&path).map_err(|error| {
+            let problem = format!("cannot write this file: {error}");
+            DdlError::io(&named, std::io::Error::new(error.kind(), problem))
+        })?;
         let lock = RunLock::take_file(&path)?;
-        let read = path.exists().then(|| SceneMemory::read(&path));
+        let read = path.exists().then(|| SceneMemory::read(&named));
         let memory = read.transpose()?;
         let file = Self {
+            named,
             path,
             written: Instant::now(),
             _lock: lock,
@@ -40,9 +47,9 @@ impl MemoryFile {
         Ok((file, memory))
     }
 
-    /// Where it lies.
+    /// The file as it was named.
     pub fn path(&self) -> &Path {
-        &self.path
+        &self.named
     }
 
     /// Whether [`PAUSE`](Self::PAUSE) has passed since it was last written, or tried to be.
@@ -70,7 +77,7 @@ impl MemoryFile {
     /// As [`write`](Self::write).
     pub fn end(&mut self, place: &WatchedPlace) -> Result<Option<String>, DdlError> {
         self.write(place)?;
-        let path = self.path.display();
+        let path = self.named.display();
         if let Some(other) = place.refused() {
             return Ok(Some(format!(
                 "{path}: {other}; the file stays as it is, and what is seen now is not kept in it: give another file for this place"
@@ -81,6 +88,25 @@ impl MemoryFile {
                 "{path}: {tried} pedestrians were seen for 8 steps, too few to tell whether the memory is of this place; the file stays as it is"
             )
         }))
+    }
+}
+
+/// The file itself, wherever a link leads and whatever becomes the folder that the process works in; also where there is no file yet.
+fn resolved(path: &Path) -> PathBuf {
+    if let Ok(path) = path.canonicalize() {
+        return path;
+    }
+    let path = std::fs::read_link(path).map_or_else(
+        |_| path.to_owned(),
+        |target| path.parent().unwrap_or(Path::new("")).join(target),
+    );
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new(".")).canonicalize();
+    match (folder, path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => path,
     }
 }
 

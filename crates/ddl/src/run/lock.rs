@@ -30,8 +30,7 @@ impl RunLock {
     pub fn take_file(path: &Path) -> Result<Self, DdlError> {
         let mut beside = path.as_os_str().to_owned();
         beside.push(FILE);
-        let taken =
-            "another process writes this file; wait until it is done, or choose another one";
+        let taken = "another process writes this file, or a watch of this one that was not closed; wait until it is done, or choose another one";
         Self::take_by(Path::new(&beside), || DdlError::run(path, taken))
     }
 

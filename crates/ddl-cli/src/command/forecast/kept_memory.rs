@@ -165,7 +165,7 @@ impl Kept {
             }
             None if place.refused().is_none() && place.memory().last_frame().is_some() => {
                 tell(format_args!(
-                    "note: {} holds {} stretches of 3.2 s and more of this place",
+                    "note: {} remembers {} stretches, 8 s of one pedestrian each",
                     self.file.path().display(),
                     place.memory().stretches()
                 ));
