@@ -131,7 +131,10 @@ class Forecast:
         """Draw the scene with matplotlib: pasts, hypotheses by weight, goals; with ``level`` the region of that probability at the end."""
         from ddl_forecast._plot import draw
 
-        return draw(self, ax, level)
+        shown = self.valid
+        goals = None if self.goals is None else self.goals[shown]
+        radii = None if level is None else self.regions(level)[shown, :, -1]
+        return draw(ax, self.past[shown], self.paths[shown], self.weights[shown], goals, radii, level)
 
 
 def _ids(names: list[Any]) -> NDArray[Any]:
