@@ -118,7 +118,7 @@ def test_wrong_arguments_are_found_at_once_and_models_are_told_apart():
         ddl.evaluate({"plaza": model}, convention="simulated", folds=["plaza", "doorway"])
     with pytest.raises(ValueError, match="trained without star hotel"):
         ddl.evaluate({"eth": ddl.Forecaster("hotel")})
-    with pytest.raises(ValueError, match="no fold 'hotel'|trained without"):
+    with pytest.raises(ValueError, match="convention='star'"):
         ddl.evaluate(ddl.Forecaster("hotel"), convention="simulated")
     one = ddl.evaluate(constant_velocity, convention="simulated", folds=["plaza"], name="a")
     two = ddl.evaluate(lambda past: 0 * constant_velocity(past), convention="simulated", folds=["plaza"], name="b")

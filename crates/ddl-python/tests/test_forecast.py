@@ -4,6 +4,7 @@ import itertools
 import json
 import pickle
 import threading
+import warnings
 
 import numpy as np
 import pytest
@@ -277,3 +278,33 @@ def test_goals_and_baselines(forecaster, crossing):
     assert baselines.angular_noise(crossing, seed=3).paths.shape == (25, 20, 12, 2)
     for of in (baselines.mean_velocity, baselines.constant_acceleration, baselines.social_force):
         assert of(crossing).paths.shape == (25, 1, 12, 2)
+
+
+def test_what_looks_wrong_is_warned_of(forecaster, crossing, tracks, tmp_path):
+    """Pixels, a wrong rate, motions that no pedestrian makes: never without a word."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        forecaster.forecast_recording(ddl.read(tracks), last=True)
+    slow = ddl.Recording(np.arange(60), np.ones(60, int), np.arange(60) * 0.12, np.zeros(60))  # 10 frames a second, taken as 2.5
+    pixels = ddl.Recording(np.arange(20), np.ones(20, int), np.arange(20) * 40.0, np.zeros(20))
+    for recording in (slow, pixels):
+        for call in (forecaster.forecast_recording, forecaster.show):
+            with pytest.warns(ddl.DoubtWarning, match=r"recording: |unlike"):
+                call(recording)
+    with pytest.warns(ddl.DoubtWarning, match="positions metres"):
+        forecaster.forecast(crossing * 50)
+    with pytest.warns(ddl.DoubtWarning, match="told once") as told, ddl.Live(forecaster, fps=2.5) as live:
+        for frame in range(12):
+            live.observe(frame, [1], [[50.0 * frame, 0.0]])
+    assert len(told) == 1
+
+
+def test_wrong_kinds_of_arguments(forecaster, tracks, crossing):
+    for call in (forecaster.forecast_recording, forecaster.show):
+        with pytest.raises(TypeError, match="read"):
+            call(str(tracks))
+    with pytest.raises(TypeError, match="Forecaster"):
+        ddl.Live("hotel", fps=10)
+    with pytest.raises(ValueError, match=r"past\[None\]"):
+        forecaster.forecast(crossing[0])
+    assert repr(forecaster.forecast(crossing)) == "Forecast(25 pedestrians, 20 hypotheses)"

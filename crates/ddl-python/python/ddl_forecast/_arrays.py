@@ -30,6 +30,8 @@ def floats(values: ArrayLike, dimensions: int, name: str, shape: str) -> Floats:
 
 def scene(past: ArrayLike, neighbours: ArrayLike | None) -> tuple[Floats, int]:
     """Everybody of a scene, and how many of them are to be forecast: the first."""
+    if np.ndim(past) == 2 and np.shape(past)[-1:] == (2,):
+        raise ValueError(f"past must have the shape (n, 8, 2); found {np.shape(past)}: of one pedestrian, give past[None]")
     array = floats(past, 3, "past", "(n, 8, 2)")
     if neighbours is None:
         return array, len(array)
@@ -48,7 +50,7 @@ def numbered(ids: ArrayLike) -> tuple[Integers, list[str] | None]:
     words = []
     for row, value in enumerate(array.tolist()):
         if isinstance(value, bool) or not isinstance(value, (str, int)):
-            raise ValueError(f"row {row}, column id: {value!r} is neither a whole number nor a word")
+            raise ValueError(f"row {row}, column id: {value!r} is neither a whole number nor a word (rows are counted from 0)")
         words.append(str(value))
     known, coded = np.unique(np.array(words, dtype=np.str_), return_inverse=True)
     return np.ascontiguousarray(coded, dtype=np.int64).reshape(-1), known.tolist()
@@ -58,11 +60,12 @@ def whole(values: ArrayLike, name: str) -> Integers:
     """Whole numbers below 2^53 in size, such as frames; fractions are refused."""
     array = column(values, name)
     if array.dtype.kind not in "iuf":
-        raise ValueError(f"column {name} must hold whole numbers; found {array.dtype}")
+        raise ValueError(f"column {name} must hold whole numbers; found the type {array.dtype} (text? convert it by astype(int))")
     wrong = np.flatnonzero(~((np.abs(array.astype(np.float64)) < LARGEST) & (array == np.round(array))))
     if len(wrong):
         row = int(wrong[0])
-        hint = "; count frames: 0, 1, 2, and so on" if name == "frame" else ""
+        missing = "; leave rows without it out" if np.isnan(array[row]) else ""
+        hint = missing or ("; count frames: 0, 1, 2, and so on" if name == "frame" else "")
         raise ValueError(f"row {row}, column {name}: {array[row]} is not a whole number below 2^53 in size{hint}")
     return np.require(array, np.int64, ["C", "A"])
 

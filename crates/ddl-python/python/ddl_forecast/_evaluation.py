@@ -28,7 +28,21 @@ Progress = Callable[[int, int], Any]
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """20 steps of 0.4 s, with the pedestrians who are there at each of them."""
+    """20 steps of 0.4 s, with the pedestrians who are there at each of them.
+
+    Attributes
+    ----------
+    past : (n, 8, 2)
+        Metres.
+    future : (n, 12, 2)
+        Metres.
+    ids : (n,)
+        Who they are: whole numbers or words.
+    frame, frame_step
+        Last observed frame, and frame numbers in 0.4 s.
+    recording : str
+        Name of the recording.
+    """
 
     #: (n, 8, 2) metres.
     past: Floats
@@ -189,7 +203,10 @@ def evaluate(
     if convention not in known:
         raise ValueError(f"convention must be one of {', '.join(known)}; found {convention!r}")
     if isinstance(model, Forecaster):
-        model = {model._core.trained_on[1]: model}
+        of, fold = model._core.trained_on
+        if of != convention:
+            raise ValueError(f"{model!r} was trained without {of} {fold}; it is measured on that: convention={of!r}")
+        model = {fold: model}
     asked = list(folds) if folds is not None else [*model] if isinstance(model, Mapping) else known[convention]
     for fold in asked:
         if fold not in known[convention]:

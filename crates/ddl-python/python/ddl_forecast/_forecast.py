@@ -34,11 +34,43 @@ class Certificates:
     largest_angle: Floats
 
 
-@dataclass(frozen=True, eq=False)
+class DoubtWarning(UserWarning):
+    """Something looks wrong with what is forecast from: a unit, a frame rate, or motions unlike those of the training."""
+
+
+#: Forecasts of motions less familiar than this are doubtful.
+UNFAMILIAR = 0.01
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Forecast:
     """k weighted hypotheses of the next 4.8 s for each of n pedestrians.
 
-    Rows of pedestrians who cannot be forecast, because they were not seen in the last frame or only once, are NaN; ``valid`` tells them.
+    Rows of pedestrians who cannot be forecast are NaN; ``valid`` tells them: they were not seen in the last frame, or only once since
+    the last hole of more than 2 steps.
+
+    Attributes
+    ----------
+    paths : (n, k, 12, 2)
+        Positions, metres, 0.4 s apart; the first is 0.4 s after the last observation.
+    weights : (n, k)
+        Probability of each hypothesis; they sum to 1.
+    goals : (n, k, 2) or None
+        Where each hypothesis heads, metres.
+    familiarity : (n,)
+        How much the observed motion is like those of the training, 0 to 1; below 0.01 a forecast is doubtful.
+    certified : (n, k) or None
+        Whether each hypothesis provably comes nearer to its goal at each step.
+    spread : (n, 12) or None
+        Standard deviation about the right hypothesis, metres.
+    past : (n, 8, 2)
+        What was forecast from, holes filled and late beginnings padded, metres.
+    made_up : (n, 2)
+        How many of the 8 positions were not seen: before the first that counts, and in holes.
+    certificates : Certificates or None
+        The evidence, where ``certificates=True`` asked for it.
+    ids, frame, frames, recording
+        Who, the last observed frame, the 12 frames forecast, and the name of the recording; frames are None for arrays.
     """
 
     #: (n, k, 12, 2) positions, metres, 0.4 s apart; the first is 0.4 s after the last observation.
@@ -89,6 +121,21 @@ class Forecast:
     def __len__(self) -> int:
         return len(self.paths)
 
+    def __repr__(self) -> str:
+        n, k = self.paths.shape[:2]
+        frame = "" if self.frame is None else f", observed until frame {self.frame}"
+        return f"Forecast({n} pedestrians, {k} hypotheses{frame})"
+
+    def unfamiliar(self) -> str | None:
+        """What is to be said of motions unlike those of the training; None where there are none."""
+        few = int(np.count_nonzero(self.familiarity < UNFAMILIAR))
+        if few == 0:
+            return None
+        return (
+            f"{few} of {int(self.valid.sum())} motions are unlike those that the model was trained on (familiarity below {UNFAMILIAR}): are "
+            "positions metres and steps 0.4 s? For such motions the network hardly counts, and the weights are more alike"
+        )
+
     @property
     def valid(self) -> Flags:
         """(n,) whether each pedestrian could be forecast."""
@@ -134,7 +181,7 @@ class Forecast:
         shown = self.valid
         goals = None if self.goals is None else self.goals[shown]
         radii = None if level is None else self.regions(level)[shown, :, -1]
-        return draw(ax, self.past[shown], self.paths[shown], self.weights[shown], goals, radii, level)
+        return draw(ax, self.past[shown], self.made_up[shown, 0], self.paths[shown], self.weights[shown], goals, radii, level)
 
 
 def _ids(names: list[Any]) -> NDArray[Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ddl_forecast import _core
 from ddl_forecast._arrays import Floats, scene
-from ddl_forecast._forecast import Forecast, table
+from ddl_forecast._forecast import DoubtWarning, Forecast, table
 from ddl_forecast._recording import Recording
 
 
@@ -80,9 +81,9 @@ class Forecaster:
         Parameters
         ----------
         past
-            (n, 8, 2) positions, metres, 0.4 s apart, the last one now; NaN where a pedestrian was not seen. Who was seen at 2 of them
-            or more, and now, is forecast: holes of up to 2 positions are filled on a straight line, and what begins late is padded
-            at the mean velocity.
+            (n, 8, 2) positions, metres, 0.4 s apart, the last one now; NaN where a pedestrian was not seen. Holes of up to 2
+            positions are filled on a straight line; what was seen before a longer hole does not count. Who was then seen at 2
+            positions or more, and now, is forecast; the rest is padded at the mean velocity.
         neighbours
             (m, 8, 2) of others who are there, whom the forecast takes into account and does not contain.
         samples
@@ -96,6 +97,11 @@ class Forecaster:
         ------
         ValueError
             A wrong shape, an infinite number, or NaN in one of two coordinates; the message names row and step.
+
+        Warns
+        -----
+        DoubtWarning
+            A motion is unlike those of the training: pixels instead of metres, another time step, or no pedestrian.
 
         Examples
         --------
@@ -130,7 +136,7 @@ class Forecaster:
         scenes = [scene(past, other) for past, other in zip(pasts, others, strict=True)]
         arrays, asked = [array for array, _ in scenes], [count for _, count in scenes]
         made = self._core.forecast(arrays, asked, samples, whole, certificates)
-        return [Forecast._of(parts) for parts in made]
+        return _told([Forecast._of(parts) for parts in made])
 
     def forecast_recording(
         self,
@@ -142,8 +148,9 @@ class Forecaster:
         certificates: bool = False,
     ) -> list[Forecast]:
         """Forecast from every frame of a recording that has anybody to forecast, or with ``last`` from the last such frame only."""
+        _tell_doubt(recording)
         made = self._core.forecast_recording(recording._core, last, samples, whole, certificates)
-        return [Forecast._of(parts) for parts in made]
+        return _told([Forecast._of(parts) for parts in made])
 
     def forecast_table(
         self,
@@ -183,6 +190,7 @@ class Forecaster:
         The page needs no network. Without ``path`` it is written to a temporary folder; in a notebook it is shown there, and
         ``Page.open()`` opens it in a browser.
         """
+        _tell_doubt(recording)
         html = self._core.page(recording._core, moments)
         if path is None:
             import tempfile
@@ -198,6 +206,26 @@ class Forecaster:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _rebuilt, (self._name, self._keep_clear)
+
+
+def _tell_doubt(recording: Recording) -> None:
+    """Warns where speeds are not those of pedestrians: wrong units or a wrong rate give forecasts that look right and mean nothing."""
+    if not isinstance(recording, Recording):
+        raise TypeError(f"recording must be a Recording, as read('tracks.csv') gives it; found {type(recording).__name__}")
+    doubt = recording.doubt()
+    if doubt is not None:
+        warnings.warn(f"{recording.name}: {doubt}", DoubtWarning, stacklevel=3)
+
+
+def _told(forecasts: list[Forecast]) -> list[Forecast]:
+    """The forecasts, with a warning of the first that has unfamiliar motions."""
+    for forecast in forecasts:
+        words = forecast.unfamiliar()
+        if words is not None:
+            frame = "" if forecast.frame is None else f", first at frame {forecast.frame}"
+            warnings.warn(words + frame, DoubtWarning, stacklevel=4)
+            break
+    return forecasts
 
 
 def _rebuilt(name: str, keep_clear: float | None) -> Forecaster:

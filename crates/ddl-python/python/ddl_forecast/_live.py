@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from ddl_forecast import _core
 from ddl_forecast._arrays import Integers, floats
-from ddl_forecast._forecast import Forecast
+from ddl_forecast._forecast import DoubtWarning, Forecast
 from ddl_forecast._forecaster import Forecaster
 
 
@@ -61,12 +61,15 @@ class Live:
         whole: bool = False,
         certificates: bool = False,
     ) -> None:
+        if not isinstance(forecaster, Forecaster):
+            raise TypeError(f"forecaster must be a Forecaster, such as Forecaster('hotel'); found {type(forecaster).__name__}")
         self._core = _core.Live(forecaster._core, fps, memory, whole, certificates)
         self._numbers: dict[str, int] = {}
         self._words: dict[int, str] = {}
         self._next = FIRST_WORD
         self._turn = threading.Lock()
         self._told = False
+        self._doubted = False
 
     def observe(self, frame: int, ids: Iterable[Hashable], xy: ArrayLike) -> Forecast | None:
         """Add a frame, which must come after the last one, and forecast from it.
@@ -101,7 +104,14 @@ class Live:
         self._tell_refusal()
         if unwritten is not None:
             warnings.warn(f"the memory was not written and is tried again in a minute: {unwritten}", stacklevel=2)
-        return None if parts is None else Forecast._of(parts, names)
+        if parts is None:
+            return None
+        forecast = Forecast._of(parts, names)
+        doubt = None if self._doubted else forecast.unfamiliar()
+        if doubt is not None:
+            self._doubted = True
+            warnings.warn(f"frame {frame}: {doubt}; this is told once", DoubtWarning, stacklevel=2)
+        return forecast
 
     def _number(self, one: Hashable) -> int:
         """Numbers as they are, words from a place on where no tracker counts."""

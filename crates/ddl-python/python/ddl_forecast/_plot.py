@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ddl_forecast._arrays import Floats
+from ddl_forecast._arrays import Floats, Integers
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,6 +17,7 @@ PAST, PATH, GOAL = "#222222", "#d9601a", "#1a7f5a"
 def draw(
     ax: Axes | None,
     past: Floats,
+    padded: Integers,
     paths: Floats,
     weights: Floats,
     goals: Floats | None,
@@ -52,9 +53,13 @@ def draw(
         )
         if goals is not None:
             ax.scatter(goals[i, :, 0], goals[i, :, 1], 260 * weights_of, "none", edgecolors=GOAL, linewidths=0.9, zorder=3)
-        ax.plot(past[i, :, 0], past[i, :, 1], color=PAST, linewidth=1.6, zorder=4)
+        seen, invented = past[i, padded[i] :], past[i, : padded[i] + 1]
+        ax.plot(seen[:, 0], seen[:, 1], color=PAST, linewidth=1.6, zorder=4)
+        ax.plot(invented[:, 0], invented[:, 1], ":", color=PAST, linewidth=1.0, zorder=4)
         ax.plot(now[0], now[1], "o", color=PAST, markersize=5, zorder=5)
     legend = [Line2D([], [], color=PAST, marker="o", label="observed, 3.2 s"), Line2D([], [], color=PATH, linewidth=2, label="forecast, 4.8 s")]
+    if padded.any():
+        legend.insert(1, Line2D([], [], color=PAST, linestyle=":", label="before that, not seen"))
     if goals is not None and len(goals):
         ring = Line2D([], [], color="none", marker="o", markerfacecolor="none", markeredgecolor=GOAL, label="goal, as large as its weight")
         legend.append(ring)

@@ -14,8 +14,9 @@ use std::time::{Duration, Instant};
 #[derive(Debug)]
 pub struct MemoryFile {
     /// As it was named.
-    named: PathBuf,
     path: PathBuf,
+    /// Where it lies.
+    file: PathBuf,
     written: Instant,
     _lock: RunLock,
 }
@@ -29,18 +30,17 @@ impl MemoryFile {
     /// # Errors
     /// When it could not be written later, another process writes it, or it holds no whole memory.
     pub fn open(path: &Path) -> Result<(Self, Option<SceneMemory>), DdlError> {
-        let named = path.to_owned();
-        let path = resolved(path);
-        ensure_writable(&path).map_err(|error| {
+        let file = resolved(path);
+        ensure_writable(&file).map_err(|error| {
             let problem = format!("cannot write this file: {error}");
-            DdlError::io(&named, std::io::Error::new(error.kind(), problem))
+            DdlError::io(path, std::io::Error::new(error.kind(), problem))
         })?;
-        let lock = RunLock::take_file(&path)?;
-        let read = path.exists().then(|| SceneMemory::read(&named));
+        let lock = RunLock::take_file(&file)?;
+        let read = file.exists().then(|| SceneMemory::read(path));
         let memory = read.transpose()?;
         let file = Self {
-            named,
-            path,
+            path: path.to_owned(),
+            file,
             written: Instant::now(),
             _lock: lock,
         };
@@ -49,7 +49,7 @@ impl MemoryFile {
 
     /// The file as it was named.
     pub fn path(&self) -> &Path {
-        &self.named
+        &self.path
     }
 
     /// Whether [`PAUSE`](Self::PAUSE) has passed since it was last written, or tried to be.
@@ -66,7 +66,7 @@ impl MemoryFile {
         let decided = place.refused().is_none() && place.on_trial().is_none();
         // A file without a frame would only fix the frame rate of the next watch.
         if decided && place.memory().last_frame().is_some() {
-            place.memory().write(&self.path)?;
+            place.memory().write(&self.file)?;
         }
         Ok(())
     }
@@ -77,7 +77,7 @@ impl MemoryFile {
     /// As [`write`](Self::write).
     pub fn end(&mut self, place: &WatchedPlace) -> Result<Option<String>, DdlError> {
         self.write(place)?;
-        let path = self.named.display();
+        let path = self.path.display();
         if let Some(other) = place.refused() {
             return Ok(Some(format!(
                 "{path}: {other}; the file stays as it is, and what is seen now is not kept in it: give another file for this place"
