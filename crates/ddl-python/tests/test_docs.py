@@ -16,6 +16,8 @@ MODULES += ["ddl_forecast._recording", "ddl_forecast.baselines", "ddl_forecast.d
 MODULES += ["ddl_forecast.soft_dtw"]
 CHECKOUT = Path(__file__).resolve().parents[3]
 PAGES = ["docs/python.md", "docs/scale.md", "crates/ddl-python/README.md"]
+#: The others are checked as examples, or have no types.
+TYPED = ["docs/python.md"]
 
 
 @pytest.mark.parametrize("module", MODULES)
@@ -37,7 +39,8 @@ def test_pages(page, tracks, tmp_path, request):
     shutil.copy(tracks, tmp_path / "tracks.csv")
     (tmp_path / "recordings").mkdir()
     for part in range(2):
-        shutil.copy(tracks, tmp_path / "recordings" / f"day{part}.csv")
+        head = "".join(tracks.read_text().splitlines(keepends=True)[:150])
+        (tmp_path / "recordings" / f"day{part}.csv").write_text(head)
     script = tmp_path / "page.py"
     script.write_text("\n".join(blocks(page)))
     environment = {**os.environ, "MPLBACKEND": "Agg", "RAYON_NUM_THREADS": "1", "PYTHONPATH": str(CHECKOUT / "crates/ddl-python/examples")}
@@ -47,6 +50,8 @@ def test_pages(page, tracks, tmp_path, request):
     if pictures:
         for picture in tmp_path.glob("*.png"):
             shutil.copy(picture, pictures)
+    if page not in TYPED:
+        return
     strict = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--disable-error-code=import-untyped", "--allow-untyped-calls", script]
     typed = subprocess.run(strict, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
     assert typed.returncode == 0, typed.stdout

@@ -127,7 +127,7 @@ import ddl_forecast as ddl
 ddl.set_num_threads(int(sys.argv[2]))
 rng = np.random.default_rng(0)
 starts, steps = rng.uniform(0, 40, (900, 2)), rng.normal(0, .4, (900, 2))
-threading.Timer(6.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+threading.Timer(3.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
 try:
     with ddl.Live(ddl.Forecaster(), fps=2.5, memory=sys.argv[1]) as live:
         for frame in range(1000):
