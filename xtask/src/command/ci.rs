@@ -12,7 +12,7 @@ use crate::workspace::{Workspace, step};
 
 type Check = (&'static str, fn(&Workspace) -> Result<()>);
 
-const CHECKS: [Check; 11] = [
+const CHECKS: [Check; 10] = [
     ("format", format),
     ("tidy", tidy::run),
     ("packages", package::check),
@@ -20,8 +20,10 @@ const CHECKS: [Check; 11] = [
     ("what comes in from outside", deny::run),
     ("set-up", set_up),
     ("lints", lints),
-    ("documentation, report page, Python wheel", pages_and_wheel),
-    ("benchmark", benchmark::smoke),
+    (
+        "documentation, report page, benchmark; Python wheel",
+        pages_benchmark_and_wheel,
+    ),
     ("Python package", python::test_built),
     // Last, and the last to print: what a reader of the log looks for is the test results.
     ("tests", test::run_all),
@@ -65,13 +67,14 @@ fn lints(workspace: &Workspace) -> Result<()> {
     step("clippy", &workspace.cargo(arguments))
 }
 
-/// The pages keep one core busy, and the wheel, in a build folder of its own, another.
-fn pages_and_wheel(workspace: &Workspace) -> Result<()> {
+/// The pages and the benchmark keep one core busy, and the wheel, in a build folder of its own, another.
+fn pages_benchmark_and_wheel(workspace: &Workspace) -> Result<()> {
     thread::scope(|scope| {
         let wheel = scope.spawn(|| python::build_wheel(&Workspace::find()?));
         docs::check(workspace)
             .context("documentation site")
-            .and_then(|()| page::check(workspace).context("report page in a browser"))?;
+            .and_then(|()| page::check(workspace).context("report page in a browser"))
+            .and_then(|()| benchmark::smoke(workspace).context("benchmark"))?;
         let built = wheel.join();
         built.unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })
