@@ -1,7 +1,7 @@
 //! Forecasts that need no training.
 
 use crate::errors::of_any;
-use crate::forecasts::{Forecasted, Nobody, parts};
+use crate::forecasts::{EmptyFields, Forecasted, parts};
 use crate::observed::{Observed, completion};
 use ddl::Forecaster;
 use ddl::data::Window;
@@ -16,17 +16,16 @@ use pyo3::types::PyDict;
 
 /// A baseline of that name, on the first `asked` pedestrians.
 #[pyfunction]
-#[pyo3(signature = (name, past, asked, whole, seed, goals))]
+#[pyo3(signature = (name, past, asked, seed, goals))]
 pub(crate) fn baseline<'py>(
     py: Python<'py>,
     name: &str,
     past: PyReadonlyArray3<'py, f64>,
     asked: usize,
-    whole: bool,
     seed: u64,
     goals: Option<PyReadonlyArray3<'py, f64>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let scene = Observed::new(&past, asked, completion(whole))?;
+    let scene = Observed::new(&past, asked, completion(false))?;
     let forecaster: Box<dyn Forecaster + Send + Sync> = match name {
         "constant_velocity" => Box::new(ConstantVelocity::last_step()),
         "mean_velocity" => Box::new(ConstantVelocity::mean_observed()),
@@ -43,17 +42,17 @@ pub(crate) fn baseline<'py>(
     let forecast = scene
         .window
         .as_ref()
-        .map(|window| forecaster.forecast(window));
+        .map(|window| py.detach(|| forecaster.forecast(window)));
     let forecast = forecast.transpose().map_err(|error| of_any(&error))?;
     let forecast = forecast.map(Forecasted::Plain);
     let goals = goals.map(|goals| goals.shape()[1]);
     let many = if name == "angular_noise" { 20 } else { 1 };
-    let nobody = Nobody {
+    let empty = EmptyFields {
         hypotheses: goals.unwrap_or(many),
         goals: goals.is_some(),
-        ..Nobody::default()
+        ..EmptyFields::default()
     };
-    parts(py, &scene, forecast.as_ref(), nobody)
+    parts(py, &scene, forecast.as_ref(), empty)
 }
 
 /// The goals `(n, k, 2)` of those in the window, equally likely.

@@ -234,7 +234,7 @@ pub(crate) fn evaluate_model(
     let work = move |stop: &Stop| {
         let dataset = dataset(model.config().data.convention, folder)?;
         ddl::evaluate(&model, &dataset, &request, |now| {
-            // The caller has gone where nobody receives.
+            // Sending fails when the call was interrupted and the receiver was dropped.
             let told = sender.send(now.walkers);
             if told.is_err() || stop.is_asked() {
                 ControlFlow::Break(())

@@ -28,13 +28,13 @@ impl Forecasted {
     }
 }
 
-/// What a forecast has where nobody could be forecast: as much as if somebody could.
+/// Which fields the result for an empty window has: those that the same forecaster gives for other windows.
 #[derive(Debug, Clone, Copy, Default)]
 #[expect(
     clippy::struct_excessive_bools,
     reason = "each says whether one field is there"
 )]
-pub(crate) struct Nobody {
+pub(crate) struct EmptyFields {
     pub(crate) hypotheses: usize,
     pub(crate) goals: bool,
     pub(crate) certified: bool,
@@ -49,13 +49,13 @@ pub(crate) fn parts<'py>(
     py: Python<'py>,
     observed: &Observed,
     forecasted: Option<&Forecasted>,
-    nobody: Nobody,
+    empty: EmptyFields,
 ) -> PyResult<Bound<'py, PyDict>> {
     let forecast = forecasted.map(Forecasted::forecast);
     let rows = &observed.rows;
     let (n, k) = (
         rows.len(),
-        forecast.map_or(nobody.hypotheses, Forecast::hypotheses),
+        forecast.map_or(empty.hypotheses, Forecast::hypotheses),
     );
     let of_row = |row: &Option<usize>| Some((forecast?, (*row)?));
     let pairs = || {
@@ -93,13 +93,13 @@ pub(crate) fn parts<'py>(
         array(py, numbers(paths.collect()), [n, k, HORIZON, 2])?,
     )?;
     dict.set_item("weights", array(py, weights.collect(), [n, k])?)?;
-    let goals = if forecast.map_or(nobody.goals, Forecast::has_goals) {
+    let goals = if forecast.map_or(empty.goals, Forecast::has_goals) {
         Some(array(py, numbers(goals.collect()), [n, k, 2])?)
     } else {
         None
     };
     dict.set_item("goals", goals)?;
-    let certified = if forecast.map_or(nobody.certified, Forecast::has_certificates) {
+    let certified = if forecast.map_or(empty.certified, Forecast::has_certificates) {
         Some(array(py, certified.collect(), [n, k])?)
     } else {
         None
@@ -107,7 +107,7 @@ pub(crate) fn parts<'py>(
     dict.set_item("certified", certified)?;
     let table = match forecast {
         Some(forecast) => forecast.regions(),
-        None => nobody.regions.then(|| &Calibration::fitted().regions),
+        None => empty.regions.then(|| &Calibration::fitted().regions),
     };
     let spread = match table {
         Some(_) => Some(array(py, spread.collect(), [n, HORIZON])?),
@@ -118,7 +118,7 @@ pub(crate) fn parts<'py>(
     dict.set_item("region_table", table.map(json).transpose()?)?;
     let evidence = match forecasted {
         Some(Forecasted::Certified(certified)) => Some(certificates(py, Some(certified), rows, k)?),
-        None if nobody.certificates => Some(certificates(py, None, rows, k)?),
+        None if empty.certificates => Some(certificates(py, None, rows, k)?),
         _ => None,
     };
     dict.set_item("certificates", evidence)?;
@@ -152,7 +152,7 @@ pub(crate) fn named_parts<'py>(
     frame_parts: i64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let observed = Observed::of_window(window.clone());
-    let dict = parts(py, &observed, Some(forecasted), Nobody::default())?;
+    let dict = parts(py, &observed, Some(forecasted), EmptyFields::default())?;
     dict.set_item("ids", names(py, window)?)?;
     let frames = window.frames();
     let ahead = (1..=HORIZON as i64).map(|t| frames[OBSERVED - 1] + t * window.frame_step());

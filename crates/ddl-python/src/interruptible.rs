@@ -1,4 +1,4 @@
-//! Work that leaves Python's lock free, stops at Ctrl-C, and survives a fork of the process.
+//! Runs work on a thread pool without holding the GIL. Ctrl-C ends the call; a forked child gets a pool of its own.
 
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -9,7 +9,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// From one look for Ctrl-C to the next.
+/// Interval between two checks for Ctrl-C.
 const PAUSE: Duration = Duration::from_millis(50);
 
 struct Pool {
@@ -19,8 +19,8 @@ struct Pool {
     threads: Arc<ThreadPool>,
 }
 
-/// Who computes on a pool. A worker that waits for a part of its work takes up other work meanwhile: a live frame must not wait for a
-/// long call of another thread so.
+/// Which pool computes. A rayon worker that waits for part of its work runs other jobs of its pool meanwhile. Live frames have a pool of
+/// their own, so that they do not wait for a long call of another thread.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum User {
     Calls,
@@ -29,7 +29,7 @@ pub(crate) enum User {
 
 static POOLS: [Mutex<Option<Pool>>; 2] = [Mutex::new(None), Mutex::new(None)];
 
-/// Whether the caller of some work has gone.
+/// Tells the work that its call was interrupted.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Stop(Arc<AtomicBool>);
 
@@ -39,8 +39,8 @@ impl Stop {
     }
 }
 
-/// Does the work on the threads of the package, without Python's lock. Ctrl-C ends the call within 50 ms; the work is told by its
-/// argument, and ends when it looks there.
+/// Runs the work on the pool for calls, without the GIL. Ctrl-C ends the call within 50 ms. The work sees that in its argument and should
+/// end then.
 pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&Stop) -> T + Send + 'static,
@@ -56,7 +56,7 @@ pub(crate) fn run_live<T: Send + 'static>(
     run_on(User::Live, py, work, |_| Ok(()))
 }
 
-/// The same; `tell` is called with Python's lock every 50 ms, and may end the call by an exception.
+/// The same; `tell` is called with the GIL every 50 ms, and may end the call by an exception.
 pub(crate) fn run_telling<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&Stop) -> T + Send + 'static,
@@ -77,7 +77,7 @@ fn run_on<T: Send + 'static>(
     let seen = stop.clone();
     pool.spawn(move || {
         let done = catch_unwind(AssertUnwindSafe(|| work(&seen)));
-        // Nobody waits any more after Ctrl-C.
+        // After Ctrl-C the receiver is dropped, and the result is not needed.
         let _ = sender.send(done);
     });
     loop {
@@ -128,7 +128,7 @@ fn pool(user: User, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     Ok(pool)
 }
 
-/// Waits without Python's lock until `attempt` gives something; Ctrl-C ends the wait.
+/// Waits without the GIL until `attempt` gives something; Ctrl-C ends the wait.
 pub(crate) fn wait_for<T>(py: Python<'_>, mut attempt: impl FnMut() -> Option<T>) -> PyResult<T> {
     loop {
         if let Some(found) = attempt() {

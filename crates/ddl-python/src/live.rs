@@ -20,7 +20,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 #[pyclass(frozen, module = "ddl_forecast._core")]
 pub(crate) struct Live(Slot);
 
-/// A watch, unless a call has taken it out: while that computes, no lock is held that another call could wait for.
+/// Empty while a call uses the watch. No lock is held during a forecast, so a worker thread never waits for a lock that it holds itself.
 type Slot = Arc<Mutex<Option<Box<Watching>>>>;
 
 struct Watching {
@@ -67,7 +67,7 @@ impl Watching {
     }
 }
 
-/// A watch that a call has taken out. It goes back when this is dropped, also after a panic and when the caller has gone.
+/// Exclusive use of a watch. Dropping it returns the watch, also after a panic and after an interrupted call.
 struct Turn {
     slot: Slot,
     watching: Option<Box<Watching>>,

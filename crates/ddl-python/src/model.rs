@@ -2,7 +2,7 @@
 
 use crate::arrays::{array, numbers};
 use crate::errors::{of_any, raised};
-use crate::forecasts::{Forecasted, Nobody, named_parts, parts};
+use crate::forecasts::{EmptyFields, Forecasted, named_parts, parts};
 use crate::interruptible::{Stop, run};
 use crate::observed::{Observed, completion};
 use crate::recording::Recording;
@@ -27,13 +27,13 @@ pub(crate) struct Model(pub(crate) Arc<Ddl>);
 
 /// How to forecast.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Manner {
-    pub(crate) one: bool,
-    pub(crate) certificates: bool,
+struct Manner {
+    one: bool,
+    certificates: bool,
 }
 
 impl Manner {
-    pub(crate) fn new(model: &Ddl, samples: usize, certificates: bool) -> PyResult<Self> {
+    fn new(model: &Ddl, samples: usize, certificates: bool) -> PyResult<Self> {
         let all = model.goal_model().clusters();
         if samples != 1 && samples != all {
             return Err(PyValueError::new_err(format!(
@@ -59,8 +59,8 @@ impl Manner {
         })
     }
 
-    /// A forecast a window, some pedestrians at a time; less of them where the caller has gone.
-    pub(crate) fn forecast_until(
+    /// A forecast for each window, in batches of pedestrians; stops between batches when the caller was interrupted.
+    fn forecast_until(
         self,
         model: &Ddl,
         windows: &[Window],
@@ -112,11 +112,6 @@ impl Model {
         self.0.goal_model().clusters()
     }
 
-    #[getter]
-    fn variant(&self) -> String {
-        self.0.config().star.variant.to_string()
-    }
-
     /// The convention and the fold that it was trained on.
     #[getter]
     fn trained_on(&self) -> (String, String) {
@@ -147,7 +142,7 @@ impl Model {
             .collect::<PyResult<_>>()?;
         let windows: Vec<Window> = scenes.iter().filter_map(|of| of.window.clone()).collect();
         let mut forecasts = self.forecasts(py, manner, windows)?.into_iter();
-        let nobody = Nobody {
+        let empty = EmptyFields {
             hypotheses: if samples == 1 { 1 } else { self.hypotheses() },
             goals: self.0.config().star.variant.uses_goal(),
             certified: self.0.config().star.variant.dynamics() || samples == 1,
@@ -156,7 +151,7 @@ impl Model {
         };
         let of_scene = |scene: &Observed| {
             let forecast = scene.window.is_some().then(|| forecasts.next()).flatten();
-            parts(py, scene, forecast.as_ref(), nobody)
+            parts(py, scene, forecast.as_ref(), empty)
         };
         scenes.iter().map(of_scene).collect()
     }
@@ -189,9 +184,8 @@ impl Model {
         py: Python<'_>,
         past: PyReadonlyArray3<'_, f64>,
         asked: usize,
-        whole: bool,
     ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
-        let scene = Observed::new(&past, asked, completion(whole))?;
+        let scene = Observed::new(&past, asked, completion(false))?;
         let k = self.hypotheses();
         let mut goals = vec![[f64::NAN; 2]; asked * k];
         let mut weights = vec![f64::NAN; asked * k];

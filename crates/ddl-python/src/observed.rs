@@ -9,14 +9,14 @@ use pyo3::prelude::*;
 /// The pedestrians of a scene who can be forecast, and where each of them stands in the array of the user.
 #[derive(Debug, Clone)]
 pub(crate) struct Observed {
-    /// `None` where nobody can be forecast.
+    /// `None` when no pedestrian can be forecast.
     pub(crate) window: Option<Window>,
     /// Index in the window of each pedestrian asked for; `None` for one who cannot be forecast.
     pub(crate) rows: Vec<Option<usize>>,
 }
 
 impl Observed {
-    /// Of `(n, 8, 2)` positions, the first `asked` pedestrians; the others are there only to be minded.
+    /// Of `(n, 8, 2)` positions. The first `asked` pedestrians are forecast; the others are their neighbours.
     pub(crate) fn new(
         past: &PyReadonlyArray3<'_, f64>,
         asked: usize,

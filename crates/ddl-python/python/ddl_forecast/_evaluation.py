@@ -44,17 +44,11 @@ class Window:
         Name of the recording.
     """
 
-    #: (n, 8, 2) metres.
     past: Floats
-    #: (n, 12, 2) metres.
     future: Floats
-    #: Who they are: whole numbers or words.
     ids: NDArray[Any]
-    #: Last observed frame; between two frames where positions were taken there.
     frame: float
-    #: Frame numbers in 0.4 s.
     frame_step: float
-    #: Name of the recording.
     recording: str
 
 

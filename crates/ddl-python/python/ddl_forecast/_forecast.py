@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ddl_forecast import _core
 from ddl_forecast._arrays import Flags, Floats, Integers
+from ddl_forecast._core import UNFAMILIAR
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,10 +37,6 @@ class Certificates:
 
 class DoubtWarning(UserWarning):
     """Something looks wrong with what is forecast from: a unit, a frame rate, or motions unlike those of the training."""
-
-
-#: Forecasts of motions less familiar than this are doubtful.
-UNFAMILIAR = 0.01
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -73,31 +70,18 @@ class Forecast:
         Who, the last observed frame, the 12 frames forecast, and the name of the recording; frames are None for arrays.
     """
 
-    #: (n, k, 12, 2) positions, metres, 0.4 s apart; the first is 0.4 s after the last observation.
     paths: Floats
-    #: (n, k) probability of each hypothesis; they sum to 1.
     weights: Floats
-    #: (n, k, 2) where each hypothesis heads, metres; None for forecasts without goals.
     goals: Floats | None
-    #: (n,) how much the observed motion is like those that the model was trained on, 0 to 1; below 0.01 forecasts are doubtful.
     familiarity: Floats
-    #: (n, k) whether the certificate of each hypothesis holds; None for models without dynamics, and for baselines.
     certified: Flags | None
-    #: (n, 12) standard deviation about the right hypothesis, metres; None for forecasts without regions.
     spread: Floats | None
-    #: (n, 8, 2) what was forecast from, metres, holes filled and late beginnings padded.
     past: Floats
-    #: (n, 2) how many of the 8 positions were padded at the start, and filled in holes.
     made_up: Integers
-    #: The evidence, where ``certificates=True`` asked for it.
     certificates: Certificates | None = None
-    #: Whom the rows are of: indices of the array, or the ids of the tracks.
     ids: NDArray[Any] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
-    #: Last observed frame; None for arrays.
     frame: float | None = None
-    #: The 12 frames that are forecast; None for arrays.
     frames: NDArray[Any] | None = None
-    #: Name of the recording, where there is one.
     recording: str = ""
     _region_table: str | None = field(default=None, repr=False)
 

@@ -182,7 +182,7 @@ class Forecaster:
     def goals(self, past: ArrayLike, *, neighbours: ArrayLike | None = None) -> tuple[Floats, Floats]:
         """Where the pedestrians may be going: (n, 20, 2) positions in 4.8 s, metres, and (n, 20) weights."""
         array, asked = scene(past, neighbours)
-        return self._core.goals(array, asked, False)
+        return self._core.goals(array, asked)
 
     def show(self, recording: Recording, path: str | os.PathLike[str] | None = None, *, moments: int = 60) -> Page:
         """The forecasts of a recording as a page with a player: what was observed, where each may go, and what then happened.

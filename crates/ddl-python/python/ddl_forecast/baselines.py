@@ -24,7 +24,7 @@ __all__ = ["angular_noise", "constant_acceleration", "constant_velocity", "mean_
 def _baseline(name: str, past: ArrayLike, seed: int = 0, goals: ArrayLike | None = None) -> Forecast:
     array, asked = scene(past, None)
     ends = None if goals is None else floats(goals, 3, "goals", "(n, k, 2)")
-    return Forecast._of(_core.baseline(name, array, asked, False, seed, ends))
+    return Forecast._of(_core.baseline(name, array, asked, seed, ends))
 
 
 def constant_velocity(past: ArrayLike) -> Forecast:
