@@ -36,7 +36,7 @@ pub use homography::{Homography, HomographyError};
 pub use live::{LiveError, LiveTracks, checked_frame, checked_frame_step};
 pub use locate::{DATASETS_VARIABLE, locate};
 pub use names::{PedestrianName, PedestrianNames};
-pub use neighbours::{NEIGHBOUR_HALF_WIDTH, NeighbourMask};
+pub use neighbours::{NEIGHBOUR_HALF_WIDTH, Neighbours, Places};
 pub use rate::{InSteps, RateError, whole_frame_step};
 pub use recording::Recording;
 pub use remembered::Remembered;

@@ -1,60 +1,111 @@
 //! Who is near whom: the neighbourhood that a forecast may look at.
 
 use crate::Position;
+use rstar::primitives::GeomWithData;
+use rstar::{AABB, RTree};
 
 /// Half the side of the box in which STAR and DDL look for neighbours (m).
 pub const NEIGHBOUR_HALF_WIDTH: f64 = 10.0;
 
-/// Which of N pedestrians are neighbours of which: a symmetric N x N relation without the diagonal. Indices out of range panic.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct NeighbourMask {
-    count: usize,
-    /// Row-major N x N.
-    near: Vec<bool>,
+/// Places (m) that are asked who is near, in time that grows with the number of answers and not with that of places.
+#[derive(Debug, Clone)]
+pub struct Places {
+    tree: RTree<GeomWithData<Position, u32>>,
 }
 
-impl NeighbourMask {
+/// Which of N pedestrians are neighbours of which: a symmetric relation. Indices out of range panic.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Neighbours {
+    /// The neighbours of pedestrian i, ascending, are those from `ends[i - 1]` to `ends[i]`.
+    near: Vec<u32>,
+    ends: Vec<usize>,
+}
+
+impl Places {
+    /// Places that are named by their index in this order.
+    #[must_use]
+    pub fn new(positions: &[Position]) -> Self {
+        let places = positions.iter().zip(0..);
+        let places = places.map(|(&position, index)| GeomWithData::new(position, index));
+        Self {
+            tree: RTree::bulk_load(places.collect()),
+        }
+    }
+
+    /// Indices of the places within the box |dx| <= w and |dy| <= w around `centre`, w being the half width (m), in no
+    /// order.
+    pub fn within_box(&self, centre: Position, half_width_m: f64) -> impl Iterator<Item = usize> {
+        // Corners are rounded, so the tree is asked for a little more than what the differences decide below.
+        let size = half_width_m + centre[0].abs().max(centre[1].abs());
+        let reach = half_width_m + 4.0 * f64::EPSILON * size;
+        let corner = |sign: f64| centre.map(|x| x + sign * reach);
+        self.tree
+            .locate_in_envelope(AABB::from_corners(corner(-1.0), corner(1.0)))
+            .filter(move |place| {
+                let at = place.geom();
+                (0..2).all(|axis| (at[axis] - centre[axis]).abs() <= half_width_m)
+            })
+            .map(|place| place.data as usize)
+    }
+
+    /// Indices of the `count` places nearest to `centre` but for `own`, the nearest first, and of equally near ones
+    /// the smallest index; fewer where there are not so many.
+    #[must_use]
+    pub fn nearest_others(&self, own: usize, centre: Position, count: usize) -> Vec<usize> {
+        let distance = |at: &Position| (at[0] - centre[0]).hypot(at[1] - centre[1]);
+        let nearest = self.tree.nearest_neighbor_iter(centre).take(count + 1);
+        // The tree compares squares of distances, which may be rounded to another order.
+        let reach = nearest
+            .map(|place| distance(place.geom()))
+            .fold(0.0, f64::max);
+        let reach = reach * (1.0 + 4.0 * f64::EPSILON);
+        let corner = |sign: f64| centre.map(|x| x + sign * reach);
+        let within = AABB::from_corners(corner(-1.0), corner(1.0));
+        let others = self.tree.locate_in_envelope(within);
+        let others = others.map(|place| (distance(place.geom()), place.data as usize));
+        let mut others: Vec<(f64, usize)> = others.filter(|&(_, other)| other != own).collect();
+        others.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        others.truncate(count);
+        others.into_iter().map(|(_, other)| other).collect()
+    }
+}
+
+impl Neighbours {
     /// i and j are neighbours if i != j, |dx| <= w and |dy| <= w, w being the half width (m).
     ///
     /// The box is aligned with the axes: as in the published code, neighbours are found before a scene is rotated.
     #[must_use]
     pub fn within_box(positions: &[Position], half_width_m: f64) -> Self {
-        let count = positions.len();
-        let mut near = Vec::with_capacity(count * count);
-        for (i, a) in positions.iter().enumerate() {
-            near.extend(positions.iter().enumerate().map(|(j, b)| {
-                i != j && (a[0] - b[0]).abs() <= half_width_m && (a[1] - b[1]).abs() <= half_width_m
-            }));
+        let places = Places::new(positions);
+        let (mut near, mut ends) = (Vec::new(), Vec::with_capacity(positions.len()));
+        for (i, &position) in positions.iter().enumerate() {
+            let first = near.len();
+            let others = places.within_box(position, half_width_m);
+            near.extend(others.filter(|&j| j != i).map(|j| j as u32));
+            near[first..].sort_unstable();
+            ends.push(near.len());
         }
-        Self { count, near }
+        Self { near, ends }
     }
 
     /// Number of pedestrians N.
     pub fn len(&self) -> usize {
-        self.count
+        self.ends.len()
     }
 
     /// Whether there are no pedestrians.
     pub fn is_empty(&self) -> bool {
-        self.count == 0
+        self.ends.is_empty()
     }
 
-    /// Whether j is a neighbour of i.
-    pub fn is_neighbour(&self, i: usize, j: usize) -> bool {
-        self.row(i)[j]
-    }
-
-    /// The relation of i to everybody, N values.
-    pub fn row(&self, i: usize) -> &[bool] {
-        &self.near[i * self.count..(i + 1) * self.count]
+    /// The neighbours of i, ascending.
+    pub fn of(&self, i: usize) -> &[u32] {
+        let first = i.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.near[first..self.ends[i]]
     }
 
     /// Every ordered pair (i, j) of neighbours: two pedestrians close to each other make two pairs.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.near
-            .iter()
-            .enumerate()
-            .filter(|&(_, &near)| near)
-            .map(|(index, _)| (index / self.count, index % self.count))
+        (0..self.len()).flat_map(|i| self.of(i).iter().map(move |&j| (i, j as usize)))
     }
 }

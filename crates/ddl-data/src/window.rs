@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::WindowError;
-use crate::neighbours::NeighbourMask;
+use crate::neighbours::Neighbours;
 use crate::track::{is_finite, is_frame, is_frame_step};
 use crate::{
     MadeUp, OBSERVED, PedestrianId, PedestrianName, PedestrianNames, Position, Remembered, WINDOW,
@@ -255,10 +255,10 @@ impl Window {
         (0..self.len()).map(|i| self.track(i)[step]).collect()
     }
 
-    /// Who is near whom at one step, counted from 0: see [`NeighbourMask::within_box`].
+    /// Who is near whom at one step, counted from 0: see [`Neighbours::within_box`].
     #[must_use]
-    pub fn neighbours(&self, step: usize, half_width_m: f64) -> NeighbourMask {
-        NeighbourMask::within_box(&self.positions_at(step), half_width_m)
+    pub fn neighbours(&self, step: usize, half_width_m: f64) -> Neighbours {
+        Neighbours::within_box(&self.positions_at(step), half_width_m)
     }
 
     /// The observation alone, as it is known when a forecast is asked for.

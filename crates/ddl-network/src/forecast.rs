@@ -7,6 +7,7 @@ mod forecast_windows;
 mod motion_bounds;
 mod network;
 mod own_frame;
+mod pass;
 mod rollout;
 mod visibility;
 

@@ -29,11 +29,8 @@ macro_rules! in_dimension {
                 const $D: usize = 8;
                 $body
             }
-            9..=32 => {
-                const $D: usize = 32;
-                $body
-            }
-            33..=128 => {
+            // Each of these numbers is compiled once more: steps of many components are rare.
+            9..=128 => {
                 const $D: usize = 128;
                 $body
             }

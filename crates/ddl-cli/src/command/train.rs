@@ -58,6 +58,9 @@ pub(crate) struct Train {
     /// (docs/performance.md) [default: 128, published 2048]
     #[arg(long)]
     feed_forward_width: Option<i64>,
+    /// Encoder layers of each of the two spatial encoders [default: 2]
+    #[arg(long, value_name = "LAYERS")]
+    spatial_layers: Option<usize>,
     /// Model to begin with, instead of random weights: a built-in one, such as hotel, a packed file or the directory of a run, of the same sizes; none for
     /// random weights. It is trained on in fewer and smaller steps, and kept as it was where that forecasts the validation part no better [default:
     /// none; for own recordings with fewer than 10000 pedestrian-windows to learn from hotel]
@@ -230,6 +233,7 @@ impl Train {
         let usual = self.variant == Variant::Full
             && self.recipe == Recipe::Recommended
             && self.feed_forward_width.is_none()
+            && self.spatial_layers.is_none()
             && self.backbone.is_none()
             && self.goals == GoalsFrom::Proposed
             && self.goal_recipe.is_none();
@@ -289,6 +293,7 @@ impl Train {
         };
         set(&mut star.backbone, self.backbone);
         set(&mut star.feed_forward_width, self.feed_forward_width);
+        set(&mut star.spatial_layers, self.spatial_layers);
         set(&mut training.epochs, self.epochs);
         set(&mut training.batch_walkers, self.batch_walkers);
         set(&mut training.learning_rate, self.learning_rate);

@@ -10,13 +10,21 @@ use rand_distr::StandardNormal;
 /// Windows are rolled out together until they hold this many pedestrians: enough to fill the products.
 const PEDESTRIANS_AT_ONCE: usize = 64;
 
-/// Several windows with their goals: P pedestrians, window after window.
+/// Windows with more pedestrians have them put in an order in which neighbours in space are near each other, so that
+/// those whom a pedestrian sees are found in the cache.
+const CROWD: usize = 128;
+/// Width of the strips that a crowd is gone through in, metres.
+const STRIP: f64 = 2.5;
+
+/// Several windows with their goals: P pedestrians, window after window, those of a crowd in an order of their own.
 ///
 /// Positions are relative to a point of each window, so that tracks in map coordinates lose nothing in `f32`.
 #[derive(Debug)]
 pub struct ForecastBatch<'a> {
     originals: &'a [Window],
     origins: Vec<Position>,
+    /// Which pedestrian of its window stands at each place.
+    orders: Vec<Vec<usize>>,
     /// The windows, relative to their origins.
     pub windows: Vec<Window>,
     /// `[G][P]`, relative to the origin of each pedestrian's window.
@@ -72,24 +80,38 @@ pub(super) fn batches<'a>(
         }
         let originals = &windows[first..last];
         let origins: Vec<Position> = originals.iter().map(origin).collect();
+        let orders: Vec<Vec<usize>> = originals.iter().map(order).collect();
         let of_goal = |k: usize| {
-            let each = goals[first..last].iter().zip(&origins);
-            each.flat_map(|(goals, &origin)| goals.iter().map(move |of| relative(of[k], origin)))
+            let each = goals[first..last].iter().zip(&origins).zip(&orders);
+            each.flat_map(|((goals, &origin), order)| {
+                order.iter().map(move |&i| relative(goals[i][k], origin))
+            })
+            .collect()
+        };
+        // Who stands where does not matter to the network.
+        let ordered = |((window, &origin), order): ((&Window, &Position), &Vec<usize>)| {
+            window.map_positions(|i, t, _| relative(window.track(order[i])[t], origin))
+        };
+        let of_shares = |shares: &[Vec<f64>]| {
+            let each = shares[first..last].iter().zip(&orders);
+            each.flat_map(|(shares, order)| order.iter().map(|&i| shares[i]))
                 .collect()
         };
         batches.push(ForecastBatch {
             windows: originals
                 .iter()
                 .zip(&origins)
-                .map(|(window, &origin)| window.map_positions(|_, _, p| relative(p, origin)))
+                .zip(&orders)
+                .map(ordered)
                 .collect(),
             goals: (0..goal_count).map(of_goal).collect(),
-            shares: shares.map(|shares| shares[first..last].concat()),
+            shares: shares.map(of_shares),
             noise: noise.clone(),
             noise_vectors,
             rule,
             originals,
             origins,
+            orders,
         });
         first = last;
     }
@@ -112,13 +134,16 @@ impl ForecastBatch<'_> {
         let hypotheses = rollout.hypotheses;
         let at = |t: usize, h: usize, i: usize| (t * hypotheses + h) * all + i;
         let mut first = 0;
-        let windows = self.originals.iter().zip(&self.origins);
+        let windows = self.originals.iter().zip(&self.origins).zip(&self.orders);
         windows
-            .map(|(window, [x, y])| {
-                let own = first..first + window.len();
-                first = own.end;
+            .map(|((window, [x, y]), order)| {
+                let mut own = vec![0; order.len()];
+                for (place, &i) in order.iter().enumerate() {
+                    own[i] = first + place;
+                }
+                first += order.len();
                 let places = || {
-                    own.clone().flat_map(move |i| {
+                    own.iter().flat_map(move |&i| {
                         (0..hypotheses).flat_map(move |h| (0..HORIZON).map(move |t| at(t, h, i)))
                     })
                 };
@@ -141,6 +166,20 @@ impl ForecastBatch<'_> {
 
 fn origin(window: &Window) -> Position {
     window.observed(0)[OBSERVED - 1]
+}
+
+/// The pedestrians of a window, place by place: those of a crowd strip by strip, along each.
+fn order(window: &Window) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..window.len()).collect();
+    if window.len() > CROWD {
+        let last = |i: usize| window.observed(i)[OBSERVED - 1];
+        let strip = |i: usize| (last(i)[0] / STRIP).floor();
+        order.sort_by(|&i, &j| {
+            let along = || last(i)[1].total_cmp(&last(j)[1]);
+            strip(i).total_cmp(&strip(j)).then_with(along)
+        });
+    }
+    order
 }
 
 fn relative(position: Position, origin: Position) -> Position {

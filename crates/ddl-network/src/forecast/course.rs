@@ -8,7 +8,7 @@ use super::visibility::visibility;
 use crate::StarConfig;
 use crate::backend::{Buffer, Rows, Scenes, SeenScenes};
 use crate::config::NetworkFrame;
-use ddl_data::{OBSERVED, Window};
+use ddl_data::{OBSERVED, Position, Window};
 use ddl_dynamics::{
     Attractor, CholeskyMetric, DynamicsError, Euler, MotionBounds, NaturalGradientFlow,
     StableEuler, StepTime, rollout_into,
@@ -18,51 +18,42 @@ use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Everybody in every hypothesis, metres.
-pub(super) struct BatchCourse {
+/// What was observed of the pedestrians of a batch, the same for all hypotheses, metres.
+pub(super) struct Observation<'a> {
+    config: &'a StarConfig,
     /// `[8, P]`.
     observed: Vec<[f32; 2]>,
     scenes: Arc<Scenes>,
     pedestrians: usize,
-    hypotheses: usize,
+    /// Of the motion, `[P]`; `None` for plain Euler steps.
+    bounds: Option<Vec<MotionBounds<f32>>>,
+    /// Of everybody's observed positions, `[P]`.
+    sums: Vec<[f32; 2]>,
+    /// Entries of what the network reads at an observed time step: G where it is relative to the goals, otherwise 1.
+    entries: usize,
+}
+
+/// The pedestrians of a batch in some hypotheses, metres.
+pub(super) struct Course<'a> {
+    observation: &'a Observation<'a>,
     /// What the network's temporal positions are relative to, `[E, P]`: E is G where that is the goal, otherwise 1.
     references: Vec<[f32; 2]>,
     /// `[E, P]`; `None` for the frame of the world.
     frames: Option<Vec<OwnFrame>>,
     /// `[G, P]`.
     goals: Vec<[f32; 2]>,
-    /// Of the motion, `[P]`; `None` for plain Euler steps.
-    bounds: Option<Vec<MotionBounds<f32>>>,
     /// Where everybody is, `[H, P]`.
     positions: Vec<[f32; 2]>,
     before: Vec<[f32; 2]>,
     sums: Vec<[f32; 2]>,
-    sigma: f32,
-    time_step: f32,
-    dynamics: bool,
 }
 
-impl BatchCourse {
-    pub(super) fn new(batch: &ForecastBatch<'_>, config: &StarConfig) -> Self {
-        let (pedestrians, hypotheses) = (batch.pedestrians(), batch.hypotheses());
-        let tracks = || {
-            let windows = batch.windows.iter();
-            windows.flat_map(|window| (0..window.len()).map(|i| window.observed(i)))
-        };
+impl<'a> Observation<'a> {
+    pub(super) fn new(batch: &ForecastBatch<'_>, config: &'a StarConfig) -> Self {
+        let pedestrians = batch.pedestrians();
+        let tracks = || tracks(batch);
         let at = |t: usize| tracks().map(move |track| track[t].map(|x| x as f32));
         let observed: Vec<[f32; 2]> = (0..OBSERVED).flat_map(at).collect();
-        let last = observed[(OBSERVED - 1) * pedestrians..].to_vec();
-        let goals = batch.goals.concat();
-        let units: Vec<f64> = tracks()
-            .map(|track| motion_unit(track, config.time_step))
-            .collect();
-        let frames = (config.frame == NetworkFrame::Goal).then(|| {
-            let frames = batch.goals.iter().flat_map(|goals| {
-                let each = tracks().zip(goals).zip(&units);
-                each.map(|((track, &goal), &unit)| OwnFrame::new(track[OBSERVED - 1], goal, unit))
-            });
-            frames.collect()
-        });
         let bounds = (batch.rule == StepRule::Bounded).then(|| {
             let share = |i: usize| batch.shares.as_ref().map_or(1.0, |shares| shares[i]);
             let absolute = config.frame == NetworkFrame::World;
@@ -77,31 +68,24 @@ impl BatchCourse {
         for positions in observed.chunks_exact(pedestrians) {
             add(&mut sums, positions);
         }
-        let goals: Vec<[f32; 2]> = goals.iter().map(|goal| goal.map(|x| x as f32)).collect();
+        let windows: Vec<&Window> = batch.windows.iter().collect();
         Self {
-            scenes: Arc::new(scenes(&batch.windows, config.neighbour_box)),
-            references: if config.variant.goal_shift() {
-                goals.clone()
+            config,
+            scenes: Arc::new(visibility(&windows, OBSERVED, config.neighbour_box)),
+            entries: if config.variant.goal_shift() {
+                batch.goals.len()
             } else {
-                last.clone()
+                1
             },
-            positions: last.repeat(hypotheses),
-            before: last.repeat(hypotheses),
-            sums: sums.repeat(hypotheses),
             observed,
             pedestrians,
-            hypotheses,
-            frames,
-            goals,
             bounds,
-            sigma: config.sigma as f32,
-            time_step: config.time_step as f32,
-            dynamics: config.variant.dynamics(),
+            sums,
         }
     }
 
-    pub(super) fn positions(&self) -> &[[f32; 2]] {
-        &self.positions
+    pub(super) fn entries(&self) -> usize {
+        self.entries
     }
 
     pub(super) fn seen(&self, steps: Range<usize>) -> SeenScenes {
@@ -112,7 +96,7 @@ impl BatchCourse {
     }
 
     /// The observed positions relative to the mean over the scene and all time steps so far, `[8, P, 2]`.
-    pub(super) fn observed_centred(&self) -> Rc<Rows> {
+    pub(super) fn centred(&self) -> Rc<Rows> {
         let mut sums = vec![[0.0; 2]; self.pedestrians];
         let mut centred = Buffer::copy(self.observed.as_flattened());
         let (places, _) = centred.as_chunks_mut::<2>();
@@ -124,16 +108,8 @@ impl BatchCourse {
         rows([OBSERVED, self.pedestrians, 2], centred)
     }
 
-    /// The same of the newest positions, `[H, P, 2]`, which are counted into the mean as those of time step `steps`.
-    pub(super) fn centred(&mut self, steps: usize) -> Rc<Rows> {
-        add(&mut self.sums, &self.positions);
-        let mut centred = Buffer::copy(self.positions.as_flattened());
-        let (places, _) = centred.as_chunks_mut::<2>();
-        let entries = places.chunks_exact_mut(self.pedestrians);
-        for (places, sums) in entries.zip(self.sums.chunks_exact(self.pedestrians)) {
-            self.centre(places, sums, steps);
-        }
-        rows([self.hypotheses, self.pedestrians, 2], centred)
+    fn at(&self, t: usize) -> &[[f32; 2]] {
+        &self.observed[t * self.pedestrians..][..self.pedestrians]
     }
 
     fn centre(&self, places: &mut [[f32; 2]], sums: &[[f32; 2]], steps: usize) {
@@ -151,9 +127,76 @@ impl BatchCourse {
         }
     }
 
+    fn time_step(&self) -> f32 {
+        self.config.time_step as f32
+    }
+}
+
+impl<'a> Course<'a> {
+    /// The pedestrians before the first step to forecast, in `hypotheses`; a single goal is that of all hypotheses.
+    pub(super) fn new(
+        observation: &'a Observation<'_>,
+        batch: &ForecastBatch<'_>,
+        hypotheses: Range<usize>,
+    ) -> Self {
+        let config = observation.config;
+        let count = hypotheses.len();
+        let led = if batch.goals.len() == 1 {
+            0..1
+        } else {
+            hypotheses
+        };
+        let goals = &batch.goals[led];
+        let frames = (config.frame == NetworkFrame::Goal).then(|| {
+            let frames = goals.iter().flat_map(|goals| {
+                let each = tracks(batch).zip(goals);
+                each.map(|(track, &goal)| {
+                    let unit = motion_unit(track, config.time_step);
+                    OwnFrame::new(track[OBSERVED - 1], goal, unit)
+                })
+            });
+            frames.collect()
+        });
+        let goals = goals.iter().flatten();
+        let goals: Vec<[f32; 2]> = goals.map(|goal| goal.map(|x| x as f32)).collect();
+        let last = observation.at(OBSERVED - 1);
+        Self {
+            references: if config.variant.goal_shift() {
+                goals.clone()
+            } else {
+                last.to_vec()
+            },
+            frames,
+            goals,
+            positions: last.repeat(count),
+            before: last.repeat(count),
+            sums: observation.sums.repeat(count),
+            observation,
+        }
+    }
+
+    pub(super) fn positions(&self) -> &[[f32; 2]] {
+        &self.positions
+    }
+
+    /// The newest positions relative to the mean over the scene and all time steps so far, `[H, P, 2]`; they are counted
+    /// into the mean as those of time step `steps`.
+    pub(super) fn centred(&mut self, steps: usize) -> Rc<Rows> {
+        add(&mut self.sums, &self.positions);
+        let pedestrians = self.observation.pedestrians;
+        let mut centred = Buffer::copy(self.positions.as_flattened());
+        let (places, _) = centred.as_chunks_mut::<2>();
+        let entries = places.chunks_exact_mut(pedestrians);
+        for (places, sums) in entries.zip(self.sums.chunks_exact(pedestrians)) {
+            self.observation.centre(places, sums, steps);
+        }
+        let hypotheses = self.positions.len() / pedestrians;
+        rows([hypotheses, pedestrians, 2], centred)
+    }
+
     /// What the network reads of everybody at an observed time step, `[E, P, inputs]`.
     pub(super) fn observed_relative(&self, t: usize) -> Rc<Rows> {
-        let at = |t: usize| &self.observed[t * self.pedestrians..][..self.pedestrians];
+        let at = |t: usize| self.observation.at(t);
         self.relative(at(t), at(t.saturating_sub(1)))
     }
 
@@ -165,7 +208,8 @@ impl BatchCourse {
     /// `positions` and those a step before, `[1 or more, P]`, relative to the references, in the frames with the velocity.
     fn relative(&self, positions: &[[f32; 2]], before: &[[f32; 2]]) -> Rc<Rows> {
         let count = positions.len().max(self.references.len());
-        let entries = count / self.pedestrians;
+        let pedestrians = self.observation.pedestrians;
+        let (entries, time_step) = (count / pedestrians, self.observation.time_step());
         let place = |i: usize| {
             let (now, reference) = (around(positions, i), around(&self.references, i));
             [now[0] - reference[0], now[1] - reference[1]]
@@ -176,25 +220,25 @@ impl BatchCourse {
             for (i, row) in places.iter_mut().enumerate() {
                 *row = place(i);
             }
-            return rows([entries, self.pedestrians, 2], numbers);
+            return rows([entries, pedestrians, 2], numbers);
         };
         let mut numbers = Buffer::any(4 * count);
         let (places, _) = numbers.as_chunks_mut::<4>();
         for (i, row) in places.iter_mut().enumerate() {
             let (now, earlier) = (around(positions, i), around(before, i));
-            let velocity = [0, 1].map(|axis| (now[axis] - earlier[axis]) / self.time_step);
+            let velocity = [0, 1].map(|axis| (now[axis] - earlier[axis]) / time_step);
             let frame = around(frames, i);
             let ([x, y], [vx, vy]) = (frame.of_world(place(i)), frame.of_world(velocity));
             *row = [x, y, vx, vy];
         }
-        rows([entries, self.pedestrians, 4], numbers)
+        rows([entries, pedestrians, 4], numbers)
     }
 
     /// Goes one step on by factors (a, b, c) or vectors, as the output layer emits them in the pedestrians' frames, `[H, P, outputs]`,
     /// with `done` steps made and `left` of them left, this one included. The factors are in the frame of the world afterwards.
     pub(super) fn advance(&mut self, emitted: &mut [f32], steps: (usize, usize)) {
         self.before.copy_from_slice(&self.positions);
-        if self.dynamics {
+        if self.observation.config.variant.dynamics() {
             let (factors, _) = emitted.as_chunks_mut::<3>();
             self.follow(factors, steps);
         } else {
@@ -209,16 +253,15 @@ impl BatchCourse {
     }
 
     fn follow(&mut self, factors: &mut [[f32; 3]], (done, left): (usize, usize)) {
-        let (sigma, dt) = (self.sigma, self.time_step);
+        let Observation { config, bounds, .. } = self.observation;
+        let (sigma, dt) = (config.sigma as f32, self.observation.time_step());
         let time = StepTime { done, left, dt };
         for (i, (place, factor)) in self.positions.iter_mut().zip(factors).enumerate() {
             if let Some(frames) = &self.frames {
                 *factor = around(frames, i).factor_to_world(*factor);
             }
-            let bounds = self
-                .bounds
-                .as_ref()
-                .map(|bounds| &bounds[i % self.pedestrians]);
+            let bounds = bounds.as_ref();
+            let bounds = bounds.map(|bounds| &bounds[i % self.observation.pedestrians]);
             let goal = around(&self.goals, i);
             // NaN goes on as NaN, and is reported by who walks the same way in f64.
             *place = next(*place, goal, *factor, (sigma, time), bounds).unwrap_or([f32::NAN; 2]);
@@ -241,9 +284,9 @@ fn rows(shape: [usize; 3], numbers: Buffer) -> Rc<Rows> {
     Rc::new(Rows::new(shape, numbers))
 }
 
-fn scenes(windows: &[Window], half_box: f64) -> Scenes {
-    let sizes: Vec<usize> = windows.iter().map(Window::len).collect();
-    Scenes::new(&sizes, &visibility(windows, OBSERVED, half_box))
+fn tracks<'a>(batch: &'a ForecastBatch<'_>) -> impl Iterator<Item = &'a [Position]> {
+    let windows = batch.windows.iter();
+    windows.flat_map(|window| (0..window.len()).map(|i| window.observed(i)))
 }
 
 /// The bounds in single precision. Invalid speeds are reported by the rollout in `f64`, which has the same bounds.

@@ -1,17 +1,15 @@
 //! The forecasting network on plain numbers.
 
 use super::batch::{BatchRollout, ForecastBatch};
-use super::course::BatchCourse;
 use super::emission::NoiseSpread;
 use super::forecast_windows::ForecastWindows;
+use super::pass::{Pass, PassLayers};
 use crate::backbone::{Backbone, Perceptron, Star};
-use crate::backend::{Backend as _, Buffer, KernelBackend, Kernels, Memory, Rows};
+use crate::backend::{KernelBackend, Kernels};
 use crate::config::BackboneKind;
 use crate::seed::{Stage, stream};
 use crate::weights::{Layout, Linear, Weights};
 use crate::{NetworkError, Precision, StarConfig};
-use ddl_data::{HORIZON, OBSERVED};
-use std::rc::Rc;
 use std::sync::Arc;
 
 /// The forecasting network, computed by kernels on the CPU in `f32`.
@@ -117,29 +115,6 @@ impl MotionNetwork {
     pub fn weights(&self) -> &Weights {
         &self.weights
     }
-
-    fn emit(&self, backend: &KernelBackend, features: &Rc<Rows>, noise: &Rc<Rows>) -> Buffer {
-        let emitted = backend.linear(self.output, &backend.beside(features, noise));
-        Buffer::copy(&emitted)
-    }
-
-    /// The noise beside each pedestrian's features, `[H, P, noise]`: zeros where its expectation is added afterwards.
-    fn noise(&self, batch: &ForecastBatch<'_>) -> Rc<Rows> {
-        let width = self.config.noise_width as usize;
-        let shape = [batch.hypotheses(), batch.pedestrians(), width];
-        let mut numbers = Buffer::zeros(shape.iter().product());
-        if let Some(draws) = &batch.noise {
-            for (h, entry) in numbers.chunks_exact_mut(shape[1] * width).enumerate() {
-                let vector = &draws[h % batch.noise_vectors * width..][..width];
-                for row in entry.chunks_exact_mut(width) {
-                    for (number, &drawn) in row.iter_mut().zip(vector) {
-                        *number = drawn as f32;
-                    }
-                }
-            }
-        }
-        Rc::new(Rows::new(shape, numbers))
-    }
 }
 
 fn initial(layout: &Arc<Layout>, seed: u64) -> Weights {
@@ -167,64 +142,12 @@ impl ForecastWindows for MotionNetwork {
     }
 
     fn roll_out(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, NetworkError> {
+        let layers = PassLayers {
+            backbone: &*self.backbone,
+            output: self.output,
+            spread: self.spread,
+        };
         let backend = KernelBackend::forward_only(Arc::clone(&self.kernels));
-        let mut course = BatchCourse::new(batch, &self.config);
-        let seen = course.seen(0..OBSERVED);
-        let scene = self
-            .backbone
-            .scene(&backend, &course.observed_centred(), &seen);
-        let mut memory = Memory::default();
-        let mut features = None;
-        for t in 0..OBSERVED {
-            let (relative, seen) = (course.observed_relative(t), course.seen(t..t + 1));
-            let scene = backend.entry(&scene, t);
-            let step = self
-                .backbone
-                .step(&backend, &mut memory, &relative, &scene, &seen);
-            features = Some(step);
-        }
-        let hypotheses = batch.hypotheses();
-        // There is a last observed step.
-        let Some(features) = features else {
-            unreachable!("{OBSERVED} observed time steps")
-        };
-        let mut features = if backend.entries(&features) < hypotheses {
-            memory = memory.repeated(&backend, hypotheses);
-            backend.repeated(&features, hypotheses)
-        } else {
-            features
-        };
-        let noise = self.noise(batch);
-        let spread = self.spread.filter(|_| batch.noise.is_none());
-        let seen = course.seen(OBSERVED - 1..OBSERVED);
-        let (mut positions, mut factors) = (Vec::new(), Vec::new());
-        for t in 0..HORIZON {
-            let mut emitted = self.emit(&backend, &features, &noise);
-            if let Some(spread) = spread {
-                let (factors, _) = emitted.as_chunks_mut::<3>();
-                for factor in factors {
-                    *factor = spread.expected_factor(*factor);
-                }
-            }
-            course.advance(&mut emitted, (t, HORIZON - t));
-            positions.extend(course.positions().iter().map(|p| p.map(f64::from)));
-            if self.spread.is_some() {
-                let (world, _) = emitted.as_chunks::<3>();
-                factors.extend(world.iter().map(|factor| factor.map(f64::from)));
-            }
-            if t + 1 < HORIZON {
-                let centred = course.centred(OBSERVED + t + 1);
-                let scene = self.backbone.scene(&backend, &centred, &seen);
-                let relative = course.newest_relative();
-                features = self
-                    .backbone
-                    .step(&backend, &mut memory, &relative, &scene, &seen);
-            }
-        }
-        Ok(BatchRollout {
-            hypotheses,
-            positions,
-            factors: self.spread.is_some().then_some(factors),
-        })
+        Ok(Pass::new(layers, backend, batch, &self.config).roll_out())
     }
 }

@@ -1,22 +1,27 @@
 //! Who sees whom.
 
+use crate::backend::Scenes;
 use ddl_data::Window;
 
-/// Whether pedestrian i sees pedestrian j: for each of the first `steps` time steps, for each window, `[size, size]`.
-pub fn visibility<'a>(
-    windows: impl IntoIterator<Item = &'a Window>,
-    steps: usize,
-    half_box: f64,
-) -> Vec<bool> {
-    let windows: Vec<&Window> = windows.into_iter().collect();
-    let mut visible = Vec::new();
-    for t in 0..steps {
-        for window in &windows {
-            let seen = window.neighbours(t, half_box);
-            for i in 0..window.len() {
-                visible.extend((0..window.len()).map(|j| i == j || seen.is_neighbour(i, j)));
-            }
-        }
-    }
-    visible
+/// The pedestrians of windows, with who sees whom in each of the first `steps` time steps: everybody within a box of this half
+/// width (m), and itself.
+///
+/// # Panics
+/// When there is no window.
+pub fn visibility(windows: &[&Window], steps: usize, half_box: f64) -> Scenes {
+    let sizes: Vec<usize> = windows.iter().map(|window| window.len()).collect();
+    let of_window = |window: &Window, step: usize| -> Vec<Vec<u32>> {
+        let neighbours = window.neighbours(step, half_box);
+        let lists = (0..window.len()).map(|i| {
+            let others = neighbours.of(i);
+            let before = others.partition_point(|&j| (j as usize) < i);
+            [&others[..before], &[i as u32], &others[before..]].concat()
+        });
+        lists.collect()
+    };
+    let frames = (0..steps).flat_map(|step| windows.iter().map(move |window| (window, step)));
+    Scenes::new(
+        &sizes,
+        frames.flat_map(|(window, step)| of_window(window, step)),
+    )
 }

@@ -38,7 +38,7 @@ pub(crate) struct AmongPedestrians {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Attended {
     mixed: Buffer,
-    /// By entry, scene, group of heads and two queries: the largest score (log2 units), and 1 / Σ 2^(score − largest).
+    /// By entry, scene, two queries and group of heads: the largest score (log2 units), and 1 / Σ 2^(score − largest).
     normalisers: Vec<[Lanes; 2]>,
 }
 
@@ -81,17 +81,20 @@ impl AmongPedestrians {
         attended.normalisers.resize(normalisers, [Lanes::ZERO; 2]);
         let (mut mixed, mut normalisers) = (&mut attended.mixed[..], &mut attended.normalisers[..]);
         let mut jobs = Vec::new();
+        let groups = self.heads.groups();
         for (qkv, task) in self.tasks(qkv, frames, dropout) {
-            jobs.push(SceneForward {
-                qkv,
-                mixed: mixed
-                    .split_off_mut(..task.scene.pedestrians * row)
-                    .unwrap_or_default(),
-                normalisers: normalisers
-                    .split_off_mut(..task.normalisers())
-                    .unwrap_or_default(),
-                task,
-            });
+            jobs.extend(task.blocks().map(|task| {
+                SceneForward {
+                    qkv,
+                    mixed: mixed
+                        .split_off_mut(..task.queries().len() * row)
+                        .unwrap_or_default(),
+                    normalisers: normalisers
+                        .split_off_mut(..task.twos.len() * groups)
+                        .unwrap_or_default(),
+                    task,
+                }
+            }));
         }
         let work = self.work(frames, entries);
         run_buffered::<_, SceneBuffers>(self.dispatch, jobs, work);
@@ -127,7 +130,7 @@ impl AmongPedestrians {
                 qkv,
                 mixed: mixed.split_off(..pedestrians * row).unwrap_or_default(),
                 normalisers: normalisers
-                    .split_off(..task.normalisers())
+                    .split_off(..task.twos.len() * self.heads.groups())
                     .unwrap_or_default(),
                 mixed_gradient: mixed_gradient
                     .split_off(..pedestrians * row)
@@ -176,6 +179,8 @@ impl AmongPedestrians {
             frames.of_entry(entry).map(move |scene| {
                 let task = SceneTask {
                     scene,
+                    twos: 0..scene.pedestrians.div_ceil(2),
+                    keys: 0..scene.pedestrians,
                     entry,
                     decisions,
                     heads,

@@ -3,14 +3,34 @@
 use std::ops::Range;
 
 /// The pedestrians of several scenes, one scene after the other, with who sees whom in each of several frames.
+///
+/// Memory and time grow with the number of pairs who see each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scenes {
     ranges: Vec<Range<usize>>,
     frames: usize,
-    /// Bit r of a code: the pedestrian 2 i + r sees pedestrian j. By frame, scene, i and j.
-    codes: Vec<u8>,
-    /// Where the codes of each scene start within a frame, and where they end.
+    /// By frame, scene and two pedestrians: whom at least one of the two sees, ascending.
+    seen: Vec<Seen>,
+    /// Where in `seen` those of each two end.
+    ends: Vec<usize>,
+    /// Where in `ends` the pairs of each scene start within a frame, and where they end.
     starts: Vec<usize>,
+}
+
+/// A pedestrian whom two others see, or one of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Seen(u32);
+
+impl Seen {
+    /// Index in the scene.
+    pub(super) fn key(self) -> usize {
+        (self.0 >> 2) as usize
+    }
+
+    /// Bit r: the pedestrian 2 i + r sees it.
+    pub(super) fn code(self) -> usize {
+        (self.0 & 3) as usize
+    }
 }
 
 /// Who sees whom in some of the frames of [`Scenes`].
@@ -23,66 +43,94 @@ pub struct Frames<'a> {
 
 /// One scene in one frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SceneCodes<'a> {
+pub(super) struct SceneView<'a> {
     /// Number of the first pedestrian.
     pub(super) first: usize,
     pub(super) pedestrians: usize,
-    /// For every two queries, what they see of every key: see [`Scenes`].
-    pub(super) codes: &'a [u8],
+    seen: &'a [Seen],
+    /// Where in `seen` the first two start, and where those of each two end.
+    start: usize,
+    ends: &'a [usize],
+}
+
+impl<'a> SceneView<'a> {
+    /// Whom the pedestrians 2 `two` and 2 `two` + 1 see, ascending.
+    pub(super) fn of(self, two: usize) -> &'a [Seen] {
+        let start = two.checked_sub(1).map_or(self.start, |i| self.ends[i]);
+        &self.seen[start..self.ends[two]]
+    }
 }
 
 impl Scenes {
     /// Scenes of `sizes` pedestrians, with who sees whom in every frame.
     ///
     /// # Shapes
-    /// `visible`: for each frame, for each scene, `[size, size]`; the entry (i, j) says that i sees j.
+    /// `seen`: for each frame, scene and pedestrian, the indices within its scene of those it sees, ascending and with its own.
     ///
     /// # Panics
-    /// When there is no scene or an empty one, when `visible` is not a whole number of frames (at least one), or when
-    /// a pedestrian does not see itself.
-    pub fn new(sizes: &[usize], visible: &[bool]) -> Self {
+    /// When there is no scene or an empty one, when `seen` is not of a whole number of frames (at least one), when
+    /// a pedestrian does not see itself, or when indices are not ascending ones of the scene.
+    pub fn new(sizes: &[usize], seen: impl IntoIterator<Item = Vec<u32>>) -> Self {
         assert!(!sizes.is_empty(), "at least one scene is needed");
         assert!(
             sizes.iter().all(|&size| size > 0),
             "a scene has at least one pedestrian: {sizes:?}"
-        );
-        let pairs: usize = sizes.iter().map(|size| size * size).sum();
-        assert!(
-            !visible.is_empty() && visible.len().is_multiple_of(pairs),
-            "{} entries of visibility are not a number of frames of {pairs}",
-            visible.len()
         );
         let mut ranges = Vec::with_capacity(sizes.len());
         let (mut pedestrians, mut starts) = (0, vec![0]);
         for size in sizes {
             ranges.push(pedestrians..pedestrians + size);
             pedestrians += size;
-            starts.push(starts[starts.len() - 1] + size.div_ceil(2) * size);
+            starts.push(starts[starts.len() - 1] + size.div_ceil(2));
         }
-        let mut codes = Vec::with_capacity(visible.len() / 2);
-        for frame in visible.chunks_exact(pairs) {
-            let mut rest = frame;
+        let mut scenes = Self {
+            ranges,
+            frames: 0,
+            seen: Vec::new(),
+            ends: Vec::new(),
+            starts,
+        };
+        let mut lists = seen.into_iter().peekable();
+        while lists.peek().is_some() {
             for &size in sizes {
-                let (scene, later) = rest.split_at(size * size);
-                rest = later;
-                let sees_itself = scene.iter().step_by(size + 1).all(|&visible| visible);
-                assert!(sees_itself, "every pedestrian sees itself");
-                for two in scene.chunks(2 * size) {
-                    let (even, odd) = two.split_at(size);
-                    codes.extend((0..size).map(|key| {
-                        // The query that fills up an odd number sees everything, so that its weights are finite.
-                        let odd = odd.get(key).copied().unwrap_or(true);
-                        u8::from(even[key]) + 2 * u8::from(odd)
-                    }));
+                for first in (0..size).step_by(2) {
+                    let mut list = |query: usize| {
+                        let list = lists.next();
+                        let list = list.unwrap_or_else(|| {
+                            panic!("visibility is not of a number of frames of {pedestrians}")
+                        });
+                        check(&list, query, size);
+                        list
+                    };
+                    let even = list(first);
+                    // The query that fills up an odd number sees what the other one does, so that its weights are finite.
+                    let odd = (first + 1 < size).then(|| list(first + 1));
+                    scenes.push(&even, odd.as_deref().unwrap_or(&even));
                 }
             }
+            scenes.frames += 1;
         }
-        Self {
-            ranges,
-            frames: visible.len() / pairs,
-            codes,
-            starts,
+        assert!(
+            scenes.frames > 0,
+            "visibility of at least one frame is needed"
+        );
+        scenes
+    }
+
+    fn push(&mut self, mut even: &[u32], mut odd: &[u32]) {
+        loop {
+            let next = [even, odd].map(|list| list.first().copied().unwrap_or(u32::MAX));
+            let key = next[0].min(next[1]);
+            if key == u32::MAX {
+                break;
+            }
+            let sees = next.map(|first| first == key);
+            even = &even[usize::from(sees[0])..];
+            odd = &odd[usize::from(sees[1])..];
+            let code = u32::from(sees[0]) + 2 * u32::from(sees[1]);
+            self.seen.push(Seen(key << 2 | code));
         }
+        self.ends.push(self.seen.len());
     }
 
     /// Pedestrians in all scenes together.
@@ -98,6 +146,21 @@ impl Scenes {
     /// Frames with visibility of their own.
     pub fn frames(&self) -> usize {
         self.frames
+    }
+
+    /// Every ordered pair of pedestrians, counted through all scenes, of which the first sees the second in a frame.
+    ///
+    /// # Panics
+    /// When there is no such frame.
+    pub fn pairs(&self, frame: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let scenes = self.during(frame..frame + 1).of_entry(0);
+        scenes.flat_map(|scene| {
+            (0..scene.pedestrians).flat_map(move |i| {
+                let seen = scene.of(i / 2).iter();
+                let seen = seen.filter(move |seen| seen.code() >> (i % 2) & 1 == 1);
+                seen.map(move |seen| (scene.first + i, scene.first + seen.key()))
+            })
+        })
     }
 
     /// Who sees whom in `frames`: one frame stands for every entry of a batch, several for one entry each.
@@ -123,27 +186,37 @@ impl Scenes {
     }
 }
 
+fn check(seen: &[u32], query: usize, size: usize) {
+    assert!(
+        seen.is_sorted_by(|a, b| a < b) && seen.last().is_none_or(|&last| (last as usize) < size),
+        "whom a pedestrian sees are ascending indices of its scene of {size}"
+    );
+    let sees_itself = seen.binary_search(&(query as u32)).is_ok();
+    assert!(sees_itself, "every pedestrian sees itself");
+}
+
 impl<'a> Frames<'a> {
     pub(super) fn scenes(self) -> &'a Scenes {
         self.scenes
     }
 
     /// The scenes of a batch entry, in the order of the pedestrians.
-    pub(super) fn of_entry(self, entry: usize) -> impl Iterator<Item = SceneCodes<'a>> {
+    pub(super) fn of_entry(self, entry: usize) -> impl Iterator<Item = SceneView<'a>> {
         let scenes = self.scenes;
         let frame = self.first + if self.count == 1 { 0 } else { entry };
-        let per_frame = scenes.codes.len() / scenes.frames;
-        let codes = &scenes.codes[frame * per_frame..][..per_frame];
-        let within = scenes.starts.windows(2).map(|ends| ends[0]..ends[1]);
-        scenes
-            .ranges
-            .iter()
-            .zip(within)
-            .map(|(range, within)| SceneCodes {
-                first: range.start,
-                pedestrians: range.len(),
-                codes: &codes[within],
-            })
+        let per_frame = scenes.ends.len() / scenes.frames;
+        let places = scenes.starts.array_windows().map(move |&[start, end]| {
+            let before = frame * per_frame;
+            before + start..before + end
+        });
+        let each = scenes.ranges.iter().zip(places);
+        each.map(|(range, place)| SceneView {
+            first: range.start,
+            pedestrians: range.len(),
+            seen: &scenes.seen,
+            start: place.start.checked_sub(1).map_or(0, |i| scenes.ends[i]),
+            ends: &scenes.ends[place],
+        })
     }
 
     /// Panics unless a batch of `entries` can have these frames.
@@ -155,17 +228,16 @@ impl<'a> Frames<'a> {
         );
     }
 
-    /// Queries times keys in a batch of `entries`.
+    /// Queries times the keys they see in a batch of `entries`.
     pub(super) fn pairs(self, entries: usize) -> usize {
-        let squares = self.scenes.ranges.iter().map(|range| range.len().pow(2));
-        entries * squares.sum::<usize>()
+        2 * self.scenes.seen.len() / self.scenes.frames * entries
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::tests::numbers::assert_refused;
+    use crate::kernel::tests::numbers::{assert_refused, lists};
 
     #[test]
     fn two_queries_share_a_code() {
@@ -176,36 +248,53 @@ mod tests {
             true, false, true,
         ];
         let both = [visible, [true; 10]].concat();
-        let scenes = Scenes::new(&[1, 3], &both);
+        let scenes = Scenes::new(&[1, 3], lists(&[1, 3], &both));
         assert_eq!((scenes.pedestrians(), scenes.frames()), (4, 2));
         assert_eq!(scenes.ranges(), [0..1, 1..4]);
-        let of = |frames: Frames<'_>, entry| -> Vec<Vec<u8>> {
-            frames
-                .of_entry(entry)
-                .map(|scene| scene.codes.to_vec())
-                .collect()
+        let of = |frames: Frames<'_>, entry| -> Vec<Vec<(usize, usize)>> {
+            let scenes = frames.of_entry(entry);
+            let twos = scenes.flat_map(|scene| (0..scene.ends.len()).map(move |i| scene.of(i)));
+            let codes = twos.map(|seen| seen.iter().map(|seen| (seen.key(), seen.code())));
+            codes.map(Iterator::collect).collect()
         };
-        let (first, all) = ([vec![3], vec![1, 3, 2, 3, 2, 3]], [vec![3], vec![3; 6]]);
+        let first = [
+            vec![(0, 3)],
+            vec![(0, 1), (1, 3), (2, 2)],
+            vec![(0, 3), (2, 3)],
+        ];
+        let all = [(0, 3), (1, 3), (2, 3)];
+        let all = [all[..1].to_vec(), all.to_vec(), all.to_vec()];
         assert_eq!(of(scenes.throughout(), 0), first);
         assert_eq!(of(scenes.throughout(), 1), all);
         assert_eq!(of(scenes.during(0..1), 1), first);
         assert_eq!(of(scenes.during(1..2), 5), all);
+        let pairs = [(0, 0), (1, 1), (1, 2), (2, 2), (2, 3), (3, 1), (3, 3)];
+        assert_eq!(scenes.pairs(0).collect::<Vec<_>>(), pairs);
+        assert_eq!(scenes.pairs(1).count(), 10);
     }
 
     #[test]
     fn what_does_not_fit_is_refused() {
-        let refused = |said, sizes: &[usize], visible: &[bool]| {
-            assert_refused(said, || drop(Scenes::new(sizes, visible)));
+        let refused = |said, sizes: &[usize], seen: &[&[u32]]| {
+            let seen = seen.iter().map(|list| list.to_vec());
+            assert_refused(said, || drop(Scenes::new(sizes, seen)));
         };
+        refused("every pedestrian sees itself", &[2], &[&[0, 1], &[0]]);
+        refused("not of a number of frames of 2", &[2], &[&[0], &[1], &[0]]);
+        refused("at least one frame", &[2], &[]);
+        refused("at least one pedestrian", &[2, 0], &[&[0], &[1]]);
         refused(
-            "every pedestrian sees itself",
+            "ascending indices of its scene of 2",
             &[2],
-            &[true, true, true, false],
+            &[&[0, 2], &[1]],
         );
-        refused("9 entries of visibility", &[2], &[true; 9]);
-        refused("at least one pedestrian", &[2, 0], &[true; 4]);
+        refused(
+            "ascending indices of its scene of 2",
+            &[2],
+            &[&[1, 0], &[1]],
+        );
         assert_refused("frames 1..3 of 2", || {
-            let _ = Scenes::new(&[1], &[true; 2]).during(1..3);
+            let _ = Scenes::new(&[1], [vec![0], vec![0]]).during(1..3);
         });
     }
 }

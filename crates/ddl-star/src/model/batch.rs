@@ -112,9 +112,7 @@ fn neighbours(
     device: Device,
     kind: Kind,
 ) -> Neighbours {
-    let sizes: Vec<usize> = windows.iter().map(|window| window.len()).collect();
-    let visible = visibility(windows.iter().copied(), frames, half_box);
-    Neighbours::new(&sizes, visible, device, kind)
+    Neighbours::new(visibility(windows, frames, half_box), device, kind)
 }
 
 fn check_length(window: &Window, frames: usize) -> Result<(), StarError> {

@@ -14,19 +14,15 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(crate) struct Neighbours {
     scenes: Arc<Scenes>,
-    /// For each frame, for each scene, `[size, size]`.
-    visible: Vec<bool>,
     device: Device,
     kind: Kind,
     rows: OnceCell<MaskedRows>,
 }
 
 impl Neighbours {
-    /// Shapes: `sizes`: walkers of each scene; `visible`: for each frame, for each scene, `[size, size]`.
-    pub(crate) fn new(sizes: &[usize], visible: Vec<bool>, device: Device, kind: Kind) -> Self {
+    pub(crate) fn new(scenes: Scenes, device: Device, kind: Kind) -> Self {
         Self {
-            scenes: Arc::new(Scenes::new(sizes, &visible)),
-            visible,
+            scenes: Arc::new(scenes),
             device,
             kind,
             rows: OnceCell::new(),
@@ -52,22 +48,15 @@ impl Neighbours {
             let (rows, length) = (packing.rows(), packing.length());
             let frames = scenes.frames();
             let mut mask = vec![f32::NEG_INFINITY; frames * rows * length * length];
-            let mut visible = self.visible.iter();
-            for mask in mask.chunks_exact_mut(rows * length * length) {
+            let masks = mask.chunks_exact_mut(rows * length * length);
+            for (frame, mask) in masks.enumerate() {
                 // Who fills a row up sees itself, so that its weights are numbers.
                 for (place, row) in mask.chunks_exact_mut(length).enumerate() {
                     row[place % length] = 0.0;
                 }
-                for scene in scenes.ranges() {
-                    let places = &packing.places()[scene.clone()];
-                    for place in places {
-                        let row = &mut mask[place * length..][places[0] % length..][..scene.len()];
-                        for (entry, &seen) in row.iter_mut().zip(visible.by_ref()) {
-                            if seen {
-                                *entry = 0.0;
-                            }
-                        }
-                    }
+                for (walker, seen) in scenes.pairs(frame) {
+                    let [walker, seen] = [walker, seen].map(|walker| packing.places()[walker]);
+                    mask[walker * length + seen % length] = 0.0;
                 }
             }
             let shape = [frames, rows, length, length].map(|size| size as i64);

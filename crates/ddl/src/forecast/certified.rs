@@ -1,10 +1,11 @@
-use crate::forecast::clearance::Clearance;
+use crate::forecast::clearance::{Clearance, Others};
 use crate::forecast::walk::{Course, Gait, Walk};
 use crate::trust::calibration::Calibration;
 use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
-use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds, Violation};
+use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds, ObstacleSchedule, Violation};
 use ddl_eval::{Forecast, ForecastError};
 use ddl_network::{NetworkFrame, StarConfig, Variant, motion_bounds};
+use rayon::prelude::*;
 
 /// A forecast whose every hypothesis carries a Lyapunov certificate.
 ///
@@ -98,7 +99,9 @@ impl Walked<'_> {
     /// The forecast alone, with the verdicts where there is a flow to certify.
     pub(crate) fn forecast(self) -> Result<Forecast, ForecastError> {
         if self.factors.is_some() {
-            return Ok(self.certified()?.forecast);
+            // Certificates of a crowd take more memory than its forecast: each is dropped once it is judged.
+            let (positions, held) = self.walks(|certificate| certificate.holds().is_ok())?;
+            return Ok(self.at(positions)?.with_certified(held)?);
         }
         let positions = self.rolled_out.clone();
         self.at(positions)
@@ -127,16 +130,8 @@ impl Walked<'_> {
         Ok(forecast.with_spread(spread, Calibration::shared_regions())?)
     }
 
-    /// With plain Euler steps, certificates are of the positions of the network's own rollout, as they are.
     pub(crate) fn certified(self) -> Result<CertifiedForecast, ForecastError> {
-        let Some(factors) = &self.factors else {
-            return Err(no_flow(self.config.variant));
-        };
-        let (positions, certificates) = match self.gait {
-            Gait::PlainEuler => self.as_rolled_out(factors)?,
-            Gait::Stable(None) => flat(self.alone(factors)?),
-            Gait::Stable(Some(clearance)) => flat(self.among_others(factors, clearance)?),
-        };
+        let (positions, certificates) = self.walks(|certificate| certificate)?;
         let held = certificates
             .iter()
             .map(|certificate| certificate.holds().is_ok())
@@ -148,28 +143,52 @@ impl Walked<'_> {
         })
     }
 
-    fn as_rolled_out(
+    /// The positions of every hypothesis, `[N][K][12]`, and what `of` makes of each certificate. With plain Euler steps
+    /// certificates are of the positions of the network's own rollout, as they are.
+    fn walks<R: Send>(
         &self,
-        factors: &[[f64; 3]],
-    ) -> Result<(Vec<Position>, Vec<LyapunovCertificate<f64>>), ForecastError> {
-        let mut paths = self.rolled_out.chunks_exact(HORIZON);
-        let certificates = self.each(factors, |_, course, factors| {
-            course.certify(paths.next().unwrap_or_default(), factors)
-        })?;
-        Ok((self.rolled_out.clone(), certificates))
+        of: impl Fn(LyapunovCertificate<f64>) -> R + Sync,
+    ) -> Result<(Vec<Position>, Vec<R>), ForecastError> {
+        let Some(factors) = &self.factors else {
+            return Err(no_flow(self.config.variant));
+        };
+        let judged = |walk: Walk| (walk.positions, of(walk.certificate));
+        let walks = match self.gait {
+            Gait::PlainEuler => {
+                let certify = |(): &(), pair: usize, course: &Course, factors: &[[f64; 3]]| {
+                    let path = &self.rolled_out[pair * HORIZON..][..HORIZON];
+                    course.certify(path, factors).map(&of)
+                };
+                let certificates = self.each(factors, |_| Ok(()), certify)?;
+                return Ok((self.rolled_out.clone(), certificates));
+            }
+            Gait::Stable(None) => {
+                let walk = |(): &(), _: usize, course: &Course, factors: &[[f64; 3]]| {
+                    course.walk(factors).map(judged)
+                };
+                self.each(factors, |_| Ok(()), walk)?
+            }
+            Gait::Stable(Some(clearance)) => {
+                let others = self.others(factors, clearance)?;
+                let near = |i: usize| {
+                    let goals = &self.goals[i * self.hypotheses..][..self.hypotheses];
+                    others.near(i, self.window.observed(i)[OBSERVED - 1], goals)
+                };
+                let walk = |others: &ObstacleSchedule<f64, 2>,
+                            _: usize,
+                            course: &Course,
+                            factors: &[[f64; 3]]| {
+                    course.walk_among(others, factors).map(judged)
+                };
+                self.each(factors, near, walk)?
+            }
+        };
+        let (positions, certificates): (Vec<_>, Vec<_>) = walks.into_iter().unzip();
+        Ok((positions.into_flattened(), certificates))
     }
 
-    /// Every hypothesis walked as if nobody else were there.
-    fn alone(&self, factors: &[[f64; 3]]) -> Result<Vec<Walk>, ForecastError> {
-        self.each(factors, |_, course, factors| course.walk(factors))
-    }
-
-    /// Every hypothesis walked again, keeping clear of where the others most likely go alone.
-    fn among_others(
-        &self,
-        factors: &[[f64; 3]],
-        clearance: Clearance,
-    ) -> Result<Vec<Walk>, ForecastError> {
+    /// What everybody keeps clear of: the others where they most likely go alone.
+    fn others(&self, factors: &[[f64; 3]], clearance: Clearance) -> Result<Others, ForecastError> {
         let hypotheses = self.hypotheses;
         let weights = self.weights.chunks_exact(hypotheses).enumerate();
         let likeliest = weights
@@ -182,13 +201,7 @@ impl Walked<'_> {
                 Ok(walk.positions)
             })
             .collect::<Result<Vec<_>, ForecastError>>()?;
-        let others = (0..self.window.len())
-            .map(|i| clearance.others(i, &likeliest))
-            .collect::<Result<Vec<_>, _>>()
-            .map_err(|error| ForecastError::model(crate::forecast::name::NAME, error))?;
-        self.each(factors, |i, course, factors| {
-            course.walk_among(&others[i], factors)
-        })
+        Ok(Others::new(clearance, likeliest))
     }
 
     fn bounds(&self, i: usize) -> MotionBounds<f64> {
@@ -200,16 +213,36 @@ impl Walked<'_> {
         }
     }
 
-    /// What is made of each walker, hypothesis by hypothesis, in order; a failure is told with its place.
-    fn each<R>(
+    /// What is made of each pedestrian, hypothesis by hypothesis, in order: `of` gets what `before` makes once for the pedestrian,
+    /// and pedestrian x hypotheses + hypothesis. The first failure is told with its place.
+    fn each<C, R: Send>(
         &self,
         factors: &[[f64; 3]],
-        mut of: impl FnMut(usize, &Course, &[[f64; 3]]) -> Result<R, DynamicsError>,
+        before: impl Fn(usize) -> Result<C, DynamicsError> + Sync,
+        of: impl Fn(&C, usize, &Course, &[[f64; 3]]) -> Result<R, DynamicsError> + Sync,
     ) -> Result<Vec<R>, ForecastError> {
-        let pairs = factors.chunks_exact(HORIZON).enumerate();
-        pairs
-            .map(|(pair, factors)| self.one(pair, factors, &mut of))
-            .collect()
+        let of_pedestrian = |(i, factors): (usize, &[[f64; 3]])| {
+            let before = before(i);
+            let hypotheses = factors.chunks_exact(HORIZON).enumerate();
+            let each = hypotheses.map(|(k, factors)| {
+                self.one(i * self.hypotheses + k, factors, |pair, course, factors| {
+                    of(
+                        before.as_ref().map_err(Clone::clone)?,
+                        pair,
+                        course,
+                        factors,
+                    )
+                })
+            });
+            each.collect::<Result<Vec<R>, ForecastError>>()
+        };
+        let pedestrians = factors.par_chunks_exact(self.hypotheses * HORIZON);
+        let each: Vec<_> = pedestrians.enumerate().map(of_pedestrian).collect();
+        let mut all = Vec::with_capacity(factors.len() / HORIZON);
+        for of_pedestrian in each {
+            all.extend(of_pedestrian?);
+        }
+        Ok(all)
     }
 
     /// Runs `of` for one hypothesis; `pair` = pedestrian x hypotheses + hypothesis.
@@ -227,7 +260,7 @@ impl Walked<'_> {
             time_step: self.config.time_step,
             bounds: self.bounds(i),
         };
-        of(i, &course, factors).map_err(|cause| {
+        of(pair, &course, factors).map_err(|cause| {
             failed(CertificateError::Walk {
                 recording: self.window.recording().to_owned(),
                 start_frame: self.window.start_frame(),
@@ -237,12 +270,6 @@ impl Walked<'_> {
             })
         })
     }
-}
-
-fn flat(walks: Vec<Walk>) -> (Vec<Position>, Vec<LyapunovCertificate<f64>>) {
-    let positions = walks.iter().flat_map(|walk| walk.positions).collect();
-    let certificates = walks.into_iter().map(|walk| walk.certificate).collect();
-    (positions, certificates)
 }
 
 pub(crate) fn ensure_flow(variant: Variant) -> Result<(), ForecastError> {

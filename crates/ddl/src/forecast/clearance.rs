@@ -1,5 +1,5 @@
 use crate::error::DdlError;
-use ddl_data::{HORIZON, Position};
+use ddl_data::{HORIZON, Places, Position};
 use ddl_dynamics::{Ball, DynamicsError, ObstacleSchedule};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -41,21 +41,51 @@ impl Clearance {
     pub fn distance(self) -> f64 {
         self.0
     }
+}
 
-    /// What walker `i` keeps clear of in each step: all others where they will be at its end.
+/// Where everybody will most likely be at the end of each step.
+#[derive(Debug)]
+pub(crate) struct Others {
+    clearance: Clearance,
+    likeliest: Vec<[Position; HORIZON]>,
+    /// One a step.
+    places: Vec<Places>,
+}
+
+impl Others {
+    pub(crate) fn new(clearance: Clearance, likeliest: Vec<[Position; HORIZON]>) -> Self {
+        let at = |t: usize| -> Vec<Position> { likeliest.iter().map(|path| path[t]).collect() };
+        Self {
+            clearance,
+            places: (0..HORIZON).map(|t| Places::new(&at(t))).collect(),
+            likeliest,
+        }
+    }
+
+    /// What pedestrian `i` keeps clear of in each step on its ways from `start` to `goals`.
     ///
-    /// `likeliest` holds a path for each walker.
-    pub(crate) fn others(
-        self,
+    /// As its distance to the goal falls, it comes no farther from the start than twice to the farthest goal, and no step
+    /// is longer than to the goal: with twice that between, a disc cuts no step short.
+    pub(crate) fn near(
+        &self,
         i: usize,
-        likeliest: &[[Position; HORIZON]],
+        start: Position,
+        goals: &[Position],
     ) -> Result<ObstacleSchedule<f64, 2>, DynamicsError> {
-        let others = || likeliest.iter().enumerate().filter(|(j, _)| *j != i);
-        let disc = |position: Position| Ball::new(Vector2::from(position), self.0);
-        let steps = (0..HORIZON)
-            .map(|t| others().map(|(_, path)| disc(path[t])).collect())
-            .collect::<Result<_, _>>()?;
-        Ok(ObstacleSchedule::new(steps))
+        let ways = goals
+            .iter()
+            .map(|goal| (goal[0] - start[0]).hypot(goal[1] - start[1]));
+        let farthest = ways.fold(0.0, f64::max);
+        let reach = 4.0 * farthest + self.clearance.0 + Clearance::MARGIN;
+        let step = |(t, places): (usize, &Places)| {
+            let mut near: Vec<usize> = places.within_box(start, reach).collect();
+            near.sort_unstable();
+            let others = near.into_iter().filter(|&j| j != i);
+            let disc = |j: usize| Ball::new(Vector2::from(self.likeliest[j][t]), self.clearance.0);
+            others.map(disc).collect()
+        };
+        let steps: Result<_, _> = self.places.iter().enumerate().map(step).collect();
+        Ok(ObstacleSchedule::new(steps?))
     }
 }
 
@@ -67,8 +97,9 @@ mod tests {
     #[test]
     fn the_others_are_where_they_will_be_at_the_end_of_the_step() {
         let path = |x: f64| std::array::from_fn(|t| [x, t as f64]);
-        let likeliest = [path(0.0), path(1.0), path(2.0)];
-        let others = Clearance::new(0.4).unwrap().others(1, &likeliest).unwrap();
+        let likeliest = vec![path(0.0), path(1.0), path(2.0), path(99.0)];
+        let others = Others::new(Clearance::new(0.4).unwrap(), likeliest);
+        let others = others.near(1, [1.0, 0.0], &[[1.0, 4.0]]).unwrap();
         for step in 0..HORIZON {
             let state = State::new(Vector2::new(9.0, 9.0), step, 0.0, &[]);
             let centres: Vec<_> = others.obstacles(&state).iter().map(Ball::centre).collect();

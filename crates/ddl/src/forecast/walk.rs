@@ -144,6 +144,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
     use super::*;
+    use crate::forecast::clearance::Others;
 
     fn course() -> Course {
         Course {
@@ -184,9 +185,8 @@ mod tests {
         let (course, factors) = (course(), [[1.0, 0.0, 1.0]; HORIZON]);
         let clearance = Clearance::new(0.5).unwrap();
         let stands = [[1.5, 0.1]; HORIZON];
-        let others = clearance
-            .others(0, &[[[9.0, 9.0]; HORIZON], stands])
-            .unwrap();
+        let among = |others| Others::new(clearance, others).near(0, [0.0, 0.0], &[[3.0, 0.0]]);
+        let others = among(vec![[[9.0, 9.0]; HORIZON], stands]).unwrap();
         let apart = |walk: &Walk| {
             let distances = walk.positions.map(|[x, y]| (x - 1.5).hypot(y - 0.1));
             distances.into_iter().fold(f64::INFINITY, f64::min)
@@ -196,7 +196,7 @@ mod tests {
         assert!(apart(&walk) > 0.5);
         assert_eq!(walk.certificate.holds(), Ok(()));
         assert_eq!(walk.certificate.motion().unwrap().distance_left, None);
-        let nobody = clearance.others(0, &[stands]).unwrap();
+        let nobody = among(vec![stands]).unwrap();
         let alone = course.walk_among(&nobody, &factors).unwrap();
         assert_eq!(alone.positions, course.walk(&factors).unwrap().positions);
     }

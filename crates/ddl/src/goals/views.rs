@@ -1,6 +1,6 @@
 //! What a proposal network sees of the walkers of a window.
 
-use ddl_data::{OBSERVED, Position, Remembered, Window};
+use ddl_data::{OBSERVED, Places, Position, Remembered, Window};
 use ddl_goal::{HeadingFrame, TrackError};
 use ddl_network::{PedestrianView, ProposalExample, motion_unit};
 
@@ -19,13 +19,17 @@ pub(crate) fn of_window(
     neighbours: usize,
     time_step: f64,
 ) -> Result<Vec<Seen>, TrackError> {
+    let last = window.positions_at(OBSERVED - 1);
+    let places = Places::new(&last);
     (0..window.len())
         .map(|i| {
             let frame = HeadingFrame::new(window.observed(i))?;
             let unit = motion_unit(window.observed(i), time_step);
             let view = PedestrianView {
                 own: in_frame((&frame, unit), window.observed(i)),
-                neighbours: nearest(window, i, neighbours)
+                neighbours: places
+                    .nearest_others(i, last[i], neighbours)
+                    .into_iter()
                     .map(|j| in_frame((&frame, unit), window.observed(j)))
                     .collect(),
                 remembered: window
@@ -60,23 +64,6 @@ pub(crate) fn examples(
         }
     }
     Ok(examples)
-}
-
-fn nearest(window: &Window, i: usize, count: usize) -> impl Iterator<Item = usize> {
-    let last = |j: usize| window.observed(j)[OBSERVED - 1];
-    let here = last(i);
-    let mut others: Vec<(f64, usize)> = (0..window.len())
-        .filter(|&j| j != i)
-        .map(|j| ((last(j)[0] - here[0]).hypot(last(j)[1] - here[1]), j))
-        .collect();
-    let nearer = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-    // Among thousands only the few that are wanted are put in order.
-    if count < others.len() {
-        others.select_nth_unstable_by(count, nearer);
-        others.truncate(count);
-    }
-    others.sort_unstable_by(nearer);
-    others.into_iter().map(|(_, j)| j)
 }
 
 fn in_frame<const T: usize>(

@@ -128,7 +128,8 @@ proptest! {
 
     #[test]
     fn rows_are_normalised_and_their_gradients_are_those_of_the_formula(
-        width in 2..70_usize,
+        // Of two numbers the gradient is next to 0 whatever they are: nothing but rounding.
+        width in 3..70_usize,
         rows in 0..12_usize,
         p in prop_oneof![Just(0.0), 0.05..0.9],
         seed in any::<u64>(),

@@ -14,7 +14,7 @@ pub(super) struct SceneBackward<'a> {
     pub(super) task: SceneTask<'a>,
     pub(super) qkv: &'a [f32],
     pub(super) mixed: &'a [f32],
-    /// By group of heads and two queries.
+    /// By two queries and group of heads.
     pub(super) normalisers: &'a [[Lanes; 2]],
     pub(super) mixed_gradient: &'a [f32],
     pub(super) qkv_gradient: &'a mut [f32],
@@ -23,7 +23,8 @@ pub(super) struct SceneBackward<'a> {
 impl Kernel for Buffered<'_, SceneBackward<'_>, SceneBuffers> {
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) {
-        let task = self.job.task;
+        let task = self.job.task.clone();
+        self.buffers.load_codes(&task);
         for group in 0..task.heads.groups() {
             // The number of quads is spelled out for the usual one, which takes the loops over quads away.
             match (task.heads.quads(), task.decisions.is_some()) {
@@ -39,7 +40,7 @@ impl Kernel for Buffered<'_, SceneBackward<'_>, SceneBuffers> {
 impl Buffered<'_, SceneBackward<'_>, SceneBuffers> {
     #[inline(always)]
     fn group<S: Simd, const DROP: bool>(&mut self, simd: S, group: usize, quads: usize) {
-        let task = self.job.task;
+        let task = self.job.task.clone();
         let row = task.heads.row();
         self.buffers.load(simd, &task, self.job.qkv, group, quads);
         self.load_gradients(simd, group, quads);
@@ -86,7 +87,8 @@ impl Buffered<'_, SceneBackward<'_>, SceneBuffers> {
             .mixed_gradient
             .chunks(2 * row)
             .zip(job.mixed.chunks(2 * row));
-        let rows = rows.zip(&job.normalisers[group * twos..]);
+        let normalisers = job.normalisers.chunks_exact(heads.groups());
+        let rows = rows.zip(normalisers.map(|groups| &groups[group]));
         let results = buffers.mixed_gradients.chunks_exact_mut(quads);
         let results = results.zip(&mut buffers.inner);
         for (((gradient, mixed), [largest, share]), (gradients, inner)) in rows.zip(results) {
@@ -118,7 +120,7 @@ fn weigh<S: Simd, const DROP: bool>(
 ) {
     let at = key * quads;
     let (keys, values) = (&buffers.keys[at..][..quads], &buffers.values[at..][..quads]);
-    let codes = task.scene.codes.chunks_exact(task.scene.pedestrians);
+    let codes = buffers.codes.chunks_exact(task.scene.pedestrians);
     let queries = buffers.queries.chunks_exact(quads);
     let queries = queries.zip(buffers.mixed_gradients.chunks_exact(quads));
     let queries = queries.zip(buffers.inner.iter().zip(codes));

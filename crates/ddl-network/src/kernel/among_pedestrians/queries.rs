@@ -2,24 +2,51 @@
 
 use super::dropout::{LaneBits, WeightDecisions};
 use crate::kernel::heads::{GROUP, HeadPart, Heads, row_of};
-use crate::kernel::scenes::SceneCodes;
+use crate::kernel::scenes::SceneView;
 use ddl_simd::{LANES, Lanes, Quad, Simd, ZERO_QUAD};
+use std::ops::Range;
 
-#[derive(Clone, Copy, Debug)]
+/// Some queries of a scene.
+#[derive(Clone, Debug)]
 pub(super) struct SceneTask<'a> {
-    pub(super) scene: SceneCodes<'a>,
+    pub(super) scene: SceneView<'a>,
+    /// The queries, two by two.
+    pub(super) twos: Range<usize>,
+    /// Pedestrians of the scene among whom all are that the queries see.
+    pub(super) keys: Range<usize>,
     pub(super) entry: usize,
     pub(super) decisions: Option<WeightDecisions>,
     pub(super) heads: Heads,
 }
 
 impl SceneTask<'_> {
-    pub(super) fn normalisers(&self) -> usize {
-        self.heads.groups() * self.scene.pedestrians.div_ceil(2)
+    /// The pedestrians of the scene that ask.
+    pub(super) fn queries(&self) -> Range<usize> {
+        2 * self.twos.start..self.scene.pedestrians.min(2 * self.twos.end)
+    }
+
+    /// The task cut into such of a few queries each, which read few keys where neighbours in space are neighbours in order.
+    pub(super) fn blocks(self) -> impl Iterator<Item = Self> {
+        let Range { start, end } = self.twos;
+        (start..end).step_by(TWOS_AT_ONCE).map(move |first| {
+            let twos = first..end.min(first + TWOS_AT_ONCE);
+            let lists = twos.clone().map(|two| self.scene.of(two));
+            let ends = lists.map(|seen| [seen[0].key(), seen[seen.len() - 1].key()]);
+            let all = ends.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
+            let [first, last] = all.unwrap_or_default();
+            Self {
+                twos,
+                keys: first..last + 1,
+                ..self.clone()
+            }
+        })
     }
 }
 
-/// Room for one group of heads of a scene, kept from scene to scene.
+/// Queries of a scene, two by two, that are computed together: few enough for the cache, many enough to share their keys.
+pub(super) const TWOS_AT_ONCE: usize = 256;
+
+/// Room for one group of heads of a task, kept from task to task.
 ///
 /// Queries lie two by two, a pedestrian in each half of the lanes; keys lie one by one, the same in both halves, so that
 /// two queries meet a key in one operation and no sum goes across lanes.
@@ -38,36 +65,8 @@ pub(super) struct SceneBuffers {
     /// Scores, then weights; by key in the forward pass, by two queries in the backward pass.
     pub(super) weights: Vec<Lanes>,
     pub(super) score_gradients: Vec<Lanes>,
-    pub(super) seen: SeenKeys,
-}
-
-/// Scenes with more pedestrians are gone through by who is seen; smaller ones are faster to go through whole.
-pub(super) const LARGE: usize = 128;
-
-/// The keys and values that at least one of two queries sees, in the order of the scene.
-///
-/// Who is not seen has the weight 0: to leave him out changes no bit.
-#[derive(Clone, Debug, Default)]
-pub(super) struct SeenKeys {
+    /// By two queries and key: see [`Seen::code`](crate::kernel::scenes::Seen::code).
     pub(super) codes: Vec<u8>,
-    pub(super) keys: Vec<Quad>,
-    pub(super) values: Vec<Quad>,
-}
-
-impl SeenKeys {
-    pub(super) fn gather(&mut self, codes: &[u8], keys: &[Quad], values: &[Quad], quads: usize) {
-        self.codes.clear();
-        self.keys.clear();
-        self.values.clear();
-        let all = keys.chunks_exact(quads).zip(values.chunks_exact(quads));
-        for (&code, (key, value)) in codes.iter().zip(all) {
-            if code != 0 {
-                self.codes.push(code);
-                self.keys.extend_from_slice(key);
-                self.values.extend_from_slice(value);
-            }
-        }
-    }
 }
 
 /// What is added to the scores of two queries, by the code of what they see.
@@ -83,6 +82,19 @@ pub(super) static UNSEEN: [Lanes; 4] = {
 };
 
 impl SceneBuffers {
+    /// Codes of a task that is of a whole scene.
+    pub(super) fn load_codes(&mut self, task: &SceneTask<'_>) {
+        let pedestrians = task.scene.pedestrians;
+        self.codes.clear();
+        self.codes.resize(task.twos.len() * pedestrians, 0);
+        let twos = self.codes.chunks_exact_mut(pedestrians);
+        for (two, codes) in task.twos.clone().zip(twos) {
+            for seen in task.scene.of(two) {
+                codes[seen.key()] = seen.code() as u8;
+            }
+        }
+    }
+
     #[inline(always)]
     pub(super) fn load<S: Simd>(
         &mut self,
@@ -92,13 +104,16 @@ impl SceneBuffers {
         group: usize,
         quads: usize,
     ) {
-        let (row, pedestrians) = (task.heads.row(), task.scene.pedestrians);
+        let row = task.heads.row();
+        let (asking, keys) = (task.queries(), task.keys.clone());
         let scale = simd.splat(task.heads.scale() * std::f32::consts::LOG2_E);
-        self.queries
-            .resize(pedestrians.div_ceil(2) * quads, ZERO_QUAD);
-        self.keys.resize(pedestrians * quads, ZERO_QUAD);
-        self.values.resize(pedestrians * quads, ZERO_QUAD);
-        let twos = qkv.chunks(6 * row);
+        self.queries.resize(task.twos.len() * quads, ZERO_QUAD);
+        self.keys.resize(keys.len() * quads, ZERO_QUAD);
+        self.values.resize(keys.len() * quads, ZERO_QUAD);
+        let of = |pedestrians: &Range<usize>| {
+            &qkv[3 * row * pedestrians.start..3 * row * pedestrians.end]
+        };
+        let twos = of(&asking).chunks(6 * row);
         for (two, queries) in twos.zip(self.queries.chunks_exact_mut(quads)) {
             let (first, second) = two.split_at(3 * row);
             let second = second.get(..row);
@@ -108,9 +123,10 @@ impl SceneBuffers {
                 simd.write(simd.scaled(loaded, scale), query);
             }
         }
-        let keys = self.keys.chunks_exact_mut(quads);
-        let keys = keys.zip(self.values.chunks_exact_mut(quads));
-        for (pedestrian, (keys, values)) in qkv.chunks_exact(3 * row).zip(keys) {
+        let seen = of(&keys);
+        let into = self.keys.chunks_exact_mut(quads);
+        let into = into.zip(self.values.chunks_exact_mut(quads));
+        for (pedestrian, (keys, values)) in seen.chunks_exact(3 * row).zip(into) {
             let (key, value) = pedestrian[row..].split_at(row);
             for quad in 0..quads {
                 let part = HeadPart::new(task.heads, group, quad);
@@ -120,7 +136,7 @@ impl SceneBuffers {
         }
         self.bits.clear();
         if let Some(decisions) = task.decisions {
-            for first in (0..pedestrians).step_by(2) {
+            for first in asking.step_by(2) {
                 let of = |pedestrian| decisions.query(task.entry, task.scene.first + pedestrian);
                 let two = [of(first), of(first + 1)];
                 self.bits.push(LaneBits::new(two, group * GROUP));

@@ -5,7 +5,7 @@ use crate::Precision;
 use crate::kernel::buffer::Buffer;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::scenes::Scenes;
-use crate::kernel::tests::numbers::{Numbers, bits};
+use crate::kernel::tests::numbers::{Numbers, bits, lists};
 use ddl_simd::InstructionSet;
 use rayon::ThreadPoolBuilder;
 
@@ -34,7 +34,7 @@ impl LayerCase {
     fn new(seed: u64, sizes: Sizes, scenes: &[usize], p: f64) -> Self {
         let mut numbers = Numbers(seed);
         let visible = numbers.visible(scenes, 1);
-        let scenes = Scenes::new(scenes, &visible);
+        let scenes = Scenes::new(scenes, lists(scenes, &visible));
         let count = 2 * scenes.pedestrians() * sizes.width;
         let dropout = |seed| Some(Dropout { p, seed });
         Self {

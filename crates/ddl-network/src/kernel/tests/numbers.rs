@@ -31,6 +31,22 @@ impl Numbers {
     }
 }
 
+/// Whom each pedestrian sees, of the squares of all scenes and frames.
+pub(crate) fn lists(sizes: &[usize], mut visible: &[bool]) -> Vec<Vec<u32>> {
+    let mut lists = Vec::new();
+    while !visible.is_empty() {
+        for &size in sizes
+            .iter()
+            .flat_map(|size| std::iter::repeat_n(size, *size))
+        {
+            let row = visible.split_off(..size).unwrap();
+            let seen = (0..).zip(row).filter(|(_, seen)| **seen);
+            lists.push(seen.map(|(key, _)| key).collect());
+        }
+    }
+    lists
+}
+
 /// Panics where a result is further from the expected one than `tolerance` times the largest of all.
 pub(crate) fn assert_close(what: &str, results: &[f32], expected: &[f64], tolerance: f64) {
     assert_eq!(results.len(), expected.len(), "{what}");
