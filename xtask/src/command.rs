@@ -2,6 +2,7 @@
 
 mod benchmark;
 mod ci;
+mod cluster;
 mod data;
 mod deny;
 mod docs;
@@ -36,6 +37,8 @@ pub(crate) enum Command {
     Page(page::Arguments),
     /// Kill, fill, damage and flood the program many times, and print what was found
     Faults(faults::Arguments),
+    /// Check the benchmark on a real Slurm of two nodes on this machine
+    Cluster,
     /// Make the documentation site: the guide and every crate's interface, every link checked
     Docs(docs::Arguments),
     /// Run every test
@@ -65,6 +68,7 @@ impl Command {
             Self::Benchmark(arguments) => arguments.run(workspace),
             Self::Faults(arguments) => arguments.run(workspace),
             Self::Page(arguments) => arguments.run(workspace),
+            Self::Cluster => cluster::run(workspace),
             Self::Docs(arguments) => arguments.run(workspace),
             Self::Test(arguments) => arguments.run(workspace),
             Self::Fuzz(arguments) => arguments.run(workspace),

@@ -19,6 +19,7 @@ mod libtorch;
 mod process;
 mod python;
 mod site;
+mod slurm;
 mod tidy;
 mod whole_file;
 mod workspace;

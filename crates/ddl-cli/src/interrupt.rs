@@ -3,6 +3,11 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// Signals that follow each other so quickly are one wish: who ends all processes of a job at once signals this one and the one that
+/// started it, which passes it on.
+const TOGETHER: Duration = Duration::from_millis(300);
 
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Interrupt(Arc<AtomicUsize>);
@@ -20,7 +25,13 @@ impl Interrupt {
     ) -> anyhow::Result<Self> {
         let interrupt = Self::default();
         let seen = interrupt.clone();
+        let mut before: Option<Instant> = None;
         ctrlc::set_handler(move || {
+            let now = Instant::now();
+            if before.is_some_and(|before| now - before < TOGETHER) {
+                return;
+            }
+            before = Some(now);
             let wishes = seen.wish();
             if wishes >= last {
                 std::process::exit(130);

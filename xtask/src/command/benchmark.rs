@@ -27,12 +27,13 @@ impl Arguments {
     /// Ends in the program, so that Ctrl-C reaches it, and its exit code is this one's.
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         use std::os::unix::process::CommandExt as _;
-        let error = benchmark(workspace, self.options)?.exec();
+        let error = command(workspace, self.options)?.exec();
         Err(error).context("cargo cannot be started")
     }
 }
 
-fn benchmark(workspace: &Workspace, mut options: Vec<String>) -> Result<Command> {
+/// What then does the work: cargo, which builds the program and becomes it.
+pub(super) fn command(workspace: &Workspace, mut options: Vec<String>) -> Result<Command> {
     let cargo_profile = take(&mut options, "--cargo-profile")?;
     let asked = take(&mut options, "--convention")?;
     let asked = asked.map(|name| name.parse()).transpose()?;
@@ -107,7 +108,7 @@ pub(super) fn smoke(workspace: &Workspace) -> Result<()> {
     let options = "--profile smoke --protocol published,fair,single --cargo-profile dev --out";
     let mut options: Vec<String> = options.split(' ').map(str::to_owned).collect();
     options.push(out.display().to_string());
-    let status = benchmark(workspace, options)?
+    let status = command(workspace, options)?
         .status()
         .context("cargo cannot be started")?;
     if !status.success() {

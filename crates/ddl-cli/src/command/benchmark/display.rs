@@ -1,6 +1,6 @@
 //! How a plan gets on: bars in a terminal, lines elsewhere, and the time left.
 
-use super::plan::{Plan, Task};
+use super::plan::Task;
 use super::work::{End, Event};
 use crate::progress::{LINE_EVERY, ProgressLine, ProgressMode};
 use crate::telling::{human, tell};
@@ -39,7 +39,7 @@ struct Progressing {
 }
 
 impl Display {
-    pub(super) fn new(plan: &Plan, mode: ProgressMode) -> Self {
+    pub(super) fn new(tasks: &[Task], mode: ProgressMode) -> Self {
         let watched = mode == ProgressMode::Auto && std::io::stderr().is_terminal();
         let bars = watched.then(MultiProgress::new);
         let overall = match &bars {
@@ -47,10 +47,7 @@ impl Display {
             None => ProgressBar::hidden(),
         };
         overall.set_style(style("{bar:30} {percent:>3} %  {msg}"));
-        let costs = plan
-            .tasks
-            .iter()
-            .map(|task| (task.id.as_str(), task.cost()));
+        let costs = tasks.iter().map(|task| (task.id.as_str(), task.cost()));
         let state = Mutex::new(State::new(costs));
         Self {
             mode,
@@ -80,13 +77,19 @@ impl Display {
             state.ended,
             state.tasks.len()
         ));
-        let is_told =
-            self.mode == ProgressMode::Auto || matches!(event, Event::Ended(End::Failed { .. }));
-        match (line.filter(|_| is_told), &self.bars) {
+        let has_failed = matches!(event, Event::Ended(End::Failed { .. }));
+        if let Some(line) = line {
+            self.say(&line, has_failed);
+        }
+    }
+
+    /// Tells a line, where only failures are told only what must be.
+    pub(super) fn say(&self, line: &str, must_be: bool) {
+        match &self.bars {
+            _ if self.mode != ProgressMode::Auto && !must_be => {}
             // The terminal may be gone; the work goes on.
-            (Some(line), Some(bars)) => drop(bars.println(line)),
-            (Some(line), None) => tell(format_args!("{line}")),
-            (None, _) => {}
+            Some(bars) => drop(bars.println(line)),
+            None => tell(format_args!("{line}")),
         }
     }
 

@@ -2,12 +2,12 @@
 
 use super::child::{self, BEAT};
 use super::plan::{Plan, Task};
+use super::record::Record;
 use crate::interrupt::Interrupt;
 use crate::progress::ProgressLine;
 use anyhow::Context as _;
-use ddl::data::{remove_half_written, write_whole};
+use ddl::data::remove_half_written;
 use ddl::{DeviceChoice, RunDirectory};
-use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::Write as _;
@@ -92,7 +92,6 @@ impl Workers {
                     break;
                 };
                 let end = self.run_task(plan, task, out, watch, interrupt);
-                watch(task, Event::Ended(&end));
                 ends.lock().unwrap_or_else(PoisonError::into_inner)[index] = end;
             }
         };
@@ -104,7 +103,7 @@ impl Workers {
         ends.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn run_task(
+    pub(super) fn run_task(
         &self,
         plan: &Plan,
         task: &Task,
@@ -112,7 +111,20 @@ impl Workers {
         watch: Watch<'_>,
         interrupt: &Interrupt,
     ) -> End {
-        if Record::is_of(task, out) {
+        let end = self.run_steps(plan, task, out, watch, interrupt);
+        watch(task, Event::Ended(&end));
+        end
+    }
+
+    fn run_steps(
+        &self,
+        plan: &Plan,
+        task: &Task,
+        out: &Path,
+        watch: Watch<'_>,
+        interrupt: &Interrupt,
+    ) -> End {
+        if Record::of(task, out).is_some() {
             return End::Kept;
         }
         watch(task, Event::Started);
@@ -129,12 +141,15 @@ impl Workers {
             watch(task, Event::Advanced(0.0, waits));
             thread::sleep(BEAT);
         }
+        if Record::of(task, out).is_some() {
+            return End::Kept;
+        }
         // Nobody else is at work there now; the folder of the run is the program's own.
         remove_half_written(&task.folder(out));
         let start = Instant::now();
         if let Some(other) = plan
             .with_same_goals(task)
-            .filter(|task| Record::is_of(task, out))
+            .filter(|task| Record::of(task, out).is_some())
         {
             let (here, there) = (task.run_folder(out), other.run_folder(out));
             if let Err(error) = RunDirectory::new(here).take_goals_of(&RunDirectory::new(there)) {
@@ -235,31 +250,6 @@ fn failure(task: &Task, out: &Path, what: &str) -> End {
     let end = last.join("\n    ");
     End::Failed {
         reason: format!("{what}; the end of {}:\n    {end}", log.display()),
-    }
-}
-
-/// What is remembered of a finished task, so that a second run leaves it out: written when training and scoring have succeeded.
-#[derive(Debug, Serialize, Deserialize)]
-struct Record {
-    task: String,
-    seconds: f64,
-}
-
-impl Record {
-    const FILE: &str = "finished.json";
-
-    fn is_of(task: &Task, out: &Path) -> bool {
-        let text = fs::read(task.folder(out).join(Self::FILE)).ok();
-        let record = text.and_then(|text| serde_json::from_slice::<Self>(&text).ok());
-        record.is_some_and(|record| record.task == task.id)
-            && task.run_folder(out).join("report.json").is_file()
-    }
-
-    fn write(task: &Task, out: &Path, seconds: f64) -> anyhow::Result<()> {
-        let file = task.folder(out).join(Self::FILE);
-        let task = task.id.clone();
-        let text = serde_json::to_vec(&Self { task, seconds })?;
-        write_whole(&file, &text).with_context(|| format!("cannot write {}", file.display()))
     }
 }
 

@@ -4,24 +4,23 @@ use clap::Parser;
 #[derive(Debug, Parser)]
 struct Line {
     #[command(flatten)]
-    benchmark: Benchmark,
+    choice: Choice,
 }
 
-fn parsed(words: &str) -> Benchmark {
+fn parsed(words: &str) -> Choice {
     let words = std::iter::once("benchmark").chain(words.split_whitespace());
-    Line::try_parse_from(words).unwrap().benchmark
+    Line::try_parse_from(words).unwrap().choice
 }
 
 fn plan_of(words: &str) -> anyhow::Result<Plan> {
-    parsed(words).plan(Convention::Star, None)
+    parsed(words).plan_of(Convention::Star, None)
 }
 
 #[test]
 fn the_recipe_and_the_folder_follow_the_protocols() {
     let planned = |words: &str| {
-        let benchmark = parsed(words);
         let plan = plan_of(words).unwrap();
-        let out = benchmark.out_folder(&plan);
+        let out = usual_folder(&plan);
         let out = out.strip_prefix("runs").unwrap();
         let train = plan.train_arguments(&plan.tasks[0], Path::new(""), 1);
         let (_, train) = train.split_at(9); // convention, fold, variant and seed

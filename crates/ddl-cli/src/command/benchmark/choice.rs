@@ -1,0 +1,186 @@
+//! What is trained and measured, as asked for, and the plan that follows.
+
+use super::super::folder;
+use super::super::recipe::Recipe;
+use super::method::Method;
+use super::plan::{Plan, Settings, Training};
+use super::profile::Profile;
+use super::publish;
+use crate::telling::tell;
+use anyhow::{Context as _, bail};
+use clap::Args;
+use ddl::data::{Convention, locate};
+use ddl::{DeviceChoice, Protocol};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(super) struct Choice {
+    /// How much work
+    #[arg(long, value_enum, default_value_t = Profile::Quick)]
+    profile: Profile,
+    /// star, social-gan or simulated [default: the first of these whose recordings are there]
+    #[arg(long)]
+    convention: Option<Convention>,
+    /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
+    /// Folds to test on, as in `eth,hotel` [default: the profile's]
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    folds: Vec<String>,
+    /// Variants to train: full, no-goal-shift, no-dynamics, star, perceptron (the full method with a network without attention), or
+    /// all
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "NAMES",
+        default_value = "full"
+    )]
+    variants: Vec<String>,
+    /// Protocols to score under: published, fair, single, online, online-single; with published every model is trained by the paper's recipe, without
+    /// it by the recommended one, and the last epoch alone is kept
+    #[arg(
+        long = "protocol",
+        value_delimiter = ',',
+        value_name = "NAMES",
+        default_value = "fair,single,online,online-single"
+    )]
+    protocols: Vec<Protocol>,
+    /// Seeds; the report gives means and standard deviations over them
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "NUMBERS",
+        default_value = "1"
+    )]
+    seeds: Vec<u64>,
+    /// auto, cpu or cuda
+    #[arg(long, default_value = "cpu")]
+    device: DeviceChoice,
+    /// Walkers trained on in each epoch [default: the profile's, or else the recipe's]
+    #[arg(long, value_name = "N")]
+    train_walkers: Option<usize>,
+    /// Test walkers scored [default: the profile's]
+    #[arg(long, value_name = "N")]
+    test_walkers: Option<usize>,
+    /// Training epochs [default: the profile's]
+    #[arg(long, value_name = "N")]
+    epochs: Option<usize>,
+}
+
+impl Choice {
+    /// The plan, and where its recordings are said to be chosen.
+    pub(super) fn plan(&self) -> anyhow::Result<Plan> {
+        let (convention, data) = self.recordings()?;
+        self.plan_of(convention, data)
+    }
+
+    fn recordings(&self) -> anyhow::Result<(Convention, Option<PathBuf>)> {
+        let data = self.data.as_deref();
+        let convention = match self.convention {
+            Some(Convention::Own) => bail!(
+                "a benchmark is of star, social-gan or simulated data; on your own recordings use `ddl train` and `ddl evaluate`"
+            ),
+            Some(convention) => convention,
+            None => {
+                let mut recorded = [Convention::Star, Convention::SocialGan].into_iter();
+                let there = recorded.find(|&convention| locate(convention, data).is_ok());
+                match (there, data) {
+                    (Some(convention), _) => convention,
+                    // It is said what the folder lacks.
+                    (None, Some(_)) => Convention::Star,
+                    (None, None) => Convention::Simulated,
+                }
+            }
+        };
+        let found = match convention {
+            Convention::Simulated => None,
+            recorded => Some(std::path::absolute(folder(recorded, data)?)?),
+        };
+        if self.convention.is_none() {
+            tell(format_args!("data convention: {convention}"));
+        }
+        Ok((convention, found))
+    }
+
+    fn plan_of(&self, convention: Convention, data: Option<PathBuf>) -> anyhow::Result<Plan> {
+        let mut protocols = self.protocols.clone();
+        // How they were asked for makes no other results.
+        protocols.sort_unstable();
+        protocols.dedup();
+        // The paper's for the paper's protocol, which compares with the paper.
+        let name = if protocols.contains(&Protocol::Published) {
+            Recipe::Published
+        } else {
+            Recipe::Recommended
+        };
+        if name == Recipe::Published && protocols.iter().any(|protocol| protocol.shows_past()) {
+            bail!(
+                "the protocol published measures the paper's recipe, whose models remember nothing of a place: measure online \
+                 and online-single without it"
+            );
+        }
+        let work = self.profile.work(name);
+        let known: Vec<&str> = convention.fold_names().collect();
+        let folds: Vec<String> = if self.folds.is_empty() {
+            let first = known.iter().take(work.folds);
+            first.map(|&fold| fold.to_owned()).collect()
+        } else {
+            for fold in &self.folds {
+                one_of("fold", fold, &known)?;
+            }
+            self.folds.clone()
+        };
+        let methods = if self.variants == ["all"] {
+            Method::ALL.to_vec()
+        } else {
+            let names = Method::ALL.map(Method::name);
+            let methods = self.variants.iter();
+            methods
+                .map(|name| Ok(Method::ALL[one_of("variant", name, &names)?]))
+                .collect::<anyhow::Result<_>>()?
+        };
+        let settings = Settings {
+            profile: self.profile,
+            convention,
+            data,
+            device: self.device,
+            cargo_profile: if cfg!(debug_assertions) {
+                "dev".to_owned()
+            } else {
+                "release".to_owned()
+            },
+            epochs: self.epochs.unwrap_or(work.epochs),
+            train_walkers: self.train_walkers.or(work.train_walkers),
+            proposal_steps: work.proposal_steps,
+            test_walkers: self.test_walkers.or(work.test_walkers),
+            protocols,
+            recipe: Training {
+                name,
+                optimiser: work.optimiser,
+            },
+        };
+        Plan::new(settings, &folds, &methods, &self.seeds)
+    }
+}
+
+/// Where the results of a plan go when nothing else is said.
+pub(super) fn usual_folder(plan: &Plan) -> PathBuf {
+    let settings = &plan.settings;
+    let suffix = publish::suffix(settings.recipe.name);
+    let name = format!("{}-{}{suffix}", settings.convention, settings.profile);
+    Path::new("runs").join(name)
+}
+
+fn one_of(what: &str, name: &str, known: &[&str]) -> anyhow::Result<usize> {
+    let index = known.iter().position(|known| *known == name);
+    index.with_context(|| {
+        format!(
+            "there is no {what} {name:?}: choose from {}",
+            known.join(", ")
+        )
+    })
+}
+
+#[cfg(test)]
+#[path = "choice_tests.rs"]
+mod tests;

@@ -1,0 +1,85 @@
+//! Arrays of jobs, no longer than the site allows.
+
+use anyhow::{Context as _, ensure};
+
+/// Tasks that are one array: those of `indices`, counted from the plan's task `first`.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Array {
+    pub(super) first: usize,
+    /// As `sbatch --array` has them, as in `0-3,7`.
+    pub(super) indices: String,
+}
+
+/// The largest number of indices of an array, from what `scontrol show config` prints.
+pub(super) fn longest(config: &str) -> anyhow::Result<usize> {
+    let mut lines = config.lines().filter_map(|line| line.split_once('='));
+    let (_, value) = lines
+        .find(|(name, _)| name.trim() == "MaxArraySize")
+        .context("`scontrol show config` does not tell MaxArraySize")?;
+    let longest = value.trim().parse().with_context(|| {
+        format!("`scontrol show config` tells MaxArraySize ={value}, which is no number")
+    })?;
+    ensure!(
+        longest > 0,
+        "this Slurm takes no arrays of jobs (MaxArraySize = 0): let others do the tasks, with `--executor none`"
+    );
+    Ok(longest)
+}
+
+/// All `tasks`, which are in order.
+pub(super) fn arrays(tasks: &[usize], longest: usize) -> Vec<Array> {
+    tasks
+        .chunk_by(|one, next| one / longest == next / longest)
+        .map(|tasks| {
+            let first = tasks[0] / longest * longest;
+            let runs = tasks.chunk_by(|one, next| one + 1 == *next);
+            let runs = runs.map(|run| match (run[0] - first, run[run.len() - 1] - first) {
+                (one, last) if one == last => one.to_string(),
+                (one, last) => format!("{one}-{last}"),
+            });
+            Array {
+                first,
+                indices: runs.collect::<Vec<_>>().join(","),
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrays_are_no_longer_than_allowed_and_hold_every_task_once() {
+        let shown = |tasks: &[usize], longest| {
+            let arrays = arrays(tasks, longest);
+            let shown = arrays
+                .iter()
+                .map(|of| format!("{}+{}", of.first, of.indices));
+            shown.collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(shown(&[0, 1, 2, 3, 4], 1001), "0+0-4");
+        assert_eq!(shown(&[1, 3, 4, 9], 1001), "0+1,3-4,9");
+        assert_eq!(shown(&[0, 1, 2, 3, 4, 7], 4), "0+0-3 4+0,3");
+        assert_eq!(shown(&[5, 6], 1), "5+0 6+0");
+        assert_eq!(shown(&[2500], 1001), "2002+498");
+    }
+
+    #[test]
+    fn the_limit_is_read_or_refused_by_name() {
+        let config =
+            "Configuration data as of 2026\nMaxArraySize            = 1001\nMaxBatchRequeue = 5\n";
+        assert_eq!(longest(config).unwrap(), 1001);
+        for (config, told) in [
+            (
+                config.replace("1001", "0"),
+                "no arrays of jobs (MaxArraySize = 0)",
+            ),
+            (config.replace("1001", "many"), "MaxArraySize = many"),
+            (String::new(), "does not tell MaxArraySize"),
+        ] {
+            let error = longest(&config).unwrap_err().to_string();
+            assert!(error.contains(told), "{error}");
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! The script of a task with stand-ins for `ddl` and `scontrol`. Against a real Slurm: `cargo xtask cluster`.
+
+use super::*;
+use rustix::process::{Pid, Signal, kill_process};
+use std::process::{Child, Stdio};
+
+/// Works until it is told to stop; with `code`, ends at once.
+const PROGRAM: &str = r#"
+echo "$$ $*" > begun.writing; mv begun.writing begun
+[ -n "$code" ] && exit "$code"
+trap 'exit 130' TERM
+while :; do sleep 0.02; done
+"#;
+
+struct Task {
+    folder: tempfile::TempDir,
+    script: Child,
+}
+
+impl Task {
+    fn begin(variables: &[(&str, &str)]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let put = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+        put("task.sh", include_str!("task.sh"));
+        put("program", PROGRAM);
+        // Nothing executes a file that another test's process may hold open: a function stands in for the program.
+        put(
+            "scontrol.sh",
+            "scontrol() { echo \"$*\" > \"$folder/asked\"; }\n",
+        );
+        let script = "folder=$PWD; . ./scontrol.sh; . ./task.sh";
+        let script = Command::new("sh")
+            .args([
+                "-c",
+                script,
+                "task.sh",
+                "1000",
+                ".",
+                "sh",
+                "program",
+                "benchmark",
+            ])
+            .current_dir(folder.path())
+            .envs([
+                ("SLURM_ARRAY_TASK_ID", "7"),
+                ("SLURM_JOB_ID", "42"),
+                ("code", ""),
+            ])
+            .envs(variables.iter().copied())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        Self { folder, script }
+    }
+
+    /// The program's process, and its arguments.
+    fn begun(&self) -> (i32, String) {
+        loop {
+            if let Ok(line) = fs::read_to_string(self.folder.path().join("begun")) {
+                let (id, arguments) = line.trim().split_once(' ').unwrap();
+                return (id.parse().unwrap(), arguments.to_owned());
+            }
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// Exit code, what was asked of `scontrol`, standard error.
+    fn end(self) -> (Option<i32>, Option<String>, String) {
+        let output = self.script.wait_with_output().unwrap();
+        let asked = fs::read_to_string(self.folder.path().join("asked")).ok();
+        let told = String::from_utf8(output.stderr).unwrap();
+        (output.status.code(), asked, told)
+    }
+}
+
+fn signal(process: i32, signal: Signal) {
+    kill_process(Pid::from_raw(process).unwrap(), signal).unwrap();
+}
+
+#[test]
+fn a_script_does_its_task_and_ends_as_the_program_does() {
+    for code in ["0", "1", "130"] {
+        let task = Task::begin(&[("code", code)]);
+        assert_eq!(task.begun().1, "benchmark --task 1007");
+        let ended = task.end();
+        assert_eq!(ended, (code.parse().ok(), None, String::new()));
+    }
+}
+
+#[test]
+fn a_warned_task_saves_and_is_queued_again_and_a_cancelled_one_is_not() {
+    let warned = Task::begin(&[]);
+    warned.begun();
+    signal(warned.script.id().cast_signed(), Signal::INT);
+    let (code, asked, told) = warned.end();
+    assert_eq!(
+        (code, asked.as_deref()),
+        (Some(0), Some("requeue 42\n")),
+        "{told}"
+    );
+    // Slurm sends it to every process of a job.
+    let cancelled = Task::begin(&[]);
+    let (program, _) = cancelled.begun();
+    signal(cancelled.script.id().cast_signed(), Signal::TERM);
+    signal(program, Signal::TERM);
+    let (code, asked, told) = cancelled.end();
+    assert_eq!((code, asked), (Some(130), None), "{told}");
+}
+
+#[test]
+fn a_time_limit_that_is_too_short_is_named() {
+    for times in ["3", "100"] {
+        let task = Task::begin(&[("SLURM_RESTART_COUNT", times)]);
+        task.begun();
+        signal(task.script.id().cast_signed(), Signal::INT);
+        let (code, asked, told) = task.end();
+        assert_eq!((code, asked), (Some(1), None));
+        assert!(
+            told.contains("too short") && told.contains("SBATCH_TIMELIMIT"),
+            "{told}"
+        );
+    }
+}
+
+#[test]
+fn programs_that_fail_or_are_not_there_are_named_with_what_they_said() {
+    let mut command = Command::new("sh");
+    let error = answer(command.args(["-c", "echo no such partition >&2; exit 3"])).unwrap_err();
+    let told = error.to_string();
+    assert!(
+        told.contains("`sh -c") && told.contains("no such partition") && told.contains('3'),
+        "{told}"
+    );
+    let error = answer(&mut Command::new("no-such-squeue")).unwrap_err();
+    assert!(
+        error.to_string().contains("needs Slurm's programs"),
+        "{error:#}"
+    );
+}
