@@ -60,7 +60,7 @@ enum Executor {
 pub(crate) struct Benchmark {
     #[command(flatten)]
     choice: Choice,
-    /// Who does the tasks; with slurm the variables of `sbatch` (SBATCH_PARTITION, SBATCH_ACCOUNT, SBATCH_TIMELIMIT, ...) count too
+    /// Who does the tasks; with slurm the variables of `sbatch` (`SBATCH_PARTITION`, `SBATCH_ACCOUNT`, `SBATCH_TIMELIMIT`, ...) count too
     #[arg(long, value_enum, default_value_t = Executor::Local)]
     executor: Executor,
     /// Do task N of the plan in --out, counted from 0, and nothing else, as in `--task "$JOB_COMPLETION_INDEX"`

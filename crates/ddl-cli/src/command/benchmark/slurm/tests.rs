@@ -1,5 +1,7 @@
 //! The script of a task with stand-ins for `ddl` and `scontrol`. Against a real Slurm: `cargo xtask cluster`.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use super::*;
 use rustix::process::{Pid, Signal, kill_process};
 use std::process::{Child, Stdio};
