@@ -10,12 +10,14 @@ cd "$2" || exit 1
 shift 2
 began=$(date +%s)
 warned=
+program=
 # Slurm warns of the time limit by SIGINT, to this shell alone. When the job is cancelled or preempted, it sends SIGTERM to
 # every process of the job: the program has it too.
-trap 'warned=yes; kill -TERM "$program"' INT
+trap 'warned=yes; [ -z "$program" ] || kill -TERM "$program"' INT
 trap : TERM
 "$@" --task "$((first + SLURM_ARRAY_TASK_ID))" &
 program=$!
+[ -z "$warned" ] || kill -TERM "$program"
 # A signal ends `wait` before the program has ended.
 while wait "$program"; code=$?; kill -0 "$program" 2>/dev/null; do :; done
 if [ -z "$warned" ] || [ "$code" -ne 130 ]; then

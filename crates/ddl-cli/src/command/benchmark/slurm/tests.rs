@@ -8,9 +8,9 @@ use std::process::{Child, Stdio};
 
 /// Works until it is told to stop; with `code`, ends at once.
 const PROGRAM: &str = r#"
+[ -n "$code" ] || trap 'exit 130' TERM
 echo "$$ $*" > begun.writing; mv begun.writing begun
 [ -n "$code" ] && exit "$code"
-trap 'exit 130' TERM
 while :; do sleep 0.02; done
 "#;
 
