@@ -7,11 +7,14 @@ use rstar::{AABB, RTree};
 /// Half the side of the box in which STAR and DDL look for neighbours (m).
 pub const NEIGHBOUR_HALF_WIDTH: f64 = 10.0;
 
-/// Places (m) that are asked who is near, in time that grows with the number of answers and not with that of places.
+/// An index of places (m). The time of a query grows with the number of its answers, not with that of the places.
 #[derive(Debug, Clone)]
 pub struct Places {
-    tree: RTree<GeomWithData<Position, u32>>,
+    tree: RTree<Place>,
 }
+
+/// A position with its index.
+type Place = GeomWithData<Position, u32>;
 
 /// Which of N pedestrians are neighbours of which: a symmetric relation. Indices out of range panic.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -22,7 +25,7 @@ pub struct Neighbours {
 }
 
 impl Places {
-    /// Places that are named by their index in this order.
+    /// An index of these positions (m, finite); a place is named by its index in `positions`.
     #[must_use]
     pub fn new(positions: &[Position]) -> Self {
         let places = positions.iter().zip(0..);
@@ -35,12 +38,7 @@ impl Places {
     /// Indices of the places within the box |dx| <= w and |dy| <= w around `centre`, w being the half width (m), in no
     /// order.
     pub fn within_box(&self, centre: Position, half_width_m: f64) -> impl Iterator<Item = usize> {
-        // Corners are rounded, so the tree is asked for a little more than what the differences decide below.
-        let size = half_width_m + centre[0].abs().max(centre[1].abs());
-        let reach = half_width_m + 4.0 * f64::EPSILON * size;
-        let corner = |sign: f64| centre.map(|x| x + sign * reach);
-        self.tree
-            .locate_in_envelope(AABB::from_corners(corner(-1.0), corner(1.0)))
+        self.around(centre, half_width_m)
             .filter(move |place| {
                 let at = place.geom();
                 (0..2).all(|axis| (at[axis] - centre[axis]).abs() <= half_width_m)
@@ -48,25 +46,31 @@ impl Places {
             .map(|place| place.data as usize)
     }
 
-    /// Indices of the `count` places nearest to `centre` but for `own`, the nearest first, and of equally near ones
-    /// the smallest index; fewer where there are not so many.
+    /// Indices of the `count` places nearest to `centre`, without the place `own`: nearest first, equally near ones by
+    /// index. All other places where there are fewer.
     #[must_use]
     pub fn nearest_others(&self, own: usize, centre: Position, count: usize) -> Vec<usize> {
         let distance = |at: &Position| (at[0] - centre[0]).hypot(at[1] - centre[1]);
         let nearest = self.tree.nearest_neighbor_iter(centre).take(count + 1);
-        // The tree compares squares of distances, which may be rounded to another order.
+        // The tree compares squares of distances, whose rounding may change the order: its answer only says how far to look.
         let reach = nearest
             .map(|place| distance(place.geom()))
             .fold(0.0, f64::max);
-        let reach = reach * (1.0 + 4.0 * f64::EPSILON);
-        let corner = |sign: f64| centre.map(|x| x + sign * reach);
-        let within = AABB::from_corners(corner(-1.0), corner(1.0));
-        let others = self.tree.locate_in_envelope(within);
+        let others = self.around(centre, reach);
         let others = others.map(|place| (distance(place.geom()), place.data as usize));
         let mut others: Vec<(f64, usize)> = others.filter(|&(_, other)| other != own).collect();
         others.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         others.truncate(count);
         others.into_iter().map(|(_, other)| other).collect()
+    }
+
+    /// All places within the box, and perhaps some just outside: its corners are rounded outwards.
+    fn around(&self, centre: Position, half_width_m: f64) -> impl Iterator<Item = &Place> {
+        let size = half_width_m + centre[0].abs().max(centre[1].abs());
+        let reach = half_width_m + 4.0 * f64::EPSILON * size;
+        let corner = |sign: f64| centre.map(|x| x + sign * reach);
+        let envelope = AABB::from_corners(corner(-1.0), corner(1.0));
+        self.tree.locate_in_envelope(envelope)
     }
 }
 

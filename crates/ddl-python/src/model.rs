@@ -6,11 +6,9 @@ use crate::forecasts::{EmptyFields, Forecasted, named_parts, parts};
 use crate::interruptible::{Stop, run};
 use crate::observed::{Observed, completion};
 use crate::recording::Recording;
-use ddl::data::{OBSERVED, Window};
+use ddl::data::Window;
 use ddl::eval::ForecastError;
-use ddl::report::Moment;
-use ddl::report::page::Viewer;
-use ddl::{Clearance, Ddl, DdlError, DeviceChoice, Forecaster as _, ModelSource};
+use ddl::{Clearance, Ddl, DdlError, DeviceChoice, Forecaster as _, ModelSource, RecordingPlayer};
 use numpy::PyReadonlyArray3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -213,39 +211,13 @@ impl Model {
                 "nobody in the recording was seen at two steps in a row; is fps right?",
             ));
         }
-        let count = windows.len().min(most.max(1));
-        let shown: Vec<Window> = (1..=count)
-            .map(|k| windows[k * windows.len() / count - 1].clone())
-            .collect();
+        let player = RecordingPlayer::new(&self.0, &recording.tracks, &windows, most.max(1));
         let manner = Manner::new(&self.0, self.hypotheses(), false)?;
-        let forecasts = self.forecasts(py, manner, shown.clone())?;
-        let moments = shown.iter().zip(&forecasts).map(|(window, forecast)| {
-            let seen = recording.tracks.onward(window);
-            let mut moment = Moment::under_way(self.0.name(), window, forecast.forecast(), &seen)?;
-            moment.frame = window.frames()[OBSERVED - 1] / recording.parts;
-            Ok(moment)
-        });
-        let moments: Vec<Moment> = moments
-            .collect::<Result<_, ddl::eval::EvaluationError>>()
-            .map_err(|error| of_any(&error))?;
-        let lead = format!(
-            "{count} of {} moments of {}: what was observed of each pedestrian, where each may go in the next 4.8 s, and what then happened \
-             as far as it was seen.",
-            windows.len(),
-            recording.tracks.name()
-        );
-        let notes = [format!(
-            "Forecast by {} ({}).",
-            self.0.name(),
-            self.0.source()
-        )];
-        let viewer = Viewer {
-            title: recording.tracks.name(),
-            lead: &lead,
-            notes: &notes,
-            moments: &moments,
-        };
-        viewer.to_html().map_err(|error| of_any(&error))
+        let forecasts = self.forecasts(py, manner, player.shown())?;
+        let forecasts: Vec<_> = forecasts.iter().map(Forecasted::forecast).collect();
+        let about = (recording.tracks.name(), None);
+        let page = player.to_html(&forecasts, about, |frame| frame / recording.parts);
+        page.map_err(raised)
     }
 }
 

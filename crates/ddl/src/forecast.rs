@@ -5,6 +5,7 @@ pub(crate) mod clearance;
 pub(crate) mod live;
 pub(crate) mod memory_file;
 pub(crate) mod name;
+pub(crate) mod recording_player;
 pub(crate) mod shaped;
 pub(crate) mod walk;
 pub(crate) mod watched_place;

@@ -105,18 +105,13 @@ impl Cluster {
         words: &[&str],
         variables: &[(&str, &str)],
     ) -> Result<Begun> {
-        let mut options = vec!["--convention".to_owned(), self.convention.clone()];
-        options.extend(
-            "--profile smoke --cargo-profile dev --folds"
-                .split(' ')
-                .map(str::to_owned),
-        );
-        options.push(self.folds[..folds].join(","));
-        options.extend([
-            "--out".to_owned(),
-            self.folder.join(name).display().to_string(),
-        ]);
-        options.extend(words.iter().map(|word| (*word).to_owned()));
+        let folds = self.folds[..folds].join(",");
+        let out = self.folder.join(name).display().to_string();
+        let options = ["--profile", "smoke", "--cargo-profile", "dev"].into_iter();
+        let options = options.chain(["--convention", &self.convention]);
+        let options = options.chain(["--folds", &folds, "--out", &out]);
+        let options = options.chain(words.iter().copied()).map(str::to_owned);
+        let options = options.collect();
         let mut command = benchmark::command(&self.workspace, options)?;
         self.slurm.show_to(&mut command);
         let logs = fs::read_dir(&self.folder)?.count();

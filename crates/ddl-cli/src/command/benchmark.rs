@@ -206,6 +206,7 @@ impl Benchmark {
         let display = Display::new(std::slice::from_ref(task), self.reporting.telling.progress);
         let watch = |task: &Task, event: work::Event<'_>| display.hear(task, event);
         let end = workers.run_task(&plan, task, out, &watch, &interrupt);
+        watch(task, work::Event::Ended(&end));
         display.close();
         match end {
             End::Finished { .. } | End::Kept => Ok(()),

@@ -1,8 +1,8 @@
 //! Laws of windows, neighbours and rotations, on made-up recordings.
 
 use ddl_data::{
-    Neighbours, OBSERVED, Observation, PedestrianId, Position, Recording, Remembered, Rotation,
-    Window, WindowError, WindowRule,
+    Neighbours, OBSERVED, Observation, PedestrianId, Places, Position, Recording, Remembered,
+    Rotation, Window, WindowError, WindowRule,
 };
 use proptest::prelude::*;
 
@@ -105,6 +105,27 @@ proptest! {
         prop_assert!(gap(Rotation::new(-angle).apply(turn.apply(a)), a) < 1e-10);
     }
 
+    /// Coarse coordinates make many distances equal; map coordinates are rounded.
+    #[test]
+    fn the_nearest_others_are_those_that_sorting_finds(
+        grid in prop::collection::vec(prop::array::uniform2(0..6_u8), 1..40),
+        (count, unit, origin) in (0_usize..10, prop_oneof![Just(1.0), 0.1..0.2_f64], prop_oneof![Just(0.0), Just(5.8e6)]),
+    ) {
+        let positions: Vec<Position> = grid.iter()
+            .map(|cell| cell.map(|x| origin + unit * f64::from(x)))
+            .collect();
+        let places = Places::new(&positions);
+        for (i, here) in positions.iter().enumerate() {
+            let distance = |j: &usize| {
+                let there = positions[*j];
+                (there[0] - here[0]).hypot(there[1] - here[1])
+            };
+            let mut others: Vec<usize> = (0..positions.len()).filter(|&j| j != i).collect();
+            others.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+            others.truncate(count);
+            prop_assert_eq!(places.nearest_others(i, *here, count), others);
+        }
+    }
 
     #[test]
     fn neighbours_are_others_within_the_box(

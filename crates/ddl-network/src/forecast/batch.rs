@@ -10,20 +10,20 @@ use rand_distr::StandardNormal;
 /// Windows are rolled out together until they hold this many pedestrians: enough to fill the products.
 const PEDESTRIANS_AT_ONCE: usize = 64;
 
-/// Windows with more pedestrians have them put in an order in which neighbours in space are near each other, so that
-/// those whom a pedestrian sees are found in the cache.
+/// The pedestrians of a window with more than this are sorted by position, so that the keys and values that a query
+/// reads are close together in memory.
 const CROWD: usize = 128;
-/// Width of the strips that a crowd is gone through in, metres.
+/// Width of the strips by which they are sorted, metres.
 const STRIP: f64 = 2.5;
 
-/// Several windows with their goals: P pedestrians, window after window, those of a crowd in an order of their own.
+/// Several windows with their goals: P pedestrians, window after window; those of a large window are sorted by position.
 ///
 /// Positions are relative to a point of each window, so that tracks in map coordinates lose nothing in `f32`.
 #[derive(Debug)]
 pub struct ForecastBatch<'a> {
     originals: &'a [Window],
     origins: Vec<Position>,
-    /// Which pedestrian of its window stands at each place.
+    /// For each window, the index in the window of the pedestrian in each row.
     orders: Vec<Vec<usize>>,
     /// The windows, relative to their origins.
     pub windows: Vec<Window>,
@@ -88,7 +88,7 @@ pub(super) fn batches<'a>(
             })
             .collect()
         };
-        // Who stands where does not matter to the network.
+        // The rows keep the names of the original order, which nothing here reads.
         let ordered = |((window, &origin), order): ((&Window, &Position), &Vec<usize>)| {
             window.map_positions(|i, t, _| relative(window.track(order[i])[t], origin))
         };
@@ -168,7 +168,7 @@ fn origin(window: &Window) -> Position {
     window.observed(0)[OBSERVED - 1]
 }
 
-/// The pedestrians of a window, place by place: those of a crowd strip by strip, along each.
+/// The indices of a window's pedestrians in the order of their rows.
 fn order(window: &Window) -> Vec<usize> {
     let mut order: Vec<usize> = (0..window.len()).collect();
     if window.len() > CROWD {

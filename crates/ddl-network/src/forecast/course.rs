@@ -18,22 +18,22 @@ use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// What was observed of the pedestrians of a batch, the same for all hypotheses, metres.
+/// The observation of a batch, in metres: the same for all hypotheses.
 pub(super) struct Observation<'a> {
     config: &'a StarConfig,
     /// `[8, P]`.
     observed: Vec<[f32; 2]>,
     scenes: Arc<Scenes>,
     pedestrians: usize,
-    /// Of the motion, `[P]`; `None` for plain Euler steps.
+    /// Bounds of each pedestrian's motion, `[P]`; `None` for plain Euler steps.
     bounds: Option<Vec<MotionBounds<f32>>>,
-    /// Of everybody's observed positions, `[P]`.
+    /// Sum of the 8 observed positions of each pedestrian, `[P]`.
     sums: Vec<[f32; 2]>,
     /// Entries of what the network reads at an observed time step: G where it is relative to the goals, otherwise 1.
     entries: usize,
 }
 
-/// The pedestrians of a batch in some hypotheses, metres.
+/// The state of a rollout of some hypotheses, in metres.
 pub(super) struct Course<'a> {
     observation: &'a Observation<'a>,
     /// What the network's temporal positions are relative to, `[E, P]`: E is G where that is the goal, otherwise 1.
@@ -42,7 +42,7 @@ pub(super) struct Course<'a> {
     frames: Option<Vec<OwnFrame>>,
     /// `[G, P]`.
     goals: Vec<[f32; 2]>,
-    /// Where everybody is, `[H, P]`.
+    /// Newest positions, `[H, P]`, and those one time step before.
     positions: Vec<[f32; 2]>,
     before: Vec<[f32; 2]>,
     sums: Vec<[f32; 2]>,

@@ -1,4 +1,4 @@
-//! One batch of windows on its way through the network, a few hypotheses at a time.
+//! The rollout of one batch of windows, a few hypotheses at a time.
 
 use super::batch::{BatchRollout, ForecastBatch};
 use super::course::{Course, Observation};
@@ -29,11 +29,11 @@ pub(super) struct Pass<'a> {
     batch: &'a ForecastBatch<'a>,
     observation: Observation<'a>,
     noise_width: usize,
-    /// What the backbone makes of everybody at the observed time steps, `[8, P, width]`.
+    /// Output of the backbone's spatial encoder at the observed time steps, `[8, P, width]`.
     scene: Rc<Rows>,
 }
 
-/// What the observed time steps leave behind: the cached tokens, and the features of the last one.
+/// The key-value caches after the observed time steps, and the features of the last one.
 type Observed = (Memory<KernelBackend>, Rc<Rows>);
 
 impl<'a> Pass<'a> {
@@ -59,7 +59,7 @@ impl<'a> Pass<'a> {
 
     pub(super) fn roll_out(&self) -> BatchRollout {
         let (pedestrians, hypotheses) = (self.batch.pedestrians(), self.batch.hypotheses());
-        // Where all hypotheses observe the same, that is computed once.
+        // Without goals among the inputs the observed time steps are the same for all hypotheses.
         let shared = (self.observation.entries() == 1)
             .then(|| self.observe(&Course::new(&self.observation, self.batch, 0..1)));
         let at_once = (ROWS_AT_ONCE / pedestrians).clamp(1, hypotheses);

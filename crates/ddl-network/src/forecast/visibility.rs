@@ -3,8 +3,8 @@
 use crate::backend::Scenes;
 use ddl_data::Window;
 
-/// The pedestrians of windows, with who sees whom in each of the first `steps` time steps: everybody within a box of this half
-/// width (m), and itself.
+/// The visibility masks of windows for each of the first `steps` time steps. A pedestrian sees itself and the
+/// pedestrians within a box around it of this half width (m).
 ///
 /// # Panics
 /// When there is no window.

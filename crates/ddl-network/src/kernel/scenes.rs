@@ -9,15 +9,15 @@ use std::ops::Range;
 pub struct Scenes {
     ranges: Vec<Range<usize>>,
     frames: usize,
-    /// By frame, scene and two pedestrians: whom at least one of the two sees, ascending.
+    /// By frame, scene and pair of queries: the keys that at least one of the two sees, ascending.
     seen: Vec<Seen>,
-    /// Where in `seen` those of each two end.
+    /// Where in `seen` the keys of each pair end.
     ends: Vec<usize>,
     /// Where in `ends` the pairs of each scene start within a frame, and where they end.
     starts: Vec<usize>,
 }
 
-/// A pedestrian whom two others see, or one of them.
+/// A key, and which of two queries see it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Seen(u32);
 
@@ -54,7 +54,7 @@ pub(super) struct SceneView<'a> {
 }
 
 impl<'a> SceneView<'a> {
-    /// Whom the pedestrians 2 `two` and 2 `two` + 1 see, ascending.
+    /// The keys that the pedestrians 2 `two` and 2 `two` + 1 see, ascending.
     pub(super) fn of(self, two: usize) -> &'a [Seen] {
         let start = two.checked_sub(1).map_or(self.start, |i| self.ends[i]);
         &self.seen[start..self.ends[two]]

@@ -55,7 +55,8 @@ impl SceneBatch {
             first += window.len();
         }
         let (t, p) = (frames as i64, walkers as i64);
-        let neighbours = neighbours(windows, mask_frames, neighbour_box, device, kind);
+        let visible = visibility(windows, mask_frames, neighbour_box);
+        let neighbours = Neighbours::new(visible, device, kind);
         Ok(Self {
             positions: tensor(&positions, &[t, p, 2], (kind, device))?,
             scene_means: SceneMeans::new(neighbours.scenes().ranges(), device, kind),
@@ -102,17 +103,6 @@ impl SceneBatch {
     pub fn positions(&self) -> &Tensor {
         &self.positions
     }
-}
-
-/// Who sees whom in the first `frames` of the windows.
-fn neighbours(
-    windows: &[&Window],
-    frames: usize,
-    half_box: f64,
-    device: Device,
-    kind: Kind,
-) -> Neighbours {
-    Neighbours::new(visibility(windows, frames, half_box), device, kind)
 }
 
 fn check_length(window: &Window, frames: usize) -> Result<(), StarError> {

@@ -25,7 +25,7 @@ impl Clock {
         time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
     }
 
-    fn seconds<T>(self, work: impl FnOnce() -> Result<T>) -> Result<f64> {
+    pub(crate) fn seconds<T>(self, work: impl FnOnce() -> Result<T>) -> Result<f64> {
         let before = self.now();
         work()?;
         Ok(self.now() - before)

@@ -3,8 +3,12 @@
 //! A forecast is of 25 simulated pedestrians with 20 hypotheses each by a built-in model. A training step is of about
 //! 266 pedestrians with initial weights. Figures are medians of turns, each with empty caches: processor time for one
 //! thread, wall time for two.
+//!
+//! `cargo bench -p ddl --bench latency -- crowd` measures forecasts of 1 to 20,000 pedestrians instead,
+//! `-- crowd 100 400` of these numbers of them alone.
 
 mod clock;
+mod crowd;
 mod scene;
 #[cfg(feature = "torch")]
 mod step;
@@ -22,12 +26,22 @@ use std::io::Write as _;
 type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
 fn main() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let given = |name: &str| arguments.iter().any(|argument| argument == name);
     // `cargo bench` passes this argument; `cargo test` only checks that the benchmark runs.
-    let turns = if std::env::args().any(|argument| argument == "--bench") {
-        21
-    } else {
-        1
-    };
+    let is_measured = given("--bench");
+    if given("crowd") || !is_measured {
+        let mut sizes: Vec<usize> = arguments.iter().filter_map(|it| it.parse().ok()).collect();
+        if sizes.is_empty() {
+            sizes.extend(&CROWDS[..if is_measured { CROWDS.len() } else { 3 }]);
+        }
+        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+        one.install(|| crowd::measure(&sizes))?;
+        if is_measured {
+            return Ok(());
+        }
+    }
+    let turns = if is_measured { 21 } else { 1 };
     let dataset = Dataset::simulated(1);
     let window = scene::of(&dataset)?;
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
@@ -41,6 +55,8 @@ fn main() -> Result<()> {
     }
     Ok(())
 }
+
+const CROWDS: [usize; 9] = [1, 10, 25, 100, 400, 1_600, 5_000, 10_000, 20_000];
 
 /// Stretches of a memory that is all but full.
 const FULL: usize = SceneMemory::DEFAULT_CAPACITY * 9 / 10;

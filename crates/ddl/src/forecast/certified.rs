@@ -2,7 +2,7 @@ use crate::forecast::clearance::{Clearance, Others};
 use crate::forecast::walk::{Course, Gait, Walk};
 use crate::trust::calibration::Calibration;
 use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
-use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds, ObstacleSchedule, Violation};
+use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds, Violation};
 use ddl_eval::{Forecast, ForecastError};
 use ddl_network::{NetworkFrame, StarConfig, Variant, motion_bounds};
 use rayon::prelude::*;
@@ -143,8 +143,8 @@ impl Walked<'_> {
         })
     }
 
-    /// The positions of every hypothesis, `[N][K][12]`, and what `of` makes of each certificate. With plain Euler steps
-    /// certificates are of the positions of the network's own rollout, as they are.
+    /// The positions of every hypothesis, `[N][K][12]`, and `of` of its certificate, `[N][K]`. With plain Euler steps the
+    /// positions are those of the network's own rollout.
     fn walks<R: Send>(
         &self,
         of: impl Fn(LyapunovCertificate<f64>) -> R + Sync,
@@ -155,39 +155,28 @@ impl Walked<'_> {
         let judged = |walk: Walk| (walk.positions, of(walk.certificate));
         let walks = match self.gait {
             Gait::PlainEuler => {
-                let certify = |(): &(), pair: usize, course: &Course, factors: &[[f64; 3]]| {
+                let certificates = self.each(factors, |pair, course, factors| {
                     let path = &self.rolled_out[pair * HORIZON..][..HORIZON];
                     course.certify(path, factors).map(&of)
-                };
-                let certificates = self.each(factors, |_| Ok(()), certify)?;
+                })?;
                 return Ok((self.rolled_out.clone(), certificates));
             }
-            Gait::Stable(None) => {
-                let walk = |(): &(), _: usize, course: &Course, factors: &[[f64; 3]]| {
-                    course.walk(factors).map(judged)
-                };
-                self.each(factors, |_| Ok(()), walk)?
-            }
+            Gait::Stable(None) => self.each(factors, |_, course, factors| {
+                course.walk(factors).map(judged)
+            })?,
             Gait::Stable(Some(clearance)) => {
                 let others = self.others(factors, clearance)?;
-                let near = |i: usize| {
-                    let goals = &self.goals[i * self.hypotheses..][..self.hypotheses];
-                    others.near(i, self.window.observed(i)[OBSERVED - 1], goals)
-                };
-                let walk = |others: &ObstacleSchedule<f64, 2>,
-                            _: usize,
-                            course: &Course,
-                            factors: &[[f64; 3]]| {
-                    course.walk_among(others, factors).map(judged)
-                };
-                self.each(factors, near, walk)?
+                self.each(factors, |pair, course, factors| {
+                    let near = others.near(pair / self.hypotheses, course.start, course.goal)?;
+                    course.walk_among(&near, factors).map(judged)
+                })?
             }
         };
         let (positions, certificates): (Vec<_>, Vec<_>) = walks.into_iter().unzip();
         Ok((positions.into_flattened(), certificates))
     }
 
-    /// What everybody keeps clear of: the others where they most likely go alone.
+    /// The obstacles of all pedestrians: the paths to their likeliest goals, each walked without regard to the others.
     fn others(&self, factors: &[[f64; 3]], clearance: Clearance) -> Result<Others, ForecastError> {
         let hypotheses = self.hypotheses;
         let weights = self.weights.chunks_exact(hypotheses).enumerate();
@@ -213,36 +202,17 @@ impl Walked<'_> {
         }
     }
 
-    /// What is made of each pedestrian, hypothesis by hypothesis, in order: `of` gets what `before` makes once for the pedestrian,
-    /// and pedestrian x hypotheses + hypothesis. The first failure is told with its place.
-    fn each<C, R: Send>(
+    /// What `of` makes of every hypothesis, in order, from pedestrian x hypotheses + hypothesis, its course and its factors.
+    /// The error is that of the first hypothesis that fails.
+    fn each<R: Send>(
         &self,
         factors: &[[f64; 3]],
-        before: impl Fn(usize) -> Result<C, DynamicsError> + Sync,
-        of: impl Fn(&C, usize, &Course, &[[f64; 3]]) -> Result<R, DynamicsError> + Sync,
+        of: impl Fn(usize, &Course, &[[f64; 3]]) -> Result<R, DynamicsError> + Sync,
     ) -> Result<Vec<R>, ForecastError> {
-        let of_pedestrian = |(i, factors): (usize, &[[f64; 3]])| {
-            let before = before(i);
-            let hypotheses = factors.chunks_exact(HORIZON).enumerate();
-            let each = hypotheses.map(|(k, factors)| {
-                self.one(i * self.hypotheses + k, factors, |pair, course, factors| {
-                    of(
-                        before.as_ref().map_err(Clone::clone)?,
-                        pair,
-                        course,
-                        factors,
-                    )
-                })
-            });
-            each.collect::<Result<Vec<R>, ForecastError>>()
-        };
-        let pedestrians = factors.par_chunks_exact(self.hypotheses * HORIZON);
-        let each: Vec<_> = pedestrians.enumerate().map(of_pedestrian).collect();
-        let mut all = Vec::with_capacity(factors.len() / HORIZON);
-        for of_pedestrian in each {
-            all.extend(of_pedestrian?);
-        }
-        Ok(all)
+        let pairs = factors.par_chunks_exact(HORIZON).enumerate();
+        let each = pairs.map(|(pair, factors)| self.one(pair, factors, &of));
+        // Collected in parallel, the error would be that of whichever hypothesis is first to fail.
+        each.collect::<Vec<_>>().into_iter().collect()
     }
 
     /// Runs `of` for one hypothesis; `pair` = pedestrian x hypotheses + hypothesis.

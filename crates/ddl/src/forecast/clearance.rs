@@ -43,12 +43,12 @@ impl Clearance {
     }
 }
 
-/// Where everybody will most likely be at the end of each step.
+/// The likeliest path of every pedestrian, which the others keep clear of.
 #[derive(Debug)]
 pub(crate) struct Others {
     clearance: Clearance,
     likeliest: Vec<[Position; HORIZON]>,
-    /// One a step.
+    /// The positions of all pedestrians at the end of each step.
     places: Vec<Places>,
 }
 
@@ -62,21 +62,19 @@ impl Others {
         }
     }
 
-    /// What pedestrian `i` keeps clear of in each step on its ways from `start` to `goals`.
+    /// The discs that pedestrian `i` keeps clear of in each step on its way from `start` to `goal`.
     ///
-    /// As its distance to the goal falls, it comes no farther from the start than twice to the farthest goal, and no step
-    /// is longer than to the goal: with twice that between, a disc cuts no step short.
+    /// Its distance to the goal, at first d, falls at every step, so it stays within 2 d of the start. A disc shortens a
+    /// step that would use up more than half of the gap to it, and no step is longer than d: a disc that is 4 d and the
+    /// margin away from the start has no effect and is left out.
     pub(crate) fn near(
         &self,
         i: usize,
         start: Position,
-        goals: &[Position],
+        goal: Position,
     ) -> Result<ObstacleSchedule<f64, 2>, DynamicsError> {
-        let ways = goals
-            .iter()
-            .map(|goal| (goal[0] - start[0]).hypot(goal[1] - start[1]));
-        let farthest = ways.fold(0.0, f64::max);
-        let reach = 4.0 * farthest + self.clearance.0 + Clearance::MARGIN;
+        let distance = (goal[0] - start[0]).hypot(goal[1] - start[1]);
+        let reach = 4.0 * distance + self.clearance.0 + Clearance::MARGIN;
         let step = |(t, places): (usize, &Places)| {
             let mut near: Vec<usize> = places.within_box(start, reach).collect();
             near.sort_unstable();
@@ -99,7 +97,7 @@ mod tests {
         let path = |x: f64| std::array::from_fn(|t| [x, t as f64]);
         let likeliest = vec![path(0.0), path(1.0), path(2.0), path(99.0)];
         let others = Others::new(Clearance::new(0.4).unwrap(), likeliest);
-        let others = others.near(1, [1.0, 0.0], &[[1.0, 4.0]]).unwrap();
+        let others = others.near(1, [1.0, 0.0], [1.0, 4.0]).unwrap();
         for step in 0..HORIZON {
             let state = State::new(Vector2::new(9.0, 9.0), step, 0.0, &[]);
             let centres: Vec<_> = others.obstacles(&state).iter().map(Ball::centre).collect();

@@ -120,12 +120,6 @@ impl<M> LiveForecaster<M> {
         &self.model
     }
 
-    /// Ends watching and hands over what forecasts.
-    #[must_use]
-    pub fn into_model(self) -> M {
-        self.model
-    }
-
     /// Forgets everybody and the last frame: any frame may come next, as when a tracker starts anew. What is remembered of
     /// the place stays, and what regions have learned of it.
     pub fn clear(&mut self) {

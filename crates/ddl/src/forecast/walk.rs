@@ -145,6 +145,8 @@ mod tests {
 
     use super::*;
     use crate::forecast::clearance::Others;
+    use ddl_dynamics::Ball;
+    use proptest::prelude::*;
 
     fn course() -> Course {
         Course {
@@ -185,7 +187,7 @@ mod tests {
         let (course, factors) = (course(), [[1.0, 0.0, 1.0]; HORIZON]);
         let clearance = Clearance::new(0.5).unwrap();
         let stands = [[1.5, 0.1]; HORIZON];
-        let among = |others| Others::new(clearance, others).near(0, [0.0, 0.0], &[[3.0, 0.0]]);
+        let among = |others| Others::new(clearance, others).near(0, [0.0, 0.0], [3.0, 0.0]);
         let others = among(vec![[[9.0, 9.0]; HORIZON], stands]).unwrap();
         let apart = |walk: &Walk| {
             let distances = walk.positions.map(|[x, y]| (x - 1.5).hypot(y - 0.1));
@@ -199,6 +201,25 @@ mod tests {
         let nobody = among(vec![stands]).unwrap();
         let alone = course.walk_among(&nobody, &factors).unwrap();
         assert_eq!(alone.positions, course.walk(&factors).unwrap().positions);
+    }
+
+    proptest! {
+        /// The discs that `Others::near` leaves out for being far away have no effect on the walk.
+        #[test]
+        fn discs_that_are_left_out_change_no_bit(
+            others in prop::collection::vec(prop::array::uniform2(-25.0..25.0_f64), 1..40),
+            goal in prop::array::uniform2(-4.0..4.0_f64),
+        ) {
+            let (course, clearance) = (Course { goal, ..course() }, Clearance::new(0.5).unwrap());
+            let stands = |&position: &Position| [position; HORIZON];
+            let others: Vec<_> = [course.start].iter().chain(&others).map(stands).collect();
+            let disc = |path: &[Position; HORIZON]| Ball::new(path[0].into(), 0.5).unwrap();
+            let all = others[1..].iter().map(disc).collect();
+            let all = ObstacleSchedule::new(vec![all; HORIZON]);
+            let near = Others::new(clearance, others).near(0, course.start, goal).unwrap();
+            let walk = |others| course.walk_among(others, &[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
+            prop_assert_eq!(walk(&near).positions, walk(&all).positions);
+        }
     }
 
     #[test]

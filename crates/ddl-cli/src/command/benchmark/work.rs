@@ -92,6 +92,7 @@ impl Workers {
                     break;
                 };
                 let end = self.run_task(plan, task, out, watch, interrupt);
+                watch(task, Event::Ended(&end));
                 ends.lock().unwrap_or_else(PoisonError::into_inner)[index] = end;
             }
         };
@@ -104,19 +105,6 @@ impl Workers {
     }
 
     pub(super) fn run_task(
-        &self,
-        plan: &Plan,
-        task: &Task,
-        out: &Path,
-        watch: Watch<'_>,
-        interrupt: &Interrupt,
-    ) -> End {
-        let end = self.run_steps(plan, task, out, watch, interrupt);
-        watch(task, Event::Ended(&end));
-        end
-    }
-
-    fn run_steps(
         &self,
         plan: &Plan,
         task: &Task,

@@ -36,7 +36,7 @@ impl Buffered<'_, SceneForward<'_>, SceneBuffers> {
         let (task, row) = (&self.job.task, self.job.task.heads.row());
         self.buffers.load(simd, task, self.job.qkv, group, quads);
         let buffers = &mut *self.buffers;
-        // Who is not seen would have the weight 0: to leave it out changes no bit.
+        // A key that is not seen would have the weight 0, so leaving it out changes no bit.
         buffers.weights.resize(task.keys.len(), Lanes::ZERO);
         let normalisers = self.job.normalisers.chunks_exact_mut(task.heads.groups());
         let rows = self.job.mixed.chunks_mut(2 * row).zip(normalisers);

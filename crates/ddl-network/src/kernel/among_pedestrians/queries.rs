@@ -6,13 +6,13 @@ use crate::kernel::scenes::SceneView;
 use ddl_simd::{LANES, Lanes, Quad, Simd, ZERO_QUAD};
 use std::ops::Range;
 
-/// Some queries of a scene.
+/// A block of queries of a scene, with the keys that they read.
 #[derive(Clone, Debug)]
 pub(super) struct SceneTask<'a> {
     pub(super) scene: SceneView<'a>,
     /// The queries, two by two.
     pub(super) twos: Range<usize>,
-    /// Pedestrians of the scene among whom all are that the queries see.
+    /// A range of pedestrians of the scene that holds every key the queries see.
     pub(super) keys: Range<usize>,
     pub(super) entry: usize,
     pub(super) decisions: Option<WeightDecisions>,
@@ -20,12 +20,12 @@ pub(super) struct SceneTask<'a> {
 }
 
 impl SceneTask<'_> {
-    /// The pedestrians of the scene that ask.
+    /// Indices in the scene of the pedestrians whose queries these are.
     pub(super) fn queries(&self) -> Range<usize> {
         2 * self.twos.start..self.scene.pedestrians.min(2 * self.twos.end)
     }
 
-    /// The task cut into such of a few queries each, which read few keys where neighbours in space are neighbours in order.
+    /// The task split into blocks of queries. A block reads few keys where pedestrians are sorted by position.
     pub(super) fn blocks(self) -> impl Iterator<Item = Self> {
         let Range { start, end } = self.twos;
         (start..end).step_by(TWOS_AT_ONCE).map(move |first| {
@@ -43,7 +43,7 @@ impl SceneTask<'_> {
     }
 }
 
-/// Queries of a scene, two by two, that are computed together: few enough for the cache, many enough to share their keys.
+/// Pairs of queries in a block: few enough for the cache, many enough to share the keys they load.
 pub(super) const TWOS_AT_ONCE: usize = 256;
 
 /// Room for one group of heads of a task, kept from task to task.

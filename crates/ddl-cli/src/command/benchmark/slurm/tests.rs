@@ -32,16 +32,8 @@ impl Task {
         );
         let script = "folder=$PWD; . ./scontrol.sh; . ./task.sh";
         let script = Command::new("sh")
-            .args([
-                "-c",
-                script,
-                "task.sh",
-                "1000",
-                ".",
-                "sh",
-                "program",
-                "benchmark",
-            ])
+            .args(["-c", script])
+            .args("task.sh 1000 . sh program benchmark".split(' '))
             .current_dir(folder.path())
             .envs([
                 ("SLURM_ARRAY_TASK_ID", "7"),

@@ -1,43 +1,23 @@
-//! What a forecast costs by the number of pedestrians at a constant density, `cargo bench -p ddl --bench crowd`:
-//! processor time of one thread and the memory the process needs at most.
-//!
-//! `cargo bench -p ddl --bench crowd -- 100 400` measures these numbers of pedestrians alone.
+//! The cost of a forecast by the number of pedestrians at a constant density.
 
+use crate::Result;
+use crate::clock::Clock;
 use ddl::data::{OBSERVED, PedestrianId, Position, TIME_STEP, Window};
 use ddl::eval::{Forecast, ForecastError};
 use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster, LiveForecaster};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
-use rustix::time::{ClockId, clock_gettime};
-use std::error::Error;
 use std::f64::consts::TAU;
 use std::io::Write as _;
 use std::{fs, iter};
-
-type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
 /// Pedestrians in a square metre, about as many as in the recording `students003`.
 const DENSITY: f64 = 0.2;
 /// Metres that a place jitters by from frame to frame.
 const JITTER: f64 = 0.01;
-const SIZES: [usize; 9] = [1, 10, 25, 100, 400, 1_600, 5_000, 10_000, 20_000];
 
-fn main() -> Result<()> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let named = arguments
-        .iter()
-        .filter_map(|argument| argument.parse().ok());
-    let mut sizes: Vec<usize> = named.collect();
-    if sizes.is_empty() {
-        // `cargo bench` passes this argument; `cargo test` only checks that the benchmark runs.
-        let all = arguments.iter().any(|argument| argument == "--bench");
-        sizes = SIZES[..if all { SIZES.len() } else { 3 }].to_vec();
-    }
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    one.install(|| measure(&sizes))
-}
-
-fn measure(sizes: &[usize]) -> Result<()> {
+/// A row for each number of pedestrians: seconds of processor time, and the memory the process needs at most.
+pub(crate) fn measure(sizes: &[usize]) -> Result<()> {
     let model = Ddl::builtin(BuiltinModel::Hotel, DeviceChoice::Cpu)?;
     let mut out = std::io::stdout().lock();
     writeln!(
@@ -47,13 +27,9 @@ fn measure(sizes: &[usize]) -> Result<()> {
     )?;
     for &pedestrians in sizes {
         let window = crowd(pedestrians)?;
-        // Small crowds are forecast several times, so that a turn is long enough for the clock.
-        let repetitions = (400 / pedestrians).max(1);
-        let of_hypotheses = seconds(repetitions, || Ok(model.forecast(&window).map(drop)?))?;
-        let of_one = seconds(repetitions, || {
-            Ok(model
-                .forecast_one(std::slice::from_ref(&window))
-                .map(drop)?)
+        let of_hypotheses = seconds(pedestrians, || Ok(model.forecast(&window).map(drop)?))?;
+        let of_one = seconds(pedestrians, || {
+            Ok(One(&model).forecast(&window).map(drop)?)
         })?;
         let frame = live_frame(&model, &window)?;
         writeln!(
@@ -62,7 +38,6 @@ fn measure(sizes: &[usize]) -> Result<()> {
             1e3 * of_hypotheses / pedestrians as f64,
             most_memory()?
         )?;
-        out.flush()?;
     }
     Ok(())
 }
@@ -104,31 +79,29 @@ impl Forecaster for One<'_> {
     }
 }
 
-/// Seconds of the frame of a stream from which everybody is forecast.
+/// Seconds to push the eighth frame of a stream, the first from which all pedestrians can be forecast.
 fn live_frame(model: &Ddl, window: &Window) -> Result<f64> {
     let mut live = LiveForecaster::new(One(model));
     let frame = |t: usize| {
-        let everybody = window.pedestrians().iter().enumerate();
-        everybody.map(move |(i, &pedestrian)| (pedestrian, window.observed(i)[t]))
+        let pedestrians = window.pedestrians().iter().enumerate();
+        pedestrians.map(move |(i, &pedestrian)| (pedestrian, window.observed(i)[t]))
     };
-    for t in 0..OBSERVED - 1 {
+    let last = OBSERVED - 1;
+    for t in 0..last {
         live.push(t as i64, frame(t))?;
     }
-    let last = OBSERVED - 1;
-    seconds(1, || {
+    seconds(window.len(), || {
         Ok(live.clone().push(last as i64, frame(last)).map(drop)?)
     })
 }
 
-/// Processor time of one of the repetitions, the quickest of three turns where they are short.
-fn seconds(repetitions: usize, mut work: impl FnMut() -> Result<()>) -> Result<f64> {
+/// Processor time of the work, the least of three turns. A turn repeats the work of a small window until it is long
+/// enough for the clock; a long turn is the only one.
+fn seconds(pedestrians: usize, mut work: impl FnMut() -> Result<()>) -> Result<f64> {
+    let repetitions = (400 / pedestrians).max(1);
     let mut least = f64::INFINITY;
     for _ in 0..3 {
-        let start = processor_time();
-        for _ in 0..repetitions {
-            work()?;
-        }
-        let spent = processor_time() - start;
+        let spent = Clock::Processor.seconds(|| (0..repetitions).try_for_each(|_| work()))?;
         least = least.min(spent / repetitions as f64);
         if spent > LONG {
             break;
@@ -139,11 +112,6 @@ fn seconds(repetitions: usize, mut work: impl FnMut() -> Result<()>) -> Result<f
 
 /// Seconds after which a turn is not repeated.
 const LONG: f64 = 2.0;
-
-fn processor_time() -> f64 {
-    let time = clock_gettime(ClockId::ProcessCPUTime);
-    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
-}
 
 /// MiB that the process has had resident at most since the last call.
 fn most_memory() -> Result<usize> {

@@ -1,0 +1,121 @@
+use crate::error::DdlError;
+use crate::model::ddl::Ddl;
+use crate::trust::familiarity::UNFAMILIAR;
+use ddl_data::{OBSERVED, Recording, Window};
+use ddl_eval::{EvaluationError, Forecast, Forecaster as _};
+use ddl_report::Moment;
+use ddl_report::page::Viewer;
+
+/// One page with a player of forecasts at moments of a recording, which needs no network.
+#[derive(Debug)]
+pub struct RecordingPlayer<'a> {
+    model: &'a Ddl,
+    recording: &'a Recording,
+    windows: &'a [Window],
+    most: usize,
+}
+
+impl<'a> RecordingPlayer<'a> {
+    /// Shows at most `most` of the recording's observed windows, evenly spread.
+    pub fn new(
+        model: &'a Ddl,
+        recording: &'a Recording,
+        windows: &'a [Window],
+        most: usize,
+    ) -> Self {
+        Self {
+            model,
+            recording,
+            windows,
+            most,
+        }
+    }
+
+    /// The windows to forecast.
+    pub fn shown(&self) -> Vec<Window> {
+        let count = self.windows.len().min(self.most);
+        let last = |k: usize| k * self.windows.len() / count - 1;
+        (1..=count).map(|k| self.windows[last(k)].clone()).collect()
+    }
+
+    /// The page, of a forecast for each window that is [shown](Self::shown). `name` is what the recording is called, `doubt`
+    /// what is wrong with it, `frame` makes a frame number of the recording one of its file.
+    ///
+    /// # Errors
+    /// [`DdlError::Evaluation`] or [`DdlError::Page`] where a forecast does not fit its window, or there is none.
+    pub fn to_html(
+        &self,
+        forecasts: &[&Forecast],
+        (name, doubt): (&str, Option<&str>),
+        frame: impl Fn(i64) -> i64,
+    ) -> Result<String, DdlError> {
+        let (model, recording, shown) = (self.model, self.recording, self.shown());
+        let moments = shown.iter().zip(forecasts).map(|(window, forecast)| {
+            let seen = recording.onward(window);
+            let mut moment = Moment::under_way(model.name(), window, forecast, &seen)?;
+            moment.frame = frame(window.frames()[OBSERVED - 1]);
+            Ok(moment)
+        });
+        let moments: Vec<Moment> = moments.collect::<Result<_, EvaluationError>>()?;
+        let doubt = doubt.map(|doubt| format!("Doubtful: {doubt} "));
+        let lead = format!(
+            "{}{} of {} moments of {name}: what was observed of each pedestrian, where each may go in the next 4.8 s, and what then \
+             happened as far as it was seen.",
+            doubt.unwrap_or_default(),
+            shown.len(),
+            self.windows.len()
+        );
+        let mut notes = vec![format!(
+            "Forecast by {} ({}); goals {}.",
+            model.name(),
+            model.source(),
+            model.goal_model().words()
+        )];
+        notes.extend(certificates(forecasts));
+        notes.extend(unfamiliar(forecasts));
+        let viewer = Viewer {
+            title: recording.name(),
+            lead: &lead,
+            notes: &notes,
+            moments: &moments,
+        };
+        Ok(viewer.to_html()?)
+    }
+}
+
+fn unfamiliar(forecasts: &[&Forecast]) -> Option<String> {
+    let all = forecasts
+        .iter()
+        .flat_map(|of| (0..of.pedestrians()).filter_map(move |i| of.familiarity(i)));
+    let unlike = all
+        .clone()
+        .filter(|&familiarity| familiarity < UNFAMILIAR)
+        .count();
+    (unlike > 0).then(|| {
+        format!(
+            "{unlike} of {} motions are unlike those that the model was trained on (familiarity below {}): they are forecast nearly without the \
+             network, and less sharply weighted.",
+            all.count(),
+            UNFAMILIAR
+        )
+    })
+}
+
+fn certificates(forecasts: &[&Forecast]) -> Option<String> {
+    let verdicts: Vec<bool> = forecasts
+        .iter()
+        .flat_map(|of| {
+            let pedestrians = 0..of.pedestrians();
+            pedestrians.flat_map(move |i| (0..of.hypotheses()).map(move |k| of.certified(i, k)))
+        })
+        .flatten()
+        .collect();
+    let held = verdicts.iter().filter(|&&holds| holds).count();
+    (!verdicts.is_empty()).then(|| {
+        format!(
+            "Certificates: {held} of {} hypotheses come nearer to their goal at each of the 12 steps, along a flow that descends everywhere. \
+             That says that the forecasts are stable, not that pedestrians will do as forecast.",
+            verdicts.len()
+        )
+    })
+}
