@@ -14,4 +14,4 @@ mod no_network;
 mod unwritable;
 
 /// What is measured of the model in `run`.
-const EVALUATE: &str = "evaluate --model run --protocol fair --test-walkers 20 --threads 1";
+const EVALUATE: &str = "evaluate --model run --protocol fair --test-pedestrians 20 --threads 1";

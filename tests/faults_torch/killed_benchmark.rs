@@ -9,7 +9,7 @@ use std::os::unix::process::ExitStatusExt as _;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-const BENCHMARK: &str = "benchmark --convention simulated --profile smoke --folds corridor --seeds 1,2 --train-walkers 64 --test-walkers 20 \
+const BENCHMARK: &str = "benchmark --convention simulated --profile smoke --folds corridor --seeds 1,2 --train-pedestrians 64 --test-pedestrians 20 \
                          --protocol fair --jobs 2 --out out";
 
 fn benchmark(place: &Place) -> Command {

@@ -203,7 +203,7 @@ fn the_certified_forecast_is_the_forecast() {
 #[test]
 fn reports_name_the_precision() {
     let place = Place::with_model();
-    let evaluate = "evaluate --model run --precision bf16 --protocol single --test-walkers 20";
+    let evaluate = "evaluate --model run --precision bf16 --protocol single --test-pedestrians 20";
     let report = place.json(&format!("{evaluate} --threads 1 --json"));
     for conditions in report["rows"]
         .as_array()
@@ -247,7 +247,7 @@ fn straight_on(model: &Ddl, speed: f64) -> [f64; 2] {
 
 /// And without a sharp edge: a tenth of a metre a second more changes the error by less than a quarter of a metre.
 #[test]
-fn straight_walkers_of_every_speed_are_forecast_as_well_as_by_straight_lines() {
+fn straight_pedestrians_of_every_speed_are_forecast_as_well_as_by_straight_lines() {
     let speeds = (1..=80).map(|tenth| 0.1 * f64::from(tenth));
     for model in builtin() {
         let errors: Vec<[f64; 2]> = speeds.clone().map(|v| straight_on(model, v)).collect();

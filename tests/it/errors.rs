@@ -75,13 +75,13 @@ fn what_a_run_does_not_hold_is_said() {
         place.at("last/epochs/002.safetensors"),
     )
     .unwrap();
-    let published = "evaluate --model last --protocol published --test-walkers 20";
+    let published = "evaluate --model last --protocol published --test-pedestrians 20";
     place.fails(
         published,
         &["`published`", "train it anew without --last-epoch-only"],
     );
     // what needs no choice is measured
-    let _ = place.ok("evaluate --model last --protocol fair --test-walkers 20 --threads 1");
+    let _ = place.ok("evaluate --model last --protocol fair --test-pedestrians 20 --threads 1");
 }
 
 #[cfg(not(feature = "torch"))]

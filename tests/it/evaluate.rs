@@ -10,7 +10,7 @@ use ddl_tests::progress::{returns_at_once, told};
 use ddl_tests::{crowd, drawn_model, recordings};
 
 const EVALUATE: &str = "evaluate --model run --protocol published --protocol fair --protocol single --protocol online --protocol online-single \
-                        --test-walkers 60 --threads 1 --commit 0123abc";
+                        --test-pedestrians 60 --threads 1 --commit 0123abc";
 
 /// A run of the published recipe, whose networks learn single steps: plain Euler steps are measured too.
 fn config() -> RunConfig {
@@ -18,7 +18,7 @@ fn config() -> RunConfig {
         star: StarConfig::published(Variant::Full),
         training: TrainingConfig {
             epochs: 2,
-            walkers_per_epoch: Some(200),
+            pedestrians_per_epoch: Some(200),
             seed: 5,
             ..TrainingConfig::published()
         },
@@ -35,11 +35,11 @@ fn check_conditions(row: &ResultRow) {
     assert_eq!(place, ("cpu", "0123abc"));
     assert!(!conditions.forecaster.is_empty());
     let words = |fact: &Option<String>| fact.clone().unwrap();
-    assert!(words(&conditions.test_subset).contains("60 walkers"));
+    assert!(words(&conditions.test_subset).contains("60 pedestrians"));
     if conditions.forecaster.starts_with("DDL") {
         assert_eq!(conditions.variant.as_deref(), Some("full"));
         assert_eq!((conditions.seed, conditions.epochs), (Some(5), Some(2)));
-        assert!(words(&conditions.training_subset).contains("200 walkers"));
+        assert!(words(&conditions.training_subset).contains("200 pedestrians"));
         let selection = words(&conditions.selection);
         let on_test = conditions.protocol == Protocol::Published;
         assert_eq!(selection.contains("TEST"), on_test, "{selection}");
@@ -84,8 +84,8 @@ fn check_certificates(protocol: Protocol, rows: &[&ResultRow]) {
     assert!(shaped.is_none_or(|shaped| shaped.certified == Some(1.0)));
 }
 
-/// All rows of one table are of the same walkers, about as many as asked for, among them the model and a baseline.
-fn check_table(protocol: Protocol, rows: &[&ResultRow], walkers: usize) {
+/// All rows of one table are of the same pedestrians, about as many as asked for, among them the model and a baseline.
+fn check_table(protocol: Protocol, rows: &[&ResultRow], pedestrians: usize) {
     let mut models = rows.iter().filter(|row| row.conditions.forecaster == "DDL");
     let (Some(model), None) = (models.next(), models.next()) else {
         panic!("{protocol}: not one model");
@@ -102,7 +102,7 @@ fn check_table(protocol: Protocol, rows: &[&ResultRow], walkers: usize) {
             (scores.pedestrians, scores.windows),
             (of_model.pedestrians, of_model.windows)
         );
-        assert!(scores.pedestrians > 0 && scores.pedestrians < walkers + 40);
+        assert!(scores.pedestrians > 0 && scores.pedestrians < pedestrians + 40);
         // people walk below 3 m/s: no forecast of 4.8 s is off by more than this
         assert!((0.01..15.0).contains(&scores.min_ade), "{scores:?}");
         assert!(scores.min_fde <= scores.fde_at_min_ade);
@@ -146,7 +146,7 @@ fn a_number_goes_from_the_model_to_the_page() {
         assert!(hypotheses.all(|h| (h.certified, h.decreasing) == (Some(true), Some(true))));
     }
 
-    let baselines = "baselines --convention simulated --fold doorway --test-walkers 60 --commit 0123abc --out baselines";
+    let baselines = "baselines --convention simulated --fold doorway --test-pedestrians 60 --commit 0123abc --out baselines";
     let printed = place.ok(baselines);
     assert!(printed.contains("doorway") && printed.contains("constant velocity (last step)"));
     let elsewhere = Report::load(&place.at("baselines/report.json")).unwrap();
@@ -224,7 +224,7 @@ fn goals_are_measured_and_drawn() {
         (test.clusters, test.recordings[crowd::FOLD]),
         (20, test.all)
     );
-    assert!(test.all.walkers > 100);
+    assert!(test.all.pedestrians > 100);
     assert!(test.all.oracle_fde > 0.01 && test.all.oracle_fde < test.all.likeliest_fde);
     let calibration = test.calibration.unwrap();
     assert!(calibration.log_loss.is_finite() && calibration.bins.len() == 10);

@@ -54,8 +54,8 @@ const EXAMPLES: [(&str, &[&str]); 9] = [
     ),
     ("ddl-dynamics pictures .", &[]),
     (
-        "ddl-goal goals_of_a_walker",
-        &["300 experts of 3000 walkers", "nearest goal: 0."],
+        "ddl-goal goals_of_a_pedestrian",
+        &["300 experts of 3000 pedestrians", "nearest goal: 0."],
     ),
 ];
 

@@ -112,12 +112,12 @@ fn every_format_holds_the_same_futures_and_certificates_speak_of_them() {
     let lines: Vec<JsonLine> = json_lines(&forecast("--format jsonl --certificate"));
     let certified = forecast("--certificate");
     let mut rows = table::<CsvRow>(&certified).into_iter();
-    let walkers: Vec<_> = lines
+    let pedestrians: Vec<_> = lines
         .iter()
         .map(|line| (line.observed_until, line.pedestrian))
         .collect();
     let expected = [70, 80, 90].map(|moment| [1, 2, 3].map(|who| (moment, who)));
-    assert_eq!(walkers, expected.concat());
+    assert_eq!(pedestrians, expected.concat());
     for line in &lines {
         let frames: Vec<i64> = (1..=12)
             .map(|t| line.observed_until + t * FRAME_STEP)

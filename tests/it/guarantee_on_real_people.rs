@@ -1,4 +1,4 @@
-//! What the guarantee costs: how far real walkers would have to be moved for their distance to the place where they end
+//! What the guarantee costs: how far real pedestrians would have to be moved for their distance to the place where they end
 //! to fall at every step (`docs/stability.md`).
 
 use ddl_data::{Convention, Dataset, HORIZON, OBSERVED, Position, TIME_STEP, WindowRule};
@@ -40,7 +40,7 @@ fn certified(path: &[Position]) -> bool {
     certificate.holds().is_ok()
 }
 
-struct Walker {
+struct Pedestrian {
     /// Mean distance between where it was and where the guarantee would have had it, 12 frames (m).
     displacement: f64,
     walks: bool,
@@ -49,7 +49,7 @@ struct Walker {
     largest_turn: f64,
 }
 
-impl Walker {
+impl Pedestrian {
     fn of(path: &[Position]) -> Self {
         let (start, end) = (path[0], path[HORIZON]);
         let kept = never_further_from_its_end(path);
@@ -63,7 +63,7 @@ impl Walker {
     }
 }
 
-/// Of each fold: walkers; mean displacement of all of them (mm); of those who walk, the share whose distance falls at every step (%), and
+/// Of each fold: pedestrians; mean displacement of all of them (mm); of those who walk, the share whose distance falls at every step (%), and
 /// the share with a step of more than 90 degrees away from their end (%).
 const EXPECTED: [(&str, usize, [f64; 3]); 5] = [
     ("eth", 2_511, [2.0, 93.0, 1.7]),
@@ -73,20 +73,29 @@ const EXPECTED: [(&str, usize, [f64; 3]); 5] = [
     ("zara2", 5_900, [1.0, 98.0, 1.3]),
 ];
 
-/// Share of `walkers` with a property (%).
-fn percent(walkers: &[&Walker], has: impl Fn(&Walker) -> bool) -> f64 {
-    let count = walkers.iter().filter(|walker| has(walker)).count();
-    100.0 * count as f64 / walkers.len() as f64
+/// Share of `pedestrians` with a property (%).
+fn percent(pedestrians: &[&Pedestrian], has: impl Fn(&Pedestrian) -> bool) -> f64 {
+    let count = pedestrians
+        .iter()
+        .filter(|pedestrian| has(pedestrian))
+        .count();
+    100.0 * count as f64 / pedestrians.len() as f64
 }
 
-fn displacement<'a>(walkers: impl ExactSizeIterator<Item = &'a Walker>) -> f64 {
-    let count = walkers.len() as f64;
-    1e3 * walkers.map(|walker| walker.displacement).sum::<f64>() / count
+fn displacement<'a>(pedestrians: impl ExactSizeIterator<Item = &'a Pedestrian>) -> f64 {
+    let count = pedestrians.len() as f64;
+    1e3 * pedestrians
+        .map(|pedestrian| pedestrian.displacement)
+        .sum::<f64>()
+        / count
 }
 
 /// The `percent`-th of the largest turns, of 100 (degrees).
-fn turn_of(walkers: &[&Walker], percent: usize) -> f64 {
-    let mut turns: Vec<_> = walkers.iter().map(|walker| walker.largest_turn).collect();
+fn turn_of(pedestrians: &[&Pedestrian], percent: usize) -> f64 {
+    let mut turns: Vec<_> = pedestrians
+        .iter()
+        .map(|pedestrian| pedestrian.largest_turn)
+        .collect();
     turns.sort_by(f64::total_cmp);
     turns[(turns.len() - 1) * percent / 100]
 }
@@ -96,7 +105,7 @@ fn turn_of(walkers: &[&Walker], percent: usize) -> f64 {
     clippy::float_cmp,
     reason = "both sides are rounded to the digits that are compared"
 )]
-fn the_guarantee_moves_real_walkers_by_millimetres() {
+fn the_guarantee_moves_real_pedestrians_by_millimetres() {
     let Some(folder) = recordings::star_folder() else {
         return;
     };
@@ -107,14 +116,14 @@ fn the_guarantee_moves_real_walkers_by_millimetres() {
         let paths = windows
             .iter()
             .flat_map(|window| (0..window.len()).map(|i| &window.track(i)[OBSERVED - 1..]));
-        let all: Vec<_> = paths.map(Walker::of).collect();
-        let walking: Vec<_> = all.iter().filter(|walker| walker.walks).collect();
+        let all: Vec<_> = paths.map(Pedestrian::of).collect();
+        let walking: Vec<_> = all.iter().filter(|pedestrian| pedestrian.walks).collect();
 
         let moved = displacement(all.iter());
-        let certified = percent(&walking, |walker| walker.certified);
-        let turning_back = percent(&walking, |walker| walker.largest_turn > 90.0);
+        let certified = percent(&walking, |pedestrian| pedestrian.certified);
+        let turning_back = percent(&walking, |pedestrian| pedestrian.largest_turn > 90.0);
         eprintln!(
-            "{name}: {count} walkers moved by {moved:.2} mm, the {} who walk by {:.2} mm; of these {certified:.1} % certified, \
+            "{name}: {count} pedestrians moved by {moved:.2} mm, the {} who walk by {:.2} mm; of these {certified:.1} % certified, \
              largest turn from the end {:.0} degrees (median), {:.0} (95 of 100), above 90 {turning_back:.1} %",
             walking.len(),
             displacement(walking.iter().copied()),

@@ -1,4 +1,4 @@
-//! `--keep-clear`: walkers mind each other, and every certificate still holds.
+//! `--keep-clear`: pedestrians mind each other, and every certificate still holds.
 
 use ddl::data::{PedestrianId, Window};
 use ddl::eval::ForecastError;
@@ -10,7 +10,7 @@ use ddl::{
 use ddl_tests::place::Place;
 use ddl_tests::{crowd, drawn_model};
 
-/// Pairs of walkers in one window whose most likely forecasts come nearer than `distance`.
+/// Pairs of pedestrians in one window whose most likely forecasts come nearer than `distance`.
 fn near_pairs(windows: &[Window], forecasts: &[Forecast], distance: f64) -> usize {
     let likeliest =
         |forecast: &Forecast, i| forecast.hypothesis(i, forecast.most_likely(i)).to_vec();
@@ -51,7 +51,7 @@ fn fewer_come_near_and_all_still_arrive() {
     ] {
         let [before, after] = [&free, &clear].map(|all| near_pairs(&windows, all, 0.5));
         assert!(after < before, "{before} pairs came near, now {after}");
-        // Goals and weights are those of walkers alone.
+        // Goals and weights are those of pedestrians alone.
         for (free, clear) in free.iter().zip(&clear) {
             for i in 0..free.pedestrians() {
                 for k in 0..free.hypotheses() {
@@ -77,7 +77,7 @@ fn the_program_keeps_clear_and_says_so() {
     assert_ne!(free, clear);
     assert!(clear.lines().skip(1).all(|row| row.ends_with(",true")));
 
-    let evaluate = "evaluate --model run --threads 1 --test-walkers 40 --protocol fair";
+    let evaluate = "evaluate --model run --threads 1 --test-pedestrians 40 --protocol fair";
     let report = |options: &str| {
         let _ = place.ok(&format!("{evaluate} {options}"));
         Report::load(&place.at("run/report.json")).unwrap()

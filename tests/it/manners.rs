@@ -15,7 +15,7 @@ use std::time::Duration;
 /// A terminal of old.
 const LINES: usize = 24;
 const COLUMNS: usize = 80;
-/// The promise, of a release build, with an expert library of 12,000 simulated walkers; and room for a debug build's assertions.
+/// The promise, of a release build, with an expert library of 12,000 simulated pedestrians; and room for a debug build's assertions.
 const SOON: Duration = Duration::from_secs(if cfg!(debug_assertions) { 2 } else { 1 });
 /// The best of so many counts: the others were held up by something else.
 const RUNS: usize = 3;
@@ -79,9 +79,9 @@ fn commands_that_report_also_speak_json() {
         "info hotel",
         "data tracks.csv",
         "pack --model run --out packed.safetensors",
-        "evaluate --model run --protocol single --test-walkers 8 --threads 1",
+        "evaluate --model run --protocol single --test-pedestrians 8 --threads 1",
         "report run --out report",
-        "baselines --convention simulated --fold plaza --protocol single --test-walkers 8",
+        "baselines --convention simulated --fold plaza --protocol single --test-pedestrians 8",
         "goals --model run --measure test --threads 1",
     ] {
         let _ = place.json(&format!("{line} --json --progress none"));
@@ -120,15 +120,15 @@ fn info_describes_models() {
     let config: Value = serde_json::from_str(&place.text("run/config.json")).unwrap();
     assert_eq!(info["config"], config);
     assert_eq!(info["epochs"].as_array().unwrap().len(), 1);
-    assert_eq!(info["experts"], config["data"]["walkers"]);
+    assert_eq!(info["experts"], config["data"]["pedestrians"]);
     let parameters = info["parameters"].as_u64().unwrap();
     // four bytes each, and a header
     let bytes = place.read("run/model.safetensors").len() as u64;
     assert!(parameters > 10_000 && (4 * parameters..4 * parameters + 65_536).contains(&bytes));
     let for_people = place.ok("info run");
-    let walkers = &config["data"]["walkers"];
+    let pedestrians = &config["data"]["pedestrians"];
     let sentence = format!(
-        "run: variant no-goal-shift, trained on {walkers} walks of 20 steps (convention simulated, without corridor); goals "
+        "run: variant no-goal-shift, trained on {pedestrians} walks of 20 steps (convention simulated, without corridor); goals "
     );
     assert!(for_people.starts_with(&sentence), "{for_people}");
     assert!(

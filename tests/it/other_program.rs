@@ -63,7 +63,7 @@ fn the_python_example_is_scored_as_the_baseline_on_real_recordings() {
     let Some(data) = recordings::star_folder() else {
         return;
     };
-    for (fold, printed, walkers) in [
+    for (fold, printed, pedestrians) in [
         ("zara1", "0.428/0.953", 2324),
         ("hotel", "0.325/0.615", 1026),
     ] {
@@ -81,7 +81,7 @@ fn the_python_example_is_scored_as_the_baseline_on_real_recordings() {
         let line = summary.lines().find(|line| line.ends_with("  mine"));
         let line = line.unwrap();
         assert!(
-            line.contains(printed) && line.contains(&walkers.to_string()),
+            line.contains(printed) && line.contains(&pedestrians.to_string()),
             "{line}"
         );
         let report = report(&place, "results", "mine");
@@ -91,7 +91,7 @@ fn the_python_example_is_scored_as_the_baseline_on_real_recordings() {
             selection,
             "made by another program, read from forecasts.jsonl"
         );
-        assert_eq!(mine.scores.pedestrians, walkers);
+        assert_eq!(mine.scores.pedestrians, pedestrians);
         assert_eq!(mine.conditions.window_rule, WindowRule::Published);
         let page = place.text("results/report.md");
         assert!(page.contains("| mine ") && page.contains(printed), "{page}");
@@ -107,7 +107,7 @@ fn simulated() -> Option<Place> {
 }
 
 #[test]
-fn a_part_of_the_walkers_is_scored_only_when_asked_for() {
+fn a_part_of_the_pedestrians_is_scored_only_when_asked_for() {
     let Some(place) = simulated() else { return };
     let summary = place.ok(&format!("{EVALUATE} forecasts.jsonl --out whole"));
     assert!(summary.contains("  forecasts\n"), "{summary}");
@@ -118,13 +118,13 @@ fn a_part_of_the_walkers_is_scored_only_when_asked_for() {
     place.write("some.jsonl", some.join("\n"));
     let part = format!("{EVALUATE} some.jsonl --out part");
     let (count, all) = (some.len(), some.len() + 7);
-    let missing = format!("some.jsonl forecasts {count} of the {all} walkers");
+    let missing = format!("some.jsonl forecasts {count} of the {all} pedestrians");
     place.fails(&part, &[&missing, "--intersection", "rule complete"]);
     let summary = place.ok(&format!("{part} --intersection"));
     assert!(summary.contains("  some\n"), "{summary}");
     let report = report(&place, "part", "some");
     // Then a digest of who they are, the same in every row.
-    let subset = format!("walkers forecast by some.jsonl: {count} of {all}, digest ");
+    let subset = format!("pedestrians forecast by some.jsonl: {count} of {all}, digest ");
     let first = &report.rows()[0].conditions.test_subset;
     assert!(first.as_deref().unwrap().starts_with(&subset), "{first:?}");
     for row in report.rows() {

@@ -34,7 +34,7 @@ fn models_are_measured_on_own_recordings() {
     let place = with_recordings();
     let windows = place.ok("windows --data mine --fold yard");
     assert!(windows.lines().count() > 100 && !windows.contains("lobby"));
-    let measure = "--test-walkers 40 --protocol single --threads 1";
+    let measure = "--test-pedestrians 40 --protocol single --threads 1";
     let [of_fold, of_file, of_model] = [
         "--data mine --fold yard",
         "--data mine/yard.csv",

@@ -32,7 +32,7 @@ fn a_packed_run_is_measured_as_the_run_without_its_library() {
     let place = Place::with_model();
     let said = place.ok("pack --model run --out packed.safetensors");
     assert!(said.contains("packed.safetensors"), "{said}");
-    let measure = "--protocol fair --protocol single --test-walkers 120 --threads 1";
+    let measure = "--protocol fair --protocol single --test-pedestrians 120 --threads 1";
     let _ = place.ok(&format!("evaluate --model run {measure}"));
     let before = folder_contents::read(place.path());
     let line = format!("evaluate --model packed.safetensors {measure}");
@@ -123,8 +123,8 @@ struct Reported {
     protocol: Protocol,
     min_ade: f64,
     min_fde: f64,
-    walkers: usize,
-    test_walkers: Option<usize>,
+    pedestrians: usize,
+    test_pedestrians: Option<usize>,
     seed: u64,
     commit: String,
 }
@@ -154,11 +154,11 @@ fn the_reported_number_comes_out_again() {
     };
     let expected = &reported()["hotel"];
     let place = Place::empty();
-    let walkers = expected
-        .test_walkers
-        .map_or(String::new(), |n| format!("--test-walkers {n}"));
+    let pedestrians = expected
+        .test_pedestrians
+        .map_or(String::new(), |n| format!("--test-pedestrians {n}"));
     let _ = place.ok(&format!(
-        "evaluate --fold hotel --protocol {} {walkers} --out results --data {}",
+        "evaluate --fold hotel --protocol {} {pedestrians} --out results --data {}",
         expected.protocol,
         data.display()
     ));
@@ -169,7 +169,7 @@ fn the_reported_number_comes_out_again() {
         .filter(|row| row.conditions.forecaster == PACKED);
     let row = rows.find(|row| row.conditions.window_rule.to_string() == expected.window_rule);
     let scores = &row.unwrap().scores;
-    assert_eq!(scores.pedestrians, expected.walkers);
+    assert_eq!(scores.pedestrians, expected.pedestrians);
     for (found, expected) in [
         (scores.min_ade, expected.min_ade),
         (scores.min_fde, expected.min_fde),

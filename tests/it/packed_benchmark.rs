@@ -45,7 +45,7 @@ fn benchmark(profile: &str, convention: &str, folds: &[&str]) -> Place {
         "format": 3,
         "settings": {
             "profile": profile, "convention": convention, "data": null, "device": "cpu", "cargo_profile": "release", "epochs": 4,
-            "train_walkers": null, "proposal_steps": null, "test_walkers": 2500, "protocols": ["fair", "single"],
+            "train_pedestrians": null, "proposal_steps": null, "test_pedestrians": 2500, "protocols": ["fair", "single"],
             "recipe": {"name": "recommended", "optimiser": null},
         },
         "tasks": tasks,
@@ -71,12 +71,12 @@ fn a_benchmark_becomes_the_models_that_come_with_the_program() {
                 ("seed", json!(seed)),
                 ("window_rule", json!("published")),
                 ("protocol", json!("fair")),
-                ("test_walkers", json!(2500)),
+                ("test_pedestrians", json!(2500)),
                 ("commit", json!("0123abc")),
             ] {
                 assert_eq!(one[fact], expected, "{fact}");
             }
-            assert!(one["walkers"].as_u64().unwrap() > 0 && one["min_fde"].is_f64());
+            assert!(one["pedestrians"].as_u64().unwrap() > 0 && one["min_fde"].is_f64());
         }
     }
 }

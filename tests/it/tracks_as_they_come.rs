@@ -272,7 +272,7 @@ fn numbers_that_nobody_walks_at_are_doubted() {
             .collect();
         place.write_tracks("hall.csv", &rows);
         for line in [
-            "evaluate --model hotel --convention own --data hall.csv --test-walkers 1 --protocol single --threads 1",
+            "evaluate --model hotel --convention own --data hall.csv --test-pedestrians 1 --protocol single --threads 1",
             "forecast hall.csv --last --one --threads 1",
         ] {
             let finished = place.run(line);
@@ -330,7 +330,7 @@ fn a_page_shows_the_moments_of_own_tracks() {
     let data = page.split("id=\"moments-json\">").nth(1).unwrap();
     let moments: Vec<Value> = ddl_tests::place::json(data.split("</script>").next().unwrap());
     let count = |moment: usize, name: &str| {
-        moments[moment]["walkers"][0][name]
+        moments[moment]["pedestrians"][0][name]
             .as_array()
             .unwrap()
             .len()
@@ -339,6 +339,6 @@ fn a_page_shows_the_moments_of_own_tracks() {
     assert_eq!(moments[4]["frame"], 14 * own_tracks::FRAME_STEP);
     assert_eq!((count(4, "truth"), count(4, "paths")), (0, 20));
     // The first of five is the third of fourteen: seen for 3 frames, and what then happened is there.
-    assert_eq!(moments[0]["walkers"][0]["made_up"]["padded"], 5);
+    assert_eq!(moments[0]["pedestrians"][0]["made_up"]["padded"], 5);
     assert_eq!(count(0, "truth"), 24);
 }

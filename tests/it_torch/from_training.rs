@@ -10,8 +10,8 @@ use ddl_tests::{crowd, drawn_model, folder_contents, trained_model};
 #[test]
 fn a_training_tells_its_steps_and_leaves_a_run() {
     let place = Place::empty();
-    // 200 walkers in batches of 64: 4 steps an epoch
-    let train = "train --convention simulated --fold plaza --recipe published --seed 5 --epochs 2 --train-walkers 200 --batch-walkers 64 \
+    // 200 pedestrians in batches of 64: 4 steps an epoch
+    let train = "train --convention simulated --fold plaza --recipe published --seed 5 --epochs 2 --train-pedestrians 200 --batch-pedestrians 64 \
                  --proposal-steps 10 --commit 0123abc --threads 1 --out run";
     let mut steps = told(&place, train, &["goals", "train"]);
     steps.retain(|step| step.stage == "train");
@@ -52,14 +52,14 @@ fn a_training_tells_its_steps_and_leaves_a_run() {
             .iter()
             .all(|epoch| epoch.loss.is_finite() && epoch.loss > 0.0)
     );
-    let measure = "evaluate --model run --protocol fair --test-walkers 20 --threads 1";
+    let measure = "evaluate --model run --protocol fair --test-pedestrians 20 --threads 1";
     assert!(place.ok(measure).contains("minADE"));
 }
 
 #[test]
 fn goals_are_measured_before_the_network_is_trained() {
     let place = Place::empty();
-    let train = "train --convention simulated --fold plaza --epochs 1 --train-walkers 40 --batch-walkers 20 --proposal-steps 8 \
+    let train = "train --convention simulated --fold plaza --epochs 1 --train-pedestrians 40 --batch-pedestrians 20 --proposal-steps 8 \
                  --validation 0.25 --validation-recordings crossing --threads 1 --out run";
     let _ = place.ok(&format!("{train} --only-goals"));
     assert!(!place.at("run/model.safetensors").exists());
@@ -77,8 +77,8 @@ fn goals_are_measured_before_the_network_is_trained() {
         .recording("crossing")
         .unwrap()
         .windows(WindowRule::Complete);
-    let walkers: usize = whole.iter().map(Window::len).sum();
-    assert_eq!(validation.recordings["crossing"].walkers, walkers);
+    let pedestrians: usize = whole.iter().map(Window::len).sum();
+    assert_eq!(validation.recordings["crossing"].pedestrians, pedestrians);
     assert!(
         validation.windows.contains("crossing whole"),
         "{}",
@@ -111,7 +111,7 @@ fn the_recommended_recipe_is_the_default() {
     let full = begun_with("--recipe recommended");
     assert_eq!(full, begun_with(""));
     let star = (full.star.frame, full.star.feed_forward_width);
-    assert_eq!(star, (NetworkFrame::Goal, 128));
+    assert_eq!(star, (NetworkFrame::Goal, 32));
     assert_eq!(full.training.objective, Objective::Walk);
 }
 
@@ -126,7 +126,7 @@ fn the_published_recipe_is_the_papers() {
     // the numbers of the paper, whatever the constructors say
     let star = (config.star.frame, config.star.feed_forward_width);
     assert_eq!(star, (NetworkFrame::World, 2048));
-    let training = (config.training.epochs, config.training.batch_walkers);
+    let training = (config.training.epochs, config.training.batch_pedestrians);
     assert_eq!(
         (config.training.objective, training),
         (Objective::NextStep, (200, 256))
@@ -139,10 +139,10 @@ fn a_folder_that_holds_something_else_is_not_trained_over() {
     folder_contents::write(trained_model::contents(), &place.at("run"));
     let recipe = serde_json::to_string(&drawn_model::goal_recipe(1)).unwrap();
     place.write("recipe.json", recipe);
-    let walkers = trained_model::WALKERS;
+    let pedestrians = trained_model::PEDESTRIANS;
     let batch = trained_model::BATCH;
     let train = format!(
-        "train --convention simulated --epochs 1 --train-walkers {walkers} --batch-walkers {batch} --out run"
+        "train --convention simulated --epochs 1 --train-pedestrians {pedestrians} --batch-pedestrians {batch} --out run"
     );
     for (different, part) in [
         ("--fold corridor --seed 77", "training.seed is 1, not 77"),
@@ -157,7 +157,7 @@ fn a_folder_that_holds_something_else_is_not_trained_over() {
         ),
         (
             "--fold corridor --recipe published --learning-rate 3e-3",
-            "star.feed_forward_width is 128, not 2048",
+            "star.feed_forward_width is 32, not 2048",
         ),
         ("--fold plaza", "data.fold is corridor, not plaza"),
     ] {
@@ -191,13 +191,13 @@ fn numbers_out_of_range_are_refused_before_anything_is_written() {
     // should one be taken after all, it must not train for long
     let short = [
         ("--epochs", "1"),
-        ("--train-walkers", "1"),
+        ("--train-pedestrians", "1"),
         ("--proposal-steps", "1"),
     ];
     for (option, value, field) in [
         ("--epochs", "0", "epochs"),
-        ("--batch-walkers", "0", "batch_walkers"),
-        ("--train-walkers", "0", "walkers_per_epoch"),
+        ("--batch-pedestrians", "0", "batch_pedestrians"),
+        ("--train-pedestrians", "0", "pedestrians_per_epoch"),
         ("--learning-rate", "NaN", "learning_rate"),
         ("--proposal-steps", "0", "steps"),
         ("--validation", "NaN", "validation"),

@@ -6,7 +6,7 @@ use ddl_tests::place::Place;
 use serde_json::Value;
 
 /// Options that make a training one of seconds.
-const SMALL: &str = "--train-walkers 64 --batch-walkers 16 --proposal-steps 5 --threads 1";
+const SMALL: &str = "--train-pedestrians 64 --batch-pedestrians 16 --proposal-steps 5 --threads 1";
 const ALONE: &str = "--from none --epochs 3";
 
 fn with_recordings() -> Place {
@@ -62,8 +62,8 @@ fn own_recordings_are_trained_on_and_measured_with() {
         "epoch of the least validation error"
     );
     // Few enough for all of them to have been measured after each epoch.
-    let (min_ade, walkers) = first_row(&report);
-    assert!((50..=1000).contains(&walkers), "{walkers}");
+    let (min_ade, pedestrians) = first_row(&report);
+    assert!((50..=1000).contains(&pedestrians), "{pedestrians}");
     assert!(
         (min_ade - errors[best - 1]).abs() < 1e-9,
         "{min_ade} {errors:?}"
@@ -192,7 +192,7 @@ fn a_training_begins_with_another_models_weights() {
     for (options, words) in [
         (
             "--feed-forward-width 16",
-            "star.feed_forward_width is 128, not 16 as asked for",
+            "star.feed_forward_width is 32, not 16 as asked for",
         ),
         (
             "--variant no-goal-shift",
@@ -200,7 +200,7 @@ fn a_training_begins_with_another_models_weights() {
         ),
         (
             "--recipe published",
-            "star.feed_forward_width is 128, not 2048 as asked for",
+            "star.feed_forward_width is 32, not 2048 as asked for",
         ),
     ] {
         let line = format!("train --data clips --from hotel {options} --out new {SMALL}");

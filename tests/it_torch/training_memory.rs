@@ -21,7 +21,7 @@ fn growth([first, last, lost]: [usize; 3]) -> Option<Vec<f64>> {
     };
     let training = TrainingConfig {
         epochs: 1_000_000, // never done
-        batch_walkers: 8,
+        batch_pedestrians: 8,
         ..TrainingConfig::published()
     };
     let mut windows = crowd::training_windows();

@@ -114,8 +114,8 @@ def check_headline(opened, report):
 def decoded(data):
     """The compact moments as moments.json has them."""
     for moment in data:
-        walkers = []
-        for w in moment["walkers"]:
+        pedestrians = []
+        for w in moment["pedestrians"]:
             observed, last = path([0, 0], w["observed"])
             hypotheses = []
             for k, steps in enumerate(w["paths"]):
@@ -127,9 +127,9 @@ def decoded(data):
                         h[name] = letters[k] == "y"
                 hypotheses.append(h)
             truth = path(last, w["truth"])[0]
-            walkers.append({"pedestrian": w["pedestrian"], "observed": observed, "truth": truth, "hypotheses": hypotheses})
+            pedestrians.append({"pedestrian": w["pedestrian"], "observed": observed, "truth": truth, "hypotheses": hypotheses})
         out = {key: moment[key] for key in ("fold", "forecaster", "recording", "frame")}
-        out |= {"frame_step": moment["frameStep"], "walkers": walkers}
+        out |= {"frame_step": moment["frameStep"], "pedestrians": pedestrians}
         yield out | ({"picks": moment["picks"]} if moment["picks"] else {})
 
 
@@ -142,8 +142,8 @@ def path(start, steps):
     return places, (x, y)
 
 
-def errors(walker):
-    distances = [[math.dist(p, q) for p, q in zip(h["positions"], walker["truth"])] for h in walker["hypotheses"]]
+def errors(pedestrian):
+    distances = [[math.dist(p, q) for p, q in zip(h["positions"], pedestrian["truth"])] for h in pedestrian["hypotheses"]]
     return [sum(d) / 12 for d in distances], [d[-1] for d in distances]
 
 
@@ -152,20 +152,20 @@ def same(shown, value):
     return abs(float(shown) - value) <= 0.000_501
 
 
-def check_walker(opened, moment, at):
-    walker = moment["walkers"][at]
-    ade, fde = errors(walker)
-    assert opened.text("#walker-name") == f"Walker {walker['pedestrian']}"
+def check_pedestrian(opened, moment, at):
+    pedestrian = moment["pedestrians"][at]
+    ade, fde = errors(pedestrian)
+    assert opened.text("#pedestrian-name") == f"Pedestrian {pedestrian['pedestrian']}"
     assert same(opened.text("#min-ade"), min(ade)) and same(opened.text("#min-fde"), min(fde)), moment["frame"]
     rows = opened.page.evaluate(
         "[...document.querySelectorAll('#hypotheses tbody tr')].map((row) => [...row.cells].map((cell) => cell.textContent))"
     )
-    assert len(rows) == len(walker["hypotheses"])
+    assert len(rows) == len(pedestrian["hypotheses"])
     weights = [float(row[1]) for row in rows]
     assert weights == sorted(weights, reverse=True)
     for row in rows:
         k = int(row[0]) - 1
-        h = walker["hypotheses"][k]
+        h = pedestrian["hypotheses"][k]
         assert float(row[1]) == h["weight"] and same(row[2], ade[k]) and same(row[3], fde[k]), row
         if h.get("goal") is None:
             assert row[4].startswith("no goal"), row
@@ -179,8 +179,8 @@ def check_player(opened, moments):
     page = opened.page
     page.locator("#player").scroll_into_view_if_needed()
     first = moments[0]
-    start = first["picks"][0]["walkers"][0] if first.get("picks") else 0
-    check_walker(opened, first, start)
+    start = first["picks"][0]["pedestrians"][0] if first.get("picks") else 0
+    check_pedestrian(opened, first, start)
 
     # It plays, by button and by key.
     before, picture, words = opened.time(), opened.picture(), opened.text("#now-words")
@@ -198,7 +198,7 @@ def check_player(opened, moments):
     page.keyboard.press("ArrowLeft")
     assert opened.time() == 18 and page.input_value("#time") == "19"
     page.keyboard.press("End")
-    best = max(first["walkers"][start]["hypotheses"], key=lambda h: h["weight"])
+    best = max(first["pedestrians"][start]["hypotheses"], key=lambda h: h["weight"])
     x, y = best["positions"][11]
     assert f"({x:.2f}, {y:.2f})" in opened.text("#now-words"), opened.text("#now-words")
     page.keyboard.press("Home")
@@ -214,14 +214,14 @@ def check_player(opened, moments):
     page.locator("#time").fill("20")
     assert opened.time() == 19
 
-    # Walkers, moments and recordings, by key and by choice.
+    # Pedestrians, moments and recordings, by key and by choice.
     page.focus(".stage")
-    count = len(first["walkers"])
+    count = len(first["pedestrians"])
     page.keyboard.press("ArrowDown")
-    check_walker(opened, first, (start + 1) % count)
+    check_pedestrian(opened, first, (start + 1) % count)
     page.keyboard.press("ArrowUp")
     page.keyboard.press("ArrowUp")
-    check_walker(opened, first, (start - 1) % count)
+    check_pedestrian(opened, first, (start - 1) % count)
     page.keyboard.press("n")
     assert page.input_value("#choose-moment") == "1"
     page.keyboard.press("p")
@@ -235,9 +235,9 @@ def check_player(opened, moments):
         moment = moments[at]
         page.select_option("#choose-recording", label=page.evaluate("(at) => JSON.parse(document.getElementById('moments-json').textContent)[at].recording", at))
         page.select_option("#choose-moment", str(at))
-        who = at % len(moment["walkers"])
-        page.select_option("#choose-walker", str(who))
-        check_walker(opened, moment, who)
+        who = at % len(moment["pedestrians"])
+        page.select_option("#choose-pedestrian", str(who))
+        check_pedestrian(opened, moment, who)
 
     # Switches change the picture.
     page.focus(".stage")
@@ -265,31 +265,31 @@ def check_player(opened, moments):
     at = int(button.get_attribute("data-moment"))
     button.click()
     page.wait_for_function("Number(document.getElementById('scene').dataset.time) > 0.2")
-    check_walker(opened, moments[at], int(button.get_attribute("data-walker")))
+    check_pedestrian(opened, moments[at], int(button.get_attribute("data-pedestrian")))
 
 
 def check_viewer(opened):
     """The player alone begins where most is known of what then happened, and leaves no empty places for what is not."""
     moments = list(decoded(json.loads(embedded(opened, "moments-json"))))
-    known = [sum(len(walker["truth"]) == 12 for walker in moment["walkers"]) for moment in moments]
+    known = [sum(len(pedestrian["truth"]) == 12 for pedestrian in moment["pedestrians"]) for moment in moments]
     assert 0 in known and max(known) > 0, known
     chosen = int(opened.page.locator("#choose-moment").input_value())
     assert known[chosen] == max(known), (chosen, known)
     errors_seen = ["#min-ade", "#min-fde", "#hypotheses thead [data-sort=ade]", "#hypotheses tbody td:nth-child(4)"]
 
-    def shown(walker, measured):
+    def shown(pedestrian, measured):
         for selector in errors_seen:
             assert opened.page.locator(selector).first.is_visible() == measured, (selector, measured)
-        said = f"seen for {len(walker['truth'])} of the 12" in opened.text("#convention-words")
+        said = f"seen for {len(pedestrian['truth'])} of the 12" in opened.text("#convention-words")
         assert said != measured, opened.text("#convention-words")
         assert "which stands for all" in opened.text("#certificate-words")
 
-    walkers = moments[chosen]["walkers"]
-    shown(walkers[int(opened.page.locator("#choose-walker").input_value())], True)
+    pedestrians = moments[chosen]["pedestrians"]
+    shown(pedestrians[int(opened.page.locator("#choose-pedestrian").input_value())], True)
     opened.page.select_option("#choose-moment", str(known.index(0)))
-    for at, walker in enumerate(moments[known.index(0)]["walkers"]):
-        opened.page.select_option("#choose-walker", str(at))
-        shown(walker, False)
+    for at, pedestrian in enumerate(moments[known.index(0)]["pedestrians"]):
+        opened.page.select_option("#choose-pedestrian", str(at))
+        shown(pedestrian, False)
 
 
 def check_theme(opened):
@@ -305,19 +305,19 @@ def check_theme(opened):
 
 
 def check_touch(opened, moments):
-    """A finger plays, stops, and chooses a walker."""
+    """A finger plays, stops, and chooses a pedestrian."""
     before = opened.time()
     opened.page.tap("#play")
     opened.page.wait_for_function("(t) => Number(document.getElementById('scene').dataset.time) > t + 0.5", arg=before)
     opened.page.tap("#play")
     opened.page.check("#show-whole")
-    chosen = {opened.text("#walker-name")}
+    chosen = {opened.text("#pedestrian-name")}
     box = opened.page.locator("#scene").bounding_box()
     for across in range(1, 12):
         for down in (0.35, 0.45, 0.5, 0.55, 0.65):
             opened.page.locator("#scene").tap(position={"x": box["width"] * across / 12, "y": box["height"] * down})
-            chosen.add(opened.text("#walker-name"))
-    names = {f"Walker {walker['pedestrian']}" for walker in moments[0]["walkers"]}
+            chosen.add(opened.text("#pedestrian-name"))
+    names = {f"Pedestrian {pedestrian['pedestrian']}" for pedestrian in moments[0]["pedestrians"]}
     assert 1 < len(chosen) and chosen <= names, chosen
 
 
@@ -331,7 +331,7 @@ def check_focus(opened):
         )
         assert style != "none" or name == "time", f"the focus on {name} cannot be seen"
         seen.append(name)
-    assert {"stage", "play", "time", "choose-walker", "theme"} <= set(seen), seen
+    assert {"stage", "play", "time", "choose-pedestrian", "theme"} <= set(seen), seen
 
 
 def check_reduced_motion(opened):
@@ -376,22 +376,22 @@ def variant(html, folder, name, moments):
 
 def variants(html, data, folder):
     one = json.loads(json.dumps(data[0]))
-    for walker in one["walkers"]:
+    for pedestrian in one["pedestrians"]:
         for name in ("paths", "goals", "weights", "falls", "certified"):
-            walker[name] = walker[name][:1]
-        walker["goals"], walker["weights"], walker["falls"], walker["certified"] = [None], [1000], "-", "-"
-        walker["representative"] = 0
-    one["picks"], one["walkers"] = [], one["walkers"][:1]
+            pedestrian[name] = pedestrian[name][:1]
+        pedestrian["goals"], pedestrian["weights"], pedestrian["falls"], pedestrian["certified"] = [None], [1000], "-", "-"
+        pedestrian["representative"] = 0
+    one["picks"], one["pedestrians"] = [], one["pedestrians"][:1]
     yield variant(html, folder, "one-hypothesis", [one])
-    crowd = max(data, key=lambda moment: len(moment["walkers"]))
+    crowd = max(data, key=lambda moment: len(moment["pedestrians"]))
     for count in (25, 60):
-        walkers = []
+        pedestrians = []
         for at in range(count):
-            walker = json.loads(json.dumps(crowd["walkers"][at % len(crowd["walkers"])]))
-            walker["pedestrian"] = at
-            walker["observed"][0] += 700 * (at // len(crowd["walkers"]))
-            walkers.append(walker)
-        yield variant(html, folder, f"{count}-walkers", [crowd | {"walkers": walkers, "picks": []}])
+            pedestrian = json.loads(json.dumps(crowd["pedestrians"][at % len(crowd["pedestrians"])]))
+            pedestrian["pedestrian"] = at
+            pedestrian["observed"][0] += 700 * (at // len(crowd["pedestrians"]))
+            pedestrians.append(pedestrian)
+        yield variant(html, folder, f"{count}-pedestrians", [crowd | {"pedestrians": pedestrians, "picks": []}])
 
 
 def main():

@@ -158,11 +158,11 @@ FEWEST_BLOCKS = 10
 
 def headline(group, header):
     folds = header[1:-1]
-    walkers = []
+    pedestrians = []
     for fold in folds:
         counts = sorted({n for line in group.lines for n in group.on(line, fold, lambda s: s["pedestrians"])})
-        walkers.append(" or ".join(map(str, counts)) or "-")
-    rows = [["walkers scored", *walkers, ""]]
+        pedestrians.append(" or ".join(map(str, counts)) or "-")
+    rows = [["pedestrians scored", *pedestrians, ""]]
     return rows + [[line["label"], *group.cells(line, folds)] for line in group.lines]
 
 
@@ -227,7 +227,7 @@ def check_interval(cell, mean):
 
 
 def categories(group, header, caption):
-    """Pooled over the walkers of the folds that all forecasters have."""
+    """Pooled over the pedestrians of the folds that all forecasters have."""
     folds = caption.split("pooled over ")[1].split(". ")[0].split(", ")
     lines = [line for line in group.lines if all(row["scores"]["categories"] for row in line["rows"])]
     assert header[2:] == [line["label"] for line in lines], header
@@ -241,7 +241,7 @@ def categories(group, header, caption):
     for kind, name in names:
         if json.dumps({kind: name}) not in order:
             continue
-        cells, walkers = [], set()
+        cells, pedestrians = [], set()
         for line in lines:
             count, ade, fde = 0, 0.0, 0.0
             for fold in folds:
@@ -257,11 +257,11 @@ def categories(group, header, caption):
                     ade += weight * sum(s["min_ade"] for s in found) / len(found)
                     fde += weight * sum(s["min_fde"] for s in found) / len(found)
             if count:
-                walkers.add(count)
+                pedestrians.add(count)
                 cells.append(f"{ade / count:.3f}/{fde / count:.3f}")
             else:
                 cells.append("-")
-        rows.append([CATEGORIES[kind][name], " or ".join(map(str, sorted(walkers))), *cells])
+        rows.append([CATEGORIES[kind][name], " or ".join(map(str, sorted(pedestrians))), *cells])
     return rows
 
 
@@ -301,7 +301,7 @@ def expected(table, report):
         return further(Group(rows, *codes[:3], subset), header, table["folds"], WHOLE_FORECAST)
     if caption.startswith("95 % intervals and paired differences. "):
         return intervals(Group(rows, *codes[:3], subset), table)
-    if caption.startswith("minADE/minFDE in metres by category of walker"):
+    if caption.startswith("minADE/minFDE in metres by category of pedestrian"):
         return categories(Group(rows, *codes[:3], subset), header, caption)
     if caption.startswith("minADE/minFDE in metres by protocol."):
         groups = [Group(rows, codes[0], codes[1], protocol, subset) for protocol in ("published", "fair", "single")]

@@ -54,7 +54,7 @@ pub fn config(variant: Variant) -> RunConfig {
             validation: 0.0,
             validation_recordings: Vec::new(),
             windows: 0,
-            walkers: 0,
+            pedestrians: 0,
             sha256: "of no training".to_owned(),
             recordings: BTreeMap::new(),
         },
@@ -92,7 +92,7 @@ pub fn goal_recipe(seed: u64) -> GoalRecipe {
 /// Writes what training leaves in a run, with drawn weights; the pedestrians of the windows are its experts.
 pub fn write(mut config: RunConfig, windows: &[Window], folder: &Path) {
     config.data.windows = windows.len();
-    config.data.walkers = windows.iter().map(Window::len).sum();
+    config.data.pedestrians = windows.iter().map(Window::len).sum();
     let run = RunDirectory::new(folder);
     std::fs::create_dir_all(folder.join("epochs")).expect("a folder can be made");
     let network = MotionNetwork::new(config.star.clone(), config.training.seed);

@@ -1,4 +1,4 @@
-//! The files that the pages of the documentation speak of, made of simulated walkers.
+//! The files that the pages of the documentation speak of, made of simulated pedestrians.
 
 use crate::own_tracks::{self, FRAME_STEP, Row, csv};
 use std::path::Path;

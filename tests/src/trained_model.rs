@@ -15,13 +15,13 @@ use std::sync::{Mutex, Once, OnceLock};
 /// libtorch has one generator of random numbers: runs side by side would draw from each other's.
 static TRAINING: Mutex<()> = Mutex::new(());
 
-/// Walkers it is trained on: enough for every weight to have moved.
-pub const WALKERS: usize = 96;
-/// Walkers a batch: four batches.
-pub const BATCH: usize = WALKERS / 4;
+/// Pedestrians it is trained on: enough for every weight to have moved.
+pub const PEDESTRIANS: usize = 96;
+/// Pedestrians a batch: four batches.
+pub const BATCH: usize = PEDESTRIANS / 4;
 
 /// Training of some seconds by the program: 12 steps of the proposal network, then 3 epochs of 8 steps.
-pub const TRAIN: &str = "train --convention simulated --fold doorway --epochs 3 --train-walkers 128 --batch-walkers 16 \
+pub const TRAIN: &str = "train --convention simulated --fold doorway --epochs 3 --train-pedestrians 128 --batch-pedestrians 16 \
                          --proposal-steps 12 --threads 1 --out run";
 
 /// Runs [`TRAIN`] to its end; what it leaves, as far as it is the same every time.
@@ -96,8 +96,8 @@ fn request(out: &Path) -> TrainingRequest {
         fold: config.data.fold,
         star: config.star,
         training: TrainingConfig {
-            walkers_per_epoch: Some(WALKERS),
-            batch_walkers: BATCH,
+            pedestrians_per_epoch: Some(PEDESTRIANS),
+            batch_pedestrians: BATCH,
             ..config.training
         },
         goals: config.goals,

@@ -20,8 +20,8 @@ def forecast(observed):
 
 with open(sys.argv[1]) as windows, open(sys.argv[2], "w") as forecasts:
     for line in windows:
-        walker = json.loads(line)
-        answer = {key: walker[key] for key in ("recording", "observed_until", "pedestrian")}
+        pedestrian = json.loads(line)
+        answer = {key: pedestrian[key] for key in ("recording", "observed_until", "pedestrian")}
         # Several hypotheses, of equal weight or each with its "weight", may stand here: best of 20.
-        answer["hypotheses"] = [{"positions": forecast(walker["observed"])}]
+        answer["hypotheses"] = [{"positions": forecast(pedestrian["observed"])}]
         forecasts.write(json.dumps(answer) + "\n")

@@ -37,7 +37,7 @@ const SIMULATION_SEED: u64 = 1;
 #[derive(Debug, Args)]
 pub(crate) struct ModelChoice {
     /// Model: the directory of a run, a packed file (`ddl pack`), or a built-in model by the scene it was trained without:
-    /// eth, hotel, univ, zara1 or zara2 [default: hotel, the built-in one that was trained on the most walkers]
+    /// eth, hotel, univ, zara1 or zara2 [default: hotel, the built-in one that was trained on the most pedestrians]
     #[arg(long)]
     model: Option<PathBuf>,
 }
@@ -104,10 +104,10 @@ impl Exactness {
     }
 }
 
-/// Whether walkers mind each other.
+/// Whether pedestrians mind each other.
 #[derive(Debug, Args)]
 pub(crate) struct KeepClear {
-    /// Let walkers mind each other within so many metres, from centre to centre, such as 0.4
+    /// Let pedestrians mind each other within so many metres, from centre to centre, such as 0.4
     ///
     /// Each hypothesis is walked again among the others, who go as they would most likely go alone:
     /// near somebody it slows down and slides along. The distance to the goal still falls at every

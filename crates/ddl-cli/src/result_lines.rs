@@ -42,7 +42,7 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
         let width = folds.max().unwrap_or(0).max(10);
         let counted = match convention {
             Convention::Own => PEDESTRIAN_WINDOWS,
-            _ => "walkers",
+            _ => "pedestrians",
         };
         let counts = counted.len();
         writeln!(

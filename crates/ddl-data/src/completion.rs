@@ -10,7 +10,7 @@ const LONGEST_GAP: usize = 2;
 /// A single position says nothing of where somebody goes.
 const LEAST_SEEN: usize = 2;
 
-/// How much of the 8 observed positions may be made up where a walker was not seen at all of them.
+/// How much of the 8 observed positions may be made up where a pedestrian was not seen at all of them.
 ///
 /// - A *hole* of a few frames is filled on the straight line between the positions before and after it.
 /// - An observation that *begins late* is padded at its start, with the mean velocity of the rest.
@@ -34,7 +34,7 @@ impl Completion {
         longest_gap: LONGEST_GAP,
     };
 
-    /// Walkers seen at `least_seen` of the 8 positions or more, with holes of up to `longest_gap` frames.
+    /// Pedestrians seen at `least_seen` of the 8 positions or more, with holes of up to `longest_gap` frames.
     ///
     /// # Errors
     /// [`CompletionError`] if `least_seen` does not lie in 2..=8, or `longest_gap` in 0..=2.
@@ -105,10 +105,10 @@ impl Completion {
     }
 }
 
-/// How many of the 8 observed positions of a walker were not seen but made up.
+/// How many of the 8 observed positions of a pedestrian were not seen but made up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct MadeUp {
-    /// Positions at the start, before the walker was seen.
+    /// Positions at the start, before the pedestrian was seen.
     pub padded: usize,
     /// Positions in holes.
     pub filled: usize,

@@ -31,7 +31,7 @@ const NAME: &str = "live";
 ///     assert!(tracks.push(frame, [(PedestrianId(4), [0.5 * frame as f64, 0.0])])?.is_none());
 /// }
 /// let window = tracks.push(7, [(PedestrianId(4), [3.5, 0.0]), (PedestrianId(2), [9.0, 1.0])])?;
-/// let window = window.expect("walker 4 has 8 frames");
+/// let window = window.expect("pedestrian 4 has 8 frames");
 /// assert_eq!(window.pedestrians(), [PedestrianId(4)]);
 /// assert_eq!(window.observed(0)[7], [3.5, 0.0]);
 /// assert_eq!(tracks.len(), 2);
@@ -44,7 +44,7 @@ pub struct LiveTracks {
     frame_step: i64,
     completion: Completion,
     last_frame: Option<i64>,
-    walkers: Vec<LivePedestrian>,
+    pedestrians: Vec<LivePedestrian>,
 }
 
 /// Somebody who is in the last frame, or may be in a window again.
@@ -71,7 +71,7 @@ impl LiveTracks {
             frame_step: 1,
             completion: Completion::NONE,
             last_frame: None,
-            walkers: Vec::new(),
+            pedestrians: Vec::new(),
         }
     }
 
@@ -104,7 +104,7 @@ impl LiveTracks {
     /// Forgets everybody and the last frame: any frame may come next, as when a tracker starts anew.
     pub fn clear(&mut self) {
         self.last_frame = None;
-        self.walkers.clear();
+        self.pedestrians.clear();
     }
 
     /// Raw frames in one step of 0.4 s.
@@ -119,12 +119,12 @@ impl LiveTracks {
 
     /// People who are remembered: those of the last frame, and those who were there shortly before.
     pub fn len(&self) -> usize {
-        self.walkers.len()
+        self.pedestrians.len()
     }
 
     /// Whether nobody is remembered.
     pub fn is_empty(&self) -> bool {
-        self.walkers.is_empty()
+        self.pedestrians.is_empty()
     }
 
     /// Adds one frame, everybody's positions (m) in any order, and gives the window that ends there; `None` while nobody has
@@ -151,27 +151,27 @@ impl LiveTracks {
         people: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Self, LiveError> {
         let people = checked_frame(frame, self.last_frame, people)?;
-        let mut earlier = self.walkers.iter().peekable();
-        let mut walkers = Vec::with_capacity(people.len());
+        let mut earlier = self.pedestrians.iter().peekable();
+        let mut pedestrians = Vec::with_capacity(people.len());
         for (id, position) in people {
-            while let Some(absent) = earlier.next_if(|walker| walker.id < id) {
-                walkers.extend(self.remembered(absent, frame));
+            while let Some(absent) = earlier.next_if(|pedestrian| pedestrian.id < id) {
+                pedestrians.extend(self.remembered(absent, frame));
             }
-            let known = earlier.next_if(|walker| walker.id == id);
-            let mut walker = known
-                .and_then(|walker| self.remembered_before(walker, frame))
+            let known = earlier.next_if(|pedestrian| pedestrian.id == id);
+            let mut pedestrian = known
+                .and_then(|pedestrian| self.remembered_before(pedestrian, frame))
                 .unwrap_or_else(|| LivePedestrian::unseen(id));
-            walker.seen.push_back((frame, position));
-            walkers.push(walker);
+            pedestrian.seen.push_back((frame, position));
+            pedestrians.push(pedestrian);
         }
-        walkers.extend(earlier.filter_map(|absent| self.remembered(absent, frame)));
+        pedestrians.extend(earlier.filter_map(|absent| self.remembered(absent, frame)));
         Ok(Self {
             name: Arc::clone(&self.name),
             names: self.names.clone(),
             frame_step: self.frame_step,
             completion: self.completion,
             last_frame: Some(frame),
-            walkers,
+            pedestrians,
         })
     }
 
@@ -180,17 +180,17 @@ impl LiveTracks {
     }
 
     /// What may be in the same window as an observation at the frame; `None` for nothing.
-    fn remembered_before(&self, walker: &LivePedestrian, frame: i64) -> Option<LivePedestrian> {
-        let (last, _) = *walker.seen.back()?;
+    fn remembered_before(&self, pedestrian: &LivePedestrian, frame: i64) -> Option<LivePedestrian> {
+        let (last, _) = *pedestrian.seen.back()?;
         let gap = self.completion.longest_gap() as i64;
         if frame - last > (gap + 1) * self.frame_step {
             return None;
         }
         // A hole at the start of the window may begin before it.
         let oldest = frame - (OBSERVED as i64 + gap) * self.frame_step;
-        let forgotten = walker.seen.partition_point(|(seen, _)| *seen <= oldest);
-        let seen = walker.seen.range(forgotten..).copied().collect();
-        let id = walker.id;
+        let forgotten = pedestrian.seen.partition_point(|(seen, _)| *seen <= oldest);
+        let seen = pedestrian.seen.range(forgotten..).copied().collect();
+        let id = pedestrian.id;
         Some(LivePedestrian { id, seen })
     }
 
@@ -200,10 +200,14 @@ impl LiveTracks {
     pub fn window(&self) -> Option<Window> {
         let last = self.last_frame?;
         let (mut ids, mut positions, mut made_up) = (Vec::new(), Vec::new(), Vec::new());
-        for walker in self.walkers.iter().filter(|walker| walker.is_at(last)) {
-            let seen = walker.seen.iter().copied();
+        for pedestrian in self
+            .pedestrians
+            .iter()
+            .filter(|pedestrian| pedestrian.is_at(last))
+        {
+            let seen = pedestrian.seen.iter().copied();
             if let Some((observed, missed)) = self.completion.observation(seen, self.frame_step) {
-                ids.push(walker.id);
+                ids.push(pedestrian.id);
                 positions.extend(observed);
                 made_up.push(missed);
             }

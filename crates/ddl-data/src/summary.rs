@@ -134,7 +134,7 @@ impl Recording {
                 seconds: (pair[1].frame - pair[0].frame) as f64 * TIME_STEP / step as f64,
             })
             .collect();
-        let walkers = |windows: &[crate::Window]| windows.iter().map(crate::Window::len).sum();
+        let pedestrians = |windows: &[crate::Window]| windows.iter().map(crate::Window::len).sum();
         let corner = |pick: fn(f64, f64) -> f64, from: f64| {
             let places = self.observations().iter().map(|seen| seen.position);
             places.fold([from; 2], |corner, place| {
@@ -164,10 +164,10 @@ impl Recording {
             longest_hole: holes
                 .into_iter()
                 .max_by(|a, b| a.seconds.total_cmp(&b.seconds)),
-            to_forecast: walkers(&self.completed_windows(Completion::USUAL)),
-            seen_whole: walkers(&self.observed_windows()),
+            to_forecast: pedestrians(&self.completed_windows(Completion::USUAL)),
+            seen_whole: pedestrians(&self.observed_windows()),
             windows: windows.len(),
-            to_learn_from: walkers(&windows),
+            to_learn_from: pedestrians(&windows),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Flows: the velocity with which a walker is drawn to its goal.
+//! Flows: the velocity with which a pedestrian is drawn to its goal.
 
 mod avoiding;
 mod diffeomorphic;
@@ -41,7 +41,7 @@ pub trait Flow<T: Real, const D: usize> {
     /// Whatever keeps the flow from giving a metric, see the implementation.
     fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError>;
 
-    /// The velocity of the walker at `state` (m/s): `-P grad Phi`, or what becomes of it in space where there is a
+    /// The velocity of the pedestrian at `state` (m/s): `-P grad Phi`, or what becomes of it in space where there is a
     /// chart. It must agree with [`metric`](Self::metric): integrators use either.
     ///
     /// # Errors

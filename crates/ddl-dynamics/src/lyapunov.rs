@@ -24,13 +24,13 @@ pub use violation::Violation;
 /// The evidence that a rollout went to its goal: for every step what the theory speaks about.
 ///
 /// It is computed from the positions themselves, whatever integrator made them, so it also judges rollouts of other
-/// programs. It does not check that the positions follow from the metrics, that the walker arrived
+/// programs. It does not check that the positions follow from the metrics, that the pedestrian arrived
 /// ([`final_potential`](Self::final_potential) says how near it came), nor that obstacles were kept clear of. With a
 /// [chart](Flow::chart) goal, potentials, eigenvalues and angles are those of the chart, not of space. `Phi` is the
 /// distance to the goal, also for a quadratic attractor.
 ///
 /// JSON keeps it bit by bit with the feature `float_roundtrip` of `serde_json`; without it a rounding can change the
-/// strict verdict on a walker who hardly moves.
+/// strict verdict on a pedestrian who hardly moves.
 ///
 /// # Examples
 /// ```

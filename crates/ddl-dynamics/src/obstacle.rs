@@ -1,4 +1,4 @@
-//! What a walker keeps clear of: balls that stand still or move.
+//! What a pedestrian keeps clear of: balls that stand still or move.
 
 use nalgebra::SVector;
 
@@ -9,7 +9,7 @@ use crate::{
     state::State,
 };
 
-/// A ball that no walker enters: a pillar, or the disc of another walker.
+/// A ball that no pedestrian enters: a pillar, or the disc of another pedestrian.
 ///
 /// # Shapes
 /// Centre with `D` components and radius, in metres.

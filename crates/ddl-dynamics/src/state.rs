@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-/// A moment of a rollout: where the walker is, when, and where it has been.
+/// A moment of a rollout: where the pedestrian is, when, and where it has been.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct State<'a, T, const D: usize> {

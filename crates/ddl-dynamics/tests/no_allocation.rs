@@ -60,7 +60,7 @@ fn allocations(run: impl FnOnce()) -> u64 {
 fn allocates_nothing<T: Real, const D: usize>(integrator: &impl Integrator<T, D>) {
     let hypotheses: Vec<MadeUpWalk<T, D>> = drawn(300, 7);
     let dt = T::rounded(TIME_STEP);
-    // 40 steps: all walkers come to their goals, so no branch of a step is left out.
+    // 40 steps: all pedestrians come to their goals, so no branch of a step is left out.
     let mut positions = [SVector::<T, D>::zeros(); 41];
     let made = allocations(|| {
         for MadeUpWalk { flow, start } in &hypotheses {

@@ -76,7 +76,7 @@ fn score(criterion: &mut Criterion) {
     let windows = windows();
     let noisy = ConstantVelocity::angular_noise(1);
     let forecasts: Vec<Forecast> = noisy.forecast_all(&windows).expect("a forecast");
-    let mut group = criterion.benchmark_group("24,254 walkers");
+    let mut group = criterion.benchmark_group("24,254 pedestrians");
     group.sample_size(10);
     group.bench_function("every metric of 20 hypotheses", |b| {
         b.iter(|| Scores::evaluate(black_box(&windows), black_box(&forecasts)));
@@ -104,7 +104,7 @@ fn adapt(criterion: &mut Criterion) {
         })
         .collect();
     let (mut regions, mut at) = (AdaptiveRegions::default(), 0);
-    criterion.bench_function("regions of 25 walkers follow a frame", |b| {
+    criterion.bench_function("regions of 25 pedestrians follow a frame", |b| {
         let next = || {
             at = (at + 1) % FRAMES;
             (&windows[at], forecasts[at].clone())

@@ -1,7 +1,7 @@
-//! Goal error on validation walkers of the recordings, fold by fold: `cargo run --release --example goal_validation`.
+//! Goal error on validation pedestrians of the recordings, fold by fold: `cargo run --release --example goal_validation`.
 //!
 //! `DDL_DATASETS` names the folder of the recordings. The library holds the first 75 % (by time) of a fold's training
-//! recordings; validated on are the walkers of the last 25 % (`tails`), and of two recordings that no library holds and
+//! recordings; validated on are the pedestrians of the last 25 % (`tails`), and of two recordings that no library holds and
 //! no fold tests (`unseen`). An argument n takes every n-th of them only.
 #![expect(clippy::print_stdout, reason = "a program that prints a table")]
 
@@ -34,7 +34,7 @@ fn within(recording: &Recording, part: impl Fn(f64, f64) -> bool) -> Vec<Positio
 
 #[derive(Default)]
 struct Judged {
-    walkers: usize,
+    pedestrians: usize,
     seconds: f64,
     log_loss: f64,
 }
@@ -47,17 +47,17 @@ impl Judged {
     ) -> Result<f64, Box<dyn Error>> {
         let start = Instant::now();
         let mut sum = 0.0;
-        for walkers in recordings {
-            let observed: Vec<&[[f64; 2]]> = walkers.iter().map(|track| &track[..8]).collect();
+        for pedestrians in recordings {
+            let observed: Vec<&[[f64; 2]]> = pedestrians.iter().map(|track| &track[..8]).collect();
             let sets = estimator.estimate_batch(&observed)?;
-            for (goals, track) in sets.iter().zip(walkers) {
+            for (goals, track) in sets.iter().zip(pedestrians) {
                 // A goal of no weight would cost infinitely much.
                 let weight = goals.weights()[goals.nearest(track[19])].max(1e-4);
                 self.log_loss -= weight.ln();
                 sum += star_files::goal_error(goals, track)
-                    / (walkers.len() * recordings.len()) as f64;
+                    / (pedestrians.len() * recordings.len()) as f64;
             }
-            self.walkers += walkers.len();
+            self.pedestrians += pedestrians.len();
         }
         self.seconds += start.elapsed().as_secs_f64();
         Ok(sum)
@@ -100,8 +100,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             "mean    {unseen:.4}  {tails:.4}  {:.4}",
             f64::midpoint(unseen, tails)
         );
-        println!("{} walkers in {:.1} s", judged.walkers, judged.seconds);
-        let log_loss = judged.log_loss / judged.walkers as f64;
+        println!(
+            "{} pedestrians in {:.1} s",
+            judged.pedestrians, judged.seconds
+        );
+        let log_loss = judged.log_loss / judged.pedestrians as f64;
         println!("log loss {log_loss:.3}, uniform {:.3}\n", 20_f64.ln());
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! Goals from analogues: walkers who moved alike, each seen from its own heading, and how they went on.
+//! Goals from analogues: pedestrians who moved alike, each seen from its own heading, and how they went on.
 
 use crate::choice::choose;
 use crate::error::{GoalError, LibraryError, TrackError};
@@ -14,7 +14,7 @@ use crate::span::QuerySpan;
 const TEMPERATURE: f64 = 0.4;
 /// Squared difference of motions below which it is rounding.
 const ROUNDING: f64 = 1e-9;
-/// Steps of Lloyd's iteration. More of them fit the goals to these analogues, and not to the walker.
+/// Steps of Lloyd's iteration. More of them fit the goals to these analogues, and not to the pedestrian.
 const STEPS: usize = 3;
 const KEPT: usize = 100;
 

@@ -64,7 +64,7 @@ impl GoalSet {
         })
     }
 
-    /// The set of the [`central`](Self::central) goal alone, of weight 1; `observed` are the walker's positions (m), as there.
+    /// The set of the [`central`](Self::central) goal alone, of weight 1; `observed` are the pedestrian's positions (m), as there.
     #[must_use]
     pub fn only_central(&self, observed: &[[f64; 2]]) -> Self {
         let experts = self.experts().to_vec();

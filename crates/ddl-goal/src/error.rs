@@ -8,7 +8,7 @@ use thiserror::Error;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum ParamsError {
-    #[error("experts is 0: at least one similar walker must be retrieved (the paper uses 100)")]
+    #[error("experts is 0: at least one similar pedestrian must be retrieved (the paper uses 100)")]
     NoExperts,
     #[error("clusters is 0: at least one goal must be estimated (the paper uses 20)")]
     NoClusters,
@@ -45,7 +45,7 @@ pub enum TrackError {
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum LibraryError {
     #[error(
-        "the library has no tracks: give it complete tracks of walkers from the training scenes"
+        "the library has no tracks: give it complete tracks of pedestrians from the training scenes"
     )]
     Empty,
     #[error("the time step is {time_step} s: it must be finite and positive")]
@@ -76,7 +76,7 @@ pub enum GoalError {
     },
     #[error(transparent)]
     SoftDtw(#[from] SoftDtwError),
-    #[error("the search for similar walkers: {0}")]
+    #[error("the search for similar pedestrians: {0}")]
     Search(#[from] SearchError),
     #[error(
         "the clustering of the experts' endpoints: point {index} is ({x}, {y}): coordinates must be finite and below 1e150"

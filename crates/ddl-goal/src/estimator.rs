@@ -1,4 +1,4 @@
-//! The goal estimator: retrieve similar walkers, and place goals among where they ended.
+//! The goal estimator: retrieve similar pedestrians, and place goals among where they ended.
 
 use ddl_softdtw::{Cost, Neighbour, SearchIndex, SoftDtw};
 use rayon::prelude::*;
@@ -13,9 +13,9 @@ use crate::motion::Motion;
 use crate::params::{RetrievalFrame, ValidGoalEstimatorParams};
 use crate::span::{QuerySpan, velocities};
 
-/// Estimates where walkers are heading from how similar walkers of a library went on.
+/// Estimates where pedestrians are heading from how similar pedestrians of a library went on.
 ///
-/// In [`RetrievalFrame::Heading`], the default, every walker is described in its [`crate::HeadingFrame`] by its velocities,
+/// In [`RetrievalFrame::Heading`], the default, every pedestrian is described in its [`crate::HeadingFrame`] by its velocities,
 /// divided by its pace; the N tracks of the library, or mirror images of tracks, that moved most alike are the experts,
 /// weighted by likeness; and K goals are chosen among how their ends deviate from going straight on (`docs/goals.md`).
 ///
@@ -32,7 +32,7 @@ use crate::span::{QuerySpan, velocities};
 /// ```
 /// use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
 ///
-/// // Walkers of a training scene: 20 positions (m), 0.4 s apart, at 0.8 to 1.6 m/s.
+/// // Pedestrians of a training scene: 20 positions (m), 0.4 s apart, at 0.8 to 1.6 m/s.
 /// let walk = |speed: f64| (0..20).map(|t| [0.4 * speed * f64::from(t), 0.0]).collect();
 /// let tracks = (0..90).map(|i| walk(0.8 + 0.4 * f64::from(i % 3))).collect();
 /// let params = GoalEstimatorParams::default().experts(30).clusters(3).check()?;
@@ -97,7 +97,7 @@ impl GoalEstimator {
         &self.library
     }
 
-    /// The goals of one walker.
+    /// The goals of one pedestrian.
     ///
     /// # Shapes
     /// `track`: the observed positions (m), at least 8, at least 9 for [`crate::QuerySpan::PublishedFuture`]; later ones
@@ -126,7 +126,7 @@ impl GoalEstimator {
         }
     }
 
-    /// The goals of many walkers, in parallel over the current `rayon` pool.
+    /// The goals of many pedestrians, in parallel over the current `rayon` pool.
     ///
     /// # Shapes
     /// A set a track, in their order; tracks as [`GoalEstimator::estimate`] takes them (m).
@@ -150,10 +150,10 @@ impl GoalEstimator {
             .collect()
     }
 
-    /// The track of an expert carried over to the walker of `track`, as its end is for the goals: to be drawn, say.
+    /// The track of an expert carried over to the pedestrian of `track`, as its end is for the goals: to be drawn, say.
     ///
-    /// In [`RetrievalFrame::World`] it is moved to the walker's first position. In [`RetrievalFrame::Heading`] its deviation
-    /// from repeating the last observed step is added to the walker's own last step, repeated.
+    /// In [`RetrievalFrame::World`] it is moved to the pedestrian's first position. In [`RetrievalFrame::Heading`] its deviation
+    /// from repeating the last observed step is added to the pedestrian's own last step, repeated.
     ///
     /// # Shapes
     /// `track`: as for [`GoalEstimator::estimate`]; the result has [`TRACK_LENGTH`] positions (m).
@@ -178,14 +178,14 @@ impl GoalEstimator {
             let moved = |p: &[f64; 2]| [0, 1].map(|d| track[0][d] + p[d] - other[0][d]);
             return Ok(other.iter().map(moved).collect());
         }
-        let walker = Motion::new(track, library.time_step())?;
+        let pedestrian = Motion::new(track, library.time_step())?;
         let expert_motion = Motion::new(other, library.time_step())?;
         let mirror = if expert.mirrored { -1.0 } else { 1.0 };
         let horizon = (TRACK_LENGTH - observed) as f64;
         let carried = |(step, &position): (usize, &[f64; 2])| {
             let share = (step as f64 - (observed - 1) as f64) / horizon;
             let [ahead, left] = expert_motion.deviation(position, share);
-            walker.place([ahead, mirror * left], share)
+            pedestrian.place([ahead, mirror * left], share)
         };
         Ok(other.iter().enumerate().map(carried).collect())
     }

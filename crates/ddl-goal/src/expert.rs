@@ -1,15 +1,15 @@
-//! A walker of the library that a goal set comes from.
+//! A pedestrian of the library that a goal set comes from.
 
 use ddl_softdtw::Neighbour;
 
 use crate::motion_index::Alike;
 
-/// A walker of the library who moved like the observed one.
+/// A pedestrian of the library who moved like the observed one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expert {
     /// Position of its track in the library, from 0.
     pub index: usize,
-    /// Distance from the observed walker: normalised soft-DTW (m²/s²) in [`crate::RetrievalFrame::World`], a squared
+    /// Distance from the observed pedestrian: normalised soft-DTW (m²/s²) in [`crate::RetrievalFrame::World`], a squared
     /// difference of velocities over paces (no unit) in [`crate::RetrievalFrame::Heading`].
     pub distance: f64,
     /// Whether the mirror image of the track is meant.

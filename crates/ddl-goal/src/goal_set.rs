@@ -1,4 +1,4 @@
-//! The goals estimated for one walker.
+//! The goals estimated for one pedestrian.
 
 use crate::choice::choose;
 use crate::error::GoalError;
@@ -10,7 +10,7 @@ use crate::points::{Points, is_in_range, squared_distance};
 /// Steps of Lloyd's iteration of [`GoalSet::of_ends`].
 const STEPS: usize = 10;
 
-/// Possible goals of one walker with their weights, most likely first.
+/// Possible goals of one pedestrian with their weights, most likely first.
 ///
 /// Goals of equal weight are ordered by their first, then their second coordinate, so that equal inputs give equal bytes.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +46,7 @@ impl GoalSet {
     /// goal's weight is the sum of the weights of the ends nearest to it.
     ///
     /// # Shapes
-    /// `ends` (m, in the walker's `frame`) and `weights` (not negative, not all 0): as many of each, at least one. Fewer
+    /// `ends` (m, in the pedestrian's `frame`) and `weights` (not negative, not all 0): as many of each, at least one. Fewer
     /// distinct ends than goals: goals are repeated, with weight 0.
     ///
     /// # Errors
@@ -180,7 +180,7 @@ impl GoalSet {
             .map_or(0, |(index, _)| index)
     }
 
-    /// The walkers of the library the goals come from, most similar first; in [`crate::RetrievalFrame::Heading`] the
+    /// The pedestrians of the library the goals come from, most similar first; in [`crate::RetrievalFrame::Heading`] the
     /// first 100.
     pub fn experts(&self) -> &[Expert] {
         &self.experts

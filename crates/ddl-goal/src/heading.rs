@@ -1,4 +1,4 @@
-//! A walker's own coordinates: where it is and which way it is heading.
+//! A pedestrian's own coordinates: where it is and which way it is heading.
 
 use crate::error::TrackError;
 use crate::span::check_finite;
@@ -8,14 +8,14 @@ const SHORT_STEP: f64 = 0.2;
 /// Length (m) below which a motion is rounding and has no direction.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// Coordinates of one walker: the origin at its last observed position, the first axis along its heading, the second
+/// Coordinates of one pedestrian: the origin at its last observed position, the first axis along its heading, the second
 /// axis to the left of it.
 ///
 /// With s the last step and l the way from the first to the last observed position, the heading is the direction of
 ///
 /// h = s + max(0, 1 − |s| / 0.2 m) l.
 ///
-/// So a walker heads where its last step led, and the shorter that step, the more the whole observation counts. Whoever
+/// So a pedestrian heads where its last step led, and the shorter that step, the more the whole observation counts. Whoever
 /// has
 /// |h| below 1 µm stands, and keeps the axes of the world. Turning or moving the scene turns or moves the frame with it;
 /// mirroring it changes the sign of the second coordinate.
@@ -37,7 +37,7 @@ pub struct HeadingFrame {
 }
 
 impl HeadingFrame {
-    /// The frame of a walker.
+    /// The frame of a pedestrian.
     ///
     /// # Shapes
     /// `observed`: at least 2 positions (m), all of them read: hand over no position of the future.

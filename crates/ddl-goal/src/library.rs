@@ -1,4 +1,4 @@
-//! The walkers whose whole track is known.
+//! The pedestrians whose whole track is known.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use crate::span::check_finite;
 /// Positions of a complete track: 8 observed and 12 to forecast.
 pub const TRACK_LENGTH: usize = 20;
 
-/// Complete tracks of walkers from the training scenes, the experts of which the most similar ones are retrieved.
+/// Complete tracks of pedestrians from the training scenes, the experts of which the most similar ones are retrieved.
 ///
 /// # Examples
 /// ```
@@ -99,7 +99,7 @@ impl ExpertLibrary {
         self.time_step
     }
 
-    /// Where walker `index` ended, relative to where it was first seen (m): equation 6 of the paper.
+    /// Where pedestrian `index` ended, relative to where it was first seen (m): equation 6 of the paper.
     ///
     /// # Panics
     /// When `index` is not below [`ExpertLibrary::len`].

@@ -1,4 +1,4 @@
-//! How a walker moved, in its own frame and compared with its own pace.
+//! How a pedestrian moved, in its own frame and compared with its own pace.
 
 use crate::error::TrackError;
 use crate::heading::HeadingFrame;
@@ -12,7 +12,7 @@ pub(crate) const SIGNED: usize = STEPS + 2;
 const STEPS: usize = 7;
 /// Weight of a squared difference against that of the next later step.
 const FADING: f64 = 0.5;
-/// Pace of somebody who stands (m/s): keeps the noise of standing walkers from counting as motion.
+/// Pace of somebody who stands (m/s): keeps the noise of standing pedestrians from counting as motion.
 const STANDING_PACE: f64 = 0.25;
 
 const DIRECTION: f64 = 0.2;
@@ -24,7 +24,7 @@ pub(crate) struct Motion {
     pub(crate) frame: HeadingFrame,
     /// Velocities in the frame, divided by the pace, earlier ones scaled down; and the direction in the world.
     pub(crate) components: [f32; COMPONENTS],
-    /// Where the walker would end (m, in the frame) if it repeated its last step.
+    /// Where the pedestrian would end (m, in the frame) if it repeated its last step.
     pub(crate) straight_on: [f64; 2],
 }
 

@@ -1,4 +1,4 @@
-//! The tracks of a library that moved most like a walker, their mirror images among them.
+//! The tracks of a library that moved most like a pedestrian, their mirror images among them.
 
 #![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
 

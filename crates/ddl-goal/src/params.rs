@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 use crate::error::ParamsError;
 use crate::span::QuerySpan;
 
-/// In which coordinates walkers are compared and their ends are carried over.
+/// In which coordinates pedestrians are compared and their ends are carried over.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RetrievalFrame {
-    /// The coordinates of the recording: a walker is like another only if both head the same way. What the published
+    /// The coordinates of the recording: a pedestrian is like another only if both head the same way. What the published
     /// estimator does, with soft-DTW and k-means.
     World,
-    /// The walker's own [`crate::HeadingFrame`], in which every track of the library also serves as its mirror image.
+    /// The pedestrian's own [`crate::HeadingFrame`], in which every track of the library also serves as its mirror image.
     #[default]
     Heading,
 }
@@ -21,8 +21,8 @@ pub enum RetrievalFrame {
 ///
 /// | parameter | default | published | |
 /// |---|---|---|---|
-/// | `frame` | [`RetrievalFrame::Heading`] | [`RetrievalFrame::World`] | in which coordinates walkers are compared |
-/// | `experts` | 800 | 100 | similar walkers retrieved, N of the paper |
+/// | `frame` | [`RetrievalFrame::Heading`] | [`RetrievalFrame::World`] | in which coordinates pedestrians are compared |
+/// | `experts` | 800 | 100 | similar pedestrians retrieved, N of the paper |
 /// | `clusters` | 20 | 20 | goals, K of the paper |
 /// | `query` | [`QuerySpan::Observed`] | [`QuerySpan::PublishedFuture`] | what the retrieval may look at |
 /// | `gamma` | 1 | 1 | smoothing of soft-DTW (m²/s²), in the frame `World` only |
@@ -42,9 +42,9 @@ pub enum RetrievalFrame {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GoalEstimatorParams {
-    /// In which coordinates walkers are compared.
+    /// In which coordinates pedestrians are compared.
     pub frame: RetrievalFrame,
-    /// Number of similar walkers to retrieve.
+    /// Number of similar pedestrians to retrieve.
     pub experts: usize,
     /// Number of goals.
     pub clusters: usize,

@@ -18,7 +18,7 @@ const COMPONENTS: usize = 2 + VELOCITIES;
 const VELOCITY_SCALES: [f64; 2] = [0.4, 0.6];
 /// Squared distance of two stretches that say much the same: those of two who walk 1 m apart.
 const ALIKE: f32 = 1.0;
-/// Present positions of a piece are so near to the first (m) that an `f32` tells micrometres; a walker gets 6 m far.
+/// Present positions of a piece are so near to the first (m) that an `f32` tells micrometres; a pedestrian gets 6 m far.
 const REACH: f64 = 30.0;
 
 /// A pedestrian's motion over 8 positions: where now (m), late and early velocity in units of their scales.

@@ -226,7 +226,7 @@ pub(crate) fn evaluate_model(
         protocols: protocols.collect::<PyResult<_>>()?,
         on: EvaluationSplit::Test,
         validation_recordings: Vec::new(),
-        test_walkers: None,
+        test_pedestrians: None,
         commit: String::new(),
     };
     let model = Arc::clone(&model.0);
@@ -235,7 +235,7 @@ pub(crate) fn evaluate_model(
         let dataset = dataset(model.config().data.convention, folder)?;
         ddl::evaluate(&model, &dataset, &request, |now| {
             // Sending fails when the call was interrupted and the receiver was dropped.
-            let told = sender.send(now.walkers);
+            let told = sender.send(now.pedestrians);
             if told.is_err() || stop.is_asked() {
                 ControlFlow::Break(())
             } else {

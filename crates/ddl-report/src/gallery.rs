@@ -71,7 +71,7 @@ pub struct Pick {
     /// What it shows.
     pub show: Show,
     /// Indices of the pedestrians it is about, in the order of the moment.
-    #[serde(rename = "walkers")]
+    #[serde(rename = "pedestrians")]
     pub pedestrians: Vec<usize>,
     /// By which rule it was picked, in words, with its numbers.
     pub rule: String,
@@ -159,9 +159,9 @@ fn median(show: Show, mut cases: Vec<GalleryCase>) -> (usize, Pick) {
     });
     let case = cases.swap_remove((count - 1) / 2);
     let rule = match count {
-        1 => format!("the only such walker (minADE {:.2} m)", case.min_ade),
+        1 => format!("the only such pedestrian (minADE {:.2} m)", case.min_ade),
         _ => format!(
-            "of {count} such walkers the one of median minADE ({:.2} m)",
+            "of {count} such pedestrians the one of median minADE ({:.2} m)",
             case.min_ade
         ),
     };

@@ -30,7 +30,7 @@ pub struct Moment {
     /// Raw frames a step of 0.4 s.
     pub frame_step: i64,
     /// Everybody in the window.
-    #[serde(rename = "walkers")]
+    #[serde(rename = "pedestrians")]
     pub pedestrians: Vec<MomentPedestrian>,
     /// What the moment was chosen to show; empty when it was chosen for its place in time alone.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

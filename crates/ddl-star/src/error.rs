@@ -37,7 +37,7 @@ pub enum StarError {
     /// The loss of the proposal network or its gradient is no longer a number.
     #[error(
         "step {step} of the proposal network: the {quantity} is {value}; the last good checkpoint is \
-         kept; lower the learning rate or look at the walkers of that batch (the first is number \
+         kept; lower the learning rate or look at the pedestrians of that batch (the first is number \
          {example} of the {}examples, counted from 0)",
         if *reversed { "reversed " } else { "" }
     )]

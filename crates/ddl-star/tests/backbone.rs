@@ -113,8 +113,8 @@ fn forecasts(network: &dyn ForecastWindows) -> Result<Vec<WindowRollout>, Networ
 fn a_third_backbone_is_trained_and_forecasts_without_libtorch() {
     let training = TrainingConfig {
         epochs: 25,
-        batch_walkers: 40,
-        walkers_per_epoch: None,
+        batch_pedestrians: 40,
+        pedestrians_per_epoch: None,
         seed: 7,
         jitter: 0.0,
         ..TrainingConfig::recommended(Variant::Full)

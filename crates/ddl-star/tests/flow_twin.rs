@@ -99,8 +99,8 @@ fn place() -> impl Strategy<Value = [f64; 2]> {
     ]
 }
 
-/// A goal, and a walker anywhere, at the goal, or that close to it in any direction.
-fn goal_and_walker() -> impl Strategy<Value = ([f64; 2], [f64; 2])> {
+/// A goal, and a pedestrian anywhere, at the goal, or that close to it in any direction.
+fn goal_and_pedestrian() -> impl Strategy<Value = ([f64; 2], [f64; 2])> {
     let distance = prop::sample::select(vec![None, Some(0.0), Some(1e-12), Some(1e-6)]);
     (place(), place(), distance, 0.0..std::f64::consts::TAU).prop_map(
         |(goal, anywhere, distance, direction): (_, _, Option<f64>, f64)| {
@@ -115,20 +115,20 @@ fn goal_and_walker() -> impl Strategy<Value = ([f64; 2], [f64; 2])> {
     )
 }
 
-/// Walkers side by side, each rolled out for 12 steps: the derivatives of a loss over all positions, by
+/// Pedestrians side by side, each rolled out for 12 steps: the derivatives of a loss over all positions, by
 /// the starts `[P, 2]` and the factors `[12, P, 3]`.
 fn gradients_of_a_chain(
-    walkers: &[([f64; 2], [f64; 2])],
+    pedestrians: &[([f64; 2], [f64; 2])],
     factors: &[f64],
     bounds: Option<Bounds>,
     kind: Kind,
 ) -> [Tensor; 2] {
-    let count = walkers.len() as i64;
+    let count = pedestrians.len() as i64;
     let leaf = |numbers: &[f64], shape: &[i64]| {
         let tensor = Tensor::from_slice(numbers).reshape(shape);
         tensor.to_kind(kind).set_requires_grad(true)
     };
-    let (goals, starts): (Vec<[f64; 2]>, Vec<[f64; 2]>) = walkers.iter().copied().unzip();
+    let (goals, starts): (Vec<[f64; 2]>, Vec<[f64; 2]>) = pedestrians.iter().copied().unzip();
     let starts = leaf(starts.as_flattened(), &[count, 2]);
     let factors = leaf(factors, &[HORIZON, count, 3]);
     let goals = Tensor::from_slice(goals.as_flattened())
@@ -157,7 +157,7 @@ proptest! {
 
     #[test]
     fn the_twin_steps_as_the_crate_does(
-        (goal, p) in goal_and_walker(),
+        (goal, p) in goal_and_pedestrian(),
         factor in prop::array::uniform3(-3.0..3.0),
         dt in 1e-3..10.0f64,
         bounds in bounds(0.4),
@@ -178,13 +178,13 @@ proptest! {
     /// Stable steps arrive, and then every further step is taken at the goal.
     #[test]
     fn no_gradient_through_twelve_steps_is_nan(
-        walkers in prop::collection::vec(goal_and_walker(), SIDE_BY_SIDE),
+        pedestrians in prop::collection::vec(goal_and_pedestrian(), SIDE_BY_SIDE),
         factors in prop::collection::vec(-3.0..3.0f64, 3 * HORIZON as usize * SIDE_BY_SIDE),
         (bounds, _) in bounds(0.4),
     ) {
         for bounds in [None, Some(bounds)] {
             for kind in [Kind::Double, Kind::Float] {
-                for gradient in gradients_of_a_chain(&walkers, &factors, bounds, kind) {
+                for gradient in gradients_of_a_chain(&pedestrians, &factors, bounds, kind) {
                     prop_assert!(are_numbers(&gradient), "{bounds:?}, {kind:?}: {gradient}");
                 }
             }

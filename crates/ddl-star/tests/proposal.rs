@@ -63,7 +63,7 @@ fn earlier(angle: f64) -> Remembered {
     }
 }
 
-/// Walkers who go on straight or turn left or right by 60 degrees, a third each.
+/// Pedestrians who go on straight or turn left or right by 60 degrees, a third each.
 fn examples() -> Vec<ProposalExample> {
     (0..90)
         .map(|i| {
@@ -121,7 +121,7 @@ fn trained(steps: u64) -> TorchProposals {
 }
 
 #[test]
-fn it_learns_where_walkers_go_on_a_fork() {
+fn it_learns_where_pedestrians_go_on_a_fork() {
     let before = oracle(&network(), &examples());
     let after = trained(250);
     let error = oracle(&after, &examples());

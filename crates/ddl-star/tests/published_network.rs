@@ -37,7 +37,7 @@ impl Reference {
 
     fn windows(&self) -> Vec<Window> {
         let positions = self.numbers("/positions");
-        let walkers = positions.len() / 40;
+        let pedestrians = positions.len() / 40;
         let mut first = 0;
         self.numbers("/scene_sizes")
             .into_iter()
@@ -47,7 +47,7 @@ impl Reference {
                 let track = |i: usize| -> Vec<[f64; 2]> {
                     (0..20)
                         .map(|t| {
-                            let at = 2 * (t * walkers + i);
+                            let at = 2 * (t * pedestrians + i);
                             [positions[at], positions[at + 1]]
                         })
                         .collect()
@@ -123,12 +123,12 @@ fn agrees(kind: Kind, tolerance: f64) {
     let reference = Reference::load();
     let network = reference.network(kind);
     let batch = reference.batch(kind);
-    let walkers = batch.walkers() as i64;
+    let pedestrians = batch.pedestrians() as i64;
     let noise = NoiseInput::Draws(reference.tensor("/noise", &[1, 16], kind));
 
-    let goal = reference.tensor("/true_goal", &[walkers, 2], kind);
+    let goal = reference.tensor("/true_goal", &[pedestrians, 2], kind);
     let forecast = network.teacher_forced(&batch, &goal, &noise, Mode::Evaluate);
-    let expected = reference.tensor("/train_forward/positions", &[19, walkers, 2], kind);
+    let expected = reference.tensor("/train_forward/positions", &[19, pedestrians, 2], kind);
     let difference = largest_difference(&forecast, &expected);
     assert!(
         difference < tolerance,
@@ -151,13 +151,13 @@ fn agrees(kind: Kind, tolerance: f64) {
         );
     }
 
-    let goal = reference.tensor("/estimated_goal", &[1, walkers, 2], kind);
+    let goal = reference.tensor("/estimated_goal", &[1, pedestrians, 2], kind);
     let _guard = tch::no_grad_guard();
     let rolled = network
         .roll_out(&batch, &goal, &noise, 12, StepRule::Euler)
         .positions
         .squeeze_dim(1);
-    let expected = reference.tensor("/test_forward/positions", &[19, walkers, 2], kind);
+    let expected = reference.tensor("/test_forward/positions", &[19, pedestrians, 2], kind);
     let difference = largest_difference(&rolled, &expected.narrow(0, 7, 12));
     assert!(
         difference < tolerance,

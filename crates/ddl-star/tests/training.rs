@@ -31,7 +31,7 @@ fn trainer(variant: Variant, epochs: usize) -> Trainer {
     let network = TorchNetwork::new(config(variant), 7, cpu()).unwrap();
     let training = TrainingConfig {
         epochs,
-        batch_walkers: 40,
+        batch_pedestrians: 40,
         learning_rate_schedule: LearningRateSchedule::Cosine,
         seed: 7,
         ..TrainingConfig::published()
@@ -59,16 +59,16 @@ fn every_variant_learns() {
     }
 }
 
-/// Walks to goals that are not the true ends, backwards and forwards, in the walkers' own frames.
-fn walker(epochs: usize, jitter: f64) -> Trainer {
+/// Walks to goals that are not the true ends, backwards and forwards, in the pedestrians' own frames.
+fn pedestrian(epochs: usize, jitter: f64) -> Trainer {
     let config = StarConfig {
         feed_forward_width: 64,
         ..StarConfig::recommended(Variant::Full)
     };
     let training = TrainingConfig {
         epochs,
-        batch_walkers: 40,
-        walkers_per_epoch: None,
+        batch_pedestrians: 40,
+        pedestrians_per_epoch: None,
         seed: 7,
         jitter,
         ..TrainingConfig::recommended(Variant::Full)
@@ -90,8 +90,8 @@ fn walker(epochs: usize, jitter: f64) -> Trainer {
 
 #[test]
 fn walks_to_goals_are_learned() {
-    // from exact positions: what jitter adds to the loss of so few walkers is not to be learned
-    let losses = losses(walker(30, 0.0));
+    // from exact positions: what jitter adds to the loss of so few pedestrians is not to be learned
+    let losses = losses(pedestrian(30, 0.0));
     // It begins at the neutral motion, ends 0.36 m off, where it is led, and can keep to the true path on the way there only in part: a third
     // of the error is learned away.
     let last = losses[29];
@@ -140,7 +140,7 @@ fn a_run_stopped_anywhere_and_resumed_gives_the_same_weights() {
     for stop in [1, total / 2 + 1, total - 1] {
         assert_eq!(resumed(single_steps, stop), expected, "stopped at {stop}");
     }
-    let walks = || walker(2, 0.06);
+    let walks = || pedestrian(2, 0.06);
     let (_, total) = walks().steps();
     assert_eq!(resumed(walks, total / 2), whole(walks()));
 }

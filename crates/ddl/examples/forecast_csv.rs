@@ -78,7 +78,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     match certified.first_violation() {
         None => println!("all {} certificates hold", certified.certificates.len()),
-        Some((i, k, violation)) => println!("hypothesis {k} of walker {i}: {violation}"),
+        Some((i, k, violation)) => println!("hypothesis {k} of pedestrian {i}: {violation}"),
     }
     Ok(())
 }

@@ -1,5 +1,5 @@
 //! Plays recorded tracks as if they were seen now: `live RUN TRACKS.csv [FRAME_STEP]` pushes one frame after the other, and prints
-//! where each walker is forecast to be in 4.8 s, with the evidence that the forecast goes to its goal, and how long it took.
+//! where each pedestrian is forecast to be in 4.8 s, with the evidence that the forecast goes to its goal, and how long it took.
 
 use ddl::data::{Format, HORIZON, read_recording};
 use ddl::{Ddl, DeviceChoice, LiveForecaster};

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use ddl_data::{PedestrianId, Window};
 use ddl_eval::external::{self, Coverage, ExternalFormat};
 
-/// Two windows of one recording: walker 7 alone, then walkers 7 and 8.
+/// Two windows of one recording: pedestrian 7 alone, then pedestrians 7 and 8.
 fn windows() -> &'static [Window] {
     static WINDOWS: OnceLock<[Window; 2]> = OnceLock::new();
     let walk = |from: i32, y: f64| (from..from + 20).map(|t| [0.5 * f64::from(t), y]).collect();
@@ -34,7 +34,7 @@ pub fn read_trajnet(bytes: &[u8]) {
     check(bytes, ExternalFormat::TrajNet);
 }
 
-/// The first byte says whether part of the walkers will do; the others are the file. What is read, written as JSON lines, reads the
+/// The first byte says whether part of the pedestrians will do; the others are the file. What is read, written as JSON lines, reads the
 /// same.
 fn check(bytes: &[u8], format: ExternalFormat) {
     let Some((&part, file)) = bytes.split_first() else {

@@ -2,7 +2,7 @@
 
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
 
-/// Reads bytes as a library, and as parameters with which goals of a library of one walker are estimated.
+/// Reads bytes as a library, and as parameters with which goals of a library of one pedestrian are estimated.
 pub fn read(bytes: &[u8]) {
     if let Ok(library) = serde_json::from_slice::<ExpertLibrary>(bytes) {
         let text = serde_json::to_string(&library).expect("what was read can be written");

@@ -22,9 +22,9 @@ pub(crate) struct Baselines {
     /// published, fair or single; may be repeated
     #[arg(long = "protocol", default_values = ["fair", "single"])]
     protocols: Vec<Protocol>,
-    /// Measure a seeded part of the test windows with about so many walkers a fold by the widest window rule [default: all]
+    /// Measure a seeded part of the test windows with about so many pedestrians a fold by the widest window rule [default: all]
     #[arg(long, value_parser = at_least_one)]
-    test_walkers: Option<usize>,
+    test_pedestrians: Option<usize>,
     /// Folder to write the report to: report.html to look at, report.md, report.tex, report.json and figures [default: only print]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -41,7 +41,7 @@ impl Baselines {
         } else {
             self.folds
         };
-        let part = (self.protocols.as_slice(), self.test_walkers);
+        let part = (self.protocols.as_slice(), self.test_pedestrians);
         let report = measure(&dataset, &folds, part, &self.reporting.commit)?;
         let rest = match &self.out {
             Some(folder) => {
@@ -57,10 +57,10 @@ impl Baselines {
 pub(super) fn measure(
     dataset: &Dataset,
     folds: &[String],
-    (protocols, walkers): (&[Protocol], Option<usize>),
+    (protocols, pedestrians): (&[Protocol], Option<usize>),
     commit: &str,
 ) -> anyhow::Result<Report> {
-    let rows = ddl::measure_baselines(dataset, folds, protocols, walkers, commit)?;
+    let rows = ddl::measure_baselines(dataset, folds, protocols, pedestrians, commit)?;
     let title = format!("Baselines: {}", dataset.convention());
     Ok(Report::new(title, rows)?)
 }

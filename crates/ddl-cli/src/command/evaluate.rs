@@ -43,9 +43,9 @@ pub(crate) struct Evaluate {
     /// Own recordings that are the validation part whole, such as `lobby,yard`
     #[arg(long, value_delimiter = ',', requires = "validation")]
     validation_recordings: Vec<String>,
-    /// Measure a seeded part of the test windows with about so many walkers by the widest window rule [default: all]
+    /// Measure a seeded part of the test windows with about so many pedestrians by the widest window rule [default: all]
     #[arg(long, value_parser = at_least_one, conflicts_with = "forecasts")]
-    test_walkers: Option<usize>,
+    test_pedestrians: Option<usize>,
     #[command(flatten)]
     clear: KeepClear,
     #[command(flatten)]
@@ -98,7 +98,7 @@ impl Evaluate {
                 EvaluationSplit::Test
             },
             validation_recordings: self.validation_recordings.clone(),
-            test_walkers: self.test_walkers,
+            test_pedestrians: self.test_pedestrians,
             commit: self.reporting.commit.clone(),
         };
         let trained_on = model.config().data.convention;
@@ -131,7 +131,7 @@ impl Evaluate {
         }
         let progress = Progress::new("evaluate", self.reporting.telling.progress);
         let evaluation = ddl::evaluate(&model, &dataset, &request, |now| {
-            let (done, total) = now.walkers;
+            let (done, total) = now.pedestrians;
             progress.tell(done as u64, total as u64, now.protocol.name());
             interrupt.flow()
         })?;

@@ -49,7 +49,7 @@ pub(crate) struct Forecast {
     /// Attach to every hypothesis the evidence that it comes nearer to its goal at every step
     ///
     /// A certificate holds when the distance to the goal falls at every one of the 12 steps, along a
-    /// flow that descends everywhere, and a walker at its goal stays. It speaks of the very positions
+    /// flow that descends everywhere, and a pedestrian at its goal stays. It speaks of the very positions
     /// in JSON lines, which csv has to 0.1 mm. csv: two columns, the distance to the goal at that frame (metres) and the verdict;
     /// jsonl: the verdict and its evidence, step by step. It says that the forecast is stable, not
     /// that people will do as forecast. The variants star and no-dynamics have no certificates (with --one, star alone).

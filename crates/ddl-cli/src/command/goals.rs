@@ -35,7 +35,7 @@ pub(crate) struct Goals {
     data: Option<PathBuf>,
     #[command(flatten)]
     telling: Telling,
-    /// Also draw walkers with typical errors, one of each kind of motion, as an SVG
+    /// Also draw pedestrians with typical errors, one of each kind of motion, as an SVG
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
     /// File to write [default: standard output]
@@ -173,7 +173,7 @@ fn words(evaluation: &GoalEvaluation) -> String {
     for (name, errors) in by_recording.chain([all]) {
         lines.push(format!(
             "{name:14} {:>18}  {:>20.3}  {:>14.3}",
-            errors.walkers, errors.oracle_fde, errors.likeliest_fde
+            errors.pedestrians, errors.oracle_fde, errors.likeliest_fde
         ));
     }
     if let Some(calibration) = &evaluation.calibration {

@@ -79,7 +79,7 @@ fn summary(goals: &GoalModel, trained: &str) -> String {
         "{}: variant {}, {trained} on {} walks of 20 steps (convention {}{left_out}); goals {}",
         goals.source(),
         config.star.variant,
-        data.walkers,
+        data.pedestrians,
         data.convention,
         goals.words()
     )

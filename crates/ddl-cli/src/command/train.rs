@@ -55,10 +55,10 @@ pub(crate) struct Train {
     #[arg(long)]
     backbone: Option<BackboneKind>,
     /// Width of the hidden layer of each feed-forward block; narrower ones forecast faster
-    /// (docs/performance.md) [default: 128, published 2048]
+    /// (docs/performance.md) [default: 32, published 2048]
     #[arg(long)]
     feed_forward_width: Option<i64>,
-    /// Encoder layers of each of the two spatial encoders [default: 2]
+    /// Encoder layers of each of the two spatial encoders [default: 1, published 2]
     #[arg(long, value_name = "LAYERS")]
     spatial_layers: Option<usize>,
     /// Model to begin with, instead of random weights: a built-in one, such as hotel, a packed file or the directory of a run, of the same sizes; none for
@@ -72,12 +72,12 @@ pub(crate) struct Train {
     /// Epochs [default: 20, published 200, with --from 5]
     #[arg(long)]
     epochs: Option<usize>,
-    /// Walkers an epoch, going round the training set [default: 5000, published all]
-    #[arg(long = "train-walkers")]
-    walkers_per_epoch: Option<usize>,
-    /// Walkers a batch [default: 64, published 256]
+    /// Pedestrians an epoch, going round the training set [default: 5000, published all]
+    #[arg(long = "train-pedestrians")]
+    pedestrians_per_epoch: Option<usize>,
+    /// Pedestrians a batch [default: 64, published 256]
     #[arg(long)]
-    batch_walkers: Option<usize>,
+    batch_pedestrians: Option<usize>,
     /// Largest step size of Adam [default: 1e-3, published 1.5e-3, with --from 1e-4]
     #[arg(long)]
     learning_rate: Option<f64>,
@@ -295,14 +295,14 @@ impl Train {
         set(&mut star.feed_forward_width, self.feed_forward_width);
         set(&mut star.spatial_layers, self.spatial_layers);
         set(&mut training.epochs, self.epochs);
-        set(&mut training.batch_walkers, self.batch_walkers);
+        set(&mut training.batch_pedestrians, self.batch_pedestrians);
         set(&mut training.learning_rate, self.learning_rate);
         set(
             &mut training.learning_rate_schedule,
             self.learning_rate_schedule,
         );
-        if self.walkers_per_epoch.is_some() {
-            training.walkers_per_epoch = self.walkers_per_epoch;
+        if self.pedestrians_per_epoch.is_some() {
+            training.pedestrians_per_epoch = self.pedestrians_per_epoch;
         }
         training.seed = self.seed;
         (star, training)

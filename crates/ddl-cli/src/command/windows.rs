@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 /// Write test windows for another program to forecast
 ///
-/// What is observed in those of a fold, as JSON lines: an object for each walker of each window: recording, `observed_until` (the last observed raw frame),
+/// What is observed in those of a fold, as JSON lines: an object for each pedestrian of each window: recording, `observed_until` (the last observed raw frame),
 /// pedestrian, and the 8 observed positions in metres, 0.4 s apart. Nothing of the future is in them. `ddl evaluate
 /// --forecasts` scores what the other program makes of them.
 #[derive(Debug, Args)]

@@ -5,9 +5,9 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::force::{self, BODY, WalkingMotion};
 use super::layout::{Leg, SceneLayout};
+use super::pedestrian::{ARRIVED, DT, SUBSTEPS, SimulatedPedestrian};
 use super::population::{self, Party};
 use super::vector::{add, norm, scale, sub, unit};
-use super::walker::{ARRIVED, DT, SUBSTEPS, SimulatedPedestrian};
 use crate::{Observation, PedestrianId, Position, TIME_STEP};
 
 /// Raw frames in one step of 0.4 s, as in most real recordings.
@@ -16,7 +16,7 @@ pub(super) const FRAME_STEP: i64 = 10;
 const WARM_UP: f64 = 20.0;
 /// Nobody gets faster than this multiple of the desired speed.
 const TOP_SPEED: f64 = 1.3;
-/// Random restlessness of a walker (m/s per square root of a second).
+/// Random restlessness of a pedestrian (m/s per square root of a second).
 const RESTLESSNESS: f64 = 0.12;
 /// An entry is free when nobody is within this distance (m).
 const ENTRY_CLEARANCE: f64 = 0.7;
@@ -35,7 +35,7 @@ pub(super) fn run(layout: &SceneLayout, steps: i64, rng: &mut ChaCha8Rng) -> Tra
         layout,
         parties,
         waiting: Vec::new(),
-        walkers: Vec::new(),
+        pedestrians: Vec::new(),
         next: 0,
         last_id: 0,
     };
@@ -50,7 +50,7 @@ pub(super) fn run(layout: &SceneLayout, steps: i64, rng: &mut ChaCha8Rng) -> Tra
         let recorded = tick - warm_up;
         if recorded >= 0 && recorded % SUBSTEPS == 0 {
             let frame = recorded / SUBSTEPS * FRAME_STEP;
-            let seen = engine.walkers.iter();
+            let seen = engine.pedestrians.iter();
             trace
                 .observations
                 .extend(seen.map(|w| Observation::new(frame, w.id, w.motion.position)));
@@ -64,7 +64,7 @@ struct Engine<'a> {
     parties: Vec<Party>,
     /// Parties whose time has come, by index, that found their entry taken.
     waiting: Vec<usize>,
-    walkers: Vec<SimulatedPedestrian>,
+    pedestrians: Vec<SimulatedPedestrian>,
     next: usize,
     last_id: i64,
 }
@@ -80,7 +80,7 @@ impl Engine<'_> {
             self.next += 1;
         }
         for index in std::mem::take(&mut self.waiting) {
-            let taken: Vec<_> = self.walkers.iter().map(|w| w.motion.position).collect();
+            let taken: Vec<_> = self.pedestrians.iter().map(|w| w.motion.position).collect();
             let members = &self.parties[index].members;
             if members
                 .iter()
@@ -103,7 +103,7 @@ impl Engine<'_> {
             self.last_id += 1;
             let id = PedestrianId(self.last_id);
             let heading = unit(sub(member.targets[0], member.entry));
-            self.walkers.push(SimulatedPedestrian {
+            self.pedestrians.push(SimulatedPedestrian {
                 id,
                 party: index,
                 motion: WalkingMotion {
@@ -121,9 +121,9 @@ impl Engine<'_> {
     }
 
     fn step(&mut self, rng: &mut ChaCha8Rng) {
-        let before: Vec<WalkingMotion> = self.walkers.iter().map(|w| w.motion).collect();
-        for index in 0..self.walkers.len() {
-            let speed = self.parties[self.walkers[index].party].speed;
+        let before: Vec<WalkingMotion> = self.pedestrians.iter().map(|w| w.motion).collect();
+        for index in 0..self.pedestrians.len() {
+            let speed = self.parties[self.pedestrians[index].party].speed;
             let acceleration = self.acceleration(index, &before);
             let velocity = add(before[index].velocity, scale(acceleration, DT));
             let liveliness = (0.2 + norm(velocity) / speed).min(1.0) * RESTLESSNESS * DT.sqrt();
@@ -135,41 +135,42 @@ impl Engine<'_> {
             } else {
                 velocity
             };
-            self.walkers[index].motion.velocity = velocity;
-            self.walkers[index].motion.position = add(before[index].position, scale(velocity, DT));
+            self.pedestrians[index].motion.velocity = velocity;
+            self.pedestrians[index].motion.position =
+                add(before[index].position, scale(velocity, DT));
         }
         self.separate_bodies();
-        for (walker, before) in self.walkers.iter_mut().zip(&before) {
-            walker.motion.position = outside_obstacles(self.layout, walker.motion.position);
+        for (pedestrian, before) in self.pedestrians.iter_mut().zip(&before) {
+            pedestrian.motion.position = outside_obstacles(self.layout, pedestrian.motion.position);
             // What bodies and walls took away from a step is not in the velocity either.
-            let moved = scale(sub(walker.motion.position, before.position), 1.0 / DT);
-            if norm(moved) < norm(walker.motion.velocity) {
-                walker.motion.velocity = moved;
+            let moved = scale(sub(pedestrian.motion.position, before.position), 1.0 / DT);
+            if norm(moved) < norm(pedestrian.motion.velocity) {
+                pedestrian.motion.velocity = moved;
             }
         }
         let Self {
             layout,
             parties,
-            walkers,
+            pedestrians,
             ..
         } = self;
-        walkers.retain_mut(|walker| {
-            let legs = &layout.routes[parties[walker.party].route].legs;
-            walker.advance(legs);
-            walker.leg < legs.len()
+        pedestrians.retain_mut(|pedestrian| {
+            let legs = &layout.routes[parties[pedestrian.party].route].legs;
+            pedestrian.advance(legs);
+            pedestrian.leg < legs.len()
         });
     }
 
     fn acceleration(&self, index: usize, before: &[WalkingMotion]) -> Position {
-        let (walker, me) = (&self.walkers[index], before[index]);
+        let (pedestrian, me) = (&self.pedestrians[index], before[index]);
         let mut companions = 0;
         let mut centre = me.position;
         let mut total = [0.0, 0.0];
-        for (other, &motion) in self.walkers.iter().zip(before) {
-            if other.id == walker.id {
+        for (other, &motion) in self.pedestrians.iter().zip(before) {
+            if other.id == pedestrian.id {
                 continue;
             }
-            if other.party == walker.party {
+            if other.party == pedestrian.party {
                 companions += 1;
                 centre = add(centre, motion.position);
                 total = add(total, force::companion(me, motion));
@@ -179,15 +180,16 @@ impl Engine<'_> {
         }
         let size = companions + 1;
         centre = scale(centre, 1.0 / f64::from(size));
-        let party = &self.parties[walker.party];
+        let party = &self.parties[pedestrian.party];
         let legs = &self.layout.routes[party.route].legs;
-        let standing = matches!(legs[walker.leg], Leg::Stand(_)) && walker.is_within(ARRIVED);
+        let standing =
+            matches!(legs[pedestrian.leg], Leg::Stand(_)) && pedestrian.is_within(ARRIVED);
         if size > 1 && !standing {
             total = add(total, force::cohesion(me, centre, party.members.len()));
         }
         total = add(
             total,
-            force::driving(me, walker.desired(legs, party.speed, centre)),
+            force::driving(me, pedestrian.desired(legs, party.speed, centre)),
         );
         for wall in &self.layout.walls {
             total = add(total, force::wall(me, wall));
@@ -199,8 +201,8 @@ impl Engine<'_> {
     }
 
     fn separate_bodies(&mut self) {
-        for i in 1..self.walkers.len() {
-            let (earlier, later) = self.walkers.split_at_mut(i);
+        for i in 1..self.pedestrians.len() {
+            let (earlier, later) = self.pedestrians.split_at_mut(i);
             let a = &mut later[0].motion.position;
             for other in earlier {
                 let b = &mut other.motion.position;

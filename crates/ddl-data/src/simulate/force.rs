@@ -1,4 +1,4 @@
-//! The forces on a walker, as accelerations (m/s²).
+//! The forces on a pedestrian, as accelerations (m/s²).
 
 use super::obstacle::{Pillar, Wall};
 use super::vector::{add, cross, dot, left, norm, scale, sub, unit};
@@ -6,10 +6,10 @@ use crate::Position;
 
 /// Radius of a body (m).
 pub(super) const BODY: f64 = 0.2;
-/// Time in which a walker adapts its velocity (s).
+/// Time in which a pedestrian adapts its velocity (s).
 const RELAXATION: f64 = 0.5;
 
-// The interaction of two walkers, Moussaïd et al. 2009, with their symbols.
+// The interaction of two pedestrians, Moussaïd et al. 2009, with their symbols.
 /// How strongly they brake or turn at most (m/s²).
 const STRENGTH: f64 = 4.5;
 /// Reach of the interaction for each unit of the relative motion (m): gamma.
@@ -22,7 +22,7 @@ const TURNING: f64 = 2.0;
 const FORESIGHT: f64 = 2.0;
 /// Preference for one side, which settles who goes where when two meet head on: epsilon.
 const SIDE: f64 = 0.05;
-/// Beyond this distance two walkers ignore each other (m).
+/// Beyond this distance two pedestrians ignore each other (m).
 const SIGHT: f64 = 6.0;
 
 /// Walls push away with this strength (m/s²) ...
@@ -46,15 +46,19 @@ pub(super) struct WalkingMotion {
     pub(super) velocity: Position,
 }
 
-pub(super) fn driving(walker: WalkingMotion, desired: Position) -> Position {
-    scale(sub(desired, walker.velocity), 1.0 / RELAXATION)
+pub(super) fn driving(pedestrian: WalkingMotion, desired: Position) -> Position {
+    scale(sub(desired, pedestrian.velocity), 1.0 / RELAXATION)
 }
 
 /// Away from a stranger: brake, and turn aside early when the two will meet. With `e` the unit vector to the other and
 /// `D = lambda (v_i - v_j) + e`, the force decays with `exp(-d / B)`, `B = gamma |D|`, along `D` (braking) and across
 /// it (turning); `d` is counted between the bodies: Moussaïd et al., Proc. R. Soc. B 276 (2009), equations 4 and 5.
-pub(super) fn stranger(walker: WalkingMotion, other: WalkingMotion, other_radius: f64) -> Position {
-    let apart = sub(other.position, walker.position);
+pub(super) fn stranger(
+    pedestrian: WalkingMotion,
+    other: WalkingMotion,
+    other_radius: f64,
+) -> Position {
+    let apart = sub(other.position, pedestrian.position);
     let distance = norm(apart);
     let gap = (distance - BODY - other_radius).max(0.0);
     if gap > SIGHT || distance == 0.0 {
@@ -62,7 +66,7 @@ pub(super) fn stranger(walker: WalkingMotion, other: WalkingMotion, other_radius
     }
     let towards = unit(apart);
     let meeting = add(
-        scale(sub(walker.velocity, other.velocity), FORESIGHT),
+        scale(sub(pedestrian.velocity, other.velocity), FORESIGHT),
         towards,
     );
     let reach = REACH * norm(meeting);
@@ -78,16 +82,16 @@ pub(super) fn stranger(walker: WalkingMotion, other: WalkingMotion, other_radius
     add(brake, turn)
 }
 
-pub(super) fn pillar(walker: WalkingMotion, pillar: &Pillar) -> Position {
+pub(super) fn pillar(pedestrian: WalkingMotion, pillar: &Pillar) -> Position {
     let still = WalkingMotion {
         position: pillar.centre,
         velocity: [0.0, 0.0],
     };
-    stranger(walker, still, pillar.radius)
+    stranger(pedestrian, still, pillar.radius)
 }
 
-pub(super) fn wall(walker: WalkingMotion, wall: &Wall) -> Position {
-    let away = sub(walker.position, wall.nearest(walker.position));
+pub(super) fn wall(pedestrian: WalkingMotion, wall: &Wall) -> Position {
+    let away = sub(pedestrian.position, wall.nearest(pedestrian.position));
     let gap = norm(away) - BODY;
     scale(
         unit(away),
@@ -96,14 +100,14 @@ pub(super) fn wall(walker: WalkingMotion, wall: &Wall) -> Position {
 }
 
 /// Towards the centre of the own group of `size`, when too far from it.
-pub(super) fn cohesion(walker: WalkingMotion, centre: Position, size: usize) -> Position {
-    let apart = sub(centre, walker.position);
+pub(super) fn cohesion(pedestrian: WalkingMotion, centre: Position, size: usize) -> Position {
+    let apart = sub(centre, pedestrian.position);
     let excess = norm(apart) - COMFORT * (size - 1) as f64;
     scale(unit(apart), COHESION * excess.clamp(0.0, 2.0))
 }
 
-pub(super) fn companion(walker: WalkingMotion, other: WalkingMotion) -> Position {
-    let away = sub(walker.position, other.position);
+pub(super) fn companion(pedestrian: WalkingMotion, other: WalkingMotion) -> Position {
+    let away = sub(pedestrian.position, other.position);
     let closeness = (1.0 - norm(away) / ELBOW_REACH).max(0.0);
     scale(unit(away), ELBOW * closeness)
 }

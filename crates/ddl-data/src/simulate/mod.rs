@@ -1,11 +1,11 @@
 //! Simulated crowds: a social-force model, for machines without real recordings.
 //!
-//! Each walker accelerates towards the velocity it likes, brakes and turns aside for those it would run into, keeps off
+//! Each pedestrian accelerates towards the velocity it likes, brakes and turns aside for those it would run into, keeps off
 //! walls, and stays with its group (Helbing and Molnár, Phys. Rev. E 51 (1995); Moussaïd et al., Proc. R. Soc. B 276
 //! (2009), and `PLoS` ONE 5 (2010)). Desired speeds are drawn from N(1.34, 0.26) m/s. Arrivals are a Poisson process of
-//! single walkers, pairs and groups of three; some stop for a while. Integrated with dt = 0.05 s, sampled every 0.4 s.
+//! single pedestrians, pairs and groups of three; some stop for a while. Integrated with dt = 0.05 s, sampled every 0.4 s.
 //!
-//! Numbers measured on such a crowd say nothing about how well real walkers are forecast.
+//! Numbers measured on such a crowd say nothing about how well real pedestrians are forecast.
 //!
 //! ```
 //! let crowd = ddl_data::simulate::CrowdScene::Plaza.simulate(7);
@@ -16,10 +16,10 @@ mod engine;
 mod force;
 mod layout;
 mod obstacle;
+mod pedestrian;
 mod population;
 mod scene;
 mod vector;
-mod walker;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -46,7 +46,7 @@ impl CrowdScene {
         rng.set_stream(self as u64);
         let layout = SceneLayout::of(self);
         let trace = engine::run(&layout, STEPS, &mut rng);
-        // Walkers have unique ids and are seen once a frame; speeds are capped, so that positions
+        // Pedestrians have unique ids and are seen once a frame; speeds are capped, so that positions
         // stay finite; and three minutes of arrivals every two seconds leave observations.
         let recording = Recording::new(self.name(), FRAME_STEP, trace.observations)
             .expect("a simulation yields unique, finite observations");

@@ -8,7 +8,7 @@ use super::layout::{GateLine, Leg, SceneLayout};
 use super::vector::{norm, sub};
 use crate::Position;
 
-/// Mean and standard deviation of the speed that a lone walker likes (m/s): Helbing and Molnár 1995.
+/// Mean and standard deviation of the speed that a lone pedestrian likes (m/s): Helbing and Molnár 1995.
 const DESIRED_SPEED: (f64, f64) = (1.34, 0.26);
 /// Slowest and fastest speed drawn (m/s).
 const SPEED_RANGE: (f64, f64) = (0.7, 2.0);

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use crate::readers::complaint;
 
 /// Two people who walk straight on, seen at some frames; every `spacing`-th where none is left out.
-fn walkers(frames: impl Iterator<Item = i64>, spacing: i64) -> Recording {
+fn pedestrians(frames: impl Iterator<Item = i64>, spacing: i64) -> Recording {
     let place = |id: i64, frame: i64| [0.05 * frame as f64 + id as f64, -0.02 * frame as f64];
     let seen = frames.flat_map(|frame| {
         [1, 2].map(|id| Observation::new(frame, PedestrianId(id), place(id, frame)))
@@ -31,7 +31,7 @@ fn a_step_is_a_whole_number_of_frames_or_of_their_parts() {
         (25.0, 3, 1, 10, true),
         (7.0, 1, 5, 14, true),
     ] {
-        let recording = walkers((0..50).map(|t| t * spacing), spacing);
+        let recording = pedestrians((0..50).map(|t| t * spacing), spacing);
         let steps = recording.in_steps(1.0 / rate).unwrap();
         assert_eq!((steps.parts, steps.resampled), (parts, resampled), "{rate}");
         assert_eq!(steps.recording.frame_step(), step, "{rate}");
@@ -48,7 +48,7 @@ fn a_step_is_a_whole_number_of_frames_or_of_their_parts() {
 fn a_few_late_frames_are_left_alone() {
     let late = |late: &'static [i64]| {
         let frames = (0..41_i64).map(|t| 3 + 5 * t + i64::from(late.contains(&t)));
-        walkers(frames, 5).in_steps(0.04).unwrap().resampled
+        pedestrians(frames, 5).in_steps(0.04).unwrap().resampled
     };
     assert!(!late(&[20]));
     assert!(late(&[10, 30]));
@@ -58,7 +58,7 @@ fn a_few_late_frames_are_left_alone() {
 fn a_hole_stays_a_hole() {
     // 24 frames a second, frames 30 to 59 missing: more than a second
     let seen = (0..30).chain(60..100);
-    let steps = walkers(seen, 1).in_steps(1.0 / 24.0).unwrap();
+    let steps = pedestrians(seen, 1).in_steps(1.0 / 24.0).unwrap();
     let frames = steps.recording.frames();
     let missing = |frame: &&i64| (29 * 5 + 1..60 * 5).contains(*frame);
     assert_eq!(frames.iter().find(missing), None);
@@ -67,7 +67,7 @@ fn a_hole_stays_a_hole() {
 
 #[test]
 fn what_is_no_rate_is_refused() {
-    let recording = walkers(0..20, 1);
+    let recording = pedestrians(0..20, 1);
     for time in [0.0, -0.1, f64::NAN, f64::INFINITY, 1e-12] {
         let error = recording.in_steps(time).unwrap_err();
         assert!(matches!(error, RateError::FrameTime { .. }), "{time}");
@@ -76,7 +76,7 @@ fn what_is_no_rate_is_refused() {
         recording.in_steps(1.5),
         Err(RateError::TooSlow { apart: 1.5 })
     );
-    let far = walkers((1 << 52)..(1 << 52) + 20, 1);
+    let far = pedestrians((1 << 52)..(1 << 52) + 20, 1);
     let error = far.in_steps(1.0 / 24.0).unwrap_err();
     assert!(matches!(error, RateError::Frames { .. }), "{error}");
 }
@@ -89,7 +89,7 @@ proptest! {
         first in -1000..1000_i64,
         count in 2..60_i64,
     ) {
-        let recording = walkers((0..count).map(|t| first + t * spacing), spacing);
+        let recording = pedestrians((0..count).map(|t| first + t * spacing), spacing);
         let Ok(steps) = recording.in_steps(1.0 / rate) else {
             prop_assert!(spacing as f64 / rate > 1.2);
             return Ok(());
@@ -117,7 +117,7 @@ proptest! {
 #[test]
 fn a_clock_that_trembles_is_resampled() {
     let frames = (0..60_i64).map(|t| 40 * t + [0, 1, -1, 0, 1][(t % 5) as usize]);
-    let steps = walkers(frames, 40).in_steps(0.001).unwrap();
+    let steps = pedestrians(frames, 40).in_steps(0.001).unwrap();
     assert_eq!((steps.parts, steps.resampled), (1, true));
     let recording = &steps.recording;
     assert_eq!(recording.frame_step(), 400);

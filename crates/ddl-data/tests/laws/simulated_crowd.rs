@@ -64,7 +64,7 @@ fn speeds_are_those_of_people() {
         let mean = walking.iter().sum::<f64>() / walking.len() as f64;
         assert!(
             (1.0..1.4).contains(&mean),
-            "{scene}: mean of walkers {mean} m/s"
+            "{scene}: mean of pedestrians {mean} m/s"
         );
         let fastest = speeds.iter().copied().fold(0.0, f64::max);
         assert!(fastest < 2.7, "{scene}: {fastest} m/s");

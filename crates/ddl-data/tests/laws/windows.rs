@@ -14,17 +14,17 @@ const RULES: [WindowRule; 4] = [
 ];
 
 fn recording() -> impl Strategy<Value = Vec<Observation>> {
-    let walker = (
+    let pedestrian = (
         0_i64..30,
         1_i64..60,
         prop::collection::btree_set(0_i64..60, 0..3),
     );
-    (prop::collection::vec(walker, 1..7), any::<bool>()).prop_map(|(walkers, origin)| {
+    (prop::collection::vec(pedestrian, 1..7), any::<bool>()).prop_map(|(pedestrians, origin)| {
         let mut rows = Vec::new();
-        for (id, (start, length, missed)) in (0_i64..).zip(walkers) {
+        for (id, (start, length, missed)) in (0_i64..).zip(pedestrians) {
             for t in (0..length).filter(|t| !missed.contains(t)) {
                 let here = [t as f64, id as f64];
-                // A walker who stands on the origin for a step: absent by the published rule.
+                // A pedestrian who stands on the origin for a step: absent by the published rule.
                 let place = if origin && t == 30 { [0.0, 0.0] } else { here };
                 rows.push(Observation::new((start + t) * 6, PedestrianId(id), place));
             }

@@ -1,4 +1,4 @@
-//! Around obstacles and other walkers, without losing the goal.
+//! Around obstacles and other pedestrians, without losing the goal.
 
 use nalgebra::SVector;
 
@@ -15,14 +15,14 @@ use crate::{
 
 /// A [`NaturalGradientFlow`] that slows its approach to obstacles and slides along them.
 ///
-/// At the distance `gap` from the surface of a ball, with the unit vector `n` away from it, a walker that comes nearer
+/// At the distance `gap` from the surface of a ball, with the unit vector `n` away from it, a pedestrian that comes nearer
 /// has the share `gap / margin` of its speed along `n` left:
 ///
 /// ```text
 /// P' = P - (1 - share) q q^T / (n^T q)     q = P n     share = min(1, gap / margin)    n^T v' = share n^T v
 /// ```
 ///
-/// ([`slowed_along`](CholeskyMetric::slowed_along)), for one ball after the other; a walker who moves away from a ball
+/// ([`slowed_along`](CholeskyMetric::slowed_along)), for one ball after the other; a pedestrian who moves away from a ball
 /// is not slowed by it. With one ball near, the velocity is continuous.
 ///
 /// # What is guaranteed
@@ -37,13 +37,13 @@ use crate::{
 /// [`longest_step`](Flow::longest_step) ends a step where half of the gap is used up along `n`.
 ///
 /// # Numerics
-/// The decrease goes first. A walker held up at a saddle still makes the smallest move to the goal that shows, and so
+/// The decrease goes first. A pedestrian held up at a saddle still makes the smallest move to the goal that shows, and so
 /// gets into the ball, rounding by rounding. On a surface `epsilon lambda_max` of the approach is left, between several
 /// balls up to `sqrt(2 epsilon) lambda_max`. In `f64` neither shows; in `f32` allow some millimetres.
 ///
 /// # Obstacles that move
 /// The decrease of the distance does not depend on the obstacles. Keeping clear does: give each step the obstacles as
-/// they will be at its end ([`ObstacleSchedule`](crate::ObstacleSchedule)), and a walker who is clear of them there at
+/// they will be at its end ([`ObstacleSchedule`](crate::ObstacleSchedule)), and a pedestrian who is clear of them there at
 /// the start of a step is clear of them at its end. One who is in the way of an obstacle is not moved aside.
 ///
 /// # References
@@ -109,7 +109,7 @@ where
                 // On the surface and inside, as little is left as keeps P positive definite.
                 .map(|(gap, normal)| ((gap / self.margin).max(T::EPSILON), normal))
         };
-        // Sliding along one ball may turn the walker to another that it was leaving. Each round slows
+        // Sliding along one ball may turn the pedestrian to another that it was leaving. Each round slows
         // the approach to one more ball, or is the last.
         for round in 0..near().count() {
             let mut slowed = false;

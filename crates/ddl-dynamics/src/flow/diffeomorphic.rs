@@ -21,7 +21,7 @@ use crate::{
 ///
 /// with `J` the Jacobian of `psi` at `p` and `u` the unit vector from `psi(p*)` to `psi(p)`.
 ///
-/// A positive-definite matrix alone never turns a walker more than 90 degrees away from the straight line to its goal.
+/// A positive-definite matrix alone never turns a pedestrian more than 90 degrees away from the straight line to its goal.
 /// Here it may turn further, because `V` falls and not the distance.
 ///
 /// The metric may be given in space ([`new`](Self::new)), or in the coordinates of the chart

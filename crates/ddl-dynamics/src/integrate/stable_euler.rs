@@ -24,7 +24,7 @@ const ARRIVAL: f64 = 8.0;
 /// ```
 ///
 /// with `e = p - p*`, `u = e / |e|`, `v = -P u` (on a quadratic attractor `v = -P e`: read `|e| P` for `P` in what
-/// follows). While `dt <= dt*` this is the plain Euler step, to the last bit; at the goal the walker stays.
+/// follows). While `dt <= dt*` this is the plain Euler step, to the last bit; at the goal the pedestrian stays.
 ///
 /// # What is guaranteed
 /// - *Strict decrease, for every `dt > 0`*: with `h = min(dt, dt*)`, `Phi' <= Phi - h u^T P u / 2 < Phi`.
@@ -37,7 +37,7 @@ const ARRIVAL: f64 = 8.0;
 /// # Numerics
 /// The guarantee holds for the *computed* distance, [`Attractor::distance`], in `f32` as in `f64`: every step strictly
 /// lowers it until it is 0, for every finite input. Where rounding could break the decrease,
-/// - a limited step that ends within `8 epsilon max(|p|, |p*|)` of the goal puts the walker on the goal;
+/// - a limited step that ends within `8 epsilon max(|p|, |p*|)` of the goal puts the pedestrian on the goal;
 /// - a decrease too small to be seen in `T`, or a computed velocity that does not approach the goal (see
 ///   [`apply`](crate::CholeskyMetric::apply)), is replaced by the smallest move straight to the goal that shows in the
 ///   distance, about `epsilon max(|p|, |p*|)`, doubled until it does.
@@ -58,7 +58,7 @@ pub enum StepLimit {
     ClosestApproach,
     /// The spacing of the numbers: the smallest move that shows in the distance.
     Resolution,
-    /// The walker was at the goal already and did not move.
+    /// The pedestrian was at the goal already and did not move.
     AtGoal,
 }
 

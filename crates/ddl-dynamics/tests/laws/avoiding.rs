@@ -26,7 +26,7 @@ fn balls<T: Real, const D: usize>(scene: &SceneDraw) -> Vec<Ball<T, D>> {
         .collect()
 }
 
-/// Whatever the obstacles, wherever the walker starts, however long the step: the certificate holds. And a walker outside the
+/// Whatever the obstacles, wherever the pedestrian starts, however long the step: the certificate holds. And a pedestrian outside the
 /// balls stays outside, up to rounding: where rounding has led it onto a surface, epsilon of its speed is left of its
 /// approach, which shows at a million metres a second.
 fn the_distance_falls_and_no_ball_is_entered<T: Real, const D: usize>(
@@ -68,7 +68,7 @@ fn the_distance_falls_and_no_ball_is_entered<T: Real, const D: usize>(
 }
 for_every_space!(the_distance_falls_and_no_ball_is_entered, any_scene);
 
-/// Pillars 2 cm apart at the least, none on the goal at the origin, a walker outside them, a metric of a
+/// Pillars 2 cm apart at the least, none on the goal at the origin, a pedestrian outside them, a metric of a
 /// condition up to 20 and a margin.
 fn park() -> impl Strategy<Value = (Vec<Ball<f64, 2>>, Vector2<f64>, CholeskyMetric<f64, 2>, f64)> {
     let place = || (-6.0..6.0_f64, -6.0..6.0_f64).prop_map(|(x, y)| Vector2::new(x, y));
@@ -106,8 +106,8 @@ proptest! {
     #[test]
     fn everybody_arrives((pillars, start, metric, margin) in park()) {
         let origin = Attractor::new(Vector2::zeros()).unwrap();
-        let walker = NaturalGradientFlow::new(origin, metric);
-        let flow = AvoidingFlow::new(walker, pillars.clone(), margin).unwrap();
+        let pedestrian = NaturalGradientFlow::new(origin, metric);
+        let flow = AvoidingFlow::new(pedestrian, pillars.clone(), margin).unwrap();
         let path = rollout(&flow, &StableEuler, start, 0.4, 20_000).unwrap();
         for pillar in &pillars {
             prop_assert!(path.iter().all(|p| pillar.gap_and_normal(p).0 > -1e-12));
@@ -123,8 +123,8 @@ proptest! {
         (exponent, angle) in (-9.0..-1.0_f64, 0.0..std::f64::consts::TAU),
     ) {
         let origin = Attractor::new(Vector2::zeros()).unwrap();
-        let walker = NaturalGradientFlow::new(origin, metric);
-        let flow = AvoidingFlow::new(walker, pillars.clone(), margin).unwrap();
+        let pedestrian = NaturalGradientFlow::new(origin, metric);
+        let flow = AvoidingFlow::new(pedestrian, pillars.clone(), margin).unwrap();
         let outwards = Vector2::new(angle.cos(), angle.sin());
         for beside in &pillars {
             let at = beside.centre() + outwards * (beside.radius() + 10_f64.powf(exponent));
@@ -142,8 +142,8 @@ proptest! {
 #[test]
 fn an_offset_that_overflows_is_no_obstacle() {
     let far = Ball::new(Vector2::new(-f64::MAX, 0.0), 1.0).unwrap();
-    let walker = straight_to(Vector2::new(0.9 * f64::MAX, 0.0));
-    let flow = AvoidingFlow::new(walker, [far], 1.0).unwrap();
+    let pedestrian = straight_to(Vector2::new(0.9 * f64::MAX, 0.0));
+    let flow = AvoidingFlow::new(pedestrian, [far], 1.0).unwrap();
     let start = Vector2::new(0.99 * f64::MAX, 0.0);
     let (gap, normal) = far.gap_and_normal(&start);
     assert_eq!((gap, normal), (f64::INFINITY, Vector2::new(1.0, 0.0)));
@@ -154,9 +154,9 @@ fn an_offset_that_overflows_is_no_obstacle() {
 fn the_velocity_is_continuous() {
     let attractor = Attractor::new(Vector2::new(5.0, 0.0)).unwrap();
     let metric = CholeskyMetric::planar(1.2, 0.7, 0.5, 1e-8).unwrap();
-    let walker = NaturalGradientFlow::new(attractor, metric);
+    let pedestrian = NaturalGradientFlow::new(attractor, metric);
     let pillar = Ball::new(Vector2::new(0.0, 0.0), 1.0).unwrap();
-    let flow = AvoidingFlow::new(walker, [pillar], 1.0).unwrap();
+    let flow = AvoidingFlow::new(pedestrian, [pillar], 1.0).unwrap();
     // A circle around the pillar, in small steps: no jump anywhere, also not where share is small.
     for gap in [1e-6, 0.3, 0.999] {
         let velocity = |k: u32| {
@@ -169,13 +169,13 @@ fn the_velocity_is_continuous() {
     }
 }
 
-/// Exactly behind the pillar as seen from the goal: the saddle, where a walker comes to rest; a hair
+/// Exactly behind the pillar as seen from the goal: the saddle, where a pedestrian comes to rest; a hair
 /// beside it, everybody gets around.
 #[test]
 fn the_saddle_is_the_only_other_rest() {
-    let walker = straight_to(Vector2::new(4.0, 0.0));
+    let pedestrian = straight_to(Vector2::new(4.0, 0.0));
     let pillar = Ball::new(Vector2::new(2.0, 0.0), 0.5).unwrap();
-    let flow = AvoidingFlow::new(walker, [pillar], 0.5).unwrap();
+    let flow = AvoidingFlow::new(pedestrian, [pillar], 0.5).unwrap();
     let held = rollout(&flow, &StableEuler, Vector2::zeros(), 0.1, 400).unwrap();
     assert!((held[400] - Vector2::new(1.5, 0.0)).norm() < 1e-6);
     assert!(pillar.gap_and_normal(&held[400]).0 > -1e-12);
@@ -183,13 +183,13 @@ fn the_saddle_is_the_only_other_rest() {
     assert_eq!(free[400], Vector2::new(4.0, 0.0));
 }
 
-/// A pillar that is there in the first steps only: the walker waits, then goes straight.
+/// A pillar that is there in the first steps only: the pedestrian waits, then goes straight.
 #[test]
 fn obstacles_come_and_go_by_the_step() {
-    let walker = straight_to(Vector2::new(4.0, 0.0));
+    let pedestrian = straight_to(Vector2::new(4.0, 0.0));
     let pillar = Ball::new(Vector2::new(1.5, 0.0), 0.5).unwrap();
     let schedule = ObstacleSchedule::new([vec![vec![pillar]; 10], vec![vec![]]].concat());
-    let flow = AvoidingFlow::new(walker, schedule, 1.0).unwrap();
+    let flow = AvoidingFlow::new(pedestrian, schedule, 1.0).unwrap();
     let path = rollout(&flow, &StableEuler, Vector2::zeros(), 0.4, 20).unwrap();
     assert!(path[10].x < 1.0 && path[11].x > path[10].x + 0.39);
     assert_eq!(path[20], Vector2::new(4.0, 0.0));

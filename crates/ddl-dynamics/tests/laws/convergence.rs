@@ -57,7 +57,7 @@ for_every_space!(the_gradient_flow_arrives_exactly, any_scene);
 #[test]
 fn every_rollout_ends_on_the_goal_even_when_nearly_singular() {
     // Eigenvalues 1e-8 and about 1: the flow alone would need years; rounding decides, and the
-    // strict decrease brings the walker home all the same.
+    // strict decrease brings the pedestrian home all the same.
     let attractor = Attractor::new(SVector::<f32, 2>::new(0.25, -0.5)).unwrap();
     let metric = ddl_dynamics::CholeskyMetric::planar(1.0, 0.0, 0.0, 1e-8).unwrap();
     let flow = NaturalGradientFlow::new(attractor, metric);

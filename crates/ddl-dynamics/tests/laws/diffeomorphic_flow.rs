@@ -25,7 +25,7 @@ fn flows<T: Real, const D: usize>((maps, scene): &(MapDraw, SceneDraw)) -> [Bent
     ]
 }
 
-/// For every map, metric, start and time step: `V`, as computed, falls in every step, or the walker is on the goal.
+/// For every map, metric, start and time step: `V`, as computed, falls in every step, or the pedestrian is on the goal.
 fn the_certificate_holds_in_the_chart<T: Real, const D: usize>(
     draw: &(MapDraw, SceneDraw),
 ) -> TestCaseResult {

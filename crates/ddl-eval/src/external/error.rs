@@ -29,7 +29,7 @@ pub enum ExternalError {
         problem: String,
     },
     #[error(
-        "{origin} forecasts {} of the {pedestrians} walkers in the windows; {missing} are missing, the first of them \
+        "{origin} forecasts {} of the {pedestrians} pedestrians in the windows; {missing} are missing, the first of them \
          {}; forecast them too, or score the intersection alone",
         pedestrians - missing, first.join(", ")
     )]
@@ -51,7 +51,7 @@ pub enum ExternalError {
         hint: String,
     },
     #[error(
-        "{origin}: half of the forecasts begin {metres:.1} m or more from the walker's last observed position; {hint}"
+        "{origin}: half of the forecasts begin {metres:.1} m or more from the pedestrian's last observed position; {hint}"
     )]
     OutOfPlace {
         origin: String,
@@ -91,7 +91,7 @@ pub(super) enum ExternalProblem {
     Json { detail: String },
     #[error("the text is not UTF-8")]
     NotUtf8,
-    #[error("the line is longer than {limit} bytes; write one line a walker")]
+    #[error("the line is longer than {limit} bytes; write one line a pedestrian")]
     LongLine { limit: usize },
     #[error(
         "must lie within {limit} m of the origin, found {found}",
@@ -137,7 +137,7 @@ pub(super) enum ExternalProblem {
         ahead: String,
     },
     #[error(
-        "{found} hypotheses, but {expected} on line {first_line}; the best of K needs one K for all walkers"
+        "{found} hypotheses, but {expected} on line {first_line}; the best of K needs one K for all pedestrians"
     )]
     Hypotheses {
         expected: usize,
@@ -151,7 +151,7 @@ pub(super) enum ExternalProblem {
     TooManyHypotheses { pedestrian: String, allowed: usize },
     #[error(
         "the hypotheses of {pedestrian} have the numbers {numbers}: those of one number are one joint \
-         future, so number them alike for all walkers"
+         future, so number them alike for all pedestrians"
     )]
     Numbers { pedestrian: String, numbers: String },
     #[error("is there twice; keep one")]
@@ -164,7 +164,7 @@ pub(super) enum ExternalProblem {
         "hypothesis {hypothesis} is there already; the rows of a hypothesis must stand together"
     )]
     Scattered { hypothesis: i64 },
-    #[error("either every hypothesis of a walker has a weight or none has")]
+    #[error("either every hypothesis of a pedestrian has a weight or none has")]
     WeightsOfSome,
     #[error("a weight must not be below 0, found {found}")]
     NegativeWeight { found: f64 },
@@ -176,7 +176,7 @@ pub(super) enum ExternalProblem {
         "either every hypothesis of the file has a goal or none has (line {first_line} decided)"
     )]
     GoalsOfSome { first_line: usize },
-    #[error("this walker was forecast on line {first_line} already; keep one")]
+    #[error("this pedestrian was forecast on line {first_line} already; keep one")]
     Duplicate { first_line: usize },
     #[error(
         "pedestrian {pedestrian} is a neighbour in two scenes that forecast it differently (line {first_line}); make it \

@@ -63,7 +63,7 @@ impl Matched {
         let scored = self.forecast_pedestrians();
         (scored < self.pedestrians).then(|| {
             format!(
-                "walkers forecast by {}: {scored} of {}, digest {}",
+                "pedestrians forecast by {}: {scored} of {}, digest {}",
                 self.file,
                 self.pedestrians,
                 self.digest()

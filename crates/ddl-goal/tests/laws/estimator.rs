@@ -1,4 +1,4 @@
-//! The estimator on synthetic walkers: what it may read, what it depends on, what it returns.
+//! The estimator on synthetic pedestrians: what it may read, what it depends on, what it returns.
 
 use ddl_goal::{
     ExpertLibrary, GoalError, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan, TrackError,
@@ -76,7 +76,7 @@ proptest! {
     }
 
     #[test]
-    fn goals_move_with_the_walker(
+    fn goals_move_with_the_pedestrian(
         speed in 0.0..1.6_f64, heading in -3.0..3.0_f64, by in prop::array::uniform2(-8_i32..8),
     ) {
         // Whole steps of 1/8 m move coordinates on a grid of 1/1024 m without rounding: the velocities keep every bit.
@@ -110,7 +110,7 @@ fn the_published_query_reads_the_ninth_position_and_no_further() {
 }
 
 #[test]
-fn a_walker_finds_itself_and_goals_near_where_it_goes() {
+fn a_pedestrian_finds_itself_and_goals_near_where_it_goes() {
     for params in [
         GoalEstimatorParams::default(),
         GoalEstimatorParams::published(),
@@ -118,7 +118,7 @@ fn a_walker_finds_itself_and_goals_near_where_it_goes() {
         let estimator = estimator(params);
         let track = estimator.library().tracks()[237].clone();
         let goals = estimator.estimate(&track).unwrap();
-        // In its own frame a walker is like itself, and like whoever walks the same way elsewhere or mirrored.
+        // In its own frame a pedestrian is like itself, and like whoever walks the same way elsewhere or mirrored.
         let mut itself = goals.experts().iter().take_while(|e| e.distance == 0.0);
         assert!(itself.any(|e| (e.index, e.mirrored) == (237, false)));
         let nearest = goals.goals()[goals.nearest(track[19])];
@@ -170,7 +170,7 @@ fn the_seed_decides_in_the_frame_of_the_world_only() {
     assert!(world.iter().all(|set| set.experts() == world[0].experts()));
 }
 
-/// A rounding error may change the order of two equally near experts, or a tie of k-means, for a walker here and there.
+/// A rounding error may change the order of two equally near experts, or a tie of k-means, for a pedestrian here and there.
 #[test]
 fn a_rounding_error_moves_goals_by_as_much() {
     for params in both_frames() {
@@ -187,7 +187,7 @@ fn a_rounding_error_moves_goals_by_as_much() {
             let furthest = goals.map(|&goal| distance(a.goals()[a.nearest(goal)], goal));
             moved += u32::from(furthest.fold(0.0, f64::max) > 1e-6);
         }
-        assert!(moved <= 3, "goals of {moved} of 60 walkers moved");
+        assert!(moved <= 3, "goals of {moved} of 60 pedestrians moved");
     }
 }
 
@@ -201,7 +201,7 @@ fn bad_input_is_refused_by_name() {
 
     let estimator = estimator(GoalEstimatorParams::default());
     let track = walk(1.0, 0.0, 0.0);
-    // In its own frame a walker makes do with fewer.
+    // In its own frame a pedestrian makes do with fewer.
     let all = GoalEstimatorParams::default().experts(1_000);
     let goals = tracks::estimator(all, library()).estimate(&track);
     assert_eq!(goals.unwrap().goals().len(), 20);
@@ -225,13 +225,13 @@ fn bad_input_is_refused_by_name() {
 
 #[test]
 fn in_the_world_a_track_is_carried_to_where_the_pedestrian_was_first_seen() {
-    let (other, walker) = (walk(1.2, 0.3, 0.05), walk(1.0, 2.0, -0.04));
+    let (other, pedestrian) = (walk(1.2, 0.3, 0.05), walk(1.0, 2.0, -0.04));
     let params = GoalEstimatorParams::published().experts(1).clusters(1);
     let estimator = tracks::estimator(params, vec![other.clone()]);
-    let expert = estimator.estimate(&walker).unwrap().experts()[0];
-    assert!(estimator.carry_over(&expert, &walker[..7]).is_err());
-    let carried = estimator.carry_over(&expert, &walker[..8]).unwrap();
-    let by = [0, 1].map(|axis| walker[0][axis] - other[0][axis]);
+    let expert = estimator.estimate(&pedestrian).unwrap().experts()[0];
+    assert!(estimator.carry_over(&expert, &pedestrian[..7]).is_err());
+    let carried = estimator.carry_over(&expert, &pedestrian[..8]).unwrap();
+    let by = [0, 1].map(|axis| pedestrian[0][axis] - other[0][axis]);
     for (carried, [x, y]) in carried.into_iter().zip(other) {
         assert!(distance(carried, [x + by[0], y + by[1]]) < 1e-12);
     }

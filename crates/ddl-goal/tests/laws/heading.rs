@@ -1,4 +1,4 @@
-//! A walker's own frame: what turning, moving and mirroring the scene does to it.
+//! A pedestrian's own frame: what turning, moving and mirroring the scene does to it.
 
 use ddl_goal::{HeadingFrame, TrackError};
 use proptest::prelude::*;

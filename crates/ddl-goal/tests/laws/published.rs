@@ -44,7 +44,7 @@ fn published(dataset: &Dataset, test_recording: &str, experts: usize) -> GoalEst
     estimator(params, tracks.collect())
 }
 
-/// The published library lacks up to 256 random walkers of the last, incomplete batch and a few windows at the ends of
+/// The published library lacks up to 256 random pedestrians of the last, incomplete batch and a few windows at the ends of
 /// recordings. So a published distance is one of ours, at its own rank or a few ranks further on, never before.
 #[test]
 fn expert_distances_are_the_published_ones() {
@@ -61,29 +61,29 @@ fn expert_distances_are_the_published_ones() {
         let windows = windows(&dataset, recording, WindowRule::Complete);
         let (mut same_rank, mut compared) = (0, 0);
         let (mut error, mut published_error) = (0.0, 0.0);
-        for walker in reference
+        for pedestrian in reference
             .pedestrians
             .iter()
-            .filter(|walker| walker.fold == fold)
+            .filter(|pedestrian| pedestrian.fold == fold)
         {
-            assert_eq!(walker.recording, recording);
-            let track = &windows[&(walker.start_frame, walker.pedestrian)];
+            assert_eq!(pedestrian.recording, recording);
+            let track = &windows[&(pedestrian.start_frame, pedestrian.pedestrian)];
             let goals = estimator.estimate(track).unwrap();
-            for (&rank, expected) in &walker.distance_rank {
+            for (&rank, expected) in &pedestrian.distance_rank {
                 // The published distances are formed in f32 from values near 10 m²/s².
                 let agrees = |expert: &Expert| (expert.distance - expected).abs() < 3e-6;
                 let ranks = &goals.experts()[rank - 1..rank + FURTHER];
                 assert!(
                     ranks.iter().any(agrees),
                     "{fold}, frame {}, pedestrian {}, expert {rank}: {expected} is not among {ranks:?}",
-                    walker.start_frame,
-                    walker.pedestrian
+                    pedestrian.start_frame,
+                    pedestrian.pedestrian
                 );
                 same_rank += usize::from(agrees(&ranks[0]));
                 compared += 1;
             }
             error += goal_error(&goals, track) / 50.0;
-            published_error += walker.goal_error_m / 50.0;
+            published_error += pedestrian.goal_error_m / 50.0;
         }
         assert_eq!(compared, 200);
         assert!(
@@ -115,33 +115,36 @@ fn the_mean_goal_error_of_a_test_scene_is_the_published_one() {
         .map(|(goals, track)| goal_error(goals, track));
     let mean = errors.sum::<f64>() / queries.len() as f64;
     assert!((mean - 0.548).abs() < 0.01, "{mean} m");
-    println!("mean goal error of {} walkers: {mean:.4} m", queries.len());
+    println!(
+        "mean goal error of {} pedestrians: {mean:.4} m",
+        queries.len()
+    );
 }
 
-/// The library and the walkers are of recordings that meet in no street: students, and shoppers elsewhere.
+/// The library and the pedestrians are of recordings that meet in no street: students, and shoppers elsewhere.
 #[test]
-fn in_their_own_frame_walkers_of_one_street_tell_about_those_of_another() {
+fn in_their_own_frame_pedestrians_of_one_street_tell_about_those_of_another() {
     let Some(dataset) = recordings() else {
         return;
     };
     let tracks = |name| windows(&dataset, name, WindowRule::Complete).into_values();
     let library: Vec<_> = tracks("students003").collect();
-    let walkers: Vec<_> = tracks("zara03").step_by(5).collect();
-    let queries: Vec<&[[f64; 2]]> = walkers.iter().map(|track| &track[..8]).collect();
+    let pedestrians: Vec<_> = tracks("zara03").step_by(5).collect();
+    let queries: Vec<&[[f64; 2]]> = pedestrians.iter().map(|track| &track[..8]).collect();
     let mean_error = |params: GoalEstimatorParams| {
         let estimator = estimator(params, library.clone());
         let estimated = estimator.estimate_batch(&queries).unwrap();
         let errors = estimated
             .iter()
-            .zip(&walkers)
+            .zip(&pedestrians)
             .map(|(goals, track)| goal_error(goals, track));
-        errors.sum::<f64>() / walkers.len() as f64
+        errors.sum::<f64>() / pedestrians.len() as f64
     };
     let world = mean_error(GoalEstimatorParams::published().query(QuerySpan::Observed));
     let own = mean_error(GoalEstimatorParams::default());
     println!(
-        "{} walkers: {own:.4} m, {world:.4} m in the frame of the world",
-        walkers.len()
+        "{} pedestrians: {own:.4} m, {world:.4} m in the frame of the world",
+        pedestrians.len()
     );
     assert!(own < 0.85 * world, "{own} m, {world} m");
 }

@@ -10,10 +10,10 @@ pub type People = Vec<(PedestrianId, Position)>;
 pub struct Crowd {
     rng: ChaCha8Rng,
     next_id: i64,
-    walkers: Vec<Walker>,
+    pedestrians: Vec<Pedestrian>,
 }
 
-struct Walker {
+struct Pedestrian {
     id: i64,
     position: Position,
     heading: f64,
@@ -26,12 +26,12 @@ impl Crowd {
         let mut crowd = Self {
             rng: ChaCha8Rng::seed_from_u64(seed),
             next_id: 0,
-            walkers: Vec::new(),
+            pedestrians: Vec::new(),
         };
         for _ in 0..people {
-            let mut walker = crowd.walker();
-            walker.steps_left = 1 + (crowd.random() * 40.0) as usize;
-            crowd.walkers.push(walker);
+            let mut pedestrian = crowd.pedestrian();
+            pedestrian.steps_left = 1 + (crowd.random() * 40.0) as usize;
+            crowd.pedestrians.push(pedestrian);
         }
         crowd
     }
@@ -41,12 +41,12 @@ impl Crowd {
         self.rng.random()
     }
 
-    fn walker(&mut self) -> Walker {
+    fn pedestrian(&mut self) -> Pedestrian {
         self.next_id += 1;
         let side = (self.random() * 4.0).floor() * std::f64::consts::FRAC_PI_2;
         let along = 16.0 * (self.random() - 0.5);
         let (sin, cos) = side.sin_cos();
-        Walker {
+        Pedestrian {
             id: self.next_id,
             position: [-10.0 * cos - along * sin, -10.0 * sin + along * cos],
             heading: side + 0.8 * (self.random() - 0.5),
@@ -57,20 +57,20 @@ impl Crowd {
 
     /// Everybody a step of 0.4 s later.
     pub fn step(&mut self) -> People {
-        for index in 0..self.walkers.len() {
+        for index in 0..self.pedestrians.len() {
             let turn = 0.1 * (self.random() - 0.5);
-            let walker = &mut self.walkers[index];
-            walker.heading += turn;
-            walker.position[0] += walker.stride * walker.heading.cos();
-            walker.position[1] += walker.stride * walker.heading.sin();
-            walker.steps_left -= 1;
-            if walker.steps_left == 0 {
-                self.walkers[index] = self.walker();
+            let pedestrian = &mut self.pedestrians[index];
+            pedestrian.heading += turn;
+            pedestrian.position[0] += pedestrian.stride * pedestrian.heading.cos();
+            pedestrian.position[1] += pedestrian.stride * pedestrian.heading.sin();
+            pedestrian.steps_left -= 1;
+            if pedestrian.steps_left == 0 {
+                self.pedestrians[index] = self.pedestrian();
             }
         }
-        let people = self.walkers.iter();
+        let people = self.pedestrians.iter();
         people
-            .map(|walker| (PedestrianId(walker.id), walker.position))
+            .map(|pedestrian| (PedestrianId(pedestrian.id), pedestrian.position))
             .collect()
     }
 }

@@ -44,18 +44,18 @@ fn observed(y: f64) -> [Position; OBSERVED] {
 fn what_newer_tracks_repeat_goes_first_and_of_it_the_oldest() {
     let mut memory = SceneMemory::new(1, 64).unwrap();
     walk(&mut memory, 0, 100.0);
-    for walker in 1..200 {
-        walk(&mut memory, 100 * walker, 1e-3 * walker as f64);
+    for pedestrian in 1..200 {
+        walk(&mut memory, 100 * pedestrian, 1e-3 * pedestrian as f64);
     }
     let common = memory.recall(&observed(0.1), None, 100);
     let number = |y: f64| (y * 1e3).round() as i64;
-    let mut walkers: Vec<i64> = common.iter().map(|it| number(it.track[0][1])).collect();
-    walkers.sort_unstable();
+    let mut pedestrians: Vec<i64> = common.iter().map(|it| number(it.track[0][1])).collect();
+    pedestrians.sort_unstable();
     assert_eq!(
-        walkers,
-        (200 - walkers.len() as i64..200).collect::<Vec<_>>()
+        pedestrians,
+        (200 - pedestrians.len() as i64..200).collect::<Vec<_>>()
     );
-    assert!((60..64).contains(&walkers.len()), "{walkers:?}");
+    assert!((60..64).contains(&pedestrians.len()), "{pedestrians:?}");
     assert_eq!(memory.recall(&observed(100.0), None, 12).len(), 1);
 }
 
@@ -63,12 +63,12 @@ fn what_newer_tracks_repeat_goes_first_and_of_it_the_oldest() {
 #[test]
 fn where_nothing_is_repeated_the_oldest_go() {
     let mut memory = SceneMemory::new(1, 64).unwrap();
-    for walker in 0..100 {
-        walk(&mut memory, 100 * walker, 10.0 * walker as f64);
+    for pedestrian in 0..100 {
+        walk(&mut memory, 100 * pedestrian, 10.0 * pedestrian as f64);
     }
-    let is_held = |walker: &i64| {
+    let is_held = |pedestrian: &i64| {
         !memory
-            .recall(&observed(10.0 * *walker as f64), None, 1)
+            .recall(&observed(10.0 * *pedestrian as f64), None, 1)
             .is_empty()
     };
     let held: Vec<i64> = (0..100).filter(is_held).collect();
@@ -80,8 +80,12 @@ fn where_nothing_is_repeated_the_oldest_go() {
 #[test]
 fn who_stands_does_not_push_out_who_passed() {
     let mut memory = SceneMemory::new(1, 2_500).unwrap();
-    for walker in 0..900 {
-        walk(&mut memory, 100 * walker - 100_000, 3.0 * walker as f64);
+    for pedestrian in 0..900 {
+        walk(
+            &mut memory,
+            100 * pedestrian - 100_000,
+            3.0 * pedestrian as f64,
+        );
     }
     let mut crowd = Crowd::new(4, 60);
     let still = crowd.step();

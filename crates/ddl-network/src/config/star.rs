@@ -102,7 +102,8 @@ impl StarConfig {
         }
     }
 
-    /// The default of the protocols `fair` and `single`, in own frames where there are goals (`docs/accuracy.md`).
+    /// The default: in own frames where there are goals (`docs/accuracy.md`), and as small as loses no accuracy
+    /// (`docs/performance.md`).
     pub fn recommended(variant: Variant) -> Self {
         Self {
             frame: if variant.goal_shift() {
@@ -110,7 +111,8 @@ impl StarConfig {
             } else {
                 NetworkFrame::World
             },
-            feed_forward_width: 128,
+            feed_forward_width: 32,
+            spatial_layers: 1,
             ..Self::published(variant)
         }
     }

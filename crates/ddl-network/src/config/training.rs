@@ -59,7 +59,7 @@ const MOST_EPOCHS: usize = 1_000_000;
 pub struct TrainingConfig {
     /// What is asked of the network.
     pub objective: Objective,
-    /// Passes over the training set (or over `walkers_per_epoch` of it).
+    /// Passes over the training set (or over `pedestrians_per_epoch` of it).
     pub epochs: usize,
     /// Largest step size of Adam.
     pub learning_rate: f64,
@@ -68,7 +68,7 @@ pub struct TrainingConfig {
     /// Largest allowed norm of the gradient.
     pub gradient_clip: f64,
     /// Windows are gathered into a batch until it holds more than this many pedestrians.
-    pub batch_walkers: usize,
+    pub batch_pedestrians: usize,
     /// Rotate each batch by a fresh random angle at every visit; angles add up, as published.
     pub rotate: bool,
     /// Mirror each batch at every other visit, drawn at random.
@@ -77,7 +77,7 @@ pub struct TrainingConfig {
     /// pedestrian; futures stay where they are. Only for [`Objective::Walk`].
     pub jitter: f64,
     /// Train on at most about this many pedestrians an epoch, going round the whole set.
-    pub walkers_per_epoch: Option<usize>,
+    pub pedestrians_per_epoch: Option<usize>,
     /// Seed of initial weights, batch order, rotation, mirror images, jitter, noise and dropout.
     pub seed: u64,
 }
@@ -91,11 +91,11 @@ impl TrainingConfig {
             learning_rate: 1.5e-3,
             learning_rate_schedule: LearningRateSchedule::Constant,
             gradient_clip: 1.0,
-            batch_walkers: 256,
+            batch_pedestrians: 256,
             rotate: true,
             mirror: false,
             jitter: 0.0,
-            walkers_per_epoch: None,
+            pedestrians_per_epoch: None,
             seed: 1,
         }
     }
@@ -112,10 +112,10 @@ impl TrainingConfig {
             epochs: 20,
             learning_rate: 1e-3,
             learning_rate_schedule: LearningRateSchedule::Cosine,
-            batch_walkers: 64,
+            batch_pedestrians: 64,
             mirror: true,
             jitter,
-            walkers_per_epoch: Some(5000),
+            pedestrians_per_epoch: Some(5000),
             ..Self::published()
         }
     }
@@ -141,9 +141,9 @@ impl TrainingConfig {
             "0 unless the objective is walk: single steps are led to the observed positions themselves",
         )?;
         positive("gradient_clip", self.gradient_clip)?;
-        at_least_one("batch_walkers", self.batch_walkers as u64)?;
-        let pedestrians = self.walkers_per_epoch.unwrap_or(1);
-        at_least_one("walkers_per_epoch", pedestrians as u64)
+        at_least_one("batch_pedestrians", self.batch_pedestrians as u64)?;
+        let pedestrians = self.pedestrians_per_epoch.unwrap_or(1);
+        at_least_one("pedestrians_per_epoch", pedestrians as u64)
     }
 
     /// Checks that a network of this variant can be trained so.

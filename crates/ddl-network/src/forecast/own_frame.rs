@@ -1,5 +1,5 @@
 //! A pedestrian's own frame: the first axis points from where it was last observed to its goal, and lengths are in
-//! its own unit. So one walk teaches all directions, and a runner looks like a fast walker.
+//! its own unit. So one walk teaches all directions, and a runner looks like a fast pedestrian.
 //!
 //! The unit is `(1 + (v / 2 m/s)^4)^(1/4)` metres for the mean observed speed `v`: a metre up to walking speed, v / (2
 //! m/s) metres far above it.

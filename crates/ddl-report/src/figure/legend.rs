@@ -43,7 +43,7 @@ impl LegendEntry {
             Self::Note(text) | Self::Goals(text) => text,
             Self::WeightedGoals => "goals of 1, 5, 20 % probability",
             Self::NearestGoal => "goal nearest the true end",
-            Self::Experts => "how similar walkers went on",
+            Self::Experts => "how similar pedestrians went on",
         }
     }
 

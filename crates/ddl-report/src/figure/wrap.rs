@@ -65,11 +65,11 @@ mod tests {
                 300.0,
             ),
             (
-                "walkers of the test scene whose goal is the|median one",
+                "pedestrians of the test scene whose goal is the|median one",
                 300.0,
             ),
-            ("1,000 walkers|and one more", 112.0),
-            ("many walkers,|so few goals", 112.0),
+            ("1,000 pedestrians|and one more", 112.0),
+            ("many pedestrians,|so few goals", 112.0),
             ("all, of them as|it happens", 112.0),
         ] {
             let title = lines.replace('|', " ");

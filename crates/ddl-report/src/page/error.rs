@@ -34,7 +34,7 @@ pub enum PageError {
 
 #[derive(Debug, thiserror::Error)]
 pub(super) enum MomentProblem {
-    #[error("walker {pedestrian} has {found} positions in `{field}`, not {expected}")]
+    #[error("pedestrian {pedestrian} has {found} positions in `{field}`, not {expected}")]
     Length {
         pedestrian: usize,
         field: &'static str,
@@ -42,7 +42,7 @@ pub(super) enum MomentProblem {
         found: usize,
     },
     #[error(
-        "walker {pedestrian} has the coordinate {value} m in `{field}`; coordinates must be within 1000 km of the origin"
+        "pedestrian {pedestrian} has the coordinate {value} m in `{field}`; coordinates must be within 1000 km of the origin"
     )]
     Coordinate {
         pedestrian: usize,
@@ -50,7 +50,7 @@ pub(super) enum MomentProblem {
         value: f64,
     },
     #[error(
-        "hypothesis {hypothesis} of walker {pedestrian} has the weight {weight}, which is not between 0 and 1"
+        "hypothesis {hypothesis} of pedestrian {pedestrian} has the weight {weight}, which is not between 0 and 1"
     )]
     Weight {
         pedestrian: usize,
@@ -60,7 +60,7 @@ pub(super) enum MomentProblem {
     #[error("{0}")]
     Empty(&'static str),
     #[error(
-        "the pick `{show}` names walker {pedestrian}, and there are {pedestrians}, counted from 0"
+        "the pick `{show}` names pedestrian {pedestrian}, and there are {pedestrians}, counted from 0"
     )]
     Pick {
         show: crate::gallery::Show,

@@ -164,13 +164,13 @@ fn cases(moments: &[Moment]) -> Vec<(usize, &Moment, &Pick)> {
 
 fn meaning(show: Show) -> &'static str {
     match show {
-        Show::Convergence => "A walker who reaches the goal of the representative hypothesis.",
+        Show::Convergence => "A pedestrian who reaches the goal of the representative hypothesis.",
         Show::Group => "People who walk together.",
         Show::SlowingDown => {
-            "A walker who slows down; where the forecast does too, its arrows grow shorter."
+            "A pedestrian who slows down; where the forecast does too, its arrows grow shorter."
         }
         Show::KeepingDistance => "People who pass each other and keep their distance.",
-        Show::Turning => "A walker who turns.",
+        Show::Turning => "A pedestrian who turns.",
     }
 }
 
@@ -193,12 +193,16 @@ pub(super) fn html(moments: &[Moment]) -> String {
         } else {
             format!(" (fold <code>{}</code>)", escape(&moment.fold))
         };
-        let plural = if who.len() == 1 { "walker" } else { "walkers" };
+        let plural = if who.len() == 1 {
+            "pedestrian"
+        } else {
+            "pedestrians"
+        };
         let _ = write!(
             html,
             "<figure>\n{figure}\n<figcaption>\n<h3>{}</h3>\n<p>{} {} of recording <code>{}</code>{}, \
              frame {}; forecast by {}.</p>\n<p class=\"rule\">Why this one: {}.</p>\n<button type=\"button\" \
-             data-moment=\"{at}\" data-walker=\"{pedestrian}\">Play this moment</button>\n</figcaption>\n</figure>\n",
+             data-moment=\"{at}\" data-pedestrian=\"{pedestrian}\">Play this moment</button>\n</figcaption>\n</figure>\n",
             capitalised(&pick.show.to_string()),
             meaning(pick.show),
             capitalised(&format!("{plural} {}", who.join(", "))),

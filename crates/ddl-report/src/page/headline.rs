@@ -25,7 +25,7 @@ pub(super) fn headline(report: &Report) -> String {
         );
     }
     let caption = format!(
-        "minADE and minFDE in metres, less is better; the number is minADE. {} K: hypotheses a walker, the best of which is scored. {} Every number stands in the tables below.",
+        "minADE and minFDE in metres, less is better; the number is minADE. {} K: hypotheses a pedestrian, the best of which is scored. {} Every number stands in the tables below.",
         standing.in_words,
         shown_of(standing.lines.len())
     );
@@ -126,7 +126,7 @@ fn facts(standing: &Standing, subject: &StandingLine) -> String {
         (
             "On",
             format!(
-                "{pedestrians} walkers in {windows} test windows of {}; scored: {}",
+                "{pedestrians} pedestrians in {windows} test windows of {}; scored: {}",
                 standing.folds.join(", "),
                 standing
                     .shared

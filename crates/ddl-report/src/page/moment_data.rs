@@ -33,7 +33,7 @@ pub(super) struct MomentData<'a> {
     frame: i64,
     frame_step: i64,
     picks: &'a [Pick],
-    #[serde(rename = "walkers")]
+    #[serde(rename = "pedestrians")]
     pedestrians: Vec<PedestrianData<'a>>,
 }
 
@@ -100,7 +100,7 @@ fn problem(moment: &Moment, truth: Truth) -> Option<MomentProblem> {
 
 fn of_pedestrian(pedestrian: usize, who: &MomentPedestrian, truth: Truth) -> Option<MomentProblem> {
     if who.hypotheses.is_empty() {
-        return Some(MomentProblem::Empty("a walker has no hypothesis"));
+        return Some(MomentProblem::Empty("a pedestrian has no hypothesis"));
     }
     let path = |field, path: &[Position], expected| {
         if path.len() != expected {

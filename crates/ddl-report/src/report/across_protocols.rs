@@ -10,7 +10,7 @@ use ddl_eval::Protocol;
 
 const NOTE: &str = "The same windows and folds in every line, from the published pipeline to the honest one. Under `published` the goal of \
     each pedestrian is chosen with the true end among those of the published estimator, whose query reads one future frame; then the \
-    best of 20 noise samples on it is kept, of the epoch that is best on test walkers; steps are plain Euler's. The line with the \
+    best of 20 noise samples on it is kept, of the epoch that is best on test pedestrians; steps are plain Euler's. The line with the \
     published goals, all 20 kept, under `fair` has the same estimator without that frame, and nothing is chosen but the best of its 20 \
     hypotheses. The other lines under `fair` go to the forecaster's own goals, and under `single` to one that stands for them. Which \
     training each line had stands beside the tables above.";

@@ -7,9 +7,9 @@ use super::{
 use crate::document::{Part, Table};
 use ddl_eval::{CategoryScores, category::Category};
 
-pub(super) const LEGEND: &str = "By category of walker: minADE/minFDE in metres, mean over the walkers of the folds named, which all \
-    forecasters of the table have (not over the folds: some hold few walkers of a kind). First the walker's own motion, then the \
-    types of TrajNet++ (static, linear, interacting, non-interacting), then the kinds of interaction, of which a walker may have \
+pub(super) const LEGEND: &str = "By category of pedestrian: minADE/minFDE in metres, mean over the pedestrians of the folds named, which all \
+    forecasters of the table have (not over the folds: some hold few pedestrians of a kind). First the pedestrian's own motion, then the \
+    types of TrajNet++ (static, linear, interacting, non-interacting), then the kinds of interaction, of which a pedestrian may have \
     several. Categories are told with the true future, after the forecasts are made.";
 
 /// One table with a line a category and a column a forecaster; nothing where no row knows its categories, or no fold is shared.
@@ -28,7 +28,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     if known.is_empty() || folds.is_empty() {
         return Vec::new();
     }
-    let columns = ["category", "walkers"].map(str::to_owned).into_iter();
+    let columns = ["category", "pedestrians"].map(str::to_owned).into_iter();
     let mut table = Table::new(columns.chain(known.iter().map(|(_, label)| label.clone())));
     for category in Category::all() {
         let cells: Vec<Option<Pooled>> = known
@@ -46,9 +46,9 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
         table.row(start.into_iter().chain(cells));
     }
     vec![
-        Part::subheading("By category of walker"),
+        Part::subheading("By category of pedestrian"),
         Part::Table(table.captioned(format!(
-            "minADE/minFDE in metres by category of walker, pooled over {}. {}",
+            "minADE/minFDE in metres by category of pedestrian, pooled over {}. {}",
             folds.join(", "),
             group.conditions_in_words()
         ))),

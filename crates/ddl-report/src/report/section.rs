@@ -38,7 +38,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     more.extend(significance::parts(group));
     more.extend(categories::parts(group));
     parts.push(Part::Details {
-        summary: "Further metrics, the forecast as a whole, how sure the means are, by category of walker".to_owned(),
+        summary: "Further metrics, the forecast as a whole, how sure the means are, by category of pedestrian".to_owned(),
         parts: more,
     });
     parts
@@ -67,7 +67,11 @@ fn headline(group: &ResultGroup<'_>) -> Table {
         .chain(["mean"]);
     let mut table = Table::new(columns);
     let pedestrians = folds.iter().map(|fold| counts(group.pedestrians(fold)));
-    table.row(["walkers scored".to_owned()].into_iter().chain(pedestrians));
+    table.row(
+        ["pedestrians scored".to_owned()]
+            .into_iter()
+            .chain(pedestrians),
+    );
     for (line, label) in group.labelled() {
         table.row([label].into_iter().chain(errors(line, &folds)));
     }

@@ -54,7 +54,7 @@ fn every_role_is_drawn_and_named() {
         "\nhotel, pedestrian 9\n",
         "\nobserved, 3.2 s\n",
         "\ntruth, 4.8 s, and its end\n",
-        "\nhow similar walkers went on\n",
+        "\nhow similar pedestrians went on\n",
         "\ngoals of 1, 5, 20 % probability\n",
         "\ngoal nearest the true end\n",
         "\nAxes: metres from the last observed position\n",
@@ -126,7 +126,7 @@ fn experts_that_lead_far_away_are_cut_and_do_not_shrink_the_pedestrian() {
         let across = |line: &str| line.split(" cy=").next().map(str::to_owned);
         lines.filter_map(across).collect()
     };
-    assert!(!bare.contains("similar walkers") && !bare.contains("class=\"expert\""));
+    assert!(!bare.contains("similar pedestrians") && !bare.contains("class=\"expert\""));
     // The panel stands as it stood across: only the legend has changed. Its shapes come first.
     assert_eq!(
         circles(&svg)[LEGEND_CIRCLES..],

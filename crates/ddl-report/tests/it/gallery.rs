@@ -100,7 +100,7 @@ fn the_case_shown_is_the_median_one() {
     assert_eq!(shown, Some(errors[(errors.len() - 1) / 2]));
     assert!(
         pick.rule
-            .starts_with(&format!("of {} such walkers", errors.len()))
+            .starts_with(&format!("of {} such pedestrians", errors.len()))
     );
 }
 

@@ -273,28 +273,28 @@ fn what_is_not_whole_is_refused_by_name() {
     let cases: [Fault; 7] = [
         (
             |m| m.pedestrians[1].truth.truncate(11),
-            "walker 1 has 11 positions in `truth`, not 12",
+            "pedestrian 1 has 11 positions in `truth`, not 12",
         ),
         (
             |m| m.pedestrians[0].hypotheses[1].positions[3][0] = f64::NAN,
-            "walker 0 has the coordinate NaN m in `hypotheses`; coordinates must be within",
+            "pedestrian 0 has the coordinate NaN m in `hypotheses`; coordinates must be within",
         ),
         (
             |m| m.pedestrians[0].hypotheses[1].goal = Some([0.0, 1e9]),
-            "walker 0 has the coordinate 1000000000 m in `goal`; coordinates must be within",
+            "pedestrian 0 has the coordinate 1000000000 m in `goal`; coordinates must be within",
         ),
         (
             |m| m.pedestrians[0].hypotheses[1].weight = -0.5,
-            "hypothesis 1 of walker 0 has the weight -0.5, which is not between 0 and 1",
+            "hypothesis 1 of pedestrian 0 has the weight -0.5, which is not between 0 and 1",
         ),
         (|m| m.pedestrians.clear(), "there is nobody in it"),
         (
             |m| m.pedestrians[1].hypotheses.clear(),
-            "a walker has no hypothesis",
+            "a pedestrian has no hypothesis",
         ),
         (
             |m| m.picks = vec![Pick::new(Show::Group, vec![0, 2], "")],
-            "the pick `walking together` names walker 2, and there are 2, counted from 0",
+            "the pick `walking together` names pedestrian 2, and there are 2, counted from 0",
         ),
     ];
     for (change, expected) in cases {
@@ -350,7 +350,7 @@ proptest! {
         pedestrian.hypotheses[0].positions = metres[20..].to_vec();
         let html = with_moments(&[moment]);
         let data: Value = serde_json::from_str(embedded(&html, "moments-json")).unwrap();
-        let data = &data[0]["walkers"][0];
+        let data = &data[0]["pedestrians"][0];
         let (observed, last) = walked([0, 0], &data["observed"]);
         prop_assert_eq!(&observed[..], &metres[..8]);
         prop_assert_eq!(&walked(last, &data["truth"]).0[..], &metres[8..20]);

@@ -25,9 +25,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let cpu = ComputeDevice::open(DeviceChoice::Cpu)?;
     let network = TorchNetwork::with_precision(config, 1, cpu, tch::Kind::Double)?;
-    // How many walkers there are makes no difference to the number of operations.
+    // How many pedestrians there are makes no difference to the number of operations.
     let training = TrainingConfig {
-        batch_walkers: 16,
+        batch_pedestrians: 16,
         ..TrainingConfig::published()
     };
     let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);

@@ -9,10 +9,10 @@ use ddl_network::{NetworkError, visibility};
 use std::rc::Rc;
 use tch::{Device, Kind, Tensor};
 
-/// The walkers of several windows, one after the other, with who sees whom.
+/// The pedestrians of several windows, one after the other, with who sees whom.
 ///
 /// # Shapes
-/// T frames, P walkers in all: positions `[T, P, 2]` in metres; who sees whom in the first M frames.
+/// T frames, P pedestrians in all: positions `[T, P, 2]` in metres; who sees whom in the first M frames.
 #[derive(Debug)]
 pub struct SceneBatch {
     pub(crate) positions: Tensor,
@@ -35,26 +35,26 @@ impl SceneBatch {
         device: Device,
         kind: Kind,
     ) -> Result<Self, StarError> {
-        let walkers: usize = windows.iter().map(|window| window.len()).sum();
-        if walkers == 0 {
+        let pedestrians: usize = windows.iter().map(|window| window.len()).sum();
+        if pedestrians == 0 {
             let got = format!("{} windows", windows.len());
             let expected = "at least one window with a pedestrian";
             return Err(NetworkError::shape("scene batch", expected, got).into());
         }
-        let mut positions = vec![0.0; frames * walkers * 2];
+        let mut positions = vec![0.0; frames * pedestrians * 2];
         let mut first = 0;
         for window in windows {
             check_length(window, frames)?;
             for i in 0..window.len() {
                 for (t, [x, y]) in window.track(i).iter().take(frames).enumerate() {
-                    let at = 2 * (t * walkers + first + i);
+                    let at = 2 * (t * pedestrians + first + i);
                     positions[at] = *x;
                     positions[at + 1] = *y;
                 }
             }
             first += window.len();
         }
-        let (t, p) = (frames as i64, walkers as i64);
+        let (t, p) = (frames as i64, pedestrians as i64);
         let visible = visibility(windows, mask_frames, neighbour_box);
         let neighbours = Neighbours::new(visible, device, kind);
         Ok(Self {
@@ -94,8 +94,8 @@ impl SceneBatch {
         }
     }
 
-    /// Walkers in all windows together.
-    pub fn walkers(&self) -> usize {
+    /// Pedestrians in all windows together.
+    pub fn pedestrians(&self) -> usize {
         self.positions.size()[1] as usize
     }
 

@@ -65,14 +65,14 @@ impl<'a> Emission<'a> {
         }
     }
 
-    /// What the tokens mean: (a, b, c), or (x, y), a walker. Noise is shared by all walkers.
+    /// What the tokens mean: (a, b, c), or (x, y), a pedestrian. Noise is shared by all pedestrians.
     /// Shapes: `tokens` `[B, P, width]` -> `[B, P, outputs]`.
     pub(crate) fn of(&self, tokens: &Tensor) -> Tensor {
-        let (batch, walkers) = (tokens.size()[0], tokens.size()[1]);
+        let (batch, pedestrians) = (tokens.size()[0], tokens.size()[1]);
         let bias = Some(self.bias);
         match &self.noise {
             Prepared::Draws(noise) => {
-                let noise = noise.unsqueeze(1).expand([batch, walkers, -1], false);
+                let noise = noise.unsqueeze(1).expand([batch, pedestrians, -1], false);
                 Tensor::cat(&[tokens, &noise], -1).linear(self.weight, bias)
             }
             Prepared::Expected { weight, spread } => {

@@ -3,7 +3,7 @@
 use ddl_dynamics::{MotionBounds, StepTime};
 use tch::Tensor;
 
-/// Within this distance (m) a walker is at the goal: squares of smaller offsets underflow in f32.
+/// Within this distance (m) a pedestrian is at the goal: squares of smaller offsets underflow in f32.
 const SMALLEST_NORM: f64 = 1e-18;
 /// Added to the square of half the difference of the eigenvalues (m/s), whose root has no derivative at 0.
 const SMALLEST_RADIUS_SQUARED: f64 = 1e-14;

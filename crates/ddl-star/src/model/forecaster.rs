@@ -34,7 +34,7 @@ impl TorchNetwork {
         let half_box = self.config().neighbour_box;
         let mut scenes = SceneBatch::new(&views, OBSERVED, OBSERVED, half_box, device, kind)?;
         let tensor = |of: &[f64], shape: &[i64]| tensor(of, shape, (kind, device));
-        let pedestrians = scenes.walkers() as i64;
+        let pedestrians = scenes.pedestrians() as i64;
         if let Some(shares) = &batch.shares {
             scenes.share = tensor(shares, &[1, pedestrians, 1])?;
         }

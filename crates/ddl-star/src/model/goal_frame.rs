@@ -5,7 +5,7 @@ use super::own_motion;
 use ddl_data::OBSERVED;
 use tch::Tensor;
 
-/// Nearer to its goal than this (metres) a walker has the axes of the world.
+/// Nearer to its goal than this (metres) a pedestrian has the axes of the world.
 const SMALLEST_DISTANCE: f64 = 1e-6;
 /// Squares of pivots below this count as this, in m/s.
 const SMALLEST_PIVOT: f64 = 1e-12;
@@ -57,7 +57,7 @@ impl GoalFrame {
     ///
     /// # Numerics
     /// Where the first row of R^T L vanishes (L singular, its null space along the world's x axis) the square of the first pivot is raised to 1e-12 m/s and
-    /// what the second row is worth is lost: the walker stands, and P is still positive definite.
+    /// what the second row is worth is lost: the pedestrian stands, and P is still positive definite.
     pub(crate) fn factors_to_world(&self, factors: &Tensor) -> Tensor {
         let l = |i: i64| factors.narrow(-1, i, 1);
         let (a, b, c) = (l(0), l(1), l(2));

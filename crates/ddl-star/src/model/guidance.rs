@@ -1,4 +1,4 @@
-//! Where the walkers of a batch are led, and what the network's input and output mean on the way.
+//! Where the pedestrians of a batch are led, and what the network's input and output mean on the way.
 
 use super::flow::{FlowConstants, StepBounds, bounded_step, natural_gradient_step};
 use super::goal_frame::GoalFrame;

@@ -54,9 +54,10 @@ impl Neighbours {
                 for (place, row) in mask.chunks_exact_mut(length).enumerate() {
                     row[place % length] = 0.0;
                 }
-                for (walker, seen) in scenes.pairs(frame) {
-                    let [walker, seen] = [walker, seen].map(|walker| packing.places()[walker]);
-                    mask[walker * length + seen % length] = 0.0;
+                for (pedestrian, seen) in scenes.pairs(frame) {
+                    let [pedestrian, seen] =
+                        [pedestrian, seen].map(|pedestrian| packing.places()[pedestrian]);
+                    mask[pedestrian * length + seen % length] = 0.0;
                 }
             }
             let shape = [frames, rows, length, length].map(|size| size as i64);
@@ -65,7 +66,7 @@ impl Neighbours {
                 Tensor::from_slice(&numbers).to_device(self.device)
             };
             MaskedRows {
-                walkers: indices(&packing.walkers()),
+                pedestrians: indices(&packing.pedestrians()),
                 places: indices(packing.places()),
                 mask: Tensor::from_slice(&mask)
                     .to_kind(self.kind)
@@ -78,11 +79,11 @@ impl Neighbours {
 
 #[derive(Debug)]
 struct MaskedRows {
-    /// The walker at each place, `[R * L]`.
-    walkers: Tensor,
-    /// The place of each walker, `[P]`.
+    /// The pedestrian at each place, `[R * L]`.
+    pedestrians: Tensor,
+    /// The place of each pedestrian, `[P]`.
     places: Tensor,
-    /// `[frames, R, L, L]`, 0 where a walker sees another or itself, -inf elsewhere.
+    /// `[frames, R, L, L]`, 0 where a pedestrian sees another or itself, -inf elsewhere.
     mask: Tensor,
 }
 
@@ -94,12 +95,12 @@ pub struct SeenNeighbours {
 }
 
 impl SeenNeighbours {
-    /// Walkers in rows of one length, for libtorch.
+    /// Pedestrians in rows of one length, for libtorch.
     /// Shapes: `x` `[B, P, n]` -> `[B * R, L, n]`.
     pub(crate) fn in_rows(&self, x: &Tensor) -> Tensor {
         let rows = self.neighbours.rows();
         let length = rows.mask.size()[3];
-        x.index_select(1, &rows.walkers)
+        x.index_select(1, &rows.pedestrians)
             .view([-1, length, x.size()[2]])
     }
 
@@ -107,7 +108,7 @@ impl SeenNeighbours {
     /// Shapes: `x` `[B * R, L, n]` -> `[B, P, n]`.
     pub(crate) fn out_of_rows(&self, x: &Tensor) -> Tensor {
         let rows = self.neighbours.rows();
-        let (places, width) = (rows.walkers.size()[0], x.size()[2]);
+        let (places, width) = (rows.pedestrians.size()[0], x.size()[2]);
         x.reshape([-1, places, width]).index_select(1, &rows.places)
     }
 

@@ -1,4 +1,4 @@
-//! Scenes in rows of one length, so that attention among their walkers is a batch of small matrices.
+//! Scenes in rows of one length, so that attention among their pedestrians is a batch of small matrices.
 
 use std::cmp::Reverse;
 use std::ops::Range;
@@ -6,12 +6,12 @@ use std::ops::Range;
 /// Rows are a multiple of this long: what libtorch's fused attention on CUDA takes without copying the mask.
 const ALIGNMENT: usize = 8;
 
-/// Where the walkers of some scenes stand in rows of about the length of the largest scene, each with whole scenes.
+/// Where the pedestrians of some scenes stand in rows of about the length of the largest scene, each with whole scenes.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Packing {
     rows: usize,
     length: usize,
-    /// For each walker, its place: `row * length + column`.
+    /// For each pedestrian, its place: `row * length + column`.
     places: Vec<usize>,
 }
 
@@ -34,8 +34,8 @@ impl Packing {
                 });
             let first = row * length + filled[row];
             filled[row] += scene.len();
-            for (walker, place) in scene.clone().zip(first..) {
-                places[walker] = place;
+            for (pedestrian, place) in scene.clone().zip(first..) {
+                places[pedestrian] = place;
             }
         }
         Self {
@@ -57,13 +57,13 @@ impl Packing {
         &self.places
     }
 
-    /// The walker at each place; the first walker where nobody stands.
-    pub(crate) fn walkers(&self) -> Vec<usize> {
-        let mut walkers = vec![0; self.rows * self.length];
-        for (walker, &place) in self.places.iter().enumerate() {
-            walkers[place] = walker;
+    /// The pedestrian at each place; the first pedestrian where nobody stands.
+    pub(crate) fn pedestrians(&self) -> Vec<usize> {
+        let mut pedestrians = vec![0; self.rows * self.length];
+        for (pedestrian, &place) in self.places.iter().enumerate() {
+            pedestrians[place] = pedestrian;
         }
-        walkers
+        pedestrians
     }
 }
 
@@ -84,17 +84,17 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_walker_has_a_place_and_every_scene_one_row(
+        fn every_pedestrian_has_a_place_and_every_scene_one_row(
             sizes in prop::collection::vec(1_usize..60, 1..40),
         ) {
             let scenes = scenes(&sizes);
             let packing = Packing::new(&scenes);
-            let walkers: usize = sizes.iter().sum();
-            let at = packing.walkers();
-            prop_assert_eq!(packing.places().len(), walkers);
+            let pedestrians: usize = sizes.iter().sum();
+            let at = packing.pedestrians();
+            prop_assert_eq!(packing.places().len(), pedestrians);
             prop_assert_eq!(at.len(), packing.rows() * packing.length());
-            for (walker, &place) in packing.places().iter().enumerate() {
-                prop_assert_eq!(at[place], walker);
+            for (pedestrian, &place) in packing.places().iter().enumerate() {
+                prop_assert_eq!(at[place], pedestrian);
             }
             for scene in &scenes {
                 let places = &packing.places()[scene.clone()];
@@ -106,7 +106,7 @@ mod tests {
             }
             // any two rows together hold more than one row has room for
             let half_full = packing.rows().saturating_sub(1) * packing.length();
-            prop_assert!(half_full < 2 * walkers);
+            prop_assert!(half_full < 2 * pedestrians);
         }
     }
 }

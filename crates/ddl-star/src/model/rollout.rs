@@ -31,7 +31,7 @@ impl TorchNetwork {
     /// One-step-ahead positions: from the true positions up to each frame, the next one.
     ///
     /// # Shapes
-    /// `batch` of T frames with neighbours of at least T - 1, T at least 8 in the walkers' own frames and without goal shift; `goals`
+    /// `batch` of T frames with neighbours of at least T - 1, T at least 8 in the pedestrians' own frames and without goal shift; `goals`
     /// `[P, 2]`; `noise` one vector, or none -> `[T - 1, P, 2]`, the forecasts of frames 1..T.
     pub fn teacher_forced(
         &self,
@@ -199,7 +199,7 @@ impl TorchNetwork {
         }
     }
 
-    /// Where the walkers are led, as this network reads it. Shapes: `batch` of at least 8 frames, unless the network
+    /// Where the pedestrians are led, as this network reads it. Shapes: `batch` of at least 8 frames, unless the network
     /// reads positions relative to the goal in the world's frame; `goals` `[.., P, 2]`.
     fn course(&self, batch: &SceneBatch, goals: &Tensor, rule: StepRule) -> Guidance {
         let config = self.config();
@@ -240,7 +240,7 @@ impl TorchNetwork {
     }
 }
 
-/// Positions relative to the mean over all walkers of the scene and all frames so far.
+/// Positions relative to the mean over all pedestrians of the scene and all frames so far.
 /// Shapes: `positions` `[T, P, 2]` -> the same.
 fn centre(batch: &SceneBatch, positions: &Tensor) -> Tensor {
     let frames = positions.size()[0];

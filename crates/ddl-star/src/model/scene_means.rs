@@ -1,4 +1,4 @@
-//! The mean over the walkers of each scene.
+//! The mean over the pedestrians of each scene.
 
 use std::ops::Range;
 use tch::{Device, Kind, Tensor};
@@ -8,11 +8,11 @@ use tch::{Device, Kind, Tensor};
 pub(crate) struct SceneMeans {
     scenes: i64,
     largest: i64,
-    /// `[S * largest]`, the walkers of each scene; its first walker again where it has no more.
-    walkers: Tensor,
-    /// `[S, largest, 1]`, 1 / size for the walkers of a scene, 0 for what fills it up.
+    /// `[S * largest]`, the pedestrians of each scene; its first pedestrian again where it has no more.
+    pedestrians: Tensor,
+    /// `[S, largest, 1]`, 1 / size for the pedestrians of a scene, 0 for what fills it up.
     shares: Tensor,
-    /// `[P]`, the scene of each walker.
+    /// `[P]`, the scene of each pedestrian.
     scene_of: Tensor,
 }
 
@@ -20,12 +20,13 @@ impl SceneMeans {
     pub(crate) fn new(scenes: &[Range<usize>], device: Device, kind: Kind) -> Self {
         let largest = scenes.iter().map(Range::len).max().unwrap_or(0);
         let places = scenes.len() * largest;
-        let (mut walkers, mut shares) = (Vec::with_capacity(places), Vec::with_capacity(places));
+        let (mut pedestrians, mut shares) =
+            (Vec::with_capacity(places), Vec::with_capacity(places));
         let mut scene_of = Vec::new();
         for (index, scene) in scenes.iter().enumerate() {
             for place in 0..largest {
                 let real = place < scene.len();
-                walkers.push((scene.start + if real { place } else { 0 }) as i64);
+                pedestrians.push((scene.start + if real { place } else { 0 }) as i64);
                 shares.push(if real { 1.0 / scene.len() as f64 } else { 0.0 });
             }
             scene_of.extend(std::iter::repeat_n(index as i64, scene.len()));
@@ -34,7 +35,7 @@ impl SceneMeans {
         Self {
             scenes,
             largest,
-            walkers: Tensor::from_slice(&walkers).to_device(device),
+            pedestrians: Tensor::from_slice(&pedestrians).to_device(device),
             shares: Tensor::from_slice(&shares)
                 .reshape([scenes, largest, 1])
                 .to_kind(kind)
@@ -43,12 +44,12 @@ impl SceneMeans {
         }
     }
 
-    /// For every walker, the mean of `x` over its scene.
+    /// For every pedestrian, the mean of `x` over its scene.
     /// Shapes: `x` `[B, P, n]` -> the same.
     pub(crate) fn of(&self, x: &Tensor) -> Tensor {
         let (batch, width) = (x.size()[0], x.size()[2]);
         let side_by_side =
-            x.index_select(1, &self.walkers)
+            x.index_select(1, &self.pedestrians)
                 .view([batch, self.scenes, self.largest, width]);
         (side_by_side * &self.shares)
             .sum_dim_intlist([2i64].as_slice(), false, None::<Kind>)
@@ -57,7 +58,7 @@ impl SceneMeans {
 
     pub(crate) fn shallow_clone(&self) -> Self {
         Self {
-            walkers: self.walkers.shallow_clone(),
+            pedestrians: self.pedestrians.shallow_clone(),
             shares: self.shares.shallow_clone(),
             scene_of: self.scene_of.shallow_clone(),
             ..*self

@@ -128,7 +128,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn gradients_are_those_of_libtorch(uses in 1_usize..6, walkers in 1_i64..5, seed in 0_u64..99) {
+        fn gradients_are_those_of_libtorch(uses in 1_usize..6, pedestrians in 1_i64..5, seed in 0_u64..99) {
             let rng = stream(seed, Stage::Weights, 0);
             let mut layout = Layout::default();
             let mut uniform = |name: &str, shape: &[usize]| layout.uniform(name.to_owned(), shape, 1.0);
@@ -140,7 +140,7 @@ mod tests {
             let of = |tensors: [usize; 2]| tensors.map(|tensor| parameters.tensors()[tensor].shallow_clone());
             let (first, second) = (of(first), of(second));
             tch::manual_seed(seed as i64);
-            let start = Tensor::randn([2, walkers, 3], (Kind::Double, Device::Cpu));
+            let start = Tensor::randn([2, pedestrians, 3], (Kind::Double, Device::Cpu));
             let loss = |linear: &dyn Fn(&Tensor, &[Tensor; 2]) -> Tensor| {
                 let mut x = start.shallow_clone();
                 let mut sum = first[0].square().sum(Kind::Double);

@@ -1,4 +1,4 @@
-//! Changes to a batch that leave a plausible scene. A fold's windows overlap: what identifies a walker must change from
+//! Changes to a batch that leave a plausible scene. A fold's windows overlap: what identifies a pedestrian must change from
 //! visit to visit, or it is learned by heart.
 
 use super::data::{RememberedViews, Views};
@@ -16,13 +16,13 @@ pub(crate) fn augment(
     training: &ProposalTraining,
 ) -> (Views, Tensor) {
     let size = future.size();
-    let per_walker = [size[0], size[1]];
+    let per_pedestrian = [size[0], size[1]];
     let options = (future.kind(), future.device());
-    let uniform = || Tensor::rand(per_walker, options) * 2.0 - 1.0;
+    let uniform = || Tensor::rand(per_pedestrian, options) * 2.0 - 1.0;
     let scale = (uniform() * training.scale).exp();
     // Not `sign`, which has a third value.
     let mirror = uniform().ge(0.0).to_kind(options.0) * 2.0 - 1.0;
-    let angle = Tensor::randn(per_walker, options) * training.turn;
+    let angle = Tensor::randn(per_pedestrian, options) * training.turn;
     let (cos, sin) = (&scale * angle.cos(), &scale * angle.sin());
     // Row vectors: p' = p [[cos, sin], [-m sin, m cos]], a turn after a mirror image in the x axis.
     let matrix = Tensor::stack(
@@ -38,7 +38,7 @@ pub(crate) fn augment(
     let neighbours = &neighbours
         + noise(&whole_track, training.neighbour_jitter)
         + noise(&neighbours, NEIGHBOUR_NOISE);
-    let seeing = Tensor::rand(per_walker, options)
+    let seeing = Tensor::rand(per_pedestrian, options)
         .ge(training.blindness)
         .to_kind(Kind::Float)
         .to_kind(options.0)

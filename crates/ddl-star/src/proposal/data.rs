@@ -105,7 +105,7 @@ impl Views {
         }
     }
 
-    /// The same walkers for each of `members` members: `[B, ..]` -> `[M, B, ..]`, without a copy.
+    /// The same pedestrians for each of `members` members: `[B, ..]` -> `[M, B, ..]`, without a copy.
     pub(crate) fn for_each_of(&self, members: i64) -> Self {
         let repeat = |tensor: &Tensor| {
             let mut shape = tensor.size();

@@ -13,7 +13,7 @@ pub(crate) struct LossWeights {
     pub(crate) probability: f64,
 }
 
-/// Mean over walkers of the (relaxed) distance of the nearest proposal, plus the cross-entropy of
+/// Mean over pedestrians of the (relaxed) distance of the nearest proposal, plus the cross-entropy of
 /// the nearest one's probability; summed over members, which learn apart.
 /// Shapes: `future` `[M, B, 12, 2]` -> the loss to descend, and the distance part as the mean over members
 /// (metres), both scalar.
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn only_the_nearest_count_and_fewer_of_them_as_it_goes() {
-        // One member, one walker that ends at (5, 0); ends at distances 1, 3 and 2.
+        // One member, one pedestrian that ends at (5, 0); ends at distances 1, 3 and 2.
         let future = Tensor::zeros([1, 1, 12, 2], (Kind::Double, Device::Cpu));
         future.select(2, 11).copy_(&Tensor::from_slice(&[5.0, 0.0]));
         let proposals = Proposals {

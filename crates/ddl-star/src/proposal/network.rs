@@ -95,7 +95,7 @@ impl TorchProposals {
         self.kind
     }
 
-    /// Proposes ends for each of the walkers.
+    /// Proposes ends for each of the pedestrians.
     ///
     /// # Shapes
     /// One [`ProposedEnds`] a view, in their order: places in metres ahead and to the left.

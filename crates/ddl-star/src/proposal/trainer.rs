@@ -52,7 +52,7 @@ pub struct ProposalTrainer {
 }
 
 impl ProposalTrainer {
-    /// Prepares training on the examples, and on `reversed` ones, walkers as if time ran backwards; there may be none.
+    /// Prepares training on the examples, and on `reversed` ones, pedestrians as if time ran backwards; there may be none.
     ///
     /// # Errors
     /// [`StarError::Network`] for a bad configuration, [`StarError::NoTrainingWindows`] without

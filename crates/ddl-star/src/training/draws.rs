@@ -33,7 +33,7 @@ pub(crate) struct StepDraw {
     pub(crate) libtorch: i64,
     /// Seed of the kernels' dropout.
     pub(crate) kernels: u64,
-    /// The noise vector that all walkers and frames share, `[1, noise]`.
+    /// The noise vector that all pedestrians and frames share, `[1, noise]`.
     pub(crate) noise: Tensor,
     /// The images of the axes under the step's rotation and mirror, `[2, 2]`.
     pub(crate) turn: Option<Tensor>,

@@ -3,7 +3,7 @@
 use tch::{Kind, Tensor};
 
 /// Squared distance between forecast and true positions, summed over x and y, averaged over
-/// walkers and steps.
+/// pedestrians and steps.
 ///
 /// # Shapes
 /// Both `[T, P, 2]` -> scalar, in square metres.
@@ -14,7 +14,7 @@ pub fn mean_squared_distance(forecast: &Tensor, truth: &Tensor) -> Tensor {
         .mean(None::<Kind>)
 }
 
-/// Distance between forecast and true positions, averaged over walkers and steps: the average displacement error.
+/// Distance between forecast and true positions, averaged over pedestrians and steps: the average displacement error.
 ///
 /// # Shapes
 /// Both `[T, P, 2]` -> scalar, in metres.

@@ -10,7 +10,7 @@ use tch::{Device, Kind, Tensor};
 #[derive(Debug)]
 pub(crate) struct PreparedBatches {
     windows: Vec<Window>,
-    /// One a walker of each window; `None` for the true ends.
+    /// One a pedestrian of each window; `None` for the true ends.
     goals: Option<Vec<Vec<Position>>>,
     neighbour_box: f64,
     device: Device,
@@ -18,7 +18,7 @@ pub(crate) struct PreparedBatches {
     made: Vec<OnceCell<TrainingBatch>>,
 }
 
-/// A batch with its future, and where its walkers are led.
+/// A batch with its future, and where its pedestrians are led.
 #[derive(Debug)]
 pub(crate) struct TrainingBatch {
     pub(crate) scenes: SceneBatch,
@@ -36,7 +36,7 @@ impl TrainingBatch {
     }
 
     /// The same as if every observed coordinate were off by a normal error, whose deviation is uniform from 0 to
-    /// `jitter` (m) for each walker. Future and goals stay where they are. Draws from libtorch's generator.
+    /// `jitter` (m) for each pedestrian. Future and goals stay where they are. Draws from libtorch's generator.
     pub(crate) fn jittered(self, jitter: f64) -> Self {
         let Self { scenes, goals } = self;
         let observed = scenes.positions.narrow(0, 0, OBSERVED as i64);
@@ -138,7 +138,7 @@ mod tests {
         let (observed, future) = (moved.slice(0, 0, 8, 1), moved.slice(0, 8, 20, 1));
         assert_eq!(future, future.zeros_like());
         assert_eq!(off.goals, exact.goals);
-        // Every walker, frame and axis has an error of its own, some walkers' are small, and over all of them the mean
+        // Every pedestrian, frame and axis has an error of its own, some pedestrians' are small, and over all of them the mean
         // square of a uniform deviation is a third of that of the largest.
         let squares = observed.square();
         let all = squares.mean(Kind::Double).double_value(&[]).sqrt();

@@ -16,7 +16,7 @@ pub(crate) struct Schedule {
 }
 
 impl Schedule {
-    /// Shuffles the windows and gathers them into batches of more than `batch_walkers` walkers; an
+    /// Shuffles the windows and gathers them into batches of more than `batch_pedestrians` pedestrians; an
     /// incomplete last batch is dropped, unless it is the only one.
     pub(crate) fn new(windows: &[Window], config: &TrainingConfig) -> Self {
         let mut order: Vec<usize> = (0..windows.len()).collect();
@@ -25,23 +25,25 @@ impl Schedule {
             order.swap(last, rng.random_range(0..=last));
         }
         let mut batches = Vec::new();
-        let (mut batch, mut walkers) = (Vec::new(), 0);
+        let (mut batch, mut pedestrians) = (Vec::new(), 0);
         for index in order {
             batch.push(index);
-            walkers += windows[index].len();
-            if walkers > config.batch_walkers {
+            pedestrians += windows[index].len();
+            if pedestrians > config.batch_pedestrians {
                 batches.push(std::mem::take(&mut batch));
-                walkers = 0;
+                pedestrians = 0;
             }
         }
         if batches.is_empty() && !batch.is_empty() {
             batches.push(batch);
         }
-        let steps_per_epoch = config.walkers_per_epoch.map_or(batches.len(), |walkers| {
-            walkers
-                .div_ceil(config.batch_walkers)
-                .clamp(1, batches.len().max(1))
-        });
+        let steps_per_epoch = config
+            .pedestrians_per_epoch
+            .map_or(batches.len(), |pedestrians| {
+                pedestrians
+                    .div_ceil(config.batch_pedestrians)
+                    .clamp(1, batches.len().max(1))
+            });
         Self {
             batches,
             steps_per_epoch,

@@ -56,7 +56,7 @@ impl Trainer {
         Self::of(network, lessons, None, config)
     }
 
-    /// Prepares training of `network` on `windows`, whose walkers are led to `goals` instead of their true ends.
+    /// Prepares training of `network` on `windows`, whose pedestrians are led to `goals` instead of their true ends.
     ///
     /// # Shapes
     /// `goals[w][i]` is that of pedestrian i of window w, metres.
@@ -69,17 +69,17 @@ impl Trainer {
         goals: Vec<Vec<Position>>,
         config: TrainingConfig,
     ) -> Result<Self, StarError> {
-        let walkers: Vec<usize> = windows.iter().map(Window::len).collect();
+        let pedestrians: Vec<usize> = windows.iter().map(Window::len).collect();
         let given: Vec<usize> = goals.iter().map(Vec::len).collect();
-        if given != walkers {
-            let first = walkers.iter().zip(&given).position(|(a, b)| a != b);
+        if given != pedestrians {
+            let first = pedestrians.iter().zip(&given).position(|(a, b)| a != b);
             let (expected, got) = match first {
                 Some(w) => (
-                    format!("{} goals, one a walker, of window {w}", walkers[w]),
+                    format!("{} goals, one a pedestrian, of window {w}", pedestrians[w]),
                     format!("{}", given[w]),
                 ),
                 None => (
-                    format!("the goals of {} windows", walkers.len()),
+                    format!("the goals of {} windows", pedestrians.len()),
                     format!("those of {}", given.len()),
                 ),
             };

@@ -19,8 +19,8 @@ fn trainer(kind: Kind, read_every: usize) -> Trainer {
     let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
     let training = TrainingConfig {
         epochs: 2,
-        batch_walkers: 10,
-        walkers_per_epoch: Some(70),
+        batch_pedestrians: 10,
+        pedestrians_per_epoch: Some(70),
         seed: 5,
         ..TrainingConfig::published()
     };

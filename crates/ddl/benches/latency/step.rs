@@ -10,7 +10,7 @@ pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Resul
         epochs: 1_000_000, // never done
         ..TrainingConfig::published()
     };
-    let windows = one_batch(dataset, training.batch_walkers)?;
+    let windows = one_batch(dataset, training.batch_pedestrians)?;
     let scenes: Vec<usize> = windows.iter().map(Window::len).collect();
     let star = StarConfig::published(Variant::Full);
     let pool = rayon::ThreadPoolBuilder::new()
@@ -28,14 +28,14 @@ pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Resul
         side_by_side(clock, turns, [work])
     })?;
     Ok(format!(
-        "{} walkers in {} scenes, threads: {threads}: {step:.3} s ({time})",
+        "{} pedestrians in {} scenes, threads: {threads}: {step:.3} s ({time})",
         scenes.iter().sum::<usize>(),
         scenes.len(),
     ))
 }
 
-/// Training windows of few people each, as most recorded ones are, until they hold more than `walkers`: one batch.
-fn one_batch(dataset: &Dataset, walkers: usize) -> Result<Vec<Window>> {
+/// Training windows of few people each, as most recorded ones are, until they hold more than `pedestrians`: one batch.
+fn one_batch(dataset: &Dataset, pedestrians: usize) -> Result<Vec<Window>> {
     let windows = dataset
         .fold("corridor")?
         .training_windows(WindowRule::Complete);
@@ -44,7 +44,7 @@ fn one_batch(dataset: &Dataset, walkers: usize) -> Result<Vec<Window>> {
     for window in windows.into_iter().step_by(40) {
         count += window.len();
         batch.push(window);
-        if count > walkers {
+        if count > pedestrians {
             return Ok(batch);
         }
     }

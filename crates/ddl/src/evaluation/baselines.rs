@@ -5,7 +5,7 @@ use ddl_eval::{Conditions, Protocol, ResultRow, baseline};
 
 /// Measures the baselines on the test windows of some folds, under every window rule that the convention's tables have.
 ///
-/// With `test_walkers`, on a seeded part of at least so many walkers a fold: the part that [`evaluate`](crate::evaluate) takes.
+/// With `test_pedestrians`, on a seeded part of at least so many pedestrians a fold: the part that [`evaluate`](crate::evaluate) takes.
 ///
 /// # Errors
 /// When there is no fold of that name, or its windows cannot be scored.
@@ -13,13 +13,13 @@ pub fn measure_baselines(
     dataset: &Dataset,
     folds: &[String],
     protocols: &[Protocol],
-    test_walkers: Option<usize>,
+    test_pedestrians: Option<usize>,
     commit: &str,
 ) -> Result<Vec<ResultRow>, DdlError> {
     let mut rows = Vec::new();
     for name in folds {
         let convention = dataset.convention();
-        let test = TestSet::new(&dataset.fold(name)?, convention, test_walkers);
+        let test = TestSet::new(&dataset.fold(name)?, convention, test_pedestrians);
         for (rule, indices) in &test.rules {
             // a small part may hold no window of one of the rules
             if indices.is_empty() {

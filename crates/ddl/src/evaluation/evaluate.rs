@@ -18,13 +18,13 @@ use ddl_report::{Moment, gallery};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
-const WALKERS_A_REPORT: usize = 128;
+const PEDESTRIANS_A_REPORT: usize = 128;
 /// Protocols under which the windows alone are seen.
 const ALONE: [Protocol; 2] = [Protocol::Fair, Protocol::Single];
 /// Protocols under which their recordings have been watched until then.
 const WATCHING: [Protocol; 2] = [Protocol::Online, Protocol::OnlineSingle];
-/// Walkers of the test set on which the published protocol chooses its epoch, at most.
-const SELECTION_WALKERS: usize = 250;
+/// Pedestrians of the test set on which the published protocol chooses its epoch, at most.
+const SELECTION_PEDESTRIANS: usize = 250;
 
 /// What to measure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -36,8 +36,8 @@ pub struct EvaluationRequest {
     /// Recordings that are the validation part of own recordings, instead of that which a training would keep; only for models that know none of them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub validation_recordings: Vec<String>,
-    /// On at least so many test walkers, a seeded part; on all when `None`.
-    pub test_walkers: Option<usize>,
+    /// On at least so many test pedestrians, a seeded part; on all when `None`.
+    pub test_pedestrians: Option<usize>,
     /// Commit of the program, for the record.
     pub commit: String,
 }
@@ -45,8 +45,8 @@ pub struct EvaluationRequest {
 /// What the evaluation tells its observer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluationProgress {
-    /// Walkers forecast so far, and in all.
-    pub walkers: (usize, usize),
+    /// Pedestrians forecast so far, and in all.
+    pub pedestrians: (usize, usize),
     /// The protocol under way.
     pub protocol: Protocol,
 }
@@ -73,10 +73,10 @@ pub fn evaluate(
     observe: impl FnMut(&EvaluationProgress) -> ControlFlow<()>,
 ) -> Result<Evaluation, DdlError> {
     let part = (request.on, request.validation_recordings.as_slice());
-    let test = TestSet::of_run(model.goal_model(), dataset, part, request.test_walkers)?;
+    let test = TestSet::of_run(model.goal_model(), dataset, part, request.test_pedestrians)?;
     let asked = |some: &[Protocol]| some.iter().any(|p| request.protocols.contains(p));
     let passes = [&[Protocol::Published][..], &ALONE, &WATCHING].map(asked);
-    let total = test.walkers() * passes.iter().filter(|asked| **asked).count();
+    let total = test.pedestrians() * passes.iter().filter(|asked| **asked).count();
     if asked(&WATCHING) {
         model.goal_model().remembered_at_once()?;
     }
@@ -241,14 +241,14 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let protocol = Protocol::Published;
         let goal_model = self.model.goal_model();
         let estimator = goal_model.published_estimator(QuerySpan::PublishedFuture)?;
-        let mut walkers = 0;
+        let mut pedestrians = 0;
         let windows: Vec<Window> = self
             .test
             .headline()
             .take_while(|window| {
-                let first = walkers == 0;
-                walkers += window.len();
-                first || walkers <= SELECTION_WALKERS
+                let first = pedestrians == 0;
+                pedestrians += window.len();
+                first || pedestrians <= SELECTION_PEDESTRIANS
             })
             .cloned()
             .collect();
@@ -275,7 +275,8 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             })
         })?;
         let words = model.goal_model().words();
-        let selection = format!("best kept epoch on up to {SELECTION_WALKERS} TEST walkers");
+        let selection =
+            format!("best kept epoch on up to {SELECTION_PEDESTRIANS} TEST pedestrians");
         self.rows(protocol, &selection).of(&[
             Forecasted::model(&model.name(), forecasts.model.remove(0), None, words),
             Forecasted::lines_to(
@@ -301,12 +302,12 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let mut done = 0;
         while done < windows.len() {
             let rest = &windows[done..];
-            let mut walkers = 0;
+            let mut pedestrians = 0;
             let count = rest
                 .iter()
                 .position(|window| {
-                    walkers += window.len();
-                    walkers >= WALKERS_A_REPORT
+                    pedestrians += window.len();
+                    pedestrians >= PEDESTRIANS_A_REPORT
                 })
                 .map_or(rest.len(), |last| last + 1);
             let some = of(&protocol.visible(&rest[..count]))?;
@@ -334,10 +335,10 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         self.request.protocols.contains(&protocol)
     }
 
-    fn report(&mut self, walkers: usize, protocol: Protocol) -> Result<(), DdlError> {
-        self.done += walkers;
+    fn report(&mut self, pedestrians: usize, protocol: Protocol) -> Result<(), DdlError> {
+        self.done += pedestrians;
         let progress = EvaluationProgress {
-            walkers: (self.done, self.total),
+            pedestrians: (self.done, self.total),
             protocol,
         };
         match (self.observe)(&progress) {

@@ -7,30 +7,32 @@ use ddl_eval::{ForecastError, MotionKind};
 use ddl_goal::GoalSet;
 use ddl_report::figure::{self, GoalCase};
 
-/// Retrieved walkers that are drawn, the most similar ones.
+/// Retrieved pedestrians that are drawn, the most similar ones.
 const EXPERTS: usize = 60;
 
-/// An SVG of typical walkers: what was observed, the retrieved walkers where there are some, the goals, and how it went on.
+/// An SVG of typical pedestrians: what was observed, the retrieved pedestrians where there are some, the goals, and how it went on.
 ///
 /// # Errors
 /// When a picture cannot be drawn of such goals.
 pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<String, DdlError> {
-    let walkers: Vec<Walker<'_>> = measured
+    let pedestrians: Vec<Pedestrian<'_>> = measured
         .windows
         .iter()
         .zip(&measured.sets)
         .flat_map(|(window, sets)| {
             (0..)
                 .zip(sets)
-                .filter_map(|(i, set)| Walker::new(window, i, set))
+                .filter_map(|(i, set)| Pedestrian::new(window, i, set))
         })
         .collect();
-    let mut shown: Vec<&Walker<'_>> = Vec::new();
+    let mut shown: Vec<&Pedestrian<'_>> = Vec::new();
     for kind in MotionKind::ALL {
         // one pedestrian once
-        let candidates: Vec<&Walker<'_>> = walkers
+        let candidates: Vec<&Pedestrian<'_>> = pedestrians
             .iter()
-            .filter(|walker| walker.kind == kind && !shown.iter().any(|other| other.is(walker)))
+            .filter(|pedestrian| {
+                pedestrian.kind == kind && !shown.iter().any(|other| other.is(pedestrian))
+            })
             .collect();
         let errors: Vec<_> = candidates.iter().map(|w| (kind, w.error)).collect();
         shown.extend(
@@ -41,17 +43,17 @@ pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<Strin
     }
     let cases = shown
         .into_iter()
-        .map(|walker| walker.case(model))
+        .map(|pedestrian| pedestrian.case(model))
         .collect::<Result<Vec<_>, _>>()?;
     let evaluation = &measured.evaluation;
     let title = format!(
-        "Goals of walkers with the median error of their kind of motion: fold {}, {}",
+        "Goals of pedestrians with the median error of their kind of motion: fold {}, {}",
         evaluation.fold, evaluation.windows
     );
     Ok(figure::goals(&title, &cases)?)
 }
 
-struct Walker<'a> {
+struct Pedestrian<'a> {
     window: &'a Window,
     index: usize,
     set: &'a GoalSet,
@@ -59,7 +61,7 @@ struct Walker<'a> {
     error: f64,
 }
 
-impl<'a> Walker<'a> {
+impl<'a> Pedestrian<'a> {
     fn new(window: &'a Window, index: usize, set: &'a GoalSet) -> Option<Self> {
         let end = window.end(index)?;
         let [x, y] = set.goals()[set.nearest(end)];

@@ -19,9 +19,9 @@ pub struct GoalEvaluation {
     pub goals: String,
     /// Which windows, in words.
     pub windows: String,
-    /// Goals a walker.
+    /// Goals a pedestrian.
     pub clusters: usize,
-    /// Errors over all walkers.
+    /// Errors over all pedestrians.
     pub all: GoalErrors,
     /// Errors by recording.
     pub recordings: BTreeMap<String, GoalErrors>,
@@ -42,11 +42,11 @@ pub struct MeasuredGoals {
     pub sets: Vec<Vec<GoalSet>>,
 }
 
-/// Distances between goals and true ends, means over walkers (metres).
+/// Distances between goals and true ends, means over pedestrians (metres).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct GoalErrors {
-    /// Walkers.
-    pub walkers: usize,
+    /// Pedestrians.
+    pub pedestrians: usize,
     /// Of the goal nearest the TRUE end: what no forecast that ends at a goal can beat.
     pub oracle_fde: f64,
     /// Of the likeliest goal.
@@ -61,20 +61,20 @@ impl GoalErrors {
                 let [x, y] = set.goals()[goal];
                 (x - end[0]).hypot(y - end[1])
             };
-            sum.walkers += 1;
+            sum.pedestrians += 1;
             sum.oracle_fde += off(set.nearest(end));
             sum.likeliest_fde += off(set.most_likely());
         }
-        let walkers = sum.walkers.max(1) as f64;
+        let pedestrians = sum.pedestrians.max(1) as f64;
         Self {
-            walkers: sum.walkers,
-            oracle_fde: sum.oracle_fde / walkers,
-            likeliest_fde: sum.likeliest_fde / walkers,
+            pedestrians: sum.pedestrians,
+            oracle_fde: sum.oracle_fde / pedestrians,
+            likeliest_fde: sum.likeliest_fde / pedestrians,
         }
     }
 }
 
-/// Measures the goals of a run on the test windows of its fold (headline rule, all walkers) or on its
+/// Measures the goals of a run on the test windows of its fold (headline rule, all pedestrians) or on its
 /// validation windows.
 ///
 /// The goals see the 8 observed frames, and what is remembered of the place.

@@ -34,15 +34,15 @@ impl TestSet {
         goals: &GoalModel,
         dataset: &Dataset,
         (on, whole): (EvaluationSplit, &[String]),
-        walkers: Option<usize>,
+        pedestrians: Option<usize>,
     ) -> Result<Self, DdlError> {
         let data = &goals.config().data;
         let wrong = |problem: String| Err(goals.source().wrong(problem));
         let own = dataset.convention() == Convention::Own;
         match on {
-            EvaluationSplit::Test if own => return Self::of_own(goals, dataset, walkers),
+            EvaluationSplit::Test if own => return Self::of_own(goals, dataset, pedestrians),
             EvaluationSplit::Validation if own && !knows_some(goals, dataset) => {
-                return Self::own_validation(goals, dataset, whole, walkers);
+                return Self::own_validation(goals, dataset, whole, pedestrians);
             }
             _ => {}
         }
@@ -60,9 +60,9 @@ impl TestSet {
         }
         if on == EvaluationSplit::Test {
             let fold = fold_of(dataset, &data.fold)?;
-            return Ok(Self::new(&fold, data.convention, walkers));
+            return Ok(Self::new(&fold, data.convention, pedestrians));
         }
-        let set = Self::kept_by(goals, dataset, walkers)?;
+        let set = Self::kept_by(goals, dataset, pedestrians)?;
         if set.windows.is_empty() {
             return wrong(format!(
                 "cannot be measured on what it kept for validation: nobody in it was seen at 20 steps in a row; train a model that keeps {}",
@@ -76,7 +76,7 @@ impl TestSet {
     pub(crate) fn kept_by(
         goals: &GoalModel,
         dataset: &Dataset,
-        walkers: Option<usize>,
+        pedestrians: Option<usize>,
     ) -> Result<Self, DdlError> {
         let data = &goals.config().data;
         if data.validation <= 0.0 && data.validation_recordings.is_empty() {
@@ -92,7 +92,7 @@ impl TestSet {
             ));
         }
         let kept = (rule, fraction);
-        Ok(Self::validation(&fold, data.convention, kept, walkers))
+        Ok(Self::validation(&fold, data.convention, kept, pedestrians))
     }
 
     /// The part of own recordings that a model trained on them would be validated on, for a model that knows none of them.
@@ -100,7 +100,7 @@ impl TestSet {
         goals: &GoalModel,
         dataset: &Dataset,
         whole: &[String],
-        walkers: Option<usize>,
+        pedestrians: Option<usize>,
     ) -> Result<Self, DdlError> {
         let part = if whole.is_empty() {
             ValidationPart::of_own(&dataset.whole())
@@ -112,7 +112,7 @@ impl TestSet {
         };
         let fold = dataset.whole().set_apart(&part.recordings)?;
         let kept = (dataset.convention().headline_rule(), part.share);
-        let set = Self::validation(&fold, dataset.convention(), kept, walkers);
+        let set = Self::validation(&fold, dataset.convention(), kept, pedestrians);
         if set.windows.is_empty() {
             return Err(goals.source().wrong(
                 "cannot be measured on the validation part of these recordings: nobody in it was seen at 20 steps in a row; name whole \
@@ -126,7 +126,7 @@ impl TestSet {
     fn of_own(
         goals: &GoalModel,
         dataset: &Dataset,
-        walkers: Option<usize>,
+        pedestrians: Option<usize>,
     ) -> Result<Self, DdlError> {
         let data = &goals.config().data;
         let all = dataset.recordings();
@@ -173,11 +173,11 @@ impl TestSet {
             windows,
             subset: None,
         };
-        Ok(set.at_most(walkers))
+        Ok(set.at_most(pedestrians))
     }
 
-    /// The fold's test windows, or a seeded part of them with about `walkers` walkers.
-    pub(crate) fn new(fold: &Fold<'_>, convention: Convention, walkers: Option<usize>) -> Self {
+    /// The fold's test windows, or a seeded part of them with about `pedestrians` pedestrians.
+    pub(crate) fn new(fold: &Fold<'_>, convention: Convention, pedestrians: Option<usize>) -> Self {
         let by_rule: Vec<(WindowRule, Vec<Window>)> = rules(convention)
             .into_iter()
             .map(|rule| (rule, fold.test_windows(rule)))
@@ -210,7 +210,7 @@ impl TestSet {
             rules,
             subset: None,
         }
-        .at_most(walkers)
+        .at_most(pedestrians)
     }
 
     /// The last part of the fold's training recordings, on which choices may be made.
@@ -218,7 +218,7 @@ impl TestSet {
         fold: &Fold<'_>,
         convention: Convention,
         (rule, fraction): (WindowRule, f64),
-        walkers: Option<usize>,
+        pedestrians: Option<usize>,
     ) -> Self {
         let windows = fold.training_split(rule, fraction).validation;
         let rules = vec![(rule, (0..windows.len()).collect())];
@@ -233,7 +233,7 @@ impl TestSet {
             rules,
             subset: None,
         }
-        .at_most(walkers);
+        .at_most(pedestrians);
         let mut parts = Vec::new();
         if fraction > 0.0 {
             parts.push(format!("the last {fraction} of the TRAINING recordings"));
@@ -253,13 +253,16 @@ impl TestSet {
         }
     }
 
-    fn at_most(self, walkers: Option<usize>) -> Self {
-        let Some(walkers) = walkers else { return self };
+    fn at_most(self, pedestrians: Option<usize>) -> Self {
+        let Some(pedestrians) = pedestrians else {
+            return self;
+        };
         // The same words for every fold, cut or not: the folds of one benchmark share a table.
-        let subset =
-            format!("where a fold has more than {walkers} walkers, a seeded part of its windows");
-        let part = if self.walkers() > walkers {
-            self.part(walkers)
+        let subset = format!(
+            "where a fold has more than {pedestrians} pedestrians, a seeded part of its windows"
+        );
+        let part = if self.pedestrians() > pedestrians {
+            self.part(pedestrians)
         } else {
             self
         };
@@ -269,7 +272,7 @@ impl TestSet {
         }
     }
 
-    pub(crate) fn walkers(&self) -> usize {
+    pub(crate) fn pedestrians(&self) -> usize {
         self.windows.iter().map(Window::len).sum()
     }
 
@@ -282,8 +285,8 @@ impl TestSet {
         headline.flat_map(|(_, indices)| indices).copied()
     }
 
-    /// A seeded part of the windows, in their order, with at least `walkers` walkers.
-    fn part(self, walkers: usize) -> Self {
+    /// A seeded part of the windows, in their order, with at least `pedestrians` pedestrians.
+    fn part(self, pedestrians: usize) -> Self {
         let mut order: Vec<usize> = (0..self.windows.len()).collect();
         let mut rng = ChaCha8Rng::seed_from_u64(SUBSET_SEED);
         for last in (1..order.len()).rev() {
@@ -291,7 +294,7 @@ impl TestSet {
         }
         let mut count = 0;
         let wanted = order.into_iter().take_while(|&index| {
-            let wanted = count < walkers;
+            let wanted = count < pedestrians;
             count += self.windows[index].len();
             wanted
         });

@@ -76,7 +76,7 @@ pub enum CertificateError {
     },
 }
 
-/// Where the walkers of a window are led, how likely, and how they walk.
+/// Where the pedestrians of a window are led, how likely, and how they walk.
 #[derive(Debug)]
 pub(crate) struct Walked<'a> {
     pub(crate) config: &'a StarConfig,

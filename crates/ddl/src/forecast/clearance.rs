@@ -4,13 +4,13 @@ use ddl_dynamics::{Ball, DynamicsError, ObstacleSchedule};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
-/// Within which distance of others, from centre to centre, walkers mind them (metres).
+/// Within which distance of others, from centre to centre, pedestrians mind them (metres).
 ///
 /// Every hypothesis is walked again among the others, each a disc on the path it would most likely take alone: within
-/// [`MARGIN`](Self::MARGIN) of a disc the walker slides along it ([`AvoidingFlow`](ddl_dynamics::AvoidingFlow)).
+/// [`MARGIN`](Self::MARGIN) of a disc the pedestrian slides along it ([`AvoidingFlow`](ddl_dynamics::AvoidingFlow)).
 ///
 /// # What is guaranteed
-/// The distance to the goal still falls at every step. Keeping clear is not: the others move, and a walker is not moved
+/// The distance to the goal still falls at every step. Keeping clear is not: the others move, and a pedestrian is not moved
 /// aside where one of them walks into it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
@@ -20,11 +20,11 @@ pub struct Clearance(f64);
 const MOST: f64 = 10.0;
 
 impl Clearance {
-    /// Within this distance of another's disc walkers mind it (metres). Chosen on validation recordings,
+    /// Within this distance of another's disc pedestrians mind it (metres). Chosen on validation recordings,
     /// see docs/stability.md.
     pub const MARGIN: f64 = 0.4;
 
-    /// Keep `distance` metres from centre to centre; two walkers touch at 0.4 m.
+    /// Keep `distance` metres from centre to centre; two pedestrians touch at 0.4 m.
     ///
     /// # Errors
     /// [`DdlError::Clearance`] unless the distance is positive and at most 10 m.

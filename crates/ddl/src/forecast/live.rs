@@ -37,7 +37,7 @@ use std::borrow::Borrow;
 ///     assert!(live.push(frame, [(PedestrianId(1), [0.5 * frame as f64, 0.0])])?.is_none());
 /// }
 /// let now = live.push(7, [(PedestrianId(1), [3.5, 0.0]), (PedestrianId(2), [9.0, 0.0])])?;
-/// let now = now.expect("walker 1 has 8 frames");
+/// let now = now.expect("pedestrian 1 has 8 frames");
 /// assert_eq!((now.frame(), now.window.pedestrians()), (7, &[PedestrianId(1)][..]));
 /// assert_eq!(now.forecast.hypothesis(0, 0)[11], [9.5, 0.0]);
 /// # Ok::<(), ddl::DdlError>(())

@@ -1,4 +1,4 @@
-//! One hypothesis of one walker: the network emits the factors of P, `ddl-dynamics` turns them into positions in `f64`,
+//! One hypothesis of one pedestrian: the network emits the factors of P, `ddl-dynamics` turns them into positions in `f64`,
 //! by the integrator whose guarantee holds for the computed numbers; or positions walked elsewhere are certified.
 
 use crate::forecast::clearance::Clearance;

@@ -103,7 +103,7 @@ pub(crate) fn unusable(error: &dyn std::error::Error, path: &Path) -> DdlError {
 mod tests {
     use super::*;
 
-    /// A library of two walkers, read from a file without the SHA-256 that would tell of any change.
+    /// A library of two pedestrians, read from a file without the SHA-256 that would tell of any change.
     fn read(change: impl FnOnce(&mut [f64])) -> Result<ExpertLibrary, DdlError> {
         let mut numbers: Vec<f64> = (0..2 * WINDOW * 2).map(|i| 0.25 * i as f64).collect();
         change(&mut numbers);

@@ -23,13 +23,13 @@ use ddl_network::{DeviceChoice, ForecastWindows, MemoryConfig, ProposeEnds, Prop
 use rayon::prelude::*;
 use std::path::Path;
 
-/// Estimates where the walkers of a window are going, from the 8 observed frames and nothing else.
+/// Estimates where the pedestrians of a window are going, from the 8 observed frames and nothing else.
 #[derive(Debug)]
 pub struct GoalModel {
     source: ModelSource,
     config: RunConfig,
     origin: GoalOrigin,
-    /// Goals a walker.
+    /// Goals a pedestrian.
     clusters: usize,
     /// What it was trained on, by which motions are familiar; `None` where too little is known of them.
     motions: Option<TrainingMotions>,
@@ -98,7 +98,11 @@ impl GoalModel {
         config: RunConfig,
         network: Option<Box<dyn ProposeEnds>>,
     ) -> Result<Self, DdlError> {
-        let library = experts::load(&config.goals_origin(), config.data.walkers, &run.experts())?;
+        let library = experts::load(
+            &config.goals_origin(),
+            config.data.pedestrians,
+            &run.experts(),
+        )?;
         let clusters = config.goals.retrieval.clone().check()?.clusters;
         let params = config.goals.retrieval.clone().query(QuerySpan::Observed);
         let estimator = GoalEstimator::new(params.check()?, library)
@@ -164,12 +168,12 @@ impl GoalModel {
         }
     }
 
-    /// Goals a walker, at most.
+    /// Goals a pedestrian, at most.
     pub fn clusters(&self) -> usize {
         self.clusters
     }
 
-    /// The retrieval of similar walkers, which sees the observed positions alone; `None` where there is no expert library.
+    /// The retrieval of similar pedestrians, which sees the observed positions alone; `None` where there is no expert library.
     pub fn estimator(&self) -> Option<&GoalEstimator> {
         match &self.origin {
             GoalOrigin::Proposed(_) => None,
@@ -324,13 +328,13 @@ impl GoalModel {
     ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
         let mut seen = Vec::new();
         for window in windows {
-            let walkers = views::of_window(
+            let pedestrians = views::of_window(
                 window,
                 network.config().neighbours,
                 network.config().time_step,
             )
             .map_err(failed)?;
-            seen.extend(walkers);
+            seen.extend(pedestrians);
         }
         let mut views = Vec::with_capacity(seen.len());
         let mut frames = Vec::with_capacity(seen.len());
@@ -373,8 +377,8 @@ impl GoalModel {
             .collect())
     }
 
-    /// Where walkers whose future is known are led in training: to the proposed goal nearest the true end, or to the
-    /// true end where nothing is proposed. What is retrieved is left out: the library holds the very walkers that are
+    /// Where pedestrians whose future is known are led in training: to the proposed goal nearest the true end, or to the
+    /// true end where nothing is proposed. What is retrieved is left out: the library holds the very pedestrians that are
     /// learned from (`docs/goals.md`, training).
     pub(crate) fn lessons(&self, windows: &[Window]) -> Result<Vec<Vec<Position>>, ForecastError> {
         let end = |window: &Window, i: usize| window.track(i)[WINDOW - 1];
@@ -392,8 +396,10 @@ impl GoalModel {
             .into_iter()
             .zip(windows)
             .map(|(sets, window)| {
-                let walkers = sets.into_iter().enumerate();
-                walkers.map(|walker| nearest(walker, window)).collect()
+                let pedestrians = sets.into_iter().enumerate();
+                pedestrians
+                    .map(|pedestrian| nearest(pedestrian, window))
+                    .collect()
             })
             .collect())
     }

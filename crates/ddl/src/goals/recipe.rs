@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GoalRecipe {
-    /// Retrieval of similar walkers; also says how many goals there are.
+    /// Retrieval of similar pedestrians; also says how many goals there are.
     pub retrieval: GoalEstimatorParams,
     /// The proposal network whose ends are pooled with the retrieved goals; without one these are all.
     pub proposal: Option<ProposalRecipe>,

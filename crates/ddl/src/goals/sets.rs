@@ -43,8 +43,8 @@ pub(crate) fn weighted(sets: &[Vec<GoalSet>]) -> Result<Vec<Vec<WeightedGoals>>,
 /// first ones seen in a straight line: they say nothing of how even a motion is.
 pub(crate) fn only_central(windows: &[Window], sets: &[Vec<GoalSet>]) -> Vec<Vec<GoalSet>> {
     let of_window = |(window, sets): (&Window, &Vec<GoalSet>)| {
-        let walkers = sets.iter().enumerate();
-        walkers
+        let pedestrians = sets.iter().enumerate();
+        pedestrians
             .map(|(i, set)| set.only_central(&window.observed(i)[window.made_up(i).padded..]))
             .collect()
     };

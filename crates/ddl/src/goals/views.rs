@@ -1,10 +1,10 @@
-//! What a proposal network sees of the walkers of a window.
+//! What a proposal network sees of the pedestrians of a window.
 
 use ddl_data::{OBSERVED, Places, Position, Remembered, Window};
 use ddl_goal::{HeadingFrame, TrackError};
 use ddl_network::{PedestrianView, ProposalExample, motion_unit};
 
-/// A walker's own frame and unit of length, and what is seen from it.
+/// A pedestrian's own frame and unit of length, and what is seen from it.
 #[derive(Debug)]
 pub(crate) struct Seen {
     pub(crate) frame: HeadingFrame,

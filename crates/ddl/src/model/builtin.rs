@@ -10,7 +10,7 @@ use std::str::FromStr;
 pub enum BuiltinModel {
     /// Trained without the scene `eth`.
     Eth,
-    /// Trained without the scene `hotel`, the smallest: the model that has seen the most walkers, and so the one for new places.
+    /// Trained without the scene `hotel`, the smallest: the model that has seen the most pedestrians, and so the one for new places.
     #[default]
     Hotel,
     /// Trained without the scenes `univ`.
@@ -105,8 +105,8 @@ mod tests {
     }
 
     #[test]
-    fn the_default_has_seen_the_most_walkers() {
-        let seen = |model: &BuiltinModel| model.config().unwrap().data.walkers;
+    fn the_default_has_seen_the_most_pedestrians() {
+        let seen = |model: &BuiltinModel| model.config().unwrap().data.pedestrians;
         let most = BuiltinModel::ALL.into_iter().max_by_key(seen);
         assert_eq!(most, Some(BuiltinModel::default()));
     }

@@ -51,7 +51,7 @@ pub struct Ddl {
 }
 
 impl Ddl {
-    /// The same model, whose walkers keep clear of each other.
+    /// The same model, whose pedestrians keep clear of each other.
     ///
     /// # Errors
     /// [`DdlError::NoFlow`] for the variants without dynamics.
@@ -66,7 +66,7 @@ impl Ddl {
         })
     }
 
-    /// The same model, whose network has its feed-forward blocks computed in that precision. Where the walkers go from what
+    /// The same model, whose network has its feed-forward blocks computed in that precision. Where the pedestrians go from what
     /// it emits is computed in `f64` as ever: the guarantee does not depend on it.
     ///
     /// # Errors
@@ -118,7 +118,7 @@ impl Ddl {
         }
     }
 
-    /// How far its walkers keep from each other; `None` where each walks as if alone.
+    /// How far its pedestrians keep from each other; `None` where each walks as if alone.
     pub fn clearance(&self) -> Option<Clearance> {
         self.clearance
     }

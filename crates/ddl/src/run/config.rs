@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Version of the run directory's layout.
-pub const FORMAT: u32 = 7;
+pub const FORMAT: u32 = 8;
 
 /// The part of `config.json` that every version of the layout has.
 #[derive(Deserialize)]
@@ -140,8 +140,8 @@ pub struct TrainingData {
     pub validation_recordings: Vec<String>,
     /// Training windows.
     pub windows: usize,
-    /// Walkers in them, each counted once a window.
-    pub walkers: usize,
+    /// Pedestrians in them, each counted once a window.
+    pub pedestrians: usize,
     /// SHA-256 of their positions.
     pub sha256: String,
     /// The own recordings that were trained or validated on, by name, with the SHA-256 of their frames, people and positions: none of these names, and none of

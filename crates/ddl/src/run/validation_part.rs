@@ -26,9 +26,10 @@ impl ValidationPart {
             recordings: Vec::new(),
         };
         let rule = Convention::Own.headline_rule();
-        let walkers = |windows: &[Window]| windows.iter().map(Window::len).sum::<usize>() as f64;
-        let at_the_ends = walkers(&fold.training_split(rule, SHARE).validation);
-        let in_all = walkers(&fold.training_windows(rule));
+        let pedestrians =
+            |windows: &[Window]| windows.iter().map(Window::len).sum::<usize>() as f64;
+        let at_the_ends = pedestrians(&fold.training_split(rule, SHARE).validation);
+        let in_all = pedestrians(&fold.training_windows(rule));
         if at_the_ends > LEAST_AT_THE_ENDS * in_all {
             return ends;
         }

@@ -16,8 +16,8 @@ use ddl_goal::GoalSet;
 use ddl_network::weights::Weights;
 use ddl_network::{EpochReport, ForecastWindows};
 
-/// Validation walkers that each epoch is measured on, at least, where there are so many.
-const WALKERS: usize = 1000;
+/// Validation pedestrians that each epoch is measured on, at least, where there are so many.
+const PEDESTRIANS: usize = 1000;
 
 /// Windows that were kept for validation, with their goals, and for how many epochs a better one is waited for.
 #[derive(Debug)]
@@ -38,7 +38,7 @@ impl EarlyStopping {
             return Ok(None);
         };
         let kept = (data.window_rule, data.validation);
-        let windows = TestSet::validation(fold, data.convention, kept, Some(WALKERS)).windows;
+        let windows = TestSet::validation(fold, data.convention, kept, Some(PEDESTRIANS)).windows;
         Ok(Some(Self {
             patience,
             goals: goals.goals(&windows)?,
@@ -52,20 +52,20 @@ impl EarlyStopping {
         }))
     }
 
-    /// minADE over the walkers, metres: the best hypothesis of each, as under the protocol `fair`.
+    /// minADE over the pedestrians, metres: the best hypothesis of each, as under the protocol `fair`.
     pub(crate) fn min_ade(&self, network: &dyn ForecastWindows) -> Result<f64, DdlError> {
         let (windows, led) = (
             &self.windows,
             (self.goals.clone(), self.familiarity.clone()),
         );
         let forecasts = shaped::towards(network, self.seed, windows, led, Gait::Stable(None))?;
-        let (mut sum, mut walkers) = (0.0, 0);
+        let (mut sum, mut pedestrians) = (0.0, 0);
         for (window, forecast) in windows.iter().zip(&forecasts) {
             let errors = DisplacementErrors::of(&Scene::new(window, forecast)?);
             sum += (0..window.len()).map(|i| errors.min_ade(i)).sum::<f64>();
-            walkers += window.len();
+            pedestrians += window.len();
         }
-        Ok(sum / walkers as f64)
+        Ok(sum / pedestrians as f64)
     }
 
     /// The first epoch that is measured: number 0 is the network before its first step, which counts where it is a trained one.

@@ -133,7 +133,7 @@ fn config_of(
             validation: request.validation,
             validation_recordings: request.validation_recordings.clone(),
             windows: windows.len(),
-            walkers: windows.iter().map(Window::len).sum(),
+            pedestrians: windows.iter().map(Window::len).sum(),
             sha256: digest(windows),
             recordings: match dataset.convention() {
                 Convention::Own => learned_from(fold)

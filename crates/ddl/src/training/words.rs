@@ -4,10 +4,10 @@ use ddl_network::TrainingConfig;
 
 /// How it was trained, in words; `goals` are those of where its goals come from.
 pub(crate) fn recipe(training: &TrainingConfig, goals: &str) -> String {
-    let (walkers, rate) = (training.batch_walkers, training.learning_rate);
+    let (pedestrians, rate) = (training.batch_pedestrians, training.learning_rate);
     let schedule = training.learning_rate_schedule;
     format!(
-        "batches of more than {walkers} walkers, Adam with step size {rate} ({schedule}); goals {goals}"
+        "batches of more than {pedestrians} pedestrians, Adam with step size {rate} ({schedule}); goals {goals}"
     )
 }
 
@@ -21,7 +21,7 @@ pub(crate) fn selection(patience: Option<usize>) -> &'static str {
 
 /// How much of the training set an epoch sees, in words; `None` for all of it.
 pub(crate) fn subset(training: &TrainingConfig) -> Option<String> {
-    training.walkers_per_epoch.map(|walkers| {
-        format!("about {walkers} walkers an epoch, going round a seeded order of all")
+    training.pedestrians_per_epoch.map(|pedestrians| {
+        format!("about {pedestrians} pedestrians an epoch, going round a seeded order of all")
     })
 }

@@ -36,7 +36,7 @@ pub(super) fn config() -> RunConfig {
             ..ProposalConfig::default()
         };
     }
-    config.data.walkers = 2;
+    config.data.pedestrians = 2;
     config
 }
 

@@ -56,12 +56,12 @@ pub(super) struct Choice {
     /// auto, cpu or cuda
     #[arg(long, default_value = "cpu")]
     device: DeviceChoice,
-    /// Walkers trained on in each epoch [default: the profile's, or else the recipe's]
+    /// Pedestrians trained on in each epoch [default: the profile's, or else the recipe's]
     #[arg(long, value_name = "N")]
-    train_walkers: Option<usize>,
-    /// Test walkers scored [default: the profile's]
+    train_pedestrians: Option<usize>,
+    /// Test pedestrians scored [default: the profile's]
     #[arg(long, value_name = "N")]
-    test_walkers: Option<usize>,
+    test_pedestrians: Option<usize>,
     /// Training epochs [default: the profile's]
     #[arg(long, value_name = "N")]
     epochs: Option<usize>,
@@ -150,9 +150,9 @@ impl Choice {
                 "release".to_owned()
             },
             epochs: self.epochs.unwrap_or(work.epochs),
-            train_walkers: self.train_walkers.or(work.train_walkers),
+            train_pedestrians: self.train_pedestrians.or(work.train_pedestrians),
             proposal_steps: work.proposal_steps,
-            test_walkers: self.test_walkers.or(work.test_walkers),
+            test_pedestrians: self.test_pedestrians.or(work.test_pedestrians),
             protocols,
             recipe: Training {
                 name,

@@ -25,7 +25,7 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
         let train = plan.train_arguments(&plan.tasks[0], Path::new(""), 1);
         let (_, train) = train.split_at(9); // convention, fold, variant and seed
         let end = train.iter().position(|word| word == "--out").unwrap();
-        let scored = plan.settings.test_walkers;
+        let scored = plan.settings.test_pedestrians;
         let scored = scored.map_or("all".to_owned(), |n| n.to_string());
         format!(
             "{} {} {scored}: {}",
@@ -42,7 +42,7 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
         ),
         (
             "--profile smoke",
-            "star-smoke 2 150: --epochs 1 --train-walkers 600 --proposal-steps 40 --recipe recommended",
+            "star-smoke 2 150: --epochs 1 --train-pedestrians 600 --proposal-steps 40 --recipe recommended",
         ),
         (
             "--profile evening",
@@ -53,27 +53,27 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
             "star-paper 50 all: --epochs 20 --recipe recommended",
         ),
         (
-            "--epochs 3 --train-walkers 70 --test-walkers 80",
-            "star-quick 5 80: --epochs 3 --train-walkers 70 --recipe recommended",
+            "--epochs 3 --train-pedestrians 70 --test-pedestrians 80",
+            "star-quick 5 80: --epochs 3 --train-pedestrians 70 --recipe recommended",
         ),
         (
             &format!("{all} smoke"),
-            "star-smoke-published 2 150: --epochs 1 --train-walkers 600 --proposal-steps 40 --recipe published \
-             --batch-walkers 256 --learning-rate 0.0015 --learning-rate-schedule constant",
+            "star-smoke-published 2 150: --epochs 1 --train-pedestrians 600 --proposal-steps 40 --recipe published \
+             --batch-pedestrians 256 --learning-rate 0.0015 --learning-rate-schedule constant",
         ),
         (
             &format!("{all} quick"),
-            "star-quick-published 5 2500: --epochs 10 --train-walkers 4000 --recipe published --batch-walkers 16 \
+            "star-quick-published 5 2500: --epochs 10 --train-pedestrians 4000 --recipe published --batch-pedestrians 16 \
              --learning-rate 0.001 --learning-rate-schedule cosine",
         ),
         (
             &format!("{all} evening"),
-            "star-evening-published 5 all: --epochs 60 --recipe published --batch-walkers 256 --learning-rate 0.0015 \
+            "star-evening-published 5 all: --epochs 60 --recipe published --batch-pedestrians 256 --learning-rate 0.0015 \
              --learning-rate-schedule cosine",
         ),
         (
             "--profile paper --protocol published",
-            "star-paper-published 5 all: --epochs 200 --recipe published --batch-walkers 256 --learning-rate 0.0015 \
+            "star-paper-published 5 all: --epochs 200 --recipe published --batch-pedestrians 256 --learning-rate 0.0015 \
              --learning-rate-schedule constant",
         ),
     ] {

@@ -2,8 +2,8 @@
 
 use super::super::recipe::Recipe;
 
-/// Walkers of the `star` test windows under the published rule, per fold.
-const TEST_WALKERS: [(&str, usize); 5] = [
+/// Pedestrians of the `star` test windows under the published rule, per fold.
+const TEST_PEDESTRIANS: [(&str, usize); 5] = [
     ("eth", 2_511),
     ("hotel", 1_026),
     ("univ", 24_254),
@@ -11,32 +11,32 @@ const TEST_WALKERS: [(&str, usize); 5] = [
     ("zara2", 5_900),
 ];
 
-const TYPICAL_TEST_WALKERS: usize = 5_000;
+const TYPICAL_TEST_PEDESTRIANS: usize = 5_000;
 
-/// Walkers of all recordings together, of which a fold trains on what it does not test on.
-const ALL_WALKERS: usize = 39_398;
+/// Pedestrians of all recordings together, of which a fold trains on what it does not test on.
+const ALL_PEDESTRIANS: usize = 39_398;
 
-const RECOMMENDED_WALKERS: usize = 5_000;
+const RECOMMENDED_PEDESTRIANS: usize = 5_000;
 
-/// Expected seconds of training and of scoring: so many epochs on so many walkers each, then so many walkers; none is as many as there are.
+/// Expected seconds of training and of scoring: so many epochs on so many pedestrians each, then so many pedestrians; none is as many as there are.
 pub(super) fn expected(
     fold: &str,
     recipe: Recipe,
     epochs: usize,
-    train_walkers: Option<usize>,
-    test_walkers: Option<usize>,
+    train_pedestrians: Option<usize>,
+    test_pedestrians: Option<usize>,
 ) -> (f64, f64) {
-    let known = TEST_WALKERS.iter().find(|(name, _)| *name == fold);
-    let test = known.map_or(TYPICAL_TEST_WALKERS, |(_, walkers)| *walkers);
-    let train = ALL_WALKERS - test;
-    // Of a walker in one epoch, the training of the goals spread over all of them, and of a walker scored: by the full-size network
+    let known = TEST_PEDESTRIANS.iter().find(|(name, _)| *name == fold);
+    let test = known.map_or(TYPICAL_TEST_PEDESTRIANS, |(_, pedestrians)| *pedestrians);
+    let train = ALL_PEDESTRIANS - test;
+    // Of a pedestrian in one epoch, the training of the goals spread over all of them, and of a pedestrian scored: by the full-size network
     // under all protocols, and by the narrow one of the recommended recipe under those without the truth.
     let (train_seconds, evaluate_seconds, usual) = match recipe {
         Recipe::Published => (0.007, 0.03, train),
-        Recipe::Recommended => (0.000_7, 0.02, RECOMMENDED_WALKERS),
+        Recipe::Recommended => (0.000_7, 0.02, RECOMMENDED_PEDESTRIANS),
     };
-    let trained = train.min(train_walkers.unwrap_or(usual));
-    let scored = test.min(test_walkers.unwrap_or(test));
+    let trained = train.min(train_pedestrians.unwrap_or(usual));
+    let scored = test.min(test_pedestrians.unwrap_or(test));
     (
         (epochs * trained) as f64 * train_seconds,
         scored as f64 * evaluate_seconds,
@@ -57,7 +57,7 @@ mod tests {
         let scoring = |fold| cost(fold, Some(100), None);
         assert!(scoring("univ") > scoring("zara2") && scoring("zara2") > scoring("hotel"));
         assert!(cost("eth", Some(10), Some(10)) < cost("eth", None, None));
-        // The recommended recipe takes the same walkers in every fold unless told.
+        // The recommended recipe takes the same pedestrians in every fold unless told.
         let trained = |fold| expected(fold, Recommended, 20, None, None).0.to_bits();
         assert_eq!(trained("eth"), trained("univ"));
     }

@@ -13,9 +13,9 @@ pub(super) fn settings(name: Recipe) -> Settings {
         device: DeviceChoice::Cpu,
         cargo_profile: "release".to_owned(),
         epochs: 4,
-        train_walkers: Some(800),
+        train_pedestrians: Some(800),
         proposal_steps: Some(30),
-        test_walkers: None,
+        test_pedestrians: None,
         protocols: match name {
             Recipe::Recommended => Protocol::ALL[1..].to_vec(),
             Recipe::Published => Protocol::ALL[..3].to_vec(),

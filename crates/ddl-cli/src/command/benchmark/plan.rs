@@ -37,12 +37,12 @@ pub(crate) struct Settings {
     pub(crate) device: DeviceChoice,
     pub(super) cargo_profile: String,
     pub(super) epochs: usize,
-    /// Walkers trained on in each epoch; none is as many as the recipe says.
-    pub(crate) train_walkers: Option<usize>,
+    /// Pedestrians trained on in each epoch; none is as many as the recipe says.
+    pub(crate) train_pedestrians: Option<usize>,
     /// Batches that the proposal network is trained on; none is the program's default.
     pub(super) proposal_steps: Option<u64>,
-    /// Test walkers scored; none is all.
-    pub(crate) test_walkers: Option<usize>,
+    /// Test pedestrians scored; none is all.
+    pub(crate) test_pedestrians: Option<usize>,
     /// Protocols scored under, each once, in the usual order.
     pub(super) protocols: Vec<Protocol>,
     pub(crate) recipe: Training,
@@ -119,8 +119,8 @@ impl Plan {
                 fold,
                 settings.recipe.name,
                 settings.epochs,
-                settings.train_walkers,
-                settings.test_walkers,
+                settings.train_pedestrians,
+                settings.test_pedestrians,
             );
             for (&variant, &seed) in methods
                 .iter()
@@ -172,10 +172,13 @@ impl Plan {
             .option(task.variant.option(), Some(task.variant.name()))
             .option("--seed", Some(task.seed))
             .option("--epochs", Some(settings.epochs))
-            .option("--train-walkers", settings.train_walkers)
+            .option("--train-pedestrians", settings.train_pedestrians)
             .option("--proposal-steps", settings.proposal_steps)
             .option("--recipe", Some(settings.recipe.name))
-            .option("--batch-walkers", optimiser.map(|of| of.batch_walkers))
+            .option(
+                "--batch-pedestrians",
+                optimiser.map(|of| of.batch_pedestrians),
+            )
             .option("--learning-rate", optimiser.map(|of| of.learning_rate))
             .option("--learning-rate-schedule", optimiser.map(|of| of.schedule))
             .path("--out", &task.run_folder(out));
@@ -201,7 +204,7 @@ impl Plan {
         let words = protocols.fold(words, |words, protocol| {
             words.option("--protocol", Some(protocol))
         });
-        let words = words.option("--test-walkers", self.settings.test_walkers);
+        let words = words.option("--test-pedestrians", self.settings.test_pedestrians);
         self.on_machine(words, threads)
             .option("--progress", Some("json"))
             .0

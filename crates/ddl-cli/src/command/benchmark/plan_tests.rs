@@ -49,13 +49,13 @@ fn the_arguments_are_those_the_program_knows() {
     assert_eq!(
         train(&plan),
         "train --convention star --data /recordings --fold eth --variant full --seed 7 \
-         --epochs 4 --train-walkers 800 --proposal-steps 30 --recipe published --batch-walkers 256 \
+         --epochs 4 --train-pedestrians 800 --proposal-steps 30 --recipe published --batch-pedestrians 256 \
          --learning-rate 0.0015 --learning-rate-schedule constant --out runs/x/eth-full-7/run --device cpu --threads 1 \
          --progress json"
     );
     // Of the recommended recipe nothing is changed that nobody asked to have changed; without `published` no epoch but the last is kept.
     let recommended = Settings {
-        train_walkers: None,
+        train_pedestrians: None,
         proposal_steps: None,
         ..settings(Recipe::Recommended)
     };
@@ -67,11 +67,11 @@ fn the_arguments_are_those_the_program_knows() {
         "{words}"
     );
     plan.settings.data = None;
-    plan.settings.test_walkers = Some(9);
+    plan.settings.test_pedestrians = Some(9);
     assert_eq!(
         plan.evaluate_arguments(&plan.tasks[0], out, 2).join(" "),
         "evaluate --model runs/x/eth-full-7/run --protocol published --protocol fair \
-         --protocol single --test-walkers 9 --device cpu --threads 2 --progress json"
+         --protocol single --test-pedestrians 9 --device cpu --threads 2 --progress json"
     );
     assert_eq!(
         plan.goals_arguments(&plan.tasks[0], out, 2).join(" "),
@@ -109,12 +109,12 @@ fn results_of_other_settings_or_of_another_version_do_not_mix() {
     let mut other = before.clone();
     other.settings.protocols = vec![Protocol::Fair];
     other.settings.epochs = 200;
-    other.settings.test_walkers = Some(5);
+    other.settings.test_pedestrians = Some(5);
     let message = refused(&other);
     for difference in [
         r#"protocols ["fair"] instead of ["published","fair","single"]"#,
         "epochs 200 instead of 4",
-        "test_walkers 5 instead of null",
+        "test_pedestrians 5 instead of null",
     ] {
         assert!(message.contains(difference), "{message}");
     }

@@ -31,15 +31,15 @@ pub(super) struct Work {
     /// The first so many folds of a convention.
     pub(super) folds: usize,
     pub(super) proposal_steps: Option<u64>,
-    pub(super) test_walkers: Option<usize>,
+    pub(super) test_pedestrians: Option<usize>,
     pub(super) epochs: usize,
-    pub(super) train_walkers: Option<usize>,
+    pub(super) train_pedestrians: Option<usize>,
     pub(super) optimiser: Option<Optimiser>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Optimiser {
-    pub(super) batch_walkers: usize,
+    pub(super) batch_pedestrians: usize,
     pub(super) learning_rate: f64,
     pub(super) schedule: LearningRateSchedule,
 }
@@ -48,7 +48,7 @@ impl Optimiser {
     fn published() -> Self {
         let training = TrainingConfig::published();
         Self {
-            batch_walkers: training.batch_walkers,
+            batch_pedestrians: training.batch_pedestrians,
             learning_rate: training.learning_rate,
             schedule: training.learning_rate_schedule,
         }
@@ -66,7 +66,7 @@ impl Optimiser {
     /// training recordings (docs/method.md, "The short recipe").
     fn short() -> Self {
         Self {
-            batch_walkers: 16,
+            batch_pedestrians: 16,
             learning_rate: 1e-3,
             schedule: LearningRateSchedule::Cosine,
         }
@@ -75,12 +75,12 @@ impl Optimiser {
 
 impl Profile {
     pub(super) fn work(self, recipe: Recipe) -> Work {
-        let (folds, proposal_steps, test_walkers) = match self {
+        let (folds, proposal_steps, test_pedestrians) = match self {
             Self::Smoke => (2, Some(40), Some(150)),
             Self::Quick => (5, None, Some(2500)),
             Self::Evening | Self::Paper => (5, None, None),
         };
-        let (epochs, train_walkers, optimiser) = match (recipe, self) {
+        let (epochs, train_pedestrians, optimiser) = match (recipe, self) {
             (Recipe::Recommended, Self::Smoke) => (1, Some(600), None),
             (Recipe::Recommended, Self::Quick) => (10, None, None),
             // the recommended recipe has reached its end by then
@@ -93,9 +93,9 @@ impl Profile {
         Work {
             folds,
             proposal_steps,
-            test_walkers,
+            test_pedestrians,
             epochs,
-            train_walkers,
+            train_pedestrians,
             optimiser,
         }
     }

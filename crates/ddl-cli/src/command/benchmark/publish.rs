@@ -85,8 +85,8 @@ fn is_whole(plan: &Plan) -> bool {
         tasks.any(|task| task.fold == fold && task.variant == Method::FULL)
     };
     settings.protocols == HEADLINE_PROTOCOLS
-        && settings.train_walkers.is_none()
-        && settings.test_walkers.is_none()
+        && settings.train_pedestrians.is_none()
+        && settings.test_pedestrians.is_none()
         && settings.convention.fold_names().all(full)
         && plan
             .tasks
@@ -109,9 +109,9 @@ fn made_by(plan: &Plan, making: &Making<'_>) -> String {
         settings.epochs,
         seeds(plan).join(", "),
         settings.convention,
-        match settings.test_walkers {
+        match settings.test_pedestrians {
             None => "all".to_owned(),
-            Some(walkers) => format!("{walkers} walkers of the"),
+            Some(pedestrians) => format!("{pedestrians} pedestrians of the"),
         },
         settings.device,
         making.commit,
@@ -138,16 +138,16 @@ fn page(report: &str, plan: &Plan, making: &Making<'_>) -> String {
     let (title, body) = report.split_at(before + rest.find('\n').unwrap_or(0));
     let settings = &plan.settings;
     let of_the_recipe = "the recipe's";
-    let or = |walkers: Option<usize>, otherwise: &str| {
-        walkers.map_or(otherwise.to_owned(), |walkers| walkers.to_string())
+    let or = |pedestrians: Option<usize>, otherwise: &str| {
+        pedestrians.map_or(otherwise.to_owned(), |pedestrians| pedestrians.to_string())
     };
     let trained_on = match settings.recipe.name {
-        Recipe::Recommended => or(settings.train_walkers, of_the_recipe),
-        Recipe::Published => or(settings.train_walkers, "all"),
+        Recipe::Recommended => or(settings.train_pedestrians, of_the_recipe),
+        Recipe::Published => or(settings.train_pedestrians, "all"),
     };
     let optimiser = settings.recipe.optimiser.as_ref();
     let optimiser = optimiser.map_or(of_the_recipe.to_owned(), |of| {
-        let (batch, step, schedule) = (of.batch_walkers, of.learning_rate, of.schedule);
+        let (batch, step, schedule) = (of.batch_pedestrians, of.learning_rate, of.schedule);
         format!("{batch} / {step} ({schedule})")
     });
     let rows = [
@@ -157,10 +157,10 @@ fn page(report: &str, plan: &Plan, making: &Making<'_>) -> String {
         ("recipe", settings.recipe.name.to_string()),
         ("epochs", settings.epochs.to_string()),
         (
-            "walkers trained on in an epoch / scored",
-            format!("{trained_on} / {}", or(settings.test_walkers, "all")),
+            "pedestrians trained on in an epoch / scored",
+            format!("{trained_on} / {}", or(settings.test_pedestrians, "all")),
         ),
-        ("walkers a batch / largest step of Adam", optimiser),
+        ("pedestrians a batch / largest step of Adam", optimiser),
         ("device", settings.device.to_string()),
         ("commit", making.commit.to_owned()),
         (
@@ -188,13 +188,13 @@ fn command(plan: &Plan) -> String {
     let folds = plan.tasks.iter().map(|task| task.fold.as_str()).collect();
     let methods = plan.tasks.iter().map(|task| task.variant.name()).collect();
     let protocols = settings.protocols.iter().map(ToString::to_string);
-    let walkers = [
-        ("train", settings.train_walkers),
-        ("test", settings.test_walkers),
+    let pedestrians = [
+        ("train", settings.train_pedestrians),
+        ("test", settings.test_pedestrians),
     ]
-    .map(|(which, walkers)| {
-        walkers.map_or(String::new(), |walkers| {
-            format!(" --{which}-walkers {walkers}")
+    .map(|(which, pedestrians)| {
+        pedestrians.map_or(String::new(), |pedestrians| {
+            format!(" --{which}-pedestrians {pedestrians}")
         })
     });
     format!(
@@ -209,7 +209,7 @@ fn command(plan: &Plan) -> String {
         settings.epochs,
         settings.device,
         settings.cargo_profile,
-        walkers.concat()
+        pedestrians.concat()
     )
 }
 
@@ -247,8 +247,8 @@ mod tests {
     #[test]
     fn a_part_of_the_benchmark_does_not_reach_the_readme() {
         let all = || Settings {
-            train_walkers: None,
-            test_walkers: None,
+            train_pedestrians: None,
+            test_pedestrians: None,
             ..settings(Recipe::Recommended)
         };
         let folds: Vec<&str> = Convention::Star.fold_names().collect();
@@ -262,8 +262,8 @@ mod tests {
         assert!(!whole(all(), &folds[1..], &[full]));
         assert!(!whole(all(), &folds, &[full, Method::ALL[3]]));
         let changes: [fn(&mut Settings); 3] = [
-            |settings| settings.train_walkers = Some(800),
-            |settings| settings.test_walkers = Some(50),
+            |settings| settings.train_pedestrians = Some(800),
+            |settings| settings.test_pedestrians = Some(50),
             |settings| settings.protocols.truncate(1),
         ];
         for change in changes {
@@ -285,18 +285,18 @@ mod tests {
 
     #[test]
     fn the_page_says_what_made_it_and_names_no_folder() {
-        let walkers = "| walkers trained on in an epoch / scored |";
-        for (recipe, train_walkers, test_walkers, pieces) in [
+        let pedestrians = "| pedestrians trained on in an epoch / scored |";
+        for (recipe, train_pedestrians, test_pedestrians, pieces) in [
             (
                 Recipe::Recommended,
                 Some(800),
                 None,
                 [
                     "`cargo xtask benchmark --profile quick --convention star --folds eth,hotel --variants full --protocol \
-                     fair,single,online,online-single --seeds 1,2 --epochs 4 --device cpu --cargo-profile release --train-walkers 800 --publish`",
+                     fair,single,online,online-single --seeds 1,2 --epochs 4 --device cpu --cargo-profile release --train-pedestrians 800 --publish`",
                     "| time | 1970-01-01 00:00 UTC, took 1 min 1 s |",
                     "| recipe | recommended |",
-                    &format!("{walkers} 800 / all |"),
+                    &format!("{pedestrians} 800 / all |"),
                 ],
             ),
             (
@@ -305,28 +305,28 @@ mod tests {
                 None,
                 [
                     "--cargo-profile release --publish`",
-                    &format!("{walkers} the recipe's / all |"),
-                    "| walkers a batch / largest step of Adam | the recipe's |",
+                    &format!("{pedestrians} the recipe's / all |"),
+                    "| pedestrians a batch / largest step of Adam | the recipe's |",
                     "| seeds | 1, 2 |",
                 ],
             ),
             (
-                // The paper's epochs are of all walkers.
+                // The paper's epochs are of all pedestrians.
                 Recipe::Published,
                 None,
                 Some(50),
                 [
-                    &format!("{walkers} all / 50 |"),
-                    "| walkers a batch / largest step of Adam | 256 / 0.0015 (constant) |",
+                    &format!("{pedestrians} all / 50 |"),
+                    "| pedestrians a batch / largest step of Adam | 256 / 0.0015 (constant) |",
                     "--protocol published,fair,single",
-                    "--test-walkers 50 --publish`",
+                    "--test-pedestrians 50 --publish`",
                 ],
             ),
         ] {
             let settings = Settings {
                 proposal_steps: None,
-                train_walkers,
-                test_walkers,
+                train_pedestrians,
+                test_pedestrians,
                 ..settings(recipe)
             };
             let plan = plan(settings, &["hotel", "eth"], &[Method::FULL], &[2, 1]).unwrap();
@@ -354,7 +354,7 @@ mod tests {
         let publish = |folds: &[&str]| {
             let headline = Settings {
                 profile: Profile::Paper,
-                train_walkers: None,
+                train_pedestrians: None,
                 ..settings(Recipe::Recommended)
             };
             let plan = plan(headline, folds, &[Method::FULL], &[0]).unwrap();

@@ -69,7 +69,7 @@ fn baselines_elsewhere(
     }
     let dataset = Dataset::load(other, &folder)?;
     let folds: Vec<String> = other.fold_names().map(str::to_owned).collect();
-    let part = (protocols.as_slice(), settings.test_walkers);
+    let part = (protocols.as_slice(), settings.test_pedestrians);
     let report = baselines::measure(&dataset, &folds, part, commit)?;
     let folder = out.join(format!("baselines-{other}"));
     Results::new(report, Vec::new()).save(&folder)?;

@@ -86,7 +86,7 @@ impl Bench {
 fn plan(folds: &[&str]) -> Plan {
     let settings = Settings {
         epochs: 20,
-        train_walkers: None,
+        train_pedestrians: None,
         ..fixture::settings(Recipe::Recommended)
     };
     fixture::plan(settings, folds, &[Method::FULL], &[1]).unwrap()

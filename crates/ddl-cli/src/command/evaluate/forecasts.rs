@@ -30,7 +30,7 @@ pub(crate) struct OtherProgram {
     /// Name of the other program in tables [default: the file's name]
     #[arg(long, requires = "forecasts")]
     name: Option<String>,
-    /// Score the walkers that are both in the windows and in the file, and say so in the results
+    /// Score the pedestrians that are both in the windows and in the file, and say so in the results
     #[arg(long, requires = "forecasts")]
     intersection: bool,
     /// Folder to write the report to: report.html to look at, report.md, report.tex, report.json, moments.json and
@@ -101,7 +101,7 @@ impl OtherProgram {
     }
 }
 
-/// Where file and windows are not of the same walkers, which windows these were and which option scores the rest.
+/// Where file and windows are not of the same pedestrians, which windows these were and which option scores the rest.
 fn named(
     error: external::ExternalError,
     (convention, fold, rule): &(Convention, &String, WindowRule),
@@ -112,7 +112,7 @@ fn named(
     );
     if differ {
         anyhow::anyhow!(
-            "{error} (the windows are those of --convention {convention} --fold {fold}, rule {rule}; --intersection scores the walkers in both)"
+            "{error} (the windows are those of --convention {convention} --fold {fold}, rule {rule}; --intersection scores the pedestrians in both)"
         )
     } else {
         error.into()

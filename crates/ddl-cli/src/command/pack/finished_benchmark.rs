@@ -21,9 +21,9 @@ struct Reported {
     protocol: Protocol,
     min_ade: f64,
     min_fde: f64,
-    walkers: usize,
-    /// `--test-walkers` of that evaluation; none is all.
-    test_walkers: Option<usize>,
+    pedestrians: usize,
+    /// `--test-pedestrians` of that evaluation; none is all.
+    test_pedestrians: Option<usize>,
     seed: u64,
     commit: String,
 }
@@ -40,7 +40,7 @@ pub(super) fn pack(
         let file = task.run_folder(benchmark).join("report.json");
         let result = Report::load(&file)
             .context("is the benchmark finished?")
-            .and_then(|report| reported(&report, task, plan.settings.test_walkers))
+            .and_then(|report| reported(&report, task, plan.settings.test_pedestrians))
             .with_context(|| format!("in {}", file.display()))?;
         reached.insert(task.fold.as_str(), result);
     }
@@ -84,15 +84,15 @@ fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
     ensure!(
         settings.recipe.name == Recipe::Recommended
             && settings.profile == Profile::Paper
-            && settings.train_walkers.is_none(),
+            && settings.train_pedestrians.is_none(),
         "the models that come with the program are of the whole recommended recipe (--profile paper), and that benchmark is of profile \
          {}, recipe {}{}",
         settings.profile,
         settings.recipe.name,
         settings
-            .train_walkers
-            .map_or(String::new(), |walkers| format!(
-                ", {walkers} walkers an epoch"
+            .train_pedestrians
+            .map_or(String::new(), |pedestrians| format!(
+                ", {pedestrians} pedestrians an epoch"
             )),
     );
     let full = || {
@@ -112,7 +112,11 @@ fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
         .collect()
 }
 
-fn reported(report: &Report, task: &Task, test_walkers: Option<usize>) -> anyhow::Result<Reported> {
+fn reported(
+    report: &Report,
+    task: &Task,
+    test_pedestrians: Option<usize>,
+) -> anyhow::Result<Reported> {
     let (convention, protocol) = (Convention::Star, Protocol::Fair);
     let window_rule = convention.headline_rule();
     let row = report.rows().iter().find(|row| {
@@ -134,8 +138,8 @@ fn reported(report: &Report, task: &Task, test_walkers: Option<usize>) -> anyhow
         protocol,
         min_ade: row.scores.min_ade,
         min_fde: row.scores.min_fde,
-        walkers: row.scores.pedestrians,
-        test_walkers,
+        pedestrians: row.scores.pedestrians,
+        test_pedestrians,
         seed: task.seed,
         commit: row.conditions.commit.clone(),
     })

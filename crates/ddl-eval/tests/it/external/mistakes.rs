@@ -57,7 +57,7 @@ fn every_mistake_of_json_lines_is_named_with_its_place() {
 0.0], [2.0 => 0.0], ["2" => 2, hypotheses[0].positions[1][0]: must be a finite number, found "2"
 0.0], [2.0 => 0.0], [1e999 => 2: not a JSON object: number out of range
 0.0], [2.0 => 0.0], [2.0, 3.0 => 2, hypotheses[0].positions[1]: must be [x, y] in metres, found [2.0,3.0,0.0]
-"pedestrian":5 => "pedestrian":3 => 2: this walker was forecast on line 1 already
+"pedestrian":5 => "pedestrian":3 => 2: this pedestrian was forecast on line 1 already
 "pedestrian":5 => "pedestrian":3,"pedestrian":5 => 2, pedestrian: is there twice; keep one
 {"positions":[[2.0 => {"goal":[1,2],"positions":[[2.0 => 2: either every hypothesis of the file has a goal
 { => {"frames":[71,72,73,74,75,76,77,78,79,80,81,82], => 1, frames: the forecast is of the frames 71, 72 to 82; the 12 after the last observed one are 80, 90 to 190
@@ -76,7 +76,7 @@ fn every_mistake_of_json_lines_is_named_with_its_place() {
     );
     // Fields of two hypotheses; what programs write for a goal of NaN is a list, and a bare null is no goal.
     let pairs = r#"
-"weight":0.5, => => 1, hypotheses: either every hypothesis of a walker has a weight
+"weight":0.5, => => 1, hypotheses: either every hypothesis of a pedestrian has a weight
 "weight":0.5, => "weight":NaN, => 1, hypotheses[1].weight: must be a finite number
 "weight":0.5, => "weight":null, => 1, hypotheses[1].weight: must be a finite number, found null, NaN or infinity
 "goal":[null,null], => "goal":[1,2], => 1, hypotheses[0].goal[0]: must be a finite number
@@ -129,7 +129,7 @@ yard => \n\n"yard",70,5,0,"1,80,2,0,ok\nyard => 16: a quote is opened and not cl
     });
     // Pedestrian, hypothesis and weight, rows for rows.
     let sequences = r"
-3/0/1 5/0/1 3/0/1 => 26: this walker was forecast on line 2 already
+3/0/1 5/0/1 3/0/1 => 26: this pedestrian was forecast on line 2 already
 3/0/1 5/0/0.5 5/1/0.5 5/0/0.5 => 38, hypothesis: hypothesis 0 is there already
 3/0/1 5/0/0.5 => 14, weight: the weights sum to 0.5
 5/2/0.5 5/0/0.5 => 2, hypothesis: the hypotheses of `yard` observed until 70 pedestrian 5 have the numbers 0, 2, expected 0 to 1 or 1 to 2

@@ -1,4 +1,4 @@
-// The hypotheses of a walker as a table: weight, errors, verdict; sortable.
+// The hypotheses of a pedestrian as a table: weight, errors, verdict; sortable.
 
 const SORT_DOWN = { weight: true, index: false, ade: false, fde: false };
 
@@ -37,15 +37,15 @@ function makeHypothesisList(table, choose) {
     return tr;
   }
 
-  function draw(walker, errors, chosen) {
-    shown = { walker, errors, chosen };
-    const items = walker.hypotheses.map((h) => ({
+  function draw(pedestrian, errors, chosen) {
+    shown = { pedestrian, errors, chosen };
+    const items = pedestrian.hypotheses.map((h) => ({
       index: h.index,
       weight: h.weight,
       ...errors.each[h.index],
-      verdict: verdictWords(walker, h),
+      verdict: verdictWords(pedestrian, h),
     }));
-    const { heaviest } = walker;
+    const { heaviest } = pedestrian;
     body.replaceChildren(...order(items).map((item) => row(item, heaviest, chosen)));
     for (const button of table.tHead.querySelectorAll("button")) {
       const mine = button.dataset.sort === sortBy;
@@ -60,7 +60,7 @@ function makeHypothesisList(table, choose) {
 
   function sort(by) {
     sortBy = by;
-    if (shown) draw(shown.walker, shown.errors, shown.chosen);
+    if (shown) draw(shown.pedestrian, shown.errors, shown.chosen);
   }
 
   body.addEventListener("click", (event) => {

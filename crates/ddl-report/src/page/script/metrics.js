@@ -1,4 +1,4 @@
-// The metrics of one walker, as the evaluation defines them; all in metres.
+// The metrics of one pedestrian, as the evaluation defines them; all in metres.
 
 const AT_GOAL = 1e-3;
 
@@ -20,9 +20,9 @@ function errorWords(error) {
 }
 
 // minADE and minFDE: two minima over the hypotheses, each of its own.
-function walkerErrors(walker) {
-  const each = walker.hypotheses.map((h) => displacement(h.path, walker.truth));
-  if (walker.truth.length < HORIZON) return { each, minAde: null, minFde: null };
+function pedestrianErrors(pedestrian) {
+  const each = pedestrian.hypotheses.map((h) => displacement(h.path, pedestrian.truth));
+  if (pedestrian.truth.length < HORIZON) return { each, minAde: null, minFde: null };
   return {
     each,
     minAde: Math.min(...each.map((e) => e.ade)),
@@ -31,14 +31,14 @@ function walkerErrors(walker) {
 }
 
 // Phi: the distance to the goal, from the last observed frame (t = 0) to the 12th forecast one.
-function phi(walker, hypothesis) {
+function phi(pedestrian, hypothesis) {
   if (!hypothesis.goal) return null;
-  return [walker.observed[OBSERVED - 1], ...hypothesis.path].map((place) => distance(place, hypothesis.goal));
+  return [pedestrian.observed[OBSERVED - 1], ...hypothesis.path].map((place) => distance(place, hypothesis.goal));
 }
 
 // What is known of the descent of Phi, in words. The verdict is that of the unrounded forecast.
-function verdictWords(walker, hypothesis) {
-  const values = phi(walker, hypothesis);
+function verdictWords(pedestrian, hypothesis) {
+  const values = phi(pedestrian, hypothesis);
   if (!values) return "no goal, no Φ";
   const rises = [];
   for (let t = 1; t < values.length; t += 1) {

@@ -21,7 +21,7 @@ function walked(from, steps) {
   return path;
 }
 
-function decodeWalker(data) {
+function decodePedestrian(data) {
   let last = [0, 0];
   for (let at = 0; at < data.observed.length; at += 2) {
     last = [last[0] + data.observed[at], last[1] + data.observed[at + 1]];
@@ -33,7 +33,7 @@ function decodeWalker(data) {
       index,
       weight: data.weights[index] / 1000,
       path: walked(last, steps),
-      // Of the region that holds the walker with a probability of 90 %, in metres; 0 where this hypothesis has no disc.
+      // Of the region that holds the pedestrian with a probability of 90 %, in metres; 0 where this hypothesis has no disc.
       radii: data.radii?.[index].map((radius) => radius / 1000),
       goal: goal && [(last[0] + goal[0]) / 1000, (last[1] + goal[1]) / 1000],
       falls: verdict(data.falls[index]),
@@ -55,12 +55,12 @@ function decodeWalker(data) {
 
 // A moment is decoded when it is first shown: a page may hold many.
 function decodeMoment(data) {
-  return { ...data, walkers: data.walkers.map(decodeWalker) };
+  return { ...data, pedestrians: data.pedestrians.map(decodePedestrian) };
 }
 
-// The last frame, counted from 0, at which it is known where the walker was.
-function knownUntil(walker) {
-  return OBSERVED - 1 + walker.truth.length;
+// The last frame, counted from 0, at which it is known where the pedestrian was.
+function knownUntil(pedestrian) {
+  return OBSERVED - 1 + pedestrian.truth.length;
 }
 
 // The place at a time counted in frames from 0; between two frames on the line between them, after the last one there.

@@ -22,10 +22,10 @@ function makePhiChart(svg) {
   let up = null;
   const across = (t) => PHI.left + (t / HORIZON) * (PHI.right - PHI.left);
 
-  // Lines of a walker; the hypothesis looked at is drawn last.
-  function draw(walker, chosen) {
+  // Lines of a pedestrian; the hypothesis looked at is drawn last.
+  function draw(pedestrian, chosen) {
     svg.replaceChildren();
-    const lines = walker.hypotheses.map((hypothesis) => phi(walker, hypothesis));
+    const lines = pedestrian.hypotheses.map((hypothesis) => phi(pedestrian, hypothesis));
     values = lines[chosen];
     const known = lines.filter((line) => line);
     if (known.length === 0) {
@@ -47,12 +47,12 @@ function makePhiChart(svg) {
       const place = t === HORIZON ? "end" : "middle";
       svg.append(svgElement("text", { class: `small ${place}`, x: t === HORIZON ? PHI.right + 6 : across(t), y: PHI.bottom + 16 }, label));
     }
-    const { heaviest } = walker;
-    const order = walker.hypotheses.map((_, k) => k).filter((k) => k !== chosen && lines[k]);
+    const { heaviest } = pedestrian;
+    const order = pedestrian.hypotheses.map((_, k) => k).filter((k) => k !== chosen && lines[k]);
     if (values) order.push(chosen);
     for (const k of order) {
       const points = lines[k].map((value, t) => `${across(t).toFixed(1)},${up(value).toFixed(1)}`).join(" ");
-      const share = walker.hypotheses[k].weight / heaviest;
+      const share = pedestrian.hypotheses[k].weight / heaviest;
       const style = k === chosen ? "" : `opacity:${(0.16 + 0.5 * share).toFixed(2)};stroke-width:${(0.8 + 0.8 * share).toFixed(1)}`;
       svg.append(svgElement("polyline", { class: k === chosen ? "line chosen" : "line", points, style }));
     }

@@ -1,6 +1,6 @@
 // The player: what is chosen, and everything that follows from it.
 
-// The close-up shows a little more than the walker, so that neighbours are seen.
+// The close-up shows a little more than the pedestrian, so that neighbours are seen.
 const CLOSE_UP_ROOM = 1.25;
 
 const byId = (id) => document.getElementById(id);
@@ -18,7 +18,7 @@ function makePlayer(moments) {
   }
   const state = {
     moment: 0,
-    walker: 0,
+    pedestrian: 0,
     hypothesis: null,
     time: OBSERVED - 1,
     show: { truth: true, hypotheses: true, goals: true, region: true, others: true, everything: false, whole: false },
@@ -65,8 +65,8 @@ function makePlayer(moments) {
   }
 
   const current = () => momentAt(state.moment);
-  const walker = () => current().walkers[state.walker];
-  const chosenHypothesis = () => state.hypothesis ?? walker().representative;
+  const pedestrian = () => current().pedestrians[state.pedestrian];
+  const chosenHypothesis = () => state.hypothesis ?? pedestrian().representative;
 
   function fillSelect(select, options, value) {
     select.replaceChildren(...options.map(([key, text]) => new Option(text, key, false, String(key) === String(value))));
@@ -99,8 +99,8 @@ function makePlayer(moments) {
     canvas.width = Math.round(box.width * ratio);
     canvas.height = Math.round(box.height * ratio);
     const places = [];
-    if (state.show.whole) current().walkers.forEach((who, at) => places.push(...placesOf(who, at === state.walker)));
-    else places.push(...placesOf(walker(), true));
+    if (state.show.whole) current().pedestrians.forEach((who, at) => places.push(...placesOf(who, at === state.pedestrian)));
+    else places.push(...placesOf(pedestrian(), true));
     view = viewOf(places, size.width, size.height, state.show.whole ? 1 : CLOSE_UP_ROOM);
     redraw();
   }
@@ -114,7 +114,7 @@ function makePlayer(moments) {
     byId("time-words").textContent = `${sign}${Math.abs(seconds).toFixed(1)} s, ${part}`;
     byId("time").value = frame + 1;
     byId("time").setAttribute("aria-valuetext", byId("time-words").textContent);
-    const who = walker();
+    const who = pedestrian();
     const ahead = frame >= OBSERVED - 1 && time > OBSERVED - 1 ? who.hypotheses[chosenHypothesis()].path : who.truth;
     const [x, y] = placeAt(who.observed, ahead, time);
     const speed = Math.hypot(...velocityAt(who.observed, ahead, time));
@@ -125,13 +125,13 @@ function makePlayer(moments) {
     redraw();
   }
 
-  function showWalker() {
+  function showPedestrian() {
     const moment = current();
-    const who = walker();
-    const errors = walkerErrors(who);
+    const who = pedestrian();
+    const errors = pedestrianErrors(who);
     const chosen = chosenHypothesis();
-    byId("choose-walker").value = state.walker;
-    byId("walker-name").textContent = `Walker ${who.pedestrian}`;
+    byId("choose-pedestrian").value = state.pedestrian;
+    byId("pedestrian-name").textContent = `Pedestrian ${who.pedestrian}`;
     // Errors of somebody who was not seen on are not known: no empty places are left for them.
     stage.classList.toggle("unmeasured", errors.minAde === null);
     byId("min-ade").textContent = errorWords(errors.minAde);
@@ -146,7 +146,7 @@ function makePlayer(moments) {
       `Forecast by ${moment.forecaster}; ${moment.recording}, frame ${moment.frame}.`;
     canvas.setAttribute(
       "aria-label",
-      `The scene from above: ${moment.walkers.length} walkers of ${moment.recording}, frame ${moment.frame}; walker ${who.pedestrian} is chosen`,
+      `The scene from above: ${moment.pedestrians.length} pedestrians of ${moment.recording}, frame ${moment.frame}; pedestrian ${who.pedestrian} is chosen`,
     );
     chart.draw(who, chosen);
     list.draw(who, errors, chosen);
@@ -160,23 +160,23 @@ function makePlayer(moments) {
     state.hypothesis = state.hypothesis === index ? null : index;
     const chosen = chosenHypothesis();
     list.mark(chosen);
-    chart.draw(walker(), chosen);
+    chart.draw(pedestrian(), chosen);
     showVerdict();
     showTime(state.time);
   }
 
   function showVerdict() {
-    const who = walker();
+    const who = pedestrian();
     const chosen = chosenHypothesis();
     const stands = chosen === who.representative && who.hypotheses.length > 1 ? ", which stands for all" : "";
     byId("certificate-words").textContent = `Hypothesis ${chosen + 1}${stands}: ${verdictWords(who, who.hypotheses[chosen])}.`;
   }
 
-  function chooseWalker(at) {
-    const count = current().walkers.length;
-    state.walker = (at + count) % count;
+  function choosePedestrian(at) {
+    const count = current().pedestrians.length;
+    state.pedestrian = (at + count) % count;
     state.hypothesis = null;
-    showWalker();
+    showPedestrian();
   }
 
   function chooseMoment(at, who = null) {
@@ -188,14 +188,14 @@ function makePlayer(moments) {
       byId("choose-moment"),
       momentsOf(name).map((m) => {
         const picks = moments[m].picks.map((pick) => pick.show.replace("-", " "));
-        const people = moments[m].walkers.length;
-        return [m, [`frame ${moments[m].frame}`, `${people} ${people === 1 ? "walker" : "walkers"}`, ...new Set(picks)].join(", ")];
+        const people = moments[m].pedestrians.length;
+        return [m, [`frame ${moments[m].frame}`, `${people} ${people === 1 ? "pedestrian" : "pedestrians"}`, ...new Set(picks)].join(", ")];
       }),
       state.moment,
     );
-    fillSelect(byId("choose-walker"), moment.walkers.map((w, i) => [i, `walker ${w.pedestrian}`]), 0);
-    const picked = moment.picks[0]?.walkers[0] ?? 0;
-    chooseWalker(who ?? picked);
+    fillSelect(byId("choose-pedestrian"), moment.pedestrians.map((w, i) => [i, `pedestrian ${w.pedestrian}`]), 0);
+    const picked = moment.picks[0]?.pedestrians[0] ?? 0;
+    choosePedestrian(who ?? picked);
   }
 
   function setShow(name, on) {
@@ -205,12 +205,12 @@ function makePlayer(moments) {
     redraw();
   }
 
-  // The walker whose way, up to now and ahead, passes nearest the pointer.
-  function nearestWalker(event) {
+  // The pedestrian whose way, up to now and ahead, passes nearest the pointer.
+  function nearestPedestrian(event) {
     const box = canvas.getBoundingClientRect();
     const at = [event.clientX - box.left, event.clientY - box.top];
     let best = null;
-    current().walkers.forEach((who, index) => {
+    current().pedestrians.forEach((who, index) => {
       const ahead = shownAhead(who, state.show, state.time);
       const here = view.px(placeAt(who.observed, ahead, state.time));
       const others = [...who.observed, ...ahead].map(view.px);
@@ -229,18 +229,18 @@ function makePlayer(moments) {
   });
   byId("choose-recording").addEventListener("change", (event) => chooseMoment(momentsOf(event.target.value)[0]));
   byId("choose-moment").addEventListener("change", (event) => chooseMoment(Number(event.target.value)));
-  byId("choose-walker").addEventListener("change", (event) => chooseWalker(Number(event.target.value)));
+  byId("choose-pedestrian").addEventListener("change", (event) => choosePedestrian(Number(event.target.value)));
   for (const name of Object.keys(state.show)) {
     byId(`show-${name}`).addEventListener("change", (event) => setShow(name, event.target.checked));
   }
   canvas.addEventListener("click", (event) => {
-    const found = nearestWalker(event);
-    if (found !== undefined) chooseWalker(found);
+    const found = nearestPedestrian(event);
+    if (found !== undefined) choosePedestrian(found);
     stage.focus({ preventScroll: true });
   });
   for (const button of document.querySelectorAll("button[data-moment]")) {
     button.addEventListener("click", () => {
-      chooseMoment(Number(button.dataset.moment), Number(button.dataset.walker));
+      chooseMoment(Number(button.dataset.moment), Number(button.dataset.pedestrian));
       byId("player").scrollIntoView();
       stage.focus({ preventScroll: true });
       clock.set(0);
@@ -255,13 +255,13 @@ function makePlayer(moments) {
   if (document.body.dataset.first === "busiest") {
     setShow("whole", true);
     // Where it is known of most people what they then did; where it is known of nobody, most people.
-    const known = moments.map(({ walkers }) => walkers.filter((who) => who.truth.length === 2 * HORIZON).length);
-    const people = moments.map(({ walkers }) => walkers.length);
+    const known = moments.map(({ pedestrians }) => pedestrians.filter((who) => who.truth.length === 2 * HORIZON).length);
+    const people = moments.map(({ pedestrians }) => pedestrians.length);
     const score = Math.max(...known) > 0 ? known : people;
     const first = score.indexOf(Math.max(...score));
     // Of these, who went farthest.
     const far = ({ truth }) => (truth.length === HORIZON ? distance(truth[0], truth[HORIZON - 1]) : -1);
-    const ways = momentAt(first).walkers.map(far);
+    const ways = momentAt(first).pedestrians.map(far);
     chooseMoment(first, ways.indexOf(Math.max(...ways)));
   } else {
     chooseMoment(0);
@@ -269,7 +269,7 @@ function makePlayer(moments) {
 
   return {
     clock,
-    nextWalker: (by) => chooseWalker(state.walker + by),
+    nextPedestrian: (by) => choosePedestrian(state.pedestrian + by),
     nextMoment: (by) => chooseMoment(state.moment + by),
     nextRecording: () => {
       const at = recordings.indexOf(recordingName(current()));

@@ -114,37 +114,37 @@ function trail(observed, ahead, from, time) {
   return places;
 }
 
-// Where a walker is shown to go: as it went, as far as it was seen; else as it is forecast.
-function shownAhead(walker, show, time) {
-  return show.truth && time <= knownUntil(walker) ? walker.truth : walker.hypotheses[walker.representative].path;
+// Where a pedestrian is shown to go: as it went, as far as it was seen; else as it is forecast.
+function shownAhead(pedestrian, show, time) {
+  return show.truth && time <= knownUntil(pedestrian) ? pedestrian.truth : pedestrian.hypotheses[pedestrian.representative].path;
 }
 
-function drawOther(context, view, walker, state, palette) {
+function drawOther(context, view, pedestrian, state, palette) {
   const { time, show } = state;
   const now = OBSERVED - 1;
-  const known = knownUntil(walker);
+  const known = knownUntil(pedestrian);
   const toPixels = (places) => places.map(view.px);
-  stroke(context, toPixels(trail(walker.observed, walker.truth, 0, Math.min(time, now))), palette.other, 1.4, 0.8);
+  stroke(context, toPixels(trail(pedestrian.observed, pedestrian.truth, 0, Math.min(time, now))), palette.other, 1.4, 0.8);
   if (show.truth) {
-    stroke(context, toPixels(trail(walker.observed, walker.truth, now, known)), palette.other, 1, 0.35);
-    stroke(context, toPixels(trail(walker.observed, walker.truth, now, Math.min(time, known))), palette.other, 1.4, 0.8);
+    stroke(context, toPixels(trail(pedestrian.observed, pedestrian.truth, now, known)), palette.other, 1, 0.35);
+    stroke(context, toPixels(trail(pedestrian.observed, pedestrian.truth, now, Math.min(time, known))), palette.other, 1.4, 0.8);
   }
-  if (show.everything) drawHypotheses(context, view, walker, state, palette, 0.5);
+  if (show.everything) drawHypotheses(context, view, pedestrian, state, palette, 0.5);
   else if (time >= now) {
-    const { path } = walker.hypotheses[walker.representative];
-    stroke(context, toPixels([walker.observed[now], ...path]), palette.accent, 1, 0.4, [3, 3]);
+    const { path } = pedestrian.hypotheses[pedestrian.representative];
+    stroke(context, toPixels([pedestrian.observed[now], ...path]), palette.accent, 1, 0.4, [3, 3]);
   }
-  const ahead = shownAhead(walker, show, time);
-  dot(context, view.px(placeAt(walker.observed, ahead, time)), 3.4, palette.other, 1, palette.panel);
+  const ahead = shownAhead(pedestrian, show, time);
+  dot(context, view.px(placeAt(pedestrian.observed, ahead, time)), 3.4, palette.other, 1, palette.panel);
 }
 
 // Every hypothesis but the one looked at: the heavier, the clearer and the broader.
-function drawHypotheses(context, view, walker, state, palette, strength, chosen = -1) {
+function drawHypotheses(context, view, pedestrian, state, palette, strength, chosen = -1) {
   const now = OBSERVED - 1;
-  const { heaviest } = walker;
-  const start = walker.observed[now];
+  const { heaviest } = pedestrian;
+  const start = pedestrian.observed[now];
   const early = state.time < now ? 0.45 : 1;
-  for (const hypothesis of walker.hypotheses) {
+  for (const hypothesis of pedestrian.hypotheses) {
     if (hypothesis.index === chosen) continue;
     const share = hypothesis.weight / heaviest;
     const alpha = strength * early * (0.16 + 0.55 * share);
@@ -153,7 +153,7 @@ function drawHypotheses(context, view, walker, state, palette, strength, chosen 
       ring(context, view.px(hypothesis.goal), 3 + 4 * Math.sqrt(share), palette.accent, 1, strength * early * (0.35 + 0.45 * share));
     }
     if (state.time > now) {
-      const place = view.px(placeAt(walker.observed, hypothesis.path, state.time));
+      const place = view.px(placeAt(pedestrian.observed, hypothesis.path, state.time));
       if (state.time >= FRAMES - 1) star(context, place, 3.2 + 1.6 * share, palette.accent, strength * (0.4 + 0.5 * share));
       else dot(context, place, 1.6 + 1.4 * share, palette.accent, strength * (0.4 + 0.5 * share));
     }
@@ -161,13 +161,13 @@ function drawHypotheses(context, view, walker, state, palette, strength, chosen 
 }
 
 // The region of 90 % at the step reached: discs about the hypotheses, as one area.
-function drawRegion(context, view, walker, time, palette) {
+function drawRegion(context, view, pedestrian, time, palette) {
   const step = Math.min(Math.ceil(time), FRAMES - 1) - OBSERVED;
-  if (step < 0 || !walker.hypotheses[0].radii) return;
+  if (step < 0 || !pedestrian.hypotheses[0].radii) return;
   context.globalAlpha = 0.14;
   context.fillStyle = palette.accent;
   context.beginPath();
-  for (const { path, radii } of walker.hypotheses) {
+  for (const { path, radii } of pedestrian.hypotheses) {
     if (radii[step] <= 0) continue;
     const [x, y] = view.px(path[step]);
     context.moveTo(x + radii[step] * view.scale, y);
@@ -177,61 +177,61 @@ function drawRegion(context, view, walker, time, palette) {
   context.globalAlpha = 1;
 }
 
-function drawChosen(context, view, walker, state, palette) {
+function drawChosen(context, view, pedestrian, state, palette) {
   const { time, show } = state;
   const now = OBSERVED - 1;
-  if (show.region) drawRegion(context, view, walker, time, palette);
-  const known = knownUntil(walker);
-  const hypothesis = walker.hypotheses[state.hypothesis ?? walker.representative];
+  if (show.region) drawRegion(context, view, pedestrian, time, palette);
+  const known = knownUntil(pedestrian);
+  const hypothesis = pedestrian.hypotheses[state.hypothesis ?? pedestrian.representative];
   const toPixels = (places) => places.map(view.px);
-  if (show.hypotheses) drawHypotheses(context, view, walker, state, palette, 1, hypothesis.index);
+  if (show.hypotheses) drawHypotheses(context, view, pedestrian, state, palette, 1, hypothesis.index);
   const early = time < now ? 0.5 : 1;
   if (show.goals && hypothesis.goal) {
     ring(context, view.px(hypothesis.goal), 9, palette.accent, 2, early, palette["accent-soft"]);
   }
-  stroke(context, toPixels([walker.observed[now], ...hypothesis.path]), palette.accent, 2.2, 0.75 * early, [6, 4]);
-  if (time > now) stroke(context, toPixels(trail(walker.observed, hypothesis.path, now, time)), palette.accent, 3);
+  stroke(context, toPixels([pedestrian.observed[now], ...hypothesis.path]), palette.accent, 2.2, 0.75 * early, [6, 4]);
+  if (time > now) stroke(context, toPixels(trail(pedestrian.observed, hypothesis.path, now, time)), palette.accent, 3);
   star(context, view.px(hypothesis.path[HORIZON - 1]), 8, palette.accent, early, palette.panel);
 
   if (show.truth) {
-    stroke(context, toPixels(trail(walker.observed, walker.truth, now, known)), palette.truth, 1.6, 0.4);
-    stroke(context, toPixels(trail(walker.observed, walker.truth, now, Math.min(time, known))), palette.truth, 3);
+    stroke(context, toPixels(trail(pedestrian.observed, pedestrian.truth, now, known)), palette.truth, 1.6, 0.4);
+    stroke(context, toPixels(trail(pedestrian.observed, pedestrian.truth, now, Math.min(time, known))), palette.truth, 3);
   }
-  stroke(context, toPixels(trail(walker.observed, walker.truth, 0, Math.min(time, now))), palette.ink, 1.2, 0.5);
-  walker.observed.forEach((place, frame) => {
+  stroke(context, toPixels(trail(pedestrian.observed, pedestrian.truth, 0, Math.min(time, now))), palette.ink, 1.2, 0.5);
+  pedestrian.observed.forEach((place, frame) => {
     // Who came late has not been seen there.
-    if (frame < walker.madeUp.padded) ring(context, view.px(place), 2.2, palette.ink, 1, frame <= time ? 0.6 : 0.25);
+    if (frame < pedestrian.madeUp.padded) ring(context, view.px(place), 2.2, palette.ink, 1, frame <= time ? 0.6 : 0.25);
     else dot(context, view.px(place), 2.6, palette.ink, frame <= time ? 1 : 0.25);
   });
 
   if (time > now) {
-    const place = placeAt(walker.observed, hypothesis.path, time);
-    arrow(context, view, place, velocityAt(walker.observed, hypothesis.path, time), palette["accent-deep"], 2);
+    const place = placeAt(pedestrian.observed, hypothesis.path, time);
+    arrow(context, view, place, velocityAt(pedestrian.observed, hypothesis.path, time), palette["accent-deep"], 2);
     dot(context, view.px(place), 5.5, palette.accent, 1, palette.panel);
   }
   if (time <= now || (show.truth && time <= known)) {
-    const place = placeAt(walker.observed, walker.truth, time);
+    const place = placeAt(pedestrian.observed, pedestrian.truth, time);
     const colour = time <= now ? palette.ink : palette.truth;
-    arrow(context, view, place, velocityAt(walker.observed, walker.truth, time), colour, 2);
+    arrow(context, view, place, velocityAt(pedestrian.observed, pedestrian.truth, time), colour, 2);
     dot(context, view.px(place), 5.5, colour, 1, palette.panel);
   }
 }
 
-// Numbers of the walkers beside where they are, the chosen one last; none is written over another.
+// Numbers of the pedestrians beside where they are, the chosen one last; none is written over another.
 function drawNumbers(context, view, moment, state, palette) {
   const taken = [];
-  const order = moment.walkers.map((_, at) => at).filter((at) => at !== state.walker);
-  order.unshift(state.walker);
+  const order = moment.pedestrians.map((_, at) => at).filter((at) => at !== state.pedestrian);
+  order.unshift(state.pedestrian);
   for (const at of order) {
-    const walker = moment.walkers[at];
-    if (at !== state.walker && !state.show.others) continue;
-    const ahead = shownAhead(walker, state.show, state.time);
-    const [x, y] = view.px(placeAt(walker.observed, ahead, state.time));
-    const box = [x + 6, y - 18, x + 12 + 7 * String(walker.pedestrian).length, y - 4];
+    const pedestrian = moment.pedestrians[at];
+    if (at !== state.pedestrian && !state.show.others) continue;
+    const ahead = shownAhead(pedestrian, state.show, state.time);
+    const [x, y] = view.px(placeAt(pedestrian.observed, ahead, state.time));
+    const box = [x + 6, y - 18, x + 12 + 7 * String(pedestrian.pedestrian).length, y - 4];
     if (taken.some((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3])) continue;
     taken.push(box);
-    const chosen = at === state.walker;
-    words(context, String(walker.pedestrian), [x + 8, y - 11], palette, chosen ? { weight: 700, colour: palette.ink, size: 12 } : {});
+    const chosen = at === state.pedestrian;
+    words(context, String(pedestrian.pedestrian), [x + 8, y - 11], palette, chosen ? { weight: 700, colour: palette.ink, size: 12 } : {});
   }
 }
 
@@ -244,11 +244,11 @@ function drawScene(context, view, size, moment, state, palette) {
   context.lineCap = "butt";
   grid(context, view, width, height, palette);
   if (state.show.others) {
-    moment.walkers.forEach((walker, at) => {
-      if (at !== state.walker) drawOther(context, view, walker, state, palette);
+    moment.pedestrians.forEach((pedestrian, at) => {
+      if (at !== state.pedestrian) drawOther(context, view, pedestrian, state, palette);
     });
   }
-  drawChosen(context, view, moment.walkers[state.walker], state, palette);
+  drawChosen(context, view, moment.pedestrians[state.pedestrian], state, palette);
   drawNumbers(context, view, moment, state, palette);
   context.globalAlpha = 1;
 }

@@ -14,12 +14,12 @@ function boundsOf(places) {
   return { low, high };
 }
 
-// Everything that a walker did, is forecast to do and heads for.
-function* placesOf(walker, allHypotheses) {
-  yield* walker.observed;
-  yield* walker.truth;
-  for (const hypothesis of walker.hypotheses) {
-    if (allHypotheses || hypothesis.index === walker.representative) {
+// Everything that a pedestrian did, is forecast to do and heads for.
+function* placesOf(pedestrian, allHypotheses) {
+  yield* pedestrian.observed;
+  yield* pedestrian.truth;
+  for (const hypothesis of pedestrian.hypotheses) {
+    if (allHypotheses || hypothesis.index === pedestrian.representative) {
       yield* hypothesis.path;
       if (hypothesis.goal) yield hypothesis.goal;
     }

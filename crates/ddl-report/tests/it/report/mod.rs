@@ -137,7 +137,7 @@ fn a_table_names_everything_it_must() {
         "device cpu",
         "commit 0123abc",
         "Scored: all test windows",
-        "| walkers scored |",
+        "| pedestrians scored |",
         "### Table I of the DDL paper",
         "mixes data conventions",
     ] {
@@ -217,13 +217,13 @@ fn protocols_conventions_rules_and_subsets_never_share_a_table() {
         with(|c| c.protocol = Protocol::Published),
         with(|c| c.convention = Convention::SocialGan),
         with(|c| c.window_rule = WindowRule::Complete),
-        with(|c| c.test_subset = Some("300 walkers a fold".to_owned())),
+        with(|c| c.test_subset = Some("300 pedestrians a fold".to_owned())),
     ]);
     assert_eq!(page.matches("\n## Protocol").count(), 5, "{page}");
     // Once with the published results, once where they stand beside the fair ones.
     assert_eq!(page.matches("**Warning.**").count(), 2);
     assert!(page.starts_with("Data conventions: `star`"));
-    assert!(page.contains("Scored: 300 walkers a fold."));
+    assert!(page.contains("Scored: 300 pedestrians a fold."));
 }
 
 #[test]
@@ -347,7 +347,7 @@ fn the_ablation_stands_beside_the_papers() {
     assert!(ablation.contains("Table II of the DDL paper"));
 }
 
-/// Over the walkers of the folds that all have: 30 and 10 who turn, of errors 0.1 and 0.5 m, are 0.2 m, and 0.3 m over the folds.
+/// Over the pedestrians of the folds that all have: 30 and 10 who turn, of errors 0.1 and 0.5 m, are 0.2 m, and 0.3 m over the folds.
 #[test]
 fn categories_are_pooled_over_the_pedestrians_of_shared_folds() {
     let of = |(fold, pedestrians, min_ade): (&str, usize, f64)| {

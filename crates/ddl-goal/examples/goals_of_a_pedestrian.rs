@@ -1,7 +1,7 @@
-//! Where is this walker heading? Goals with weights, from a library of walkers whose whole way is known.
+//! Where is this pedestrian heading? Goals with weights, from a library of pedestrians whose whole way is known.
 //!
 //! ```text
-//! cargo run --release -p ddl-goal --example goals_of_a_walker
+//! cargo run --release -p ddl-goal --example goals_of_a_pedestrian
 //! ```
 //! The library is made up: at a fork people walk on, bear left or bear right, at many speeds and in all directions.
 //! Somebody new, seen for 3.2 s (8 positions), begins to bear left; the goals are for 4.8 s later.
@@ -28,7 +28,7 @@ fn walk(speed: f64, heading: f64, turn: f64) -> Vec<[f64; 2]> {
 }
 
 fn library() -> Result<ExpertLibrary, Box<dyn Error>> {
-    let walker = |i: u32| {
+    let pedestrian = |i: u32| {
         let share = |of: u32| f64::from(i % of) / f64::from(of);
         let turn = 0.35 * (f64::from(i % 3) - 1.0) + 0.1 * (share(7) - 0.5);
         walk(
@@ -38,7 +38,7 @@ fn library() -> Result<ExpertLibrary, Box<dyn Error>> {
         )
     };
     Ok(ExpertLibrary::new(
-        (0..3000).map(walker).collect(),
+        (0..3000).map(pedestrian).collect(),
         TIME_STEP,
     )?)
 }
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let [x, y] = observed[7];
     println!(
-        "seen for 3.2 s, now at ({x:.2}, {y:.2}) m; {} experts of {} walkers say where in 4.8 s:",
+        "seen for 3.2 s, now at ({x:.2}, {y:.2}) m; {} experts of {} pedestrians say where in 4.8 s:",
         estimator.params().experts,
         estimator.library().len()
     );

@@ -1,4 +1,4 @@
-//! One walker: where it wants to go, how fast, and when it has got there.
+//! One pedestrian: where it wants to go, how fast, and when it has got there.
 
 use super::force::WalkingMotion;
 use super::layout::Leg;
@@ -36,7 +36,7 @@ impl SimulatedPedestrian {
         norm(sub(self.targets[self.leg], self.motion.position)) < distance
     }
 
-    /// The velocity that the walker likes now (m/s).
+    /// The velocity that the pedestrian likes now (m/s).
     pub(super) fn desired(&self, legs: &[Leg], speed: f64, centre: Position) -> Position {
         let target = self.targets[self.leg];
         let way = sub(self.aim(legs, target), self.motion.position);
