@@ -147,7 +147,6 @@ impl ForecastWindows for MotionNetwork {
             output: self.output,
             spread: self.spread,
         };
-        let backend = KernelBackend::forward_only(Arc::clone(&self.kernels));
-        Ok(Pass::new(layers, backend, batch, &self.config).roll_out())
+        Ok(Pass::new(layers, &self.kernels, batch, &self.config).roll_out())
     }
 }

@@ -5,15 +5,17 @@ use super::course::{Course, Observation};
 use super::emission::NoiseSpread;
 use crate::StarConfig;
 use crate::backbone::Backbone;
-use crate::backend::{Backend as _, Buffer, KernelBackend, Memory, Rows};
+use crate::backend::{Backend as _, Buffer, KernelBackend, Kernels, Memory, Rows};
 use crate::weights::Linear;
 use ddl_data::{HORIZON, OBSERVED};
+use rayon::prelude::*;
 use std::ops::Range;
 use std::rc::Rc;
+use std::sync::Arc;
 
-/// Pedestrians times hypotheses that are rolled out together: enough to fill the products, and few enough that the memory
-/// for a crowd does not grow with the number of hypotheses.
-const ROWS_AT_ONCE: usize = 2048;
+/// Pedestrians times hypotheses that are rolled out together: enough to fill the products, and so few that the key-value
+/// caches of all time steps stay in the processor's cache. Threads take such parts in turns.
+const ROWS_AT_ONCE: usize = 128;
 
 #[derive(Clone, Copy)]
 pub(super) struct PassLayers<'a> {
@@ -23,74 +25,122 @@ pub(super) struct PassLayers<'a> {
     pub(super) spread: Option<NoiseSpread>,
 }
 
+/// What all hypotheses of a batch share.
 pub(super) struct Pass<'a> {
     layers: PassLayers<'a>,
-    backend: KernelBackend,
+    kernels: &'a Arc<Kernels>,
     batch: &'a ForecastBatch<'a>,
     observation: Observation<'a>,
     noise_width: usize,
     /// Output of the backbone's spatial encoder at the observed time steps, `[8, P, width]`.
-    scene: Rc<Rows>,
+    scene: Buffer,
 }
 
 /// The key-value caches after the observed time steps, and the features of the last one.
 type Observed = (Memory<KernelBackend>, Rc<Rows>);
 
+/// Some hypotheses of a pass on their way, on one thread.
+struct Part<'a> {
+    pass: &'a Pass<'a>,
+    backend: KernelBackend,
+    hypotheses: Range<usize>,
+}
+
 impl<'a> Pass<'a> {
     pub(super) fn new(
         layers: PassLayers<'a>,
-        backend: KernelBackend,
+        kernels: &'a Arc<Kernels>,
         batch: &'a ForecastBatch<'a>,
         config: &'a StarConfig,
     ) -> Self {
         let observation = Observation::new(batch, config);
         let seen = observation.seen(0..OBSERVED);
         let centred = observation.centred();
+        let backend = KernelBackend::forward_only(Arc::clone(kernels));
         let scene = layers.backbone.scene(&backend, &centred, &seen);
         Self {
+            scene: Buffer::copy(&scene),
             layers,
-            backend,
+            kernels,
             batch,
             observation,
             noise_width: config.noise_width as usize,
-            scene,
         }
     }
 
     pub(super) fn roll_out(&self) -> BatchRollout {
         let (pedestrians, hypotheses) = (self.batch.pedestrians(), self.batch.hypotheses());
+        let rows_at_once = std::env::var("RAO").map_or(ROWS_AT_ONCE, |x| x.parse().unwrap());
+        let at_once = (rows_at_once / pedestrians).clamp(1, hypotheses);
+        let parts: Vec<BatchRollout> = (0..hypotheses)
+            .step_by(at_once)
+            .collect::<Vec<usize>>()
+            .into_par_iter()
+            .map(|first| {
+                let part = Part {
+                    pass: self,
+                    backend: KernelBackend::forward_only(Arc::clone(self.kernels)),
+                    hypotheses: first..hypotheses.min(first + at_once),
+                };
+                part.roll_out()
+            })
+            .collect();
+        joined(&parts, pedestrians)
+    }
+}
+
+/// The hypotheses of all parts, in their order.
+fn joined(parts: &[BatchRollout], pedestrians: usize) -> BatchRollout {
+    fn each<T: Copy>(
+        parts: &[BatchRollout],
+        pedestrians: usize,
+        numbers: impl Fn(&BatchRollout) -> &[T],
+    ) -> Vec<T> {
+        let steps = (0..HORIZON).flat_map(|t| parts.iter().map(move |part| (t, part)));
+        steps
+            .flat_map(|(t, part)| {
+                let count = part.hypotheses * pedestrians;
+                numbers(part)[t * count..][..count].iter().copied()
+            })
+            .collect()
+    }
+    let with_factors = parts.iter().all(|part| part.factors.is_some());
+    BatchRollout {
+        hypotheses: parts.iter().map(|part| part.hypotheses).sum(),
+        positions: each(parts, pedestrians, |part| &part.positions),
+        factors: with_factors
+            .then(|| each(parts, pedestrians, |part| part.factors.as_deref().unwrap_or(&[]))),
+    }
+}
+
+impl Part<'_> {
+    fn roll_out(&self) -> BatchRollout {
+        let Pass {
+            observation, batch, ..
+        } = self.pass;
         // Without goals among the inputs the observed time steps are the same for all hypotheses.
-        let shared = (self.observation.entries() == 1)
-            .then(|| self.observe(&Course::new(&self.observation, self.batch, 0..1)));
-        let at_once = (ROWS_AT_ONCE / pedestrians).clamp(1, hypotheses);
-        let size = HORIZON * hypotheses * pedestrians;
-        let mut rollout = BatchRollout {
-            hypotheses,
-            positions: vec![[0.0; 2]; size],
-            factors: self.layers.spread.map(|_| vec![[0.0; 3]; size]),
+        let count = self.hypotheses.len();
+        let shared = observation.entries() == 1 && count > 1;
+        let course = Course::new(observation, batch, self.hypotheses.clone());
+        let observed = if shared {
+            let (memory, features) = self.observe(&Course::new(observation, batch, 0..1));
+            (
+                memory.repeated(&self.backend, count),
+                self.backend.repeated(&features, count),
+            )
+        } else {
+            self.observe(&course)
         };
-        for first in (0..hypotheses).step_by(at_once) {
-            let some = first..hypotheses.min(first + at_once);
-            let course = Course::new(&self.observation, self.batch, some.clone());
-            let observed = match &shared {
-                None => self.observe(&course),
-                Some((memory, features)) => (
-                    memory.repeated(&self.backend, some.len()),
-                    self.backend.repeated(features, some.len()),
-                ),
-            };
-            self.walk(course, observed, some, &mut rollout);
-        }
-        rollout
+        self.walk(course, observed)
     }
 
     fn observe(&self, course: &Course<'_>) -> Observed {
         let mut memory = Memory::default();
         let mut step = |t| {
             let relative = course.observed_relative(t);
-            let seen = self.observation.seen(t..t + 1);
-            let scene = self.backend.entry(&self.scene, t);
-            let backbone = self.layers.backbone;
+            let seen = self.pass.observation.seen(t..t + 1);
+            let scene = self.scene(t);
+            let backbone = self.pass.layers.backbone;
             backbone.step(&self.backend, &mut memory, &relative, &scene, &seen)
         };
         for t in 0..OBSERVED - 1 {
@@ -100,20 +150,28 @@ impl<'a> Pass<'a> {
         (memory, newest)
     }
 
-    /// Goes through the time steps to forecast, and writes those of the `hypotheses` of the course.
+    /// Goes through the time steps to forecast.
     fn walk(
         &self,
         mut course: Course<'_>,
         (mut memory, mut features): Observed,
-        hypotheses: Range<usize>,
-        rollout: &mut BatchRollout,
-    ) {
+    ) -> BatchRollout {
+        let Pass {
+            layers,
+            observation,
+            batch,
+            ..
+        } = self.pass;
         let PassLayers {
             backbone, spread, ..
-        } = self.layers;
-        let noise = self.noise(hypotheses.clone());
-        let spread = spread.filter(|_| self.batch.noise.is_none());
-        let seen = self.observation.seen(OBSERVED - 1..OBSERVED);
+        } = *layers;
+        let hypotheses = self.hypotheses.len();
+        let size = HORIZON * hypotheses * batch.pedestrians();
+        let mut positions = Vec::with_capacity(size);
+        let mut of_factors = spread.map(|_| Vec::with_capacity(size));
+        let noise = self.noise();
+        let spread = spread.filter(|_| batch.noise.is_none());
+        let seen = observation.seen(OBSERVED - 1..OBSERVED);
         for t in 0..HORIZON {
             let mut emitted = self.emit(&features, &noise);
             if let Some(spread) = spread {
@@ -123,16 +181,10 @@ impl<'a> Pass<'a> {
                 }
             }
             course.advance(&mut emitted, (t, HORIZON - t));
-            let first = (t * rollout.hypotheses + hypotheses.start) * self.batch.pedestrians();
-            let positions = rollout.positions[first..].iter_mut();
-            for (position, at) in positions.zip(course.positions()) {
-                *position = at.map(f64::from);
-            }
-            if let Some(factors) = &mut rollout.factors {
+            positions.extend(course.positions().iter().map(|at| at.map(f64::from)));
+            if let Some(factors) = &mut of_factors {
                 let (emitted, _) = emitted.as_chunks::<3>();
-                for (factor, emitted) in factors[first..].iter_mut().zip(emitted) {
-                    *factor = emitted.map(f64::from);
-                }
+                factors.extend(emitted.iter().map(|factor| factor.map(f64::from)));
             }
             if t + 1 < HORIZON {
                 let centred = course.centred(OBSERVED + t + 1);
@@ -141,23 +193,37 @@ impl<'a> Pass<'a> {
                 features = backbone.step(&self.backend, &mut memory, &relative, &scene, &seen);
             }
         }
+        BatchRollout {
+            hypotheses,
+            positions,
+            factors: of_factors,
+        }
+    }
+
+    /// The scene at observed time step `t`, `[1, P, width]`.
+    fn scene(&self, t: usize) -> Rc<Rows> {
+        let pedestrians = self.pass.batch.pedestrians();
+        let width = self.pass.scene.len() / (OBSERVED * pedestrians);
+        let count = pedestrians * width;
+        let numbers = Buffer::copy(&self.pass.scene[t * count..][..count]);
+        Rc::new(Rows::new([1, pedestrians, width], numbers))
     }
 
     fn emit(&self, features: &Rc<Rows>, noise: &Rc<Rows>) -> Buffer {
         let inputs = self.backend.beside(features, noise);
-        Buffer::copy(&self.backend.linear(self.layers.output, &inputs))
+        Buffer::copy(&self.backend.linear(self.pass.layers.output, &inputs))
     }
 
-    /// The noise beside each pedestrian's features in some hypotheses, `[H, P, noise]`: zeros where its expectation is added
-    /// afterwards.
-    fn noise(&self, hypotheses: Range<usize>) -> Rc<Rows> {
-        let width = self.noise_width;
-        let shape = [hypotheses.len(), self.batch.pedestrians(), width];
+    /// The noise beside each pedestrian's features, `[H, P, noise]`: zeros where its expectation is added afterwards.
+    fn noise(&self) -> Rc<Rows> {
+        let (width, batch) = (self.pass.noise_width, self.pass.batch);
+        let hypotheses = self.hypotheses.clone();
+        let shape = [hypotheses.len(), batch.pedestrians(), width];
         let mut numbers = Buffer::zeros(shape.iter().product());
-        if let Some(draws) = &self.batch.noise {
+        if let Some(draws) = &batch.noise {
             let entries = numbers.chunks_exact_mut(shape[1] * width);
             for (h, entry) in hypotheses.zip(entries) {
-                let vector = &draws[h % self.batch.noise_vectors * width..][..width];
+                let vector = &draws[h % batch.noise_vectors * width..][..width];
                 for row in entry.chunks_exact_mut(width) {
                     for (number, &drawn) in row.iter_mut().zip(vector) {
                         *number = drawn as f32;
