@@ -70,8 +70,7 @@ impl<'a> Pass<'a> {
 
     pub(super) fn roll_out(&self) -> BatchRollout {
         let (pedestrians, hypotheses) = (self.batch.pedestrians(), self.batch.hypotheses());
-        let rows_at_once = std::env::var("RAO").map_or(ROWS_AT_ONCE, |x| x.parse().unwrap());
-        let at_once = (rows_at_once / pedestrians).clamp(1, hypotheses);
+        let at_once = (ROWS_AT_ONCE / pedestrians).clamp(1, hypotheses);
         let parts: Vec<BatchRollout> = (0..hypotheses)
             .step_by(at_once)
             .collect::<Vec<usize>>()
