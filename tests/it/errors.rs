@@ -131,7 +131,7 @@ fn recordings_that_cannot_be_trained_on_are_refused() {
 fn tracks_that_cannot_be_forecast_are_refused() {
     let place = Place::with_model();
     let nowhere = "view tracks.csv --output nowhere/page.html";
-    place.fails(nowhere, &["there is no folder nowhere"]);
+    place.fails(nowhere, &["the folder nowhere does not exist"]);
     let missing = "cannot read nowhere.csv: No such file or directory (os error 2)";
     assert_eq!(place.run("forecast nowhere.csv").fails(), missing);
     place.write_tracks("tracks.csv", &own_tracks::three_people(7));

@@ -30,10 +30,10 @@ const EXAMPLES: [(&str, &[&str]); 9] = [
     (
         "ddl-data tracks_to_windows",
         &[
-            "street.csv: format table, 50 positions of 3 people, 10 frames a step of 0.4 s",
-            "street.ndjson: format trajnet, 50 positions of 3 people",
-            "pedestrian 2 at (1.88, 0.80) m; of 8 positions 6 seen, 2 filled in, 0 before it came",
-            "pedestrian 3 at (4.00, -1.92) m; of 8 positions 4 seen, 0 filled in, 4 before it came",
+            "street.csv: format table, 50 positions of 3 pedestrians, 10 frames per step of 0.4 s",
+            "street.ndjson: format trajnet, 50 positions of 3 pedestrians",
+            "pedestrian 2 at (1.88, 0.80) m; of 8 positions 6 observed, 2 filled in, 0 padded at the start",
+            "pedestrian 3 at (4.00, -1.92) m; of 8 positions 4 observed, 0 filled in, 4 padded at the start",
         ],
     ),
     (

@@ -22,7 +22,7 @@ pub(super) struct TrackRow {
 type Placed = (Observation, FilePlace);
 
 impl TrackRow {
-    /// The observation that frame, pedestrian, x and y of a line make, each with the number of its field.
+    /// The observation in frame, pedestrian, x and y of a line, each given with the number of its field.
     pub(super) fn of(
         line: usize,
         origin: &str,
@@ -41,7 +41,7 @@ impl TrackRow {
     }
 }
 
-/// The recording of all rows; its frame step is inferred.
+/// The recording of all rows, with an inferred frame step.
 pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Recording, DataError> {
     if rows.is_empty() {
         return Err(FilePlace::line(1)
@@ -59,7 +59,8 @@ pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Record
     Ok(recording.with_names(names))
 }
 
-/// The observations with pedestrian numbers: those of the file, or, if any pedestrian of the file is a word, the order of first appearance.
+/// The observations with pedestrian numbers. These are the numbers of the file or, if any pedestrian of the file is a
+/// word, the order of first appearance.
 fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
     let words = rows.iter().any(|row| matches!(row.who, Who::Word(_)));
     let mut numbering = Numbering::remembering(usize::MAX);
@@ -79,7 +80,7 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
     (placed.collect(), PedestrianNames::new(names))
 }
 
-/// Sorts the rows by frame and pedestrian; of several duplicates, the first of the file is reported.
+/// Sorts the rows by frame and pedestrian, and reports the first duplicate of the file.
 fn refuse_duplicates(
     rows: &mut [Placed],
     names: &PedestrianNames,

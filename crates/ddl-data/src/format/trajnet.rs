@@ -1,4 +1,4 @@
-//! The newline-delimited JSON of TrajNet++: scenes and tracks, one object a line.
+//! The newline-delimited JSON of TrajNet++: scenes and tracks, one object per line.
 
 use std::collections::BTreeMap;
 
@@ -13,8 +13,7 @@ use super::rows::TrackRow;
 use crate::error::{FormatError, FormatProblem};
 use crate::{PedestrianName, Position};
 
-/// The tracks that were observed: those of forecasts, which name a `prediction_number`, are left out. Rows that agree
-/// count once.
+/// The observed tracks. Forecast tracks, which have a `prediction_number`, are skipped. Identical rows count once.
 #[expect(
     clippy::float_cmp,
     reason = "a repeated track is written with the same digits"
@@ -46,7 +45,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, Rate), F
                     }),
                     frame,
                     first_line,
-                    // shortest digits that tell the two apart
+                    // The shortest digits that distinguish the two.
                     first: format!("{known:?}"),
                     found: format!("{position:?}"),
                 };
@@ -57,7 +56,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, Rate), F
     Ok((rows, rate))
 }
 
-/// How many frames follow each other in a second, as the scenes of a file say it.
+/// Frames per second, as stated by the scenes of a file.
 #[derive(Debug, Default)]
 pub(super) struct Rate {
     line: usize,
@@ -65,7 +64,7 @@ pub(super) struct Rate {
 }
 
 impl Rate {
-    #[expect(clippy::float_cmp, reason = "one rate is written with the same digits")]
+    #[expect(clippy::float_cmp, reason = "equal rates have the same digits")]
     fn take(&mut self, scene: &SceneFields, line: usize) -> Result<(), FormatProblem> {
         let Some(told) = scene.fps.as_ref().filter(|fps| !fps.is_null()) else {
             return Ok(());
@@ -88,7 +87,7 @@ impl Rate {
     }
 }
 
-/// The parts of a line that are read; others may stand beside them. A part that is there twice is refused.
+/// The parts of a line that are read; other parts are ignored. A repeated part is refused.
 #[derive(Deserialize)]
 struct TrajnetLine<'a> {
     #[serde(borrow, default)]
@@ -121,7 +120,7 @@ fn as_written<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value
     Value::deserialize(deserializer).map(Some)
 }
 
-/// The observation of a line, if it holds one; the rate of a scene is taken.
+/// The observation of a line, if it holds one. The rate of a scene line is recorded.
 pub(super) fn observation(
     text: &str,
     line: usize,
@@ -146,7 +145,7 @@ fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>
         )));
     }
     let line: TrajnetLine<'_> = serde_json::from_str(text).map_err(wrong)?;
-    // One that is no object shows that the file is not what it seems.
+    // A scene that is not an object shows that the file is of another kind.
     if let Some(scene) = fields::<SceneFields>(line.scene, "scene")? {
         rate.take(&scene, place.line)?;
     }
@@ -158,12 +157,12 @@ fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>
     }
     let text = |value: Option<Value>, name: &'static str| match value {
         None => Err(FormatProblem::MissingField { name }),
-        // as it is written: a number in its digits, text in quotes, which is no number
+        // As written in the file: the digits of a number, or a text with its quotes, which is then refused as a number.
         Some(value) => Ok(value.to_string()),
     };
     let frame = field::integer(&text(track.f, "track.f")?, "track.f")?;
     let who = match track.p {
-        // in quotes it is a word, whatever its letters
+        // A quoted pedestrian is a word, whatever its characters.
         Some(Value::String(word)) if !word.trim().is_empty() => Who::Word(word.trim().into()),
         Some(Value::Number(number)) => field::pedestrian(&number.to_string(), "track.p")?,
         other => {
@@ -181,7 +180,7 @@ fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>
     }))
 }
 
-/// The fields of a part; none where there is none, or null.
+/// The fields of a part; `None` where it is missing or null.
 fn fields<'a, T: Deserialize<'a>>(
     part: Option<&'a RawValue>,
     name: &'static str,
