@@ -1,9 +1,6 @@
 //! Lloyd's iteration: assign each point to its nearest centre, then move each centre to the mean of its points.
 
-#![expect(
-    clippy::inline_always,
-    reason = "kernels are compiled for each instruction set"
-)]
+#![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
 use crate::points::{Points, squared_distance};
 use ddl_simd::{Dispatch, Register, RegisterKernel};

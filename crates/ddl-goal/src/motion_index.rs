@@ -1,9 +1,6 @@
 //! Exact nearest-neighbour search over the motions of a library and their mirror images.
 
-#![expect(
-    clippy::inline_always,
-    reason = "kernels are compiled for each instruction set"
-)]
+#![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
 use crate::motion::{COMPONENTS, SIGNED};
 use ddl_simd::{Dispatch, Register, RegisterKernel};

@@ -1,4 +1,4 @@
-//! Cost of a full memory of 20,000 stretches: a recall, and a frame of 25 people.
+//! Cost of a full memory of 20,000 stretches: a recall, and a frame of 25 pedestrians.
 
 #[path = "../tests/crowd/mod.rs"]
 mod crowd;
@@ -13,7 +13,7 @@ use ddl_memory::SceneMemory;
 
 const PEOPLE: usize = 25;
 
-/// A memory that has forgotten already, its crowd, the next frame, and what the memory would be asked.
+/// A memory that has begun to forget, its crowd, the next frame, and queries for the memory.
 fn full() -> (
     SceneMemory,
     Crowd,
@@ -40,7 +40,7 @@ fn full() -> (
     (memory, crowd, 4_000, queries.collect())
 }
 
-/// Times every run alone, for percentiles.
+/// Times every run separately, for percentiles.
 fn measure(criterion: &mut Criterion, name: &str, mut run: impl FnMut() -> Duration) {
     let mut times: Vec<Duration> = Vec::new();
     criterion.bench_function(name, |b| {
@@ -53,7 +53,7 @@ fn measure(criterion: &mut Criterion, name: &str, mut run: impl FnMut() -> Durat
     times.sort_unstable();
     let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
     let [median, most, worst] = [0.5, 0.99, 1.0].map(at);
-    eprintln!("{name}: median {median:?}, 99 % within {most:?}, worst {worst:?}\n");
+    eprintln!("{name}: median {median:?}, 99th percentile {most:?}, maximum {worst:?}\n");
 }
 
 fn recall(criterion: &mut Criterion) {
@@ -72,7 +72,7 @@ fn recall(criterion: &mut Criterion) {
 
 fn observe(criterion: &mut Criterion) {
     let (mut memory, mut crowd, mut frame, _) = full();
-    measure(criterion, "observe 25 people", || {
+    measure(criterion, "observe 25 pedestrians", || {
         let people = crowd.step();
         let start = Instant::now();
         memory.observe(frame, people).expect("valid");

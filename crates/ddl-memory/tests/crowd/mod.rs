@@ -36,7 +36,7 @@ impl Crowd {
         crowd
     }
 
-    /// In 0..1.
+    /// A random number in 0..1.
     pub fn random(&mut self) -> f64 {
         self.rng.random()
     }
@@ -55,7 +55,7 @@ impl Crowd {
         }
     }
 
-    /// Everybody a step of 0.4 s later.
+    /// All pedestrians one step of 0.4 s later.
     pub fn step(&mut self) -> People {
         for index in 0..self.pedestrians.len() {
             let turn = 0.1 * (self.random() - 0.5);

@@ -1,4 +1,4 @@
-//! Nothing that was not observed yet is in an answer.
+//! Answers never contain unobserved data.
 
 use crate::{Frames, frames, memory_of, queries, step_of};
 use ddl_data::{PedestrianId, Remembered, WINDOW};
@@ -23,8 +23,8 @@ fn answers(memory: &SceneMemory, now: &Frames) -> Vec<Vec<Remembered>> {
         .collect()
 }
 
-/// Whether what a memory answers after the frames before `end` depends on a later one, or shows one. `fed` makes the
-/// memory that answers then.
+/// Whether the answer of a memory after the frames before `end` depends on a later frame or shows one. `fed` creates
+/// the memory that answers.
 fn sees_the_future(
     fed: impl Fn(&Frames, usize) -> SceneMemory,
     frames: &Frames,
@@ -60,7 +60,7 @@ fn a_memory_does_not_see_the_future() {
             }
             let honest = |frames: &Frames, end: usize| memory_of(&frames[..end].to_vec(), 500);
             assert!(!sees_the_future(honest, &frames, end), "seed {seed}, {end}");
-            // a memory that is one frame (0.4 s) ahead
+            // A memory that is one frame (0.4 s) ahead.
             let ahead = |frames: &Frames, end: usize| memory_of(&frames[..=end].to_vec(), 500);
             noticed += usize::from(sees_the_future(ahead, &frames, end));
             let recalled = answers(&honest(&frames, end), &frames[..end].to_vec());
@@ -70,9 +70,9 @@ fn a_memory_does_not_see_the_future() {
     }
     assert!(
         noticed > 60,
-        "of 88 memories that are ahead {noticed} were noticed"
+        "{noticed} of 88 memories that are ahead were detected"
     );
-    assert!(examples > 1_000, "{examples} examples looked at");
+    assert!(examples > 1_000, "only {examples} examples");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What a scene memory must satisfy whatever it sees.
+//! Properties of a scene memory for arbitrary crowds.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 #[path = "../crowd/mod.rs"]
@@ -15,10 +15,10 @@ use ddl_data::{OBSERVED, PedestrianId, Position};
 use ddl_memory::SceneMemory;
 use proptest::prelude::*;
 
-/// Frames and who was where in them.
+/// Frames with the pedestrians and positions in them.
 type Frames = Vec<(i64, People)>;
 
-/// A crowd of which some are missed now and then, and whose ids are used again.
+/// A crowd in which some pedestrians are missed occasionally, and ids are used again.
 fn frames(seed: u64, people: usize, steps: usize, frame_step: i64) -> Frames {
     let mut crowd = Crowd::new(seed, people);
     let mut frame = |step: usize| {
@@ -49,7 +49,7 @@ fn memory_of(frames: &Frames, capacity: usize) -> SceneMemory {
     memory
 }
 
-/// Where those of the last frame were at the last 8, as the memory is asked.
+/// The last 8 positions of the pedestrians in the last frame, as queries.
 fn queries(frames: &Frames) -> Vec<(PedestrianId, [Position; OBSERVED])> {
     let last = &frames[frames.len().saturating_sub(OBSERVED)..];
     let place = |people: &People, id| people.iter().find(|seen| seen.0 == id).map(|seen| seen.1);

@@ -1,4 +1,4 @@
-//! What is refused leaves the memory as it was.
+//! Refused input leaves the memory unchanged.
 
 use ddl_data::{LiveError, LiveTracks, PedestrianId};
 use ddl_memory::{MemoryError, SceneMemory};
@@ -39,7 +39,7 @@ fn errors_change_nothing() {
 
 /// A live forecast must not fail because of the memory.
 #[test]
-fn what_live_tracks_take_is_taken() {
+fn input_of_live_tracks_is_accepted() {
     let mut memory = SceneMemory::new(1, 200).unwrap();
     let mut tracks = LiveTracks::new();
     let far = [1.1e7, -1e16, f64::MAX, f64::MIN];
@@ -55,7 +55,7 @@ fn what_live_tracks_take_is_taken() {
         tracks.push(frame, people).unwrap();
         memory.observe(frame, people).unwrap();
     }
-    // Of the first pedestrian frames 0 to 29 and 31 to 59.
+    // Frames 0 to 29 and 31 to 59 of the first pedestrian.
     assert_eq!(memory.summary().extent, Some([[0.0, 0.0], [23.6, 99.0]]));
     let observed = std::array::from_fn(|t| [0.4 * t as f64, 0.0]);
     assert!(memory.recall(&observed, None, 2)[0].distance < 1e-9);
