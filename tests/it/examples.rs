@@ -1,11 +1,12 @@
-//! Every example of the crates that need no libtorch runs and prints what it is for.
+//! Every example of the crates that needs no libtorch runs and prints its result.
 
 use ddl_tests::place::Place;
 use ddl_tests::{example, own_tracks};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Crate, example and arguments, and what its output must hold. One that is given a name of a picture draws it.
+/// Crate, example and arguments, and texts that its output must contain. An example with the name of a picture draws
+/// it.
 const EXAMPLES: [(&str, &[&str]); 9] = [
     (
         "ddl forecast_csv",
@@ -59,8 +60,8 @@ const EXAMPLES: [(&str, &[&str]); 9] = [
     ),
 ];
 
-/// Those that are not run here: `cargo xtask page` runs `report_page`; the others measure recordings for
-/// minutes, some of other places, or draw a run's own test scene.
+/// Examples that are not run here: `cargo xtask page` runs `report_page`; the others evaluate recordings for minutes,
+/// some of other places, or draw a run's own test scene.
 const ELSEWHERE: [&str; 6] = [
     "ddl calibrate",
     "ddl elsewhere",
@@ -78,9 +79,9 @@ fn parts(line: &str) -> (&str, &str, &str) {
 }
 
 #[test]
-fn every_example_runs_and_keeps_its_promise() {
+fn every_example_runs_and_prints_the_expected_texts() {
     let place = Place::empty();
-    place.write_tracks("mine.csv", &own_tracks::three_people(9));
+    place.write_tracks("mine.csv", &own_tracks::three_pedestrians(9));
     let model = include_bytes!("../../crates/ddl/models/hotel.safetensors");
     place.write("hotel.safetensors", model);
     for (line, promises) in EXAMPLES {

@@ -1,10 +1,11 @@
-//! Frames with any numbers, pushed as a program pushes them.
+//! Frames with arbitrary numbers, pushed as by a program.
 
 use ddl_data::{Completion, LiveTracks, PedestrianId, Position};
 
 use super::edits::Choices;
 
-/// Each few bytes are a frame: how far it is ahead, and who is where; now and then a number of any bits.
+/// Every few bytes are a frame: the distance to the previous one, and positions of pedestrians; occasionally a number
+/// of any bits.
 pub fn read(bytes: &[u8]) {
     let mut choices = Choices::new(bytes);
     let completion = Completion::new(2 + choices.below(7), choices.below(3));
