@@ -129,7 +129,7 @@ fn members_of_an_archive_are_checked_one_by_one() {
     };
     // The members are below p/, the paths of the manifest below data/.
     let message = format!("{:#}", unpack("{path}", &files).unwrap_err());
-    assert!(message.contains("holds no data/one.csv"), "{message}");
+    assert!(message.contains("has no data/one.csv"), "{message}");
     let moved: Vec<PinnedFile> = entry
         .files
         .iter()
