@@ -12,9 +12,9 @@ const DENSITY: f64 = 0.5;
 const GIB: u64 = 1 << 30;
 
 /// A crowd in a square for some frames, in which every pedestrian walks straight at up to 1.4 m/s.
-fn crowd(people: usize, frames: i64) -> Vec<own_tracks::Row> {
-    let mut chance = Chance(people as u64);
-    let side = (people as f64 / DENSITY).sqrt();
+fn crowd(count: usize, frames: i64) -> Vec<own_tracks::Row> {
+    let mut chance = Chance(count as u64);
+    let side = (count as f64 / DENSITY).sqrt();
     let mut number = |least: f64, most: f64| {
         least + (most - least) * chance.below(1 << 20) as f64 / f64::from(1 << 20)
     };
@@ -33,10 +33,10 @@ fn crowd(people: usize, frames: i64) -> Vec<own_tracks::Row> {
 fn measured(
     place: &Place,
     line: &str,
-    people: usize,
+    count: usize,
     frames: i64,
 ) -> (Option<(Duration, u64)>, usize) {
-    place.write_tracks("crowd.csv", &crowd(people, frames));
+    place.write_tracks("crowd.csv", &crowd(count, frames));
     let mut child = program::command(place.path(), line)
         .stdin(File::open(place.at("crowd.csv")).unwrap())
         .stdout(File::create(place.at("printed")).unwrap())
@@ -53,16 +53,16 @@ fn measured(
 fn scales(
     what: &str,
     line: &str,
-    (people, frames): (usize, i64),
+    (count, frames): (usize, i64),
     lines: fn(usize) -> usize,
     most: u64,
 ) {
     let place = Place::with_model();
     let line = format!("forecast {line} --model run --threads 1");
-    let few = people / 4;
+    let few = count / 4;
     let quarter = measured(&place, &line, few, frames);
-    let whole = measured(&place, &line, people, frames);
-    assert_eq!((quarter.1, whole.1), (lines(few), lines(people)));
+    let whole = measured(&place, &line, count, frames);
+    assert_eq!((quarter.1, whole.1), (lines(few), lines(count)));
     let (Some((less, _)), Some((time, bytes))) = (quarter.0, whole.0) else {
         eprintln!("skipped: this system does not report the time and memory of a process");
         return;
@@ -75,7 +75,7 @@ fn scales(
     assert!(bytes < most, "{what}: {bytes} bytes");
     figures::tell(
         what,
-        format!("{people} pedestrians in one frame, {few} in another run"),
+        format!("{count} pedestrians in one frame, {few} in another run"),
         format!(
             "{time:.1} s of one core ({less:.1} s for a quarter of the pedestrians), at most {:.0} MiB",
             bytes as f64 / f64::from(1 << 20)
@@ -91,7 +91,7 @@ fn one_forecast_per_pedestrian_for_thousands() {
         "a crowd, one forecast per pedestrian",
         line,
         size,
-        |people| 1 + 12 * people,
+        |count| 1 + 12 * count,
         2 * GIB,
     );
 }
@@ -105,7 +105,7 @@ fn twenty_hypotheses_per_pedestrian_for_thousands() {
         "a crowd, 20 hypotheses per pedestrian",
         line,
         size,
-        |people| people,
+        |count| count,
         most,
     );
 }
@@ -115,5 +115,5 @@ fn a_live_crowd() {
     let size = (figures::rounds(1_000, 10_000), 12); // five of these frames have 8 observed frames
     let line = "- --one --whole --frame-step 1";
     let what = "a live crowd, one forecast per pedestrian, 5 frames";
-    scales(what, line, size, |people| 1 + 5 * 12 * people, 2 * GIB);
+    scales(what, line, size, |count| 1 + 5 * 12 * count, 2 * GIB);
 }

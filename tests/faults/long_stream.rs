@@ -13,20 +13,20 @@ const HOUR: usize = 9_000;
 const MIB: u64 = 1 << 20;
 
 /// The pedestrians at a frame: a new one every 12 frames, each present for 20 to 50 frames and walking at 1.25 m/s.
-fn people(frame: i64) -> Vec<(PedestrianId, Position)> {
-    let mut people = Vec::new();
+fn pedestrians(frame: i64) -> Vec<(PedestrianId, Position)> {
+    let mut pedestrians = Vec::new();
     for id in (frame / 12 - 4).max(0)..=frame / 12 {
         let age = frame - 12 * id;
         let stays = 20 + id * 7 % 31;
         if age < stays {
             let lane = (id % 5) as f64;
-            people.push((
+            pedestrians.push((
                 PedestrianId(id),
                 [0.5 * age as f64, lane + 0.1 * (0.3 * age as f64).sin()],
             ));
         }
     }
-    people
+    pedestrians
 }
 
 /// The median and the 99th percentile of durations in seconds, as milliseconds.
@@ -42,7 +42,7 @@ fn stream(model: impl Forecaster, (frames, part): (usize, usize)) -> Option<Vec<
     let (mut early, mut most) = (0, 0);
     for (frame, seconds) in seconds.iter_mut().enumerate() {
         let begun = Instant::now();
-        let now = live.push(frame as i64, people(frame as i64)).unwrap();
+        let now = live.push(frame as i64, pedestrians(frame as i64)).unwrap();
         *seconds = begun.elapsed().as_secs_f64();
         assert_eq!(now.is_some(), frame >= 7, "a pedestrian is always present");
         most = most.max(live.tracks().len());

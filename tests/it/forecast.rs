@@ -104,12 +104,12 @@ fn check_certificate(start: Position, hypothesis: &Hypothesis) -> Vec<f64> {
 #[test]
 fn every_format_has_the_same_hypotheses_and_certificates() {
     let place = Place::with_model();
-    let people = own_tracks::three_pedestrians(10);
-    let at = |moment, who| {
-        let row = people.iter().find(|row| (row.0, row.1) == (moment, who));
+    let tracks = own_tracks::three_pedestrians(10);
+    let at = |moment, id| {
+        let row = tracks.iter().find(|row| (row.0, row.1) == (moment, id));
         row.map(|&(.., x, y)| [x, y]).unwrap()
     };
-    let forecast = |options: &str| place.forecast(&people, options).succeeds();
+    let forecast = |options: &str| place.forecast(&tracks, options).succeeds();
     let lines: Vec<JsonLine> = json_lines(&forecast("--format jsonl --certificate"));
     let certified = forecast("--certificate");
     let mut rows = table::<CsvRow>(&certified).into_iter();
@@ -117,7 +117,7 @@ fn every_format_has_the_same_hypotheses_and_certificates() {
         .iter()
         .map(|line| (line.observed_until, line.pedestrian))
         .collect();
-    let expected = [70, 80, 90].map(|moment| [1, 2, 3].map(|who| (moment, who)));
+    let expected = [70, 80, 90].map(|moment| [1, 2, 3].map(|id| (moment, id)));
     assert_eq!(pedestrians, expected.concat());
     for line in &lines {
         let frames: Vec<i64> = (1..=12)

@@ -37,16 +37,16 @@ fn frames(rows: &[Row]) -> BTreeMap<i64, Vec<(PedestrianId, Position)>> {
 /// Writes a memory of these pedestrians to a file.
 fn remember(place: &Place, name: &str, rows: &[Row], frame_step: i64) {
     let mut memory = SceneMemory::new(frame_step, SceneMemory::DEFAULT_CAPACITY).unwrap();
-    for (frame, people) in frames(rows) {
-        memory.observe(frame, people).unwrap();
+    for (frame, positions) in frames(rows) {
+        memory.observe(frame, positions).unwrap();
     }
     memory.write(&place.at(name)).unwrap();
 }
 
 fn hypotheses_of(live: &mut LiveForecaster<&Ddl>, rows: &[Row]) -> Vec<Value> {
     let mut all = Vec::new();
-    for (frame, people) in frames(rows) {
-        let Some(now) = live.push(frame, people).unwrap() else {
+    for (frame, positions) in frames(rows) {
+        let Some(now) = live.push(frame, positions).unwrap() else {
             continue;
         };
         let forecast = &now.forecast;

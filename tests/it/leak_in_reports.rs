@@ -23,8 +23,8 @@ fn write_recordings(place: &Place, folder: &str, future: fn(usize, usize, Positi
         let rows: Vec<Row> = if name == TEST_SCENE {
             let track = |i: usize| window.track(i).iter().enumerate();
             let row = |i, (t, &[x, y]): (usize, &Position)| (10 * t as i64, i as i64, x, y);
-            let people = 0..window.len();
-            people
+            let pedestrians = 0..window.len();
+            pedestrians
                 .flat_map(|i| track(i).map(move |seen| row(i, seen)))
                 .collect()
         } else {

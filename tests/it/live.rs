@@ -24,10 +24,10 @@ fn live_forecasts_agree_with_forecasts_of_windows() {
     let mut windows = recording.observed_windows().into_iter().peekable();
     let mut forecasts = 0;
     for &frame in recording.frames() {
-        let people = recording.at(frame).iter();
-        let people: Vec<_> = people.map(|o| (o.pedestrian, o.position)).collect();
-        let now = live.push(frame, people.iter().copied()).unwrap();
-        let evidence = certified.push_certified(frame, people).unwrap();
+        let pedestrians = recording.at(frame).iter();
+        let pedestrians: Vec<_> = pedestrians.map(|o| (o.pedestrian, o.position)).collect();
+        let now = live.push(frame, pedestrians.iter().copied()).unwrap();
+        let evidence = certified.push_certified(frame, pedestrians).unwrap();
         let window = windows.next_if(|window| window.frames()[7] == frame);
         assert_eq!(now.is_some(), window.is_some(), "frame {frame}");
         let (Some(now), Some(evidence), Some(window)) = (now, evidence, window) else {
@@ -48,21 +48,21 @@ fn live_forecasts_agree_with_forecasts_of_windows() {
 #[test]
 fn an_error_changes_nothing() {
     let rows = own_tracks::three_pedestrians(9);
-    let people = |frame: i64| -> Vec<(PedestrianId, Position)> {
+    let pedestrians = |frame: i64| -> Vec<(PedestrianId, Position)> {
         let here = rows.iter().filter(|row| row.0 == frame);
         here.map(|&(_, id, x, y)| (PedestrianId(id), [x, y]))
             .collect()
     };
     let model = drawn_model::of(Variant::Full);
     let mut live = LiveForecaster::with_frame_step(&model, own_tracks::FRAME_STEP).unwrap();
-    live.push(0, people(0)).unwrap();
+    live.push(0, pedestrians(0)).unwrap();
     for frame in (10..90).step_by(10) {
         let before = live.tracks().clone();
-        let error = live.push(frame - 10, people(frame)).unwrap_err();
+        let error = live.push(frame - 10, pedestrians(frame)).unwrap_err();
         assert!(matches!(error, DdlError::Live(_)), "{error}");
         if frame >= 70 {
             // Finite, and valid like any other position until it is used in a forecast.
-            let mut far = people(frame);
+            let mut far = pedestrians(frame);
             far[0].1 = [f64::MAX, 0.0];
             let plain = live.push(frame, far.clone()).unwrap_err();
             let certified = live.push_certified(frame, far).unwrap_err();
@@ -71,7 +71,7 @@ fn an_error_changes_nothing() {
             }
         }
         assert_eq!(live.tracks(), &before);
-        let now = live.push(frame, people(frame)).unwrap();
+        let now = live.push(frame, pedestrians(frame)).unwrap();
         assert_eq!(now.is_some(), frame >= 70);
     }
 }

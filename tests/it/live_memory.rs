@@ -9,7 +9,7 @@ fn empty(recording: &Recording) -> SceneMemory {
     SceneMemory::new(recording.frame_step(), SceneMemory::DEFAULT_CAPACITY).unwrap()
 }
 
-fn people(recording: &Recording, frame: i64) -> Vec<(PedestrianId, Position)> {
+fn pedestrians(recording: &Recording, frame: i64) -> Vec<(PedestrianId, Position)> {
     let seen = recording.at(frame).iter();
     seen.map(|seen| (seen.pedestrian, seen.position)).collect()
 }
@@ -39,7 +39,7 @@ fn live_forecasts_agree_with_a_replay_of_the_recording() {
     let remembers = |window: &Window| (0..window.len()).any(|i| !window.remembered(i).is_empty());
     let (mut remembering, mut changed) = (0, 0);
     for &frame in recording.frames() {
-        let Some(now) = live.push(frame, people(&recording, frame)).unwrap() else {
+        let Some(now) = live.push(frame, pedestrians(&recording, frame)).unwrap() else {
             continue;
         };
         let window = replayed.next().unwrap();
@@ -71,7 +71,7 @@ fn a_memory_of_another_place_is_refused() {
         let live = LiveForecaster::with_frame_step(&model, watched.frame_step()).unwrap();
         let mut live = live.remembering(memory.clone()).unwrap();
         for &frame in watched.frames() {
-            live.push(frame, people(&watched, frame)).unwrap();
+            live.push(frame, pedestrians(&watched, frame)).unwrap();
         }
         let kept = live.memory().unwrap();
         let refused = live.refused_memory();
@@ -100,7 +100,7 @@ fn few_pedestrians_do_not_refuse_a_memory_and_some_alike_accept_it_early() {
         let mut place = WatchedPlace::new(&model, memory.clone()).unwrap();
         let mut tracks = LiveTracks::with_frame_step(watched.frame_step()).unwrap();
         for &frame in &watched.frames()[..steps as usize] {
-            let seen = people(&watched, frame);
+            let seen = pedestrians(&watched, frame);
             tracks = tracks.after(frame, seen.iter().copied()).unwrap();
             place
                 .observe(frame, seen, tracks.window().as_ref())

@@ -96,7 +96,7 @@ fn a_live_forecaster_adapts_and_an_error_changes_nothing() {
     let model = drawn_model::of(Variant::Full);
     let rows = own_tracks::three_pedestrians(30);
     let step = own_tracks::FRAME_STEP;
-    let people = |frame: i64| -> Vec<(PedestrianId, Position)> {
+    let pedestrians = |frame: i64| -> Vec<(PedestrianId, Position)> {
         let here = rows.iter().filter(|row| row.0 == frame);
         here.map(|&(_, id, x, y)| (PedestrianId(id), [x, y]))
             .collect()
@@ -108,16 +108,16 @@ fn a_live_forecaster_adapts_and_an_error_changes_nothing() {
     let mut expected = AdaptiveRegions::default();
     for frame in (0..30).map(|frame| frame * step) {
         if frame >= 8 * step {
-            let mut far = people(frame);
+            let mut far = pedestrians(frame);
             far[0].1 = [f64::MAX, 0.0];
             let before = adapting.regions().unwrap().learned().cloned();
             let error = adapting.push(frame, far).unwrap_err();
             assert!(matches!(error, DdlError::Forecast(_)), "{error}");
             assert_eq!(adapting.regions().unwrap().learned().cloned(), before);
         }
-        let now = adapting.push(frame, people(frame)).unwrap();
-        let evidence = certified.push_certified(frame, people(frame)).unwrap();
-        let fixed = plain.push(frame, people(frame)).unwrap();
+        let now = adapting.push(frame, pedestrians(frame)).unwrap();
+        let evidence = certified.push_certified(frame, pedestrians(frame)).unwrap();
+        let fixed = plain.push(frame, pedestrians(frame)).unwrap();
         let (Some(now), Some(evidence), Some(fixed)) = (now, evidence, fixed) else {
             assert!(frame < 7 * step);
             continue;
@@ -136,5 +136,5 @@ fn a_live_forecaster_adapts_and_an_error_changes_nothing() {
     let learned = adapting.regions().unwrap().learned().cloned();
     adapting.clear();
     assert_eq!(adapting.regions().unwrap().learned().cloned(), learned);
-    assert!(adapting.push(0, people(0)).unwrap().is_none());
+    assert!(adapting.push(0, pedestrians(0)).unwrap().is_none());
 }

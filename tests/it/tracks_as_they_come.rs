@@ -40,8 +40,8 @@ fn forecast(rows: &[Row], options: &str) -> (Vec<Value>, String) {
 fn late_arrivals_and_holes_are_forecast_and_flagged() {
     let mut rows = own_tracks::three_pedestrians(10);
     // The second pedestrian arrives at frame 60; the third is not seen at 40 and 50.
-    rows.retain(|&(frame, who, ..)| {
-        !(who == 2 && frame < 60 || who == 3 && [40, 50].contains(&frame))
+    rows.retain(|&(frame, id, ..)| {
+        !(id == 2 && frame < 60 || id == 3 && [40, 50].contains(&frame))
     });
     let (lines, told) = forecast(&rows, "--certificate --last");
     let note = "of 3 forecasts 1 are of people seen for less than 8 steps, and 1 over holes";
@@ -296,8 +296,8 @@ fn frames_are_numbered_as_in_the_tracks() {
     let place = Place::empty();
     // 24 frames per second: a step of 0.4 s is 9.6 frames.
     let far = |t| if t < 96 { 0.0 } else { 90.0 };
-    let walk = |who: i64, off: fn(i64) -> f64| {
-        (0..200).map(move |t| (t, who, 0.05 * t as f64 + off(t), 3.0 * who as f64))
+    let walk = |id: i64, off: fn(i64) -> f64| {
+        (0..200).map(move |t| (t, id, 0.05 * t as f64 + off(t), 3.0 * id as f64))
     };
     place.write_tracks(
         "tracks.csv",

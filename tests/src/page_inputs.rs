@@ -58,15 +58,15 @@ pub fn tracker() -> String {
 /// The same tracks from a faster camera with `frames` frames per step.
 fn filmed(tracks: &[Row], frames: i64) -> Vec<Row> {
     let mut all = Vec::new();
-    for &(frame, who, x, y) in tracks {
-        let next = tracks.iter().find(|row| (row.0, row.1) == (frame + 1, who));
-        let &(_, _, to_x, to_y) = next.unwrap_or(&(frame, who, x, y));
+    for &(frame, id, x, y) in tracks {
+        let next = tracks.iter().find(|row| (row.0, row.1) == (frame + 1, id));
+        let &(_, _, to_x, to_y) = next.unwrap_or(&(frame, id, x, y));
         let shares = if next.is_some() { 0..frames } else { 0..1 };
         all.extend(shares.map(|i| {
             let share = i as f64 / frames as f64;
             (
                 frames * frame + i,
-                who,
+                id,
                 x + share * (to_x - x),
                 y + share * (to_y - y),
             )

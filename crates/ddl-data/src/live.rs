@@ -136,9 +136,9 @@ impl LiveTracks {
     pub fn push(
         &mut self,
         frame: i64,
-        people: impl IntoIterator<Item = (PedestrianId, Position)>,
+        positions: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Option<Window>, LiveError> {
-        *self = self.after(frame, people)?;
+        *self = self.after(frame, positions)?;
         Ok(self.window())
     }
 
@@ -149,12 +149,12 @@ impl LiveTracks {
     pub fn after(
         &self,
         frame: i64,
-        people: impl IntoIterator<Item = (PedestrianId, Position)>,
+        positions: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Self, LiveError> {
-        let people = checked_frame(frame, self.last_frame, people)?;
+        let positions = checked_frame(frame, self.last_frame, positions)?;
         let mut earlier = self.pedestrians.iter().peekable();
-        let mut pedestrians = Vec::with_capacity(people.len());
-        for (id, position) in people {
+        let mut pedestrians = Vec::with_capacity(positions.len());
+        for (id, position) in positions {
             while let Some(absent) = earlier.next_if(|pedestrian| pedestrian.id < id) {
                 pedestrians.extend(self.remembered(absent, frame));
             }
@@ -239,10 +239,10 @@ impl Recording {
         let mut tracks = LiveTracks::of(self).completing(completion);
         let mut windows = Vec::new();
         for &frame in self.frames() {
-            let people = self.at(frame).iter();
-            let people = people.map(|seen| (seen.pedestrian, seen.position));
+            let positions = self.at(frame).iter();
+            let positions = positions.map(|seen| (seen.pedestrian, seen.position));
             // The invariants of a recording exclude every error of live tracks.
-            windows.extend(tracks.push(frame, people).ok().flatten());
+            windows.extend(tracks.push(frame, positions).ok().flatten());
         }
         windows
     }
@@ -267,7 +267,7 @@ impl LivePedestrian {
 pub fn checked_frame(
     frame: i64,
     last: Option<i64>,
-    people: impl IntoIterator<Item = (PedestrianId, Position)>,
+    positions: impl IntoIterator<Item = (PedestrianId, Position)>,
 ) -> Result<Vec<(PedestrianId, Position)>, LiveError> {
     if !is_frame(frame) {
         return Err(LiveError::FrameOutOfRange { frame });
@@ -275,9 +275,9 @@ pub fn checked_frame(
     if let Some(last) = last.filter(|last| frame <= *last) {
         return Err(LiveError::TooEarly { frame, last });
     }
-    let mut people: Vec<(PedestrianId, Position)> = people.into_iter().collect();
-    people.sort_unstable_by_key(|&(id, _)| id);
-    for &(pedestrian, position) in &people {
+    let mut positions: Vec<(PedestrianId, Position)> = positions.into_iter().collect();
+    positions.sort_unstable_by_key(|&(id, _)| id);
+    for &(pedestrian, position) in &positions {
         if !is_finite(position) {
             return Err(LiveError::NotFinite {
                 pedestrian,
@@ -286,12 +286,12 @@ pub fn checked_frame(
             });
         }
     }
-    match people.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+    match positions.windows(2).find(|pair| pair[0].0 == pair[1].0) {
         Some(pair) => Err(LiveError::Duplicate {
             pedestrian: pair[0].0,
             frame,
         }),
-        None => Ok(people),
+        None => Ok(positions),
     }
 }
 

@@ -146,14 +146,14 @@ impl<'a> Links<'a> {
 
     /// The pairs of observations of two frames that show the same pedestrian; both frames are sorted by pedestrian.
     fn pairs(&self, from: Range<usize>, to: Range<usize>) -> Vec<(usize, usize)> {
-        let who = |i: usize| self.recording.observations()[i].pedestrian;
+        let pedestrian = |i: usize| self.recording.observations()[i].pedestrian;
         let mut pairs = Vec::with_capacity(from.len().min(to.len()));
         let mut later = to.start;
         for earlier in from.filter(|&i| self.counts(i)) {
-            while later < to.end && who(later) < who(earlier) {
+            while later < to.end && pedestrian(later) < pedestrian(earlier) {
                 later += 1;
             }
-            if later < to.end && who(later) == who(earlier) && self.counts(later) {
+            if later < to.end && pedestrian(later) == pedestrian(earlier) && self.counts(later) {
                 pairs.push((earlier, later));
             }
         }

@@ -11,7 +11,7 @@ use crowd::Crowd;
 use ddl_data::{OBSERVED, PedestrianId, Position};
 use ddl_memory::SceneMemory;
 
-const PEOPLE: usize = 25;
+const PEDESTRIANS: usize = 25;
 
 /// A memory that has begun to forget, its crowd, the next frame, and queries for the memory.
 fn full() -> (
@@ -21,17 +21,21 @@ fn full() -> (
     Vec<(PedestrianId, [Position; OBSERVED])>,
 ) {
     let mut memory = SceneMemory::new(1, SceneMemory::DEFAULT_CAPACITY).expect("in range");
-    let mut crowd = Crowd::new(1, PEOPLE);
+    let mut crowd = Crowd::new(1, PEDESTRIANS);
     let mut last = Vec::new();
     for frame in 0..4_000 {
-        let people = crowd.step();
-        memory.observe(frame, people.clone()).expect("valid");
-        last.push(people);
+        let pedestrians = crowd.step();
+        memory.observe(frame, pedestrians.clone()).expect("valid");
+        last.push(pedestrians);
     }
     let last = &last[last.len() - OBSERVED..];
     let observed = |id| {
-        last.iter()
-            .map(move |people| people.iter().find(|seen| seen.0 == id).map(|seen| seen.1))
+        last.iter().map(move |pedestrians| {
+            pedestrians
+                .iter()
+                .find(|seen| seen.0 == id)
+                .map(|seen| seen.1)
+        })
     };
     let queries = last[OBSERVED - 1].iter().filter_map(|&(id, _)| {
         let positions: Option<Vec<Position>> = observed(id).collect();
@@ -73,9 +77,9 @@ fn recall(criterion: &mut Criterion) {
 fn observe(criterion: &mut Criterion) {
     let (mut memory, mut crowd, mut frame, _) = full();
     measure(criterion, "observe 25 pedestrians", || {
-        let people = crowd.step();
+        let pedestrians = crowd.step();
         let start = Instant::now();
-        memory.observe(frame, people).expect("valid");
+        memory.observe(frame, pedestrians).expect("valid");
         frame += 1;
         start.elapsed()
     });

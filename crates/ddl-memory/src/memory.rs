@@ -149,17 +149,17 @@ impl SceneMemory {
     pub fn observe(
         &mut self,
         frame: i64,
-        people: impl IntoIterator<Item = (PedestrianId, Position)>,
+        positions: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<(), MemoryError> {
-        let people = checked_frame(frame, self.last_frame, people)?;
+        let positions = checked_frame(frame, self.last_frame, positions)?;
         let watched = self.last_frame.map_or(0, |last| frame.abs_diff(last));
         self.seen.watched = self.seen.watched.saturating_add(watched);
         self.seen.frames = self.seen.frames.saturating_add(1);
         self.last_frame = Some(frame);
         let step = self.frame_step;
         self.end_tracks(|track| track.is_gone(frame, step));
-        let people = people.into_iter();
-        for (id, position) in people.filter(|(_, position)| is_remembered(*position)) {
+        let positions = positions.into_iter();
+        for (id, position) in positions.filter(|(_, position)| is_remembered(*position)) {
             self.seen.add(position);
             match self.running.entry(id) {
                 Entry::Occupied(mut running) => {

@@ -60,9 +60,9 @@ impl SceneMemory {
         for index in order {
             let now = playback.now(&windows[index]);
             while let Some(frame) = frames.next_if(|frame| playback.time(*frame) < now) {
-                let people = recording.at(frame).iter();
-                let people = people.map(|seen| (seen.pedestrian, seen.position));
-                self.observe(playback.time(frame), people)?;
+                let positions = recording.at(frame).iter();
+                let positions = positions.map(|seen| (seen.pedestrian, seen.position));
+                self.observe(playback.time(frame), positions)?;
             }
             windows[index] = self.recalling(windows[index].clone(), count);
         }
@@ -90,9 +90,9 @@ impl SceneMemory {
         self.ensure_step_of(recording)?;
         self.interrupt();
         for &frame in recording.frames() {
-            let people = recording.at(frame).iter();
-            let people = people.map(|seen| (seen.pedestrian, seen.position));
-            self.observe(frame, people)?;
+            let positions = recording.at(frame).iter();
+            let positions = positions.map(|seen| (seen.pedestrian, seen.position));
+            self.observe(frame, positions)?;
         }
         self.interrupt();
         Ok(())

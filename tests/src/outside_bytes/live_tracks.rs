@@ -21,15 +21,15 @@ pub fn read(bytes: &[u8]) {
             255 => i64::from_le_bytes(choices.bytes()),
             ahead => frame.wrapping_add(i64::from(ahead % 24) - 2),
         };
-        let people: Vec<(PedestrianId, Position)> = (0..choices.below(5))
+        let pedestrians: Vec<(PedestrianId, Position)> = (0..choices.below(5))
             .map(|_| {
                 let id = PedestrianId(choices.below(6) as i64);
                 (id, [choices.number(), choices.number()])
             })
             .collect();
         let before = tracks.clone();
-        let count = people.len();
-        match tracks.push(frame, people) {
+        let count = pedestrians.len();
+        match tracks.push(frame, pedestrians) {
             Err(error) => {
                 assert!(!error.to_string().is_empty());
                 assert_eq!(tracks, before, "an error changes nothing");

@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 use super::edits::Choices;
 
-const PEOPLE: i64 = 3;
+const PEDESTRIANS: i64 = 3;
 const FRAMES: i64 = 45;
 
 fn at(frame: i64, id: i64) -> (PedestrianId, Position) {
@@ -26,9 +26,9 @@ fn observe(memory: &mut SceneMemory, first: i64) {
             1 => frame > 20,
             _ => frame != 21,
         };
-        let people = (0..PEOPLE).filter(is_there).map(|id| at(frame, id));
+        let pedestrians = (0..PEDESTRIANS).filter(is_there).map(|id| at(frame, id));
         // An edited memory may have seen a later frame.
-        let _ = memory.observe(first + frame, people);
+        let _ = memory.observe(first + frame, pedestrians);
         assert!(memory.stretches() <= memory.capacity());
     }
 }

@@ -20,16 +20,17 @@ pub fn read(bytes: &[u8]) {
     for frame in whole.iter().flatten() {
         assert!(last < Some(frame.number), "{frame:?} after {last:?}");
         last = Some(frame.number);
-        let people = || frame.people.iter().copied();
+        let pedestrians = || frame.people.iter().copied();
         assert!(
-            people().all(|(_, place)| place.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT))
+            pedestrians()
+                .all(|(_, place)| place.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT))
         );
         let window = tracks
-            .push(frame.number, people())
+            .push(frame.number, pedestrians())
             .expect("frames from the reader can be pushed");
         assert_eq!(window, tracks.window());
         let before = tracks.clone();
-        assert!(tracks.push(frame.number, people()).is_err());
+        assert!(tracks.push(frame.number, pedestrians()).is_err());
         assert_eq!(tracks, before);
     }
 }

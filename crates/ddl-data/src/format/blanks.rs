@@ -1,7 +1,7 @@
 //! Text with one observation per line, its columns separated by tabs or blanks: `social-gan`, and the `obsmat` of the
 //! ETH recordings.
 
-use super::field::{self, Who};
+use super::field::{self, PedestrianField};
 use super::place::FilePlace;
 use super::rows::{FIELDS, TrackRow};
 use crate::error::{FormatError, FormatProblem};
@@ -60,7 +60,7 @@ pub(super) fn obsmat(text: &str, line: usize, origin: &str) -> Result<TrackRow, 
         at(field).read(origin, field::number(text, name))?;
     }
     Ok(TrackRow {
-        who: Who::Number(number, None),
+        pedestrian: PedestrianField::Number(number, None),
         ..row
     })
 }

@@ -27,14 +27,14 @@ pub(super) fn integer(text: &str, name: &'static str) -> Result<i64, FormatProbl
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Who {
+pub(super) enum PedestrianField {
     /// A number, and its spelling where that is not plain digits, such as `12.0`.
     Number(i64, Option<Box<str>>),
     /// A name that is not a number.
     Word(Box<str>),
 }
 
-impl Who {
+impl PedestrianField {
     /// The text as the file has it.
     pub(super) fn written(&self) -> Cow<'_, str> {
         match self {
@@ -46,12 +46,15 @@ impl Who {
 
 /// A pedestrian: a number as [`integer`] parses it, or a word. Fractions, NaN, infinite numbers and empty fields are
 /// refused. Whole numbers that are too large are words.
-pub(super) fn pedestrian(text: &str, name: &'static str) -> Result<Who, FormatProblem> {
+pub(super) fn pedestrian(text: &str, name: &'static str) -> Result<PedestrianField, FormatProblem> {
     let text = text.trim();
     match integer(text, name) {
-        Ok(number) => Ok(Who::Number(number, (!is_plain(text)).then(|| text.into()))),
+        Ok(number) => Ok(PedestrianField::Number(
+            number,
+            (!is_plain(text)).then(|| text.into()),
+        )),
         Err(problem) if text.is_empty() || is_fraction_or_infinite(text) => Err(problem),
-        Err(_) => Ok(Who::Word(text.into())),
+        Err(_) => Ok(PedestrianField::Word(text.into())),
     }
 }
 
@@ -111,10 +114,10 @@ mod tests {
         let read = |text: &str| pedestrian(text, "pedestrian");
         for (text, number) in [(" 12.0", 12), ("-0", 0), ("007", 7)] {
             let as_written = Some(text.trim().into());
-            assert_eq!(read(text), Ok(Who::Number(number, as_written)));
+            assert_eq!(read(text), Ok(PedestrianField::Number(number, as_written)));
         }
         for text in ["7f3e", "12e4567", "5e20", "9007199254740992", " a b "] {
-            assert_eq!(read(text), Ok(Who::Word(text.trim().into())));
+            assert_eq!(read(text), Ok(PedestrianField::Word(text.trim().into())));
         }
         for text in ["", " ", "1.5", "NaN", "inf", "-inf"] {
             assert!(

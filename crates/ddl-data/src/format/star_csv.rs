@@ -1,6 +1,6 @@
 //! The `star` CSV format: four long parallel lines.
 
-use super::field::{self, Who};
+use super::field::{self, PedestrianField};
 use super::place::FilePlace;
 use super::rows::TrackRow;
 use crate::error::{FormatError, FormatProblem};
@@ -43,7 +43,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatErr
         let x = place(4).read(origin, field::coordinate(xs[index], "x"))?;
         Ok(TrackRow {
             frame,
-            who: Who::Number(pedestrian, None),
+            pedestrian: PedestrianField::Number(pedestrian, None),
             position: [x, y],
             place: place(2),
         })

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead, Read as _};
 use std::sync::Arc;
 
-use super::field::Who;
+use super::field::PedestrianField;
 use super::kind::Format;
 use super::place::FilePlace;
 use super::rows::TrackRow;
@@ -220,10 +220,10 @@ impl<R: BufRead> FrameReader<R> {
             lines: BTreeMap::new(),
             words: BTreeMap::new(),
         });
-        let pedestrian = match seen.who {
-            Who::Number(number, None) => PedestrianId(number),
+        let pedestrian = match seen.pedestrian {
+            PedestrianField::Number(number, None) => PedestrianId(number),
             // After a word, `1e3` is a word as well, unless it was a number before.
-            Who::Number(number, Some(text))
+            PedestrianField::Number(number, Some(text))
                 if self.words.is_empty() || self.numbers.contains(&text) =>
             {
                 if self.numbers.len() < MOST_WORDS {
@@ -231,8 +231,8 @@ impl<R: BufRead> FrameReader<R> {
                 }
                 PedestrianId(number)
             }
-            who => {
-                let (id, word) = self.words.number(&who.written());
+            field => {
+                let (id, word) = self.words.number(&field.written());
                 growing.words.insert(id, word);
                 id
             }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use serde_json::value::RawValue;
 
-use super::field::{self, Who};
+use super::field::{self, PedestrianField};
 use super::place::FilePlace;
 use super::rows::TrackRow;
 use crate::error::{FormatError, FormatProblem};
@@ -19,16 +19,16 @@ use crate::{PedestrianName, Position};
     reason = "a repeated track is written with the same digits"
 )]
 pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, Rate), FormatError> {
-    let mut seen: BTreeMap<(i64, Who), (Position, usize)> = BTreeMap::new();
+    let mut seen: BTreeMap<(i64, PedestrianField), (Position, usize)> = BTreeMap::new();
     let mut rows = Vec::new();
     let mut rate = Rate::default();
     for (index, text) in text.lines().enumerate() {
         let Some(row) = observation(text, index + 1, origin, &mut rate)? else {
             continue;
         };
-        let key = match &row.who {
-            Who::Number(number, _) => Who::Number(*number, None),
-            word @ Who::Word(_) => word.clone(),
+        let key = match &row.pedestrian {
+            PedestrianField::Number(number, _) => PedestrianField::Number(*number, None),
+            word @ PedestrianField::Word(_) => word.clone(),
         };
         let (frame, place, position) = (row.frame, row.place, row.position);
         match seen.get(&(frame, key.clone())) {
@@ -40,8 +40,8 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, Rate), F
             Some(&(known, first_line)) => {
                 let problem = FormatProblem::Disagreement {
                     pedestrian: Box::new(match key {
-                        Who::Number(number, _) => PedestrianName::Number(number),
-                        Who::Word(word) => PedestrianName::Word(word.into()),
+                        PedestrianField::Number(number, _) => PedestrianName::Number(number),
+                        PedestrianField::Word(word) => PedestrianName::Word(word.into()),
                     }),
                     frame,
                     first_line,
@@ -161,20 +161,22 @@ fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>
         Some(value) => Ok(value.to_string()),
     };
     let frame = field::integer(&text(track.f, "track.f")?, "track.f")?;
-    let who = match track.p {
+    let pedestrian = match track.p {
         // A quoted pedestrian is a word, whatever its characters.
-        Some(Value::String(word)) if !word.trim().is_empty() => Who::Word(word.trim().into()),
+        Some(Value::String(word)) if !word.trim().is_empty() => {
+            PedestrianField::Word(word.trim().into())
+        }
         Some(Value::Number(number)) => field::pedestrian(&number.to_string(), "track.p")?,
         other => {
             let number = field::integer(&text(other, "track.p")?, "track.p")?;
-            Who::Number(number, None)
+            PedestrianField::Number(number, None)
         }
     };
     let x = field::coordinate(&text(track.x, "track.x")?, "track.x")?;
     let y = field::coordinate(&text(track.y, "track.y")?, "track.y")?;
     Ok(Some(TrackRow {
         frame,
-        who,
+        pedestrian,
         position: [x, y],
         place,
     }))

@@ -18,14 +18,14 @@ fn frames(text: &[u8]) -> Result<Vec<Frame>, DataError> {
 type Seen = Vec<(i64, Vec<(PedestrianId, Position)>)>;
 
 fn of_whole(recording: &Recording) -> Seen {
-    let people = |frame: &i64| {
+    let pedestrians = |frame: &i64| {
         let at = recording.at(*frame).iter();
         (
             *frame,
             at.map(|seen| (seen.pedestrian, seen.position)).collect(),
         )
     };
-    recording.frames().iter().map(people).collect()
+    recording.frames().iter().map(pedestrians).collect()
 }
 
 fn of_frames(frames: Vec<Frame>) -> Seen {
@@ -120,9 +120,9 @@ fn after_an_error_the_next_line_is_read() {
     let wrong = |reader: &mut FrameReader<&[u8]>| reader.next_frame().unwrap_err().to_string();
     assert!(wrong(&mut reader).contains("line 1: the line is longer"));
     assert!(wrong(&mut reader).contains("line 3"));
-    let people = reader.next_frame().unwrap().unwrap().people;
-    let people: Vec<i64> = people.iter().map(|(who, _)| who.0).collect();
-    assert_eq!(people, [1, 3]);
+    let pedestrians = reader.next_frame().unwrap().unwrap().people;
+    let pedestrians: Vec<i64> = pedestrians.iter().map(|(id, _)| id.0).collect();
+    assert_eq!(pedestrians, [1, 3]);
     assert!(wrong(&mut reader).contains("line 6"));
     assert_eq!(reader.unfinished().map(|frame| frame.number), Some(1));
     assert_eq!(reader.next_frame().unwrap(), None);

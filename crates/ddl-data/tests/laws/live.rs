@@ -17,14 +17,14 @@ fn errors_change_nothing() {
             position,
         };
         let twice = vec![(pedestrian, here); 2];
-        for (frame, people, error) in [
+        for (frame, pedestrians, error) in [
             (last, vec![], too_early(last)),
             (last - 1, vec![], too_early(last - 1)),
             (far, vec![], LiveError::FrameOutOfRange { frame: far }),
             (frame, twice, LiveError::Duplicate { pedestrian, frame }),
             (frame, vec![(pedestrian, position)], not_finite),
         ] {
-            assert_eq!(tracks.push(frame, people), Err(error));
+            assert_eq!(tracks.push(frame, pedestrians), Err(error));
             assert_eq!(tracks, before);
         }
     }
@@ -44,8 +44,8 @@ fn pedestrians_that_left_are_forgotten() {
         for frame in 0..40_000_i64 {
             // Ten at a time, each for ten frames.
             let present = (0..10).map(|k| (frame - k) / 10 * 10 + k);
-            let people = present.map(|id| (PedestrianId(id), [frame as f64, id as f64]));
-            windows += usize::from(tracks.push(frame, people).unwrap().is_some());
+            let pedestrians = present.map(|id| (PedestrianId(id), [frame as f64, id as f64]));
+            windows += usize::from(tracks.push(frame, pedestrians).unwrap().is_some());
             let known = tracks.len();
             assert!((10..=most).contains(&known), "frame {frame}: {known}");
         }

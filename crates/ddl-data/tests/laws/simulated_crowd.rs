@@ -102,9 +102,9 @@ fn bodies_hardly_overlap() {
     for scene in CrowdScene::ALL {
         let crowd = scene.simulate(SEED);
         let (mut pairs, mut close) = (0, 0);
-        for people in scenes(&crowd) {
-            for (i, (_, a)) in people.iter().enumerate() {
-                let gaps = people[..i].iter().map(|(_, b)| distance(*a, *b));
+        for pedestrians in scenes(&crowd) {
+            for (i, (_, a)) in pedestrians.iter().enumerate() {
+                let gaps = pedestrians[..i].iter().map(|(_, b)| distance(*a, *b));
                 for gap in gaps {
                     assert!(gap > 0.3, "{scene}: two centres {gap} m apart");
                     pairs += 1;
@@ -124,9 +124,9 @@ fn pedestrians_enter_continuously_and_are_numbered_in_order() {
     for scene in CrowdScene::ALL {
         let crowd = scene.simulate(SEED);
         let (mut entered, mut last) = (Vec::new(), 0);
-        for people in scenes(&crowd) {
-            let newest = people.iter().map(|(id, _)| id.0).max().unwrap_or(last);
-            assert!(people.iter().all(|(id, _)| id.0 >= 1), "{scene}");
+        for pedestrians in scenes(&crowd) {
+            let newest = pedestrians.iter().map(|(id, _)| id.0).max().unwrap_or(last);
+            assert!(pedestrians.iter().all(|(id, _)| id.0 >= 1), "{scene}");
             entered.push(newest.max(last) - last);
             last = newest.max(last);
         }
@@ -144,9 +144,9 @@ fn groups_stay_together() {
         let crowd = scene.simulate(SEED);
         assert!(crowd.groups.len() > 10, "{scene}");
         let mut gaps = Vec::new();
-        for people in scenes(&crowd) {
+        for pedestrians in scenes(&crowd) {
             for group in &crowd.groups {
-                let members: Vec<_> = people
+                let members: Vec<_> = pedestrians
                     .iter()
                     .filter(|(id, _)| group.contains(id))
                     .map(|p| p.1)

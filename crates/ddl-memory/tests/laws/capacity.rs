@@ -12,9 +12,9 @@ proptest! {
     fn the_capacity_is_never_exceeded(frames in crate::crowds(), capacity in 1..200_usize) {
         let mut memory = SceneMemory::new(crate::step_of(&frames), capacity).unwrap();
         let mut whole = SceneMemory::new(crate::step_of(&frames), 20_000).unwrap();
-        for (frame, people) in &frames {
-            memory.observe(*frame, people.clone()).unwrap();
-            whole.observe(*frame, people.clone()).unwrap();
+        for (frame, pedestrians) in &frames {
+            memory.observe(*frame, pedestrians.clone()).unwrap();
+            whole.observe(*frame, pedestrians.clone()).unwrap();
             prop_assert!(memory.stretches() <= capacity);
         }
         if whole.stretches() <= capacity {
@@ -30,8 +30,8 @@ proptest! {
 
 fn walk(memory: &mut SceneMemory, first: i64, y: f64) {
     for t in 0..20 {
-        let people = [(PedestrianId(first), [0.5 * t as f64, y])];
-        memory.observe(first + t, people).unwrap();
+        let pedestrians = [(PedestrianId(first), [0.5 * t as f64, y])];
+        memory.observe(first + t, pedestrians).unwrap();
     }
 }
 

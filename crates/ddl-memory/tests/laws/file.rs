@@ -44,9 +44,9 @@ proptest! {
         }
         // Both continue identically.
         let last = frames[frames.len() - 1].0;
-        for (frame, people) in &frames {
-            memory.observe(last + 1 + frame, people.clone()).unwrap();
-            read.observe(last + 1 + frame, people.clone()).unwrap();
+        for (frame, pedestrians) in &frames {
+            memory.observe(last + 1 + frame, pedestrians.clone()).unwrap();
+            read.observe(last + 1 + frame, pedestrians.clone()).unwrap();
         }
         prop_assert_eq!(&read, &memory);
         memory.interrupt();
@@ -81,8 +81,8 @@ proptest! {
         let end = content[start..].find(|c| !is_digit(c)).map_or(content.len(), |length| start + length);
         let edited = [&content[..start], number, &content[end..]].concat();
         if let Ok(mut memory) = read(&path, &signed(edited.as_bytes())) {
-            for (frame, people) in &frames {
-                let _ = memory.observe(1_000 + frame, people.clone());
+            for (frame, pedestrians) in &frames {
+                let _ = memory.observe(1_000 + frame, pedestrians.clone());
                 prop_assert!(memory.stretches() <= memory.capacity());
             }
             for (id, observed) in queries(&frames) {

@@ -7,8 +7,8 @@ use ddl_memory::SceneMemory;
 /// The same frames with other positions from an index on.
 fn with_noise_from(frames: &Frames, from: usize) -> Frames {
     let mut noisy = frames.clone();
-    for (index, (frame, people)) in noisy.iter_mut().enumerate().skip(from) {
-        for (id, position) in people {
+    for (index, (frame, pedestrians)) in noisy.iter_mut().enumerate().skip(from) {
+        for (id, position) in pedestrians {
             let noise = ((*frame * 31 + id.0 * 17) % 23) as f64 - 11.0 + index as f64 * 0.01;
             *position = [position[0] + noise, noise];
         }
@@ -35,12 +35,12 @@ fn sees_the_future(
     let was_seen = |person: PedestrianId, track: &[[f64; 2]; WINDOW]| {
         now.windows(WINDOW).any(|window| {
             let mut pairs = window.iter().zip(track);
-            pairs.all(|((_, people), position)| people.contains(&(person, *position)))
+            pairs.all(|((_, pedestrians), position)| pedestrians.contains(&(person, *position)))
         })
     };
     let examples = found.iter().flatten();
-    let mut people = now.iter().flat_map(|(_, people)| people);
-    let mut ids: Vec<PedestrianId> = people.by_ref().map(|(id, _)| *id).collect();
+    let mut pedestrians = now.iter().flat_map(|(_, pedestrians)| pedestrians);
+    let mut ids: Vec<PedestrianId> = pedestrians.by_ref().map(|(id, _)| *id).collect();
     ids.sort_unstable();
     ids.dedup();
     let mut tracks = examples.map(|example| &example.track);
@@ -55,8 +55,8 @@ fn a_memory_does_not_see_the_future() {
         let frames = frames(seed, 12, 90, 5);
         let mut grown = memory_of(&frames[..25].to_vec(), 500);
         for end in (30..85).step_by(5) {
-            for (frame, people) in &frames[end - 5..end] {
-                grown.observe(*frame, people.clone()).unwrap();
+            for (frame, pedestrians) in &frames[end - 5..end] {
+                grown.observe(*frame, pedestrians.clone()).unwrap();
             }
             let honest = |frames: &Frames, end: usize| memory_of(&frames[..end].to_vec(), 500);
             assert!(!sees_the_future(honest, &frames, end), "seed {seed}, {end}");
@@ -82,8 +82,8 @@ fn what_comes_later_does_not_change_a_clone() {
     let mut memory = memory_of(&now, 300);
     let before = memory.clone();
     let answered = answers(&before, &now);
-    for (frame, people) in &later[70..] {
-        memory.observe(*frame, people.clone()).unwrap();
+    for (frame, pedestrians) in &later[70..] {
+        memory.observe(*frame, pedestrians.clone()).unwrap();
     }
     assert_eq!(answers(&before, &now), answered);
     assert_ne!(answers(&memory, &now), answered);

@@ -14,8 +14,8 @@ fn stretches(frames: &Frames) -> Vec<(PedestrianId, bool, Vec<Stretch>)> {
     let (step, now) = (step_of(frames), frames[frames.len() - 1].0);
     let mut tracks: BTreeMap<(PedestrianId, i64), BTreeMap<i64, Position>> = BTreeMap::new();
     let mut current: BTreeMap<PedestrianId, (i64, i64)> = BTreeMap::new();
-    for (frame, people) in frames {
-        for (id, position) in people {
+    for (frame, pedestrians) in frames {
+        for (id, position) in pedestrians {
             let (first, last) = current.entry(*id).or_insert((*frame, *frame));
             if frame - *last > LONGEST_ABSENCE * step {
                 *first = *frame;
@@ -104,8 +104,8 @@ proptest! {
     fn the_order_of_people_does_not_matter(frames in crate::crowds(), seed in any::<u64>()) {
         let memory = memory_of(&frames, 100);
         let mut shuffled = frames.clone();
-        for (frame, people) in &mut shuffled {
-            people.sort_by_key(|(id, _)| (id.0 as u64 + *frame as u64).wrapping_mul(seed | 1));
+        for (frame, pedestrians) in &mut shuffled {
+            pedestrians.sort_by_key(|(id, _)| (id.0 as u64 + *frame as u64).wrapping_mul(seed | 1));
         }
         prop_assert_eq!(memory_of(&shuffled, 100), memory);
     }
@@ -120,7 +120,7 @@ proptest! {
         frames[0].1.push((first, [0.0; 2]));
         let memory = memory_of(&frames, 1_000);
         let mut moved = frames.clone();
-        for (_, position) in moved.iter_mut().flat_map(|(_, people)| people).filter(|seen| seen.0 != first) {
+        for (_, position) in moved.iter_mut().flat_map(|(_, pedestrians)| pedestrians).filter(|seen| seen.0 != first) {
             *position = [position[0] + far.0, position[1] + far.1];
         }
         let there = memory_of(&moved, 1_000);
@@ -138,8 +138,8 @@ fn only_the_running_track_is_left_out() {
     let at = |t: i64| [0.5 * t as f64, 0.0];
     for (first, ids) in [(0, [4, 3].as_slice()), (100, &[3, 1, 2])] {
         for t in 0..22 {
-            let people = ids.iter().map(|&id| (PedestrianId(id), at(t)));
-            memory.observe(first + t, people).unwrap();
+            let pedestrians = ids.iter().map(|&id| (PedestrianId(id), at(t)));
+            memory.observe(first + t, pedestrians).unwrap();
         }
     }
     let observed: [Position; OBSERVED] = std::array::from_fn(|t| at(t as i64 + 1));
@@ -185,8 +185,8 @@ fn ties_go_by_age() {
     let mut memory = SceneMemory::new(1, 1_000).unwrap();
     for (first, id, y) in [(0, 9, 0.001), (100, 2, -0.001)] {
         for t in 0..20 {
-            let people = [(PedestrianId(id), [0.5 * t as f64, y])];
-            memory.observe(first + t, people).unwrap();
+            let pedestrians = [(PedestrianId(id), [0.5 * t as f64, y])];
+            memory.observe(first + t, pedestrians).unwrap();
         }
     }
     let observed = std::array::from_fn(|t| [0.5 * t as f64, 0.0]);
@@ -204,8 +204,8 @@ fn frames_between_steps_give_no_stretches() {
     let mut memory = SceneMemory::new(10, 1_000).unwrap();
     let mut seen = |frames: std::ops::Range<i64>| {
         for frame in frames {
-            let people = [(PedestrianId(1), [0.05 * frame as f64, 0.0])];
-            memory.observe(frame, people).unwrap();
+            let pedestrians = [(PedestrianId(1), [0.05 * frame as f64, 0.0])];
+            memory.observe(frame, pedestrians).unwrap();
         }
         memory.stretches()
     };

@@ -11,7 +11,7 @@ fn errors_change_nothing() {
         memory.observe(last, [(id, here)]).unwrap();
         let before = memory.clone();
         let other = (PedestrianId(1), here);
-        for (frame, people, problem) in [
+        for (frame, pedestrians, problem) in [
             (last, vec![], "comes after frame"),
             (last - 1, vec![other], "interrupt the memory"),
             (i64::MIN, vec![other], "not below 2^53"),
@@ -28,7 +28,7 @@ fn errors_change_nothing() {
                 "not finite",
             ),
         ] {
-            let error = memory.observe(frame, people).unwrap_err().to_string();
+            let error = memory.observe(frame, pedestrians).unwrap_err().to_string();
             assert!(error.contains(problem), "{error}");
             assert_eq!(memory, before);
         }
@@ -48,12 +48,12 @@ fn input_of_live_tracks_is_accepted() {
             30 | 60.. => far[frame as usize % 4],
             _ => 0.4 * frame as f64,
         };
-        let people = [
+        let pedestrians = [
             (PedestrianId(1), [x, 0.0]),
             (PedestrianId(2), [0.0, frame as f64]),
         ];
-        tracks.push(frame, people).unwrap();
-        memory.observe(frame, people).unwrap();
+        tracks.push(frame, pedestrians).unwrap();
+        memory.observe(frame, pedestrians).unwrap();
     }
     // Frames 0 to 29 and 31 to 59 of the first pedestrian.
     assert_eq!(memory.summary().extent, Some([[0.0, 0.0], [23.6, 99.0]]));
