@@ -92,8 +92,10 @@ impl Slurm {
         let host = host.trim().split('.').next().unwrap_or_default();
         let nodes = NODES.iter().enumerate().map(|(index, node)| {
             let port = 16_821 + index;
-            "NodeName={node} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs=1 \
-                     RealMemory=4000\n"
+            format!(
+                "NodeName={node} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs=1 \
+                 RealMemory=4000\n"
+            )
         });
         let text = include_str!("slurm/slurm.conf")
             .replace("HOST", host)
