@@ -20,7 +20,7 @@ fn crowd(count: usize, frames: i64) -> Vec<own_tracks::Row> {
     };
     let pedestrian =
         |_| [(0.0, side), (0.0, side), (-1.0, 1.0), (-1.0, 1.0)].map(|(a, b)| number(a, b));
-    let pedestrians: Vec<[f64; 4]> = (0..people).map(pedestrian).collect();
+    let pedestrians: Vec<[f64; 4]> = (0..count).map(pedestrian).collect();
     let at = |frame: i64| {
         let t = 0.4 * frame as f64;
         let ids = (0..).zip(&pedestrians);

@@ -28,7 +28,7 @@ impl Crowd {
             next_id: 0,
             pedestrians: Vec::new(),
         };
-        for _ in 0..people {
+        for _ in 0..count {
             let mut pedestrian = crowd.pedestrian();
             pedestrian.steps_left = 1 + (crowd.random() * 40.0) as usize;
             crowd.pedestrians.push(pedestrian);
